@@ -9,9 +9,10 @@ across it, where a decimetre may separate the two lines of a double line.
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+import shapely
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
@@ -24,10 +25,11 @@ from ...survey.store.records import COORDINATE_SCALE, Points, join_columns
 from .classify import LINE_KINDS, NOT_PAINT, ClassSettings, classify_markings, relative_contrast, too_pale
 from .connected_cells import components, occupied
 from .marking_objects import make_marking_objects
-from .outline import band, cell_outline, painted_cells, parts, to_local
+from .outline import band, cell_outline, lifted, painted_cells, parts, to_local
 from .road_grid import CELL_UNITS
 from .scan_tracks import track_reach
 from .shape import measure
+from .sparse_zebra import sparse_crossings
 from .split_merge import join_fragments, split_compounds
 
 if TYPE_CHECKING:
@@ -35,6 +37,7 @@ if TYPE_CHECKING:
     from ...survey.store.columns import Columns
     from ...survey.store.road_points import RoadPoints
     from .marking_objects import MarkingObjects
+    from .shape import Shape
 
 LINKING_WINDOW_CELLS = 1250                   # cells of 4 cm: 50 m of station are linked at a time
 MIN_FRAGMENT_POINTS = 1                       # points: the smallest worn rest that a line may be joined from
@@ -83,13 +86,16 @@ def cluster_markings(marking_points: RoadPoints, frame: RoadFrame, settings: Clu
     for k, road in enumerate(roads):
         part = progress.part(k / len(roads), (k + 1) / len(roads))
         records, labels = connected_points(marking_points, road, settings.distance, part.part(0, 0.4))
+        cluster = np.zeros(len(records), np.int32)
+        found, rest = _sparse_stripes(records)
+        records, labels = records.take(rest), labels[rest]
         order, starts, _ = _by_cluster(split_compounds(records, labels), MIN_FRAGMENT_POINTS)
         records = records.take(order)
         s, d, spacing = records["s"], records["d"], records["spacing"]
         pieces = [measure(s[a:b], d[a:b], spacing[a:b]) for a, b in zip(starts[:-1].tolist(), starts[1:].tolist())]
         joins = join_fragments(pieces, settings.classes.max_width)
         again, starts, labels = _by_cluster(_relabelled(records, starts, joins), settings.min_points)
-        records, order = records.take(again), order[again]
+        records, order = records.take(again), rest[order[again]]
         bounds = list(zip(starts[:-1].tolist(), starts[1:].tolist()))
         s, d, spacing = records["s"], records["d"], records["spacing"]
         alone = _alone(pieces, joins)
@@ -101,22 +107,52 @@ def cluster_markings(marking_points: RoadPoints, frame: RoadFrame, settings: Clu
         if marking_points.has_corrected:
             bright = relative_contrast(Points(records).value, records["s"], starts)
             kinds = [(NOT_PAINT, "other") if too_pale(share, kind) else (kind, use) for share, (kind, use) in zip(bright.tolist(), kinds)]
-        cluster = np.zeros(len(records), np.int32)
-        for i in sorted(range(len(bounds)), key=lambda i: (shapes[i].s0, shapes[i].d0, shapes[i].s1)):
-            if kinds[i][0] == NOT_PAINT:
-                refused += 1
-                continue
+        refused += sum(kind == NOT_PAINT for kind, _ in kinds)
+        found += [_Marking(records[a:b], order[a:b], shape, *kind)
+                  for shape, kind, (a, b) in zip(shapes, kinds, bounds) if kind[0] != NOT_PAINT]
+        for marking in sorted(found, key=lambda marking: (marking.shape.s0, marking.shape.d0, marking.shape.s1)):
             number += 1
-            a, b = bounds[i]
-            cluster[order[a:b]] = number
-            for polygon in _outline(records[a:b], shapes[i], kinds[i][0], frame.road(road)):
+            cluster[marking.rows] = number
+            for polygon in _outline(marking, frame.road(road)):
                 polygons.append(polygon)
-                rows.append(_row(records[a:b], shapes[i], kinds[i], number, road, frame))
+                rows.append(_row(marking, number, road, frame))
             part.report(0.4 + 0.6 * number / max(len(bounds), 1))
         _put(clustered.store, road, cluster, marking_points)
     progress.info(f"Markings: {number} found; {refused} clusters were left out as gutters, seams, covers, specks or the feet of what "
                  "stands on the road.")
     return make_marking_objects(rows, polygons, frame, marking_points.crs), clustered
+
+
+class _Marking(NamedTuple):
+    """Records of a marking and their rows in those of the road; its outline in local coordinates where that is known already."""
+
+    records: Columns
+    rows: np.ndarray
+    shape: Shape
+    kind: str
+    use: str
+    outline: shapely.Polygon | None = None
+
+
+def _sparse_stripes(records):
+    """[_Marking] the stripes of crossings that were scanned sparsely, and the rows of all other records."""
+    cells, member = occupied(records["x"] // CELL_UNITS, records["y"] // CELL_UNITS)
+    sparse = np.zeros(len(cells), bool)
+    sparse[member] = track_reach(records["spacing"]) > 0
+    places = (cells + 0.5) * CELL_UNITS * COORDINATE_SCALE
+    stripe_of, found = np.full(len(cells), -1), []
+    stripes = sparse_crossings(places, sparse)
+    for k, stripe in enumerate(stripes):
+        stripe_of[stripe.spots] = k
+    of_point = stripe_of[member]
+    for k, stripe in enumerate(stripes):
+        rows = np.flatnonzero(of_point == k)
+        if len(rows):
+            own = records.take(rows)
+            length, width = (float(np.hypot(*(stripe.corners[j] - stripe.corners[j - 1]))) for j in (1, 2))
+            shape = replace(measure(own["s"], own["d"], own["spacing"]), length=length, width=width)
+            found.append(_Marking(own, rows, shape, "zebra", "other", shapely.Polygon(stripe.corners)))
+    return found, np.flatnonzero(of_point < 0)
 
 
 def _put(store, road, cluster, points):
@@ -247,21 +283,25 @@ def _by_cluster(labels, fewest):
     return order, np.r_[starts, len(labels)], labels[starts]
 
 
-def _outline(records, shape, kind, road):
+def _outline(marking, road):
     """The polygons of one marking in local coordinates, from the road's start on."""
+    records, shape, kind = marking.records, marking.shape, marking.kind
+    places = np.stack([records["x"], records["y"], records["z"]], axis=1) * COORDINATE_SCALE
+    if marking.outline is not None:
+        return [lifted(marking.outline, places)]
     if kind in STRIP_KINDS and not (kind == "zebra" and abs(shape.direction) > MAX_SKEW_OF_EVEN_STRIPES):
         drawn = band(records["s"], records["d"], shape)
     else:
         drawn = cell_outline(*painted_cells(records["s"] * COORDINATE_SCALE, records["d"] * COORDINATE_SCALE, records["spacing"]))
-    places = np.stack([records["x"], records["y"], records["z"]], axis=1) * COORDINATE_SCALE
     return [to_local(part, road, places) for part in parts(drawn)]
 
 
-def _row(records, shape, kind, number, road, frame):
+def _row(marking, number, road, frame):
     """The fields of one marking."""
-    return dict(road=int(road), cluster=number, use=kind[1], station_m=shape.s0, offset_m=shape.offset, length_m=shape.length,
-                width_m=shape.width, elongation=shape.elongation, scan_m=_scanning_distance(records, frame),
-                points=shape.points, **{"class": kind[0]})
+    shape = marking.shape
+    return dict(road=int(road), cluster=number, use=marking.use, station_m=shape.s0, offset_m=shape.offset, length_m=shape.length,
+                width_m=shape.width, elongation=shape.elongation, scan_m=_scanning_distance(marking.records, frame),
+                points=shape.points, **{"class": marking.kind})
 
 
 def _scanning_distance(records, frame):

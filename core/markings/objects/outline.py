@@ -121,9 +121,13 @@ def to_local(shape: shapely.Polygon, road: Road, places: np.ndarray) -> shapely.
     """
     shape = shapely.segmentize(shape, OUTLINE_VERTEX_SPACING)
     vertices = shapely.get_coordinates(shape)
-    x, y = road.to_map(vertices[:, 0], vertices[:, 1])
+    return lifted(shapely.set_coordinates(shape, np.column_stack(road.to_map(vertices[:, 0], vertices[:, 1]))), places)
+
+
+def lifted(shape: shapely.Polygon, places: np.ndarray) -> shapely.Polygon:
+    """An outline in local coordinates, each vertex at the median height of the points (N, 3) nearest to it."""
     k = min(OUTLINE_HEIGHT_NEIGHBOURS, len(places))
-    _, nearest = cKDTree(places[:, :2], balanced_tree=False, compact_nodes=False).query(np.c_[x, y], k)
-    z = row_medians(places[:, 2][nearest.reshape(len(x), k)])[:, 0]
-    lifted = shapely.force_3d(shape)
-    return shapely.set_coordinates(lifted, np.c_[x, y, z])
+    vertices = shapely.get_coordinates(shape)
+    _, nearest = cKDTree(places[:, :2], balanced_tree=False, compact_nodes=False).query(vertices, k)
+    z = row_medians(places[:, 2][nearest.reshape(len(vertices), k)])[:, 0]
+    return shapely.set_coordinates(shapely.force_3d(shape), np.c_[vertices, z])

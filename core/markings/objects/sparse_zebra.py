@@ -1,0 +1,289 @@
+"""Zebra crossings of which the scan shows a few tracks: told by the pitch of their stripes, not stripe by stripe.
+
+Far from the vehicle a stripe is a handful of spots on tracks some decimetres apart, wear takes half of them, and spots of
+neighbouring stripes on one track look like a dashed line. All stripes together have one direction and one pitch, and lie
+on every track at the same places: across the stripes the spots repeat, which is told by the length of their mean phase.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import cv2
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+
+from .zebra import MAX_ROW_SKEW, MIN_STRIPES, STRIPE_LENGTH, STRIPE_WIDTH
+
+COMB_WINDOW = 5.0               # m either way that a pitch is looked for in; windows overlap by half
+LEAST_SPOTS = 30           # cells of paint in a window
+MOST_SPOTS = 200           # looked at in a window; of more an even share
+LEAST_SPREAD = 0.4         # m, their standard deviation in the direction where it is least: three stripes spread by more
+LEAST_SPARSE = 0.3         # of the spots: as many lie on tracks that are farther apart than points that join anyway
+COMB_PITCH = 0.7, 1.6           # m from stripe to stripe
+COMB_PITCH_STEP, COMB_HEADING_STEP = 0.05, np.radians(5.0)   # of the pitch, and of the direction, that are tried; then a tenth of both
+MIN_COMB_COHERENCE = 0.45       # length of the mean phase: 0.64 for stripes as broad as their gaps, 0 for spots anywhere
+MIN_SHARE_OF_STRIPE = 0.05  # of the spots of a crossing that a stripe has at least
+MIN_STRIPE_SPAN = 1.2      # m: letters and blocks are shorter
+MIN_SHARED_OF_STRIPES = 0.6           # of the longer of two stripes side by side that lies beside the other
+COMB_STEP_ALONG = 0.4           # m along the stripes that is taken together
+LEAST_PHASE = 0.3          # mean cosine of the phase where there are stripes: a stop line beside them has 0
+MIN_WIDTH_OF_PITCH, MAX_WIDTH_OF_PITCH = 0.3, 0.7   # of the pitch that a stripe is broad: lines with an arrow between them are narrower
+MIN_OF_WIDTH = 0.5         # of the width of all stripes that one of them has at least
+MIN_OF_NEIGHBOUR = 0.4     # of the spots of the next stripe that the last one has at least: it may be a curb
+SAME_HEADING, SAME_PITCH = np.radians(8.0), 0.08   # of neighbouring windows on one crossing
+MAX_ASIDE = 0.2            # of its width that the spots of a stripe lie on one side of its middle
+END_PERCENT = 2.0          # % of a stripe's spots beyond either end
+FRAYED = 0.06              # m beside a stripe, whose width is an estimate, that spots are of it
+MAX_STRAY_END = 0.6        # m that a stripe's end may lie off the line through those of the others
+
+
+# What is tried
+COMB_BIN = 0.05                 # m across the stripes
+COMB_HEADINGS = np.arange(-np.pi / 2, np.pi / 2, COMB_HEADING_STEP)
+COMB_PITCHES = COMB_PITCH[0] * (1 + COMB_PITCH_STEP) ** np.arange(int(np.log(COMB_PITCH[1] / COMB_PITCH[0]) / np.log(1 + COMB_PITCH_STEP)) + 1)
+COMB_ACROSS = np.stack([-np.sin(COMB_HEADINGS), np.cos(COMB_HEADINGS)])
+MOST_PEAKS = 4
+COMB_REACH = int(1.5 * COMB_WINDOW / COMB_BIN)   # bins, either way
+COMB_PHASES = np.exp(2j * np.pi * COMB_BIN * np.arange(-COMB_REACH, COMB_REACH + 1)[:, None] / COMB_PITCHES)
+
+
+class Comb(NamedTuple):
+    """Stripes of one direction and pitch.
+
+    heading : radians from the first axis to theirs; pitch : m; phase : m, where the middle of one lies across them;
+    middle : (2,) m, the place that it is measured from; coherence : 0 to 1
+    """
+
+    heading: float
+    pitch: float
+    phase: float
+    middle: np.ndarray
+    coherence: float
+
+
+class SparseStripe(NamedTuple):
+    """One stripe: the spots that lie on it, and its (4, 2) corners, m."""
+
+    spots: np.ndarray
+    corners: np.ndarray
+
+
+def sparse_crossings(places: np.ndarray, sparse: np.ndarray) -> list[SparseStripe]:
+    """The stripes of crossings that were scanned sparsely.
+
+    Parameters
+    ----------
+    places : (N, 2) m, spots of paint on the ground, one a cell. Where the road bends, station and offset would bend stripes, too
+    sparse : (N,) bool, whether a spot lies on tracks of the scan that are farther apart than points that join anyway
+    """
+    if np.count_nonzero(sparse) < LEAST_SPARSE * LEAST_SPOTS:
+        return []
+    combs, rows = [], []
+    for own in _windows(places, sparse):
+        # most windows hold one line
+        comb = find_comb(places[own]) if np.sqrt(max(np.linalg.eigvalsh(np.cov(places[own].T))[0], 0.0)) >= LEAST_SPREAD else None
+        if comb is not None:
+            combs.append(comb)
+            rows.append(own)
+    found = []
+    for group in _alike(combs):
+        own = np.unique(np.concatenate([rows[k] for k in group]))
+        best = max((combs[k] for k in group), key=lambda comb: comb.coherence)
+        found += _stripes(places, own, best)
+    return found
+
+
+def _windows(places, sparse):
+    """Rows of the spots of every window that has enough of them."""
+    low = np.floor(places / (COMB_WINDOW / 2)).astype(np.int64)
+    first = low.min(axis=0)
+    columns = int(low[:, 1].max() - first[1]) + 2
+    # a spot is in four windows
+    keys = np.concatenate([(low[:, 0] - first[0] + 1 - a) * columns + low[:, 1] - first[1] + 1 - b for a in (0, 1) for b in (0, 1)])
+    spots = np.tile(np.arange(len(places)), 4)
+    order = np.argsort(keys, kind="stable")
+    keys, spots = keys[order], spots[order]
+    starts = np.flatnonzero(np.r_[True, np.diff(keys) != 0])
+    counts = np.diff(np.r_[starts, len(keys)])
+    share = np.add.reduceat(sparse[spots].astype(float), starts) / counts
+    return [spots[a:a + n] for a, n in zip(starts[(counts >= LEAST_SPOTS) & (share >= LEAST_SPARSE)].tolist(),
+                                           counts[(counts >= LEAST_SPOTS) & (share >= LEAST_SPARSE)].tolist())]
+
+
+def _across(places, heading):
+    return places @ np.array([-np.sin(heading), np.cos(heading)])
+
+
+def _mean_phase(places, headings, pitches):
+    """(H, P) complex, the mean phase of spots for every direction and pitch."""
+    across = np.stack([_across(places, heading) for heading in headings])
+    return np.stack([np.exp(2j * np.pi / pitch * across).mean(axis=1) for pitch in pitches], axis=1)
+
+
+def find_comb(places: np.ndarray) -> Comb | None:
+    """The direction and pitch in which spots repeat, as stripes side by side do.
+
+    Parameters
+    ----------
+    places : (N, 2) m
+
+    Returns
+    -------
+    Comb, or None where the spots are no three stripes side by side
+    """
+    middle = places.mean(axis=0)
+    own = (places - middle)[::max(len(places) // MOST_SPOTS, 1)]
+    phase = _phases(own)
+    length = np.abs(phase)
+    peaks = np.argwhere((length >= 0.8 * MIN_COMB_COHERENCE) & (length >= cv2.dilate(length, np.ones((3, 3), np.uint8))))
+    # one line, and spots in a corner of the window, repeat at every pitch: stripes must lie side by side, each as long as one
+    for a, b in peaks[np.argsort(-length[tuple(peaks.T)], kind="stable")][:MOST_PEAKS].tolist():
+        comb = _refined(own, middle, COMB_HEADINGS[a], COMB_PITCHES[b])
+        if comb.coherence >= MIN_COMB_COHERENCE and _has_stripes(own, comb):
+            return comb
+    return None
+
+
+def _phases(own):
+    """(H, P) complex, nearly the mean phase of spots for every direction and pitch that is tried: by bins across the stripes."""
+    number = np.floor(own @ COMB_ACROSS / COMB_BIN).astype(np.int64) + COMB_REACH
+    number = np.clip(number, 0, len(COMB_PHASES) - 1) + np.arange(len(COMB_HEADINGS)) * len(COMB_PHASES)
+    counts = np.bincount(number.ravel(), minlength=len(COMB_HEADINGS) * len(COMB_PHASES)).reshape(len(COMB_HEADINGS), -1)
+    # small: shared out to threads it takes longer
+    return np.einsum("hb,bp->hp", counts.astype(float), COMB_PHASES) / len(own)
+
+
+def _refined(own, middle, heading, pitch):
+    headings = heading + COMB_HEADING_STEP * np.linspace(-0.5, 0.5, 11)
+    pitches = pitch * (1 + COMB_PITCH_STEP * np.linspace(-0.5, 0.5, 11))
+    phase = _mean_phase(own, headings, pitches)
+    a, b = np.unravel_index(np.abs(phase).argmax(), phase.shape)
+    return Comb(float(headings[a]), float(pitches[b]), float(np.angle(phase[a, b]) / (2 * np.pi) * pitches[b]), middle,
+                float(np.abs(phase[a, b])))
+
+
+def _numbered(own, comb):
+    """Number of the stripe nearest to each spot, how far off its middle the spot lies, and where along it."""
+    across = _across(own, comb.heading) - comb.phase
+    number = np.rint(across / comb.pitch).astype(np.int64)
+    return number, across - number * comb.pitch, own @ np.array([np.cos(comb.heading), np.sin(comb.heading)])
+
+
+def _has_stripes(own, comb):
+    """Whether at least three stripes side by side are long enough, and as long as each other at the same place."""
+    number, _, along = _numbered(own, comb)
+    spans = {}
+    for k, count in zip(*np.unique(number, return_counts=True)):
+        first, last = np.percentile(along[number == k], (END_PERCENT, 100 - END_PERCENT))
+        if count >= MIN_SHARE_OF_STRIPE * len(own) and last - first >= MIN_STRIPE_SPAN:
+            spans[int(k)] = first, last
+    run = best = 0
+    for k, (first, last) in spans.items():
+        before = spans.get(k - 1)
+        shared = before is not None \
+            and min(last, before[1]) - max(first, before[0]) >= MIN_SHARED_OF_STRIPES * max(last - first, before[1] - before[0])
+        run = run + 1 if shared else 1
+        best = max(best, run)
+    return best >= MIN_STRIPES
+
+
+def _alike(combs):
+    """Lists of the windows of each crossing."""
+    if not combs:
+        return []
+    heading, pitch, middle = (np.array([getattr(comb, name) for comb in combs]) for name in ("heading", "pitch", "middle"))
+    turn = np.abs((heading[:, None] - heading + np.pi / 2) % np.pi - np.pi / 2)
+    same = (turn <= SAME_HEADING) & (np.abs(pitch[:, None] - pitch) <= SAME_PITCH * pitch) \
+        & (np.hypot(*(middle[:, None] - middle).transpose(2, 0, 1)) <= COMB_WINDOW)
+    count, group = connected_components(coo_matrix(same), directed=False)
+    return [np.flatnonzero(group == k).tolist() for k in range(count)]
+
+
+def _stripes(places, rows, comb):
+    """[SparseStripe] of one crossing."""
+    middle = places[rows].mean(axis=0)
+    own = places[rows] - middle
+    best = _refined(own[::max(len(own) // (8 * MOST_SPOTS), 1)], middle, comb.heading, comb.pitch)
+    if best.coherence < MIN_COMB_COHERENCE:
+        return []
+    number, off, along = _numbered(own, best)
+    striped = _striped(off / best.pitch, along)
+    rows, own, number, off, along = (values[striped] for values in (rows, own, number, off, along))
+    if len(rows) < LEAST_SPOTS:
+        return []
+    on = np.abs(off) < MAX_WIDTH_OF_PITCH / 2 * best.pitch
+    # half of what is spread evenly over a stripe lies within a quarter of its width
+    width = 4 * float(np.median(np.abs(off[on])))
+    if width < max(STRIPE_WIDTH[0], MIN_WIDTH_OF_PITCH * best.pitch):
+        return []
+    width = min(width, STRIPE_WIDTH[1], MAX_WIDTH_OF_PITCH * best.pitch)
+    on = np.abs(off) <= width / 2
+    kept, ends = [], []
+    for k, count in zip(*_without_strays(*np.unique(number[on], return_counts=True))):
+        span = np.percentile(along[on & (number == k)], (END_PERCENT, 100 - END_PERCENT))
+        own_width, aside = _width(along[on & (number == k)], off[on & (number == k)])
+        # a curb or a line that happens to lie there is narrower, or on one side
+        full = aside <= MAX_ASIDE * width and own_width >= MIN_OF_WIDTH * width
+        if full and count >= MIN_SHARE_OF_STRIPE * on.sum() / 2 and span[1] - span[0] >= MIN_STRIPE_SPAN / 2:
+            kept.append(int(k))
+            ends.append(span)
+    if max(map(len, np.split(kept, np.flatnonzero(np.diff(kept) != 1) + 1))) < MIN_STRIPES:
+        return []
+    ends = np.array(ends)
+    if (lengths := np.median(ends[:, 1] - ends[:, 0])) > STRIPE_LENGTH[1] or lengths < MIN_STRIPE_SPAN:
+        return []
+    # the ends of all stripes lie on a line; bars of hatching follow each other askew
+    lines = [_line_of_ends(np.array(kept), end) for end in ends.T]
+    if np.mean([abs(slope) for _, slope in lines]) > np.tan(MAX_ROW_SKEW) * best.pitch:
+        return []
+    ends = np.stack([line for line, _ in lines], axis=1)
+    c, n = np.cos(best.heading), np.sin(best.heading)
+    found = []
+    for k, (first, last) in zip(kept, ends):
+        side = best.phase + k * best.pitch + np.array([-width / 2, width / 2])
+        corners = np.array([(first, side[0]), (last, side[0]), (last, side[1]), (first, side[1])]) @ np.array([[c, n], [-n, c]]) + middle
+        inside = (np.abs(off) <= width / 2 + FRAYED) & (number == k) & (along >= first - MAX_STRAY_END) & (along <= last + MAX_STRAY_END)
+        found.append(SparseStripe(rows[inside], corners))
+    return found
+
+
+def _striped(phase, along):
+    """(N,) bool, the spots of the stretch along the stripes over which they are stripes."""
+    step = np.floor((along - along.min()) / COMB_STEP_ALONG).astype(np.int64)
+    count = np.bincount(step)
+    mean = np.bincount(step, np.cos(2 * np.pi * phase)) / np.maximum(count, 1)
+    # one worn step parts no stripes
+    full = (mean >= LEAST_PHASE) & (count > 0)
+    full = full | (np.r_[False, full[:-1]] & np.r_[full[1:], False] & (mean >= 0))
+    runs = np.cumsum(np.diff(np.r_[False, full].astype(int)) == 1) * full
+    spots = np.bincount(runs, count * full)
+    best = int(spots[1:].argmax()) + 1 if len(spots) > 1 else -1
+    return (runs == best)[step]
+
+
+def _width(along, across):
+    """Width of a strip, straight and maybe askew, from spots spread evenly over it, and how far its middle lies aside."""
+    run = along - along.mean()
+    slope = (run * across).sum() / max((run * run).sum(), 1e-9)
+    middle = np.median(across)
+    return 4 * float(np.median(np.abs(across - middle - slope * run))), abs(float(middle))
+
+
+def _without_strays(number, count):
+    """Numbers of stripes and how many spots they have, without those at either end that have far fewer than the next."""
+    first, last = 0, len(number)
+    while last - first > 1 and count[first] < MIN_OF_NEIGHBOUR * count[first + 1]:
+        first += 1
+    while last - first > 1 and count[last - 1] < MIN_OF_NEIGHBOUR * count[last - 2]:
+        last -= 1
+    return number[first:last], count[first:last]
+
+
+def _line_of_ends(number, end):
+    """The ends of stripes, each within `MAX_STRAY_END` of a line through most of them, and its slope from stripe to stripe."""
+    a, b = np.triu_indices(len(number), 1)
+    slope = float(np.median((end[b] - end[a]) / (number[b] - number[a])))
+    line = float(np.median(end - slope * number)) + slope * number
+    return np.where(np.abs(end - line) <= MAX_STRAY_END, line, np.clip(end, line - MAX_STRAY_END, line + MAX_STRAY_END)), slope

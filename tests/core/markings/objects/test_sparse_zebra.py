@@ -1,0 +1,73 @@
+"""Zebra crossings far from the vehicle, of which the scan shows a few tracks and wear leaves half."""
+
+import numpy as np
+import pytest
+from clustered_marks import FRAME, classes, layer_of
+from lanewright.core.markings.objects.sparse_zebra import sparse_crossings
+from painted_streets import paint, road_points, strip
+
+STRIPES = [strip(-2.0, 2.0, d, d + 0.5) for d in np.arange(-3.0, 3.0, 1.0)]   # 4 m long, a metre apart
+
+
+def spots(marks, turned=0.0, tracks=0.35, kept=0.6, seed=4):
+    """(N, 2) spots of paint on tracks of the scan across the stripes, turned about the middle by some degrees."""
+    u, v = np.meshgrid(np.arange(-6.0, 6.0, tracks), np.arange(-6.0, 6.0, 0.06), indexing="ij")
+    rng = np.random.default_rng(seed)
+    u, v = u.ravel() + rng.normal(0, 0.01, u.size), v.ravel()
+    shown = np.any([mark(u, v) for mark in marks], axis=0) & (rng.random(u.size) < kept)
+    c, n = np.cos(np.radians(turned)), np.sin(np.radians(turned))
+    return np.stack([u, v], axis=1)[shown] @ np.array([[c, n], [-n, c]]), (c, n)
+
+
+def crossings_in(places):
+    return sparse_crossings(places, np.ones(len(places), bool))
+
+
+@pytest.mark.parametrize("turned", [0, 17, 45, 90, 128])
+def test_stripes_are_found_whichever_way_they_point(turned):
+    places, (c, n) = spots(STRIPES, turned)
+    found = crossings_in(places)
+    assert len(found) == 6
+    assert len(np.concatenate([stripe.spots for stripe in found])) > 0.9 * len(places)
+    corners = np.stack([stripe.corners for stripe in found]) @ np.array([[c, -n], [n, c]])
+    np.testing.assert_allclose(np.sort(corners.mean(axis=1)[:, 1]), np.arange(-2.75, 3.0, 1.0), atol=0.05)
+    np.testing.assert_allclose([corners[:, :, 0].min(axis=1), corners[:, :, 0].max(axis=1)], [[-2.0] * 6, [2.0] * 6], atol=0.35)
+    np.testing.assert_allclose(np.ptp(corners[:, :, 1], axis=1), 0.5, atol=0.1)
+
+
+def test_a_stop_line_beside_a_crossing_is_none_of_it():
+    places, _ = spots([*STRIPES, strip(3.2, 3.7, -3.0, 3.0)])
+    found = crossings_in(places)
+    assert len(found) == 6
+    assert max(stripe.corners[:, 0].max() for stripe in found) < 2.5
+
+
+def bars(turn):
+    """Bars of hatching half a metre broad in a strip along the first axis, askew to it."""
+    c, n = np.cos(np.radians(turn)), np.sin(np.radians(turn))
+    return [lambda s, d, k=k: (np.abs(d) < 1.5) & (np.abs((s - 1.4 * k) * n - d * c) < 0.25) for k in range(-4, 5)]
+
+
+@pytest.mark.parametrize("marks", [
+    [strip(-6, 6, d, d + 0.12) for d in (-1.6, 0.0, 1.6)],
+    [strip(s, s + 1.0, 0.0, 0.12) for s in range(-6, 6, 2)],
+    [strip(-0.5, 0.0, d, d + 0.5) for d in np.arange(-3, 3, 1.0)],
+    [strip(-2.0, 2.0, 0.0, 3.0)],
+    bars(45), bars(60),
+], ids=["three lines", "a dashed line", "a give-way line", "a field", "hatching", "steep hatching"])
+def test_other_paint_is_no_crossing(marks):
+    assert not crossings_in(spots(marks)[0])
+
+
+def test_the_crossing_of_a_side_street_seen_on_few_tracks_is_a_crossing():
+    """The road runs along s: its tracks cross the stripes, and spots on one track look like a dashed line."""
+    records = paint(FRAME, [strip(s, s + 0.5, 1.0, 5.0) for s in np.arange(30.0, 36.0)], density=6000)
+    d = records["d"] * 1e-4
+    records = records[d % 0.35 < 0.05]
+    records["spacing"] = 350
+    points = road_points(records, FRAME)
+    points.has_spacing = True
+    markings, clustered = layer_of(points, FRAME)
+    assert classes(markings) == ["zebra"] * 6
+    assert markings.column("length_m") == pytest.approx([4.0] * 6, abs=0.5)
+    assert (clustered.all_points().cluster > 0).mean() > 0.95
