@@ -13,6 +13,7 @@ from functools import cached_property
 from pathlib import Path
 
 BRACES = "{}"
+AMOUNT = re.compile(r"([\d.,]+ \S+ )([a-z]+)")  # 12 m measured
 PHRASE = 2  # blanks in what is put in: with as many it is a phrase, with fewer a number with its unit or a name
 BETWEEN_SENTENCES = re.compile(r"(?<=[.?…]) (?=[A-Z])")
 
@@ -61,7 +62,17 @@ class CoreMessages:
         return first
 
     def _value(self, value):
-        return self.word(value) if value.isalpha() else self.told(value) if " " in value.strip() else value
+        """What stands in a place: a word, a phrase, or several with commas between them."""
+        if value.isalpha():
+            return self.word(value)
+        if " " not in value.strip():
+            return value
+        found = self.told(value)
+        return found if found != value else ", ".join(map(self._part, value.split(", ")))
+
+    def _part(self, part):
+        amount = AMOUNT.fullmatch(part)
+        return amount.group(1) + self.word(amount.group(2)) if amount else self.told(part)
 
     @cached_property
     def _sentences(self):

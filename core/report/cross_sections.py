@@ -58,7 +58,7 @@ def cross_section_report(sections: RoadSections, table: Features) -> str:
         page.warning(told(note))
     limits = sections.settings.limits()
     page.heading(tr("Limits"))
-    page.facts([(title, getattr(limits, name) if getattr(limits, name) is not None else tr("none")) for name, title in _limit_titles().items()])
+    page.facts([(title, getattr(limits, name) if getattr(limits, name) is not None else tr("no limit")) for name, title in _limit_titles().items()])
     page.note(tr("Of the country: {sources}").format(sources=" ".join(map(told, limits.sources))) if limits.sources
               else tr("The country of the catalogue sets no limits."))
     _exceeded(page, table.rows)

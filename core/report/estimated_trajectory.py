@@ -27,7 +27,7 @@ def estimated_trajectory_report(found: EstimatedTrajectory) -> str:
     track = found.trajectory
     page.facts(((tr("Way"), tr("from {what}").format(what=told(WAYS[found.method]))),
                 (tr("Positions"), len(track)), (tr("Length"), f"{found.length:.1f} m"),
-                (tr("Time"), tr("{first:.3f} to {last:.3f} s").format(first=track.time[0], last=track.time[-1]) if track.has_time else tr("none")),
+                (tr("Time"), tr("{first:.3f} to {last:.3f} s").format(first=track.time[0], last=track.time[-1]) if track.has_time else tr("no time")),
                 (tr("Refers to"), tr("the middle of the scanners") if len(found.scanners) > 1 else tr("the scanner")),
                 (tr("Uncertainty of the place, one sigma"), _spread(found.sigma)),
                 (tr("Uncertainty of the height, one sigma"), _spread(found.sigma_height))))

@@ -43,7 +43,7 @@ def georeferencing_report(found: Georeferencing, drawn: str, departure: float) -
     outside = tr("{share:.0f} % of the image, left out") if found.cut else tr("{share:.0f} % of the image")
     page.facts((
         (tr("Image"), image.path), (tr("Pixels and lines"), f"{image.width} × {image.height}"), (tr("Placed by"), _polynomial(found.settings.order)),
-        (tr("CRS"), horizontal_part(parse_crs(crs)).name if crs else tr("none")),
+        (tr("CRS"), horizontal_part(parse_crs(crs)).name if crs else tr("no CRS")),
         (tr("Result"), tr("{width} × {height} pixels of {size:g} m").format(width=width, height=height, size=found.pixel_size)),
         (tr("Drawn within"), tr("{departure:.2f} pixels of the polynomial, everywhere").format(departure=departure)),
         (tr("Outside the hull of the control points"), outside.format(share=100 * found.outside))))

@@ -181,7 +181,7 @@ def histogram_picture(counts: np.ndarray, low: int, high: int, width: int = 900,
 
 
 def _crs_name(wkt):
-    return horizontal_part(parse_crs(wkt)).name if wkt else tr("none")
+    return horizontal_part(parse_crs(wkt)).name if wkt else tr("no CRS")
 
 
 def _shares(counts, total):

@@ -1961,7 +1961,7 @@
         <message>
             <location filename="../../algorithms/export/export_opendrive.py" />
             <source>none</source>
-            <translation>keine Angabe</translation>
+            <translation>keine</translation>
         </message>
         <message>
             <location filename="../../algorithms/export/export_opendrive.py" />
@@ -5390,6 +5390,11 @@
         </message>
         <message>
             <location filename="../../core/report/cross_sections.py" />
+            <source>no limit</source>
+            <translation>kein Grenzwert</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/cross_sections.py" />
             <source>Of the country: {sources}</source>
             <translation>Vom Land: {sources}</translation>
         </message>
@@ -5522,6 +5527,11 @@
             <location filename="../../core/report/estimated_trajectory.py" />
             <source>Uncertainty of the height, one sigma</source>
             <translation>Unsicherheit der Höhe, ein Sigma</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/estimated_trajectory.py" />
+            <source>no time</source>
+            <translation>keine Zeit</translation>
         </message>
         <message>
             <location filename="../../core/report/estimated_trajectory.py" />
@@ -5662,6 +5672,11 @@
             <location filename="../../core/report/georeferencing.py" />
             <source>RMSE = √(Σ(dx² + dy²) / n). The residuals of control points are too small, since the polynomial was fitted to them; there are {free} more than it needs. Points measured in the laser point cloud itself show how well the image fits the cloud, not how well either fits the ground.</source>
             <translation>RMSE = √(Σ(dx² + dy²) / n). Die Restklaffungen der Passpunkte sind zu klein, denn das Polynom wurde an sie angepasst; es gibt {free} mehr, als es braucht. Punkte, die in der Laserpunktwolke selbst gemessen sind, zeigen, wie gut das Bild zur Wolke passt, nicht, wie gut eines von beiden zum Boden passt.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/georeferencing.py" />
+            <source>no CRS</source>
+            <translation>kein KBS</translation>
         </message>
         <message>
             <location filename="../../core/report/georeferencing.py" />
@@ -6662,11 +6677,6 @@
             <location filename="../../desktop/columns_widget.py" />
             <source>{count} positions over {length} m, heights {low:.1f} to {high:.1f} m</source>
             <translation>{count} Positionen über {length} m, Höhen {low:.1f} bis {high:.1f} m</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/columns_widget.py" />
-            <source>no time</source>
-            <translation>keine Zeit</translation>
         </message>
         <message>
             <location filename="../../desktop/columns_widget.py" />

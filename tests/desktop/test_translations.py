@@ -124,7 +124,9 @@ def german(qgis_app):
 @pytest.mark.parametrize(("said", "told_in_german"), [
     ("Detecting curbs …", "Bordsteine werden gesucht …"),
     ("Road edges: 1,204 m measured, 18 m bridged.", "Straßenränder: 1,204 m gemessen, 18 m überbrückt."),
-    ("Driving lines: 2 lanes, right-hand traffic: 99 m measured", "Fahrlinien: 2 Fahrstreifen, Verkehr auf Seite rechts: 99 m measured"),
+    ("Driving lines: 2 lanes, right-hand traffic: 99 m measured", "Fahrlinien: 2 Fahrstreifen, Verkehr auf Seite rechts: 99 m gemessen"),
+    ("Driving lines: 2 lanes, right-hand traffic: 99 m measured, 7 m inferred",
+     "Fahrlinien: 2 Fahrstreifen, Verkehr auf Seite rechts: 99 m gemessen, 7 m erschlossen"),
     ("There is no file /data/B12/a.laz. Check the path of the point cloud.", "Es gibt keine Datei /data/B12/a.laz. Den Pfad der Punktwolke prüfen."),
     ("The cell size is 0 m; it must be between 0.001 and 10 m.", "Die Zellgröße ist 0 m; erlaubt ist zwischen 0.001 und 10 m."),
     ("CJJ 37-2012: radius allows 60 km/h, length 11 m is below 25 m, the least for 30 km/h",
@@ -147,6 +149,15 @@ def test_a_run_that_fails_says_why_in_german(german, provider, tmp_path):
     empty.write_text("", encoding="utf-8")
     with pytest.raises(QgsProcessingException, match="Die Trajektorie neu exportieren"):
         processing.run("lanewright:importtrajectory", {"INPUT": str(empty), "OUTPUT": "memory:"})
+
+
+def test_a_report_of_a_german_qgis_is_german(german):
+    from lanewright.core.export.check.findings import Finding, Findings
+    from lanewright.core.report import map_check_report
+
+    page = map_check_report(Findings([Finding("kink", "road 1, section 2, lane -1", "The rule is XYZ.", (0.0, 0.0, 0.0))]), "map.xodr")
+    assert '<html lang="de">' in page and "Prüfung einer HD-Karte" in page
+    assert "<td>Knick</td>" in page and "Straße 1, Abschnitt 2, Streifen -1" in page and "Die Regel ist XYZ." in page
 
 
 def test_nearly_all_that_the_core_says_has_a_translation_with_its_places():
