@@ -13,7 +13,8 @@ MOST_PIECES = 400     # of one section
 SHORTEST_CUBIC = 0.1  # m of a piece
 
 
-def fit_cubics(s: Sequence[np.ndarray], values: Sequence[np.ndarray], start: float, end: float, tolerance: float) -> list[Cubics]:
+def fit_cubics(s: Sequence[np.ndarray], values: Sequence[np.ndarray], start: float, end: float, tolerance: float,
+               slopes: Sequence[tuple[float, float]] = ()) -> list[Cubics]:
     """Functions with common pieces, whose values and slopes go on from piece to piece.
 
     Parameters
@@ -21,6 +22,7 @@ def fit_cubics(s: Sequence[np.ndarray], values: Sequence[np.ndarray], start: flo
     s, values : for each function (n,) metres, rising, and its values there
     start, end : metres, of the functions; the first and last value are met there
     tolerance : how far a value may be missed
+    slopes : for each function those at its start and end, NaN for any; none are given by default
 
     Returns
     -------
@@ -29,16 +31,16 @@ def fit_cubics(s: Sequence[np.ndarray], values: Sequence[np.ndarray], start: flo
     knots = np.array([start, end])
     s = [np.asarray(one, float) for one in s]
     while True:
-        fitted = [_hermite(one, value, knots) for one, value in zip(s, values)]
+        fitted = [_hermite(one, value, knots, given) for one, value, given in zip(s, values, slopes or [(np.nan, np.nan)] * len(s))]
         worst = np.zeros(len(knots) - 1)
-        for one, value, (levels, slopes) in zip(s, values, fitted):
-            missed = np.abs(_evaluated(one, knots, levels, slopes) - value)
+        for one, value, (levels, rates) in zip(s, values, fitted):
+            missed = np.abs(_evaluated(one, knots, levels, rates) - value)
             np.maximum.at(worst, np.clip(np.searchsorted(knots, one, side="right") - 1, 0, len(worst) - 1), missed)
         bad = np.flatnonzero(worst > tolerance)
         inner = [(knots[k] + knots[k + 1]) / 2 for k in bad
                  if _places_within(s, knots[k], knots[k + 1]) and knots[k + 1] - knots[k] > 2 * SHORTEST_CUBIC]
         if not inner or len(knots) > MOST_PIECES:
-            return [_pieces(knots, levels, slopes) for levels, slopes in fitted]
+            return [_pieces(knots, levels, rates) for levels, rates in fitted]
         knots = np.sort(np.append(knots, inner))
 
 
@@ -81,8 +83,8 @@ def _basis(u: np.ndarray, h: np.ndarray) -> tuple[np.ndarray, ...]:
     return 2 * u**3 - 3 * u**2 + 1, h * (u**3 - 2 * u**2 + u), 3 * u**2 - 2 * u**3, h * (u**3 - u**2)
 
 
-def _hermite(s, values, knots):
-    """(K,) levels and slopes at the knots by least squares; both ends are met."""
+def _hermite(s, values, knots, ends):
+    """(K,) levels and slopes at the knots by least squares; both ends are met, and their slopes where they are given."""
     count = len(knots)
     k = np.clip(np.searchsorted(knots, s, side="right") - 1, 0, count - 2)
     h = np.diff(knots)
@@ -97,13 +99,12 @@ def _hermite(s, values, knots):
         rows = 2 * j + at
         stiff[rows, j], stiff[rows, count + j] = a[0] / h**2, a[1] / h
         stiff[rows, j + 1], stiff[rows, count + j + 1] = b[0] / h**2, b[1] / h
-    first, last = _at_ends(s, values, knots)
-    fixed = np.array([0, count - 1])
-    free = np.setdiff1d(np.arange(2 * count), fixed)
+    known = np.full(2 * count, np.nan)
+    known[[0, count - 1]], known[[count, 2 * count - 1]] = _at_ends(s, values, knots), ends
+    fixed, free = np.flatnonzero(np.isfinite(known)), np.flatnonzero(np.isnan(known))
     system = np.concatenate([matrix, STIFFNESS * stiff])
-    target = np.concatenate([values, np.zeros(len(stiff))]) - system[:, fixed] @ np.array([first, last])
-    found = np.empty(2 * count)
-    found[fixed] = first, last
+    target = np.concatenate([values, np.zeros(len(stiff))]) - system[:, fixed] @ known[fixed]
+    found = known
     found[free] = np.linalg.lstsq(system[:, free], target, rcond=None)[0]
     return found[:count], found[count:]
 

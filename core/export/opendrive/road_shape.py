@@ -26,6 +26,8 @@ END_ROUNDS = 4
 LEAST_STEP = 0.001       # m along the road between places that count
 SAME_LINE = 0.02         # m by which lane 0 may jump from section to section and still go on
 MOST_LEAD = 0.5          # m aside to which lane 0 is led back along a section that lies beside it
+SLOPE_REACH = 1.5        # m along a border before and after a cut from which its slope there is taken
+MOST_TURN = 0.3          # of that slope from before to after the cut: more is a corner, which is kept
 LEAST_CHORD = 1.0        # m of a border's end, along which it goes straight on
 
 
@@ -128,7 +130,7 @@ def _course(strip, k, j, frame, ends):
     parts = [vertices(k, j)]
     for way, here, there in ((-1, 0, -1), (1, -1, 0)):
         number, border = k, j
-        while 0 <= number + way < len(strip) and (parts[0][0, 0] > ends[0] if way < 0 else parts[-1][0, -1] < ends[1]):
+        while 0 <= number + way < len(strip) and (parts[0][0, 0] > ends[0] - SLOPE_REACH if way < 0 else parts[-1][0, -1] < ends[1] + SLOPE_REACH):
             node = strip[number].nodes()[border][here]
             same = [other for other, nodes in enumerate(strip[number + way].nodes()) if nodes[there] == node]
             if len(same) != 1:
@@ -254,7 +256,7 @@ def add_lanes(road: MapRoad, shape: RoadShape, strip: list[Slice], centres: list
     sections = []
     for courses, centre, start, end in zip(shape.courses, centres, shape.starts[:-1], shape.starts[1:]):
         s, t = zip(*(_within(start, end, *course[:2]) for course in courses))
-        functions = fit_cubics(s, t, start, end, tolerance)
+        functions = fit_cubics(s, t, start, end, tolerance, [(_slope_at(start, course), _slope_at(end, course)) for course in courses])
         if _crossing(functions, end - start):
             functions = broken_lines(s, _untangled(s, t, centre), start, end)
         sections.append(functions)
@@ -309,6 +311,17 @@ def _straight(like, first, last, length):
     rows[:, 0], rows[:, 2] = like.rows[:, 0], slope
     rows[:, 1] = first + slope * rows[:, 0]
     return Cubics(rows)
+
+
+def _slope_at(place, course):
+    """The slope of a border where a section is cut, from its vertices before and after; NaN where it does not go on, or turns there."""
+    s, t = course[:2]
+    sides = [(s >= place - SLOPE_REACH) & (s < place - LEAST_STEP), (s > place + LEAST_STEP) & (s <= place + SLOPE_REACH)]
+    if min(int(side.sum()) for side in sides) < 2:
+        return np.nan
+    at = np.interp(place, s, t)
+    before, after = (float((s[side] - place) @ (t[side] - at) / ((s[side] - place) @ (s[side] - place))) for side in sides)
+    return (before + after) / 2 if abs(after - before) < MOST_TURN else np.nan
 
 
 def _within(start, end, s, values):

@@ -107,3 +107,16 @@ def test_a_shoulder_goes_on_beside_the_ways_through_a_junction(tmp_path):
     assert across <= TOLERANCE and whole.junctions
     inside = [section for road in whole.roads if road.junction != "-1" for section in road.sections]
     assert any("shoulder" in [lane.type for lane in section.lanes.values()] for section in inside)
+
+
+def test_noise_of_the_survey_makes_no_kinks_where_a_road_is_cut_into_sections(tmp_path):
+    scene, line = LaneScene(), Axis(((80.0, 1 / 200, 1 / 200),))
+    noise = np.random.default_rng(5).normal(0, 0.015, (3, 161))
+
+    def border(row, offset):
+        return lambda s: offset + np.interp(s, np.arange(161) / 2, noise[row])
+    for piece in range(8):
+        scene.add(line, border(0, 0.0), border(1, -3.5), 10.0 * piece, 10.0 * piece + 10, piece=piece + 1, step=0.5)
+    whole, across, _ = missed(tmp_path, scene.lanes())
+    assert len(whole.roads[0].sections) == 8 and across <= TOLERANCE
+    assert not check_opendrive(whole).found
