@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from scipy.ndimage import binary_dilation
 
 from ..markings.cross_section.candidates import STATIONS_OF_CELL, Boundaries
 from ..markings.cross_section.estimate import LaneSpan, RoadEstimate, lane_spans
@@ -38,6 +39,7 @@ def estimated_lanes(boundaries: Boundaries, estimate: RoadEstimate, lane_width: 
 
 def _to_its_ends(track, boundaries):
     """The track up to where its two borders begin and end: intervals are coarser than stations."""
+    track = _within_its_borders(track, boundaries)
     for head in (True, False):
         tip = 0 if head else -1
         left, right = int(track.left[tip]), int(track.right[tip])
@@ -54,6 +56,16 @@ def _to_its_ends(track, boundaries):
             more = track.stretched(int(ahead[0]), (d_left + d_right) / 2, d_left - d_right, tip)
             track = more.followed_by(track) if head else track.followed_by(more)
     return track
+
+
+def _within_its_borders(track, boundaries):
+    """The track less the stations at its ends where a painted border has ended more than a station before."""
+    columns, there = np.arange(track.first, track.last + 1), np.ones(len(track), bool)
+    for rows in (track.left, track.right):
+        bounding = (rows >= 0) & boundaries.bounding[rows]
+        there &= ~bounding | np.isfinite(boundaries.d[rows, columns])
+    known = np.flatnonzero(binary_dilation(there))
+    return track.part(known[0], known[-1] + 1) if len(known) else track
 
 
 def _rank(track):

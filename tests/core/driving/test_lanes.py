@@ -321,3 +321,9 @@ def test_a_street_without_paint_has_no_driving_lines_and_says_so():
 def test_settings_out_of_range_are_refused_in_a_sentence(wrong):
     with pytest.raises(RoadExtractionError, match="must|Choose|are"):
         DrivingSettings(**wrong)
+
+
+def test_a_lane_ends_where_its_edge_line_ends_though_the_centre_line_goes_on_a_little():
+    street = Street(vehicle=-1.75).paint(3.5, 5.0, 43.6, kind="edge").paint(0.0, 5.0, 44.7).paint(-3.5, 5.0, 43.6, kind="edge")
+    lines, _ = street.lanes()
+    assert max(row["end_m"] for row in lines.rows) == pytest.approx(43.6, abs=0.6)
