@@ -125,7 +125,7 @@ class Cluster:
                 yield result
             progress.report(1.0)
         except OSError as error:
-            raise _disk_error(self.folder, error) from error
+            raise self.disk_error(error) from error
         finally:
             # tasks at work look whether it is there
             shipped.unlink(missing_ok=True)
@@ -134,6 +134,10 @@ class Cluster:
     def passing(self) -> Cluster:
         """Itself: it keeps nothing."""
         return self
+
+    def disk_error(self, error: OSError) -> RoadExtractionError:
+        """One sentence about the folder, which cannot be used."""
+        return _disk_error(self.folder, error)
 
     def sees(self, paths: Sequence[Path]) -> bool:
         """Whether every worker finds these files where this computer does, and can decode them."""

@@ -8,6 +8,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any, Protocol
 
+from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 
 CORE = __name__.rpartition(".execution.")[0]   # name of the package `core`
@@ -110,6 +111,9 @@ class Executor(Protocol):
 
     def passing(self) -> Executor:
         """Who runs phases whose results are not worth keeping for a later run."""
+
+    def disk_error(self, error: OSError) -> RoadExtractionError:
+        """One sentence about the folder, which cannot be used."""
 
     def sees(self, paths: Sequence[Path]) -> bool:
         """Whether all workers can read these files, which are point clouds."""

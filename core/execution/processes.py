@@ -62,7 +62,7 @@ class WorkerProcesses:
         try:
             write_plain(self.folder / shipped, ShippedPhase(name_of(phase.function), phase.source.recipe(self.folder), tuple(phase.arguments)))
         except OSError as error:
-            raise self._disk_error(error) from error
+            raise self.disk_error(error) from error
         yield from ordered_map(lambda item: self._result(phase, shipped, item), items, progress, self.workers)
         (self.folder / shipped).unlink(missing_ok=True)
 
@@ -75,7 +75,7 @@ class WorkerProcesses:
             self._ask(phase, item, task)
             return read_plain(self.folder / task["result"])
         except OSError as error:
-            raise self._disk_error(error) from error
+            raise self.disk_error(error) from error
         finally:
             for name in ("item", "result"):
                 (self.folder / task[name]).unlink(missing_ok=True)
@@ -102,7 +102,8 @@ class WorkerProcesses:
             f"Worker processes ended {TRIALS} times while they worked on {phase.place(item)}; usually the computer is out of memory. "
             f"Try fewer workers, or 0 for the automatic choice. {last}".rstrip())
 
-    def _disk_error(self, error):
+    def disk_error(self, error: OSError) -> RoadExtractionError:
+        """One sentence about the folder, which cannot be used."""
         return RoadExtractionError(f"The folder for temporary files, {self.folder}, cannot be used: {error}. "
                                    "Free some space there, or run without worker processes.")
 

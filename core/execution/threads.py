@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
+from ..common.errors import RoadExtractionError
 from ..common.parallel import ordered_map
 from ..common.progress import Progress
 from .phase import Phase
@@ -30,6 +31,10 @@ class Threads:
     def passing(self) -> Threads:
         """Itself: it keeps nothing."""
         return self
+
+    def disk_error(self, error: OSError) -> RoadExtractionError:
+        """One sentence about a folder that cannot be used."""
+        return RoadExtractionError(f"A file cannot be written: {error}.")
 
     def sees(self, paths: Sequence[Path]) -> bool:
         """What this process sees."""

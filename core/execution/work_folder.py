@@ -161,6 +161,10 @@ class KeptResults:
             raise self.work.error(error) from error
         progress.report(1.0)
 
+    def disk_error(self, error: OSError) -> RoadExtractionError:
+        """One sentence about the folder, which cannot be used."""
+        return self.work.error(error)
+
     def sees(self, paths: Sequence[Path]) -> bool:
         """Whether the workers see files."""
         return self.executor.sees(paths)

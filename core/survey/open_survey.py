@@ -62,7 +62,10 @@ def _survey_of_run(executor, read, progress):
     if reading.folder is None:
         return read_survey(*read, progress)
     shared = SharedReading(reading, executor, reading.folder / "points", reading.folder / SURVEY_FOLDER)
-    survey = read_survey(*read, progress, shared)
+    try:
+        survey = read_survey(*read, progress, shared)
+    except OSError as error:
+        raise executor.disk_error(error) from error
     shutil.rmtree(shared.points, ignore_errors=True)
     return survey
 

@@ -9,6 +9,7 @@ from typing import Any
 from ...common.progress import Progress
 from ...execution.phase import Executor, Phase, Recipe
 from ..store.section_store import STRETCH_POINTS, SectionStore, Stretch
+from ..store.spill_file import close_parts
 from ..store.store_index import StoreIndex
 from .finishing import Finishing
 
@@ -65,5 +66,9 @@ def order_sections(source: UnorderedPoints, item: Stretch) -> StoreIndex:
     source : UnorderedPoints
     item : Stretch of its road
     """
-    return source.store.write_in_order(source.store.in_stretch(item), source.folder)
+    try:
+        return source.store.write_in_order(source.store.in_stretch(item), source.folder)
+    finally:
+        # they are removed when all is in order, which Windows refuses for files that are open
+        close_parts()
 

@@ -120,6 +120,30 @@ def test_where_workers_keep_ending_the_file_is_named(street, python, monkeypatch
     assert not executor.folder.exists()
 
 
+def test_a_cancel_ends_the_reading_workers_within_two_seconds(street, python):
+    class Impatient(Progress):
+        at = None
+
+        def report(self, fraction):
+            if list(executor.folder.glob("points/points-*")):
+                self.at = self.at or time.monotonic()
+                raise Cancelled
+
+    executor, impatient = WorkerProcesses(python, 2), Impatient()
+    workers = executor._all
+    with pytest.raises(Cancelled):
+        opened(street, executor, impatient)
+    assert time.monotonic() - impatient.at < 2.0
+    assert not executor.folder.exists() and all(worker._process.poll() is not None for worker in workers)
+
+
+def test_a_folder_that_cannot_be_used_is_named(street, python):
+    executor = WorkerProcesses(python, 1)
+    executor.folder.rmdir()
+    with pytest.raises(RoadExtractionError, match="folder for temporary files.*cannot be used.*without worker processes"):
+        opened(street, executor)
+
+
 def test_a_damaged_file_is_named_by_the_worker_that_meets_it(street, python, tmp_path):
     trajectory, (las, _) = street
     cut = tmp_path / "cut.las"
