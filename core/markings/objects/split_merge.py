@@ -49,6 +49,7 @@ MORPHOLOGY_CHUNK = 100.0                      # m of road looked at together
 MIN_LEFTOVER_AREA = 0.05                      # m2: smaller left-overs are the frayed rim of the strip
 # Pieces of one marking
 MAX_WORN_GAP, MAX_FRAGMENT_OVERLAP, MAX_FRAGMENT_OFFSET = 0.9, 0.2, 0.08  # m along, along, across
+TRACKS_PER_GAP, MAX_GAP_BETWEEN_TRACKS = 10.0, 2.0  # times the distance between the tracks of the scan, and m, along: gaps of dashes are longer
 STOP_LINE_PIECE_THICKNESS = 0.18, 0.90  # m along the road of a stop line's pieces
 MIN_STOP_LINE_PIECE, MAX_STOP_LINE_GAP = 0.8, 0.30  # m across: a row of shorter blocks is a give-way line, and its gaps are painted
 MIN_STRIPE_PIECE, MAX_STRIPE_GAP = 0.8, 0.7  # m along the road: what a stripe of a crossing has left at least, and what wear takes of it
@@ -167,7 +168,7 @@ def _even_strip(cells):
     seen = np.isfinite(low)
     usual = np.median((high - low)[seen])
     even = np.flatnonzero(seen & (high - low <= usual + WIDTH_TOLERANCE))
-    middle = np.interp(step, even, ((low + high) / 2)[even])
+    middle = np.interp(step, even, (low[even] + high[even]) / 2)
     return np.abs(cells[:, 1] - middle) <= (usual + WIDTH_TOLERANCE) / 2, usual
 
 
@@ -271,12 +272,15 @@ def _along(shapes, max_width):
         return np.empty((0, 2), np.int64)
     begins = np.array([(shapes[k].s0, shapes[k].begin) for k in narrow])
     ends = np.array([(shapes[k].s1, shapes[k].finish) for k in narrow])
-    # a box of -0.2 to 0.9 m along and 8 cm either way across about each end
-    scale = np.array([(MAX_WORN_GAP + MAX_FRAGMENT_OVERLAP) / 2, MAX_FRAGMENT_OFFSET])
-    about = (ends + np.array([(MAX_WORN_GAP - MAX_FRAGMENT_OVERLAP) / 2, 0.0])) / scale
+    # a line that the tracks of the scan cross askew shows on each of them for a while
+    longest = np.clip(TRACKS_PER_GAP * np.array([shapes[k].spacing for k in narrow]), MAX_WORN_GAP, MAX_GAP_BETWEEN_TRACKS)
+    # a box of -0.2 to 2 m along and 8 cm either way across about each end
+    scale = np.array([(MAX_GAP_BETWEEN_TRACKS + MAX_FRAGMENT_OVERLAP) / 2, MAX_FRAGMENT_OFFSET])
+    about = (ends + np.array([(MAX_GAP_BETWEEN_TRACKS - MAX_FRAGMENT_OVERLAP) / 2, 0.0])) / scale
     near = cKDTree(begins / scale).query_ball_point(about, 1.0, p=np.inf)
     pairs = np.array([(a, b) for a, found in enumerate(near) for b in found if a != b], np.int64).reshape(-1, 2)
-    return narrow[pairs]
+    gap = begins[pairs[:, 1], 0] - ends[pairs[:, 0], 0]
+    return narrow[pairs[gap <= longest[pairs].min(axis=1)]]
 
 
 def _narrow(shape, max_width):

@@ -73,3 +73,13 @@ def test_the_bright_face_of_a_curb_far_off_is_no_edge_line():
     face["spacing"] = 200
     markings, _ = layer_of(road_points(face, FRAME), FRAME)
     assert len(markings) == 0
+
+
+@pytest.mark.parametrize(("spacing", "gap", "pieces"), [(200, 1.5, 1), (0, 1.5, 8), (200, 3.0, 8)], ids=["tracks apart", "dense scan", "dashes"])
+def test_a_line_that_tracks_cross_askew_shows_on_each_for_a_while(spacing, gap, pieces):
+    """Between two tracks it was not seen; where tracks lie close together, or gaps are long, there is none."""
+    marks = [strip(10 + k * (1.5 + gap), 11.5 + k * (1.5 + gap), 2.0, 2.12) for k in range(8)]
+    records = paint(FRAME, marks)
+    records["spacing"] = spacing
+    markings, _ = layer_of(road_points(records, FRAME), FRAME)
+    assert len(markings) == pieces
