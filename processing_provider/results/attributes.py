@@ -12,8 +12,9 @@ from ..texts import tr
 
 # Unit at the end of a field's name -> decimals that mean something
 DECIMALS = {"m": 2, "cm": 1, "m2": 2, "ft": 2, "deg": 2, "pct": 1, "x": 3, "y": 3}
-DECIMALS_OF = {"rmse_m": 3, "sigma_m": 3, "sigma_z_m": 3, "pass_sig_m": 3, "resid_m": 3, "loo_m": 3, "residual_m": 3, "radius_m": 1, "radius_ft": 1,
-               "confidence": 2, "time": 3, "roll": 2, "pitch": 2, "heading": 1, "elongation": 1, "pixel": 1, "line_px": 1}
+DECIMALS_OF = {"rmse_m": 3, "sigma_m": 3, "sigma_z_m": 3, "pass_sig_m": 3,  # nosec B105: a pass over a road, no password
+               "resid_m": 3, "loo_m": 3, "residual_m": 3, "radius_m": 1, "radius_ft": 1, "confidence": 2, "time": 3,
+               "roll": 2, "pitch": 2, "heading": 1, "elongation": 1, "pixel": 1, "line_px": 1}
 MOST_DECIMALS = 2  # of any other number
 
 # Field -> {value: words}; what is not among them is shown as it is
