@@ -56,13 +56,18 @@ def faint_lines(brightness: np.ndarray, scanned: np.ndarray, rim: np.ndarray, fo
     beyond = range(FLANK_CELLS[1] + 1, BEYOND_CELLS + 1)
     beside = np.fmax(beside, np.where(np.isfinite(beside), np.fmax(_mean(sums, beyond), _mean(sums, [-step for step in beyond])), np.nan))
     above = stroke - beside
+    lines, halfway = np.zeros(known.shape, bool), np.full(known.shape, np.inf, np.float32)
     with np.errstate(invalid="ignore"):
-        clear = above > np.fmax(CLEAR_SIGMAS * local_scatter(above), LEAST_RATIO * beside)
+        clear = above > LEAST_RATIO * beside
+    # most windows have no such line: what asphalt scatters by is not asked for there
+    if not (_long_lines(_wavering(clear & (rim > LEAST_RIM)), lines) * clear * ~_near(found)).any():
+        return lines, halfway
+    with np.errstate(invalid="ignore"):
+        clear &= above > CLEAR_SIGMAS * local_scatter(above)
     above = np.where(clear, above, 0.0).astype(np.float32)
     # the middle of the stroke
     ridge = clear & (rim > LEAST_RIM) & (above >= cv2.dilate(above, np.ones((1, 2 * STROKE_REACH + 1), np.uint8)))
-    course = cv2.dilate(ridge.astype(np.uint8), np.ones((1, 2 * DRIFT_CELLS + 1), np.uint8)).astype(bool)
-    line = np.where(ridge & ~_near(found), _long_lines(course, refused), 0)
+    line = np.where(ridge & ~_near(found), _long_lines(_wavering(ridge), refused), 0)
     row, column = np.nonzero(line)
     level = ((stroke + beside) / 2)[row, column]
     # (n, steps) the cells of the stroke about each cell of its middle
@@ -76,7 +81,6 @@ def faint_lines(brightness: np.ndarray, scanned: np.ndarray, rim: np.ndarray, fo
     inner = slice(STROKE_REACH - half, STROKE_REACH + half + 1)
     filled = [np.bincount(number, cells[:, inner].sum(axis=1), line.max() + 1) for cells in (bright, seen)]
     bright &= (filled[0] >= MIN_PAINTED_SHARE * filled[1])[number][:, None]
-    lines, halfway = np.zeros(line.shape, bool), np.full(line.shape, np.inf, np.float32)
     lines[along[bright], across[bright]] = True
     np.minimum.at(halfway, (along[bright], across[bright]), np.broadcast_to(level[:, None], bright.shape)[bright].astype(np.float32))
     return lines, halfway
@@ -96,6 +100,11 @@ def _beside(values, step):
     if last > 0:
         found[:, max(-step, 0):max(-step, 0) + last] = values[:, max(step, 0):max(step, 0) + last]
     return found
+
+
+def _wavering(mask):
+    """Cells of a mask and those that a line wavers to."""
+    return cv2.dilate(mask.astype(np.uint8), np.ones((1, 2 * DRIFT_CELLS + 1), np.uint8)).astype(bool)
 
 
 def _near(mask):
