@@ -182,6 +182,8 @@ def _map_of(survey, image_path, settings, stages, corrections):
         # before hours of work, not after
         check_fits(*_span(survey), settings.image)
     found = stages.run("curbs", "Detecting curbs …", find_curb_points, survey, settings.boundaries)
+    # what workers keep of the curbs is of no use to the stages that follow
+    survey.executor.release()
     boundaries = stages.run("edges", "Fitting road edges …", draw_boundaries, found, survey.frame, settings.edges,
                             survey=survey)
     edges = correct_edges(boundaries.edges, survey.frame, wanted)
