@@ -52,6 +52,8 @@ def open_survey(paths: Sequence[str | Path], trajectory: Trajectory, settings: S
     except BaseException:
         executor.close()
         raise
+    # what workers keep of reading is of no use to the stages that follow
+    executor.release()
     survey.executor, survey.store.at_close = executor, executor.close
     return survey
 
