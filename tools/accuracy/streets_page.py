@@ -81,7 +81,8 @@ def change(before, after):
 
 def evidence_section(figures):
     """What each kind of evidence brings to lines and lanes, pooled over the surveys by length, and how right the confidence is."""
-    figures = [f for f in figures if f.get("evidence")]
+    # saved figures may be of a version that left out other evidence
+    figures = [f for f in figures if {"", *EVIDENCE} <= set(f.get("evidence") or ())]
     if not figures:
         return ""
     names = ("lanes_5", "lanes", "driven", "lanes_right", "directions")

@@ -99,7 +99,7 @@ def _boundary_costs(c, stops, w):
     """(I, M, 5, 5) nats of a boundary between a strip on its left and one on its right."""
     scale = (c.length / w.correlation)[:, None]
     table = w.boundary[c.made_of]
-    extra = c.painted * w.short * (1 - c.trust) + w.bridged * (1 - c.seen)
+    extra = c.painted * w.short * (1 - c.trust)
     stopped = stops_across(stops, (c.left + c.right) / 2)
     cost = np.full((*c.left.shape, len(STRIPS), len(STRIPS)), np.inf)
     for left in STRIPS:
