@@ -44,7 +44,7 @@ COMB_BIN = 0.05                 # m across the stripes
 COMB_HEADINGS = np.arange(-np.pi / 2, np.pi / 2, COMB_HEADING_STEP)
 COMB_PITCHES = COMB_PITCH[0] * (1 + COMB_PITCH_STEP) ** np.arange(int(np.log(COMB_PITCH[1] / COMB_PITCH[0]) / np.log(1 + COMB_PITCH_STEP)) + 1)
 COMB_ACROSS = np.stack([-np.sin(COMB_HEADINGS), np.cos(COMB_HEADINGS)])
-MOST_PEAKS = 4
+MOST_PEAKS = 2             # of them, the clearest, that are looked at closely: a line beside a crossing may repeat more clearly than its stripes
 COMB_REACH = int(1.5 * COMB_WINDOW / COMB_BIN)   # bins, either way
 COMB_PHASES = np.exp(2j * np.pi * COMB_BIN * np.arange(-COMB_REACH, COMB_REACH + 1)[:, None] / COMB_PITCHES)
 
