@@ -143,7 +143,7 @@ def classify_curbs(chains: Sequence[PlanStepChain], steps: PlanSteps, falls: np.
         elif np.mean(behind) <= MAX_BEHIND_SHARE:
             free.append(CurbReturn(own, s, d, side, "corner"))
     curbs = [(x, y) for _, (x, y, _) in runs] + list(elsewhere) + [(curb.steps.x, curb.steps.y) for curb in found]
-    return found + [curb for curb in free if is_free_corner(curb.steps, curbs)] + _long_islands(_outlines(islands))
+    return found + [curb for curb in free if is_free_corner(curb.steps, curbs)] + _long_islands(island_outlines(islands))
 
 
 def _may_be_side_street(own, s, line, behind, lines):
@@ -212,8 +212,11 @@ def _where_straight(own, order, along):
     return len(x)
 
 
-def _outlines(islands):
-    """The lines about islands without those on top of one: a ramp that is lowered for a crossing meets the rest of the island in an edge."""
+def island_outlines(islands: Sequence[tuple[CurbReturn, np.ndarray]]) -> list[CurbReturn]:
+    """The lines about islands without those on top of one: a ramp that is lowered for a crossing meets the rest of the island in an edge.
+
+    islands : lines and, of each, (N,) m uphill of its steps at which the ground is down again
+    """
     inner = []
     for line, falls in islands:
         out = np.arange(OUTLINE_MARGIN, np.nanmax(falls, initial=0.0) - OUTLINE_MARGIN, INNER_DISTANCE)
@@ -221,8 +224,8 @@ def _outlines(islands):
         own = line.steps
         inner.append(np.c_[own.x[k] + out[j] * own.nx[k], own.y[k] + out[j] * own.ny[k]])
     found = []
-    for k, (line, _) in enumerate(islands):
-        others = np.concatenate([np.empty((0, 2))] + inner[:k] + inner[k + 1:])
+    for number, (line, _) in enumerate(islands):
+        others = np.concatenate([np.empty((0, 2))] + inner[:number] + inner[number + 1:])
         away = cKDTree(others).query(np.c_[line.steps.x, line.steps.y])[0] if len(others) else np.full(len(line.steps), np.inf)
         if np.mean(away <= INNER_DISTANCE) < MIN_ISLAND_SHARE:
             found.append(line)

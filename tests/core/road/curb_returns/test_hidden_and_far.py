@@ -82,17 +82,3 @@ def test_an_island_on_a_road_that_tilts_where_it_stands_is_one():
     survey = survey_along((x, y, z + tilt * y, time), -1.0)
     edges = fit_road_edges(detect_curbs(survey), survey.frame)
     assert shapely.union_all(lines_of(edges, "island")).length > 0.65 * island.length
-
-
-def test_a_bed_on_top_of_an_island_is_no_curb():
-    """A ramp at its end makes the top of the island ground that one can drive to."""
-    island = shapely.box(12, 1.0, 26, 4.0)
-    x, y, z, time = scan(shapely.union_all([sidewalks(7.0), island]), noise=0.002)
-    on_top = shapely.contains_xy(shapely.buffer(island, 0.02), x, y) & (z < 0.14)
-    z = z - np.where(on_top, np.clip(z, 0.0, 0.12) * np.clip((15.0 - x) / 3.0, 0.0, 1.0), 0.0)
-    bed = shapely.box(18, 1.8, 24, 3.2)
-    z = z + np.where(shapely.contains_xy(bed, x, y), 0.10, 0.0)
-    survey = survey_along((x, y, z, time), -1.0)
-    lines = lines_of(fit_road_edges(detect_curbs(survey), survey.frame), "island")
-    assert sum(line.length for line in lines) > 15.0
-    assert all(shapely.intersection(line, shapely.buffer(bed, 0.3)).length < 0.5 for line in lines)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from lanewright.core.road.curb_returns.classify import CurbReturn, island_outlines
 from lanewright.core.road.curb_returns.free_corners import is_free_corner
 from lanewright.core.road.curb_returns.steps import PlanSteps
 from lanewright.core.road.curb_returns.tracking import group_lines
@@ -52,3 +53,18 @@ def test_a_corner_between_two_dropped_crossings_bends_from_one_curb_to_the_other
     (arc(first=44.0, last=48.0), curbs())], ids=["one curb", "no curb", "a basin", "uneven", "too far", "too short to bend"])
 def test_what_does_not_bend_evenly_from_curb_to_curb_is_no_corner(line, ends):
     assert not is_free_corner(line, ends)
+
+
+def side_of_an_island(y, uphill, start=0.0, end=10.0):
+    """A line along x, with the ground uphill on one side of it."""
+    x = np.arange(start, end, 0.25)
+    ones = np.ones(len(x))
+    steps = PlanSteps(x, y * ones, 0 * x, uphill * ones, 0 * x, 0.12 * ones, 0 * x, 0.003 * ones, 50 * ones, 20 * ones)
+    return CurbReturn(steps, x, steps.y, "left", "island")
+
+
+def test_what_lies_on_top_of_an_island_is_none_of_its_sides():
+    near, far, bed = side_of_an_island(0.0, 1.0), side_of_an_island(3.0, -1.0), side_of_an_island(1.2, 1.0, 4.0, 7.0)
+    falls = [np.full(len(line.s), width) for line, width in ((near, 3.0), (far, 3.0), (bed, 0.6))]
+    assert island_outlines(list(zip((near, far, bed), falls))) == [near, far]
+    assert island_outlines([]) == []
