@@ -13,6 +13,7 @@ import numpy as np
 
 from ...common.order_statistics import order_by
 from ...survey.store.records import COORDINATE_SCALE, Points
+from ..common.view_levels import at_one_level
 
 ROW_LENGTH, COLUMN_WIDTH = 0.5, 0.25  # m along and across the road
 GROUND_LAYER_JUMP = 0.06    # m of height between two layers: the ground and the sill of a car
@@ -38,8 +39,8 @@ class GroundCells:
     row_size, column_size : m
     height : (R, C) float32 m, local z at the middle of a cell; NaN where there is no ground
     rough : (R, C) float32 m, standard deviation about the plane of the cell; NaN where it has no plane
-    brightness : (R, C) float32 raw counts, median intensity; NaN where there is no ground
-    scatter : (R, C) float32 raw counts, standard deviation of the intensity, estimated from the lower quartile
+    brightness : (R, C) float32 counts, median intensity, all scanners and passes at one level; NaN where there is no ground or it was not asked for
+    scatter : (R, C) float32 counts, standard deviation of those intensities, estimated from the lower quartile
     count : (R, C) float32, points of the lowest layer
     """
 
@@ -94,7 +95,8 @@ def known_median(values: np.ndarray, axis: int) -> np.ndarray:
 
 
 def ground_cells(points: Points, first_row: int, rows: int, reach: float, road_height: Callable[[np.ndarray], np.ndarray],
-                 row_size: float = ROW_LENGTH, column_size: float = COLUMN_WIDTH) -> GroundCells:
+                 row_size: float = ROW_LENGTH, column_size: float = COLUMN_WIDTH,
+                 bright: Callable[[Points], np.ndarray] | None = None) -> GroundCells:
     """The ground cells of a window of the road.
 
     Parameters
@@ -104,6 +106,7 @@ def ground_cells(points: Points, first_row: int, rows: int, reach: float, road_h
     reach : m either side of the reference line
     road_height : function of (N,) stations in m; (N,) local z of the road under the vehicle, accurate to decimetres
     row_size, column_size : m along and across the road
+    bright : function of N Points; (N,) bool of those whose intensity counts. None where brightness and scatter are not wanted
 
     Returns
     -------
@@ -123,8 +126,8 @@ def ground_cells(points: Points, first_row: int, rows: int, reach: float, road_h
     u, v = (points.records[name].take(index) * COORDINATE_SCALE - np.repeat(middle, count) for name, middle in
             (("d", (column - half + 0.5) * column_size), ("s", (row + first_row + 0.5) * row_size)))
     height, rough = _planes(count, u, v, z)
-    brightness, scatter = _medians(at, count, points.intensity[index])
     shape = rows, columns
+    brightness, scatter = np.full((2, len(count)), np.nan) if bright is None else _looks(points[index], at, shape, column_size, bright)
     return GroundCells(first_row, -half, row_size, column_size,
                  *(values.reshape(shape).astype(np.float32) for values in (height, rough, brightness, scatter, count)))
 
@@ -209,9 +212,16 @@ def _planes(count, u, v, z):
     return np.where(any_ground, height, np.nan), np.where(enough, rough, np.nan)
 
 
-def _medians(at, count, intensity):
-    """Median of the 16-bit intensities of each cell, and their standard deviation from the lower quartile."""
-    values = intensity[order_by(intensity, at)].astype(float)
+def _looks(points, at, shape, column_size, bright):
+    """Median of the intensities of points in the cells `at`, and their standard deviation from the lower quartile."""
+    kept = np.flatnonzero(bright(points))
+    points, at = points[kept], at[kept]
+    views = points.pass_number.astype(np.int64) << 8 | points.scanner
+    views = (np.cumsum(np.bincount(views) > 0) - 1)[views] if len(views) else views
+    intensity = at_one_level(points.intensity, views, at, shape, column_size)
+    # numbers that are not negative have the order of their bits
+    values = intensity[order_by(intensity.view(np.int32), at)].astype(float)
+    count = np.bincount(at, minlength=shape[0] * shape[1])
     start = np.cumsum(count) - count
     filled = count >= MIN_LAYER_POINTS
     median, spread = np.full(len(count), np.nan), np.full(len(count), np.nan)

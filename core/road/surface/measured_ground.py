@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ...survey.frame.road import CORRIDOR
+from ..common.sides import ahead_of_vehicle
 from .ground_grid import ROW_LENGTH, GroundCells, ground_cells
 from .pavement_edge import SurfaceProfiles
 
@@ -57,11 +58,14 @@ class MeasuredGround:
                 return cells, profiles
             points = self.survey.window(road, row * ROW_LENGTH, (row + WINDOW_ROWS) * ROW_LENGTH)
             if wanted:
-                profiles = SurfaceProfiles.of(points, row * ROW_LENGTH, WINDOW_ROWS * ROW_LENGTH, CORRIDOR, height)
+                profiles = SurfaceProfiles.of(points, row * ROW_LENGTH, WINDOW_ROWS * ROW_LENGTH, CORRIDOR, height, ahead)
             return ground_cells(points, row, WINDOW_ROWS, CORRIDOR, height) if cells is None else cells, profiles
 
         def height(s):
             return self.survey.road_height(road, s)
+
+        def ahead(points):
+            return ahead_of_vehicle(self.survey, points, points.s)
 
         found = list(ordered_map(measure, list(zip(rows, profiled)), progress))
         for row, part in zip(rows, found):

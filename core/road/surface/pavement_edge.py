@@ -18,6 +18,7 @@ from .ground_grid import GroundCells, ground_cells, known_median
 from .pavement_limit import pavement_limits
 
 PROFILE_ROW, PROFILE_COLUMN = 1.0, 0.1  # m along and across the road, size of a cell
+FARTHEST_AHEAD = 25.0        # m from the vehicle of points whose brightness counts: across a bend a place is seen from far away too, nearly dark
 POOLED_ROWS, ROWS_PER_STEP = 5, 2  # rows of cells that make one profile, and rows from one profile to the next: 5 m every 2 m
 MAX_MISS = 1.5               # m by which a profile may miss the edge and say so, farther is no worse
 BLIND_SHARE = 0.3            # of the miss of a limit farther out than a profile that ends where nothing was measured
@@ -35,7 +36,8 @@ class SurfaceProfiles:
     offsets : (K,) m, middles of the cells, ascending
     height : (P, K) m above the expected height of the road under the vehicle
     rough : (P, K) m
-    brightness, scatter : (P, K) raw counts, as in GroundCells; NaN where nothing was measured
+    brightness, scatter : (P, K) counts, as in GroundCells; NaN where nothing was measured
+    count : (P, K) points
     """
 
     stations: np.ndarray
@@ -44,12 +46,13 @@ class SurfaceProfiles:
     rough: np.ndarray
     brightness: np.ndarray
     scatter: np.ndarray
+    count: np.ndarray
 
-    NAMES = ("height", "rough", "brightness", "scatter")
+    NAMES = ("height", "rough", "brightness", "scatter", "count")
 
     @classmethod
     def of(cls, points: Points, start: float, length: float, reach: float,
-           road_height: Callable[[np.ndarray], np.ndarray]) -> SurfaceProfiles:
+           road_height: Callable[[np.ndarray], np.ndarray], ahead: Callable[[Points], np.ndarray]) -> SurfaceProfiles:
         """The rows of a window of the road.
 
         Parameters
@@ -58,15 +61,17 @@ class SurfaceProfiles:
         start, length : m, station at which it begins, and its length, whole numbers
         reach : m either side of the reference line
         road_height : function of (N,) stations in m; (N,) local z of the road under the vehicle, accurate to decimetres
+        ahead : function of N Points; (N,) m by which they lay ahead of the vehicle when they were measured
 
         Returns
         -------
         SurfaceProfiles
         """
         first_row, rows = int(round(start / PROFILE_ROW)), int(round(length / PROFILE_ROW))
-        cells = ground_cells(points, first_row, rows, reach, road_height, PROFILE_ROW, PROFILE_COLUMN)
+        cells = ground_cells(points, first_row, rows, reach, road_height, PROFILE_ROW, PROFILE_COLUMN,
+                             lambda seen: np.abs(ahead(seen)) <= FARTHEST_AHEAD)
         above = cells.height - road_height(cells.stations)[:, None]
-        return cls(cells.stations, cells.offsets, *(v.astype(np.float32) for v in (above, cells.rough, cells.brightness, cells.scatter)))
+        return cls(cells.stations, cells.offsets, *(v.astype(np.float32) for v in (above, cells.rough, cells.brightness, cells.scatter, cells.count)))
 
     @classmethod
     def joined(cls, parts: Sequence[SurfaceProfiles]) -> SurfaceProfiles:
@@ -94,12 +99,14 @@ class GrownLimit:
     """The limit of a road on a side without an edge, on R rows.
 
     offset : (R,) m, of the edge of the pavement
+    sigma : (R,) m, one sigma of a single row, of places that are known to the gap between two measured cells
     shown : (R,) bool, whether it was measured as an edge; where it is not, the road ends there for want of better
     likely : (R,) bool, whether it is rather an edge than not
     hidden : (R,) bool, whether hardly anything was measured right behind it
     """
 
     offset: np.ndarray
+    sigma: np.ndarray
     shown: np.ndarray
     likely: np.ndarray
     hidden: np.ndarray
@@ -136,7 +143,7 @@ def grown_limit(profiles: SurfaceProfiles, cells: GroundCells, above: np.ndarray
     changes = halves.changes(beside, max_width)
     known = np.flatnonzero(changes >= 0)
     if not len(known):
-        return GrownLimit(track + sign * max_width, nowhere, nowhere, ~nowhere)
+        return GrownLimit(track + sign * max_width, np.full(len(track), np.inf), nowhere, nowhere, ~nowhere)
     # at the last cell, nothing beyond it was looked for
     blind = np.pad(halves.blind(), ((0, 0), (0, 1)))[np.arange(len(changes)), changes]
     changes = np.interp(rows.stations, pooled.stations[known], _agreed(changes[known], blind[known], len(pooled.offsets)))
@@ -144,7 +151,7 @@ def grown_limit(profiles: SurfaceProfiles, cells: GroundCells, above: np.ndarray
     outward = np.interp(stations, rows.stations, rows.offsets[0] + (found.cell - 0.5) * PROFILE_COLUMN)
     row = np.clip(np.searchsorted(rows.stations + 0.5 * PROFILE_ROW, stations), 0, len(rows.stations) - 1)
     farthest = sign * track + max_width
-    return GrownLimit(sign * np.minimum(outward, farthest), found.shown[row] & (outward < farthest),
+    return GrownLimit(sign * np.minimum(outward, farthest), found.gap[row] * PROFILE_COLUMN / np.sqrt(12.0), found.shown[row] & (outward < farthest),
                       found.likely[row] & (outward < farthest), found.hidden[row])
 
 

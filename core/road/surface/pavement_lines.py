@@ -18,7 +18,6 @@ from ..edges.road_edges import EdgePiece, RoadEdges
 from .extract import Carriageway, SurfaceSettings, find_carriageway
 from .ground_grid import COLUMN_WIDTH, ROW_LENGTH
 from .limits import edge_offsets
-from .pavement_edge import PROFILE_COLUMN
 
 if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame
@@ -30,7 +29,6 @@ MIN_PAVEMENT_LENGTH = 10.0  # m of a line: rows are averages of 7 m, so a shorte
 MAX_ROW_JUMP = 0.5          # m across from one row to the next at which a line ends: a street joins
 MAX_BRIDGED_SKEW = 0.15     # m across per m along of a gap, beside MAX_EDGE_JUMP: tapers widen by 1 in 10 and less
 MIN_LIKELY_SHARE = 0.5      # of a gap in which the edge is rather there than not, for the line to go on as measured
-CELL_SIGMA = PROFILE_COLUMN / np.sqrt(12.0)  # m, of a place that is known to a cell
 
 
 def with_pavement_edges(survey: Survey, edges: RoadEdges, settings: EdgeSettings = EdgeSettings(), surface: SurfaceSettings = SurfaceSettings(),
@@ -86,7 +84,7 @@ def pavement_pieces(frame: RoadFrame, road: int, carriageway: Carriageway, edges
         free = there & np.isnan(curbs[side][0])
         agreeing = uniform_filter1d((grown.shown & free).astype(float), int(AGREEING_LENGTH / ROW_LENGTH) | 1, mode="constant")
         for runs in _lines(free & (agreeing > 0.5), free & grown.likely, free & (grown.likely | grown.hidden), grown.offset, max_gap):
-            found += _drawn(frame, road, side, carriageway, grown.offset, runs, chain + len(found))
+            found += _drawn(frame, road, side, carriageway, grown, runs, chain + len(found))
     return found
 
 
@@ -115,13 +113,14 @@ def _go_on(offset, gap, max_gap):
     return 0 < length <= max_gap and abs(offset[gap.stop] - offset[gap.start - 1]) <= MAX_EDGE_JUMP + MAX_BRIDGED_SKEW * length
 
 
-def _drawn(frame, road, side, carriageway, offset, runs, chain):
+def _drawn(frame, road, side, carriageway, grown, runs, chain):
     """The pieces of one line."""
     stations = carriageway.cells.stations
     rows = np.concatenate([np.arange(a, b) for a, b in runs])
+    offset, sigma = grown.offset[rows], grown.sigma[rows]
     # least squares with the noise of a place; as many rows as differ
-    curve = splrep(stations[rows], offset[rows], w=np.full(len(rows), 1.0 / CELL_SIGMA), s=len(rows))
-    residual = offset[rows] - splev(stations[rows], curve)
+    curve = splrep(stations[rows], offset, w=1.0 / sigma, s=len(rows))
+    residual = offset - splev(stations[rows], curve)
     pieces = []
     for k, (a, b) in enumerate(runs):
         if k:
@@ -137,7 +136,7 @@ def _drawn(frame, road, side, carriageway, offset, runs, chain):
         rmse = float(np.sqrt(np.mean(residual[near] ** 2)))
         length = float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum())
         found.append(EdgePiece(vertices, road, side, status, chain, float(start), float(end), length, rmse=rmse,
-                               what="pavement", sigma=float(np.sqrt(CELL_SIGMA**2 + rmse**2 + passes**2))))
+                               what="pavement", sigma=float(np.sqrt(np.mean(sigma[near] ** 2) + rmse**2 + passes**2))))
     return found
 
 

@@ -24,10 +24,13 @@ def half_of(s):
     return np.full_like(s, HALF)
 
 
-def street(half=half_of, verge=True, keep=None, extra=None, backwards=False, shuffled=False, density=300, seed=5):
+def street(half=half_of, verge=True, keep=None, extra=None, backwards=False, shuffled=False, density=300, seed=5, gravel=GRAVEL, gain=None,
+           grey_of=None):
     """A straight street along y = 0 of asphalt up to `half` of the station, then a strip of gravel, then grass; or asphalt throughout.
 
-    Scatter of heights and returned intensity are those of the three; `keep` : of s and d, False where nothing was scanned
+    Scatter of heights and returned intensity are those of the three; `keep` : of s and d, False where nothing was scanned. With a `gain`, a
+    function of d, half of the points are of a second scanner that returns so many times the intensity; `grey_of` s and d is times the
+    intensity of the ground
     """
     rng = np.random.default_rng(seed)
     along = np.linspace(0.0, LENGTH, 601)
@@ -36,9 +39,11 @@ def street(half=half_of, verge=True, keep=None, extra=None, backwards=False, shu
     count = int(density * (LENGTH + 8) * 2 * REACH)
     x, y = rng.uniform(-4, LENGTH + 4, count), rng.uniform(-REACH, REACH, count)
     beyond = np.abs(y) - half(x)
-    ground = np.digitize(beyond, [0.0, GRAVEL]) if verge else np.zeros(count, int)
+    ground = np.digitize(beyond, [0.0, gravel]) if verge else np.zeros(count, int)
     z = rng.normal(0.0, np.array([0.003, 0.006, 0.02])[ground])
     grey = np.array([1000.0, 1150.0, 1400.0])[ground] * rng.lognormal(0.0, 0.1, count)
+    if grey_of is not None:
+        grey = grey * grey_of(x, y)
     if keep is not None:
         seen = keep(x, y)
         x, y, z, grey = x[seen], y[seen], z[seen], grey[seen]
@@ -52,10 +57,11 @@ def street(half=half_of, verge=True, keep=None, extra=None, backwards=False, shu
     s, d = frame.road(0).locate(*places)
     records["x"], records["y"], records["z"], records["s"], records["d"] = map(to_units, (*places, z + 100 - frame.origin[2], s, d))
     records["time"] = 1000 + np.clip(LENGTH - x if backwards else x, 0, LENGTH) / 10
-    records["intensity"] = np.rint(grey)
+    second = np.zeros(len(x), int) if gain is None else rng.integers(0, 2, len(x))
+    records["scanner"], records["intensity"] = second, np.rint(np.where(second, grey * (1.0 if gain is None else gain(y)), grey))
     store = SectionStore(SURVEY_POINT, 20.0)
     store.append(0, records[np.argsort(s, kind="stable")] if not shuffled else records)
-    return Survey([], frame, store, "", {0: SENSOR}, None, [0], True, True)
+    return Survey([], frame, store, "", {0: SENSOR}, "scanner_channel", [0, 1], True, True)
 
 
 def no_edges(survey):
@@ -92,6 +98,43 @@ def test_where_asphalt_ends_at_gravel_the_edge_of_the_pavement_is_drawn(options)
     assert set(edges.what) == {"pavement"} and set(edges.kind) == {"main"} and set(edges.status) == {"measured"}
     assert np.isnan(edges.height).all() and (edges.sigma > 0).all()
     assert min(covered(edges, survey, 1), covered(edges, survey, -1)) >= 0.95
+
+
+@pytest.mark.parametrize("gain", [lambda d: 1.8 + 0 * d, lambda d: 1.3 + 0.1 * d, lambda d: np.where(d > 0, 0.6, 1.7)])
+def test_between_scanners_of_different_gain_a_strip_of_gravel_is_no_road_on_either_side(gain):
+    survey = street(gravel=0.8, gain=gain)
+    edges = found(survey)
+    assert set(edges.status) == {"measured"}
+    assert min(covered(edges, survey, side, within=0.1) for side in (1, -1)) >= 0.95
+
+
+def test_where_one_scanner_stops_to_see_the_road_it_does_not_end():
+    rng = np.random.default_rng(4)
+    survey = street(gain=lambda d: np.where(np.abs(d) < 2.0 + 0.2 * rng.uniform(size=len(d)), 2.0, np.nan_to_num(1.0)), gravel=0.8)
+    edges = found(survey)
+    assert min(covered(edges, survey, side, within=0.1) for side in (1, -1)) >= 0.95
+
+
+@pytest.mark.parametrize("paint", [4.0, 1.3])
+def test_an_edge_line_fresh_or_worn_lies_on_the_pavement(paint):
+    survey = street(gravel=0.8, grey_of=lambda s, d: np.where(np.abs(np.abs(d) - HALF + 0.36) < 0.06, paint, 1.0))
+    edges = found(survey)
+    assert min(covered(edges, survey, side, within=0.1) for side in (1, -1)) >= 0.95
+
+
+@pytest.mark.parametrize("patch", [0.7, 1.35])
+def test_a_patch_of_other_asphalt_does_not_move_the_edge(patch):
+    survey = street(gravel=0.8, grey_of=lambda s, d: np.where((s > 20) & (s < 31) & (np.abs(d) < 2.4) & (np.abs(d) > 0.6), patch, 1.0))
+    edges = found(survey)
+    assert min(covered(edges, survey, side) for side in (1, -1)) >= 0.95
+
+
+def test_between_scan_lines_far_apart_the_edge_lies_in_the_middle_and_is_less_certain():
+    apart = 0.3
+    survey = street(gravel=0.8, density=1500, keep=lambda s, d: np.abs(d) % apart < 0.05)
+    edges, dense = found(survey), found(street(gravel=0.8))
+    assert min(covered(edges, survey, side) for side in (1, -1)) >= 0.95
+    assert edges.sigma.min() > 1.5 * dense.sigma.max() and edges.sigma.max() < apart
 
 
 def test_asphalt_as_far_as_one_sees_has_no_edge():
