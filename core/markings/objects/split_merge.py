@@ -22,6 +22,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from ...common.order_statistics import order_by
+from ...common.parallel import check_cancelled
 from ...survey.store.records import COORDINATE_SCALE
 from .classify import columns_of
 from .connected_cells import occupied
@@ -79,6 +80,7 @@ def split_compounds(records: Columns, labels: np.ndarray) -> np.ndarray:
     large = (ranges[0] * COORDINATE_SCALE >= COMPOUND_LENGTH) & (ranges[1] * COORDINATE_SCALE >= COMPOUND_BREADTH) \
         | (ranges[0] * COORDINATE_SCALE >= MIN_LENGTH_BESIDE_BAR) & (ranges[1] * COORDINATE_SCALE >= MIN_RUN_ACROSS)
     for a, b in zip(starts[large], np.r_[starts[1:], len(order)][large]):
+        check_cancelled()
         rows = order[a:b]
         cells, member = occupied(along[a:b] // CELL_UNITS, across[a:b] // CELL_UNITS)
         spacing = np.zeros(len(cells))
