@@ -167,8 +167,8 @@ def assess_boundaries(result: Sequence[Any], reference: Sequence[Any], settings:
     excluded_distance = excluded_index.nearest(result_points.xy, progress=progress.part(0.0, 0.2)).distance
     nearest = reference_index.nearest(result_points.xy, progress=progress.part(0.2, 0.4))
     judged = ~((excluded_distance < EXCLUDED_DISTANCE) & (excluded_distance < nearest.distance))
-    result_points = result_points.subset(judged)
-    nearest = nearest.subset(judged)
+    result_points = result_points[judged]
+    nearest = nearest[judged]
     reference_points, excluded_points = sample_lines(reference_lines).inside(area), sample_lines(excluded_lines).inside(area)
     stations = [along.of_result(result_points, nearest), along.of_reference(reference_points),
                 _of_excluded(along, excluded_points, reference_index)]

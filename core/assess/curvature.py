@@ -72,7 +72,7 @@ def marking_curvature(points: Any, lines: Sequence[Any], origin: Sequence[float]
     beside = beside[_spread(len(beside), MAX_CURVATURE_POINTS)]
     near = _near(x, y, which[beside])
     xyz = np.c_[x[near], y[near], z[near]]
-    before, after = _before_and_after(xyz, np.searchsorted(near, which[beside]), nearest.subset(beside), segments)
+    before, after = _before_and_after(xyz, np.searchsorted(near, which[beside]), nearest[beside], segments)
     known = np.isfinite(before) & np.isfinite(after)
     if not known.any():
         return None

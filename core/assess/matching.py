@@ -11,6 +11,7 @@ import shapely
 
 from ..common.parallel import check_cancelled
 from ..common.progress import Progress
+from ..common.rows import Rows
 
 LINE_SAMPLE_STEP = 0.1     # m between the compared points along a line
 HEADING_BASE = 0.5         # m to either side over which the direction of a line is measured: vertices a decimetre apart are noisy
@@ -38,7 +39,7 @@ def single_lines(geometries: Sequence[Any]) -> tuple[list[shapely.LineString], n
 
 
 @dataclass(frozen=True)
-class LinePoints:
+class LinePoints(Rows):
     """Midpoints of the pieces into which lines are divided.
 
     xy : (N, 2) metres
@@ -56,16 +57,9 @@ class LinePoints:
     length: np.ndarray
     heading: np.ndarray
 
-    def __len__(self) -> int:
-        return len(self.xy)
-
-    def subset(self, mask: np.ndarray) -> LinePoints:
-        """The points of a mask or of indices."""
-        return LinePoints(*(getattr(self, name)[mask] for name in ("xy", "z", "line", "station", "length", "heading")))
-
     def inside(self, area: shapely.Geometry | None) -> LinePoints:
         """The points within a polygon; all if it is None."""
-        return self if area is None else self.subset(shapely.contains_xy(area, self.xy[:, 0], self.xy[:, 1]))
+        return self if area is None else self[shapely.contains_xy(area, self.xy[:, 0], self.xy[:, 1])]
 
 
 def sample_lines(lines: Sequence[shapely.LineString], step: float = LINE_SAMPLE_STEP) -> LinePoints:
@@ -120,7 +114,7 @@ def _cut(points, along, start, end):
 
 
 @dataclass(frozen=True)
-class NearestPoints:
+class NearestPoints(Rows):
     """The nearest points on some lines of N points; distance inf and the rest NaN or -1 if there is none.
 
     distance : (N,) metres
@@ -137,10 +131,6 @@ class NearestPoints:
     z: np.ndarray
     line: np.ndarray
     station: np.ndarray
-
-    def subset(self, mask: np.ndarray) -> NearestPoints:
-        """Those of a mask or of indices."""
-        return NearestPoints(*(getattr(self, name)[mask] for name in NearestPoints.__dataclass_fields__))
 
 
 class SegmentIndex:
@@ -207,7 +197,7 @@ class SegmentIndex:
             else:
                 pairs = self._parallel(xy[some], np.asarray(heading)[some], max_angle, reach)
             parts.append(self._nearest_points(xy[some], *pairs))
-        return NearestPoints(*(np.concatenate([getattr(part, name) for part in parts]) for name in NearestPoints.__dataclass_fields__))
+        return NearestPoints.join(parts)
 
     def _parallel(self, xy, heading, max_angle, reach):
         """(point, segment) pairs: of the segments within reach that run the same way, the nearest."""

@@ -6,9 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.ndimage import median_filter
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 
+from ...common.groups import linked_groups
 from .uprights import UPRIGHT_SLICE, Uprights
 
 STEADY_OFFSET, STEADY_PER_SLICE = 0.30, 0.02   # m across from one slice to a later one, and more for each slice between
@@ -62,8 +61,7 @@ def find_chains(uprights: Uprights, road: int, side: int, max_gap: float, min_le
     if len(uprights) < 2:
         return []
     pairs = _linked(uprights, max(int(round(max_gap / UPRIGHT_SLICE)), 1))
-    graph = coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), (len(uprights),) * 2)
-    _, label = connected_components(graph, directed=False)
+    label = linked_groups(pairs[:, 0], pairs[:, 1], len(uprights))
     order = np.lexsort((uprights.slice, label))
     found = []
     for rows in np.split(order, np.flatnonzero(np.diff(label[order])) + 1):

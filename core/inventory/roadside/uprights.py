@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
+
+from ...common.rows import Rows
 
 UPRIGHT_SLICE = 0.5              # m along the road
 UPRIGHT_CELL = 0.10              # m across
@@ -24,7 +26,7 @@ BEHIND = 0.30, 3.0       # m behind it where points seen through it are counted
 
 
 @dataclass
-class Uprights:
+class Uprights(Rows):
     """N uprights.
 
     slice : (N,) int, number of the slice, counted from station 0
@@ -47,16 +49,10 @@ class Uprights:
     points: np.ndarray
     behind: np.ndarray
 
-    def __len__(self) -> int:
-        return len(self.slice)
-
-    def __getitem__(self, which: np.ndarray) -> Uprights:
-        return Uprights(*(getattr(self, entry.name)[which] for entry in fields(self)))
-
     @staticmethod
     def joined(parts: list[Uprights]) -> Uprights:
         """All uprights of several parts, sorted by slice and offset."""
-        whole = Uprights(*(np.concatenate([getattr(part, entry.name) for part in parts]) for entry in fields(Uprights)))
+        whole = Uprights.join(parts)
         return whole[np.lexsort((whole.d, whole.slice))]
 
     @staticmethod

@@ -15,9 +15,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 
+from ...common.groups import linked_groups
 from ...curves.robust import median
 from .common_trend import MAX_LINE_SLOPE, CommonTrend, weighted_medians
 
@@ -216,12 +215,10 @@ def assigned_links(pairs: list[tuple[float, int, int]]) -> dict[int, int]:
     cost, a, b = (np.array(values) for values in zip(*pairs))
     ends, row = np.unique(a, return_inverse=True)
     starts, column = np.unique(b, return_inverse=True)
-    count = len(ends) + len(starts)
-    graph = coo_matrix((np.ones(len(row)), (row, len(ends) + column)), shape=(count, count))
-    number, group = connected_components(graph, directed=False)
+    group = linked_groups(row, len(ends) + column, len(ends) + len(starts))
     order = np.argsort(group[row], kind="stable")
     links = {}
-    for of_group in np.split(order, np.searchsorted(group[row][order], np.arange(1, number))):
+    for of_group in np.split(order, np.searchsorted(group[row][order], np.arange(1, group.max() + 1))):
         rows, i = np.unique(row[of_group], return_inverse=True)
         columns, j = np.unique(column[of_group], return_inverse=True)
         gain = np.zeros((len(rows), len(columns)))

@@ -6,9 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 
+from ...common.groups import linked_groups
 from ...common.order_statistics import order_by
 from ...curves.robust import median, percentiles
 from ...survey.store.records import COORDINATE_SCALE
@@ -215,9 +214,7 @@ def _chains(node_bin, node_d, good):
         follows[a[near]] = b[near]
         preceded[b[near]] = True
     linked = np.flatnonzero(follows >= 0)
-    graph = coo_matrix((np.ones(len(linked), bool), (linked, follows[linked])), shape=(count, count))
-    label = connected_components(graph, directed=False)[1]
-    return np.where(good, label, -1)
+    return np.where(good, linked_groups(linked, follows[linked], count), -1)
 
 
 def _mutual(node_bin, node_d, ends, starts, leap, span):

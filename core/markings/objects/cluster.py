@@ -13,10 +13,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import shapely
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from ...common.groups import linked_groups
 from ...common.order_statistics import order_by
 from ...common.progress import Progress
 from ...common.setting import check_limits, setting
@@ -217,8 +216,7 @@ def connected_points(marking_points: RoadPoints, road: int, distance: float, pro
     if not records:
         return join_columns([], marking_points.store.dtype), np.empty(0, np.int64)
     pairs = np.concatenate(links)
-    graph = coo_matrix((np.ones(len(pairs), bool), (pairs[:, 0], pairs[:, 1])), shape=(count, count))
-    _, merged = connected_components(graph, directed=False)
+    merged = linked_groups(pairs[:, 0], pairs[:, 1], count)
     labels = np.concatenate(labels)
     return join_columns(records, marking_points.store.dtype), merged[labels] if len(labels) else labels
 
@@ -236,9 +234,7 @@ def _components(records, distance):
     reach[member] = track_reach(records["spacing"])
     pairs = _across_tracks(places / [distance, REACH_ACROSS_DIVISOR], reach)
     if len(pairs):
-        number = int(found.max()) + 1
-        graph = coo_matrix((np.ones(len(pairs), bool), tuple(found[pairs].T)), shape=(number, number))
-        found = connected_components(graph, directed=False)[1][found]
+        found = linked_groups(*found[pairs].T, int(found.max()) + 1)[found]
     return cells, member, found
 
 

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import cv2
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 
+from ...common.groups import linked_groups
 from ...common.order_statistics import order_by
 
 
@@ -76,8 +75,7 @@ def components(cells: np.ndarray, places: np.ndarray, size: tuple[float, float],
                 apart = apart[((places[apart] - places[beside]) ** 2).sum(axis=1) <= distance**2]
                 linked.append(patch[apart].astype(np.int64) * count + image[at[apart] + step])
     first, second = np.divmod(np.unique(np.concatenate(linked)), count)
-    graph = coo_matrix((np.ones(len(first), bool), (first, second)), shape=(count, count))
-    return connected_components(graph, directed=False)[1][patch]
+    return linked_groups(first, second, count)[patch]
 
 
 def _patches(at, shape):

@@ -10,9 +10,9 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
+
+from ...common.groups import linked_groups
 
 if TYPE_CHECKING:
     from .shape import Shape
@@ -113,9 +113,8 @@ def _chains(pairs, apart, ways, fewest=MIN_DASHES_IN_ROW, max_step_ratio=MAX_STE
     straight = (ways[before] * ways[after]).sum(axis=1) >= MIN_STEP_COSINE
     off = apart[after] * np.abs(ways[before, 0] * ways[after, 1] - ways[before, 1] * ways[after, 0])
     joined = even & straight & (off <= max_offset)
-    graph = coo_matrix((np.ones(joined.sum(), bool), (before[joined], after[joined])), shape=(len(pairs),) * 2)
-    number, row = connected_components(graph, directed=False)
+    row = linked_groups(before[joined], after[joined], len(pairs))
     # a row is found twice, forwards and backwards
     found = {tuple(np.unique(pairs[row == k]).tolist())
-             for k in np.flatnonzero(np.bincount(row, minlength=number) >= fewest - 1)}
+             for k in np.flatnonzero(np.bincount(row) >= fewest - 1)}
     return [np.array(members) for members in sorted(found) if len(members) >= fewest]

@@ -11,9 +11,8 @@ from typing import NamedTuple
 
 import cv2
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 
+from ...common.groups import linked_groups
 from .zebra import MAX_ROW_SKEW, MIN_STRIPES, STRIPE_LENGTH, STRIPE_WIDTH
 
 COMB_WINDOW = 5.0               # m either way that a pitch is looked for in; windows overlap by half
@@ -37,7 +36,6 @@ MAX_ASIDE = 0.2            # of its width that the spots of a stripe lie on one 
 END_PERCENT = 2.0          # % of a stripe's spots beyond either end
 FRAYED = 0.06              # m beside a stripe, whose width is an estimate, that spots are of it
 MAX_STRAY_END = 0.6        # m that a stripe's end may lie off the line through those of the others
-
 
 # What is tried
 COMB_BIN = 0.05                 # m across the stripes
@@ -108,8 +106,8 @@ def _windows(places, sparse):
     starts = np.flatnonzero(np.r_[True, np.diff(keys) != 0])
     counts = np.diff(np.r_[starts, len(keys)])
     share = np.add.reduceat(sparse[spots].astype(float), starts) / counts
-    return [spots[a:a + n] for a, n in zip(starts[(counts >= LEAST_SPOTS) & (share >= LEAST_SPARSE)].tolist(),
-                                           counts[(counts >= LEAST_SPOTS) & (share >= LEAST_SPARSE)].tolist())]
+    enough = (counts >= LEAST_SPOTS) & (share >= LEAST_SPARSE)
+    return [spots[a:a + n] for a, n in zip(starts[enough].tolist(), counts[enough].tolist())]
 
 
 def _across(places, heading):
@@ -197,8 +195,8 @@ def _alike(combs):
     turn = np.abs((heading[:, None] - heading + np.pi / 2) % np.pi - np.pi / 2)
     same = (turn <= SAME_HEADING) & (np.abs(pitch[:, None] - pitch) <= SAME_PITCH * pitch) \
         & (np.hypot(*(middle[:, None] - middle).transpose(2, 0, 1)) <= COMB_WINDOW)
-    count, group = connected_components(coo_matrix(same), directed=False)
-    return [np.flatnonzero(group == k).tolist() for k in range(count)]
+    group = linked_groups(*np.nonzero(same), len(combs))
+    return [np.flatnonzero(group == k).tolist() for k in range(group.max() + 1)]
 
 
 def _stripes(places, rows, comb):

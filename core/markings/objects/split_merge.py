@@ -17,10 +17,9 @@ from typing import TYPE_CHECKING
 
 import cv2
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from ...common.groups import linked_groups
 from ...common.order_statistics import order_by
 from ...common.parallel import check_cancelled
 from ...survey.store.records import COORDINATE_SCALE
@@ -236,8 +235,7 @@ def _linked(cells, along, across):
     if not len(cells):
         return np.empty(0, np.int64)
     pairs = cKDTree(cells / [along, across]).query_pairs(1.0, p=np.inf, output_type="ndarray")
-    graph = coo_matrix((np.ones(len(pairs), bool), (pairs[:, 0], pairs[:, 1])), shape=(len(cells), len(cells)))
-    return connected_components(graph, directed=False)[1].astype(np.int64)
+    return linked_groups(pairs[:, 0], pairs[:, 1], len(cells)).astype(np.int64)
 
 
 def join_fragments(shapes: Sequence[Shape], max_width: float) -> np.ndarray:
@@ -263,8 +261,7 @@ def join_fragments(shapes: Sequence[Shape], max_width: float) -> np.ndarray:
         return np.arange(len(shapes))
     column = columns_of(shapes)
     pairs = np.concatenate([_along(shapes, max_width), _bars(column), _stripes(column)])
-    graph = coo_matrix((np.ones(len(pairs), bool), (pairs[:, 0], pairs[:, 1])), shape=(len(shapes),) * 2)
-    return connected_components(graph, directed=False)[1]
+    return linked_groups(pairs[:, 0], pairs[:, 1], len(shapes))
 
 
 def _along(shapes, max_width):

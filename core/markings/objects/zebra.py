@@ -7,9 +7,8 @@ hatching are parallel, too, but they lie askew to their row, which runs along th
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 
+from ...common.groups import linked_groups
 from .near_pairs import overlapping_pairs
 from .shape import MAX_ANGLE_ALONG
 
@@ -59,8 +58,6 @@ def zebra_stripes(column: dict[str, np.ndarray], shortest: float = STRIPE_LENGTH
         found = shared & (along | square) & (np.abs(turn) <= MAX_STRIPE_TURN) & (pitch >= STRIPE_PITCH[0]) & (pitch <= STRIPE_PITCH[1])
         beside.append(np.column_stack([a, b])[found])
     pairs = np.concatenate(beside)
-    graph = coo_matrix((np.ones(len(pairs), bool), (pairs[:, 0], pairs[:, 1])), shape=(len(rows),) * 2)
-    count, group = connected_components(graph, directed=False)
-    size = np.bincount(group, minlength=count)
-    result[rows] = size[group] >= MIN_STRIPES
+    group = linked_groups(pairs[:, 0], pairs[:, 1], len(rows))
+    result[rows] = np.bincount(group)[group] >= MIN_STRIPES
     return result

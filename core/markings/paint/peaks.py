@@ -14,11 +14,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage
 from scipy.signal import find_peaks
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from ...common.errors import RoadExtractionError
+from ...common.groups import linked_groups
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ...common.setting import check_limits, setting
@@ -178,8 +177,8 @@ def in_chains(row: np.ndarray, middle: np.ndarray, settings: PeakSettings) -> np
     steps = max(1, int(round(settings.gap / settings.profile_length)))
     pairs = cKDTree(np.c_[row / (steps + 0.5), middle * COORDINATE_SCALE / settings.jump]).query_pairs(1.0, p=np.inf, output_type="ndarray")
     pairs = pairs[row[pairs[:, 0]] != row[pairs[:, 1]]]  # two peaks of one profile are two lines
-    graph = coo_matrix((np.ones(len(pairs), bool), (pairs[:, 0], pairs[:, 1])), shape=(len(row), len(row)))
-    number, chain = connected_components(graph, directed=False)
+    chain = linked_groups(pairs[:, 0], pairs[:, 1], len(row))
+    number = int(chain.max()) + 1
     first, last = np.full(number, np.iinfo(np.int64).max), np.full(number, np.iinfo(np.int64).min)
     np.minimum.at(first, chain, row)
     np.maximum.at(last, chain, row)

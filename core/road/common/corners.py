@@ -7,12 +7,11 @@ the corner does not depend on the grid of the cells.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TypeVar
 
 import numpy as np
 
+from ...common.rows import Rows
 from .pseudo_scanlines import TOP_QUANTILE_SIGMAS, PseudoScanLines, expand_ranges
 
 ROAD_SIDE_LENGTH = 0.40     # m of road before the face to which the road's line is fitted
@@ -36,11 +35,10 @@ SKEW_PRIOR = 3e-3           # m²: keeps a face seen in one scan line parallel t
 FACE_PRIOR = 2e-4           # m²: keeps a face seen in few points upright
 GRADE_PRIOR = 3.6e-3        # m²: (noise / grade)² of 3 mm, the noise of a scanner, and 5 %, a usual grade or crossfall
 
-AnySteps = TypeVar("AnySteps", bound="CurbSteps")
 
 
 @dataclass
-class CurbSteps:
+class CurbSteps(Rows):
     """Bottom corners found on profiles, one entry each.
 
     Attributes
@@ -67,17 +65,6 @@ class CurbSteps:
     scanner_noise: np.ndarray
     support: np.ndarray
     behind: np.ndarray
-
-    def __len__(self) -> int:
-        return len(self.s)
-
-    def __getitem__(self: AnySteps, which: np.ndarray) -> AnySteps:
-        return type(self)(*(getattr(self, name)[which] for name in self.__dataclass_fields__))
-
-    @classmethod
-    def join(cls: type[AnySteps], parts: Sequence[AnySteps]) -> AnySteps:
-        """The entries of all parts, one after the other."""
-        return cls(*(np.concatenate([getattr(p, name) for p in parts]) for name in cls.__dataclass_fields__))
 
 
 def measure_corners(lines: PseudoScanLines, rows: np.ndarray, cells: np.ndarray, min_height: float, max_height: float) -> CurbSteps:

@@ -12,9 +12,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 
+from ...common.groups import linked_groups
 from .corners import CurbSteps
 from .curb_limits import MIN_FAINT_LENGTH, CurbLimits
 from .pseudo_scanlines import expand_ranges
@@ -89,10 +88,8 @@ def link_steps(steps: CurbSteps, profile_width: float) -> np.ndarray:
     behind = _best_partner(sorted_steps, profile_width, -1)
     rows = np.flatnonzero(ahead >= 0)
     rows = rows[behind[ahead[rows]] == rows]
-    graph = coo_matrix((np.ones(len(rows)), (rows, ahead[rows])), shape=(count, count))
-    _, label = connected_components(graph, directed=False)
     found = np.empty(count, np.int64)
-    found[order] = label
+    found[order] = linked_groups(rows, ahead[rows], count)
     return found
 
 

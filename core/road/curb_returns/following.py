@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...common.rows import Rows
 from ..common.tracking import HEIGHT_TOLERANCE, MAX_ROAD_ROUGHNESS
 from .raster import GroundRaster
 from .steps import LONG_HALF_LENGTH, SHORT_HALF_LENGTH, PlanSteps, seen_at
@@ -29,7 +30,7 @@ FOLLOWED_HEIGHT_RATIO = 1.6   # of its height over that of the line, or the othe
 
 
 @dataclass
-class FollowedEnds:
+class FollowedEnds(Rows):
     """Ends of K lines of curb from which they are followed.
 
     Attributes
@@ -47,12 +48,6 @@ class FollowedEnds:
     ty: np.ndarray
     uphill: np.ndarray
     height: np.ndarray
-
-    def __len__(self) -> int:
-        return len(self.x)
-
-    def __getitem__(self, which: np.ndarray) -> FollowedEnds:
-        return FollowedEnds(*(getattr(self, name)[which] for name in self.__dataclass_fields__))
 
     @classmethod
     def of(cls, lines: Sequence[tuple[np.ndarray, np.ndarray, np.ndarray]], heights: np.ndarray) -> FollowedEnds:
@@ -74,11 +69,6 @@ class FollowedEnds:
         """The ends of open chains of steps."""
         own = [steps[chain.steps] for chain in chains if not chain.closed and len(chain.steps) > 2]
         return cls.of([(line.x, line.y, line.h) for line in own], np.array([np.median(line.height) for line in own]))
-
-    @staticmethod
-    def join(parts: Sequence[FollowedEnds]) -> FollowedEnds:
-        """The ends of all parts."""
-        return FollowedEnds(*(np.concatenate([getattr(part, name) for part in parts]) for name in FollowedEnds.__dataclass_fields__))
 
 
 def followed_steps(raster: GroundRaster, ends: FollowedEnds, min_height: float, max_height: float, least_slope: float,
@@ -140,7 +130,6 @@ def _measured_across(raster, points, x, y, nx, ny, min_height, max_height):
         those.x, those.y = x + across * nx, y + across * ny
         there = seen["good"] & (np.abs(across) <= FOLLOWED_ACROSS) & (np.abs(seen["skew"]) <= FOLLOWED_SKEW) \
             & (seen["around"] >= MIN_QUARTER_POINTS) & (seen["density"] <= MAX_FOLLOWED_POINTS)
-        steps = those if steps is None else PlanSteps(*(np.where(good, getattr(steps, name), getattr(those, name))
-                                                        for name in PlanSteps.__dataclass_fields__))
+        steps = those if steps is None else PlanSteps(*(np.where(good, a, b) for a, b in zip(steps.columns(), those.columns())))
         good = good | there
     return steps, good

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
+from ...common.rows import Rows
 from ..common.corners import BEHIND_LENGTH, FACE_MARGIN, REMEASURE_SKEW, ROAD_SIDE_LENGTH, StepPatches
 from ..common.pseudo_scanlines import expand_ranges
 from .raster import PLAN_CELL, GroundRaster
@@ -27,7 +28,7 @@ REMEASURE_OFFSET = 0.04       # m from where it was looked for above which a ste
 
 
 @dataclass
-class PlanSteps:
+class PlanSteps(Rows):
     """Bottom corners found in plan, one entry each.
 
     Attributes
@@ -52,21 +53,10 @@ class PlanSteps:
     support: np.ndarray
     behind: np.ndarray
 
-    def __len__(self) -> int:
-        return len(self.x)
-
-    def __getitem__(self, which: np.ndarray) -> PlanSteps:
-        return PlanSteps(*(getattr(self, name)[which] for name in self.__dataclass_fields__))
-
     @staticmethod
     def none() -> PlanSteps:
         """No steps."""
         return PlanSteps(*(np.empty(0, np.int64 if name in ("support", "behind") else float) for name in PlanSteps.__dataclass_fields__))
-
-    @staticmethod
-    def join(parts: Sequence[PlanSteps]) -> PlanSteps:
-        """The entries of all parts, one after the other."""
-        return PlanSteps(*(np.concatenate([getattr(p, name) for p in parts]) for name in PlanSteps.__dataclass_fields__))
 
 
 def measure_plan_steps(rasters: Sequence[GroundRaster], x: np.ndarray, y: np.ndarray, nx: np.ndarray, ny: np.ndarray,

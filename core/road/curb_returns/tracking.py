@@ -6,10 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from ...common.groups import linked_groups
 from ..common.tracking import HEIGHT_TOLERANCE, MAX_JOINED_GAP
 from .steps import PlanSteps
 
@@ -122,7 +121,7 @@ def _paths(following):
     if not count:
         return []
     linked = np.flatnonzero(following >= 0)
-    _, label = connected_components(coo_matrix((np.ones(len(linked)), (linked, following[linked])), shape=(count, count)), directed=False)
+    label = linked_groups(linked, following[linked], count)
     before = np.full(count, -1)
     before[following[linked]] = linked
     ring = np.ones(label.max() + 1, bool)
@@ -167,8 +166,7 @@ def group_lines(places: Sequence[tuple[np.ndarray, np.ndarray, np.ndarray]]) -> 
     far = LineEnds.of(places, LINE_DIRECTION_LENGTH).straight_successors(long)
     following = np.r_[ends.successors(), far]
     linked = np.flatnonzero(following >= 0)
-    graph = coo_matrix((np.ones(len(linked)), (linked % len(places), following[linked])), shape=2 * (len(places),))
-    return connected_components(graph, directed=False)[1]
+    return linked_groups(linked % len(places), following[linked], len(places))
 
 
 @dataclass

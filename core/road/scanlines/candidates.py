@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 import cv2
 import numpy as np
 
+from ...common.rows import Rows
 from ..common.corners import FACE_MARGIN, MAX_ROAD_SLOPE, ROAD_SIDE_LENGTH
 from .grid import LINE_SEPARATION, MAX_GROUND_DEPTH, SCANLINE_RESOLUTION, HeightGrid, row_of_lines
 from .scanlines import Scanlines
@@ -39,7 +40,7 @@ PLACES_PER_BATCH = 8192   # places processed at a time; they fit into the cache 
 
 
 @dataclass
-class CurbCandidates:
+class CurbCandidates(Rows):
     """M rises on the scanlines of one side, pass and scanner, sorted by row, then outward.
 
     Attributes
@@ -59,12 +60,6 @@ class CurbCandidates:
     slope: np.ndarray
     step: np.ndarray
     rough: np.ndarray
-
-    def __len__(self) -> int:
-        return len(self.row)
-
-    def __getitem__(self, which: np.ndarray) -> CurbCandidates:
-        return CurbCandidates(*(getattr(self, name)[which] for name in self.__dataclass_fields__))
 
 
 def find_candidates(side: HeightGrid, measured: np.ndarray, nearest: np.ndarray, settings: ScanlineBoundarySettings) -> CurbCandidates:

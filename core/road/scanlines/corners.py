@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...common.rows import Rows
 from ..common.corners import MAX_FACE_SKEW, CurbSteps
 from ..common.pseudo_scanlines import SIGMA_PER_MEAN_DEVIATION
 from .candidates import CurbCandidates, ScanlineSamples
@@ -51,7 +52,7 @@ _RANSAC_DRAWS = np.random.default_rng(RANSAC_SEED).random((RANSAC_TRIALS, 3))
 
 
 @dataclass
-class Planes:
+class Planes(Rows):
     """M planes v = c0 + c1 p + c2 q, one through each set of points.
 
     Attributes
@@ -65,9 +66,6 @@ class Planes:
     sigma: np.ndarray
     inliers: np.ndarray
     points: np.ndarray
-
-    def __getitem__(self, which: np.ndarray) -> Planes:
-        return Planes(self.coefficients[which], self.sigma[which], self.inliers[which], self.points[which])
 
     def steepness(self) -> np.ndarray:
         """(M,) m per m, greatest slope of each plane over p and q."""

@@ -63,10 +63,6 @@ class Poses:
         weights = spline_weights(share)
         return sum(weights[:, j, None] * self.control[interval + j] for j in range(4))
 
-    def of_drive(self, number: int, time: np.ndarray) -> np.ndarray:
-        """(N, 6 + S) values at (N,) times of a drive."""
-        return self.at(*self.drives[number].interval(time))
-
     def scan_planes(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """(S, 3) unit vectors in the vehicle's frame: normal of the plane, its line across, and what stands on both."""
         cos, sin, c, s = np.cos(self.turn), np.sin(self.turn), np.cos(self.lean), np.sin(self.lean)
