@@ -80,12 +80,13 @@ class LayerFile(VectorSource):
     def rows_where(self, condition):
         """Whether a condition of OGR's SQL holds, for every row."""
         import fiona
+        from fiona._err import CPLE_BaseError  # what GDAL reports is raised as this since fiona 1.10, which has no public name for it
         from fiona.errors import AttributeFilterError
 
         with fiona.open(self.path, layer=self.table) as layer, _reported_errors() as problems:
             try:
                 found = {record["id"] for record in layer.filter(where=condition)}
-            except AttributeFilterError as problem:
+            except (AttributeFilterError, CPLE_BaseError) as problem:
                 problems.append(str(problem))
         if problems:
             raise RoadExtractionError(f"{condition!r} is no condition on the fields {', '.join(self.names)} of {self.label} ({problems[0]}). "
@@ -101,7 +102,7 @@ class LayerFile(VectorSource):
 
 @contextmanager
 def _reported_errors():
-    """A list of what GDAL's drivers report as errors meanwhile: of a faulty condition on a GeoPackage fiona only writes a log."""
+    """A list of what GDAL's drivers report as errors meanwhile: of a faulty condition on a GeoPackage fiona before 1.10 only writes a log."""
     problems = []
     handler = logging.Handler(logging.ERROR)
     handler.emit = lambda record: problems.append(record.getMessage())

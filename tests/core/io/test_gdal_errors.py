@@ -33,6 +33,9 @@ def set_to(wanted):
 def state(request):
     before = states()
     set_to(request.param)
+    if states() != request.param:
+        set_to(before)
+        pytest.skip("this GDAL (3.7 or newer) switches the exceptions of gdal and ogr together")
     yield request.param
     set_to(before)
 
