@@ -1,4 +1,5 @@
 """What is painted.
 
-In: road points and the intensity image. Out: markings as polygons (`paint`, then `objects`) and marking lines (`lines`).
+In: road points and the intensity image. Out: paint points (`paint`, then `outliers`), markings as polygons (`objects`), marking lines (`lines`),
+and the estimate that names lines and tells lanes and their directions (`cross_section`).
 """

@@ -33,7 +33,7 @@ from ..markings.lines.naming import named_by_estimate, named_by_lines
 from ..markings.lines.painted_lines import lines_to_features
 from ..markings.objects.cluster import ClusterSettings, cluster_markings
 from ..markings.objects.marking_objects import markings_to_features
-from ..markings.objects.outliers import OutlierSettings, remove_outliers
+from ..markings.outliers.remove import OutlierSettings, remove_outliers
 from ..markings.paint.extract import MarkingSettings, extract_markings
 from ..road.common.curb_points import CurbPoints, curb_points_to_features
 from ..road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points

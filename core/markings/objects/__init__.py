@@ -1,6 +1,6 @@
 """Paint gathered into markings.
 
-In: paint points. Out: points without outliers and with cluster numbers, and `MarkingObjects` with class, length and width.
+In: paint points without outliers. Out: the points with cluster numbers, and `MarkingObjects` with class, length and width.
 """
 
 from ...lazy import public
@@ -9,5 +9,4 @@ __getattr__, __all__ = public(__name__, {
     "classify": ("ClassSettings", "classify_markings"),
     "cluster": ("ClusterSettings", "cluster_markings"),
     "marking_objects": ("MarkingObjects", "Outlines", "markings_from_features", "markings_to_features", "with_kinds_of"),
-    "outliers": ("OutlierSettings", "remove_outliers"),
 })

@@ -5,9 +5,9 @@ import tracemalloc
 import numpy as np
 import pytest
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.markings.objects import outliers
-from lanewright.core.markings.objects.nearest_neighbours import mean_distances
-from lanewright.core.markings.objects.outliers import OutlierSettings, outlier_candidates, remove_outliers
+from lanewright.core.markings.outliers import remove
+from lanewright.core.markings.outliers.nearest_neighbours import mean_distances
+from lanewright.core.markings.outliers.remove import OutlierSettings, outlier_candidates, remove_outliers
 from painted_streets import assert_same_points, drive, paint, road_points, shuffled, strip
 from scipy.spatial.distance import cdist
 
@@ -65,11 +65,11 @@ def test_where_paint_crowds_the_same_points_go_as_when_every_point_is_asked(monk
     for k in range(40):
         records = with_stray(records, 6.0 + 1.3 * k, 1.25 + 0.01 * k)
     points, asked = road_points(records, FRAME), []
-    of = outliers.Neighbours.of
-    monkeypatch.setattr(outliers.Neighbours, "of", lambda self, rows: asked.append(len(rows)) or of(self, rows))
+    of = remove.Neighbours.of
+    monkeypatch.setattr(remove.Neighbours, "of", lambda self, rows: asked.append(len(rows)) or of(self, rows))
     few = remove_outliers(points)
     assert sum(asked) < len(records) / 2
-    monkeypatch.setattr(outliers, "MAX_LIMIT_SAMPLE", len(records))
+    monkeypatch.setattr(remove, "MAX_LIMIT_SAMPLE", len(records))
     every = remove_outliers(points)
     assert_same_points(few.all_points().records, every.all_points().records)
     assert 30 < len(records) - len(every) < 200
@@ -131,7 +131,7 @@ def test_where_points_are_rounded_or_repeated_windows_find_the_same_as_when_ever
     records = EXPORTS[export](with_stray(paint(FRAME, [LINE, strip(5, 60, -2.6, -2.45)], density=1500), 33.0, 0.4))
     points = road_points(records, FRAME)
     few = remove_outliers(points)
-    monkeypatch.setattr(outliers, "outlier_candidates", lambda records, *_: np.arange(len(records)))
+    monkeypatch.setattr(remove, "outlier_candidates", lambda records, *_: np.arange(len(records)))
     assert_same_points(few.all_points().records, remove_outliers(points).all_points().records)
     # a point of which 25 lie at one place is not alone
     assert (abs(few.all_points().d - 0.4) < 0.01).any() == (export == "every point 25 times")
