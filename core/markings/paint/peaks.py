@@ -13,7 +13,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy import ndimage
-from scipy.signal import find_peaks
 from scipy.spatial import cKDTree
 
 from ...common.errors import RoadExtractionError
@@ -123,6 +122,8 @@ def profile_peaks(records: Columns, row: np.ndarray, settings: PeakSettings) -> 
     -------
     row, left, right : (P,) int, the profile of each peak and its borders at half its height, units of 0.1 mm
     """
+    from scipy.signal import find_peaks  # slow to load, and this method alone uses it
+
     none = np.empty(0, np.int64)
     if not len(records):
         return none, none, none

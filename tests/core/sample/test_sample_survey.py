@@ -31,6 +31,11 @@ def true_points(street):
     return street.points(noise=False)
 
 
+@pytest.fixture(scope="module")
+def noisy_points(street):
+    return street.points()
+
+
 def labelled(points, *names):
     return points[np.isin(points["label"], [LABEL[name] for name in names])]
 
@@ -209,16 +214,15 @@ def test_points_get_rarer_away_from_the_vehicle(true_points):
     assert np.all(np.diff(count) < 0)
 
 
-def test_paint_is_brighter_than_asphalt_at_the_same_range(street):
-    points = street.points()
+def test_paint_is_brighter_than_asphalt_at_the_same_range(noisy_points):
     for low, high in ((3, 4), (5, 6), (7, 9)):
-        at = points[(points["range"] > low) & (points["range"] < high)]
+        at = noisy_points[(noisy_points["range"] > low) & (noisy_points["range"] < high)]
         paint, asphalt = (np.median(labelled(at, name)["intensity"]) for name in ("paint", "road"))
         assert paint > 2.5 * asphalt
 
 
-def test_asphalt_darkens_with_range(street):
-    road = labelled(street.points(), "road")
+def test_asphalt_darkens_with_range(noisy_points):
+    road = labelled(noisy_points, "road")
     median = [np.median(road["intensity"][(road["range"] > low) & (road["range"] < low + 1)]) for low in (3, 5, 7)]
     assert median[0] > median[1] > median[2]
 
