@@ -44,6 +44,7 @@ LOOKS = {
     "TRUTH_SURFACE": ("truth_surface", 21),
     "LANES": ("lanes", 23),
     "TRUTH_LANES": ("truth_lanes", 22),
+    "TRUTH_ROADSIDE": ("truth_roadside", 56),
     "TRAJECTORY": ("trajectory", 80),
     "PASSES": ("passes", 65),
     "CORRECTIONS": ("corrections", 95),

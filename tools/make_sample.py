@@ -2,7 +2,7 @@
 
     python tools/make_sample.py build/sample --scene street --length 120 --seed 1
 
-Leaves cloud.laz, trajectory.csv and truth.gpkg (boundaries, markings, driving lines, surface, lanes).
+Leaves cloud.laz, trajectory.csv and truth.gpkg (boundaries, markings, driving lines, surface, lanes, roadside).
 """
 
 import argparse
@@ -67,7 +67,7 @@ def main():
     (folder / "truth.gpkg").unlink(missing_ok=True)
     write_layers(folder / "truth.gpkg", {"boundaries": sample.truth_boundaries, "markings": sample.truth_markings,
                                          "driving_lines": sample.truth_driving_lines, "surface": sample.truth_surface,
-                                         "lanes": sample.truth_lanes})
+                                         "lanes": sample.truth_lanes, "roadside": sample.truth_roadside})
     print(f"{count} points in {spent:.1f} s ({count / spent:.0f} per second) in {folder}")
 
 

@@ -41,6 +41,7 @@ TRUTH = {
     "TRUTH_DRIVING_LINES": "driving_lines",
     "TRUTH_SURFACE": "surface",
     "TRUTH_LANES": "lanes",
+    "TRUTH_ROADSIDE": "roadside",
 }
 
 

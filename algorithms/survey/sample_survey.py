@@ -15,9 +15,10 @@ SAMPLE_SETTINGS = (
            "one-lane and wide-lane: a single lane of 5.8 or 7 m with arrows in its middle. no-centre-line: two lanes without a line "
            "between them. hatched-island: two directions held apart by a hatched area. motorway: two lanes and a hard shoulder each way, "
            "and an exit. serpentine: a steep road with hairpins. crossing: four arms with turning lanes, one of them not driven. "
-           "roundabout: a ring with splitter islands, driven straight on and to the left."),
+           "roundabout: a ring with splitter islands, driven straight on and to the left. outskirts: two lanes with guard rail, concrete "
+           "barrier, walls, fences and a hedge beside them, driven both ways."),
         choices=("street", "rural", "urban", "one-lane", "wide-lane", "no-centre-line", "hatched-island", "motorway", "serpentine",
-                 "crossing", "roundabout"),
+                 "crossing", "roundabout", "outskirts"),
     ),
     SettingSpec(
         "LENGTH", SAMPLE, "length", tr("Length of the road, 0: as usual for the scene (m)"),
@@ -67,6 +68,7 @@ TRUTHS = (
     ("TRUTH_DRIVING_LINES", "truth_driving_lines", "LineStringZ", tr("True driving lines")),
     ("TRUTH_SURFACE", "truth_surface", "PolygonZ", tr("True road surface")),
     ("TRUTH_LANES", "truth_lanes", "PolygonZ", tr("True lanes")),
+    ("TRUTH_ROADSIDE", "truth_roadside", "LineStringZ", tr("True roadside")),
 )
 
 

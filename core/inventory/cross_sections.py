@@ -13,7 +13,7 @@ from ..common.progress import Progress
 from ..countries.catalogue import country
 from ..curves.robust import MAD_TO_SIGMA
 from .borders import BorderLayers, RoadBorders, Strip
-from .clearance import clear_height
+from .clearance import HIGHEST_VEHICLE, OVERHEAD_INSIDE, VEHICLE_REACH, clear_height, on_vehicles
 from .height_errors import HeightErrors, overlaps_of, solve_height_errors
 from .settings import CrossSectionSettings
 from .straight_edge import noise_of_largest, rut_depths
@@ -279,17 +279,31 @@ def _clearances(survey, road, s, interval, profile, strips):
     known = np.isfinite(profile[1])
     pieces = max(int(np.ceil(interval / STRETCH)), 1)
     ends = s + interval * (np.arange(pieces + 1) / pieces - 0.5)
-    right, left = _reach(strips)
-    for start, end in zip(ends[:-1], ends[1:]):
+    right, left = min(strip.right for strip in strips) + OVERHEAD_INSIDE, max(strip.left for strip in strips) - OVERHEAD_INSIDE
+
+    def read(start, end):
         points = survey.window(road, start, end)
         d = points.d
         points = points[np.flatnonzero((d > right) & (d < left))]
         nodes = np.linspace(start, end, max(int(round((end - start) / SLICE_LENGTH)), 1) + 1)
-        above = points.z - np.interp(points.s, nodes, survey.road_height(road, nodes)) - np.interp(points.d, profile[0][known], profile[1][known])
-        for k, strip in enumerate(strips):
-            found = clear_height(points, above, strip.right, strip.left)
-            lowest[k] = np.fmin(lowest[k], np.nan if found is None else found)
+        level = np.interp(points.s, nodes, survey.road_height(road, nodes)) + np.interp(points.d, profile[0][known], profile[1][known])
+        return points, points.z - level
+
+    for start, end in zip(ends[:-1], ends[1:]):
+        points, above = read(start, end)
+        found = _clear_of(points, above, strips)
+        if np.nanmin(found, initial=np.inf) < HIGHEST_VEHICLE:
+            points, above = read(start - VEHICLE_REACH, end + VEHICLE_REACH)
+            kept = np.flatnonzero((points.s >= start) & (points.s < end) & ~on_vehicles(points.s, points.d, above))
+            found = _clear_of(points[kept], above[kept], strips)
+        lowest = np.fmin(lowest, found)
     return lowest
+
+
+def _clear_of(points, above, strips):
+    """(N,) heights of the lowest thing above N strips, NaN where there is none."""
+    found = [clear_height(points, above, strip.right, strip.left) for strip in strips]
+    return np.array([np.nan if one is None else one for one in found])
 
 
 def _curbs(d, profile, strip):

@@ -52,6 +52,8 @@ def road_map_report(road_map: Any, image_path: str | None = None, progress: Prog
                                    "was placed from the outer lines alone; everything else was measured."))
     if road_map.without_paint:
         page.warning(told(road_map.without_paint))
+    if road_map.surface.thin:
+        page.warning(told(road_map.surface.thin))
     _picture(page, road_map, image_path)
     _survey(page, road_map)
     _density(page, road_map)

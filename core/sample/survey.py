@@ -121,7 +121,8 @@ class SampleSurvey:
     camera : Camera of the UAV image, in local coordinates; None where there is no single axis
     scanners, drives : lists of Scanner and Drive
     trajectory : Trajectory of all passes at 200 Hz, 2.6 m above the road
-    truth_boundaries, truth_markings, truth_driving_lines, truth_surface, truth_lanes : Features in map coordinates
+    truth_boundaries, truth_markings, truth_driving_lines, truth_surface, truth_lanes, truth_roadside :
+        Features in map coordinates
     """
 
     def __init__(self, settings: SampleSettings, crs: str, progress: Progress):
@@ -143,6 +144,7 @@ class SampleSurvey:
         truth = self.scene.truth(settings.origin, crs)
         self.truth_boundaries, self.truth_markings = truth.boundaries, truth.markings
         self.truth_driving_lines, self.truth_surface, self.truth_lanes = truth.driving_lines, truth.surface, truth.lanes
+        self.truth_roadside = truth.roadside
         progress.report(1.0)
 
     def _trajectory(self):

@@ -910,6 +910,11 @@
         </message>
         <message>
             <location filename="../../algorithms/choice_words.py" />
+            <source>outskirts</source>
+            <translation>Ortsrand</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
             <source>intensity</source>
             <translation>Intensität</translation>
         </message>
@@ -4245,8 +4250,8 @@
         </message>
         <message>
             <location filename="../../algorithms/survey/sample_survey.py" />
-            <source>street: two lanes in bends, with curbs and parked cars. rural: a country road without curbs. urban: four lanes with gutters. one-lane and wide-lane: a single lane of 5.8 or 7 m with arrows in its middle. no-centre-line: two lanes without a line between them. hatched-island: two directions held apart by a hatched area. motorway: two lanes and a hard shoulder each way, and an exit. serpentine: a steep road with hairpins. crossing: four arms with turning lanes, one of them not driven. roundabout: a ring with splitter islands, driven straight on and to the left.</source>
-            <translation>street: zwei Fahrstreifen in Bögen, mit Bordsteinen und parkenden Autos. rural: eine Landstraße ohne Bordsteine. urban: vier Fahrstreifen mit Rinnen. one-lane und wide-lane: ein einziger Fahrstreifen von 5,8 oder 7 m mit Pfeilen in seiner Mitte. no-centre-line: zwei Fahrstreifen ohne Linie dazwischen. hatched-island: zwei Richtungen, von einer Sperrfläche getrennt. motorway: zwei Fahrstreifen und ein Standstreifen je Richtung, mit einer Ausfahrt. serpentine: eine steile Straße mit Kehren. crossing: vier Arme mit Abbiegestreifen, einer davon nicht befahren. roundabout: ein Kreisverkehr mit Fahrbahnteilern, geradeaus und nach links befahren.</translation>
+            <source>street: two lanes in bends, with curbs and parked cars. rural: a country road without curbs. urban: four lanes with gutters. one-lane and wide-lane: a single lane of 5.8 or 7 m with arrows in its middle. no-centre-line: two lanes without a line between them. hatched-island: two directions held apart by a hatched area. motorway: two lanes and a hard shoulder each way, and an exit. serpentine: a steep road with hairpins. crossing: four arms with turning lanes, one of them not driven. roundabout: a ring with splitter islands, driven straight on and to the left. outskirts: two lanes with guard rail, concrete barrier, walls, fences and a hedge beside them, driven both ways.</source>
+            <translation>street: zwei Fahrstreifen in Bögen, mit Bordsteinen und parkenden Autos. rural: eine Landstraße ohne Bordsteine. urban: vier Fahrstreifen mit Rinnen. one-lane und wide-lane: ein einziger Fahrstreifen von 5,8 oder 7 m mit Pfeilen in seiner Mitte. no-centre-line: zwei Fahrstreifen ohne Linie dazwischen. hatched-island: zwei Richtungen, von einer Sperrfläche getrennt. motorway: zwei Fahrstreifen und ein Standstreifen je Richtung, mit einer Ausfahrt. serpentine: eine steile Straße mit Kehren. crossing: vier Arme mit Abbiegestreifen, einer davon nicht befahren. roundabout: ein Kreisverkehr mit Fahrbahnteilern, geradeaus und nach links befahren. outskirts: zwei Fahrstreifen mit Leitplanke, Betonschutzwand, Mauern, Zäunen und einer Hecke daneben, in beiden Richtungen befahren.</translation>
         </message>
         <message>
             <location filename="../../algorithms/survey/sample_survey.py" />
@@ -4362,6 +4367,11 @@
             <location filename="../../algorithms/survey/sample_survey.py" />
             <source>True lanes</source>
             <translation>Wahre Fahrstreifen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/sample_survey.py" />
+            <source>True roadside</source>
+            <translation>Wahrer Straßenseitenraum</translation>
         </message>
         <message>
             <location filename="../../algorithms/survey/sample_survey.py" />

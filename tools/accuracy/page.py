@@ -3,6 +3,7 @@
 from . import published
 from .ablations import ABLATIONS
 from .poorer_page import poorer_section, sigma_section
+from .roadside import roadside_section
 from .streets_page import evidence_section, otherwise_section, streets_section
 from .tables import mean, number, table, triple
 
@@ -13,7 +14,8 @@ STAGES = {"Road surface": ("survey", "curbs", "edges", "surface"), "Marking extr
 def page(figures, samples):
     every, figures = figures, [f for f in figures if f["steps"]]
     sections = (_intro(every, samples), streets_section(every), otherwise_section(every), evidence_section(every),
-                poorer_section(every), sigma_section(every), _road_points(figures), _cells(figures), _classes(figures), _seconds(figures),
+                poorer_section(every), sigma_section(every), roadside_section(every), _road_points(figures), _cells(figures),
+                _classes(figures), _seconds(figures),
                 _markings(figures), _methods(figures), _driving(figures), _boundaries(figures), _ablation(figures, samples))
     return "\n\n".join(section for section in sections if section) + "\n"
 
@@ -38,7 +40,7 @@ def _intro(figures, samples):
         "To measure on surveys of your own: `make accuracy SURVEYS=folder`, where each survey is a folder with `cloud.laz`, "
         "`trajectory.csv` (time, x, y, z) and `truth.gpkg` (or `truth/truth.gpkg`) with any of the layers `boundaries` or "
         "`curb_bottom` (lines; `side`; `edge` = *curb*, *dropped* or *pavement*, `kind` = *main*, *corner*, *island* or "
-        "*side_street*), `markings` (polygons; `class`), `driving_lines` and "
+        "*side_street*), `markings` (polygons; `class`), `driving_lines`, `roadside` (lines; `kind`) and "
         "`surface` or `road_surface`. Optional are `truth/scanned.tif`, empty where nothing was seen and paint is not judged, and "
         "`about.json`: `{\"kind\": \"real\", \"text\": \"what it is\", \"steps\": true, \"poorer\": false}`; without steps only the road "
         "map as a whole is judged, and with poorer also that of the survey with something lacking. The page is written into that folder."))

@@ -22,7 +22,7 @@ from lanewright.core.sample.survey import SampleSettings, make_sample_survey
 
 # What a truth layer may be called; the first is the name in the sample survey
 LAYERS = dict(boundaries=("boundaries", "curb_bottom"), markings=("markings",), driving_lines=("driving_lines",),
-              surface=("surface", "road_surface"), area=("survey_area",))
+              surface=("surface", "road_surface"), area=("survey_area",), roadside=("roadside",))
 SAMPLES = {
     "difficult": (SampleSettings(seed=2, length=160.0, speed_kmh=70.0, pulse_rate=100_000.0, rotation_rate=100.0, radius=60.0,
                                  curb_height=0.08, gutter=0.30),
@@ -41,6 +41,7 @@ OTHERS = {
     "serpentine": (SampleSettings(scene="serpentine"), "hairpins of 12 m radius, no curbs, one pass"),
     "crossing": (SampleSettings(scene="crossing"), "four arms with turning lanes, one not driven, two passes"),
     "roundabout": (SampleSettings(scene="roundabout"), "four arms with splitter islands, one not driven, two passes"),
+    "outskirts": (SampleSettings(scene="outskirts"), "two lanes between gardens and a pasture, rail, barrier, walls, fences, hedge, two passes"),
 }
 POORER_SAMPLES = "street", "urban"   # also judged with something lacking
 CELL, SEEN = 0.04, 3   # m; cells about a point of road that count as seen
@@ -66,7 +67,8 @@ class Truth:
 
     curbs, with the side of each; aside : curbs that are not judged (dropped ones, islands, corners); edges : all of them and the edges
     of the pavement, each with what it is (curb, dropped, pavement) and where it runs (main, side_street, corner, island);
-    markings, with the class of each; area : polygon outside of which nothing is judged, or None
+    markings, with the class of each; area : polygon outside of which nothing is judged, or None; roadside : (line, row) of what runs
+    beside the road
     """
 
     curbs: list = field(default_factory=list)
@@ -77,6 +79,7 @@ class Truth:
     classes: list = field(default_factory=list)
     driving: list = field(default_factory=list)
     area: object = None
+    roadside: list = field(default_factory=list)
     has: set = field(default_factory=set)
 
 
@@ -135,6 +138,7 @@ def _read_truth(path):
         name = row.get("class") or row.get("mark_class") or row.get("kind") or "paint"
         truth.classes.append(str(name).replace("_", " "))
     truth.driving = [geometry for geometry, _ in layers["driving_lines"]]
+    truth.roadside = layers["roadside"]
     areas = [geometry for geometry, _ in layers["area"]]
     # without a word about it, what lies well beside the road is judged too
     areas = areas or [geometry.buffer(8.0) for geometry, _ in layers["surface"]]
@@ -171,7 +175,8 @@ def _make_sample(folder, settings, text, steps=True):
                ["%.6f"] + ["%.4f"] * 3 + ["%.5f"] * 3, ",", header="time,x,y,z,roll,pitch,heading", comments="")
     (folder / "truth.gpkg").unlink(missing_ok=True)
     write_layers(folder / "truth.gpkg", dict(boundaries=sample.truth_boundaries, markings=sample.truth_markings,
-                                             driving_lines=sample.truth_driving_lines, surface=sample.truth_surface, lanes=sample.truth_lanes))
+                                             driving_lines=sample.truth_driving_lines, surface=sample.truth_surface, lanes=sample.truth_lanes,
+                                             roadside=sample.truth_roadside))
     about = dict(kind="simulated", text=f"{settings.length:g} m, {text}", steps=steps, poorer=folder.name in POORER_SAMPLES)
     (folder / "about.json").write_text(json.dumps(about))
 

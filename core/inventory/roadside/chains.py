@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.ndimage import median_filter
@@ -47,6 +47,10 @@ class Chain:
     def wobble(self) -> float:
         """m, median distance of its uprights from the smoothed line across"""
         return float(np.median(np.abs(self.members.d - self.d)))
+
+    def part(self, rows: np.ndarray) -> Chain:
+        """The Chain of some of its uprights."""
+        return replace(self, members=self.members[rows], d=self.d[rows], ground=self.ground[rows], top=self.top[rows])
 
 
 def find_chains(uprights: Uprights, road: int, side: int, max_gap: float, min_length: float) -> list[Chain]:

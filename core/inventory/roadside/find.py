@@ -15,9 +15,9 @@ from ...survey.reading.sensor_height import DEFAULT_SENSOR_HEIGHT
 from ..borders import BorderLayers, RoadBorders
 from ..surface_grid import SLICE_LENGTH
 from .chains import Chain, find_chains
+from .divide import things_of
 from .ground import GROUND_CELL, local_ground
 from .gutters import find_gutters
-from .kinds import kind_of
 from .poles import Pole, find_poles
 from .settings import RoadsideSettings
 from .shared import told_once
@@ -126,9 +126,8 @@ def find_roadside(survey: Survey, layers: BorderLayers = BorderLayers(), setting
                 parts.setdefault(key, []).append(some)
         for (what, side), some in sorted(parts.items()):
             for chain in find_chains(Uprights.joined(some), road, side, settings.max_gap, settings.min_length):
-                kind = "gutter" if what == "gutter" else kind_of(chain)
-                if kind is not None:
-                    found.lines.append(SideLine(kind, chain, float(np.median(chain.members.foot)), edges.beyond(side, chain.s, chain.d)))
+                for kind, part in [("gutter", chain)] if what == "gutter" else things_of(chain, settings.min_length):
+                    found.lines.append(SideLine(kind, part, float(np.median(part.members.foot)), edges.beyond(side, part.s, part.d)))
     found.lines, found.poles = told_once(found)
     found.lines.sort(key=lambda line: (line.chain.road, -line.chain.side, float(line.chain.s[0])))
     _report(found, progress)

@@ -16,6 +16,7 @@ GROUND_SHARE = 0.1        # quantile of the lowest layer: at the foot of a wall 
 GROUND_JUMP = 0.10        # m of height between two layers
 MIN_GROUND_POINTS = 3     # of a lowest layer
 UNSEEN_REACH = 1.0        # m across a gap in the ground that is bridged
+RIM_STEP = 0.3            # m of height between neighbouring cells from which the higher one stands on the ground, where nothing was seen beyond it
 
 
 @dataclass(frozen=True)
@@ -61,7 +62,7 @@ def local_ground(s: np.ndarray, d: np.ndarray, h: np.ndarray, start: float, slic
     first, count = first[solid], count[solid]
     low = np.full((slices, columns), np.nan)
     low.flat[place[first]] = h[first + np.rint(GROUND_SHARE * (count - 1)).astype(np.int64)]
-    low = _filled(low)
+    low = _without_rims(_filled(low))
     known = np.isfinite(low)
     if not known.any():
         return LocalGround(start, offsets[0], low)
@@ -80,3 +81,22 @@ def _filled(low):
         left[:, 1:] = np.where(np.isnan(left[:, 1:]), left[:, :-1], left[:, 1:])
         right[:, :-1] = np.where(np.isnan(right[:, :-1]), right[:, 1:], right[:, :-1])
     return np.where(np.isnan(low), np.fmin(left, right), low)
+
+
+def _without_rims(low):
+    """Heights without narrow tops beyond which nothing was seen, as of a wall that hides what lies behind it."""
+    rows, columns = low.shape
+    cells = np.column_stack([np.full(rows, np.nan), low]).ravel()   # a gap between the rows
+    known = np.isfinite(cells)
+    step = np.diff(cells, append=np.nan)
+    with np.errstate(invalid="ignore"):
+        breaks = ~(np.abs(step) < RIM_STEP)          # after a cell: a step, or nothing known on one side
+        up, down = step >= RIM_STEP, step <= -RIM_STEP
+    group = np.cumsum(np.r_[True, breaks[:-1]]) - 1
+    first = np.flatnonzero(np.r_[True, breaks[:-1]])
+    last = np.r_[first[1:] - 1, len(cells) - 1]
+    unseen = ~known
+    before, after = np.maximum(first - 1, 0), np.minimum(last + 1, len(cells) - 1)
+    rim = up[before] & unseen[after] | down[last] & unseen[before]
+    standing = rim & known[first] & ((last - first + 1) * GROUND_CELL < STANDING_WIDTH)
+    return np.where(standing[group], np.nan, cells).reshape(rows, columns + 1)[:, 1:]

@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 
-from .chains import Chain
-
 if TYPE_CHECKING:
     from .find import Roadside, SideLine
 
@@ -51,7 +49,7 @@ def _parts(chain, free, min_length):
         return [chain]
     cuts = np.r_[0, np.flatnonzero(np.diff(free.astype(int))) + 1, len(free)]
     rows = [np.arange(a, b) for a, b in zip(cuts[:-1], cuts[1:]) if free[a] and chain.s[b - 1] - chain.s[a] >= min_length]
-    return [Chain(chain.road, chain.side, chain.members[own], chain.d[own], chain.ground[own], chain.top[own]) for own in rows]
+    return [chain.part(own) for own in rows]
 
 
 def _poles(found):

@@ -28,6 +28,7 @@ class SurfaceOutlines:
     points : (S,) int, road points
     outline : (S,) shapely polygons with Z in local metres, as the layer holds them; consecutive ones share two vertices
     crs : WKT, "" where unknown
+    thin : where no edge was found and the points are too few for one, as a user is told; "" where there is no such place
     """
 
     road: np.ndarray
@@ -38,17 +39,18 @@ class SurfaceOutlines:
     points: np.ndarray
     outline: np.ndarray
     crs: str = ""
+    thin: str = ""
 
     def __len__(self) -> int:
         return len(self.road)
 
     @staticmethod
-    def of_rows(rows: Sequence[Sequence[Any]], crs: str = "") -> SurfaceOutlines:
+    def of_rows(rows: Sequence[Sequence[Any]], crs: str = "", thin: str = "") -> SurfaceOutlines:
         """Stretches from their values in the order of the attributes."""
         # each column apart: numpy would make one text type of a mixed table
         kinds = dict(road=int, status=object, station=float, end=float, area=float, points=int, outline=object)
         columns = zip(*rows) if rows else [()] * len(kinds)
-        return SurfaceOutlines(**{name: np.array(column, kinds[name]) for name, column in zip(kinds, columns)}, crs=crs)
+        return SurfaceOutlines(**{name: np.array(column, kinds[name]) for name, column in zip(kinds, columns)}, crs=crs, thin=thin)
 
     def map_outlines(self, frame: RoadFrame) -> np.ndarray:
         """(S,) shapely polygons with Z in map coordinates."""

@@ -8,7 +8,7 @@ _SIZE = 512      # nodes per side of a texture, a power of two
 
 # Objects and materials that return a pulse; their numbers are the labels of the points.
 LABELS = ("nothing", "road", "paint", "worn paint", "manhole", "gutter", "curb face", "curb stone", "sidewalk",
-          "shoulder", "verge", "car", "tree", "pole", "stray", "rail")
+          "shoulder", "verge", "car", "tree", "pole", "stray", "rail", "wall", "barrier", "fence", "hedge", "building")
 LABEL = {name: number for number, name in enumerate(LABELS)}
 CARRIAGEWAY_LABELS = tuple(LABEL[name] for name in ("road", "paint", "worn paint", "manhole", "gutter"))
 

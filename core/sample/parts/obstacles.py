@@ -6,6 +6,7 @@ Every class has `hits(origin, direction, rng)`: distance (m; inf where the ray p
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -62,17 +63,27 @@ class Car:
         v = turn @ direction
         distance = np.full(v.shape[1], np.inf)
         cosine, brightness = np.zeros(v.shape[1]), np.zeros(v.shape[1])
-        for body in self.bodies:
-            t, c = _enter(body, o, v)
-            if body.transparency:
-                c = np.where(rng.random(len(t)) < body.transparency, 0.0, c)
+        for part in self.bodies:
+            t, c = entered(part, o, v)
+            if part.transparency:
+                c = np.where(rng.random(len(t)) < part.transparency, 0.0, c)
             first = t < distance
-            distance[first], cosine[first], brightness[first] = t[first], c[first], body.brightness
+            distance[first], cosine[first], brightness[first] = t[first], c[first], part.brightness
         return distance, cosine, brightness
 
 
-def _enter(body, o, v):
-    """Distance and cosine of incidence where rays enter a convex body: the last of the planes crossed inward."""
+def entered(body: Body, o: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Distance (m; inf where the ray passes) and cosine of incidence where rays enter a convex body: the last of the planes crossed inward.
+
+    Parameters
+    ----------
+    body : Body
+    o, v : (3, N) origins, m, and directions in the frame of the object
+
+    Returns
+    -------
+    (N,), (N,)
+    """
     toward = body.normals @ v
     clearance = body.limits[:, None] - body.normals @ o
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -88,11 +99,11 @@ def _enter(body, o, v):
     return np.where(hit, start, np.inf), np.where(hit, -toward[plane, each], 0.0)
 
 
-def _body(faces, brightness, transparency=0.0):
+def body(faces: Sequence[Sequence[float]], brightness: float, transparency: float = 0.0) -> Body:
     """A Body from rows (nx, ny, nz, point x, y, z on the face)."""
-    faces = np.array(faces, dtype=float)
-    normals = faces[:, :3] / np.linalg.norm(faces[:, :3], axis=1, keepdims=True)
-    return Body(normals, np.sum(normals * faces[:, 3:], axis=1), brightness, transparency)
+    rows = np.array(faces, dtype=float)
+    normals = rows[:, :3] / np.linalg.norm(rows[:, :3], axis=1, keepdims=True)
+    return Body(normals, np.sum(normals * rows[:, 3:], axis=1), brightness, transparency)
 
 
 def car_bodies(length: float, width: float, height: float, brightness: float) -> tuple[Body, ...]:
@@ -119,14 +130,14 @@ def car_bodies(length: float, width: float, height: float, brightness: float) ->
              (0, 1, 0.35, 0, b - 0.05, waist), (0, -1, 0.35, 0, 0.05 - b, waist),
              (0, 0, -1, 0, 0, waist - 0.02), (0, 0, 1, 0, 0, height - 0.03)]
     roof = [*cabin[:4], (0, 0, -1, 0, 0, height - 0.04), (0, 0, 1, 0, 0, height)]
-    bodies = [_body(shell, brightness), _body(cabin, 0.12, 0.6), _body(roof, brightness)]
+    bodies = [body(shell, brightness), body(cabin, 0.12, 0.6), body(roof, brightness)]
     for x in (0.30 * length, -0.31 * length):
         for y in (b - 0.22, 0.22 - b):
             wheel = [(0, 1, 0, x, y + 0.2, 0), (0, -1, 0, x, y - 0.2, 0)]
             for angle in np.arange(8) * np.pi / 4:
                 nx, nz = np.cos(angle), np.sin(angle)
                 wheel.append((nx, 0, nz, x + 0.31 * nx, y, 0.31 + 0.31 * nz))
-            bodies.append(_body(wheel, 0.05))
+            bodies.append(body(wheel, 0.05))
     return tuple(bodies)
 
 

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...common.features import Features, Field
-from ...common.schemas import CURB_KIND, DRIVING_LINES, END, HEIGHT, LANES, LENGTH, PART, ROAD, SIDE, STATION, WIDTH
+from ...common.schemas import CURB_KIND, DRIVING_LINES, END, HEIGHT, LANES, LENGTH, PART, ROAD, ROADSIDE, SIDE, STATION, WIDTH
 
 VERTEX_STEP = 0.25      # m between vertices
 STRAIGHT = 1e-4         # 1/m: lines that bend less are straight
@@ -19,6 +19,7 @@ TRUE_MARKINGS = [ROAD, Field("class", str, "Class"), Field("line", int, "Line"),
 TRUE_DRIVING_LINES = [field for field in DRIVING_LINES if field.name in
            ("road", "lane", "direction", "radius_m", "station_m", "end_m", "length_m")]
 TRUE_LANES = [field for field in LANES if field.name in ("road", "lane", "type", "direction", "station_m", "end_m", "width_m", "length_m")]
+TRUE_ROADSIDE = [field for field in ROADSIDE if field.name in ("road", "side", "kind", "station_m", "end_m", "height_m", "foot_m", "length_m")]
 TRUE_SURFACE = [ROAD, Field("area_m2", float, "Area (m²)")]
 
 
@@ -30,6 +31,7 @@ class Truth(NamedTuple):
     driving_lines: Features
     surface: Features
     lanes: Features
+    roadside: Features
 
 
 class TruePlaces(NamedTuple):
@@ -40,6 +42,7 @@ class TruePlaces(NamedTuple):
     driving_lines : (line along the stations, sharpest bend 1/m, fields)
     surface : (outer ring, inner rings)
     lanes : (left border, right border, fields), left and right of the line that stations run along
+    roadside : (line on the ground along the face of a thing, fields)
     """
 
     boundaries: Iterable[tuple[np.ndarray, dict[str, Any]]]
@@ -47,6 +50,7 @@ class TruePlaces(NamedTuple):
     driving_lines: Iterable[tuple[np.ndarray, float, dict[str, Any]]]
     surface: Iterable[tuple[np.ndarray, list[np.ndarray]]]
     lanes: Iterable[tuple[np.ndarray, np.ndarray, dict[str, Any]]]
+    roadside: Iterable[tuple[np.ndarray, dict[str, Any]]]
 
     def layers(self, crs: str) -> Truth:
         """The true layers; driving lines and lanes are drawn in their direction of travel, `radius_m` is that of the sharpest bend."""
@@ -69,7 +73,11 @@ class TruePlaces(NamedTuple):
             around = [left, right[::-1]] if fields["direction"] > 0 else [right[::-1], left]
             lanes.add(Polygon(np.concatenate(around)), type="driving", width_m=float(np.median(np.hypot(*(left - right)[:, :2].T))),
                       length_m=float(LineString((left + right) / 2).length), **fields)
-        return Truth(boundaries, markings, driving_lines, surface, lanes)
+        roadside = Features("LineStringZ", TRUE_ROADSIDE, crs=crs)
+        for places, fields in self.roadside:
+            line = LineString(places)
+            roadside.add(line, road=1, length_m=float(line.length), **fields)
+        return Truth(boundaries, markings, driving_lines, surface, lanes, roadside)
 
 
 def densified(outline: np.ndarray) -> np.ndarray:

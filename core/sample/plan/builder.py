@@ -51,6 +51,7 @@ class PlanBuilder:
         self.patches: list[np.ndarray] = []
         self.factors: list[float] = []
         self.manholes: list[tuple[float, float, float]] = []
+        self.rails: list[tuple[np.ndarray, float, float]] = []
         shapely.prepare(area)
 
     def _within(self, path, start, end, offset):
@@ -111,6 +112,8 @@ class PlanBuilder:
     def rail(self, path: Path, start: float, end: float, offset: Offset, length: float = 4.0) -> None:
         """Add a guard rail with posts, in lengths of the path; where the offset jumps to the other side, the rail is interrupted."""
         ends = self.along(path, start, end, length, offset)
+        apart = np.hypot(*np.diff(ends, axis=0).T) > 2 * length
+        self.rails += [(part, Rail.high, Rail.low) for part in np.split(ends, np.flatnonzero(apart) + 1) if len(part) > 1]
         for a, b in zip(ends[:-1], ends[1:]):
             if np.hypot(*(b - a)) > 2 * length:
                 continue
@@ -156,7 +159,7 @@ class PlanBuilder:
         where = [np.asarray(where_at(ring, k)) for k, ring in enumerate(rings)]
         scene = PlanScene(self.name, ground, carriageway, self.area, where, edges, PlanPaint(self.markings, self.texture), self.texture,
                           self.lanes, [(Track(path, ground), haste) for path, haste in passes], [], self.patches, self.factors,
-                          np.array(self.manholes).reshape(-1, 3), gutter)
+                          np.array(self.manholes).reshape(-1, 3), gutter, self.rails)
         for kind, place, heading, shape in self.objects:
             scene.obstacles += _standing(kind, place, heading, shape, ground)
         return scene

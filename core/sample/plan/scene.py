@@ -95,6 +95,7 @@ class PlanScene:
     patch_factors : of its brightness
     manholes : (M, 3) m, x, y and radius
     gutter_width : m, concrete strip along the curb
+    rails : ((K, 2) m, places along a guard rail; heights of its top and of its lower edge above the ground, m) of each
     """
 
     name: str
@@ -112,6 +113,7 @@ class PlanScene:
     patch_factors: list[float] = field(default_factory=list)
     manholes: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
     gutter_width: float = 0.0
+    rails: list[tuple[np.ndarray, float, float]] = field(default_factory=list)
 
     def __post_init__(self):
         self._patches = Areas(self.patches, np.arange(len(self.patches), dtype=np.int16))

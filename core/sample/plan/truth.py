@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 
-from ..parts.truth import TruePlaces, Truth, densified
+from ..parts.truth import VERTEX_STEP, TruePlaces, Truth, densified
 
 if TYPE_CHECKING:
     from .scene import PlanScene
@@ -34,7 +34,7 @@ def truth_of_plan(scene: PlanScene, origin: Sequence[float], crs: str) -> Truth:
         return np.column_stack([places, scene.ground.height(*places.T) + rise]) + origin
 
     return TruePlaces(_boundaries(scene, on_map), _markings(scene, on_map), _driving_lines(scene, on_map), _surface(scene, on_map),
-                      _lanes(scene, on_map)).layers(crs)
+                      _lanes(scene, on_map), _roadside(scene, on_map)).layers(crs)
 
 
 def _boundaries(scene, on_map):
@@ -107,3 +107,11 @@ def _surface(scene, on_map):
 def _lanes(scene, on_map):
     for lane in scene.lanes:
         yield *(on_map(lane.path.at(lane.stations, border)) for border in (lane.left, lane.right)), _about(lane)
+
+
+def _roadside(scene, on_map):
+    """Guard rails, as far as they stand in the surveyed area."""
+    for places, height, low in scene.rails:
+        for part in shapely.get_parts(shapely.line_merge(shapely.intersection(shapely.linestrings(places), scene.area))):
+            foot = shapely.get_coordinates(shapely.segmentize(part, VERTEX_STEP))
+            yield on_map(foot), dict(kind="guard_rail", side=_side(scene, foot[len(foot) // 2]), height_m=height, foot_m=low)

@@ -7,8 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..parts.axis import RoadAxis, winding_road
+from ..parts.beside import PIECE, RAIL_PIECE, USUAL, RunningThing, straight_pieces, rail_of
 from ..parts.materials import LABEL, Texture
-from ..parts.obstacles import Car, Crown, Post, car_bodies
+from ..parts.obstacles import Car, Crown, Post, Rail, car_bodies
 from ..parts.paint import Marking, Paint, PaintedFigure, PaintedLine, TaperedLine
 from ..parts.sides import Side
 from .street import Lane, Scene
@@ -30,6 +31,7 @@ class SceneBuilder:
         self.repairs: list[tuple[float, float, float, float, float]] = []
         self.objects: list[tuple[str, float, float, tuple[float, ...]]] = []
         self.lanes: list[Lane] = []
+        self.running: list[tuple[str, float, float, float, float]] = []
 
     def modules(self) -> np.ndarray:
         """Stations at which the objects of the street repeat, m."""
@@ -95,6 +97,12 @@ class SceneBuilder:
         for station in np.arange(start, min(end, self.length), spacing):
             self.objects.append(("pole", station, offset, (0.09, height)))
 
+    def running_along(self, kind: str, start: float, end: float, offset: float, height: float = 0.0) -> None:
+        """Add a guard_rail, or a thing of USUAL, whose face towards the road has an offset; cut at the end of the road, 0 is its usual height."""
+        end = min(end, self.length)
+        if end - start > 2 * PIECE:
+            self.running.append((kind, start, end, offset, Rail.high if kind == "guard_rail" else height or USUAL[kind][0]))
+
     def scene(self, name: str, left: Side, right: Side, passes: list[tuple[int, float, float]], gutter: float) -> Scene:
         """The Scene of what was collected, between two sides."""
         paint = Paint(self.markings, self.texture)
@@ -111,4 +119,10 @@ class SceneBuilder:
                 trunk, reach, half, middle = shape
                 scene.obstacles.append(Post(x, y, z, z + middle, trunk, LABEL["tree"], 0.18))
                 scene.obstacles.append(Crown(x, y, z + middle, reach, half, z + middle + half))
+        for kind, start, end, offset, height in self.running:
+            count = int(round((end - start) / (RAIL_PIECE if kind == "guard_rail" else PIECE)))
+            stations = np.linspace(start, end, max(count, 1) + 1)
+            foot = np.column_stack(scene.to_map(stations, offset))
+            scene.obstacles += rail_of(foot) if kind == "guard_rail" else straight_pieces(kind, foot, 1 if offset > 0 else -1, height)
+            scene.running.append(RunningThing(kind, foot, height, Rail.low if kind == "guard_rail" else 0.0, (start, end)))
         return scene

@@ -14,6 +14,7 @@ from .trace import cast_ground
 
 if TYPE_CHECKING:
     from ..parts.axis import RoadAxis
+    from ..parts.beside import RunningThing
     from ..parts.paint import Paint
     from ..parts.scanner import Hits
     from ..parts.truth import Truth
@@ -52,13 +53,14 @@ class Scene:
     left, right : Side
     paint : Paint
     texture : Texture
-    obstacles : list of Car, Post and Crown
+    obstacles : list of Car, Post, Crown, Rail and Piece
     lanes : list of Lane
     passes : list of (direction, offset in m, speed factor)
     crown : m per m, fall to both sides
     gutter_width : m, concrete strip along the curb
     manholes : (M, 3) m, station, offset and radius
     repairs : (R, 5) start, end, right, left (m) and factor of the brightness
+    running : list of RunningThing, what runs along the road beside it
     """
 
     name: str
@@ -75,6 +77,7 @@ class Scene:
     gutter_width: float = 0.0
     manholes: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
     repairs: np.ndarray = field(default_factory=lambda: np.zeros((0, 5)))
+    running: list[RunningThing] = field(default_factory=list)
 
     def grade_line(self, s: np.ndarray | float) -> np.ndarray:
         """Height of the axis at stations, m: a steady climb with gentle waves."""

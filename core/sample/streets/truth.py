@@ -34,7 +34,7 @@ def truth_of_street(scene: Scene, origin: Sequence[float], crs: str) -> Truth:
     s = _stations(0.0, scene.length)
     surface = np.vstack([on_map(s, scene.left.edge), on_map(s[::-1], -scene.right.edge)])
     return TruePlaces(_boundaries(scene, on_map), _markings(scene, on_map), _driving_lines(scene, on_map), [(surface, [])],
-                      _lanes(scene, on_map)).layers(crs)
+                      _lanes(scene, on_map), _roadside(scene, origin)).layers(crs)
 
 
 def _stations(start, end):
@@ -92,3 +92,11 @@ def _lanes(scene, on_map):
         s = _stations(lane.stations[0], lane.stations[-1])
         middle, half = np.interp(s, lane.stations, lane.offsets), np.interp(s, lane.stations, lane.widths) / 2
         yield on_map(s, middle + half), on_map(s, middle - half), _about(lane, s)
+
+
+def _roadside(scene, origin):
+    """Walls, fences and the like; buildings are none of what is looked for along a road."""
+    for thing in scene.running:
+        if thing.kind != "building":
+            offset = scene.axis.locate(*thing.foot[:1, :2].T, np.array([thing.stations[0]]), steps=3)[1]
+            yield thing.foot + origin, dict(side="left" if offset[0] > 0 else "right", **thing.about())

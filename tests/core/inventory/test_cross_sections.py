@@ -112,6 +112,21 @@ def test_a_bridge_is_the_clearance_and_a_lorry_is_not():
     assert {row["station_m"] for row in rows if row["exceeds"] == "clearance"} == {30.0}
 
 
+def test_a_lorry_that_drives_along_is_no_clearance_where_only_the_upper_part_of_its_flank_was_seen():
+    def above(rng):
+        # drawn out over 30 m; the scan plane leans, so that its rear is seen from a height on that rises by 10 % along the road
+        x, z = rng.uniform(10, 40, 20000), rng.uniform(0.4, 3.6, 20000)
+        flank = z > 0.4 + 0.1 * (x - 10)
+        roof = rng.uniform(10, 40, 3000), rng.uniform(0.6, 2.9, 3000), np.full(3000, 3.6)
+        deck = rng.uniform(48, 53, 4000), rng.uniform(-5, 5, 4000), np.full(4000, 4.2)
+        pier = rng.uniform(50, 51, 2000), rng.uniform(-0.3, 0.3, 2000), rng.uniform(0, 4.2, 2000)
+        return tuple(np.concatenate(v) for v in zip((x[flank], np.full(flank.sum(), 0.6), z[flank]), roof, deck, pier))
+
+    clear = {row["station_m"]: row["clear_m"] for row in rows_of(measured_road(above=above), "carriageway")}
+    assert clear[20.0] is None and clear[30.0] is None and clear[40.0] is None
+    assert clear[50.0] == pytest.approx(4.2, abs=0.05)
+
+
 def test_what_exceeds_the_users_limits_is_named():
     rows = rows_of(measured_road(rut=0.015, crossfall=0.04), max_rut=10.0, max_crossfall=3.0, min_width=3.5)
     assert {row["exceeds"] for row in rows} == {"rut, crossfall, width"}
