@@ -18,7 +18,7 @@ from ...execution.phase import Phase
 from ...survey.store.road_points import RoadPoints
 from ...survey.store.section_store import STRETCH_POINTS
 from .ground_grid import ROW_LENGTH, GroundCells
-from .limits import edge_offsets
+from .limits import edge_offsets, rows_with_curb
 from .measured_ground import WINDOW_ROWS, MeasuredGround
 from .openings import cells_driven, opened_limits, street_ground
 from .outline import outlines
@@ -123,7 +123,7 @@ def extract_road_surface(survey: Survey, edges: RoadEdges | None = None, setting
             continue
         per_row = _take_points(survey, road, carriageway, road_points, part.part(0.5, 1.0))
         stretches += outlines(survey.frame, road, carriageway, per_row)
-        thin += thin_margins(road, carriageway)
+        thin += thin_margins(road, carriageway, rows_with_curb(edges, road, carriageway.cells.stations))
     if not len(road_points):
         raise RoadExtractionError("No road surface was found: no points lie under or beside the trajectory at the height "
                                   "of the road. Check that the trajectory belongs to the point cloud.")

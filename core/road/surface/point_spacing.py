@@ -1,4 +1,4 @@
-"""Where no edge was found and the points lie too far apart to say that there is no curb."""
+"""Where no curb was found and the points lie too far apart to say that there is none."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ TOLD_STRETCHES = 4        # that are named, the longest first
 
 
 class ThinMargin(NamedTuple):
-    """A stretch of one side of a road without an edge: road number, side, stations (m), and points per m² there."""
+    """A stretch of one side of a road without a curb: road number, side, stations (m), and points per m² there."""
 
     road: int
     side: str
@@ -32,19 +32,19 @@ class ThinMargin(NamedTuple):
     density: float
 
 
-def thin_margins(road: int, carriageway: Carriageway) -> list[ThinMargin]:
-    """Stretches of a road that no edge bounds and whose margins hold fewer points than curbs need.
+def thin_margins(road: int, carriageway: Carriageway, curbs: dict[str, np.ndarray]) -> list[ThinMargin]:
+    """Stretches of a road that no curb bounds and whose margins hold fewer points than curbs need.
 
     Parameters
     ----------
     road : number
     carriageway : Carriageway, its limits are taken as they are
+    curbs : side to (R,) bool, the rows beside which a curb was found
     """
     cells = carriageway.cells
     found = []
-    for side, sign, limit, bounded in (("left", 1.0, carriageway.left, carriageway.left_bounded),
-                                       ("right", -1.0, carriageway.right, carriageway.right_bounded)):
-        density = _densities(cells, carriageway.ground, sign, np.where(bounded, np.nan, limit))
+    for side, sign, limit in (("left", 1.0, carriageway.left), ("right", -1.0, carriageway.right)):
+        density = _densities(cells, carriageway.ground, sign, np.where(curbs[side], np.nan, limit))
         thin = np.r_[False, density < MIN_CURB_DENSITY, False]
         turns = np.flatnonzero(np.diff(thin.astype(int)))
         length = STRETCH_ROWS * cells.row_size
@@ -77,7 +77,7 @@ def said_of_thin(margins: Sequence[ThinMargin]) -> str:
     density = float(np.average([margin.density for margin in margins], weights=[margin.end - margin.start for margin in margins]))
     where = "; ".join(f"road {m.road}, {m.side} side, station {m.start:.0f} to {m.end:.0f} m" for m in longest)
     where += "; …" if len(margins) > len(longest) else ""
-    return (f"The points are too few to find curbs along {total:.0f} m, where no road edge was drawn ({where}): {density:.0f} per m² beside "
+    return (f"The points are too few to find curbs along {total:.0f} m, where none was drawn ({where}): {density:.0f} per m² beside "
             f"the limit of the road surface, some {100 / np.sqrt(density):.0f} cm apart. A curb of 10 cm needs about "
             f"{MIN_CURB_DENSITY:.0f}, a lower one more; whether there is one is not known. Give the whole cloud if this one was thinned, or "
             "drive slower or nearer to that side.")

@@ -28,7 +28,7 @@ class SurfaceOutlines:
     points : (S,) int, road points
     outline : (S,) shapely polygons with Z in local metres, as the layer holds them; consecutive ones share two vertices
     crs : WKT, "" where unknown
-    thin : where no edge was found and the points are too few for one, as a user is told; "" where there is no such place
+    thin : where no curb was found and the points are too few for one, as a user is told; "" where there is no such place
     """
 
     road: np.ndarray

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..parts.axis import RoadAxis, winding_road
-from ..parts.beside import PIECE, RAIL_PIECE, USUAL, RunningThing, straight_pieces, rail_of
+from ..parts.beside import PIECE, RAIL_PIECE, USUAL, RunningThing, rail_of, straight_pieces
 from ..parts.materials import LABEL, Texture
 from ..parts.obstacles import Car, Crown, Post, Rail, car_bodies
 from ..parts.paint import Marking, Paint, PaintedFigure, PaintedLine, TaperedLine

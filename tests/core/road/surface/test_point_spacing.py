@@ -9,7 +9,10 @@ from lanewright.core.road.surface.point_spacing import ThinMargin, said_of_thin,
 ROWS, COLUMNS = 200, 80    # 100 m of road, 10 m to either side
 
 
-def road(left, right, bounded=(False, False), hidden=()):
+NO_CURBS = {"left": np.zeros(ROWS, bool), "right": np.zeros(ROWS, bool)}
+
+
+def road(left, right, hidden=()):
     """A carriageway 8 m wide with `left` and `right` points per m² (numbers or one for each row); `hidden` rows show no ground on the left."""
     offsets = (np.arange(COLUMNS) - COLUMNS / 2 + 0.5) * 0.25
     density = np.where(offsets > 0, np.broadcast_to(left, ROWS)[:, None], np.broadcast_to(right, ROWS)[:, None])
@@ -19,24 +22,25 @@ def road(left, right, bounded=(False, False), hidden=()):
     flat = np.zeros((ROWS, COLUMNS), np.float32)
     cells = GroundCells(40, -COLUMNS // 2, 0.5, 0.25, flat, flat, flat, flat, count)
     edge = np.full(ROWS, 4.0)
-    return Carriageway(cells, flat, ground, -edge, edge, np.full(ROWS, bounded[1]), np.full(ROWS, bounded[0]), 0.05)
+    return Carriageway(cells, flat, ground, -edge, edge, edge < 0, edge < 0, 0.05)
 
 
-def test_a_side_without_an_edge_and_with_few_points_is_told_with_its_place():
-    margins = thin_margins(1, road(np.where(np.arange(ROWS) < 80, 200.0, 32.0), 200.0))
+def test_a_side_without_a_curb_and_with_few_points_is_told_with_its_place():
+    margins = thin_margins(1, road(np.where(np.arange(ROWS) < 80, 200.0, 32.0), 200.0), NO_CURBS)
     assert margins == [ThinMargin(1, "left", 60.0, 120.0, pytest.approx(32.0))]
     said = said_of_thin(margins)
     assert "along 60 m" in said and "road 1, left side, station 60 to 120 m" in said and "32 per m²" in said and "18 cm apart" in said
 
 
-def test_where_an_edge_was_drawn_or_points_are_enough_nothing_is_told():
-    assert thin_margins(0, road(32.0, 32.0, bounded=(True, True))) == []
-    assert thin_margins(0, road(120.0, 300.0)) == []
+def test_where_a_curb_was_found_or_points_are_enough_nothing_is_told():
+    both = {side: np.ones(ROWS, bool) for side in NO_CURBS}
+    assert thin_margins(0, road(32.0, 32.0), both) == [] and len(thin_margins(0, road(32.0, 32.0), {**both, "left": NO_CURBS["left"]})) == 1
+    assert thin_margins(0, road(120.0, 300.0), NO_CURBS) == []
     assert said_of_thin([]) == "" and said_of_thin([ThinMargin(0, "left", 0.0, 10.0, 30.0)]) == ""
 
 
 def test_a_row_of_parked_cars_does_not_count_as_few_points():
-    assert thin_margins(0, road(200.0, 200.0, hidden=range(40, 120))) == []
+    assert thin_margins(0, road(200.0, 200.0, hidden=range(40, 120)), NO_CURBS) == []
 
 
 def test_many_places_are_counted_and_the_longest_named():
