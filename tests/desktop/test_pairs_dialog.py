@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from lanewright.desktop.overlay.pairs_dialog import PairsDialog
 from paint_from_above import Ground, Overhead, about, street
-from qgis.core import QgsPointXY, QgsProject, QgsRasterLayer
-from qgis.gui import QgsMapCanvas
+from qgis.core import QgsLayerTreeModel, QgsPointXY, QgsProject, QgsRasterLayer
+from qgis.gui import QgsLayerTreeView, QgsMapCanvas
 from qgis.PyQt.QtCore import QCoreApplication, QElapsedTimer, Qt
 from qgis.PyQt.QtWidgets import QDialogButtonBox, QMainWindow
 
@@ -33,11 +33,14 @@ def flight(tmp_path_factory):
 
 
 @pytest.fixture
-def window(provider, flight):
+def window(provider, flight, qgis_iface, monkeypatch):
     project = QgsProject.instance()
     project.clear()
     project.addMapLayer(QgsRasterLayer(flight[1], "Intensity image"))
     main = QMainWindow()
+    tree = QgsLayerTreeView(main)  # QGIS since 3.44 puts results into a real one
+    tree.setModel(QgsLayerTreeModel(project.layerTreeRoot(), tree))
+    monkeypatch.setattr(qgis_iface, "layerTreeView", lambda: tree)
     canvas = QgsMapCanvas(main)
     canvas.setDestinationCrs(project.mapLayersByName("Intensity image")[0].crs())
     dialog = PairsDialog(SimpleNamespace(mainWindow=lambda: main, mapCanvas=lambda: canvas))
