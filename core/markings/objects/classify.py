@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...common.errors import RoadExtractionError
+from ...curves.robust import percentiles
 from ...survey.store.records import COORDINATE_SCALE
 from .dash_rows import rows_of_blocks, rows_of_dashes
 from .near_pairs import overlapping_pairs
@@ -109,11 +110,11 @@ def relative_contrast(value: np.ndarray, s: np.ndarray, starts: np.ndarray) -> n
     order = np.argsort(stretch, kind="stable")
     first, last = int(stretch.min()), int(stretch.max())
     bounds = np.searchsorted(stretch[order], np.arange(first - 1, last + 3))
-    ends = np.array([np.percentile(value[order[a:b]], [FAINT_PERCENTILE, BRIGHT_PERCENTILE]) if b > a else (0.0, 1.0)
+    ends = np.array([percentiles(value[order[a:b]], [FAINT_PERCENTILE, BRIGHT_PERCENTILE]) if b > a else (0.0, 1.0)
                      for a, b in zip(bounds[:-3], bounds[3:])])
     low, high = ends[stretch - first].T
     share = (value - low) / np.maximum(high - low, 1e-6)
-    return np.array([np.percentile(share[a:b], CONTRAST_PERCENTILE) for a, b in zip(starts[:-1], starts[1:])])
+    return np.array([percentiles(share[a:b], [CONTRAST_PERCENTILE])[0] for a, b in zip(starts[:-1], starts[1:])])
 
 
 def classify_markings(shapes: list[Shape], half_widths: Sequence[float], settings: ClassSettings = ClassSettings(),

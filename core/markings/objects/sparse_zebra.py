@@ -13,6 +13,7 @@ import cv2
 import numpy as np
 
 from ...common.groups import linked_groups
+from ...curves.robust import percentiles
 from .zebra import MAX_ROW_SKEW, MIN_STRIPES, STRIPE_LENGTH, STRIPE_WIDTH
 
 COMB_WINDOW = 5.0               # m either way that a pitch is looked for in; windows overlap by half
@@ -116,8 +117,9 @@ def _across(places, heading):
 
 def _mean_phase(places, headings, pitches):
     """(H, P) complex, the mean phase of spots for every direction and pitch."""
-    across = np.stack([_across(places, heading) for heading in headings])
-    return np.stack([np.exp(2j * np.pi / pitch * across).mean(axis=1) for pitch in pitches], axis=1)
+    across = places @ np.stack([-np.sin(headings), np.cos(headings)])
+    turn = (2 * np.pi / pitches)[:, None, None] * across
+    return (np.cos(turn).mean(axis=1) + 1j * np.sin(turn).mean(axis=1)).T
 
 
 def find_comb(places: np.ndarray) -> Comb | None:
@@ -174,7 +176,7 @@ def _has_stripes(own, comb):
     number, _, along = _numbered(own, comb)
     spans = {}
     for k, count in zip(*np.unique(number, return_counts=True)):
-        first, last = np.percentile(along[number == k], (END_PERCENT, 100 - END_PERCENT))
+        first, last = percentiles(along[number == k], (END_PERCENT, 100 - END_PERCENT))
         if count >= MIN_SHARE_OF_STRIPE * len(own) and last - first >= MIN_STRIPE_SPAN:
             spans[int(k)] = first, last
     run = best = 0
@@ -220,7 +222,7 @@ def _stripes(places, rows, comb):
     on = np.abs(off) <= width / 2
     kept, ends = [], []
     for k, count in zip(*_without_strays(*np.unique(number[on], return_counts=True))):
-        span = np.percentile(along[on & (number == k)], (END_PERCENT, 100 - END_PERCENT))
+        span = percentiles(along[on & (number == k)], (END_PERCENT, 100 - END_PERCENT))
         own_width, aside = _width(along[on & (number == k)], off[on & (number == k)])
         # a curb or a line that happens to lie there is narrower, or on one side
         full = aside <= MAX_ASIDE * width and own_width >= MIN_OF_WIDTH * width

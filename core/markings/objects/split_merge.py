@@ -176,11 +176,15 @@ def _even_strip(cells):
 def _painted_along(column, across, slope, gap, length):
     """(K,) whether a cell lies in `length` cells along a slope of which LINE_SHARE is painted; gaps of `gap` cells are closed."""
     row = across - np.rint(slope * column).astype(np.int64)
-    row = row - row.min() + 1
-    mask = np.zeros((row.max() + 2, column.max() + 1), np.uint8)
+    # Rows that are so far apart are one: their cells have nothing to do with each other, as they lie far apart along the road, too.
+    height = int(np.ptp(across)) + int(np.ceil(2 * abs(slope) * (length + gap))) + 4
+    row = (row - row.min() + 1) % height
+    column = column - max(int(column.min()) - gap - 1, 0)
+    mask = np.zeros((min(height, int(row.max()) + 2), int(column.max()) + 1), np.uint8)
     mask[row, column] = 1
+    closed = cv2.morphologyEx(mask, cv2.MORPH_CLOSE, np.ones((1, gap + 1), np.uint8))
     # a line may leave its row of cells by one
-    joined = cv2.dilate(cv2.morphologyEx(mask, cv2.MORPH_CLOSE, np.ones((1, gap + 1), np.uint8)), np.ones((3, 1), np.uint8))
+    joined = cv2.dilate(cv2.copyMakeBorder(closed, 1, 1, 0, 0, cv2.BORDER_WRAP), np.ones((3, 1), np.uint8))[1:-1]
     full = (_sums_along(joined, length) >= LINE_SHARE * length).astype(np.uint8)
     return _sums_along(full, length)[row, column] > 0
 

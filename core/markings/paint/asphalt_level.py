@@ -128,16 +128,19 @@ def background(z: np.ndarray, counted: np.ndarray) -> np.ndarray:
     -------
     (rows, columns) float32; 0 where hardly any asphalt is near
     """
-    count, total = (_coarse_sums(a) for a in (counted, np.where(counted, z, 0.0)))
+    count, total = _coarse_sums(counted.view(np.uint8)), _coarse_sums(np.where(counted, z, z.dtype.type(0)))
     count, total = (cv2.boxFilter(a, -1, (BACKGROUND_SQUARES, BACKGROUND_SQUARES), borderType=cv2.BORDER_CONSTANT) for a in (count, total))
     level = np.where(count > 0.1 * COARSE_CELLS**2, total / np.maximum(count, 1e-9), 0.0).astype(np.float32)
-    return np.repeat(np.repeat(level, COARSE_CELLS, axis=0), COARSE_CELLS, axis=1)[:z.shape[0], :z.shape[1]]
+    size = level.shape[1] * COARSE_CELLS, level.shape[0] * COARSE_CELLS
+    return cv2.resize(level, size, interpolation=cv2.INTER_NEAREST)[:z.shape[0], :z.shape[1]]
 
 
 def _coarse_sums(values):
-    """(K, L) float64 sums over squares of 20 cm; those at the end may be smaller."""
-    rows, columns = (np.arange(0, n, COARSE_CELLS) for n in values.shape)
-    return np.add.reduceat(np.add.reduceat(values, rows, axis=0, dtype=float), columns, axis=1)
+    """(K, L) float64 sums over squares of 20 cm; those at the end may be smaller. values : uint8, float32 or float64"""
+    corners = cv2.integral(values)
+    for axis, size in enumerate(values.shape):
+        corners = np.diff(corners.take(np.append(np.arange(0, size, COARSE_CELLS), size), axis=axis), axis=axis)
+    return corners.astype(float, copy=False)
 
 
 def patch_level(z: np.ndarray, bright: float) -> np.ndarray:
@@ -161,8 +164,10 @@ def patch_level(z: np.ndarray, bright: float) -> np.ndarray:
     if np.count_nonzero(above) < PATCH_SIDE**2 // 2:
         return level
     size = PATCH_NEIGHBOURHOOD, PATCH_NEIGHBOURHOOD
-    share, known = (cv2.boxFilter(a.astype(np.float32), -1, size, normalize=False, borderType=cv2.BORDER_CONSTANT) for a in (above, seen))
-    filled = (share > 0.5 * known) & (known > 0.1 * PATCH_NEIGHBOURHOOD**2)
+    share, known = (cv2.boxFilter(a.view(np.uint8), -1, size, normalize=False, borderType=cv2.BORDER_CONSTANT) for a in (above, seen))
+    filled = (share > known // 2) & (known > 0.1 * PATCH_NEIGHBOURHOOD**2)
+    if np.count_nonzero(filled) < PATCH_SIDE**2:
+        return level
     core = _morphed(cv2.erode, filled, PATCH_SIDE)
     if not core.any():
         return level

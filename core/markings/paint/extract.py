@@ -282,11 +282,9 @@ class WindowExtractor:
             return []
         columns = np.flatnonzero(interior.any(axis=0))
         edges = bin_edges(np.concatenate([piece.offsets for piece in self._in_cells(window)]), offsets[columns[0]], offsets[columns[-1]])
-        across = np.broadcast_to(offsets, interior.shape)
-        bins = asphalt_bins(brightness[rows][interior], across[interior], edges)
+        bins = asphalt_bins(brightness[rows], interior, offsets, edges)
         z, gutter = flatten(brightness, *asphalt_profile(bins, offsets), view.rims)
-        counted = (scanned & ~gutter)[rows]
-        return list(zip(bins, split_bins(z[rows][counted], across[counted], bins, self.settings.separation)))
+        return list(zip(bins, split_bins(z[rows], (scanned & ~gutter)[rows], offsets, bins, self.settings.separation)))
 
     def _levels(self, window):
         """AsphaltLevels of the windows around one; their bins are computed if they were not yet."""

@@ -53,15 +53,18 @@ def faint_lines(brightness: np.ndarray, scanned: np.ndarray, rim: np.ndarray, fo
     stroke = _mean(sums, range(-half, half + 1))
     beside = np.maximum(_mean(sums, FLANK_CELLS), _mean(sums, [-step for step in FLANK_CELLS]))
     # between two dark seams asphalt is no line: it is no brighter than what lies beyond them
-    beyond = range(FLANK_CELLS[1] + 1, BEYOND_CELLS + 1)
-    beside = np.fmax(beside, np.where(np.isfinite(beside), np.fmax(_mean(sums, beyond), _mean(sums, [-step for step in beyond])), np.nan))
-    above = stroke - beside
-    lines, halfway = np.zeros(known.shape, bool), np.full(known.shape, np.inf, np.float32)
+    beyond = range(FLANK_CELLS[1] + 1, BEYOND_CELLS + 1), range(-FLANK_CELLS[1] - 1, -BEYOND_CELLS - 1, -1)
     with np.errstate(invalid="ignore"):
-        clear = above > LEAST_RATIO * beside
+        clear = stroke - beside > LEAST_RATIO * beside
+        cells = np.flatnonzero(clear)
+        own = np.fmax(beside.take(cells), np.fmax(*(_mean(sums, steps, cells) for steps in beyond)))
+        clear.ravel()[cells] = stroke.take(cells) - own > LEAST_RATIO * own
+    lines, halfway = np.zeros(known.shape, bool), np.full(known.shape, np.inf, np.float32)
     # most windows have no such line: what asphalt scatters by is not asked for there
     if not (_long_lines(_wavering(clear & (rim > LEAST_RIM)), lines) * clear * ~_near(found)).any():
         return lines, halfway
+    beside = np.fmax(beside, np.where(np.isfinite(beside), np.fmax(*(_mean(sums, steps) for steps in beyond)), np.nan))
+    above = stroke - beside
     with np.errstate(invalid="ignore"):
         clear &= above > CLEAR_SIGMAS * local_scatter(above)
     above = np.where(clear, above, 0.0).astype(np.float32)
@@ -86,9 +89,9 @@ def faint_lines(brightness: np.ndarray, scanned: np.ndarray, rim: np.ndarray, fo
     return lines, halfway
 
 
-def _mean(sums, steps):
-    """(rows, columns) mean over the columns some steps beside each cell, NaN where too few cells were scanned."""
-    count, total = (sum(_beside(a, step) for step in steps) for a in sums)
+def _mean(sums, steps, cells=None):
+    """Mean over the columns some steps beside all cells, or beside some of them, (n,) flat numbers; NaN where too few cells were scanned."""
+    count, total = (sum(_beside(a, step) if cells is None else _beside_some(a, step, cells) for step in steps) for a in sums)
     with np.errstate(invalid="ignore", divide="ignore"):
         return np.where(count >= MIN_CELLS_AVERAGED, total / count, np.float32(np.nan))
 
@@ -100,6 +103,12 @@ def _beside(values, step):
     if last > 0:
         found[:, max(-step, 0):max(-step, 0) + last] = values[:, max(step, 0):max(step, 0) + last]
     return found
+
+
+def _beside_some(values, step, cells):
+    """The same beside some cells."""
+    column = cells % values.shape[1] + step
+    return np.where((column >= 0) & (column < values.shape[1]), values.take(cells + step, mode="clip"), np.float32(0.0))
 
 
 def _wavering(mask):

@@ -85,20 +85,20 @@ def gutter_cells(z: np.ndarray, distance: np.ndarray) -> np.ndarray:
     -------
     (rows, columns) bool
     """
-    near = (distance > 0) & (distance < np.float32((GUTTER_BANDS * BAND_CELLS + 0.5) * CELL_SIZE)) & np.isfinite(z)
-    row, column = np.nonzero(near)
-    if not len(row):
-        return np.zeros(z.shape, bool)
-    value = z[row, column]
-    band = ((distance[row, column] / np.float32(CELL_SIZE) - np.float32(0.5)) / np.float32(BAND_CELLS)).astype(np.int32)
+    near = np.flatnonzero((distance > 0) & (distance < np.float32((GUTTER_BANDS * BAND_CELLS + 0.5) * CELL_SIZE)))
+    near = near[np.isfinite(z.take(near))]
+    found = np.zeros(z.shape, bool)
+    if not len(near):
+        return found
+    value = z.take(near)
+    band = ((distance.take(near) / np.float32(CELL_SIZE) - np.float32(0.5)) / np.float32(BAND_CELLS)).astype(np.int32)
     band = np.minimum(band, GUTTER_BANDS - 1)
     coarse = tuple(-(-n // COARSE_CELLS) for n in z.shape)
-    coarse_row, coarse_column = row.astype(np.int32) // np.int32(COARSE_CELLS), column.astype(np.int32) // np.int32(COARSE_CELLS)
-    place = (coarse_row * np.int32(coarse[1]) + coarse_column) * np.int32(GUTTER_BANDS) + band
+    row, column = np.divmod(near.astype(np.int32), np.int32(z.shape[1]))
+    square = row // np.int32(COARSE_CELLS) * np.int32(coarse[1]) + column // np.int32(COARSE_CELLS)
+    place = square * np.int32(GUTTER_BANDS) + band
     size = GUTTER_BANDS * coarse[0] * coarse[1]
     bright = value > GUTTER_BRIGHTNESS
-    # in whole 64ths: their sums are exact in any order
-    height = np.rint(64 * np.clip(value, 0.0, 100.0))
     box = 2 * int(round(RIM_REACH / CELL_SIZE / COARSE_CELLS)) + 1
 
     def around(counts):
@@ -110,6 +110,10 @@ def gutter_cells(z: np.ndarray, distance: np.ndarray) -> np.ndarray:
     # a cell at the rim is half curb: the first band is not tested on its own
     full = (share >= MIN_BRIGHT_SHARE) & (seen > MIN_CELLS_SEEN)
     full[0] |= full[1]
+    if not full[:MIN_GUTTER_BANDS].all(axis=0).any():
+        return found
+    # in whole 64ths: their sums are exact in any order
+    height = np.rint(64 * np.clip(value, 0.0, 100.0))
     level = around(np.bincount(place, height, size) / 64) / np.maximum(seen, 1e-9)
     inner = np.minimum.accumulate(level[1:], axis=0)
     painted = np.zeros(full.shape, bool)
@@ -118,6 +122,5 @@ def gutter_cells(z: np.ndarray, distance: np.ndarray) -> np.ndarray:
     # the band in which the gutter ends is half gutter, unless it is paint
     ends = np.take_along_axis(painted, np.minimum(width, GUTTER_BANDS - 1)[None], axis=0)[0]
     width = np.where(width >= MIN_GUTTER_BANDS, width + ~ends, 0)
-    found = np.zeros(z.shape, bool)
-    found[row, column] = band < width[coarse_row, coarse_column]
+    found.ravel()[near] = band < width.ravel().take(square)
     return found

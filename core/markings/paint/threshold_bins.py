@@ -116,27 +116,30 @@ def otsu(values: np.ndarray) -> tuple[float, float, float, float]:
     return float(edges[k + 1]), float(below), float(above), float(1 - weight[k])
 
 
-def asphalt_bins(values: np.ndarray, d: np.ndarray, edges: np.ndarray) -> list[AsphaltBin]:
+def asphalt_bins(values: np.ndarray, counted: np.ndarray, offsets: np.ndarray, edges: np.ndarray) -> list[AsphaltBin]:
     """Asphalt in the bins of one window.
 
     Parameters
     ----------
-    values : (N,) brightness of cells away from the road's rim, no NaN
-    d : (N,) their offsets, metres
+    values : (rows, columns) brightness
+    counted : (rows, columns) bool, cells away from the road's rim, where `values` has no NaN
+    offsets : (columns,) m, ascending
     edges : (B + 1,) of `bin_edges`
 
     Returns
     -------
     list of AsphaltBin from right to left; a bin with fewer than 500 cells is joined to its neighbour
     """
-    number = np.clip(np.searchsorted(edges, d, side="right") - 1, 0, len(edges) - 2).astype(np.uint16)
-    order = np.argsort(number, kind="stable")
-    bounds = np.searchsorted(number[order], np.arange(len(edges)))
+    number = np.clip(np.searchsorted(edges, offsets, side="right") - 1, 0, len(edges) - 2)
+    bounds = np.searchsorted(number, np.arange(len(edges)))
+    cells = np.count_nonzero(counted, axis=0)
+    before = np.append(0, np.cumsum(cells))
     bins = []
-    for first, last in _joined(np.diff(bounds)):
-        rows = order[bounds[first]:bounds[last]]
-        if len(rows):
-            bins.append(AsphaltBin(float(d[rows].mean()), len(rows), *asphalt_statistics(values[rows])))
+    for first, last in _joined(np.diff(before[bounds])):
+        own = slice(bounds[first], bounds[last])
+        count = int(cells[own].sum())
+        if count:
+            bins.append(AsphaltBin(float(offsets[own] @ cells[own]) / count, count, *asphalt_statistics(values[:, own][counted[:, own]])))
     return bins
 
 
@@ -153,13 +156,14 @@ def _joined(counts):
     return runs
 
 
-def split_bins(z: np.ndarray, d: np.ndarray, bins: list[AsphaltBin], separation: float) -> list[OtsuSplit]:
+def split_bins(z: np.ndarray, counted: np.ndarray, offsets: np.ndarray, bins: list[AsphaltBin], separation: float) -> list[OtsuSplit]:
     """Otsu's split of every bin of one window.
 
     Parameters
     ----------
-    z : (N,) brightness in spreads above asphalt, gutters left out, no NaN
-    d : (N,) offsets, metres
+    z : (rows, columns) brightness in spreads above asphalt
+    counted : (rows, columns) bool, cells that are no gutter, where z has no NaN
+    offsets : (columns,) m, ascending
     bins : list of AsphaltBin of the same window
     separation : how many spreads the bright class must lie above the dark one
 
@@ -168,10 +172,8 @@ def split_bins(z: np.ndarray, d: np.ndarray, bins: list[AsphaltBin], separation:
     list of OtsuSplit, one per bin
     """
     middles = np.array([b.middle for b in bins])
-    number = np.searchsorted((middles[:-1] + middles[1:]) / 2, d).astype(np.uint16)
-    order = np.argsort(number, kind="stable")
-    bounds = np.searchsorted(number[order], np.arange(len(bins) + 1))
-    return [_split(z[order[first:last]], b.middle, separation) for b, first, last in zip(bins, bounds[:-1], bounds[1:])]
+    bounds = [0, *np.searchsorted(offsets, (middles[:-1] + middles[1:]) / 2, side="right").tolist(), len(offsets)]
+    return [_split(z[:, first:last][counted[:, first:last]], b.middle, separation) for b, first, last in zip(bins, bounds[:-1], bounds[1:])]
 
 
 def _split(z, middle, separation):

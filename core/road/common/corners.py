@@ -280,7 +280,7 @@ def _skew(owner, u, s, mask, scatter, count):
     ds, du = s - at[owner], u - out[owner]
     along = np.bincount(owner[mask], ds[mask] ** 2, count)
     skew = np.bincount(owner[mask], (ds * du)[mask], count) / (along + SKEW_PRIOR + (5 * scatter) ** 2)
-    skew = np.clip(skew, -MAX_FACE_SKEW, MAX_FACE_SKEW)
+    skew = np.minimum(np.maximum(skew, -MAX_FACE_SKEW), MAX_FACE_SKEW)
     return skew, u - skew[owner] * ds
 
 

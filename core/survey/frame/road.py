@@ -46,13 +46,13 @@ class Road:
         Road.__init__(self, **state)
 
     def _at(self, s):
-        u = np.clip((np.asarray(s, float) - self.start) / NODE_SPACING, 0, len(self.x) - 1)
+        # np.clip takes five times as long on few values
+        u = np.minimum(np.maximum((np.asarray(s, float) - self.start) / NODE_SPACING, 0), len(self.x) - 1)
         k = np.minimum(u.astype(np.int64), len(self.x) - 2)
         return k, u - k
 
-    def _line(self, s):
-        """Position and unit tangent of the reference line at s."""
-        k, f = self._at(s)
+    def _line(self, k, f):
+        """Position and unit tangent of the reference line at the nodes k and a share f of the way to the next."""
         x = self.x[k] + f * (self.x[k + 1] - self.x[k])
         y = self.y[k] + f * (self.y[k + 1] - self.y[k])
         c = self._cos[k] + f * (self._cos[k + 1] - self._cos[k])
@@ -66,14 +66,16 @@ class Road:
 
     def curvature(self, s: np.ndarray) -> np.ndarray:
         """Curvature at (N,) stations, 1/m, positive in a left bend."""
-        k, f = self._at(s)
+        return self._bend(*self._at(s))
+
+    def _bend(self, k, f):
         return self._curvature[k] + f * (self._curvature[k + 1] - self._curvature[k])
 
     def to_map(self, s: np.ndarray, d: np.ndarray | float) -> tuple[np.ndarray, np.ndarray]:
         """Local x, y of stations s and offsets d, metres; straight on beyond the ends."""
         s, d = np.asarray(s, float), np.asarray(d, float)
-        x, y, c, n = self._line(s)
-        beyond = s - np.clip(s, self.start, self.end)
+        x, y, c, n = self._line(*self._at(s))
+        beyond = s - np.minimum(np.maximum(s, self.start), self.end)
         return x + beyond * c - d * n, y + beyond * n + d * c
 
     def locate(self, x: np.ndarray, y: np.ndarray, start: np.ndarray | None = None,
@@ -101,12 +103,14 @@ class Road:
         active = np.arange(len(s))
         # most points converge in three steps
         for _ in range(12):
-            px, py, c, n = self._line(s[active])
+            at = self._at(s[active])
+            px, py, c, n = self._line(*at)
             ex, ey = x[active] - px, y[active] - py
             along, across = ex * c + ey * n, ey * c - ex * n
             d[active] = across
-            step = along / np.clip(1.0 - self.curvature(s[active]) * across, 0.4, 2.5)
-            s[active] = np.clip(s[active] + np.clip(step, -30, 30), self.start - 1.0, self.end + 1.0)
+            step = along / np.minimum(np.maximum(1.0 - self._bend(*at) * across, 0.4), 2.5)
+            step = np.minimum(np.maximum(step, -30), 30)
+            s[active] = np.minimum(np.maximum(s[active] + step, self.start - 1.0), self.end + 1.0)
             active = active[np.abs(along) > 2e-5]
             if not len(active):
                 break
