@@ -36,7 +36,7 @@ def pytest_collection_modifyitems(items):
 def made_once(tmp_path_factory):
     """`made_once(name, make)` is a folder that `make(folder)` fills when the first test asks for that name.
 
-    All processes of a run share it, and with `make test` its three parts do; tests only read it.
+    All processes of a run share it, and with `make test` its parts do; tests only read it.
     """
     import fcntl  # there is none on Windows
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The tests, in three parts: the core and the library where qgis cannot be imported, then the plugin inside QGIS, then
-# calls of the real qgis_process. Each part is spread over the processor's cores, one file of tests at a
+# The tests, in two parts: the core and the library where qgis cannot be imported, then the plugin inside QGIS with calls of
+# the real qgis_process. Each part is spread over the processor's cores, one file of tests at a
 # time, those with slow tests first. Arguments go to pytest, for example: tools/test.sh -k curbs, or
 # tools/test.sh -m 'not slow'. LANEWRIGHT_TEST_WORKERS=0 runs everything in one process, for a debugger.
 set -euo pipefail
@@ -24,7 +24,5 @@ trap 'rm -rf "$LANEWRIGHT_MADE_ONCE"' EXIT
 
 echo "== core and library, where qgis cannot be imported"
 LANEWRIGHT_WITHOUT_QGIS=1 run "${part[@]}" -p no:pytest_qgis -o addopts='--import-mode=importlib -p no:cacheprovider' tests/core tests/library "$@"
-echo "== the plugin inside QGIS"
-run "${part[@]}" tests --ignore tests/core --ignore tests/library --ignore tests/cli "$@"
-echo "== real qgis_process"
-run "${part[@]}" tests/cli "$@"
+echo "== the plugin inside QGIS, and real qgis_process"
+run "${part[@]}" tests --ignore tests/core --ignore tests/library "$@"

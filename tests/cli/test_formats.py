@@ -28,14 +28,17 @@ def run(*arguments, folder):
 
 @pytest.fixture(scope="module")
 def survey(sample_survey, tmp_path_factory):
-    """A folder with spaces and umlauts in its name, and a short street in it."""
+    """A folder with spaces and umlauts in its name, a short street in it, and the points of its curbs."""
     folder = tmp_path_factory.mktemp("Straße 7 – Süd")
-    return Path(shutil.copytree(sample_survey(LENGTH=40, PULSE_RATE=120000), folder, dirs_exist_ok=True))
+    shutil.copytree(sample_survey(LENGTH=40, PULSE_RATE=120000), folder, dirs_exist_ok=True)
+    run("lanewright:detectcurbs", f"--POINT_CLOUDS={folder / 's.laz'}", f"--TRAJECTORY={folder / 'drive.gpkg'}",
+        f"--CURB_POINTS={folder / 'curbs.gpkg'}", folder=folder)
+    return folder
 
 
 def boundaries(survey, folder, destination, trajectory="drive.gpkg"):
     path = trajectory if trajectory.startswith("postgres") else survey / trajectory
-    return run("lanewright:detectboundaries", f"--POINT_CLOUDS={survey / 's.laz'}", f"--TRAJECTORY={path}",
+    return run("lanewright:fitroadedges", f"--CURB_POINTS={survey / 'curbs.gpkg'}", f"--TRAJECTORY={path}",
                f"--ROAD_EDGES={destination}", folder=folder)
 
 

@@ -1,10 +1,13 @@
 """`tools/survey_results.sh` and `tools/compare_results.sh`, as one uses them before and after a change of the code."""
 
+import shutil
 import subprocess
 from pathlib import Path
 
 import pytest
 from lanewright.core.sample.scenes import SCENES
+
+pytestmark = pytest.mark.slow
 
 TOOLS = Path(__file__).resolve().parents[2] / "tools"
 FILES = {"edges.gpkg", "surface.gpkg", "markings.gpkg", "lines.gpkg", "driving.gpkg", "elements.gpkg", "curb_points.gpkg", "road.laz",
@@ -16,17 +19,16 @@ def call(tool, *arguments):
 
 
 @pytest.fixture(scope="module")
-def surveys(tmp_path_factory):
+def surveys(sample_survey, tmp_path_factory):
     """A folder with a short street, a survey whose cloud is damaged, and a folder that is no survey."""
     folder = tmp_path_factory.mktemp("surveys")
     for name in ("street", "broken", "notes"):
         (folder / name).mkdir()
-    made = call("qgis_process", "run", "lanewright:samplesurvey", "--LENGTH=30", "--PULSE_RATE=60000", "--ROTATION_RATE=100",
-                f"--POINT_CLOUD={folder / 'street' / 'cloud.laz'}", f"--TRAJECTORY={folder / 'drive.gpkg'}")
-    assert made.returncode == 0, made.stderr
+    sample = sample_survey(LENGTH=30, PULSE_RATE=60000, ROTATION_RATE=100)
+    shutil.copy(sample / "s.laz", folder / "street" / "cloud.laz")
     table = folder / "street" / "trajectory.csv"
     subprocess.run(["ogr2ogr", "-f", "CSV", "-sql", "SELECT time, ST_X(geom) x, ST_Y(geom) y, ST_Z(geom) z FROM drive", table,
-                    folder / "drive.gpkg"], check=True, capture_output=True)
+                    sample / "drive.gpkg"], check=True, capture_output=True)
     (folder / "broken" / "cloud.laz").write_bytes(b"LASF and no more")
     (folder / "broken" / "trajectory.csv").write_bytes(table.read_bytes())
     return folder

@@ -16,6 +16,8 @@ from lanewright.core.sample.orthophoto import uav_control_points, write_uav_imag
 from lanewright.core.sample.survey import make_sample_survey
 from paint_from_above import EAST, NORTH, Ground, Overhead, about, arrow, bar, dashes, errors, street, zebra
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def surveyed(tmp_path_factory):
@@ -133,7 +135,6 @@ def test_both_cut_outs_of_a_pair_show_the_same_paint(tmp_path, surveyed):
     assert "data:image/png" in report and f"of which {found.accepted.sum()} accepted" in report
 
 
-@pytest.mark.slow
 def test_the_sample_image_finds_its_place_by_its_tags_to_three_centimetres(tmp_path):
     """Cars, trees, their shadows, a tilted camera and its lens; check points that a surveyor measured judge the result."""
     survey = make_sample_survey()
