@@ -25,6 +25,7 @@ from .lane_track import LANE_STATUS, LaneTrack, connect
 from .lanes import estimated_lanes
 from .lanes_layer import Lanes
 from .settings import DrivingSettings
+from .tapers import laid_out
 from .uncertainty import lane_sigma
 
 if TYPE_CHECKING:
@@ -103,7 +104,7 @@ def road_lanes(road: EstimatedRoad, settings: DrivingSettings, lane_width: float
     """
     tracks = estimated_lanes(road.boundaries, road.estimate, lane_width, settings.line_distance)
     tracks = connect(tracks, road.lines, settings.max_bridge, settings.max_inferred, road.boundaries.seen[road.boundaries.painted].any(0))
-    known = [track.without_doubtful_ends() for track in tracks]
+    known = [track.without_doubtful_ends() for track in laid_out(tracks)]
     tracks = [track for track in known if track is not None and len(track) * STATION_STEP >= settings.shortest]
     return sorted(tracks, key=lambda track: (track.first, float(track.d[0])))
 

@@ -9,10 +9,12 @@ from scipy.ndimage import binary_dilation
 
 from ..markings.cross_section.candidates import STATIONS_OF_CELL, Boundaries
 from ..markings.cross_section.estimate import LaneSpan, RoadEstimate, lane_spans
-from ..markings.cross_section.lane_width import lane_places
+from ..markings.cross_section.lane_width import beside_surface_end, lane_places
+from ..markings.cross_section.sections import STATION_STEP
 from .lane_track import BRIDGED, INFERRED, MAX_LANE_JUMP_SHARE, MEASURED, LaneTrack
 
-BETWEEN_LINES = 4       # rank of lanes between two lines that are seen: these are not moved
+BESIDE_ONE, BETWEEN_LINES = 1, 4   # ranks of lanes beside one line, and between two lines that are seen: these are not moved
+STEP_LENGTH = 10.0      # m along which a step between two stretches of a lane is evened out
 
 
 def estimated_lanes(boundaries: Boundaries, estimate: RoadEstimate, lane_width: float, line_distance: float = 0.0) -> list[LaneTrack]:
@@ -71,30 +73,37 @@ def _within_its_borders(track, boundaries):
 def _rank(track):
     """(N,) how sure the place of a lane is: 1 beside one line, 2 between worn lines, 3 divided, 4 between two lines that are seen."""
     between = (track.left >= 0) & (track.right >= 0)
-    return np.select([track.status == MEASURED, track.offset, between], [BETWEEN_LINES, 1, 2], 3)
+    return np.select([track.status == MEASURED, track.offset, between], [BETWEEN_LINES, BESIDE_ONE, 2], 3)
 
 
 def _appended(track, part):
     """A track and the part that follows it; of the two the one whose place is less sure is moved to meet the other, and takes its width.
 
-    It is moved as far as it is less sure: a stretch between two that are sure ends in both. A border that is a line in both stays on it.
+    It is moved as far as it is less sure: a stretch between two that are sure ends in both. A border that is a line in both stays on it. What
+    lies between two lines is placed by them all along, so there a step is evened out where it is.
     """
     step, wider = track.d[-1] - part.d[0], track.width[-1] - part.width[0]
     before, after = _rank(track), _rank(part)
-    if after[0] < before[-1] or after[0] == before[-1] < BETWEEN_LINES:
-        end = _first(after > after[0])
-        share = 1.0 if end is None else np.clip(1 - np.arange(len(part)) / end, 0, None)
-        part = replace(part, d=part.d + step * share, width=part.width + wider * share)
-    elif after[0] > before[-1]:
-        end = _first(before[::-1] > before[-1])
-        share = 1.0 if end is None else np.clip(1 - np.arange(len(track)) / end, 0, None)[::-1]
+    if after[0] > before[-1]:
+        share = _moved(before[::-1])[::-1]
         track = replace(track, d=track.d - step * share, width=track.width - wider * share)
+    elif after[0] < before[-1] or after[0] == BESIDE_ONE:
+        share = _moved(after)
+        part = replace(part, d=part.d + step * share, width=part.width + wider * share)
+    elif after[0] < BETWEEN_LINES:
+        here, there = _moved(before[::-1])[::-1] / 2, _moved(after) / 2
+        track = replace(track, d=track.d - step * here, width=track.width - wider * here)
+        part = replace(part, d=part.d + step * there, width=part.width + wider * there)
     return track.followed_by(part)
 
 
-def _first(mask):
-    found = np.flatnonzero(mask)
-    return int(found[0]) if len(found) else None
+def _moved(rank):
+    """(N,) share of a step at their first place by which places of some rank are moved."""
+    surer = np.flatnonzero(rank > rank[0])
+    reach = surer[0] if len(surer) else np.inf
+    if rank[0] > BESIDE_ONE:
+        reach = min(reach, STEP_LENGTH / STATION_STEP)
+    return np.clip(1 - np.arange(len(rank)) / reach, 0, None)
 
 
 def _part(boundaries, span, first, last, lane_width, line_distance):
@@ -106,8 +115,9 @@ def _part(boundaries, span, first, last, lane_width, line_distance):
     painted = [bool(boundaries.bounding[row]) for row in sides]
     begin, width = lane_places(left, right, *(boundaries.made_of[row] for row in sides), span.count, lane_width, boundaries.bend[rows])
     beside_one = painted[0] != painted[1]
-    if beside_one and line_distance:
-        width = np.full(len(left), 2 * line_distance)
+    if beside_one and (line_distance or beside_surface_end(*boundaries.made_of[list(sides)])):
+        # the end of the surface is ragged, a lane is not
+        width = np.full(len(left), 2 * line_distance or np.median(width))
         begin = left if painted[0] else right + width * span.count
     d = begin - width * (span.count - span.place - 0.5)
     seen = sum(boundaries.seen[row, rows].astype(int) for row, paint in zip(sides, painted) if paint)

@@ -4,10 +4,11 @@ import numpy as np
 import shapely
 from lanewright.core.common.features import Features
 from lanewright.core.common.progress import Progress
-from lanewright.core.common.schemas import MARKINGS
+from lanewright.core.common.schemas import MARKINGS, ROAD_EDGES
 from lanewright.core.markings.lines.fit import MarkingLineSettings, fit_marking_lines
 from lanewright.core.markings.lines.painted_lines import lines_to_features
 from lanewright.core.markings.objects.marking_objects import markings_from_features
+from lanewright.core.road.edges.road_edges import edges_from_features
 from lanewright.core.survey.frame.build import build_frame
 from lanewright.core.survey.store.records import ROAD_POINT, to_units
 from lanewright.core.survey.store.road_points import RoadPoints
@@ -68,11 +69,19 @@ class ClusteredStreet:
                 self.paint(s, s + dash, offset, **kind)
         return self
 
-    def lines(self, settings=MarkingLineSettings(), progress=Progress()):
-        """The layer of the marking lines found."""
-        return lines_to_features(self.painted_lines(settings, progress), self.frame)
+    def pavement(self, offset):
+        """RoadEdges of an edge of the pavement at an offset, a function of station."""
+        station = np.arange(0.0, self.length, 0.5)
+        edges = Features("LineStringZ", list(ROAD_EDGES))
+        edges.add(shapely.linestrings(np.c_[self.place(station, offset(station)), np.full(len(station), UP)]), road=0, kind="main",
+                  edge="pavement", status="measured", part="bottom", chain=1, side="left")
+        return edges_from_features(edges, self.frame)
 
-    def painted_lines(self, settings=MarkingLineSettings(), progress=Progress()):
+    def lines(self, settings=MarkingLineSettings(), progress=Progress(), edges=None):
+        """The layer of the marking lines found."""
+        return lines_to_features(self.painted_lines(settings, progress, edges), self.frame)
+
+    def painted_lines(self, settings=MarkingLineSettings(), progress=Progress(), edges=None):
         """The marking lines found."""
         points = RoadPoints.empty_like(origin=self.frame.origin)
         points.has_cluster = True
@@ -95,7 +104,7 @@ class ClusteredStreet:
             outline = shapely.force_3d(shapely.convex_hull(shapely.multipoints(place[mine])), UP)
             markings.add(outline, road=0, cluster=k + 1, station_m=float(station[mine].min()),
                          offset_m=float(np.median(offset[mine])), **row)
-        return fit_marking_lines(points, markings_from_features(markings, self.frame), self.frame, settings, progress)
+        return fit_marking_lines(points, markings_from_features(markings, self.frame), self.frame, settings, progress, edges)
 
     def distance(self, geometry, offset):
         """(M,) distances in plan of a drawn line's vertices to the axis' parallel."""

@@ -19,6 +19,7 @@ MAX_LINE_OBLIQUITY = np.tan(np.radians(25.0))  # a line that runs more across th
 MIN_BOUNDARY_SPACING = 0.8                     # m: lines nearer than this are one boundary, a lane ends at the nearer one
 MAX_LINE_JUMP = 0.3                         # m across by which a line may jump where it goes on as another
 CLOSED_ISLAND = 1.0                            # m between the ends of a line round an island that closes
+PARTING = 0.1                                  # m by which a line must leave one neighbour more than the other to run along that one
 MAX_DASH_GAP = 9.5                             # m that a dashed line may be silent at its ends before it is known to end
 
 
@@ -299,10 +300,25 @@ def _lengthen_dashed(lines):
             ahead = ahead[(ahead >= 0) & (ahead < len(lines.s))]
             go = present[left, ahead] & present[right, ahead] & lines.seen[left, ahead] & lines.seen[right, ahead]
             ahead = ahead[:len(go) if go.all() else int(np.argmin(go))]
-            share = (lines.d[k, end] - lines.d[right, end]) / (lines.d[left, end] - lines.d[right, end])
-            lines.d[k, ahead] = lines.d[right, ahead] + share * (lines.d[left, ahead] - lines.d[right, ahead])
-            lines.z[k, ahead] = lines.z[right, ahead] + share * (lines.z[left, ahead] - lines.z[right, ahead])
+            share = _share_across(lines.d, k, left, right, end - step * np.arange(reach + 1))
+            for values in (lines.d, lines.z):
+                beside = values[left] * share + values[right] * (1 - share)
+                values[k, ahead] = beside[ahead] + values[k, end] - beside[end]
             lines.seen[k, ahead] = True
+
+
+def _share_across(d, k, left, right, inner):
+    """How a line lies between two others, 0 on the right one and 1 on the left one: where they part, as they do along a taper, it keeps to one.
+
+    `inner` are columns of stations at its end, from there on.
+    """
+    inner = inner[(inner >= 0) & (inner < d.shape[1])]
+    apart = np.abs(d[[left, right]][:, inner] - d[k, inner])
+    apart = apart[:, np.isfinite(apart).all(axis=0)]
+    away = np.ptp(apart, axis=1)
+    if abs(away[0] - away[1]) > PARTING:
+        return float(away[0] < away[1])
+    return apart[1, 0] / (apart[0, 0] + apart[1, 0])
 
 
 def _nearest(which, distance):

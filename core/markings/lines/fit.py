@@ -19,6 +19,7 @@ from ...survey.store.records import join_columns
 from ..objects.marking_objects import MarkingObjects
 from .common_trend import CommonTrend
 from .dash_pattern import same_dash_pattern
+from .edges_beside import edges_beside
 from .few_tracks import painted_strands
 from .geometry import LineShape, fit_line_shapes
 from .linking import LinkedLine, link_lines, link_over_long_gaps, without_strays
@@ -93,6 +94,7 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
     rows: list[dict[str, Any]] = []
     number, replaced, dropped = 0, 0, 0
     roads = clustered_points.roads()
+    beside = edges_beside(edges, roads)
     for k, road in enumerate(roads):
         part = progress.part(k / len(roads), (k + 1) / len(roads))
         records, rank = line_paint(_records_of(clustered_points, road), markings, road)
@@ -100,15 +102,15 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
         strands = painted_strands(records, rank)
         part.report(0.4)
         hatched = hatching_bars(markings, road)
-        lines, trend = _linked(strands, settings)
+        lines, trend = _linked(strands, beside[road], settings)
         # a line that leads up to a hatched area may be taken for its border: linked anew without that, it goes on behind the area
         while borders := hatching_borders(lines, hatched):
             strands = [strand for strand in strands if not any(strand is border for border in borders)]
-            lines, trend = _linked(strands, settings)
+            lines, trend = _linked(strands, beside[road], settings)
         part.report(0.5)
         selected = select_lines(lines, trend, crossings(markings, road), settings.min_paint, hatched, country(settings.country).longest_dash)
         dropped += len(lines) - len(selected)
-        shapes, unwanted = fit_line_shapes([one.line for one in selected], [one.span for one in selected], frame.road(road), trend,
+        shapes, unwanted = fit_line_shapes([one.line for one in selected], [one.span for one in selected], frame.road(road), trend, beside[road],
                                      partial(frame.track_height, road), settings)
         part.report(0.8)
         replaced += unwanted
@@ -124,13 +126,13 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
     return named_by_estimate(drawn, frame, country(settings.country).usual_lane, markings, edges, road_points, clustered_points)
 
 
-def _linked(strands, settings):
+def _linked(strands, edges, settings):
     """Lines of strands, and the CommonTrend they have in common."""
     trend = CommonTrend(strands)
-    lines = link_lines([LinkedLine([strand]) for strand in strands], trend, settings.max_gap)
-    lines = link_over_long_gaps(lines, trend, settings.max_gap, settings.max_bridge,
+    lines = link_lines([LinkedLine([strand]) for strand in strands], trend, edges, settings.max_gap)
+    lines = link_over_long_gaps(lines, trend, edges, settings.max_gap, settings.max_bridge,
                                  partial(same_dash_pattern, longest_dash=country(settings.country).longest_dash))
-    return [without_strays(line, trend) for line in lines], trend
+    return [without_strays(line, trend, edges) for line in lines], trend
 
 
 def _records_of(points, road):

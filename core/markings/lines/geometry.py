@@ -18,6 +18,7 @@ from ...survey.frame.frame_lines import LINE_VERTEX_SPACING
 if TYPE_CHECKING:
     from ...survey.frame.road import Road
     from .common_trend import CommonTrend
+    from .edges_beside import EdgesBeside
     from .fit import MarkingLineSettings
     from .linking import LinkedLine
 
@@ -57,7 +58,7 @@ class LineShape:
         return np.c_[self.fit.curve.at(u), self._height(s)]
 
 
-def fit_line_shapes(lines: list[LinkedLine], spans: list[tuple[float, float]], road: Road, trend: CommonTrend,
+def fit_line_shapes(lines: list[LinkedLine], spans: list[tuple[float, float]], road: Road, trend: CommonTrend, edges: EdgesBeside,
                     track_height: Callable[[np.ndarray], np.ndarray], settings: MarkingLineSettings) -> tuple[list[LineShape], int]:
     """The LineShapes of linked lines, fitted together.
 
@@ -67,6 +68,7 @@ def fit_line_shapes(lines: list[LinkedLine], spans: list[tuple[float, float]], r
     spans : (first, last) stations of each to be drawn, which may reach beyond the paint
     road : Road
     trend : CommonTrend, how the painted lines of the road run together
+    edges : EdgesBeside of the road
     track_height : function of stations (N,), height of the trajectory; the line's height is
         smoothed as the difference to it, so that it goes on along the road's slope
     settings : MarkingLineSettings
@@ -77,7 +79,7 @@ def fit_line_shapes(lines: list[LinkedLine], spans: list[tuple[float, float]], r
     """
     if not lines:
         return [], 0
-    courses = [_course(line, trend, span) for line, span in zip(lines, spans)]
+    courses = [_course(line, trend, edges, span) for line, span in zip(lines, spans)]
     s, d, own = (np.concatenate(parts) for parts in zip(*((course.s, course.d, course.own) for course in courses)))
     bounds = np.cumsum([len(course.s) for course in courses])[:-1]
     x, y = (np.split(values, bounds) for values in road.to_map(s, d))
@@ -121,14 +123,14 @@ class _Course:
     z: np.ndarray
 
 
-def _course(line, trend, span):
+def _course(line, trend, edges, span):
     s, d, z, weight = line.places()
     strong = weight >= MIN_POINTS_PER_PLACE
     if strong.sum() >= max(4, 0.5 * len(s)):
         s, d, z = s[strong], d[strong], z[strong]
     order = np.argsort(s, kind="stable")
     s, d, z = s[order], d[order], z[order]
-    guide_s, guide_d = _guides(s, d - trend.at(s), trend, span)
+    guide_s, guide_d = _guides(s, d, trend, edges, span)
     order = np.argsort(np.concatenate([s, guide_s]), kind="stable")
     return _Course(np.concatenate([s, guide_s])[order], np.concatenate([d, guide_d])[order], order < len(s), z)
 
@@ -147,23 +149,27 @@ def _fitted(places, settings):
     return found, replaced
 
 
-def _guides(s, level, trend, span):
-    """Places in long gaps and beyond the ends, where nothing is painted: parallel to the other lines."""
+def _guides(s, d, trend, edges, span):
+    """Places in long gaps and beyond the ends, where nothing is painted: parallel to the other lines, or to the edge of the road."""
     wide = np.flatnonzero(np.diff(s) > MIN_GUIDED_GAP)
-    gaps = zip(s[wide].tolist(), s[wide + 1].tolist())
     stations, offsets = [], []
-    for a, b in gaps:
+    for k in wide.tolist():
+        a, b = s[[k, k + 1]].tolist()
         at = np.linspace(a, b, int(np.ceil((b - a) / GUIDE_SPACING)) + 1)[1:-1]
-        start, stop = np.searchsorted(s, a, "right"), np.searchsorted(s, b)
-        before = median(level[np.searchsorted(s, a - GUIDE_LEVEL_REACH):start])
-        after = median(level[stop:np.searchsorted(s, b + GUIDE_LEVEL_REACH, "right")])
+        near = [slice(np.searchsorted(s, a - GUIDE_LEVEL_REACH), k + 1), slice(k + 1, np.searchsorted(s, b + GUIDE_LEVEL_REACH, "right"))]
+        edge = edges.between((a, d[k]), (b, d[k + 1]))
+        courses = [trend.at] + ([] if edge is None else [edge])
+        # parallel to what the line keeps its distance from
+        levels = [[median(d[side] - course(s[side])) for side in near] for course in courses]
+        course, ends = min(zip(courses, levels), key=lambda one: abs(one[1][1] - one[1][0]))
         stations.append(at)
-        offsets.append(np.interp(at, [a, b], [before, after]) + trend.at(at))
+        offsets.append(np.interp(at, [a, b], ends) + course(at))
     for tip, end in ((s[0], span[0]), (s[-1], span[1])):
         if abs(end - tip) > GUIDE_SPACING / 4:
             at = np.linspace(tip, end, int(np.ceil(abs(end - tip) / GUIDE_SPACING)) + 1)[1:]
             stations.append(at)
-            offsets.append(median(level[np.abs(s - tip) <= GUIDE_LEVEL_REACH]) + trend.at(at))
+            near = np.abs(s - tip) <= GUIDE_LEVEL_REACH
+            offsets.append(median(d[near] - trend.at(s[near])) + trend.at(at))
     if not stations:
         return np.empty(0), np.empty(0)
     return np.concatenate(stations), np.concatenate(offsets)

@@ -21,6 +21,7 @@ from ...curves.robust import median
 from .common_trend import MAX_LINE_SLOPE, CommonTrend, weighted_medians
 
 if TYPE_CHECKING:
+    from .edges_beside import EdgesBeside
     from .strands import Strand
 
 END_WINDOW = 6.0                           # m of a strand's end that say where it goes
@@ -117,18 +118,30 @@ def lateral_mismatch(before: _End, after: _End) -> float:
                for trust in (0.0, _trust(before, after)))
 
 
+def _miss(before: _End, after: _End, trend: CommonTrend, edges: EdgesBeside) -> float:
+    """The same, or less where both run along one edge of the road and keep their distance from it."""
+    miss = lateral_mismatch(before, after)
+    ends = [(end.s, end.d + float(trend.at(end.s))) for end in (before, after)]
+    edge = edges.between(*ends)
+    if edge is None:
+        return miss
+    first, second = (d - float(edge(s)) for s, d in ends)
+    return min(miss, abs(second - first))
+
+
 def _trust(before, after):
     reach = min(before.reach, after.reach)
     return reach**2 / (reach**2 + 4.0)
 
 
-def link_lines(lines: list[LinkedLine], trend: CommonTrend, max_gap: float, allowed: float = 0.30) -> list[LinkedLine]:
+def link_lines(lines: list[LinkedLine], trend: CommonTrend, edges: EdgesBeside, max_gap: float, allowed: float = 0.30) -> list[LinkedLine]:
     """Lines linked over gaps up to `max_gap`, each end once, at the least cost of all links together.
 
     Parameters
     ----------
     lines : list of LinkedLine
     trend : CommonTrend
+    edges : EdgesBeside of the road
     max_gap : metres
     allowed : metres across at the longest gap; half of it where lines touch
 
@@ -149,7 +162,7 @@ def link_lines(lines: list[LinkedLine], trend: CommonTrend, max_gap: float, allo
                 continue
             if abs(before.slope - after.slope) > MAX_LINE_SLOPE and min(before.reach, after.reach) > 3.0:
                 continue
-            miss, limit = lateral_mismatch(before, after), allowed * (0.5 + 0.5 * max(gap, 0.0) / max(max_gap, 1e-6))
+            miss, limit = _miss(before, after, trend, edges), allowed * (0.5 + 0.5 * max(gap, 0.0) / max(max_gap, 1e-6))
             if _between_twins(twin_ends[a], twin_starts[b], before, after):
                 continue
             if miss <= limit:
@@ -242,7 +255,7 @@ def _joined(lines, follows):
     return sorted(found, key=lambda line: (line.first, line.strands[0].d[0]))
 
 
-def link_over_long_gaps(lines: list[LinkedLine], trend: CommonTrend, max_gap: float, max_bridge: float,
+def link_over_long_gaps(lines: list[LinkedLine], trend: CommonTrend, edges: EdgesBeside, max_gap: float, max_bridge: float,
                         same_dash_pattern: Callable[[LinkedLine, LinkedLine], bool], allowed: float = 0.25) -> list[LinkedLine]:
     """Link over longer gaps, up to `max_bridge`, where something carries over.
 
@@ -259,10 +272,10 @@ def link_over_long_gaps(lines: list[LinkedLine], trend: CommonTrend, max_gap: fl
             low, high = np.searchsorted(stations, [before.s + max_gap - MAX_STRAND_OVERLAP, before.s + max_bridge])
             for b in by_start[low:high]:
                 after = starts[b]
-                if min(lines[a].painted, lines[b].painted) < MIN_PAINT_BESIDE_GAP or lateral_mismatch(before, after) > allowed:
+                if min(lines[a].painted, lines[b].painted) < MIN_PAINT_BESIDE_GAP or (miss := _miss(before, after, trend, edges)) > allowed:
                     continue
                 if same_dash_pattern(lines[a], lines[b]) or _runs_beside(lines, (a, b), before, after, trend):
-                    score = (lateral_mismatch(before, after) / allowed) ** 2 + (after.s - before.s) / max_bridge
+                    score = (miss / allowed) ** 2 + (after.s - before.s) / max_bridge
                     pairs.append((score, a, int(b)))
         if not pairs:
             return lines
@@ -270,15 +283,14 @@ def link_over_long_gaps(lines: list[LinkedLine], trend: CommonTrend, max_gap: fl
         lines = _joined(lines, assigned_links(pairs))
 
 
-def without_strays(line: LinkedLine, trend: CommonTrend) -> LinkedLine:
-    """The line less short strands that lie off the course of the paint before and after them."""
+def without_strays(line: LinkedLine, trend: CommonTrend, edges: EdgesBeside) -> LinkedLine:
+    """The line less short strands that lie off the course of the paint before and after them, be that with the other lines or along an edge."""
     if len(line.strands) < 3:
         return line
     s, d, _, weight = line.places()
-    level = d - trend.at(s)
     owner = np.repeat(np.arange(len(line.strands)), [len(strand.s) for strand in line.strands])
     order = np.argsort(s, kind="stable")
-    s, level, weight, owner = s[order], level[order], weight[order], owner[order]
+    s, d, weight, owner = s[order], d[order], weight[order], owner[order]
     kept = []
     for k, strand in enumerate(line.strands):
         middle = (strand.first + strand.last) / 2
@@ -288,9 +300,12 @@ def without_strays(line: LinkedLine, trend: CommonTrend) -> LinkedLine:
         if strand.length > MAX_STRAY_LENGTH and strand.length > 0.1 * line.painted or not both:
             kept.append(strand)
             continue
-        expected = _robust_level(s[others] - middle, level[others], np.minimum(weight[others], 10.0))
-        if abs(median(level[own]) - expected) <= MAX_STRAY_OFFSET:
-            kept.append(strand)
+        edge = edges.between(*((float(s[j]), float(d[j])) for j in window[[0, -1]]))
+        for course in [trend.at] + ([] if edge is None else [edge]):
+            expected = _robust_level(s[others] - middle, d[others] - course(s[others]), np.minimum(weight[others], 10.0))
+            if abs(median(d[own] - course(s[own])) - expected) <= MAX_STRAY_OFFSET:
+                kept.append(strand)
+                break
     return LinkedLine(kept)
 
 

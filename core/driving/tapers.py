@@ -1,0 +1,73 @@
+"""Lanes that open or close beside another one along a taper.
+
+A lane that opens is driven from where it has its full width; up to there traffic stays in the lane beside it, which keeps its width although the
+line along its side has moved away already (as exit and turning lanes are laid out, e.g. RAA 6.4, RASt 6.3, AASHTO Green Book 9.7 and 10.9).
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ..markings.cross_section.sections import STATION_STEP
+from .lane_track import END_WIDTH_LENGTH, INFERRED, LaneTrack
+
+LONGEST_TAPER = 100.0     # m
+FULL_SHARE = 0.9          # of a lane's width: from there on it is taken to have its full width
+LEAST_WIDENING = 0.05     # m: less is how lines are painted
+BORDER_BEFORE_LANE = 30.0  # m by which the line between the two may begin before the lane is broad enough to be one: 2 m at one in ten, and a gap
+MISSING_SHARE = 0.25      # of a lane's width by which two lanes beside each other may be apart or overlap
+
+
+def laid_out(tracks: list[LaneTrack]) -> list[LaneTrack]:
+    """The same lanes with through lanes as wide along tapers as beside the lanes that open there, and these from their full width on."""
+    ends = [(k, head) for k in range(len(tracks)) for head in (True, False)]
+    through = list(tracks)
+    for k, head in ends:
+        for j, other in enumerate(tracks):
+            if j != k and _opens_beside(tracks[k], other, head):
+                through[j] = _kept_width(through[j], tracks[k], head)
+    for k, head in ends:
+        if any(j != k and _opens_beside(tracks[k], other, head) for j, other in enumerate(tracks)):
+            through[k] = _from_full_width(through[k], head)
+    return through
+
+
+def _opens_beside(lane, other, head):
+    """Whether a lane begins (or ends) right beside another one that leads on there."""
+    at = lane.first if head else lane.last
+    beyond = at - 1 if head else at + 1
+    if lane.direction != other.direction or not other.first <= beyond <= other.last or not other.first <= at <= other.last:
+        return False
+    (d, width), (d_other, width_other) = lane.at(at), other.at(at)
+    return abs(abs(d - d_other) - (width + width_other) / 2) < MISSING_SHARE * width_other
+
+
+def _kept_width(track, opens, head):
+    """A through lane that before (or behind) the end of another one is no wider than beside it."""
+    at = (opens.first if head else opens.last) - track.first
+    near, reach = int(END_WIDTH_LENGTH / STATION_STEP), int(LONGEST_TAPER / STATION_STEP)
+    beside = track.width[at:at + near] if head else track.width[max(at - near + 1, 0):at + 1]
+    width = float(np.median(beside))
+    ahead = np.arange(at - 1, max(at - reach, 0) - 1, -1) if head else np.arange(at + 1, min(at + reach, len(track) - 1) + 1)
+    wider = track.width[ahead] > width + LEAST_WIDENING
+    begin = int(np.argmax(wider)) if wider[:int(BORDER_BEFORE_LANE / STATION_STEP)].any() else len(wider)
+    ahead = ahead[begin:len(wider) if wider[begin:].all() else begin + int(np.argmin(wider[begin:]))]
+    if not len(ahead):
+        return track
+    side = np.sign(opens.at(opens.first if head else opens.last)[0] - track.d[at])
+    d, widths, status = track.d.copy(), track.width.copy(), track.status.copy()
+    d[ahead] -= side * (widths[ahead] - width) / 2
+    widths[ahead] = width
+    status[ahead] = np.maximum(status[ahead], INFERRED)
+    return replace(track, d=d, width=widths, status=status)
+
+
+def _from_full_width(track, head):
+    """A lane less what it is narrower than its full width at its beginning (or end)."""
+    reach = int(LONGEST_TAPER / STATION_STEP)
+    width = track.width[:reach] if head else track.width[::-1][:reach]
+    full = np.flatnonzero(width >= FULL_SHARE * np.median(width))
+    first = int(full[0])
+    return track.part(first, len(track)) if head else track.part(0, len(track) - first)

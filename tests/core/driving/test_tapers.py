@@ -1,0 +1,87 @@
+"""Lanes beside tapers, and lanes whose lines step aside."""
+
+import numpy as np
+import pytest
+from lanewright.core.common.features import Features
+from lanewright.core.common.schemas import ROAD_EDGES
+from lined_streets import EAST, HEIGHT, Street
+from shapely.geometry import LineString
+
+LENGTH = 200.0
+
+
+def exit_street(opens):
+    """A lane beside which an exit lane opens (or closes) along a taper from 60 to 100 m, whose dashes begin at 75 m."""
+    def station(s):
+        return s if opens else LENGTH - s
+
+    street = Street(length=LENGTH, vehicle=-1.85).paint(3.7, kind="edge").paint(0.0, pattern="dashed")
+    street.paint(lambda s: -3.7 - 3.6 * np.clip((station(s) - 60.0) / 40.0, 0.0, 1.0), kind="edge")
+    ends = sorted((station(75.0), station(195.0)))
+    return street.paint(-3.7, *ends, pattern="dashed")
+
+
+def lanes_by_place(street):
+    """(N, 2) distance along the street and offset of all driving lines."""
+    return np.concatenate([np.c_[np.asarray(line.coords)[:, 0] - EAST, street.offsets(line)] for line, _ in street.lanes()[0]])
+
+
+@pytest.mark.parametrize("opens", [True, False])
+def test_a_lane_beside_which_another_opens_keeps_its_width_along_the_taper(opens):
+    places = lanes_by_place(exit_street(opens))
+    through = places[(places[:, 1] < 0.0) & (places[:, 1] > -3.3)]
+    assert np.ptp(through[:, 0]) == pytest.approx(190.0, abs=1.0)
+    np.testing.assert_allclose(through[:, 1], -1.85, atol=0.04)
+
+
+@pytest.mark.parametrize("opens", [True, False])
+def test_a_lane_that_opens_is_driven_from_where_it_is_as_wide_as_farther_on(opens):
+    places = lanes_by_place(exit_street(opens))
+    other = places[places[:, 1] < -3.7, 0] if opens else LENGTH - places[places[:, 1] < -3.7, 0]
+    # nine tenths of it are there at 96 m
+    assert other.min() == pytest.approx(96.0, abs=1.5) and other.max() == pytest.approx(195.0, abs=1.0)
+
+
+def test_where_a_line_steps_aside_the_lanes_between_it_and_the_other_edge_follow_it_there_and_nowhere_else():
+    """Two lanes without a line between them; behind a gap the left edge line lies 0.2 m farther out."""
+    street = Street(length=LENGTH, vehicle=-1.45).paint(-2.9, kind="edge")
+    street.paint(2.9, 5.0, 80.0, kind="edge").paint(3.1, 84.0, 195.0, kind="edge")
+    places = lanes_by_place(street)
+    for first, last, left in ((10.0, 65.0, 2.9), (100.0, 190.0, 3.1)):
+        here = places[(places[:, 0] > first) & (places[:, 0] < last), 1]
+        np.testing.assert_allclose(here[here < 0], -2.9 + (2.9 + left) / 4, atol=0.01)
+        np.testing.assert_allclose(here[here > 0], left - (2.9 + left) / 4, atol=0.01)
+
+
+def test_a_lane_in_a_bend_is_even_where_its_edge_line_and_curb_stop_at_the_mouth_of_a_side_street():
+    street = Street(length=110.0, radius=55.0, vehicle=-1.75).paint(3.5, kind="edge").paint(0.0, pattern="dashed")
+    street.paint(-3.5, 5.0, 45.0, kind="edge").paint(-3.5, 70.0, 105.0, kind="edge")
+    edges = Features("LineStringZ", list(ROAD_EDGES))
+    for first, last in ((5.0, 48.0), (67.0, 105.0)):
+        along = np.arange(first, last, 0.5)
+        edges.add(LineString(np.c_[street.places(along, -4.0), np.full(len(along), HEIGHT)]), road=0, kind="main", edge="curb", status="measured",
+                  part="bottom", chain=1, side="right")
+    lines = street.lanes(edges=edges, road_points=_scanned(street))[0]
+    lane = np.concatenate([street.offsets(line) for line, row in lines if row["direction"] == 1])
+    np.testing.assert_allclose(lane, -1.75, atol=0.04)
+
+
+def _scanned(street):
+    """Points of a road whose right end is the curb, and in the mouth of the side street wherever something stood."""
+    from lanewright.core.survey.store.records import ROAD_POINT, to_units
+    from lanewright.core.survey.store.road_points import RoadPoints
+    from lanewright.core.survey.store.section_store import SectionStore
+
+    rng = np.random.default_rng(3)
+    s, d = rng.uniform(0, 110, 60_000), rng.uniform(-8.0, 4.0, 60_000)
+    ragged = np.where((s > 48.0) & (s < 67.0), np.where(np.sin(s) > 0, -7.5, -4.7), -4.0)
+    s, d, ragged = (values[d > ragged] for values in (s, d, ragged))
+    x, y = street.frame.to_local(*street.places(s, d).T)
+    station, offset = street.frame.roads[0].locate(x, y)
+    records = np.zeros(len(s), ROAD_POINT)
+    for name, values in zip("xyzsd", (x, y, np.full(len(s), HEIGHT - street.frame.origin[2]), station, offset)):
+        records[name] = to_units(values)
+    records["half_width"] = np.rint(1000 * np.where(offset < 0, np.abs(ragged - d + offset), 4.0 + np.abs(offset - d)))
+    points = RoadPoints(SectionStore(ROAD_POINT), street.frame.origin)
+    points.store.append(0, records)
+    return points

@@ -1,0 +1,42 @@
+"""Edge lines follow the edge of the road where it widens."""
+
+import numpy as np
+import shapely
+from clustered_streets import ClusteredStreet
+from lanewright.core.markings.lines.edges_beside import edges_beside
+
+
+def widening(s):
+    """Offset of an edge line along a road that widens by 1.8 m within 12 m, as before a hairpin."""
+    return 3.0 + 1.8 * np.clip((s - 40.0) / 12.0, 0.0, 1.0)
+
+
+def worn_street():
+    """The line is worn away but for a metre here and there where the road widens; the other edge line runs straight on."""
+    street = ClusteredStreet(radius=None).paint(0, 120, -3.0, kind="edge").paint(0, 40.5, 3.0, kind="edge").paint(54, 120, 4.8, kind="edge")
+    for first in (42.0, 46.0, 49.5):
+        street.paint(first, first + 1.0, float(widening(first + 0.5)), width=0.15, kind="edge")
+    return street
+
+
+def test_a_worn_edge_line_is_one_line_along_the_edge_of_a_road_that_widens():
+    street = worn_street()
+    found = street.lines(edges=street.pavement(lambda s: widening(s) + 0.3))
+    assert len({row["line"] for row in found.rows}) == 2
+    left = [line for line, row in found if np.mean(np.asarray(line.coords)[:, 1]) > 5_400_000.0]
+    x, y = np.concatenate([shapely.get_coordinates(line) for line in left]).T
+    np.testing.assert_allclose(y - 5_400_000.0, widening(x - 500_000.0), atol=0.12)
+
+
+def test_without_an_edge_the_two_ends_of_it_are_lines_of_their_own():
+    assert len({row["line"] for row in worn_street().lines().rows}) > 2
+
+
+def test_an_edge_leads_between_two_places_that_it_passes_and_between_no_others():
+    street = ClusteredStreet(radius=None)
+    beside = edges_beside(street.pavement(lambda s: 3.3 + 0.0 * s), [0, 1])
+    course = beside[0].between((10.0, 4.6), (50.0, 4.6))
+    assert course is not None and abs(course(np.array([30.0]))[0] - (3.3 + 1.6)) < 0.02
+    assert beside[0].between((10.0, 4.6), (50.0, -3.0)) is None
+    assert beside[1].between((10.0, 4.6), (50.0, 4.6)) is None
+    assert edges_beside(None, [0])[0].between((10.0, 4.6), (50.0, 4.6)) is None
