@@ -9,11 +9,12 @@ from scipy.ndimage import binary_dilation
 
 from ..markings.cross_section.candidates import STATIONS_OF_CELL, Boundaries
 from ..markings.cross_section.estimate import LaneSpan, RoadEstimate, lane_spans
-from ..markings.cross_section.lane_width import beside_surface_end, lane_places
+from ..markings.cross_section.lane_width import beside_island, beside_surface_end, lane_places
 from ..markings.cross_section.sections import STATION_STEP
 from .lane_track import BRIDGED, INFERRED, MAX_LANE_JUMP_SHARE, MEASURED, LaneTrack
 
 BESIDE_ONE, BETWEEN_LINES = 1, 4   # ranks of lanes beside one line, and between two lines that are seen: these are not moved
+FULL_ROOM = 0.05        # m: less of a strip than that is not left over
 STEP_LENGTH = 10.0      # m along which a step between two stretches of a lane is evened out
 
 
@@ -26,17 +27,17 @@ def estimated_lanes(boundaries: Boundaries, estimate: RoadEstimate, lane_width: 
     estimate : RoadEstimate over them
     lane_width : metres, of a lane beside which only one line is painted; line_distance : metres from that line to its middle, 0 for half of its width
     """
-    open_tracks: list[LaneTrack] = []
+    open_tracks: list[tuple[LaneTrack, np.ndarray]] = []
     closed: list[LaneTrack] = []
     spans: dict[int, list[LaneSpan]] = {}
     for span in lane_spans(estimate):
         spans.setdefault(span.interval, []).append(span)
     for i, (first, last) in enumerate(zip(estimate.candidates.first.tolist(), estimate.candidates.last.tolist())):
         parts = [part for span in spans.get(i, []) for part in [_part(boundaries, span, first, last, lane_width, line_distance)] if part is not None]
-        follows = _followed(open_tracks, parts, first)
-        closed += [track for k, track in enumerate(open_tracks) if k not in follows.values()]
-        open_tracks = [_appended(open_tracks[follows[k]], part) if k in follows else part for k, part in enumerate(parts)]
-    return [_to_its_ends(track, boundaries) for track in closed + open_tracks]
+        follows = _followed([track for track, _ in open_tracks], parts, first)
+        closed += [track for k, (track, _) in enumerate(open_tracks) if k not in follows.values()]
+        open_tracks = [_appended(open_tracks[follows[k]], part) if k in follows else (part, np.zeros(2)) for k, part in enumerate(parts)]
+    return [_to_its_ends(track, boundaries) for track in closed + [track for track, _ in open_tracks]]
 
 
 def _to_its_ends(track, boundaries):
@@ -76,34 +77,42 @@ def _rank(track):
     return np.select([track.status == MEASURED, track.offset, between], [BETWEEN_LINES, BESIDE_ONE, 2], 3)
 
 
-def _appended(track, part):
+def _appended(found, part):
     """A track and the part that follows it; of the two the one whose place is less sure is moved to meet the other, and takes its width.
 
-    It is moved as far as it is less sure: a stretch between two that are sure ends in both. A border that is a line in both stays on it. What
-    lies between two lines is placed by them all along, so there a step is evened out where it is.
+    It is moved as far as it is less sure: a stretch between two that are sure ends in both. A border that is a line in both stays on it. Of two
+    that are as sure as each other the second stays moved as the first was (`moved`, m across and of width), and what else they differ by, as
+    where a line between them steps aside, is evened out there. `found` and what is given are the track and by how much its end is moved.
     """
-    step, wider = track.d[-1] - part.d[0], track.width[-1] - part.width[0]
+    track, moved = found
+    step = np.array([track.d[-1] - part.d[0], track.width[-1] - part.width[0]])
     before, after = _rank(track), _rank(part)
     if after[0] > before[-1]:
-        share = _moved(before[::-1])[::-1]
-        track = replace(track, d=track.d - step * share, width=track.width - wider * share)
-    elif after[0] < before[-1] or after[0] == BESIDE_ONE:
-        share = _moved(after)
-        part = replace(part, d=part.d + step * share, width=part.width + wider * share)
-    elif after[0] < BETWEEN_LINES:
-        here, there = _moved(before[::-1])[::-1] / 2, _moved(after) / 2
-        track = replace(track, d=track.d - step * here, width=track.width - wider * here)
-        part = replace(part, d=part.d + step * there, width=part.width + wider * there)
-    return track.followed_by(part)
+        return _shifted(track, -step, _held(before[::-1])[::-1]).followed_by(part), np.zeros(2)
+    held = _held(after)
+    if after[0] < before[-1] or after[0] == BESIDE_ONE:
+        return track.followed_by(_shifted(part, step, held)), step * held[-1]
+    if after[0] == BETWEEN_LINES:
+        return track.followed_by(part), np.zeros(2)
+    own = (step - moved) / 2
+    track = _shifted(track, -own, _evened(before[::-1])[::-1])
+    return track.followed_by(_shifted(_shifted(part, moved, held), own, _evened(after))), moved * held[-1]
 
 
-def _moved(rank):
-    """(N,) share of a step at their first place by which places of some rank are moved."""
+def _shifted(track, step, share):
+    """A track moved across and widened by shares, (N,), of a step: m across and of width."""
+    return replace(track, d=track.d + step[0] * share, width=track.width + step[1] * share)
+
+
+def _held(rank):
+    """(N,) share of a step at their first place by which places of some rank are moved: all of it, or less and less up to a surer place."""
     surer = np.flatnonzero(rank > rank[0])
-    reach = surer[0] if len(surer) else np.inf
-    if rank[0] > BESIDE_ONE:
-        reach = min(reach, STEP_LENGTH / STATION_STEP)
-    return np.clip(1 - np.arange(len(rank)) / reach, 0, None)
+    return np.clip(1 - np.arange(len(rank)) / (surer[0] if len(surer) else np.inf), 0, None)
+
+
+def _evened(rank):
+    """(N,) the same of a step that is evened out where it is."""
+    return np.minimum(_held(rank), np.clip(1 - np.arange(len(rank)) * STATION_STEP / STEP_LENGTH, 0, None))
 
 
 def _part(boundaries, span, first, last, lane_width, line_distance):
@@ -114,14 +123,19 @@ def _part(boundaries, span, first, last, lane_width, line_distance):
         return None
     painted = [bool(boundaries.bounding[row]) for row in sides]
     begin, width = lane_places(left, right, *(boundaries.made_of[row] for row in sides), span.count, lane_width, boundaries.bend[rows])
-    beside_one = painted[0] != painted[1]
-    if beside_one and (line_distance or beside_surface_end(*boundaries.made_of[list(sides)])):
+    made_of = boundaries.made_of[list(sides)]
+    # a lane that has all the room between a line and the curb of an island is placed by both
+    seen = [boundaries.seen[row, rows] for row in sides]
+    left_over = float(np.median(np.abs(left - right - span.count * width)))
+    both = all(painted) or bool(beside_island(*made_of)) and min(one.mean() for one in seen) > 0.5 and left_over < FULL_ROOM and not line_distance
+    beside_one = any(painted) and not both
+    if beside_one and (line_distance or beside_surface_end(*made_of)):
         # the end of the surface is ragged, a lane is not
         width = np.full(len(left), 2 * line_distance or np.median(width))
         begin = left if painted[0] else right + width * span.count
     d = begin - width * (span.count - span.place - 0.5)
-    seen = sum(boundaries.seen[row, rows].astype(int) for row, paint in zip(sides, painted) if paint)
-    status = np.choose(seen, [BRIDGED, INFERRED, MEASURED if span.count == 1 else INFERRED])
+    shown = sum(one.astype(int) for one, paint in zip(seen, painted) if paint or both)
+    status = np.choose(shown, [BRIDGED, INFERRED, MEASURED if span.count == 1 else INFERRED])
     left_use = span.left if span.place == span.count - 1 else -1
     right_use = span.right if span.place == 0 else -1
     about = (beside_one, left_use, right_use, span.left_border, span.right_border, span.confidence)

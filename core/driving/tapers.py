@@ -52,10 +52,12 @@ def _kept_width(track, opens, head):
     width = float(np.median(beside))
     ahead = np.arange(at - 1, max(at - reach, 0) - 1, -1) if head else np.arange(at + 1, min(at + reach, len(track) - 1) + 1)
     wider = track.width[ahead] > width + LEAST_WIDENING
-    begin = int(np.argmax(wider)) if wider[:int(BORDER_BEFORE_LANE / STATION_STEP)].any() else len(wider)
-    ahead = ahead[begin:len(wider) if wider[begin:].all() else begin + int(np.argmin(wider[begin:]))]
-    if not len(ahead):
+    begin = int(np.argmax(wider))
+    as_wide = np.flatnonzero(~wider[begin:])
+    # a lane that is as wide all along divides into two, and has no taper
+    if not wider[:int(BORDER_BEFORE_LANE / STATION_STEP)].any() or not len(as_wide):
         return track
+    ahead = ahead[begin:begin + int(as_wide[0])]
     side = np.sign(opens.at(opens.first if head else opens.last)[0] - track.d[at])
     d, widths, status = track.d.copy(), track.width.copy(), track.status.copy()
     d[ahead] -= side * (widths[ahead] - width) / 2

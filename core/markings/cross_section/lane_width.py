@@ -13,9 +13,9 @@ def lane_places(left: np.ndarray, right: np.ndarray, made_left: np.ndarray, made
                 bend: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Where lanes lie in strips.
 
-    Between two lines they share the strip. Beside a curb they are no wider than usual; beside an island they are as wide also where it
-    reaches somewhat into them. The surface may end at what hides it, and reach into side streets: beside its end they are as wide as usual, and in
-    bends, where lanes are widened, as there is room.
+    Between two lines they share the strip. Beside a curb they are no wider than usual; beside an island, where nothing else has room, they share
+    the strip too, but are as wide as usual where it reaches somewhat into them. The surface may end at what hides it, and reach into side
+    streets: beside its end they are as wide as usual, and in bends, where lanes are widened, as there is room.
 
     Parameters
     ----------
@@ -35,9 +35,14 @@ def lane_places(left: np.ndarray, right: np.ndarray, made_left: np.ndarray, made
     each = (left - right) / number
     widened = bend & (each > LIKELY_SHARE[0] * usual) & (each < LIKELY_SHARE[1] * usual)
     hidden = loose & beside_surface_end(made_left, made_right)
-    nearly = ((made_left == ISLAND) | (made_right == ISLAND)) & (each > LIKELY_SHARE[0] * usual)
-    each = np.where(hidden, np.where(widened, each, usual), np.where(loose, np.where(nearly, usual, np.minimum(each, usual)), each))
+    likely = beside_island(made_left, made_right) & (each > LIKELY_SHARE[0] * usual) & (each < LIKELY_SHARE[1] * usual)
+    each = np.where(hidden, np.where(widened, each, usual), np.where(loose, np.where(likely, np.maximum(each, usual), np.minimum(each, usual)), each))
     return np.where(loose & open_left, right + number * each, left), each
+
+
+def beside_island(made_left: np.ndarray, made_right: np.ndarray) -> np.ndarray:
+    """Bool, whether a strip reaches to the curb of an island."""
+    return (made_left == ISLAND) | (made_right == ISLAND)
 
 
 def beside_surface_end(made_left: np.ndarray, made_right: np.ndarray) -> np.ndarray:

@@ -121,12 +121,10 @@ def lateral_mismatch(before: _End, after: _End) -> float:
 def _miss(before: _End, after: _End, trend: CommonTrend, edges: EdgesBeside) -> float:
     """The same, or less where both run along one edge of the road and keep their distance from it."""
     miss = lateral_mismatch(before, after)
-    ends = [(end.s, end.d + float(trend.at(end.s))) for end in (before, after)]
-    edge = edges.between(*ends)
-    if edge is None:
-        return miss
-    first, second = (d - float(edge(s)) for s, d in ends)
-    return min(miss, abs(second - first))
+    s = np.array([before.s, after.s])
+    d = np.array([before.d, after.d]) + trend.at(s)
+    edge = edges.between((s[0], d[0]), (s[1], d[1]))
+    return miss if edge is None else min(miss, float(np.ptp(d - edge(s))))
 
 
 def _trust(before, after):

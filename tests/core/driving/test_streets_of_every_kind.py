@@ -138,9 +138,13 @@ def test_a_stop_line_across_two_lanes_says_that_they_lead_one_way():
     assert lanes_of(street, markings=painted(street, (34.0, 34.5, -3.4, -0.1, "stop"))) == {-1.75: 1, 1.75: -1}
 
 
-def test_the_curbs_of_an_island_bound_the_lanes_beside_it():
-    """Two lanes of 4.8 m without a line between, and along them an island of 2.6 m whose line goes round it and closes."""
-    street = Street(vehicle=-3.0).paint(4.8, kind="edge").paint(-4.8, kind="edge")
+@pytest.mark.parametrize("edge", [4.8, 5.6])
+def test_the_curbs_of_an_island_bound_the_lanes_beside_it(edge):
+    """Two lanes without a line between, and along them an island of 2.6 m whose line goes round it and closes.
+
+    Lanes have all the room beside it, 3.5 m as usual or, as where one enters a roundabout, 4.3 m.
+    """
+    street = Street(vehicle=-3.0, again=(3.0,)).paint(edge, kind="edge").paint(-edge, kind="edge")
     along = np.arange(4.0, 116.25, 0.25)
     ring = street.places(np.r_[along, along[::-1], along[0]], np.r_[np.full(len(along), 1.3), np.full(len(along), -1.3), 1.3])
     edges = Features("LineStringZ", list(ROAD_EDGES))
@@ -150,7 +154,7 @@ def test_the_curbs_of_an_island_bound_the_lanes_beside_it():
         east = np.asarray(line.coords)[:, 0] - EAST
         beside.setdefault(row["direction"], []).extend(street.offsets(line)[(east > 10.0) & (east < 110.0)])
     for way in (1, -1):
-        np.testing.assert_allclose(beside[way], -3.05 * way, atol=0.03)
+        np.testing.assert_allclose(beside[way], -(edge + 1.3) / 2 * way, atol=0.03)
 
 
 def test_painted_lanes_are_sure():

@@ -42,6 +42,14 @@ def test_a_lane_that_opens_is_driven_from_where_it_is_as_wide_as_farther_on(open
     assert other.min() == pytest.approx(96.0, abs=1.5) and other.max() == pytest.approx(195.0, abs=1.0)
 
 
+def test_a_broad_lane_that_divides_into_two_is_driven_in_its_middle_up_to_there():
+    street = Street(length=LENGTH, vehicle=-1.85, again=(1.85,)).paint(3.7, kind="edge").paint(0.0, kind="centre")
+    street.paint(-4.8, kind="edge").paint(-2.4, 100.0, 195.0, pattern="dashed")
+    places = lanes_by_place(street)
+    before = places[(places[:, 0] > 10.0) & (places[:, 0] < 88.0) & (places[:, 1] < 0.0), 1]
+    np.testing.assert_allclose(before, -2.4, atol=0.03)
+
+
 def test_where_a_line_steps_aside_the_lanes_between_it_and_the_other_edge_follow_it_there_and_nowhere_else():
     """Two lanes without a line between them; behind a gap the left edge line lies 0.2 m farther out."""
     street = Street(length=LENGTH, vehicle=-1.45).paint(-2.9, kind="edge")
@@ -85,3 +93,10 @@ def _scanned(street):
     points = RoadPoints(SectionStore(ROAD_POINT), street.frame.origin)
     points.store.append(0, records)
     return points
+
+
+def test_lanes_of_unequal_width_go_on_as_they_are_where_the_line_between_them_is_not_painted():
+    street = Street(length=LENGTH, vehicle=-1.85, again=(1.85,)).paint(3.3, kind="edge").paint(-3.9, kind="edge")
+    street.paint(0.0, 60.0, 195.0, kind="centre")
+    for line, row in street.lanes()[0]:
+        np.testing.assert_allclose(street.offsets(line), -1.95 if row["direction"] > 0 else 1.65, atol=0.03)
