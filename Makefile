@@ -29,7 +29,7 @@ manual: setup ## the manual's pages from the algorithms' own texts, into docs/ma
 window: setup ## a real QGIS window driven on a screen of its own, pictures into docs/manual/img/
 	@tools/screenshots.sh
 
-lint: setup ## style, spelling, types, and the scans QGIS's plugin repository makes of an upload
+lint: setup ## style, spelling, types, names that Qt 6 knows, and the scans QGIS's plugin repository makes of an upload
 	@tools/lint.sh
 
 translations: setup ## new texts into resources/i18n/*.ts for the translators, and the .qm that QGIS loads

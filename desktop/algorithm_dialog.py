@@ -6,13 +6,16 @@ import json
 from pathlib import Path
 
 from processing.gui.AlgorithmDialog import AlgorithmDialog
-from qgis.core import Qgis, QgsProcessingAlgorithm, QgsProcessingParameterDefinition, QgsProject, QgsSettings
+from qgis.core import Qgis, QgsProcessingAlgorithm, QgsProject, QgsSettings
 from qgis.PyQt.QtWidgets import QDialogButtonBox, QFileDialog, QInputDialog, QMenu, QPushButton, QTextBrowser, QWidget
 
 from ..processing_provider.texts import tr
+from .batch_dialog import BatchAlgorithmDialog
 from .corrections_layer import corrections_layers
+from .database_dialog import DatabaseDialog, database_destinations
+from .destinations import LAST_OUTPUT, destinations, outputs_by_default
 
-LAST_FOLDER = "/Processing/LastOutputPath"  # QGIS's own setting
+LAST_INPUT = "/Processing/LastInputPath"  # QGIS's own setting
 PRESETS = "lanewright/presets"
 SETTINGS = ("number", "enum", "boolean", "string", "crs", "expression", "distance")  # what a preset holds: no data, no destination
 FEWEST_OUTPUTS = 3  # that are worth one place for all
@@ -25,9 +28,13 @@ class LanewrightDialog(AlgorithmDialog):
         super().__init__(algorithm, False, parent)
         self.setWindowTitle(title)
         if len(outputs_by_default(algorithm)) >= FEWEST_OUTPUTS:
-            self.save_button = self._button(tr("Save everything to…"), tr("One folder for all results: the layers as tables of one GeoPackage, "
-                                                                          "images and reports beside it"))
-            self.save_button.clicked.connect(self.choose_folder)
+            self.save_button = self._button(tr("Save everything to…"), tr("One place for all results: a folder with the layers as tables of one "
+                                                                          "GeoPackage, images and reports beside it; or a database"))
+            places = QMenu(self)
+            places.addAction(tr("Folder…"), self.choose_folder)
+            if any(output.type() == "sink" for output in outputs_by_default(algorithm)):
+                places.addAction(tr("Database (PostGIS)…"), self.choose_database)
+            self.save_button.setMenu(places)
         self.presets_button = self._button(tr("Presets"), tr("Settings that you keep under a name; data and destinations are no part of them"))
         self.presets = QMenu(self)
         self.presets.aboutToShow.connect(self._list_presets)
@@ -37,6 +44,12 @@ class LanewrightDialog(AlgorithmDialog):
         help_shown = self.findChild(QTextBrowser, "textShortHelp")
         if help_shown is not None:
             help_shown.setHtml(help_shown.toHtml().replace(algorithm.displayName(), title, 1))
+
+    def runAsBatch(self) -> None:
+        """Our own batch in place of QGIS's."""
+        self.close()
+        self.batch = BatchAlgorithmDialog(self.algorithm().create(), self.windowTitle(), self.parentWidget())
+        self.batch.show()
 
     def _offer_corrections(self):
         """The corrections of the project, where it has one layer of them."""
@@ -53,14 +66,33 @@ class LanewrightDialog(AlgorithmDialog):
     # -- everything to one place ----------------------------------------------------------------
 
     def choose_folder(self) -> None:
-        folder = QFileDialog.getExistingDirectory(self, tr("Folder for all results"), QgsSettings().value(LAST_FOLDER, ""))
+        folder = QFileDialog.getExistingDirectory(self, tr("Folder for all results"), QgsSettings().value(LAST_OUTPUT, "") or _folder_of_inputs())
         if folder:
-            QgsSettings().setValue(LAST_FOLDER, folder)
+            QgsSettings().setValue(LAST_OUTPUT, folder)
             self.save_everything_to(folder)
 
     def save_everything_to(self, folder: str) -> None:
         """Set the destinations of all results that are made by default."""
-        self.setParameters(destinations(self.algorithm(), folder))
+        places = destinations(self.algorithm(), folder)
+        self.setParameters(places)
+        there = Path(folder) / f"{self.algorithm().name()}.gpkg"
+        self._say(tr("The {count} results go to {folder}.").format(count=len(places), folder=folder)
+                  + (" " + tr("Those of the earlier run in {file} will be replaced.").format(file=there.name) if there.exists() else ""))
+
+    def choose_database(self) -> None:
+        dialog = self.database = DatabaseDialog(self)
+        dialog.accepted.connect(lambda: self.save_layers_to(*dialog.choice))
+        dialog.open()
+
+    def save_layers_to(self, connection: str, schema: str, prefix: str = "") -> None:
+        """Set the destinations of all layers that are made by default to tables of a schema; files keep theirs."""
+        places = database_destinations(self.algorithm(), connection, schema, prefix)
+        self.setParameters(places)
+        self._say(tr("{count} layers go to the schema {schema} of {connection}.").format(count=len(places), schema=schema, connection=connection))
+
+    def _say(self, text):
+        self.messageBar().clearWidgets()
+        self.messageBar().pushMessage("", text, level=Qgis.MessageLevel.Info)
 
     # -- presets ----------------------------------------------------------------------------------
 
@@ -79,7 +111,7 @@ class LanewrightDialog(AlgorithmDialog):
         known = {definition.name() for definition in self.algorithm().parameterDefinitions()}
         values = presets_of(self.algorithm().name())[name]
         self.setParameters({setting: value for setting, value in values.items() if setting in known})
-        self.messageBar().pushMessage("", tr("Preset {name}: {count} settings.").format(name=name, count=len(values)), level=Qgis.MessageLevel.Info)
+        self._say(tr("Preset {name}: {count} settings.").format(name=name, count=len(values)))
 
     def remove_preset(self, name: str) -> None:
         kept = presets_of(self.algorithm().name())
@@ -110,21 +142,8 @@ class LanewrightDialog(AlgorithmDialog):
                             if definition.type() in SETTINGS})
 
 
-def outputs_by_default(algorithm: QgsProcessingAlgorithm) -> list[QgsProcessingParameterDefinition]:
-    """The results that are made unless one is left out."""
-    return [definition for definition in algorithm.destinationParameterDefinitions() if definition.createByDefault()]
-
-
-def destinations(algorithm: QgsProcessingAlgorithm, folder: str) -> dict[str, str]:
-    """Where each result goes: layers into one GeoPackage called like the algorithm, other files under their own names."""
-    found = {}
-    for definition in outputs_by_default(algorithm):
-        table = definition.name().split(":")[-1].lower()
-        if definition.type() == "sink":
-            found[definition.name()] = f"ogr:dbname='{Path(folder) / algorithm.name()}.gpkg' table=\"{table}\" (geom)"
-        else:
-            found[definition.name()] = str(Path(folder) / f"{table}.{definition.defaultFileExtension()}")
-    return found
+def _folder_of_inputs():
+    return QgsSettings().value(LAST_INPUT, "")
 
 
 def presets_of(algorithm: str) -> dict[str, dict]:

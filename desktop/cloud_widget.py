@@ -34,6 +34,7 @@ class PointCloudsWidget(QWidget):
         self.names.dropped.connect(self.add)
         self.names.textChanged.connect(self._tell)
         self.names.textChanged.connect(self.changed)
+        self.names.editingFinished.connect(self._remember_folder)
         self.button = QToolButton()
         self.button.setText("…")
         self.button.setToolTip(tr("Add point clouds"))
@@ -68,6 +69,7 @@ class PointCloudsWidget(QWidget):
     def add(self, names: list[str]) -> None:
         """Further names after those that are there."""
         self.set_value(list(dict.fromkeys([*self.value(), *names])))
+        self._remember_folder()
 
     # -- what the button offers -------------------------------------------------------------------
 
@@ -84,14 +86,19 @@ class PointCloudsWidget(QWidget):
     def choose_files(self) -> None:
         files, _ = QFileDialog.getOpenFileNames(self, tr("Point clouds"), QgsSettings().value(LAST_FOLDER, ""), FILTER)
         if files:
-            QgsSettings().setValue(LAST_FOLDER, str(Path(files[0]).parent))
             self.add(files)
 
     def choose_folder(self) -> None:
         folder = QFileDialog.getExistingDirectory(self, tr("Folder of point clouds"), QgsSettings().value(LAST_FOLDER, ""))
         if folder:
-            QgsSettings().setValue(LAST_FOLDER, folder)
             self.add([folder])
+
+    def _remember_folder(self) -> None:
+        """What is chosen next, such as the trajectory, is looked for where the point clouds lie."""
+        paths = [Path(name) for name in self.value()[:1]]
+        folders = [path if path.is_dir() else path.parent for path in paths]
+        if folders and folders[0].is_absolute() and folders[0].is_dir():
+            QgsSettings().setValue(LAST_FOLDER, str(folders[0]))
 
     def _tell(self) -> None:
         if self.told is not None:
@@ -145,7 +152,8 @@ def described(given: list[str]) -> str:
     if missing:
         return tr("There is no file {name}.").format(name=missing[0])
     size = sum(path.stat().st_size for path in files) / MEGABYTE
-    return tr("{count} file(s), {size} MB").format(count=len(files), size=f"{size:,.1f}" if size < 10 else f"{size:,.0f}")
+    mb = f"{size:,.1f}" if size < 10 else f"{size:,.0f}"
+    return tr("1 file, {size} MB").format(size=mb) if len(files) == 1 else tr("{count} files, {size} MB").format(count=len(files), size=mb)
 
 
 def _source(value) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from qgis.core import Qgis, QgsLayerTreeGroup, QgsMapLayer, QgsProject
-from qgis.PyQt.QtWidgets import QComboBox, QDialog, QDialogButtonBox, QFormLayout, QWidget
+from qgis.PyQt.QtWidgets import QComboBox, QDialog, QDialogButtonBox, QFormLayout, QLineEdit, QWidget
 
 from ..processing_provider.results.layer_tree import ALGORITHM
 from ..processing_provider.results.runs import GROUP
@@ -32,6 +32,19 @@ def shown_layers(group: QgsLayerTreeGroup, hidden: bool = False) -> list[QgsMapL
             if node.layer() and node.layer().isSpatial() and (hidden or node.itemVisibilityChecked())]
 
 
+def layers_below(project: QgsProject, groups: list[QgsLayerTreeGroup]) -> list[QgsMapLayer]:
+    """Images and web maps of a project that are no part of a road map, from above."""
+    inside = {layer.id() for group in groups for layer in shown_layers(group, hidden=True)}
+    nodes = project.layerTreeRoot().findLayers()
+    return [node.layer() for node in nodes if node.layer() and node.layer().id() not in inside and node.layer().isSpatial()
+            and node.layer().type() != Qgis.LayerType.Vector]
+
+
+def credit_of(layer: QgsMapLayer) -> str:
+    """Whose data a layer shows, by its metadata or by its server; "" where neither says so."""
+    return ", ".join(layer.metadata().rights()) or layer.serverProperties().attribution()
+
+
 class LayoutDialog(QDialog):
     """Asks what to print; `choice` is what was chosen."""
 
@@ -50,23 +63,38 @@ class LayoutDialog(QDialog):
             self.scale.addItem(f"1 : {scale}", scale)
         self.below = QComboBox()
         self.below.addItem(tr("Nothing"), "")
-        inside = {layer.id() for group in groups for layer in shown_layers(group, hidden=True)}
-        for layer in project.mapLayers().values():
-            if layer.id() not in inside and layer.isSpatial() and layer.type() != Qgis.LayerType.Vector:
-                self.below.addItem(layer.name(), layer.id())
+        for layer in layers_below(project, groups):
+            self.below.addItem(layer.name(), layer.id())
+        seen = [layer.id() for layer in project.layerTreeRoot().checkedLayers()]
+        self.below.setCurrentIndex(next((row for row in range(1, self.below.count()) if self.below.itemData(row) in seen), 0))
+        self.credit = QLineEdit()
+        self.credit.setToolTip(tr("Whose data lie below, as their licence wants it said; stands in the lower left corner of the map"))
+        self.below.currentIndexChanged.connect(lambda row: self._suggest_credit())
+        self._suggest_credit()
         if len(groups) > 1:
             form.addRow(tr("Road map"), self.group)
         form.addRow(tr("Paper"), self.paper)
         form.addRow(tr("Scale"), self.scale)
         form.addRow(tr("Layer below (orthoimage, web map)"), self.below)
+        form.addRow(tr("Credit on the map"), self.credit)
+        for box in (self.scale, self.below):
+            box.setMinimumContentsLength(42)
         buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Ok | QDialogButtonBox.StandardButton.Cancel)
         buttons.accepted.connect(self.accept)
         buttons.rejected.connect(self.reject)
         form.addRow(buttons)
 
+    def _suggest_credit(self):
+        below = self._layer_below()
+        self.credit.setText(credit_of(below) if below is not None else "")
+        self.credit.setEnabled(below is not None)
+
+    def _layer_below(self):
+        return self.project.mapLayer(self.below.currentData()) if self.below.currentData() else None
+
     @property
     def choice(self) -> dict:
         """The group, and the arguments of `road_map_layout` that were chosen."""
-        below = self.project.mapLayer(self.below.currentData()) if self.below.currentData() else None
+        below = self._layer_below()
         return dict(group=self.groups[self.group.currentIndex()], paper=self.paper.currentText(), scale=self.scale.currentData(),
-                    below=[below] if below is not None else [])
+                    below=[below] if below is not None else [], credit=self.credit.text().strip())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from qgis.core import (
@@ -62,7 +63,7 @@ class Frame:
 
 
 def road_map_layout(project: QgsProject, layers: list[QgsMapLayer], title: str, paper: str = "A4",
-                    below: list[QgsMapLayer] | None = None, scale: int = 0) -> QgsPrintLayout:
+                    below: list[QgsMapLayer] | None = None, scale: int = 0, credit: str = "") -> QgsPrintLayout:
     """A layout with the road along the page.
 
     Parameters
@@ -74,6 +75,7 @@ def road_map_layout(project: QgsProject, layers: list[QgsMapLayer], title: str, 
     below : layers drawn below these and left out of the legend: an orthoimage, a web map
     scale : denominator of the scale; 0 takes the largest round scale at which the whole road fits,
         and an atlas of pages of 1 : 500 where that would be smaller than 1 : 1000
+    credit : whose data lie below, as their licence wants it said on the map
 
     Returns
     -------
@@ -99,6 +101,8 @@ def road_map_layout(project: QgsProject, layers: list[QgsMapLayer], title: str, 
     _add_legend(layout, chart, layers, frame)
     _add_scale_bar(layout, chart, frame, shown)
     _add_north_arrow(layout, chart, frame)
+    if credit:
+        _add_credit(layout, frame, credit)
     if len(pages) > 1:
         _add_atlas(project, layout, chart, pages, crs, title)
     return layout
@@ -278,7 +282,9 @@ def _add_scale_bar(layout, chart, frame, scale):
     number.setHAlign(Qt.AlignmentFlag.AlignRight)
     number.setBackgroundEnabled(True)
     number.setBackgroundColor(QColor(255, 255, 255, 225))
-    _place(layout, number, BORDER + frame.map_width - 27, bottom - bar.rect().height() - 8, 24, 4.5)
+    number.setMarginX(2.0)
+    number.setVAlign(Qt.AlignmentFlag.AlignVCenter)
+    _place(layout, number, bar.pos().x(), bottom - bar.rect().height() - 8, bar.rect().width(), 5.0)
 
 
 def _add_north_arrow(layout, chart, frame):
@@ -293,6 +299,22 @@ def _add_north_arrow(layout, chart, frame):
     arrow.setLinkedMap(chart)
     arrow.setNorthMode(QgsLayoutItemPicture.NorthMode.GridNorth)
     _place(layout, arrow, BORDER + frame.map_width - ARROW - 3, BORDER + HEADING + 3, ARROW, ARROW)
+
+
+def _add_credit(layout, frame, credit):
+    """In the lower left corner of the map."""
+    label = QgsLayoutItemLabel(layout)
+    label.setId("Credit")
+    label.setText(credit)
+    label.setTextFormat(_text(6.5))
+    label.setBackgroundEnabled(True)
+    label.setBackgroundColor(QColor(255, 255, 255, 200))
+    label.setMarginX(1.0)
+    label.setMarginY(0.5)
+    size, widest = label.sizeForText(), 0.5 * frame.map_width
+    bottom = BORDER + HEADING + frame.map_height
+    width, height = min(size.width() + 1.0, widest), size.height() * math.ceil(size.width() / (widest - 5.0)) + 0.5
+    _place(layout, label, BORDER + 0.5, bottom - height - 0.5, width, height)
 
 
 def _add_atlas(project, layout, chart, pages, crs, title):

@@ -171,7 +171,7 @@ class Menu(QObject):
 
     def open_road_map(self, **values):
         """The dialog of Road map, with some of its values."""
-        import processing
+        from qgis import processing
 
         self.dialog = processing.createAlgorithmDialog("lanewright:roadmap", values)
         if self.dialog is not None:  # QGIS has said why

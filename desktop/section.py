@@ -26,6 +26,8 @@ from ..processing_provider.results.layer_tree import CLOUDS, OUTPUT
 HALF_WIDTH = 20.0     # m of the section either side
 REACH = 60.0          # m about a place within which the road's direction is sought
 LEADING = ("DRIVING_LINES", "ROAD_EDGES", "BOUNDARIES", "MARKING_LINES", "TRAJECTORY")  # lines that run along the road, best first
+CORNERS = ("CURB_POINTS", "CORNERS")
+CORNERS_WITHIN = 0.5  # m along the road
 DRAWN = {"ROAD_EDGES": "#e31a1c", "BOUNDARIES": "#e31a1c", "MARKING_LINES": "#2166ff", "DRIVING_LINES": "#00a651"}
 
 
@@ -77,12 +79,13 @@ class Section:
 
 @dataclass(frozen=True)
 class Crossing:
-    """Where a line crosses the section: m left of its middle, height, what it is, colour."""
+    """Where a line crosses the section: m left of its middle, height, what it is, colour; of a curb, the height of its top (else NaN)."""
 
     offset: float
     z: float
     title: str
     colour: str
+    top: float = math.nan
 
 
 def clouds_of(group: QgsLayerTreeGroup) -> list[str]:
@@ -124,8 +127,40 @@ def crossings(section: Section, layers: Iterable[QgsVectorLayer]) -> list[Crossi
         for feature in layer.getFeatures(line.boundingBox()):
             met = feature.geometry().intersection(line)
             for vertex in met.vertices() if not met.isEmpty() else ():
-                found.append(Crossing(section.offset(vertex.x(), vertex.y()), _height(feature.geometry(), vertex), title_of(layer, feature), colour))
+                z = _height(feature.geometry(), vertex)
+                found.append(Crossing(section.offset(vertex.x(), vertex.y()), z, title_of(layer, feature), colour, z + _curb_height(feature)))
     return sorted(found, key=lambda crossing: -crossing.offset)
+
+
+def corners(section: Section, layers: Iterable[QgsVectorLayer], along: float = CORNERS_WITHIN) -> list[tuple[float, float, str]]:
+    """(offset, z, part) of the corners of curbs, bottom and top, that lie within `along` m of the section; of layers of curb points."""
+    found, box = [], section.line().boundingBox().buffered(along)
+    for layer in layers:
+        if layer.customProperty(OUTPUT) not in CORNERS or layer.geometryType() != Qgis.GeometryType.Point:
+            continue
+        for feature in layer.getFeatures(box):
+            place = feature.geometry()
+            point = place.constGet()
+            if abs((point.x() - section.x) * section.ahead[0] + (point.y() - section.y) * section.ahead[1]) <= along and point.is3D():
+                found.append((section.offset(point.x(), point.y()), point.z(), str(feature.attribute("part") or "bottom")))
+    return found
+
+
+def middle_of(found: Iterable[Crossing]) -> float:
+    """m left of the section's middle: about where the middle of the road is, by the lines that cross."""
+    offsets = [crossing.offset for crossing in found]
+    return (min(offsets) + max(offsets)) / 2 if offsets else 0.0
+
+
+def _curb_height(feature):
+    """m from the bottom to the top of a curb; NaN of other lines and of edges without one."""
+    names = {field.name() for field in feature.fields()}
+    if not {"height_m", "part"} <= names or feature["part"] == "top" or "edge" in names and feature["edge"] == "pavement":
+        return math.nan
+    try:
+        return float(feature["height_m"])
+    except (TypeError, ValueError):  # NULL
+        return math.nan
 
 
 def _height(geometry, vertex):

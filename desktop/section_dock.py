@@ -22,10 +22,11 @@ from qgis.PyQt.QtWidgets import QDockWidget, QDoubleSpinBox, QHBoxLayout, QLabel
 from ..core.common.errors import Cancelled, RoadExtractionError
 from ..core.common.parallel import cancellation_scope
 from ..core.common.progress import Progress
+from ..core.road.scanlines.from_points import slice_lines
 from ..core.survey.las.near import points_near
 from ..processing_provider.results.layer_tree import road_maps
 from ..processing_provider.texts import told, tr
-from .section import HALF_WIDTH, Section, clouds_of, crossings, layers_of, section_at
+from .section import HALF_WIDTH, Section, clouds_of, corners, crossings, layers_of, middle_of, section_at
 from .section_view import SectionView
 
 AROUND = 40.0    # m of road kept in memory either side of a place, so that stepping along it needs no new reading
@@ -146,7 +147,11 @@ class SectionDock(QDockWidget):
         if self.section is None:
             return
         points = self.section.cut(self._kept, self.thickness.value()) if self._kept_at is not None and not message else np.empty((0, 3))
-        self.view.show_section(points, crossings(self.section, layers_of(self.group)), message or tr("No points lie here."))
+        layers = layers_of(self.group)
+        found = crossings(self.section, layers)
+        middle = middle_of(found)
+        scanline = [line + (middle, 0.0) for line in slice_lines(points[:, 0] - middle, points[:, 1], 2 * HALF_WIDTH)]
+        self.view.show_section(points, found, message or tr("No points lie here."), scanline, corners(self.section, layers))
 
     # -- the line on the map --------------------------------------------------------------------------
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from qgis.PyQt.QtCore import QPointF, QRectF, Qt
-from qgis.PyQt.QtGui import QColor, QCursor, QFont, QImage, QMouseEvent, QPainter, QPen, QWheelEvent
+from qgis.PyQt.QtGui import QColor, QCursor, QFont, QFontMetricsF, QImage, QMouseEvent, QPainter, QPen, QPolygonF, QWheelEvent
 from qgis.PyQt.QtWidgets import QToolTip, QWidget
 
 from ..processing_provider.texts import tr
@@ -17,7 +18,8 @@ LEAST_HEIGHT = 0.6       # m that the picture shows at least
 HEIGHT_ABOVE, HEIGHT_BELOW = 0.8, 0.5  # m shown above and below the lines on the road
 ZOOM = 1.25              # of a turn of the wheel
 NEAREST = 1.0            # m of width that zooming ends at
-GROUND, PAPER, INK = QColor("#444444"), QColor("#ffffff"), QColor("#222222")
+PAPER, INK, LABEL = QColor("#ffffff"), QColor("#222222"), QColor(255, 255, 255, 215)
+SCANLINE, CORNER = QColor("#e07b00"), QColor("#8e24aa")
 
 
 class SectionView(QWidget):
@@ -27,15 +29,19 @@ class SectionView(QWidget):
         super().__init__(parent)
         self.setMinimumSize(320, 180)
         self.setMouseTracking(True)
-        self.points, self.crossings = np.empty((0, 3)), []
+        self.points, self.crossings, self.scanline, self.corners = np.empty((0, 3)), [], [], []
         self.message = tr("Click on the road in the map.")
         self.centre, self.half = 0.0, 8.0   # m: middle and half of what is shown across
         self.low, self.high = 0.0, 1.0
         self._dragged = None
 
-    def show_section(self, points: np.ndarray, crossings: list[Crossing], message: str = "") -> None:
-        """Show (N, 3) offset, z and intensity and the crossings; `message` where there is nothing to show."""
-        self.points, self.crossings, self.message = points, crossings, message
+    def show_section(self, points: np.ndarray, crossings: list[Crossing], message: str = "", scanline: Sequence[np.ndarray] = (),
+                     corners: Sequence[tuple[float, float, str]] = ()) -> None:
+        """Show (N, 3) offset, z and intensity, the crossings, pieces of the scanline (V, 2) and corners (offset, z, part).
+
+        `message` is shown where there is nothing else.
+        """
+        self.points, self.crossings, self.message, self.scanline, self.corners = points, crossings, message, list(scanline), list(corners)
         self._fit_heights()
         self.update()
 
@@ -79,7 +85,9 @@ class SectionView(QWidget):
         self._draw_axes(painter, frame)
         painter.setClipRect(frame)
         self._draw_points(painter, frame)
+        self._draw_scanline(painter)
         self._draw_crossings(painter, frame)
+        self._draw_corners(painter)
 
     def _draw_axes(self, painter, frame):
         painter.setFont(QFont(self.font().family(), 8))
@@ -96,7 +104,7 @@ class SectionView(QWidget):
             painter.setPen(INK)
             painter.drawText(QRectF(0, y - 7, LEFT - 4, 14), int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter), f"{value:.2f}")
         painter.drawText(QRectF(frame.left(), frame.bottom() + 16, frame.width(), 16), int(Qt.AlignmentFlag.AlignHCenter),
-                         tr("left ← offset from the place that was clicked (m) → right; heights in m"))
+                         tr("left ← offset from the place that was clicked (m) → right; heights in m; orange: scanline; ○ bottom, △ top of a curb"))
         painter.drawRect(frame)
 
     def _draw_points(self, painter, frame):
@@ -119,18 +127,53 @@ class SectionView(QWidget):
         image = QImage(data, width, height, 4 * width, QImage.Format.Format_ARGB32)
         painter.drawImage(frame.topLeft(), image)
 
+    def _draw_scanline(self, painter):
+        painter.setPen(QPen(SCANLINE, 1.6))
+        for line in self.scanline:
+            painter.drawPolyline(QPolygonF([QPointF(*self._at(offset, z)) for offset, z in line]))
+
     def _draw_crossings(self, painter, frame):
         painter.setFont(QFont(self.font().family(), 8))
-        for number, crossing in enumerate(self.crossings):
+        shown = [crossing for crossing in self.crossings if abs(crossing.offset - self.centre) <= self.half]
+        for crossing in shown:
             x, y = self._at(crossing.offset, crossing.z if math.isfinite(crossing.z) else self.low)
             colour = QColor(crossing.colour)
             painter.setPen(QPen(colour, 1.2, Qt.PenStyle.DashLine))
             painter.drawLine(QPointF(x, frame.top()), QPointF(x, frame.bottom()))
             painter.setPen(QPen(colour, 1.6))
             painter.setBrush(PAPER)
+            if math.isfinite(crossing.top):
+                top = QPointF(*self._at(crossing.offset, crossing.top))
+                painter.drawLine(QPointF(x, y), top)
+                painter.drawPolygon(QPolygonF([top + QPointF(-5, 5), top + QPointF(5, 5), top + QPointF(0, -4)]))
             if math.isfinite(crossing.z):
                 painter.drawEllipse(QPointF(x, y), 4, 4)
-            painter.drawText(QPointF(x + 4, frame.top() + 12 + 12 * (number % 6)), crossing.title)
+        for crossing, box in zip(shown, self._label_boxes(shown, frame, QFontMetricsF(painter.font(), self))):
+            painter.fillRect(box, LABEL)
+            painter.setPen(QColor(crossing.colour))
+            painter.drawText(box, int(Qt.AlignmentFlag.AlignCenter), crossing.title)
+
+    def _label_boxes(self, shown, frame, metrics):
+        """Where the titles of crossings stand: beside their line, inside the frame, in the first row where they cover no other."""
+        boxes = []
+        for crossing in shown:
+            x, _ = self._at(crossing.offset, self.low)
+            width, height = metrics.horizontalAdvance(crossing.title) + 6, metrics.height()
+            left = max(frame.left(), x + 3 if x + 3 + width <= frame.right() else x - 3 - width)
+            rows = (QRectF(left, frame.top() + 2 + row * height, width, height) for row in range(len(boxes) + 1))
+            boxes.append(next(box for box in rows if not any(box.intersects(other) for other in boxes)))
+        return boxes
+
+    def _draw_corners(self, painter):
+        """Corners of curbs: bottoms as full circles, tops as full triangles."""
+        painter.setPen(QPen(PAPER, 1))
+        painter.setBrush(CORNER)
+        for offset, z, part in self.corners:
+            at = QPointF(*self._at(offset, z))
+            if part == "top":
+                painter.drawPolygon(QPolygonF([at + QPointF(-5, 5), at + QPointF(5, 5), at + QPointF(0, -4)]))
+            else:
+                painter.drawEllipse(at, 4, 4)
 
     # -- the mouse ----------------------------------------------------------------------------------------
 

@@ -67,8 +67,6 @@ def contents(algorithms, language):
     others = [f"[{name}]({other}/index.md)" for other, name in LANGUAGES.items()] if not language else ["[English](../index.md)"]
     lines = [f"# {tr('Lanewright manual')}", "", " · ".join(others), "", tr("Road maps from mobile laser scanning, in QGIS."), ""]
     lines += [f"- [{heading(folder / f'{name}.md')}]({name}.md)" for name in WRITTEN_BY_HAND if (folder / f"{name}.md").exists()]
-    if language:
-        lines += ["", tr("The pictures show windows in English.")]
     lines += ["", f"## {tr('The algorithms, in the order of the work')}"]
     group = None
     for algorithm in algorithms:

@@ -18,7 +18,7 @@ MOST_POINTS = 250_000     # of a cloud that are drawn
 
 
 def run(name, **inputs):
-    import processing
+    from qgis import processing
     from qgis.core import QgsApplication
 
     algorithm = QgsApplication.processingRegistry().algorithmById(f"lanewright:{name}")

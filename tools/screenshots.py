@@ -9,15 +9,15 @@ from pathlib import Path
 from lanewright.processing_provider.reports import last_report
 from lanewright.processing_provider.texts import tr
 from qgis.core import QgsCoordinateTransform, QgsPointXY, QgsProject
-from qgis.PyQt.QtCore import QRect, Qt, QTimer
+from qgis.PyQt.QtCore import Qt, QTimer
 from qgis.PyQt.QtGui import QAction, QGuiApplication
 from qgis.PyQt.QtWidgets import QDockWidget
 from qgis.utils import iface, plugins
 
 sys.path.insert(0, str(Path(os.environ["LANEWRIGHT_ROOT"]) / "tools"))
 
-from window import keep, needed, save, say, wait  # noqa: E402
-from window_tasks import database, orthoimage, own_survey  # noqa: E402
+from window import action_of, keep, needed, result, save, say, wait  # noqa: E402
+from window_tasks import SERVERS, batch, database, layout, orthoimage, own_survey, web_map  # noqa: E402
 
 
 def toolbox():
@@ -25,7 +25,7 @@ def toolbox():
     dock.show()
     dock.raise_()
     dock.setFloating(True)
-    dock.resize(420, 760)
+    dock.resize(420, 870)
     tree = dock.findChild(type(dock.algorithmTree)) if hasattr(dock, "algorithmTree") else None
     wait(0.5)
     view = tree or dock.algorithmTree
@@ -57,7 +57,7 @@ def columns():
     """A trajectory without names in its file: its columns, and what was understood."""
     import math
 
-    import processing
+    from qgis import processing
 
     path = Path(tempfile.mkdtemp()) / "drive.txt"
     with open(path, "w", encoding="utf-8") as file:
@@ -70,7 +70,7 @@ def columns():
     window.show()
     wait(1.5)
     widget = window.mainWidget().wrappers["COLUMNS"].widget
-    needed(len(widget.boxes) == 7 and "4,000 positions" in widget.told.text(), f"the columns are not shown: {widget.told.text()}")
+    needed(len(widget.boxes) == 7 and "4,000" in widget.told.text(), f"the columns are not shown: {widget.told.text()}")
     keep(window, "window_columns")
     window.close()
 
@@ -109,8 +109,7 @@ def sample():
             dock.hide()
     iface.mainWindow().resize(1380, 860)
     iface.messageBar().clearWidgets()
-    surface = next(layer for layer in QgsProject.instance().mapLayers().values() if layer.name() == "Road surface")
-    iface.setActiveLayer(surface)
+    iface.setActiveLayer(result("ROAD_SURFACE"))
     iface.zoomToActiveLayer()
     wait(3)
     keep(iface.mainWindow(), "window_result")
@@ -144,7 +143,7 @@ def corrections(dock):
     # a zebra crossing has no edge lines
     for row, piece in enumerate(dock.place.pieces):
         dock.list.item(row).setSelected(piece.target == "marking")
-    dock.note.setText("zebra crossing")
+    dock.note.setText({"de": "Zebrastreifen"}.get(os.environ["LANEWRIGHT_LANG"], "zebra crossing"))
     dock.delete_button.click()
     wait(1)
     dock.go(dock.group)
@@ -202,27 +201,6 @@ def pairs():
     window.close()
 
 
-def action_of(title):
-    return next(action for action in plugins["lanewright"].menu.actions if action.text() == title)
-
-
-def layout():
-    ours = plugins["lanewright"].menu
-    ours.actions[2].trigger()
-    wait(1)
-    keep(ours.layout_dialog, "window_layout_dialog")
-    ours.layout_dialog.accept()
-    wait(3)
-    designers = iface.openLayoutDesigners()
-    needed(designers, "no layout was opened")
-    window = designers[0].window()
-    window.resize(1300, 800)
-    designers[0].view().zoomFull()
-    wait(2)
-    keep(window, "window_layout")
-    designers[0].close()
-
-
 def manual():
     plugins["lanewright"].menu.actions[-1].trigger()
     window = plugins["lanewright"].menu.manual
@@ -232,30 +210,10 @@ def manual():
     window.close()
 
 
-def batch():
-    """Three surveys in one batch, filled by a list of their point clouds."""
-    from processing.gui.BatchAlgorithmDialog import BatchAlgorithmDialog
-    from qgis.core import QgsApplication, QgsProcessingContext
-
-    window = BatchAlgorithmDialog(QgsApplication.processingRegistry().createAlgorithmById("lanewright:roadmap"), iface.mainWindow())
-    panel = window.mainWidget()
-    for name, file in (("POINT_CLOUDS", "*.laz"), ("TRAJECTORY", "trajectory.csv")):
-        column = panel.parameter_to_column[name]
-        fill = panel.tblParameters.cellWidget(0, column)
-        for row, day in enumerate(("monday", "tuesday", "wednesday")):
-            fill.setRowValue(row, f"/data/B12/{day}/{file}", QgsProcessingContext())
-        panel.tblParameters.setColumnWidth(column, 330)
-    window.resize(1000, 820)
-    window.show()
-    wait(0.7)
-    save(window.grab(QRect(0, 0, window.width(), 250)), "window_batch")  # the rest is empty
-    window.close()
-
-
 def designer():
     """The chain as a model, in the model designer."""
     ours = plugins["lanewright"].menu
-    action = next((action for action in ours.models.actions() if action.text() == "Road map stages"), None)
+    action = next((action for action in ours.models.actions() if action.text() == tr("Road map stages")), None)
     needed(action is not None, "the model is not in the menu")
     action.trigger()
     window = ours.designer
@@ -266,18 +224,23 @@ def designer():
     window.close()
 
 
+STEPS = (menu, toolbox, dialog, columns, sample, doubts, pairs, manual, designer, web_map, own_survey, layout, orthoimage, database, batch)
+
+
 def drive():
     try:
         iface.mainWindow().resize(1380, 860)
         wait(2)
         wanted = os.environ.get("LANEWRIGHT_STEPS", "").split()
-        for step in (menu, toolbox, dialog, columns, sample, doubts, pairs, layout, manual, batch, designer, own_survey, orthoimage, database):
+        for step in STEPS:
             if not wanted or step.__name__ in wanted:
                 step()
         say("finished")
     except BaseException:
         say(traceback.format_exc())
     QgsProject.instance().clear()
+    for server in SERVERS:
+        server.kill()
     os._exit(0)
 
 

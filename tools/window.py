@@ -3,12 +3,14 @@
 import os
 from pathlib import Path
 
+from qgis.core import QgsProject
 from qgis.PyQt.QtCore import QCoreApplication, QElapsedTimer, Qt
 from qgis.PyQt.QtGui import QImage
+from qgis.utils import plugins
 
 PICTURES = Path(os.environ["LANEWRIGHT_PICTURES"])
-MAPS = ("window_result", "window_orthoimage", "window_database", "window_section", "window_corrections", "window_layout", "window_model",
-        "window_pairs", "window_two_points")
+MAPS = ("window_result", "window_web_map", "window_orthoimage", "window_database", "window_section", "window_corrections", "window_layout",
+        "window_model", "window_pairs", "window_two_points")
 SAID = Path(os.environ["LANEWRIGHT_SAID"])
 
 
@@ -45,3 +47,14 @@ def save(picture, name):
 def needed(condition, what):
     if not condition:
         raise AssertionError(what)
+
+
+def action_of(title):
+    """The entry of the plugin's menu with this title."""
+    return next(action for action in plugins["lanewright"].menu.actions if action.text() == title)
+
+
+def result(output):
+    """The layer of the project that is this result of an algorithm; the newest, where there are several."""
+    nodes = QgsProject.instance().layerTreeRoot().findLayers()
+    return next(node.layer() for node in nodes if node.layer() and node.layer().customProperty("lanewright/output") == output)

@@ -1,19 +1,25 @@
 """Tasks of a surveyor in a QGIS window, from their own files to a database: each is done with what a user sees, and kept as a picture."""
 
+import os
 import shutil
 import subprocess
 import tempfile
 from functools import cache
 from pathlib import Path
 
-import processing
-from qgis.core import QgsDataSourceUri, QgsProject
-from qgis.PyQt.QtWidgets import QDockWidget, QTextEdit
+from lanewright.processing_provider.results.run_table import run_table
+from lanewright.processing_provider.texts import tr
+from qgis import processing
+from qgis.core import QgsProcessingContext, QgsProject, QgsRasterLayer, QgsSettings
+from qgis.PyQt.QtCore import QCoreApplication, QEvent, Qt
+from qgis.PyQt.QtWidgets import QDockWidget, QProgressBar, QTextEdit
 from qgis.utils import iface, plugins
-from window import keep, needed, say, wait
+from web_map_tiles import served_tiles
+from window import action_of, keep, needed, result, say, wait
 
 POSTGRES = sorted(Path("/usr/lib/postgresql").glob("*/bin"), reverse=True)
 PORT = "54329"
+SERVERS = []  # that are stopped at the end
 
 
 @cache
@@ -45,20 +51,75 @@ def run(dialog, seconds):
     needed(ended[0][0], f"{dialog.windowTitle()} failed: {said[-800:]}")
 
 
-def show_map(name):
+def show_map(output):
+    """The map about a result, with the layers beside it and nothing else."""
+    layers = None
     for dock in iface.mainWindow().findChildren(QDockWidget):
-        if dock.objectName() != "Layers":
+        if dock.objectName() == "Layers":
+            layers = dock
+        else:
             dock.hide()
+    iface.mainWindow().resizeDocks([layers], [330], Qt.Orientation.Horizontal)
     iface.messageBar().clearWidgets()
-    iface.setActiveLayer(next(layer for layer in QgsProject.instance().mapLayers().values() if layer.name() == name))
+    iface.setActiveLayer(result(output))
     iface.zoomToActiveLayer()
     wait(3)
+    needed(wait(120, lambda: not iface.mapCanvas().isDrawing()), "the map was not drawn")
+
+
+def batch():
+    """Three surveys in one batch, filled by a list of their point clouds."""
+    days = ("monday", "tuesday", "wednesday")
+    place = Path(tempfile.mkdtemp()) / "B12"
+    for seed, day in enumerate(days):
+        (place / day).mkdir(parents=True)
+        processing.run("lanewright:samplesurvey", {"LENGTH": 30, "PULSE_RATE": 30000, "SEED": seed, "POINT_CLOUD": str(place / day / "tile.laz"),
+                                                   "TRAJECTORY": str(place / day / "trajectory.gpkg")})
+    action_of(tr("Road map…")).trigger()
+    single = plugins["lanewright"].menu.dialog
+    single.runAsBatchButton.click()
+    window = single.batch
+    panel = window.mainWidget()
+    for name, file in (("POINT_CLOUDS", "*.laz"), ("TRAJECTORY", "trajectory.gpkg")):
+        column = panel.parameter_to_column[name]
+        fill = panel.tblParameters.cellWidget(0, column)
+        for row, day in enumerate(days):
+            fill.setRowValue(row, str(place / day / file), QgsProcessingContext())
+        panel.tblParameters.setColumnWidth(column, 330)
+    window.resize(1000, 420)
+    (place / "results").mkdir()
+    window.save_everything_to(str(place / "results"))
+    keep(window, "window_batch")
+    if os.environ["LANEWRIGHT_LANG"] != "en":  # the runs are the same in every language
+        window.close()
+        return
+    window.runButton().click()
+    needed(wait(900, lambda: all(f"{day}/tile" in run_table() for day in days)), "the batch took longer than 900 s")
+    wait(3)
+    made = sorted(path.name for path in (place / "results").glob("*.gpkg"))
+    needed(made == [f"{day}_tile.gpkg" for day in days], f"the batch made {made}")
+    groups = [node.name() for node in QgsProject.instance().layerTreeRoot().findGroups()]
+    needed(all(any(name.startswith(f"{day}/tile") for name in groups) for day in days), f"the groups are {groups}")
+    window.close()
+
+
+def web_map():
+    """A new project with a web map, as most begin; it is served by this computer."""
+    QgsProject.instance().clear()
+    url, server = served_tiles(survey())
+    SERVERS.append(server)
+    layer = QgsRasterLayer(f"type=xyz&url={url}&zmax=19&zmin=12", {"de": "Web-Karte"}.get(os.environ["LANEWRIGHT_LANG"], "Web map"), "wms")
+    needed(layer.isValid(), "the web map is not valid")
+    metadata = layer.metadata()
+    metadata.setRights(["© Survey office, 2026"])
+    layer.setMetadata(metadata)
+    QgsProject.instance().addMapLayer(layer)
+    wait(1)
 
 
 def own_survey():
     """A first map of own files: the button of the toolbar, a folder, the trajectory, one place for the results, Run."""
     folder = survey()
-    QgsProject.instance().clear()
     plugins["lanewright"].menu.actions[0].trigger()
     window = plugins["lanewright"].menu.dialog
     window.resize(1000, 820)
@@ -76,6 +137,32 @@ def own_survey():
     needed({"roadmap.gpkg", "report.html", "intensity_image.tif"} <= set(made), f"saving everything made {made}")
     groups = [node.name() for node in QgsProject.instance().layerTreeRoot().findGroups()]
     needed(any(name.startswith("B12/survey") for name in groups), f"the groups are {groups}")
+    show_map("ROAD_SURFACE")
+    say(f"project in {QgsProject.instance().crs().authid()}, layers from above: "
+        f"{[node.name() for node in QgsProject.instance().layerTreeRoot().children()]}")
+    keep(iface.mainWindow(), "window_web_map")
+
+
+def layout():
+    """The road map on paper, over the web map."""
+    action_of(tr("Print layout of the road map")).trigger()
+    wait(1)
+    ours = plugins["lanewright"].menu
+    say(f"below: {ours.layout_dialog.below.currentText()}, credit: {ours.layout_dialog.credit.text()}")
+    keep(ours.layout_dialog, "window_layout_dialog")
+    ours.layout_dialog.accept()
+    wait(3)
+    designers = iface.openLayoutDesigners()
+    needed(designers, "no layout was opened")
+    window = designers[0].window()
+    window.resize(1300, 800)
+    designers[0].view().zoomFull()
+    wait(4)
+    needed(wait(120, lambda: not any(bar.isVisible() for bar in window.findChildren(QProgressBar))), "the layout was not drawn")
+    keep(window, "window_layout")
+    designers[0].close()
+    # QGIS ends with an error where a project is closed before the window is gone
+    QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
 
 
 def orthoimage():
@@ -91,10 +178,9 @@ def orthoimage():
     image = next(layer for layer in project.mapLayers().values() if layer.source().endswith("orthoimage.tif"))
     node = project.layerTreeRoot().findLayer(image.id())
     needed(node.parent().name().startswith("B12/survey"), f"the orthoimage is in {node.parent().name()!r}, not with the map it lies under")
-    for layer in project.mapLayers().values():
-        if layer.name() in ("Road surface", "Intensity image"):
-            project.layerTreeRoot().findLayer(layer.id()).setItemVisibilityChecked(False)
-    show_map("Road edges")
+    for output in ("ROAD_SURFACE", "INTENSITY_IMAGE", "RESIDUALS"):
+        project.layerTreeRoot().findLayer(result(output).id()).setItemVisibilityChecked(False)
+    show_map("ROAD_EDGES")
     keep(iface.mainWindow(), "window_orthoimage")
 
 
@@ -123,19 +209,25 @@ def database():
 
 
 def into_database(folder, host):
-    """Road map with its layers as tables of a schema."""
+    """Road map with its layers as tables of a schema, by a connection that QGIS knows."""
     QgsProject.instance().clear()
-    place = QgsDataSourceUri()
-    place.setConnection(host, PORT, "postgres", "lane", "")
-    table = {name: f'postgres://{place.connectionInfo(False)} table="roads"."{name.lower()}" (geom)'
-             for name in ("ROAD_EDGES", "MARKINGS", "MARKING_LINES", "DRIVING_LINES", "LANES")}
+    settings = QgsSettings()
+    for name, value in {"host": host, "port": PORT, "database": "postgres", "username": "lane", "saveUsername": "true"}.items():
+        settings.setValue(f"PostgreSQL/connections/B12/{name}", value)
     window = processing.createAlgorithmDialog("lanewright:roadmap", {
-        "POINT_CLOUDS": [str(folder / "survey.laz")], "TRAJECTORY": str(folder / "trajectory.csv"), **table})
+        "POINT_CLOUDS": [str(folder / "survey.laz")], "TRAJECTORY": str(folder / "trajectory.csv")})
+    window.resize(1000, 820)
     window.show()
+    window.choose_database()
+    asked = window.database
+    asked.schema.setCurrentText("roads")
+    needed(asked.choice == ("B12", "roads", ""), f"the connection is not offered: {asked.choice}, {asked.problem.text()}")
+    keep(asked, "window_database_dialog")
+    asked.accept()
     run(window, 300)
     window.close()
     layers = [layer for layer in QgsProject.instance().mapLayers().values() if layer.providerType() == "postgres"]
     say(f"in the database: {sorted((layer.name(), layer.featureCount()) for layer in layers)}")
-    needed(len(layers) == len(table), "not all layers are in the database")
-    show_map("Road edges")
+    needed(len(layers) >= 8, "not all layers are in the database")
+    show_map("ROAD_EDGES")
     keep(iface.mainWindow(), "window_database")

@@ -29,7 +29,7 @@ NUMBERS = (
 
 def road_map_numbers(road_lengths: Iterable[float], edges: Features | None, marking_lines: Features | None, driving_lines: Features | None,
                      markings: Features | None, corrections: Corrections | None = None) -> dict[str, float]:
-    """The values of NUMBERS; a share or mean of nothing is left out.
+    """The values of NUMBERS to three decimals; a share or mean of nothing is left out.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ def road_map_numbers(road_lengths: Iterable[float], edges: Features | None, mark
     unmatched = 0 if corrections is None else len({one.row for one in corrections.unmatched})
     made = 0 if corrections is None else len({one.row for one in corrections.rows}) - unmatched
     found["CORRECTIONS_MADE"], found["CORRECTIONS_UNMATCHED"] = float(made), float(unmatched)
-    return {name: value for name, value in found.items() if value is not None}
+    return {name: round(value, 3) for name, value in found.items() if value is not None}
 
 
 def _trust(layer):

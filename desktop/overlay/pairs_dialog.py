@@ -291,7 +291,7 @@ class PairsDialog(QDialog):
         task.executed.connect(lambda ok, results: self._ended(algorithm, one, inputs, ok, results))
         self._run = task, context, feedback
         self.bar.setValue(0)
-        self.told.setText(f"{one.name}: {algorithm.displayName()}…")
+        self.told.setText(f"{one.name}: {algorithm.declaration.title()}…")
         self._enable()
         QgsApplication.taskManager().addTask(task)
 

@@ -9,6 +9,7 @@ from typing import Any
 from qgis.core import QgsEditorWidgetSetup, QgsVectorLayer
 
 from ..texts import tr
+from .tip_picture import tip_picture
 
 # Unit at the end of a field's name -> decimals that mean something
 DECIMALS = {"m": 2, "cm": 1, "m2": 2, "ft": 2, "deg": 2, "pct": 1, "x": 3, "y": 3}
@@ -131,10 +132,10 @@ def title_of(output: str, fields: set[str]) -> str:
 
 
 def map_tip(layer: QgsVectorLayer) -> str:
-    """What a map tip shows: the title and where along the road."""
+    """What a map tip shows: the title, where along the road, and a picture where the fields give one."""
     names = {field.name() for field in layer.fields()}
     where = ""
     if {"road", "station_m"} <= names:
         end = "|| coalesce(' – ' || format_number(\"end_m\", 1), '')" if "end_m" in names else ""
         where = f"<br>{tr('Road')} [% \"road\" %], {tr('station')} [% format_number(\"station_m\", 1) {end} %] m"
-    return f"<b>[% {layer.displayExpression()} %]</b>{where}"
+    return f"<b>[% {layer.displayExpression()} %]</b>{where}{tip_picture(names)}"

@@ -65,11 +65,6 @@
         </message>
         <message>
             <location filename="../../tools/make_manual.py" />
-            <source>The pictures show windows in English.</source>
-            <translation>Die Bilder zeigen englische Fenster.</translation>
-        </message>
-        <message>
-            <location filename="../../tools/make_manual.py" />
             <source>Numbers, for models and scripts:</source>
             <translation>Zahlen für Modelle und Skripte:</translation>
         </message>
@@ -6555,8 +6550,13 @@
         </message>
         <message>
             <location filename="../../desktop/algorithm_dialog.py" />
-            <source>One folder for all results: the layers as tables of one GeoPackage, images and reports beside it</source>
-            <translation>Ein Ordner für alle Ergebnisse: die Layer als Tabellen eines GeoPackage, Bilder und Berichte daneben</translation>
+            <source>One place for all results: a folder with the layers as tables of one GeoPackage, images and reports beside it; or a database</source>
+            <translation>Ein Ort für alle Ergebnisse: ein Ordner mit den Layern als Tabellen eines GeoPackage, Bildern und Berichten daneben; oder eine Datenbank</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/algorithm_dialog.py" />
+            <source>Folder…</source>
+            <translation>Ordner…</translation>
         </message>
         <message>
             <location filename="../../desktop/algorithm_dialog.py" />
@@ -6565,8 +6565,43 @@
         </message>
         <message>
             <location filename="../../desktop/algorithm_dialog.py" />
+            <source>Database (PostGIS)…</source>
+            <translation>Datenbank (PostGIS)…</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/algorithm_dialog.py" />
+            <source>{count} layers go to the schema {schema} of {connection}.</source>
+            <translation>{count} Layer gehen in das Schema {schema} von {connection}.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/algorithm_dialog.py" />
             <source>Preset {name}: {count} settings.</source>
             <translation>Voreinstellung {name}: {count} Einstellungen.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/algorithm_dialog.py" />
+            <source>The {count} results go to {folder}.</source>
+            <translation>Die {count} Ergebnisse gehen nach {folder}.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/algorithm_dialog.py" />
+            <source>Those of the earlier run in {file} will be replaced.</source>
+            <translation>Die des früheren Laufs in {file} werden ersetzt.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/batch_dialog.py" />
+            <source>One folder for all surveys: of each the layers in one GeoPackage called like the survey, images and reports beside it</source>
+            <translation>Ein Ordner für alle Vermessungen: von jeder die Layer in einem GeoPackage, das wie die Vermessung heißt, Bilder und Berichte daneben</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/batch_dialog.py" />
+            <source>Batch: {title}</source>
+            <translation>Batch: {title}</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/batch_dialog.py" />
+            <source>The results of {count} rows go to {folder}: {names}.</source>
+            <translation>Die Ergebnisse von {count} Zeilen gehen nach {folder}: {names}.</translation>
         </message>
         <message>
             <location filename="../../desktop/cloud_widget.py" />
@@ -6595,11 +6630,6 @@
         </message>
         <message>
             <location filename="../../desktop/cloud_widget.py" />
-            <source>{count} file(s), {size} MB</source>
-            <translation>{count} Datei(en), {size} MB</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/cloud_widget.py" />
             <source>Point clouds of the project</source>
             <translation>Punktwolken des Projekts</translation>
         </message>
@@ -6607,6 +6637,16 @@
             <location filename="../../desktop/cloud_widget.py" />
             <source>There is no file {name}.</source>
             <translation>Die Datei {name} gibt es nicht.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/cloud_widget.py" />
+            <source>1 file, {size} MB</source>
+            <translation>1 Datei, {size} MB</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/cloud_widget.py" />
+            <source>{count} files, {size} MB</source>
+            <translation>{count} Dateien, {size} MB</translation>
         </message>
         <message>
             <location filename="../../desktop/columns_widget.py" />
@@ -6707,6 +6747,51 @@
             <location filename="../../desktop/corrections_layer.py" />
             <source>The corrections cannot be kept in {path}: {problem}. Choose another place.</source>
             <translation>Die Korrekturen können nicht in {path} abgelegt werden: {problem}. Einen anderen Ort wählen.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/database_dialog.py" />
+            <source>Save the layers to a database</source>
+            <translation>Layer in einer Datenbank speichern</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/database_dialog.py" />
+            <source>such as b12_, where one schema holds several surveys</source>
+            <translation>etwa b12_, wenn ein Schema mehrere Vermessungen enthält</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/database_dialog.py" />
+            <source>New connection…</source>
+            <translation>Neue Verbindung…</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/database_dialog.py" />
+            <source>Connection</source>
+            <translation>Verbindung</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/database_dialog.py" />
+            <source>Schema</source>
+            <translation>Schema</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/database_dialog.py" />
+            <source>Names of the tables begin with</source>
+            <translation>Namen der Tabellen beginnen mit</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/database_dialog.py" />
+            <source>One table for each layer; a table of the same name is replaced. The intensity image and the report are files: choose a folder for them too.</source>
+            <translation>Eine Tabelle je Layer; eine Tabelle desselben Namens wird ersetzt. Intensitätsbild und Bericht sind Dateien: wählen Sie für sie auch einen Ordner.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/database_dialog.py" />
+            <source>QGIS knows no connection to a PostgreSQL database yet. &lt;i&gt;New connection…&lt;/i&gt; opens the window where one is made.</source>
+            <translation>QGIS kennt noch keine Verbindung zu einer PostgreSQL-Datenbank. &lt;i&gt;Neue Verbindung…&lt;/i&gt; öffnet das Fenster, in dem man eine anlegt.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/database_dialog.py" />
+            <source>The database {name} has no schema.</source>
+            <translation>Die Datenbank {name} hat kein Schema.</translation>
         </message>
         <message>
             <location filename="../../desktop/doubt_dock.py" />
@@ -6870,6 +6955,11 @@
         </message>
         <message>
             <location filename="../../desktop/layout_dialog.py" />
+            <source>Whose data lie below, as their licence wants it said; stands in the lower left corner of the map</source>
+            <translation>Wessen Daten darunterliegen, wie es deren Lizenz verlangt; steht in der linken unteren Ecke der Karte</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/layout_dialog.py" />
             <source>Paper</source>
             <translation>Papier</translation>
         </message>
@@ -6882,6 +6972,11 @@
             <location filename="../../desktop/layout_dialog.py" />
             <source>Layer below (orthoimage, web map)</source>
             <translation>Layer darunter (Orthobild, Web-Karte)</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/layout_dialog.py" />
+            <source>Credit on the map</source>
+            <translation>Quellenangabe auf der Karte</translation>
         </message>
         <message>
             <location filename="../../desktop/manual.py" />
@@ -7250,8 +7345,8 @@
         </message>
         <message>
             <location filename="../../desktop/section_view.py" />
-            <source>left ← offset from the place that was clicked (m) → right; heights in m</source>
-            <translation>links ← Abstand von der angeklickten Stelle (m) → rechts; Höhen in m</translation>
+            <source>left ← offset from the place that was clicked (m) → right; heights in m; orange: scanline; ○ bottom, △ top of a curb</source>
+            <translation>links ← Abstand von der angeklickten Stelle (m) → rechts; Höhen in m; orange: Scanlinie; ○ Unter-, △ Oberkante eines Bordsteins</translation>
         </message>
         <message>
             <location filename="../../library/command_line.py" />
@@ -8195,13 +8290,13 @@
         </message>
         <message>
             <location filename="../../resources/styles/residuals.qml" />
-            <source>Control point (residual 100 times as long)</source>
-            <translation>Passpunkt (Restklaffung 100-fach)</translation>
+            <source>Control point (residual × 100)</source>
+            <translation>Passpunkt (Restklaffung × 100)</translation>
         </message>
         <message>
             <location filename="../../resources/styles/residuals.qml" />
-            <source>Check point (residual 100 times as long)</source>
-            <translation>Prüfpunkt (Restklaffung 100-fach)</translation>
+            <source>Check point (residual × 100)</source>
+            <translation>Prüfpunkt (Restklaffung × 100)</translation>
         </message>
         <message>
             <location filename="../../resources/styles/road_edges.qml" />

@@ -2,8 +2,8 @@
 <qgis styleCategories="Symbology|Labeling" version="3.40.6-Bratislava" labelsEnabled="0">
   <renderer-v2 enableorderby="0" referencescale="-1" attr="role" forceraster="0" type="categorizedSymbol" symbollevels="0">
     <categories>
-      <category render="true" label="Control point (residual 100 times as long)" value="control" uuid="{b8d6e337-1964-4535-9a6b-07ece7e4ca98}" type="string" symbol="0"/>
-      <category render="true" label="Check point (residual 100 times as long)" value="check" uuid="{dc71e955-aaed-4d08-847e-1043250d092b}" type="string" symbol="1"/>
+      <category render="true" label="Control point (residual × 100)" value="control" uuid="{b8d6e337-1964-4535-9a6b-07ece7e4ca98}" type="string" symbol="0"/>
+      <category render="true" label="Check point (residual × 100)" value="check" uuid="{dc71e955-aaed-4d08-847e-1043250d092b}" type="string" symbol="1"/>
       <category render="true" label="Disabled point" value="disabled" uuid="{9ec17f01-1e6f-4e67-af0f-b6efd7294cdc}" type="string" symbol="2"/>
     </categories>
     <symbols>

@@ -3,8 +3,8 @@
 import pytest
 from lanewright.algorithms.catalogue import ALGORITHMS
 from lanewright.desktop.algorithm_dialog import LanewrightDialog, destinations, presets_of
-from qgis.core import QgsApplication, QgsVectorLayer
-from qgis.PyQt.QtWidgets import QTextBrowser
+from qgis.core import QgsApplication, QgsSettings, QgsVectorLayer
+from qgis.PyQt.QtWidgets import QDialogButtonBox, QTextBrowser
 
 
 @pytest.fixture(autouse=True)
@@ -57,6 +57,53 @@ def test_everything_goes_to_one_geopackage_and_its_folder(dialog, tmp_path):
     assert parameters["REPORT"] == f"{tmp_path}/report.html"
     assert parameters["INTENSITY_IMAGE"].sink.staticValue() == f"{tmp_path}/intensity_image.tif"
     assert not parameters.get("ROAD_POINTS"), "what is not made by default stays out"
+
+
+def test_it_says_where_everything_goes_and_that_an_earlier_run_is_replaced(dialog, tmp_path):
+    said = lambda: dialog.messageBar().currentItem().text()  # noqa: E731
+    dialog.save_everything_to(str(tmp_path))
+    assert str(tmp_path) in said() and "replaced" not in said()
+    (tmp_path / "roadmap.gpkg").touch()
+    dialog.save_everything_to(str(tmp_path))
+    assert "roadmap.gpkg will be replaced" in said()
+
+
+@pytest.fixture
+def connection():
+    """A connection to PostGIS that QGIS keeps, to a server that need not run."""
+    kept = {"host": "/nowhere", "port": "5432", "database": "roads", "username": "lane"}
+    settings = QgsSettings()
+    for name, value in kept.items():
+        settings.setValue(f"PostgreSQL/connections/B12/{name}", value)
+    yield "B12"
+    settings.remove("PostgreSQL/connections/B12")
+
+
+def test_all_layers_go_to_tables_of_one_schema(dialog, connection):
+    dialog.setParameters({"POINT_CLOUDS": ["a.laz"]})
+    dialog.save_layers_to(connection, "survey_7", "north_")
+    parameters = dialog.createProcessingParameters()
+    edges, lanes = (parameters[name].sink.staticValue() for name in ("ROAD_EDGES", "DRIVING_LINES"))
+    assert edges.startswith("postgres://") and "dbname='roads'" in edges and edges.endswith('table="survey_7"."north_road_edges" (geom)')
+    assert "north_driving_lines" in lanes and "host=/nowhere" in lanes and "survey_7" in dialog.messageBar().currentItem().text()
+    assert parameters["CURVE_ELEMENTS"].sink.staticValue().endswith('table="survey_7"."north_curve_elements"'), "a table without geometry"
+    assert parameters["REPORT"] == "TEMPORARY_OUTPUT", "files keep their destination"
+
+
+def test_without_a_connection_the_way_to_one_is_shown(dialog):
+    dialog.choose_database()
+    assert "New connection" in dialog.database.problem.text() and not ready(dialog.database)
+    dialog.database.reject()
+
+
+def test_a_server_that_does_not_answer_is_said(dialog, connection):
+    dialog.choose_database()
+    assert dialog.database.choice[0] == connection and "roads" in dialog.database.problem.text() and not ready(dialog.database)
+    dialog.database.reject()
+
+
+def ready(database):
+    return database.buttons.button(QDialogButtonBox.StandardButton.Ok).isEnabled()
 
 
 def test_a_run_writes_what_save_everything_names(provider, tmp_path):

@@ -3,6 +3,7 @@
 import shutil
 
 import pytest
+from lanewright.desktop.batch_dialog import BatchAlgorithmDialog
 from lanewright.processing_provider.results.layer_tree import road_maps
 from lanewright.processing_provider.results.run_table import run_table
 from qgis.core import QgsApplication, QgsProject
@@ -23,7 +24,7 @@ def surveys(provider, tmp_path):
     return tmp_path
 
 
-def wait_for(condition, seconds=120):
+def wait_for(condition, seconds=400):
     clock = QElapsedTimer()
     clock.start()
     while not condition() and clock.elapsed() < 1000 * seconds:
@@ -35,11 +36,10 @@ def wait_for(condition, seconds=120):
 def test_a_batch_of_three_surveys_goes_on_after_one_fails_and_sums_up(surveys, monkeypatch, tmp_path):
     from processing.core.ProcessingResults import resultsList
     from processing.gui import BatchPanel, Postprocessing
-    from processing.gui.BatchAlgorithmDialog import BatchAlgorithmDialog
 
     for module in (BatchPanel, Postprocessing):
         monkeypatch.setattr(module, "iface", None)
-    dialog = BatchAlgorithmDialog(QgsApplication.processingRegistry().createAlgorithmById("lanewright:roadmap"))
+    dialog = BatchAlgorithmDialog(QgsApplication.processingRegistry().createAlgorithmById("lanewright:roadmap"), "Road map")
     panel = dialog.mainWidget()
     panel.addRow(2)
     for row, (day, drive) in enumerate((("monday", "drive.gpkg"), ("tuesday", "drive.csv"), ("wednesday", "drive.gpkg"))):
@@ -47,13 +47,16 @@ def test_a_batch_of_three_surveys_goes_on_after_one_fails_and_sums_up(surveys, m
         place("POINT_CLOUDS").setParameterValue(str(surveys / day / "cloud.laz"), dialog.processingContext())
         place("TRAJECTORY").setParameterValue(str(surveys / day / drive), dialog.processingContext())
         for output in dialog.algorithm().destinationParameterDefinitions():
-            value = str(surveys / day / "edges.gpkg") if output.name() == "ROAD_EDGES" else ""
+            file = {"ROAD_EDGES": "edges.gpkg", "REPORT": "report.html"}.get(output.name())
+            value = str(surveys / day / file) if file else ""
             panel.tblParameters.cellWidget(row + 1, panel.parameter_to_column[output.name()]).setValue(value)
     panel.checkLoadLayersOnCompletion.setChecked(True)
     before = len(resultsList.getResults())
     dialog.runAlgorithm()
     assert wait_for(lambda: any("[summary]" in result.name for result in resultsList.getResults()[before:]))
     assert [(surveys / day / "edges.gpkg").exists() for day in ("monday", "tuesday", "wednesday")] == [True, False, True]
+    reports = [result.filename for result in resultsList.getResults()[before:] if "[summary]" not in result.name]
+    assert sorted(reports) == [str(surveys / day / "report.html") for day in ("monday", "wednesday")]
     groups = [group.name() for group in road_maps(QgsProject.instance().layerTreeRoot())]
     assert len(groups) == 2 and "wednesday/cloud" in groups[0] and "monday/cloud" in groups[1]
     summary = resultsList.getResults()[before:][-1].filename
@@ -64,3 +67,41 @@ def test_a_batch_of_three_surveys_goes_on_after_one_fails_and_sums_up(surveys, m
     failed = table[table.rindex("tuesday/cloud"):table.rindex("wednesday/cloud")]
     assert "drive.csv" in failed, "the survey that failed, with its sentence"
     QgsProject.instance().clear()
+
+
+@pytest.fixture
+def dialog(provider, monkeypatch, tmp_path):
+    """A batch of two surveys called alike, with a cloud each."""
+    from processing.gui import BatchPanel
+
+    monkeypatch.setattr(BatchPanel, "iface", None)
+    dialog = BatchAlgorithmDialog(QgsApplication.processingRegistry().createAlgorithmById("lanewright:roadmap"), "Road map")
+    panel = dialog.mainWidget()
+    panel.addRow(1)
+    for row, place in enumerate(("north/B12", "south/B12")):
+        (tmp_path / place).mkdir(parents=True)
+        (tmp_path / place / "cloud.laz").touch()
+        panel.wrappers[row][panel.parameter_to_column["POINT_CLOUDS"]].setParameterValue(str(tmp_path / place), dialog.processingContext())
+    return dialog
+
+
+def test_each_survey_of_a_batch_gets_a_geopackage_of_its_own_in_one_folder(dialog, tmp_path):
+    panel = dialog.mainWidget()
+    assert panel.wrappers[0][panel.parameter_to_column["POINT_CLOUDS"]].widget.told is None, "it stands in a table"
+    assert dialog.surveys() == ["B12_cloud", "B12_cloud_2"] and dialog.windowTitle() == "Batch: Road map"
+    dialog.save_everything_to(str(tmp_path))
+    first, second = (dialog.mainWidget().parametersForRow(row, dialog.processingContext(), warnOnInvalid=False)[0] for row in (0, 1))
+    assert first["ROAD_EDGES"].sink.staticValue() == f"ogr:dbname='{tmp_path}/B12_cloud.gpkg' table=\"road_edges\" (geom)"
+    assert first["REPORT"] == f"{tmp_path}/B12_cloud_report.html" and second["REPORT"] == f"{tmp_path}/B12_cloud_2_report.html"
+    assert not first["ROAD_POINTS"], "what is not made by default stays out"
+
+
+def test_a_row_that_names_no_place_makes_temporary_layers(dialog, monkeypatch):
+    given = []
+    monkeypatch.setattr(dialog, "execute", given.extend)
+    dialog._place(1, "MARKINGS").setValue("markings.gpkg")
+    dialog.runAlgorithm()
+    first, second = given
+    assert first["DRIVING_LINES"].sink.staticValue() == first["REPORT"] == "TEMPORARY_OUTPUT" and not first["CURB_POINTS"].sink.staticValue()
+    assert first["DRIVING_LINES"].destinationProject is not None
+    assert second["MARKINGS"].sink.staticValue() == "markings.gpkg" and not second["REPORT"]

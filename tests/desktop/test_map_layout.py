@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from lanewright.desktop.layout_dialog import road_map_groups, shown_layers
+from lanewright.desktop.layout_dialog import LayoutDialog, credit_of, road_map_groups, shown_layers
 from lanewright.desktop.map_layout import MARGIN, SCALES, road_map_layout
 from lanewright.desktop.menu import unused_name
 from qgis.core import (
@@ -17,6 +17,7 @@ from qgis.core import (
     QgsLayoutItemPicture,
     QgsLayoutItemScaleBar,
     QgsProject,
+    QgsRasterLayer,
     QgsVectorLayer,
 )
 from qgis.PyQt.QtGui import QImage
@@ -164,3 +165,39 @@ def test_a_second_layout_gets_a_name_of_its_own(project):
         assert name == expected
         layout = road_map_layout(project, [street(project)], name)
         assert project.layoutManager().addLayout(layout)
+
+
+def web_map(project, source="type=xyz&url=http://127.0.0.1:9/{z}/{x}/{y}.png&zmax=19", name="Web map"):
+    layer = QgsRasterLayer(source, name, "wms")
+    project.addMapLayer(layer)
+    return layer
+
+
+def test_the_web_map_that_is_seen_is_offered_first_with_its_credit(project):
+    group = project.layerTreeRoot().addGroup("Lanewright – A")
+    layer = QgsVectorLayer("LineString?crs=EPSG:32650&field=road:integer&field=station_m:double", "lines", "memory")
+    project.addMapLayer(layer, False)
+    group.addLayer(layer)
+    hidden, seen = web_map(project, name="Hidden"), web_map(project)
+    project.layerTreeRoot().findLayer(hidden.id()).setItemVisibilityChecked(False)
+    metadata = seen.metadata()
+    metadata.setRights(["© The survey office"])
+    seen.setMetadata(metadata)
+    dialog = LayoutDialog(project, [group])
+    assert [dialog.below.itemText(row) for row in range(1, dialog.below.count())] == ["Web map", "Hidden"]
+    assert dialog.choice["below"] == [seen] and dialog.choice["credit"] == "© The survey office"
+    dialog.below.setCurrentIndex(0)
+    assert dialog.choice["below"] == [] and dialog.choice["credit"] == ""
+
+
+def test_a_layer_that_says_nothing_has_no_credit_and_one_of_openstreetmap_that_of_qgis(project):
+    layer = web_map(project, "type=xyz&url=https://tile.openstreetmap.org/{z}/{x}/{y}.png&zmax=19")
+    assert "OpenStreetMap" in credit_of(layer) and credit_of(web_map(project)) == ""
+
+
+@pytest.mark.parametrize("credit", ["© The survey office", "© The survey office and its partners, " * 8])
+def test_the_credit_stands_in_the_corner_of_the_map(project, credit):
+    layout = road_map_layout(project, [street(project)], "A street", credit=credit)
+    label, chart = layout.itemById("Credit"), item(layout, QgsLayoutItemMap)
+    assert label.text() == credit and chart.sceneBoundingRect().contains(label.sceneBoundingRect())
+    assert road_map_layout(project, [street(project)], "Without").itemById("Credit") is None

@@ -2,11 +2,13 @@
 
 import numpy as np
 import pytest
-from lanewright.core.common.schemas import DRIVING_LINES, ROAD_EDGES
+from lanewright.core.common.schemas import CURB_POINTS, DRIVING_LINES, ROAD_EDGES
+from lanewright.core.road.scanlines.from_points import slice_lines
 from lanewright.desktop.doubtful import doubts_of, reason
-from lanewright.desktop.section import Section, clouds_of, crossings, section_at
+from lanewright.desktop.section import Crossing, Section, clouds_of, corners, crossings, middle_of, section_at
 from lanewright.desktop.section_view import SectionView
 from qgis.core import QgsProject
+from qgis.PyQt.QtGui import QFontMetricsF
 from road_map_layers import EAST, NORTH, added
 
 
@@ -66,6 +68,47 @@ def test_the_picture_shows_points_on_their_side(qgis_app):
     image = view.grab().toImage()
     dark = [x for x in range(60, 580) for y in range(25, 250, 3) if image.pixelColor(x, y).lightness() < 100]
     assert dark and max(dark) < 300
+
+
+def test_a_curb_has_a_bottom_and_a_top_and_an_edge_of_the_pavement_none(project):
+    row = dict(road=0, part="bottom", height_m=0.12, length_m=20.0)
+    edges = added(project, "ROAD_EDGES", ROAD_EDGES, ("LINESTRING Z (-3 -10 100, -3 10 100)", {**row, "side": "left", "edge": "curb"}),
+                  ("LINESTRING Z (3 -10 100, 3 10 100)", {**row, "side": "right", "edge": "pavement"}))
+    curb, pavement = crossings(Section(EAST, NORTH, 0.0), [edges])
+    assert curb.top == pytest.approx(100.12) and np.isnan(pavement.top)
+    assert middle_of([curb, pavement]) == pytest.approx(0.0)
+
+
+def test_corners_of_curbs_near_the_section_are_shown(project):
+    points = added(project, "CURB_POINTS", CURB_POINTS, ("POINT Z (-3 0.2 100)", dict(part="bottom")),
+                   ("POINT Z (-3.02 0.2 100.12)", dict(part="top")),
+                   ("POINT Z (-3 4 100)", dict(part="bottom")), kind="PointZ")
+    found = corners(Section(EAST, NORTH, 0.0), [points])
+    assert sorted((round(offset, 2), round(z, 2), part) for offset, z, part in found) == [(3.0, 100.0, "bottom"), (3.02, 100.12, "top")]
+
+
+def test_the_scanline_follows_road_face_and_sidewalk_and_is_cut_behind_a_car():
+    """A curb of 12 cm at 3 m; nothing seen between -2 and -1 m; a branch above."""
+    d = np.arange(-5, 5, 0.004)
+    d = d[(d < -2) | (d > -1)]
+    z = np.where(d > 3, 100.12, 100.0) + np.random.default_rng(1).normal(0, 0.002, len(d))
+    lines = slice_lines(np.r_[d, 1.0], np.r_[z, 102.0], 20.0)
+    assert len(lines) == 2 and lines[0][-1, 0] < -1.9 and lines[1][0, 0] > -1.1
+    across, height = lines[1].T
+    assert (np.diff(across) > 0).all() and height.max() < 100.2
+    np.testing.assert_allclose(height[across < 2.9], 100.0, atol=0.01)
+    np.testing.assert_allclose(height[across > 3.1], 100.12, atol=0.01)
+    assert slice_lines(np.empty(0), np.empty(0), 20.0) == []
+
+
+def test_titles_of_lines_cover_neither_each_other_nor_the_rim(qgis_app):
+    view = SectionView()
+    view.resize(500, 300)
+    shown = [Crossing(offset, 100.0, f"Road edge, left, {offset} m, measured", "#e31a1c") for offset in (7.9, 7.5, 0.1, 0.0, -7.9)]
+    frame = view._frame()
+    boxes = view._label_boxes(shown, frame, QFontMetricsF(view.font(), view))
+    assert all(frame.left() <= box.left() and box.right() <= frame.right() for box in boxes)
+    assert not any(one.intersects(other) for number, one in enumerate(boxes) for other in boxes[:number])
 
 
 @pytest.mark.parametrize("row, why", [

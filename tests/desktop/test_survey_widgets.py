@@ -71,7 +71,7 @@ def test_a_folder_or_wildcard_without_a_cloud_is_said(tmp_path, given, said):
 
 
 def test_what_was_typed_is_counted_and_what_is_missing_named(qgis_app, folder):
-    assert described([str(folder)]) == "2 file(s), 2.0 MB"
+    assert described([str(folder)]) == "2 files, 2.0 MB"
     assert "nowhere.laz" in described([str(folder / "nowhere.laz")])
 
 

@@ -40,6 +40,7 @@ def test_the_description_is_complete(metadata, key):
 
 
 def test_qgis_process_and_qgis_4_are_told_that_they_may_load_us(metadata):
+    # QGIS 4 and the plugin repository read the highest version; builds of QGIS 3.40 to 3.44 on Qt 6 still ask for supportsQt6
     assert metadata["hasProcessingProvider"] == metadata["supportsQt6"] == "yes"
     assert metadata["qgisMinimumVersion"] == "3.40" and metadata["qgisMaximumVersion"] == "4.99"
 
@@ -62,7 +63,8 @@ def test_the_zip_has_nothing_a_user_has_no_use_for(archive):
     names = [name.removeprefix("lanewright/") for name in archive.namelist()]
     useless = ("tests", "tools", ".", "build", "library", "setup.py", "Makefile")
     assert not [name for name in names if name.startswith(useless) or "__pycache__" in name]
-    assert sum(entry.compress_size for entry in archive.infolist()) < 5e6
+    # the manual's pictures in two languages are most of it; the plugin repository takes 25 MB
+    assert sum(entry.compress_size for entry in archive.infolist()) < 8e6
 
 
 def test_no_address_leads_to_a_stranger(metadata):
@@ -98,7 +100,9 @@ def test_an_address_that_is_none_makes_no_release(tmp_path):
 
 
 def test_the_code_is_written_for_qt_5_and_qt_6_alike():
-    shell = [ROOT / "__init__.py", ROOT / "plugin.py", *(ROOT / "processing_provider").rglob("*.py"), *(ROOT / "tools").glob("*.py")]
+    """Names that are gone; `make lint` asks PyQt6 itself for every name (tools/qt6_names.py)."""
+    folders = [path for folder in ("desktop", "processing_provider", "tools") for path in (ROOT / folder).rglob("*.py")]
+    shell = [ROOT / "__init__.py", ROOT / "plugin.py", *folders]
     found = [f"{path.name}: {match.group()}" for path in shell for match in OLD.finditer(path.read_text(encoding="utf-8"))]
     assert not found
 

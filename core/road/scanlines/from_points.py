@@ -74,6 +74,29 @@ def point_scanlines(survey: Survey, road: int, start: float, end: float, interva
     return lines[np.lexsort((lines.d[lines.first[:-1]], lines.scanner, lines.pass_number, np.rint(lines.station / interval)))]
 
 
+def slice_lines(d: np.ndarray, z: np.ndarray, half_width: float) -> list[np.ndarray]:
+    """The ground's scanline through one slice of points whose road is not known, for a look at it.
+
+    Parameters
+    ----------
+    d : (N,) m, offsets from the middle of the road, left positive
+    z : (N,) m, heights
+    half_width : m either side of the middle that are looked at
+
+    Returns
+    -------
+    list of (V, 2) offset and height, offsets increasing; a new line begins where the ground is interrupted
+    """
+    if not len(d):
+        return []
+    level = float(np.median(z))
+    cells = pseudo_scan_lines(d, np.full(len(d), 0.5), z - level, np.zeros(len(d)), (0, 1), 1.0, SCANLINE_RESOLUTION, SLICE_LAYER_JUMP,
+                              -half_width, half_width)
+    row, across, height, bright = _vertices(cells, np.flatnonzero(cells.ground), 0.5)
+    lines = _joined(row, across, height, bright, 0, 1.0, 0, 0)
+    return [np.c_[lines.d[begin:end], lines.z[begin:end] + level] for begin, end in zip(lines.first[:-1], lines.first[1:])]
+
+
 def _slices(s, first, last, interval, half):
     """(row, index) of every point within `half` metres of a section plane, once for each such plane."""
     low = np.maximum(np.ceil((s - half) / interval).astype(np.int64), first)

@@ -15,6 +15,7 @@ from qgis.core import (
     QgsProcessingContext,
     QgsVectorLayer,
 )
+from qgis.PyQt.QtWidgets import QTextBrowser
 
 SCHEMAS = {"ROAD_EDGES": ("LineStringZ", ROAD_EDGES), "MARKING_LINES": ("LineStringZ", MARKING_LINES), "LANES": ("PolygonZ", LANES),
            "DRIVING_LINES": ("LineStringZ", DRIVING_LINES), "MARKINGS": ("PolygonZ", MARKINGS), "ROAD_SURFACE": ("PolygonZ", ROAD_SURFACE),
@@ -92,3 +93,31 @@ def test_looks_by_status_and_confidence_stand_ready_and_the_usual_one_is_in_forc
     layer.styleManager().setCurrentStyle("By status")
     assert layer.renderer().classAttribute() == "status"
     assert layer.displayExpression() and layer.attributeAlias(layer.fields().lookupField("direction")) == "Direction"
+
+
+def tip(layer):
+    """The map tip of the first feature, drawn."""
+    view = QTextBrowser()
+    view.setHtml(evaluated(layer, layer.mapTipTemplate()))
+    view.resize(320, 140)
+    return view.grab().toImage()
+
+
+def lowest(image, x):
+    """The lowest dark pixel of a column of the picture, which lies below two lines of text."""
+    return max((y for y in range(45, image.height() - 6) if image.pixelColor(x, y).lightness() < 120), default=None)
+
+
+@pytest.mark.parametrize("side, road, walk", [("left", 110, 30), ("right", 30, 110)])
+def test_the_tip_of_a_curb_shows_its_step_on_its_side(qgis_app, side, road, walk):
+    image = tip(loaded("ROAD_EDGES", road=0, station_m=12.0, side=side, edge="curb", height_m=0.15, length_m=7.7))
+    assert 10 < lowest(image, road) - lowest(image, walk) < 25
+
+
+def test_an_edge_without_a_curb_has_no_picture_and_a_lane_its_width_and_borders(qgis_app):
+    edge = loaded("ROAD_EDGES", road=0, side="left", edge="pavement", height_m=0.15, length_m=7.7)
+    assert "<img" not in evaluated(edge, edge.mapTipTemplate())
+    assert "<img" not in evaluated(loaded("ROAD_EDGES", road=0, side="left", edge="curb"), edge.mapTipTemplate())
+    lane = loaded("LANES", road=0, station_m=1.0, lane=1, width_m=3.452, left_patt="dashed", right_patt="solid")
+    said = evaluated(lane, lane.mapTipTemplate())
+    assert "3.45 m" in said and said.index("'9 6'") < said.index("'none'")

@@ -1,0 +1,91 @@
+"""The batch of our algorithms: QGIS's own, with one folder for the results of all surveys; rows that name no place make temporary layers."""
+
+from __future__ import annotations
+
+import time
+
+from processing.core.ProcessingResults import resultsList
+from processing.gui import BatchAlgorithmDialog as qgis_batch
+from qgis.core import Qgis, QgsProcessing, QgsProcessingAlgorithm, QgsProcessingOutputHtml, QgsSettings
+from qgis.PyQt.QtWidgets import QDialogButtonBox, QFileDialog, QPushButton, QWidget
+
+from ..algorithms.cloud_files import cloud_files
+from ..core.common.errors import RoadExtractionError
+from ..processing_provider.results.runs import survey_name
+from ..processing_provider.texts import tr
+from .destinations import LAST_OUTPUT, outputs_by_default, survey_destinations
+
+CLOUDS = "POINT_CLOUDS"
+
+
+class BatchAlgorithmDialog(qgis_batch.BatchAlgorithmDialog):
+    """QGIS's batch of an algorithm; `title` stands in its frame.
+
+    It has the name of QGIS's own, by which widgets know that they stand in the table of a batch.
+    """
+
+    def __init__(self, algorithm: QgsProcessingAlgorithm, title: str, parent: QWidget | None = None):
+        super().__init__(algorithm, parent)
+        self.setWindowTitle(tr("Batch: {title}").format(title=title))
+        self.mainWidget().checkLoadLayersOnCompletion.setChecked(True)
+        save = QPushButton(tr("Save everything to…"))
+        save.setToolTip(tr("One folder for all surveys: of each the layers in one GeoPackage called like the survey, images and reports beside it"))
+        save.clicked.connect(lambda checked=False: self.choose_folder())
+        self.buttonBox().addButton(save, QDialogButtonBox.ButtonRole.ResetRole)
+        self.updateRunButtonVisibility()  # the box shows all of its buttons when it gets another
+
+    def choose_folder(self) -> None:
+        folder = QFileDialog.getExistingDirectory(self, tr("Folder for all results"), QgsSettings().value(LAST_OUTPUT, ""))
+        if folder:
+            QgsSettings().setValue(LAST_OUTPUT, folder)
+            self.save_everything_to(folder)
+
+    def save_everything_to(self, folder: str) -> None:
+        """Set the destinations of the rows that have an input."""
+        names = self.surveys()
+        for row, name in enumerate(names):
+            for output, place in survey_destinations(self.algorithm(), folder, name).items():
+                self._place(row, output).setValue(place)
+        self.messageBar().clearWidgets()
+        self.messageBar().pushMessage("", tr("The results of {count} rows go to {folder}: {names}.").format(
+            count=len(names), folder=folder, names=", ".join(names)), level=Qgis.MessageLevel.Info)
+
+    def surveys(self) -> list[str]:
+        """What the survey of each row is called, as a name of files, no two alike."""
+        panel, names = self.mainWidget(), []
+        for row in range(panel.batchRowCount()):
+            name = self._survey(row).replace("/", "_") or f"{self.algorithm().name()}_{row + 1}"
+            alike = sum(other == name or other.rsplit("_", 1)[0] == name and other.rsplit("_", 1)[1].isdigit() for other in names)
+            names.append(f"{name}_{alike + 1}" if alike else name)
+        return names
+
+    def _survey(self, row):
+        column = self.mainWidget().parameter_to_column.get(CLOUDS)
+        if column is None:
+            return ""
+        given = self.mainWidget().wrappers[row][column].parameterValue() or []
+        try:
+            return survey_name(cloud_files([given] if isinstance(given, str) else list(given), tr("Point clouds")))
+        except RoadExtractionError:
+            return ""
+
+    def _place(self, row, output):
+        """The cell where a result of a row is named."""
+        panel = self.mainWidget()
+        return panel.tblParameters.cellWidget(row + 1, panel.parameter_to_column[output])
+
+    def loadHtmlResults(self, results: dict, num: int) -> None:
+        """The report of a row into the Results Viewer. That of QGIS 3.40 forgets the time, and the batch would end with an error."""
+        for output in self.algorithm().outputDefinitions():
+            if isinstance(output, QgsProcessingOutputHtml) and results.get(output.name()):
+                resultsList.addResult(self.algorithm().icon(), f"{output.description()} [{num}]", time.localtime(), results[output.name()])
+
+    def runAlgorithm(self) -> None:
+        """Run all rows; one that names no destination makes temporary layers, as in the dialog of a single run."""
+        outputs = [definition.name() for definition in self.algorithm().destinationParameterDefinitions()]
+        made = [definition.name() for definition in outputs_by_default(self.algorithm())]
+        for row in range(self.mainWidget().batchRowCount()):
+            if not any(self._place(row, output).getValue() for output in outputs):
+                for output in made:
+                    self._place(row, output).setValue(QgsProcessing.TEMPORARY_OUTPUT)
+        super().runAlgorithm()

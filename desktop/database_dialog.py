@@ -1,0 +1,94 @@
+"""Asks for the place of results in PostGIS: a connection that QGIS knows, a schema, and what the names of the tables begin with."""
+
+from __future__ import annotations
+
+from qgis.core import Qgis, QgsDataSourceUri, QgsProcessingAlgorithm, QgsProviderConnectionException, QgsProviderRegistry
+from qgis.gui import QgsProviderConnectionComboBox
+from qgis.PyQt.QtWidgets import QComboBox, QDialog, QDialogButtonBox, QFormLayout, QLabel, QLineEdit, QPushButton, QWidget
+
+from ..processing_provider.texts import tr
+from .destinations import outputs_by_default, table_name
+
+PROVIDER = "postgres"
+GEOMETRY = "geom"
+WITH_GEOMETRY = (Qgis.ProcessingSourceType.VectorPoint, Qgis.ProcessingSourceType.VectorLine, Qgis.ProcessingSourceType.VectorPolygon)
+
+
+class DatabaseDialog(QDialog):
+    """The dialog; `choice` is what was chosen."""
+
+    def __init__(self, parent: QWidget | None = None):
+        super().__init__(parent)
+        self.setWindowTitle(tr("Save the layers to a database"))
+        self.connection = QgsProviderConnectionComboBox(PROVIDER)
+        self.schema = QComboBox()
+        self.connection.connectionChanged.connect(self._other_connection)
+        self.prefix = QLineEdit()
+        self.prefix.setPlaceholderText(tr("such as b12_, where one schema holds several surveys"))
+        self.problem = QLabel()
+        self.problem.setWordWrap(True)
+        new = QPushButton(tr("New connection…"))
+        new.clicked.connect(lambda checked=False: self._make_connection())
+        form = QFormLayout(self)
+        form.addRow(self.problem)
+        form.addRow(tr("Connection"), self.connection)
+        form.addRow(tr("Schema"), self.schema)
+        form.addRow(tr("Names of the tables begin with"), self.prefix)
+        told = QLabel(tr("One table for each layer; a table of the same name is replaced. The intensity image and the report are files: choose a "
+                         "folder for them too."))
+        told.setWordWrap(True)
+        form.addRow(told)
+        self.buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Ok | QDialogButtonBox.StandardButton.Cancel)
+        self.buttons.addButton(new, QDialogButtonBox.ButtonRole.ResetRole)
+        self.buttons.accepted.connect(self.accept)
+        self.buttons.rejected.connect(self.reject)
+        form.addRow(self.buttons)
+        self.resize(520, self.sizeHint().height())
+        self._other_connection(self.connection.currentConnection())
+
+    def _other_connection(self, name):
+        """List the schemas of a connection, or say why there are none."""
+        self.schema.clear()
+        if not name:
+            self._say(tr("QGIS knows no connection to a PostgreSQL database yet. <i>New connection…</i> opens the window where one is made."))
+            return
+        try:
+            schemas = [schema for schema in _connection(name).schemas() if schema != "information_schema" and not schema.startswith("pg_")]
+        except QgsProviderConnectionException as problem:
+            self._say(str(problem))
+            return
+        self.schema.addItems(sorted(schemas))
+        self._say("" if schemas else tr("The database {name} has no schema.").format(name=name))
+
+    def _say(self, text):
+        self.problem.setText(text)
+        self.problem.setVisible(bool(text))
+        self.buttons.button(QDialogButtonBox.StandardButton.Ok).setEnabled(not text)
+
+    def _make_connection(self):
+        from qgis.utils import iface
+
+        self.reject()  # QGIS's window would stay behind this one
+        iface.openDataSourceManagerPage(PROVIDER)
+
+    @property
+    def choice(self) -> tuple[str, str, str]:
+        """Connection, schema, and what the names of the tables begin with."""
+        return self.connection.currentConnection(), self.schema.currentText(), self.prefix.text().strip()
+
+
+def database_destinations(algorithm: QgsProcessingAlgorithm, connection: str, schema: str, prefix: str = "") -> dict[str, str]:
+    """Where each layer goes: a table of a schema, with the connection as QGIS knows it."""
+    known, found = _connection(connection), {}
+    for definition in outputs_by_default(algorithm):
+        if definition.type() == "sink":
+            place = QgsDataSourceUri(known.uri())
+            place.setDataSource(schema, prefix + table_name(definition), GEOMETRY if definition.dataType() in WITH_GEOMETRY else "")
+            # a password that QGIS keeps apart stays there
+            found[definition.name()] = f"{PROVIDER}://{place.uri(False)}"
+    return found
+
+
+def _connection(name):
+    """A connection that QGIS keeps."""
+    return QgsProviderRegistry.instance().providerMetadata(PROVIDER).createConnection(name)
