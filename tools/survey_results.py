@@ -27,6 +27,7 @@ RESULTS = {
     "MARKINGS": "markings.gpkg",
     "MARKING_LINES": "lines.gpkg",
     "DRIVING_LINES": "driving.gpkg",
+    "LANES": "lanes.gpkg",
     "CURVE_ELEMENTS": "elements.gpkg",
     "CURB_POINTS": "curb_points.gpkg",
     "ROAD_POINTS": "road.laz",

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # HD maps of streets with known lanes, read by other people's libraries, each in an environment of its own under build/hdmap:
 # asam-qc-opendrive (schema and links; it wants numpy 1), pyxodr, lanelet2, ezdxf, and CARLA's map library, which needs no server.
+# RESULTS=folder takes the road maps of tools/survey_results.sh in that folder as well.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/env.sh"
 cd "$LANEWRIGHT_ROOT"
@@ -24,7 +25,7 @@ carla=yes
 environment carla carla==0.9.16 numpy shapely || { carla=; rm -rf "$here/carla"; }
 
 rm -rf "$here/files"
-"$LANEWRIGHT_BUILD/venv/bin/python" tools/hdmap/make_files.py "$here/files"
+"$LANEWRIGHT_BUILD/venv/bin/python" tools/hdmap/make_files.py "$here/files" ${RESULTS:+"$RESULTS"}
 "$here/readers/bin/python" tools/hdmap/read_maps.py "$here/files"
 if [ -n "$carla" ]; then
   "$here/carla/bin/python" tools/hdmap/drive_maps.py "$here/files" 2>/dev/null

@@ -84,6 +84,7 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
             sigma = lane_sigma(track, course, frame.roads[number], one.lines, paint, frame.pass_sigma.get(number, 0.0))
             rows += [dict(row, road=number, lane=lane) for row in _lane_pieces(track, track.direction, course, elements, one.lines, z, sigma)]
             arcs += [dict(row, road=number, lane=lane) for row in _lane_curves(track.direction, elements)]
+        tracks = [track.without_jumps(s) for track in tracks]
         areas += lane_areas(one, curbs.get(number) if curbs else None, tracks, heights, frame, number, pavement.get(number))
         lanes[number] = RoadLanes(s, tracks, heights)
         progress.report(0.4 + 0.6 * (count + 1) / len(estimates.roads))

@@ -22,6 +22,10 @@ MIN_SHOWN_SHARE = 0.5            # of a gap in which lines are seen
 BRIDGED_TRUST = 0.7              # share of the confidence at both ends of a gap that is left between them
 LEAST_CONFIDENCE_OF_END = 0.25, 0.5   # of a lane at its end, between two borders and beside one: what is said with less is wrong mostly
 END_WIDTH_LENGTH = 10.0          # m over which a lane's width at its end is taken
+LEAST_JUMP = 0.02     # m across from which a border that goes on as another line is led over
+JUMP_LEAD = 30.0      # m along for each m across: at 1 in 20 at its steepest, a lane can be followed without braking
+LONGEST_LEAD = 20.0   # m
+MOST_ASKEW_BORDER = 0.3        # m across for each m along: no border is painted or built more askew, not even at a bus bay
 
 
 @dataclass
@@ -70,6 +74,15 @@ class LaneTrack:
         """{name: change(name, values)} of what is known at every station."""
         return {name: change(name, v) for name, v in vars(self).items() if isinstance(v, np.ndarray)}
 
+    def without_jumps(self, s: np.ndarray) -> LaneTrack:
+        """The track with borders that are led over where they jump aside: a lane has no steps at its sides.
+
+        s : (K,) metres, grid stations
+        """
+        own = s[self.first:self.last + 1]
+        left, right = (led_over(own, self.d + side * self.width / 2, rows) for side, rows in ((1, self.left), (-1, self.right)))
+        return replace(self, d=(left + right) / 2, width=left - right)
+
     def at(self, k: int) -> tuple[float, float]:
         """Offset and width at grid station k; NaN where the lane is not."""
         if self.first <= k <= self.last:
@@ -86,6 +99,30 @@ class LaneTrack:
         least = np.array(LEAST_CONFIDENCE_OF_END)[self.offset.astype(int)]
         known = np.flatnonzero(~led_over & (self.confidence >= least))
         return self.part(known[0], known[-1] + 1) if len(known) else None
+
+
+def led_over(s: np.ndarray, offset: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """A border without jumps, as where it goes on as another line beside the first.
+
+    Parameters
+    ----------
+    s : (N,) metres along the road
+    offset : (N,) metres across it
+    rows : (N,) which line the border is, -1 where it is none
+
+    Returns
+    -------
+    (N,) metres: each jump is spread over JUMP_LEAD times its size, LONGEST_LEAD at most, half of it on either side; less where the lane ends before
+    """
+    found, jumps, steps = offset.copy(), np.diff(offset), np.diff(s)
+    sudden = (np.diff(rows) != 0) & (np.abs(jumps) > LEAST_JUMP) | (np.abs(jumps) > MOST_ASKEW_BORDER * steps)
+    for k in np.flatnonzero(sudden):
+        at = (s[k] + s[k + 1]) / 2
+        lead = min(JUMP_LEAD * abs(jumps[k]), LONGEST_LEAD, 2 * (at - s[0]), 2 * (s[-1] - at))
+        if lead > 2 * STATION_STEP:
+            share = np.clip((s - at) / lead + 0.5, 0.0, 1.0)
+            found += jumps[k] * (share**2 * (3 - 2 * share) - (s > at))
+    return found
 
 
 def _between(first, d, width, direction, confidence):

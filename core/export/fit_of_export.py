@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
 from typing import NamedTuple
 
 import numpy as np
 import shapely
+from scipy.spatial import cKDTree
 
 from ..common.features import Features
 from ..driving.lanes_layer import Lanes
 
 NEAR_MIDDLE = 1.0     # m from the middle of a lane within which a driving line is held against it
+LEFT_OUT_NEAR = 0.5   # m between a driving line and a place that is left out: lanes have vertices twice as near
 SAME_BORDER = 0.05    # m across within which heights are compared
 
 
@@ -36,19 +37,21 @@ def border_misses(source: Lanes, exported: Lanes) -> tuple[Misses, Misses]:
 
 
 def driving_line_misses(driving_lines: Features | None, exported: Lanes, measured_only: bool = True,
-                        apart_from: Collection[tuple[int, int]] = ()) -> Misses:
+                        apart_from: np.ndarray | None = None) -> Misses:
     """Across, of driving lines against the middles of the lanes that are read back.
 
-    apart_from : (road, lane) whose driving lines are left out
+    apart_from : (N, 2) places; what lies within LEFT_OUT_NEAR of one is left out
     """
     middles = [(left + right) / 2 for left, right in (exported.borders(k) for k in range(len(exported))
                                                       if exported.type[k] in ("driving", "connector"))]
     rows = [shapely.get_coordinates(geometry, include_z=True) for geometry, row in driving_lines or ()
-            if geometry is not None and (not measured_only or row.get("status") in (None, "measured"))
-            and (row.get("road"), row.get("lane")) not in apart_from]
-    if not rows or not middles:
+            if geometry is not None and (not measured_only or row.get("status") in (None, "measured"))]
+    places = np.concatenate([np.empty((0, 3)), *rows])
+    if apart_from is not None and len(apart_from) and len(places):
+        places = places[cKDTree(apart_from).query(places[:, :2])[0] > LEFT_OUT_NEAR]
+    if not len(places) or not middles:
         return _summary(np.empty(0))
-    return _misses(np.concatenate(rows), np.concatenate([np.concatenate([line[:-1], line[1:]], axis=1) for line in middles]), NEAR_MIDDLE)[0]
+    return _misses(places, np.concatenate([np.concatenate([line[:-1], line[1:]], axis=1) for line in middles]), NEAR_MIDDLE)[0]
 
 
 def _misses(places, segments, farthest):

@@ -89,7 +89,7 @@ def share_borders(lanes: Lanes) -> SharedBorders:
     SharedBorders; the number and order of vertices stay as they are
     """
     rows = np.concatenate([lanes.left, lanes.right])
-    nodes, first = _numbered(rows)
+    nodes, first = numbered(rows)
     places = rows[first]
     # a place has one height, that of all lanes beside it
     places[:, 2] = np.bincount(nodes, rows[:, 2]) / np.bincount(nodes)
@@ -116,8 +116,8 @@ def _typical(gaps):
     return found if found > LEAST_STRIPE_GAP else 0.0
 
 
-def _numbered(rows):
-    """((V,) number of each vertex's place, (N,) a vertex of each place)."""
+def numbered(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """((V,) number of each of (V, 3) vertices' place, (N,) a vertex of each place): vertices nearer than SAME_VERTEX are at one place."""
     near = cKDTree(rows[:, :2]).query_pairs(SAME_VERTEX, output_type="ndarray")
     near = near[np.abs(rows[near[:, 0], 2] - rows[near[:, 1], 2]) < SAME_ROAD_RISE] if len(near) else near.reshape(0, 2)
     first = np.arange(len(rows))

@@ -17,6 +17,7 @@ from ..io.crs import check_metric, parse_crs
 MOST_OVERLAP = 0.5       # share of a lane that may lie on lanes of another road: more is two roads at one place
 SAME_LEVEL = 2.0         # m of height within which two roads are no bridge
 FARTHEST_PLACE = 1e8     # m from the origin of a CRS: twice around the world
+LEAST_LED = 0.001        # m
 FARTHEST_LAYER = 50.0    # m from the lanes: a layer that lies farther away is of another survey
 
 
@@ -39,6 +40,13 @@ class RoadMapSource:
     notes: list[str] = field(default_factory=list)
     gaps: np.ndarray | None = None
     middles: np.ndarray | None = None
+
+    def led_to_middles(self) -> np.ndarray:
+        """(N, 2) places in the middle of lanes where a border was led along the middle of a double line, away from the lane's own stripe."""
+        if self.middles is None:
+            return np.empty((0, 2))
+        moved = ((self.lanes.left + self.lanes.right) / 2 - self.middles)[:, :2]
+        return self.middles[np.hypot(*moved.T) > LEAST_LED, :2]
 
     def others(self) -> Iterator[tuple[str, Features]]:
         """(what messages call it, layer) of the layers beside the lanes that there are."""

@@ -1,30 +1,30 @@
-"""Writes maps of streets with known lanes, and what the other readers must find in them: make_files.py FOLDER."""
+"""Writes maps of road maps, and what the other readers must find in them: make_files.py FOLDER [RESULTS].
+
+The road maps are those of streets with known lanes and, where RESULTS is given, those of tools/survey_results.sh.
+"""
 
 import json
 import sys
 from pathlib import Path
 
 import numpy as np
+from road_maps import results, streets
 
 STEP = 0.1   # m between the places of a lane that is driven along
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests" / "streets"))
-
-from plugin_package import load  # noqa: E402
-
-
-def scenes():
-    from made_lanes import crossing, double_line, parting, roundabout, s_curve, split, street, widening
-
-    return {"street": street(cut=30.0), "left_hand": street(side="left", cut=30.0), "arc": street(((100.0, 1 / 40, 1 / 40),)),
-            "crowned": s_curve(slope=0.02, crown=0.025), "tilted": s_curve(slope=0.02, crossfall=0.02), "widening": widening(), "split": split(),
-            "crossing": crossing(), "double_line": double_line(), "parting": parting(),
-            "roundabout": roundabout()}
+SOME_CRS = "EPSG:25832"   # for road maps that have none
 
 
 def main():
-    load()
+    folder = Path(sys.argv[1])
+    folder.mkdir(parents=True, exist_ok=True)
+    maps = streets() | (results(sys.argv[2]) if len(sys.argv) > 2 else {})
+    for name, one in maps.items():
+        write(folder, name, one)
+    print(f"{len(maps)} road maps written to {folder}")
+
+
+def write(folder, name, one):
+    """The files of one road map, and the JSON with what must be found in them."""
     from lanewright.core.export.cad.dxf import dxf_lines, write_dxf
     from lanewright.core.export.lanelet.exporter import draft_lanelets
     from lanewright.core.export.lanelet.writer import lanelet2_text, to_degrees
@@ -32,27 +32,30 @@ def main():
     from lanewright.core.export.opendrive.exporter import OpenDriveSettings, draft_opendrive
     from lanewright.core.export.opendrive.writer import opendrive_text
     from lanewright.core.export.shared_borders import with_shared_borders
-    from lanewright.core.export.sources import RoadMapSource, checked
 
-    folder = Path(sys.argv[1])
-    folder.mkdir(parents=True, exist_ok=True)
-    for name, lanes in scenes().items():
-        source = with_shared_borders(checked(RoadMapSource(lanes)))
-        expected = {"lanes": int((np.isin(lanes.type, ("driving", "connector"))).sum()), "successors": sum(map(len, lanes.successors))}
-        for version in ("1.7", "1.8"):
-            draft = draft_opendrive(source, OpenDriveSettings(version=version))
-            draft.map.reference = reference_of_crs(lanes.crs)
-            (folder / f"{name}_{version}.xodr").write_text(opendrive_text(draft.map), encoding="utf-8")
-        expected["borders"] = borders(folder / f"{name}_1.7.xodr")
-        expected["driven"] = driven_lanes(folder / f"{name}_1.7.xodr")
-        lanelets = draft_lanelets(source)
-        (folder / f"{name}.osm").write_text(lanelet2_text(lanelets, to_degrees(lanelets.nodes, lanes.crs)), encoding="utf-8")
-        expected["lanelets"] = len(lanelets.lanelets)
-        lines = dxf_lines(source)
-        write_dxf(lines, str(folder / f"{name}.dxf"))
-        expected["dxf"] = len(lines)
-        (folder / f"{name}.json").write_text(json.dumps(expected), encoding="utf-8")
-    print(f"{len(scenes())} streets written to {folder}")
+    source = with_shared_borders(one.source)
+    lanes, crs = source.lanes, source.lanes.crs or SOME_CRS
+    for version in ("1.7", "1.8"):
+        draft = draft_opendrive(source, OpenDriveSettings(version=version))
+        draft.map.reference = reference_of_crs(lanes.crs)
+        (folder / f"{name}_{version}.xodr").write_text(opendrive_text(draft.map), encoding="utf-8")
+    origin = np.array(draft.map.offset[:2])
+    lanelets = draft_lanelets(source)
+    (folder / f"{name}.osm").write_text(lanelet2_text(lanelets, to_degrees(lanelets.nodes, crs)), encoding="utf-8")
+    lines = dxf_lines(one.source)
+    write_dxf(lines, str(folder / f"{name}.dxf"))
+    driven = {lanes.lane_id[k] for k in range(len(lanes)) if lanes.type[k] in ("driving", "connector")}
+    passable = sum(lanelet.name in driven for lanelet in lanelets.lanelets)
+    links = sum(next in driven for id, others in zip(lanes.lane_id, lanes.successors) if id in driven for next in others)
+    ways = [[place.tolist() for place in way] for way in one.ways()]
+    expected = {
+        # each cut of a lane makes one lanelet more and one link more
+        "lanes": passable, "successors": links + passable - len(driven), "lanelets": len(lanelets.lanelets), "dxf": len(lines),
+        "borders": borders(folder / f"{name}_1.7.xodr"), "driven": driven_lanes(folder / f"{name}_1.7.xodr"),
+        "vertices": (np.concatenate([lanes.left, lanes.right])[:, :2] - origin).round(4).tolist(), "origin": origin.tolist(),
+        "ways": [(np.array(way) - origin).tolist() for way in ways],
+        "ways_in_degrees": [to_degrees(np.array(way), crs).lonlat[:, ::-1].tolist() for way in ways]}
+    (folder / f"{name}.json").write_text(json.dumps(expected), encoding="utf-8")
 
 
 def borders(path):

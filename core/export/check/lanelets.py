@@ -21,6 +21,7 @@ SPIKE_RISE, SPIKE_SLOPE = 0.3, 0.5   # m and share of the distance to both neigh
 MOST_SPIKES = 20          # of one way
 JOIN_DISTANCE = 0.3       # m within which an end was meant to be the next lanelet's beginning
 TWIN_DISTANCE = 0.02      # m between two ways that are one border
+LONGEST_FORK = 2.0          # m near an end of a border within which another that parts from it there may lie on it
 JOIN_ANGLE = 0.7          # rad between lanelets that may follow each other
 USUAL_SHARE = 0.9         # of the lanelets, which show the habit of a map of drawing borders
 LEAST_HABIT = 10          # lanelets that are a habit
@@ -261,7 +262,8 @@ class _LaneletCheck:
             return
         tree = shapely.STRtree(shapely.buffer(np.array(lines, object), TWIN_DISTANCE))
         for k, j in tree.query(lines, predicate="within").T:
-            if k != j and (k < j or not shapely.within(lines[j], shapely.buffer(lines[k], TWIN_DISTANCE))):
+            if k != j and (k < j or not shapely.within(lines[j], shapely.buffer(lines[k], TWIN_DISTANCE))) and not (
+                    lines[k].length < LONGEST_FORK and lines[k].distance(lines[j].boundary) < LONGEST_FORK):
                 self.findings.add("border twice", f"ways {ways[k].id} and {ways[j].id}", "They lie at one place; neighbours should share one.",
                                   self.at(ways[k]))
 

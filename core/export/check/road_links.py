@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..opendrive.model import DRIVEN_TYPES, MapRoad, OpenDriveMap
+from ..opendrive.model import DRIVEN_TYPES, OPEN_END, MapRoad, OpenDriveMap
 from ..opendrive.network import LaneKey, LaneNetwork, travel
 from ..opendrive.surface import RoadSurface
 from .findings import Findings, metres
@@ -36,9 +36,7 @@ class _Links:
     def __init__(self, whole: OpenDriveMap, findings: Findings) -> None:
         self.whole, self.findings, self.network = whole, findings, LaneNetwork(whole)
         self.known = {junction.id for junction in whole.junctions}
-        lanes = [(road.id, number, id) for road in whole.roads for number, section in enumerate(road.sections) for id in section.lanes if id]
-        # roads that leave a junction are named by its connecting roads alone
-        self.touched = {found for key in lanes for end in ("start", "end") for found in self.network.touching(key, end)}
+        self.touched = self.network.touched()
         self.ends: dict[tuple[LaneKey, str], tuple[np.ndarray, np.ndarray, np.ndarray]] = {}
 
     def place(self, road: MapRoad, end: str) -> np.ndarray:
@@ -127,23 +125,16 @@ class _Links:
         for end in ("start", "end"):
             own = self._end(key, end)
             touching = self.network.touching(key, end)
-            ways = [other for other, _ in touching if (known := self.network.lane(other)) is not None and known.type in DRIVEN_TYPES]
             for other, there in touching:
                 target = self.network.lane(other)
                 if target is None or not other[2]:   # lane 0 is a line
                     self.findings.add("lane link", name, f"At its {end} there is no such lane {other[2]} of road {other[0]}.", own[0])
                     continue
                 self._joined(name, key, end, own, other, there, target, driven)
-            inside = 0 <= key[1] + (1 if end == "end" else -1) < len(road.sections)
-            if driven and not ways and (touching or (key, end) not in self.touched) and self._width(own) > LEAST_LANE:
+            said = end in lane.data.get(OPEN_END, "").split()
+            if self.network.is_open(key, end, self.touched) and not said and self._width(own) > LEAST_LANE:
                 leaves = (end == "end") == (way > 0)
-                if inside or self._road_goes_on(road, end):
-                    self.findings.add("dead end" if leaves else "no way in", name, f"At its {end} it is linked to no driven lane.", own[0])
-
-    def _road_goes_on(self, road, end):
-        """Whether the road of a driven lane is linked to anything that is there."""
-        link = road.link(end)
-        return link is not None and (link.element == "junction" and link.id in self.known or link.id in self.network.roads)
+                self.findings.add("dead end" if leaves else "no way in", name, f"At its {end} it is linked to no driven lane.", own[0])
 
     def _joined(self, name, key, end, own, other, there, target, driven):
         road, to = self.network.roads[key[0]], self.network.roads[other[0]]

@@ -41,6 +41,8 @@ RANGES = {
     ("object", "length"): POSITIVE, ("object", "width"): POSITIVE, ("object", "height"): NOT_NEGATIVE, ("object", "radius"): NOT_NEGATIVE,
     ("signal", "s"): NOT_NEGATIVE, ("superelevation", "a"): (-PI_HALF, PI_HALF, True), ("width", "a"): (-1.0, 50.0, True),
 }
+# (tag, attribute) -> the minor version from which the range holds; earlier ones have any number there
+RANGE_SINCE = {("object", "length"): 7, ("object", "width"): 7, ("object", "height"): 7, ("object", "radius"): 7}
 NEEDED_ATTRIBUTES = {"object": ("id", "s", "t"), "signal": ("id", "s", "t"), "lane": ("id", "type"), "connection": ("id",)}
 
 
@@ -64,9 +66,10 @@ def statements(root: XmlElement) -> Iterator[Statement]:
     header = root.find("header")
     if header is not None:
         yield from _header(header)
+    minor = _number(header, "revMinor", MINORS[-1]) if header is not None else MINORS[-1]
     seen: dict[str, set[str]] = {"object": set(), "signal": set()}
     for road in root.all("road"):
-        yield from _road(road, seen)
+        yield from _road(road, seen, minor)
     for junction in root.all("junction"):
         yield from _junction(junction)
 
@@ -84,7 +87,7 @@ def _header(header):
         yield Statement("bounds", "header", f"South {south:g} to north {north:g}, west {west:g} to east {east:g}.", "", 0.0)
 
 
-def _road(road, seen):
+def _road(road, seen, minor):
     id, length = road.get("id"), _number(road, "length", 0.0)
     name = f"road {id}"
 
@@ -112,7 +115,7 @@ def _road(road, seen):
         for one in _all(group, kind):
             yield from (found(fault, f"{kind} {one.get('id')}", text, s) for fault, text, s in _beside(one, kind, length, numbers, seen[kind]))
     for one in _within(road):
-        yield from (found("value", "", text) for text in _values(one))
+        yield from (found("value", "", text) for text in _values(one, minor))
 
 
 def _plan(plan):
@@ -183,13 +186,13 @@ def _order(parent, tag, key, length, zero):
         yield f"One begins at {max(at) if max(at) > length else min(at):g} m of {length:g} m."
 
 
-def _values(one):
-    """Sentences on words and numbers of an element."""
+def _values(one, minor):
+    """Sentences on words and numbers of an element of a file of version 1.minor."""
     for (tag, name), words in WORDS.items():
         if one.tag == tag and name in one.attributes and one.get(name) not in words and not (tag == "type" and "s" not in one.attributes):
             yield f"Line {one.line}: {name} of <{tag}> is {one.get(name)[:40]!r}."
     for (tag, name), (least, most, itself) in RANGES.items():
-        if one.tag == tag and name in one.attributes:
+        if one.tag == tag and name in one.attributes and not minor < RANGE_SINCE.get((tag, name), 0):
             value = _number(one, name, np.nan)
             if not (least <= value <= most) or not itself and value == least:
                 yield f"Line {one.line}: {name} of <{tag}> is {one.get(name)[:40]!r}."

@@ -9,11 +9,13 @@ import numpy as np
 
 from ...common.progress import Progress
 from ...common.setting import check_limits, setting
+from ..driven_middles import with_driven_middles
 from ..lane_uncertainty import sigma_of_lanes
 from ..sources import RoadMapSource, nearest_values
 from .heights import add_heights
 from .junctions import link_roads
-from .model import MapLane, MapRoad, OpenDriveMap, RoadMark
+from .model import OPEN_END, MapLane, MapRoad, OpenDriveMap, RoadMark
+from .network import LaneNetwork
 from .road_objects import add_objects
 from .road_shape import add_lanes, centre_of, shape_of
 from .strips import Cell, Slice, cut_into_cells, end_to_end, is_connector, mark_junctions, slices_of, strips_of
@@ -85,6 +87,7 @@ def draft_opendrive(source: RoadMapSource, settings: OpenDriveSettings = OpenDri
     -------
     OpenDriveDraft
     """
+    source = with_driven_middles(source, settings.tolerance / 2)
     lanes = source.lanes
     places = np.concatenate([lanes.left, lanes.right])
     origin = np.append(np.floor(places[:, :2].mean(0) / ROUND_ORIGIN) * ROUND_ORIGIN, 0.0)
@@ -99,6 +102,7 @@ def draft_opendrive(source: RoadMapSource, settings: OpenDriveSettings = OpenDri
         draft.map.roads.append(made.road)
         progress.report(number / len(strips))
     draft.notes += link_roads(draft.map, draft.roads)
+    draft.notes += _said_open_ends(draft.map)
     add_objects(draft.map, source.markings, origin)
     return draft
 
@@ -254,6 +258,21 @@ class _Drafting:
             if np.isfinite(heights).any():
                 curb.heights = np.array([[0.0, 0.0, round(float(np.nanmedian(heights)), 3)]])
             lanes[beyond] = curb
+
+
+def _said_open_ends(whole: OpenDriveMap) -> list[str]:
+    """Say in the file at which ends a driven lane goes on nowhere though its road does; notes for the user."""
+    network, count = LaneNetwork(whole), 0
+    touched = network.touched()
+    for road in whole.roads:
+        for number, section in enumerate(road.sections):
+            for id, lane in section.lanes.items():
+                ends = [end for end in ("start", "end") if id and network.is_open((road.id, number, id), end, touched)]
+                if ends:
+                    lane.data[OPEN_END] = " ".join(ends)
+                    count += len(ends)
+    return [f"{count} ends of driven lanes are linked to no lane, since the survey shows none there, though their roads go on; userData of the "
+            f"lanes says so."] if count else []
 
 
 def _between_junctions(slices, inside):

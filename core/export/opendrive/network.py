@@ -14,6 +14,7 @@ class LaneNetwork:
 
     def __init__(self, whole: OpenDriveMap) -> None:
         self.roads = {road.id: road for road in whole.roads}
+        self.junctions = {junction.id for junction in whole.junctions}
         self.connections: dict[tuple[str, str], list[Connection]] = defaultdict(list)
         for junction in whole.junctions:
             for connection in junction.connections:
@@ -44,6 +45,28 @@ class LaneNetwork:
     def _at(self, road: str, contact: str, number: int) -> LaneKey:
         known = self.roads.get(road)
         return road, len(known.sections) - 1 if contact == "end" and known is not None else 0, number
+
+    def touched(self) -> set[tuple[LaneKey, str]]:
+        """(lane, which of its ends) of all that any lane is linked to."""
+        lanes = [(road.id, number, id) for road in self.roads.values() for number, section in enumerate(road.sections) for id in section.lanes if id]
+        return {found for key in lanes for end in ("start", "end") for found in self.touching(key, end)}
+
+    def is_open(self, key: LaneKey, end: str, touched: set[tuple[LaneKey, str]]) -> bool:
+        """Whether a driven lane is linked to no driven lane at an end, although its road goes on there.
+
+        touched : as above; roads that leave a junction are named by its connecting roads alone
+        """
+        road, lane = self.roads[key[0]], self.lane(key)
+        if lane is None or lane.type not in DRIVEN_TYPES:
+            return False
+        touching = self.touching(key, end)
+        if any((known := self.lane(other)) is not None and known.type in DRIVEN_TYPES for other, _ in touching):
+            return False
+        if not touching and (key, end) in touched:
+            return False
+        link = road.link(end)
+        return 0 <= key[1] + (1 if end == "end" else -1) < len(road.sections) or link is not None and (
+            link.element == "junction" and link.id in self.junctions or link.id in self.roads)
 
     def following(self, key: LaneKey) -> list[LaneKey]:
         """The driven lanes that a driven lane leads to, in the direction of travel."""

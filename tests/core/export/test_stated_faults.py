@@ -146,6 +146,12 @@ def test_what_the_standard_does_not_allow_is_found_in_an_opendrive_map(tmp_path,
     assert fault in found.counts(), found.counts()
 
 
+def test_what_an_earlier_version_allowed_is_no_fault_of_its_files(tmp_path, roads):
+    root = ElementTree.fromstring(roads("street"))
+    both(put("header", revMinor="4"), things(thing(length="0", width="0")))(root)
+    assert not check_opendrive(read_opendrive(written(tmp_path, ElementTree.tostring(root, encoding="unicode")))).found
+
+
 @pytest.fixture(scope="module")
 def lanelets():
     """Two lanelets each way, as our own export has them; with ten more for habits."""

@@ -1,0 +1,35 @@
+"""Borders of lanes have no steps where they go on as another line."""
+
+import numpy as np
+import pytest
+from lanewright.core.driving.lane_track import led_over
+
+S = np.arange(0.0, 60.0, 0.5)
+
+
+@pytest.mark.parametrize("jump", [-0.4, 0.05, 0.3])
+def test_a_jump_from_line_to_line_is_spread_and_the_lines_stay_elsewhere(jump):
+    offset = np.where(S < 30.0, 1.75, 1.75 + jump)
+    led = led_over(S, offset, np.where(S < 30.0, 4, 7))
+    assert np.abs(np.diff(led)).max() / 0.5 < 0.052
+    far = np.abs(S - 29.75) > 15 * abs(jump) + 0.5
+    assert led[far] == pytest.approx(offset[far])
+    assert np.abs(led - offset).max() <= abs(jump) / 2 + 1e-9
+
+
+def test_a_step_within_a_line_is_led_over_too_and_a_taper_is_kept():
+    taper = np.interp(S, [20.0, 35.0], [1.75, 5.25])
+    assert led_over(S, taper, np.full(len(S), 4)) == pytest.approx(taper)
+    step = np.where(S < 30.0, 1.75, 2.15)
+    assert np.abs(np.diff(led_over(S, step, np.full(len(S), 4)))).max() < 0.05
+
+
+def test_near_the_end_of_a_lane_there_is_less_room_and_the_end_stays():
+    offset = np.where(S < 58.0, 1.75, 2.05)
+    led = led_over(S, offset, np.where(S < 58.0, 4, 7))
+    assert led[-1] == pytest.approx(2.05) and led[0] == pytest.approx(1.75) and np.abs(np.diff(led)).max() < 0.2
+
+
+def test_a_border_without_jumps_stays_as_it_is():
+    wave = 1.75 + 0.02 * np.sin(S)
+    assert led_over(S, wave, np.zeros(len(S), int)) is not wave and led_over(S, wave, np.zeros(len(S), int)) == pytest.approx(wave)
