@@ -21,7 +21,7 @@ from ...common.progress import Progress
 from ...common.setting import check_limits, setting
 from ...curves.robust import median
 from ...survey.store.records import COORDINATE_SCALE, Points, join_columns
-from .classify import LINE_KINDS, NOT_PAINT, ClassSettings, classify_markings, relative_contrast, too_pale
+from .classify import LINE_KINDS, NOT_PAINT, ROAD_EDGE_CLEARANCE, ClassSettings, classify_markings, relative_contrast, too_pale
 from .connected_cells import components, occupied
 from .marking_objects import make_marking_objects
 from .outline import band, cell_outline, lifted, painted_cells, parts, to_local
@@ -232,17 +232,20 @@ def _components(records, distance):
     found = components(cells, places, size_of_cell, distance)
     reach = np.zeros(len(cells))
     reach[member] = track_reach(records["spacing"])
-    pairs = _across_tracks(places / [distance, REACH_ACROSS_DIVISOR], reach)
+    at_rim = np.zeros(len(cells), bool)
+    at_rim[member[records["half_width"] * 1e-3 - np.abs(records["d"]) * COORDINATE_SCALE < ROAD_EDGE_CLEARANCE]] = True
+    pairs = _across_tracks(places / [distance, REACH_ACROSS_DIVISOR], reach, at_rim)
     if len(pairs):
         found = linked_groups(*found[pairs].T, int(found.max()) + 1)[found]
     return cells, member, found
 
 
-def _across_tracks(places, reach):
+def _across_tracks(places, reach, at_rim):
     """(P, 2) cells on neighbouring tracks of the scan, where these lie farther apart than points that join anyway.
 
     places : (K, 2) along the road in units of the reach there, across it in metres
     reach : (K,) m across the road
+    at_rim : (K,) bool, at the very edge of the road, where it is the curb that is bright: the next track may show an edge line
     """
     rows = np.flatnonzero(reach)
     if not len(rows):
@@ -250,7 +253,8 @@ def _across_tracks(places, reach):
     widest = reach[rows].max()
     pairs = rows[cKDTree(places[rows] / [1.0, widest]).query_pairs(1.0, output_type="ndarray").reshape(-1, 2)]
     along, across = (places[pairs[:, 0]] - places[pairs[:, 1]]).T
-    return pairs[along**2 + (across / reach[pairs].min(axis=1)) ** 2 <= 1.0]
+    near = along**2 + (across / reach[pairs].min(axis=1)) ** 2 <= 1.0
+    return pairs[near & (at_rim[pairs[:, 0]] == at_rim[pairs[:, 1]])]
 
 
 def _shared(cells, labels, others, other_labels):

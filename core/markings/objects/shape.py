@@ -18,6 +18,7 @@ TRACKS_PER_STEP = 10.0                                # times the distance betwe
 WIDTH_PERCENT = 95.0                                  # % of the points that the width spans; divided out again
 MAX_ANGLE_ALONG = np.radians(20.0)                    # closer to the road's direction than this is "along" it
 MIN_ANGLE_ACROSS = np.radians(60.0)                   # farther from it is "across"
+END_UNITS, MIN_END_UNITS, MIN_END_POINTS = 10000, 2000, 4   # units: 1 m at either end, and 0.2 m and points at least that show how a track runs there
 STEM_BREADTH_CELLS, STEM_STEP_CELLS = 9, 5            # cells: a stroke along the road is no broader (0.36 m), looked at every 20 cm
 SCAN_GAPS_OF_BARS = 10, 6                             # cells along the road and across it: gaps between the scan lines on a bar
 SMALL_MARKING_SIZE, SCAN_GAPS_OF_SMALL = 1.2, (3, 1)  # m, and cells likewise of what is no longer than that: the strokes of a sign lie farther apart
@@ -32,7 +33,8 @@ class Shape:
     `closed_area` is the area with the gaps between scan lines, of what runs across the road or is small (`area` of the rest);
     `begin` and `finish` are the offsets of its middle line at s0 and s1 (the median for what is not along the road).
     `stems` are the shares of its length, from s0 on and from s1 back, over which it is a single stroke.
-    `spacing` is the distance between the tracks of the scan that it was seen on, where these are farther apart than cells, else 0.
+    `spacing` is the distance between the tracks of the scan that it was seen on, where these are farther apart than cells, else 0;
+    `askew` is then how fast the tracks cross it at s0 and at s1, metres across per metre along, 0 where it is not known.
     """
 
     s0: float
@@ -50,6 +52,7 @@ class Shape:
     closed_area: float
     stems: tuple
     spacing: float = 0.0
+    askew: tuple[float, float] = (0.0, 0.0)
 
     @property
     def elongation(self) -> float:
@@ -110,7 +113,7 @@ def measure(s: np.ndarray, d: np.ndarray, spacing: np.ndarray | None = None) -> 
     area, closed_area = (count * (CELL_UNITS * COORDINATE_SCALE) ** 2 for count in (len(cells), closed))
     return Shape(s0 * COORDINATE_SCALE, s1 * COORDINATE_SCALE, d0 * COORDINATE_SCALE, d1 * COORDINATE_SCALE, median(d) * COORDINATE_SCALE,
                  float(length), full_width(across) * COORDINATE_SCALE, direction, area, len(s), float(begin), float(finish), closed_area,
-                 _stems(cells), apart)
+                 _stems(cells), apart, _askew(s, d) if apart else (0.0, 0.0))
 
 
 def _closed(cells, gaps):
@@ -132,6 +135,16 @@ def _stems(cells):
     np.maximum.at(high, step, cells[:, 1])
     broad = np.flatnonzero(high - low >= STEM_BREADTH_CELLS)
     return (float(broad[0]) / count, 1.0 - float(broad[-1] + 1) / count) if len(broad) else (1.0, 1.0)
+
+
+def _askew(s, d):
+    """How fast the tracks cross a cluster at its begin and at its end, from the points there."""
+    found = []
+    for end in (s - s.min() <= END_UNITS, s.max() - s <= END_UNITS):
+        along, across = s[end] - s[end].mean(), d[end] - d[end].mean()
+        clear = len(along) >= MIN_END_POINTS and np.ptp(along) >= MIN_END_UNITS
+        found.append(abs(float((along * across).sum() / (along * along).sum())) if clear else 0.0)
+    return found[0], found[1]
 
 
 def full_width(across: np.ndarray) -> float:

@@ -50,6 +50,8 @@ MIN_LEFTOVER_AREA = 0.05                      # m2: smaller left-overs are the f
 # Pieces of one marking
 MAX_WORN_GAP, MAX_FRAGMENT_OVERLAP, MAX_FRAGMENT_OFFSET = 0.9, 0.2, 0.08  # m along, along, across
 TRACKS_PER_GAP, MAX_GAP_BETWEEN_TRACKS = 10.0, 2.0  # times the distance between the tracks of the scan, and m, along: gaps of dashes are longer
+MIN_ASKEW, MAX_UNSEEN_GAP = 0.05, 3.5   # m across per m along, and m along: a track that crosses a line so leaves it sideways; gaps of dashes
+MAX_UNSEEN_OFFSET = 0.08                # that are seen so far off are longer; m between the middles of two pieces with such a gap between them
 STOP_LINE_PIECE_THICKNESS = 0.18, 0.90  # m along the road of a stop line's pieces
 MIN_STOP_LINE_PIECE, MAX_STOP_LINE_GAP = 0.8, 0.30  # m across: a row of shorter blocks is a give-way line, and its gaps are painted
 MIN_STRIPE_PIECE, MAX_STRIPE_GAP = 0.8, 0.7  # m along the road: what a stripe of a crossing has left at least, and what wear takes of it
@@ -257,7 +259,7 @@ def join_fragments(shapes: Sequence[Shape], max_width: float) -> np.ndarray:
     Notes
     -----
     Narrow pieces along the road are joined where one begins up to 0.9 m after the end of
-    another on the same line; pieces of a bar across the road over 0.3 m where their
+    another on the same line, farther where tracks of the scan cross it askew; pieces of a bar across the road over 0.3 m where their
     front and rear are the same; what is left of the stripes of a
     crossing over 0.7 m within their sides.
     """
@@ -283,7 +285,23 @@ def _along(shapes, max_width):
     near = cKDTree(begins / scale).query_ball_point(about, 1.0, p=np.inf)
     pairs = np.array([(a, b) for a, found in enumerate(near) for b in found if a != b], np.int64).reshape(-1, 2)
     gap = begins[pairs[:, 1], 0] - ends[pairs[:, 0], 0]
-    return narrow[pairs[gap <= longest[pairs].min(axis=1)]]
+    return np.concatenate([narrow[pairs[gap <= longest[pairs].min(axis=1)]], _unseen_gaps(shapes, narrow)])
+
+
+def _unseen_gaps(shapes, narrow):
+    """(P, 2) pieces of one line with a gap that was not seen: a track of the scan leaves the line sideways before it, or comes in sideways after it.
+
+    Where a track leaves a line sideways the line need not end there.
+    """
+    sparse = np.array([k for k in narrow.tolist() if shapes[k].spacing > 0 and max(shapes[k].askew) >= MIN_ASKEW], np.int64)
+    if len(sparse) < 2:
+        return np.empty((0, 2), np.int64)
+    first, last, offset = (np.array([getattr(shapes[k], name) for k in sparse]) for name in ("s0", "s1", "offset"))
+    sideways = np.array([shapes[k].askew for k in sparse]) >= MIN_ASKEW
+    a, b = (np.concatenate(found) for found in zip(*overlapping_pairs(first, last, first, last, MAX_UNSEEN_GAP)))
+    gap = first[b] - last[a]
+    unseen = (a != b) & (gap >= 0) & (gap <= MAX_UNSEEN_GAP) & (sideways[a, 1] | sideways[b, 0])
+    return sparse[np.column_stack([a, b])[unseen & (np.abs(offset[a] - offset[b]) <= MAX_UNSEEN_OFFSET)]]
 
 
 def _narrow(shape, max_width):

@@ -14,6 +14,7 @@ import numpy as np
 
 from ..objects.road_grid import CELL_SIZE
 from ..objects.scan_tracks import fill_gaps
+from .spacing import MAX_TRACK_GAP
 
 BAND_CELLS = 2       # bands of 8 cm inwards from the rim
 GUTTER_BANDS = 9     # 0.72 m: no gutter is wider
@@ -24,7 +25,8 @@ MIN_BRIGHT_SHARE = 0.65      # of the cells of a band
 MIN_CELLS_SEEN = 20          # of a band along RIM_REACH either way
 GUTTER_BRIGHTNESS = 1.5      # spreads above asphalt
 PAINT_TO_GUTTER = 1.8        # times as bright as the cells between it and the rim: paint beside the gutter
-ROAD_GAP_ALONG, ROAD_GAP_ACROSS = 15, 10   # cells: smaller gaps between points belong to the road
+ROAD_GAP_ALONG = 15          # cells: smaller gaps between points belong to the road,
+ROAD_GAP_ACROSS = int(MAX_TRACK_GAP / CELL_SIZE)   # and across it those between tracks of the scan
 
 
 def rim_distance(occupied: np.ndarray) -> np.ndarray:
@@ -45,7 +47,9 @@ def rim_distance(occupied: np.ndarray) -> np.ndarray:
     if len(rows):
         occupied[:rows[0]] = occupied[rows[0]:rows[0] + ROAD_GAP_ALONG].any(axis=0)
         occupied[rows[-1] + 1:] = occupied[max(rows[-1] + 1 - ROAD_GAP_ALONG, 0):rows[-1] + 1].any(axis=0)
-    road = fill_gaps(fill_gaps(occupied, ROAD_GAP_ACROSS, 1), ROAD_GAP_ALONG, 0)
+    # along each track first: two tracks rarely have points at the same station
+    tracks = fill_gaps(occupied, ROAD_GAP_ALONG, 0)
+    road = fill_gaps(fill_gaps(tracks, ROAD_GAP_ACROSS, 1), ROAD_GAP_ALONG, 0)
     return cv2.distanceTransform(road.view(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE) * np.float32(CELL_SIZE)
 
 

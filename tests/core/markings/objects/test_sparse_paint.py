@@ -83,3 +83,28 @@ def test_a_line_that_tracks_cross_askew_shows_on_each_for_a_while(spacing, gap, 
     records["spacing"] = spacing
     markings, _ = layer_of(road_points(records, FRAME), FRAME)
     assert len(markings) == pieces
+
+
+def crossed(slope, period, on=1.2, count=6, middle=3.0, width=0.12):
+    """Records of a line that one track of the scan after the other crosses from side to side, `on` m each."""
+    along = np.concatenate([10 + k * period + np.arange(0.0, on, 0.06) for k in range(count)])
+    across = middle + np.clip(slope * ((along - 10) % period - on / 2), -width / 2, width / 2)
+    return records_at(FRAME, along, across, np.full(len(along), 4000.0), 6.0)
+
+
+@pytest.mark.parametrize(("slope", "period", "pieces"), [(0.1, 4.0, 1), (0.0, 4.0, 6), (0.1, 6.0, 6)],
+                         ids=["tracks leave it sideways", "it ends beneath a track", "too far"])
+def test_a_line_goes_on_where_the_track_left_it_sideways(slope, period, pieces):
+    records = crossed(slope, period)
+    records["spacing"] = 300
+    markings, _ = layer_of(road_points(records, FRAME), FRAME)
+    assert len(markings) == pieces
+
+
+def test_an_edge_line_one_track_from_a_bright_curb_is_not_joined_to_it():
+    line, curb = strip(10, 50, 5.6, 5.72), strip(10, 50, 5.95, 6.0)
+    records = paint(FRAME, [line, curb], density=20000)
+    records["spacing"] = 300
+    markings, _ = layer_of(road_points(records, FRAME), FRAME)
+    assert classes(markings) == ["edge"]
+    assert markings.rows[0]["width_m"] == pytest.approx(0.12, abs=0.04)

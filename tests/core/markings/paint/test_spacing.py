@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from lanewright.core.markings.paint.gutters import rim_distance
 from lanewright.core.markings.paint.spacing import track_spacing
 
 DENSE, SPARSE = 50, slice(60, 200)   # columns of cells: the middle of the dense half, the sparse half
@@ -36,3 +37,13 @@ def test_a_shadow_is_no_spacing():
 
 def test_points_half_a_metre_apart_along_a_track_leave_it_a_track():
     assert track_spacing(tracks(5, along=12))[50, 100] == pytest.approx(0.20)
+
+
+@pytest.mark.parametrize("step", [8, 12])
+def test_tracks_far_apart_are_one_road_and_no_rim_lies_between_them(step):
+    """Points of neighbouring tracks lie at different stations."""
+    occupied = tracks(step)
+    occupied[:, 60 + step::2 * step] = np.roll(occupied[:, 60 + step::2 * step], 1, axis=0)
+    rim = rim_distance(occupied)[50]
+    assert rim[70:130].min() > 1.5
+    assert rim[190] < 0.5
