@@ -22,15 +22,18 @@ from .las.reader import CloudHeader
 from .reading.blocks import PointChoice, unwrap_week
 from .reading.survey_reader import SurveyReader
 from .store.records import COORDINATE_SCALE, SURVEY_POINT, point_dtype
-from .store.section_store import SectionStore
+from .store.section_store import SECTION_LENGTH, SectionStore
 from .survey import Survey, SurveySettings
 from .trajectory.reprojection import reproject_trajectory
 from .trajectory.time_systems import align_time, wrapped_week
 
 if TYPE_CHECKING:
+    from .frame.road_frame import RoadFrame
     from .trajectory.trajectory import Trajectory
 
 INGEST_PROGRESS = 0.7        # of the work, where the passes are adjusted afterwards
+SECTION_POINTS = 250_000      # points of a section, about, and
+SECTION_LENGTHS = SECTION_LENGTH, 10.0, 25.0   # m that it may be long
 PARTS_PROGRESS = 0.85        # of reading, where the points are put in order afterwards
 LOWEST_SENSOR = 0.5          # m above the road: no scanner rides lower, but lines and places drawn on the road lie within
 TOLD_APART = "The points are of two scanners that no field tells apart; they were told apart by where their scan lines lead."
@@ -95,8 +98,8 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
                       "the passes are mixed: whatever they differ by blurs the map. Export points and trajectory with their time, or process "
                       "the files of each drive with its own part of the trajectory.")
     _check_extent(files, frame, crs, trajectory.crs)
-    store = SectionStore(point_dtype(SURVEY_POINT, frame.farthest), settings.section_length, settings.memory_limit,
-                         folder=None if shared is None else shared.points)
+    store = SectionStore(point_dtype(SURVEY_POINT, frame.farthest), settings.section_length or section_length(files, frame),
+                         settings.memory_limit, folder=None if shared is None else shared.points)
     reader = SurveyReader(frame, store, PointChoice(settings.corridor, has_time, week_ends, settings.above_road, coloured))
     again = settings.fit_passes and has_time and len(frame.passes) > len(frame.roads)
     read_at = INGEST_PROGRESS if again else 1.0
@@ -154,6 +157,20 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     if shared is not None:
         survey.keep(shared.ordered)
     return survey
+
+
+def section_length(files: list[CloudHeader], frame: RoadFrame) -> float:
+    """Metres of station in a section of the store: the longest of SECTION_LENGTHS that holds up to SECTION_POINTS, or the shortest.
+
+    Threads work section by section, and Python lets several of them work at once only where arrays are large.
+
+    Parameters
+    ----------
+    files : headers of the clouds
+    frame : RoadFrame
+    """
+    density = sum(file.count for file in files) / max(sum(road.length for road in frame.roads), 1.0)
+    return max((length for length in SECTION_LENGTHS if length * density <= SECTION_POINTS), default=SECTION_LENGTH)
 
 
 def _tell_scanners_apart(survey, reader, progress):

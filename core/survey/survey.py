@@ -21,7 +21,7 @@ from .reading.blocks import KEPT_ABOVE_ROAD
 from .reading.finishing import Finishing
 from .reading.ordering import UnorderedPoints
 from .store.records import Points
-from .store.section_store import MEMORY_LIMIT, SECTION_LENGTH, SectionStore
+from .store.section_store import MEMORY_LIMIT, SectionStore
 
 if TYPE_CHECKING:
     from .adjustment.corrections import PassCorrections
@@ -43,7 +43,7 @@ class SurveySettings:
     intensity_from : "intensity", or "rgb" for the luminance of the colours
     fit_passes : whether passes over one road are adjusted to each other
     above_road : m above the road up to which points are kept; the map needs what hides a curb, an inventory what hangs over the road
-    section_length : m of station in a section of the store
+    section_length : m of station in a section of the store; None for as many as hold some hundred thousand points
     memory_limit : bytes of points in memory; more go to a temporary file
     block : points decoded at a time
     """
@@ -55,7 +55,7 @@ class SurveySettings:
     intensity_from: str = INTENSITY_SOURCES[0]
     fit_passes: bool = True
     above_road: float = setting(KEPT_ABOVE_ROAD, 1.0, 100.0, "The height above the road", "m")
-    section_length: float = SECTION_LENGTH
+    section_length: float | None = None
     memory_limit: int = MEMORY_LIMIT
     block: int = POINTS_PER_BLOCK
 

@@ -90,12 +90,10 @@ def test_road_points_of_both_towns_come_back_from_a_file(survey, tmp_path):
                 road_points.store.put(road, number, rows, half_width=np.full(len(rows), 3500, "u2"), covered=np.zeros(len(rows), "u1"))
     write_road_points(road_points, tmp_path / "road.laz")
     read = read_road_points(tmp_path / "road.laz")
-    assert read.all_sections() == road_points.all_sections() and len(read) == len(road_points)
-    for key in road_points.all_sections():
-        one, other = road_points.section(*key), read.section(*key)
-        for name, off in (("x", 5.1e-4), ("y", 5.1e-4), ("z", 5.1e-4), ("s", 0.0), ("d", 0.0)):
-            np.testing.assert_allclose(getattr(other, name), getattr(one, name), rtol=0, atol=off, err_msg=name)
-    whole = read.all_points()
+    assert read.roads() == road_points.roads() and len(read) == len(road_points)
+    one, whole = road_points.all_points(), read.all_points()
+    for name, off in (("x", 5.1e-4), ("y", 5.1e-4), ("z", 5.1e-4), ("s", 0.0), ("d", 0.0)):
+        np.testing.assert_allclose(getattr(whole, name), getattr(one, name), rtol=0, atol=off, err_msg=name)
     np.testing.assert_allclose([np.ptp(whole.x) - FAR[0], np.ptp(whole.y) - FAR[1]],
                                [np.ptp(points_of(survey, 0)[name]) for name in "xy"], atol=1e-3)
 
