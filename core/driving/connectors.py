@@ -60,7 +60,7 @@ def connectors_on_road(s: np.ndarray, tracks: list[LaneTrack], heights: list[np.
 
 
 def _connector(before, after, a, b, columns, driven, s, heights, frame, number):
-    share = (columns - a) / (b - a)
+    share = _eased((columns - a) / (b - a))
     ends = [track.at(k) for track, k in ((before, a), (after, b))]
     off = [place - driven[k] for (place, _), k in zip(ends, (a, b))]
     # from the middle of the one lane to the middle of the other, along the drive between them
@@ -71,6 +71,11 @@ def _connector(before, after, a, b, columns, driven, s, heights, frame, number):
     if before.direction < 0:
         sides = [side[::-1] for side in sides[::-1]]
     return _row(number, before, after, sides, half, station=float(s[columns[0]]), end=float(s[columns[-1]]), first=float(d[0]), last=float(d[-1]))
+
+
+def _eased(share):
+    """A share from 0 to 1 that begins and ends without a slope: no border turns at once where the lane ends."""
+    return share**2 * (3 - 2 * share)
 
 
 def _row(road, before, after, sides, half, **places):
@@ -166,7 +171,7 @@ def _turn(left, entered, before, after, lanes, frame):
     along = np.r_[0.0, np.cumsum(np.hypot(*np.diff(places, axis=0).T))]
     if not NEXT_LANE_GAP < along[-1] < LONGEST_CONNECTOR:
         return None
-    share = along / along[-1]
+    share = _eased(along / along[-1])
     ahead = np.gradient(places, along, axis=0)
     across = np.c_[-ahead[:, 1], ahead[:, 0]] / np.hypot(*ahead.T)[:, None]
     middle = off[0] * (1 - share) + off[1] * share
