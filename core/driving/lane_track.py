@@ -112,7 +112,8 @@ def led_over(s: np.ndarray, offset: np.ndarray, rows: np.ndarray) -> np.ndarray:
 
     Returns
     -------
-    (N,) metres: each jump is spread over JUMP_LEAD times its size, LONGEST_LEAD at most, half of it on either side; less where the lane ends before
+    (N,) metres: each jump is spread over JUMP_LEAD times its size, LONGEST_LEAD at most, half of it on either side; less where the lane ends before,
+    and places aside at its very end are led on with the others
     """
     found, jumps, steps = offset.copy(), np.diff(offset), np.diff(s)
     sudden = (np.diff(rows) != 0) & (np.abs(jumps) > LEAST_JUMP) | (np.abs(jumps) > MOST_ASKEW_BORDER * steps)
@@ -122,6 +123,10 @@ def led_over(s: np.ndarray, offset: np.ndarray, rows: np.ndarray) -> np.ndarray:
         if lead > 2 * STATION_STEP:
             share = np.clip((s - at) / lead + 0.5, 0.0, 1.0)
             found += jumps[k] * (share**2 * (3 - 2 * share) - (s > at))
+        elif at - s[0] < s[-1] - at:   # the place or two at an end lie aside
+            found[:k + 1] += jumps[k]
+        else:
+            found[k + 1:] -= jumps[k]
     return found
 
 

@@ -30,6 +30,13 @@ def test_near_the_end_of_a_lane_there_is_less_room_and_the_end_stays():
     assert led[-1] == pytest.approx(2.05) and led[0] == pytest.approx(1.75) and np.abs(np.diff(led)).max() < 0.2
 
 
+@pytest.mark.parametrize("last", [0, -1])
+def test_a_place_aside_at_the_very_end_is_led_on_with_the_others(last):
+    offset = np.full(len(S), 1.75)
+    offset[last] += 0.3
+    assert led_over(S, offset, np.full(len(S), 4)) == pytest.approx(np.full(len(S), 1.75))
+
+
 def test_a_border_without_jumps_stays_as_it_is():
     wave = 1.75 + 0.02 * np.sin(S)
     assert led_over(S, wave, np.zeros(len(S), int)) is not wave and led_over(S, wave, np.zeros(len(S), int)) == pytest.approx(wave)
