@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from .detect import SearchLimit
 
 MIN_RETURN_LENGTH = 1.0       # m of a line
+MIN_RETURN_STEPS = 3          # of a line: any two are in one
 MAX_STEP_SPACING = 0.6        # m between the steps of a line, on average: scan lines lie apart
 MIN_ROAD_COSINE = np.cos(np.radians(45.0))  # of the angle between a line and the road, above which it is the road's own curb
 MAIN_CURB_OVERLAP = 0.5       # m along the road that a piece of main curb may lie beside another
@@ -74,7 +75,7 @@ def is_curb_like(chain: PlanStepChain, steps: PlanSteps, scanner_noise: np.ndarr
     """
     own = steps[chain.steps]
     length = _length(own.x, own.y)
-    if length < MIN_RETURN_LENGTH or length > MAX_STEP_SPACING * len(own):
+    if length < MIN_RETURN_LENGTH or len(own) < MIN_RETURN_STEPS or length > MAX_STEP_SPACING * len(own):
         return False
     height, noise = np.median(own.height), np.median(scanner_noise[chain.steps])
     sharp = max(np.quantile(own.run, 0.3) - 2 * noise, 0.0)

@@ -244,7 +244,7 @@ def plan_steps_of_section(decimation: PointDecimation, section: tuple[int, int],
 
     Returns
     -------
-    PlanSteps, (N,) bool where the ground behind each falls again, and (N,) m the scanner's noise; None where there are no steps
+    PlanSteps, (N,) bool where the raised ground behind each ends, and (N,) m the scanner's noise; None where there are no steps
     """
     survey, width = decimation.survey, decimation.width
     margin = int(np.ceil(SECTION_MARGIN / width))
@@ -299,7 +299,8 @@ def plan_steps_of_section(decimation: PointDecimation, section: tuple[int, int],
     hidden = far_sides(raster, steps, behind)
     hidden = hidden[wanted(hidden.x, hidden.y)]
     # its near side is the far side of a far side
-    falls = np.r_[behind.falls, np.full(len(hidden), MIN_ISLAND_WIDTH)]
+    # an island ends where its top does, not where the ground comes out of its shadow
+    falls = np.r_[np.where(np.isfinite(behind.edge), behind.edge, behind.falls), np.full(len(hidden), MIN_ISLAND_WIDTH)]
     return PlanSteps.join([steps, hidden]), falls, np.full(len(falls), views[0].noise)
 
 

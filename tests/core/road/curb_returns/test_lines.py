@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
-from lanewright.core.road.curb_returns.classify import CurbReturn, island_outlines
+from lanewright.core.road.curb_returns.classify import CurbReturn, is_curb_like, island_outlines
 from lanewright.core.road.curb_returns.free_corners import is_free_corner
 from lanewright.core.road.curb_returns.steps import PlanSteps
-from lanewright.core.road.curb_returns.tracking import group_lines
+from lanewright.core.road.curb_returns.tracking import PlanStepChain, group_lines
+from lanewright.core.road.profiles.detect import CurbSettings
 
 
 def straight(start, end, y=0.0, h=0.0):
@@ -53,6 +54,14 @@ def test_a_corner_between_two_dropped_crossings_bends_from_one_curb_to_the_other
     (arc(first=44.0, last=48.0), curbs())], ids=["one curb", "no curb", "a basin", "uneven", "too far", "too short to bend"])
 def test_what_does_not_bend_evenly_from_curb_to_curb_is_no_corner(line, ends):
     assert not is_free_corner(line, ends)
+
+
+def test_two_steps_are_no_line():
+    x = np.array([0.0, 0.4, 0.8, 1.2])
+    ones = np.ones(4)
+    steps = PlanSteps(x, 0 * x, 0 * x, ones, 0 * x, 0.12 * ones, 0 * x, 0.003 * ones, 50 * ones, 20 * ones)
+    assert is_curb_like(PlanStepChain(np.arange(4)), steps, 0.003 * ones, CurbSettings())
+    assert not is_curb_like(PlanStepChain(np.array([0, 3])), steps, 0.003 * ones, CurbSettings())
 
 
 def side_of_an_island(y, uphill, start=0.0, end=10.0):
