@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.ndimage import uniform_filter1d
+from scipy.ndimage import median_filter, uniform_filter1d
 
 from .edge_path import cheapest_path
 from .ground_grid import known_median
@@ -35,6 +35,8 @@ MIN_KNOWN_ROWS = 3           # rows with a cell, of which it counts in full
 MAX_SIGMAS = 2.8             # sigmas by which any of the three may be off: a cell of other ground weighs as much as one of road
 OTHER_SIGMAS = 2.0           # sigmas from which a cell is rather not road
 USUAL_QUANTILE, USUAL_SIGMAS = 0.5, 0.67  # quantile of what the cells of the road are off themselves, and its sigmas
+PATCH_EDGE_CELLS, PATCH_EDGE_SIGMAS = 3, 5.0  # cells on either side of the edge of a patch that show it, and sigmas by which they differ
+MIN_PATCH_ROWS, PATCH_ROWS = 5, 30  # rows about each row of a patch, and rows either side with which it is compared: patches are shorter
 MIXED_CELLS = 1              # cells before a limit that may hold other ground in part: rows are averaged
 LINE_SIGMAS = 2.0            # by which paint is brighter than the cells on both sides
 PAINT_SHARE = 0.5            # of what it is brighter than the darker of them, at least, than the other: what rises once is other ground
@@ -88,7 +90,7 @@ def pavement_limits(rows: SurfaceProfiles, change: np.ndarray) -> PavementLimits
     seen = _added(np.nan_to_num(count), AVERAGED_ROWS)
     height, rough, brightness, scatter = (_around(values) for values in (height, rough, brightness, scatter))
     share = known_median((scatter / np.maximum(brightness, 1.0))[:, :ROAD_CELLS], 1)[:, None]
-    off = _unlike_road(height, np.log(np.maximum(rough, 1e-4)), np.log(np.maximum(brightness, 1.0)), share, seen)
+    off = _unlike_road(height, np.log(np.maximum(rough, 1e-4)), np.log(np.maximum(brightness, 1.0)), share, seen, at[:, 0])
     weight = np.minimum(known / MIN_KNOWN_ROWS, 1.0)
     costs = weight * np.nan_to_num(np.clip(off, 0.0, MAX_SIGMAS) ** 2 - OTHER_SIGMAS ** 2) / 2
     # cell by cell outward, the cost of counting all cells before it as road
@@ -130,16 +132,20 @@ def _mixed(limit, off, weight):
     return np.where(every_cell & (off[:, -1] > OTHER_SIGMAS), 1.0 - np.nan_to_num(other).sum(1), 0.0)
 
 
-def _unlike_road(height, rough, brightness, scatter, seen):
+def _unlike_road(height, rough, brightness, scatter, seen, first):
     """(P, K) sigmas by which cells differ from the road before them.
 
-    brightness and roughness are logarithms; `scatter` : (P, 1) of the brightness of single points; `seen` : (P, K) points
+    brightness and roughness are logarithms; `scatter` : (P, 1) of the brightness of single points; `seen` : (P, K) points;
+    `first` : (P,) the first cell of each row
     """
     road = np.arange(height.shape[1]) < ROAD_CELLS
     points = np.sqrt(np.maximum(seen, 1.0))
     brightness, rough_course = _without_slope(brightness), _without_slope(rough)
     sigma = np.hypot(MIN_SIGMA_SHARE * scatter, scatter / points)
-    bright = _off_course(np.where(_painted(brightness, sigma), np.nan, brightness), sigma, seen)
+    unpainted = np.where(_painted(brightness, sigma), np.nan, brightness)
+    bright = _off_course(unpainted, sigma, seen)
+    # behind a dark patch the road is as bright as it was before the patch
+    bright = np.where(bright > 0.0, np.fmax(bright - _darker_patch(unpainted, sigma, first) / sigma, 0.0), bright)
     rougher = _off_course(rough_course, np.hypot(NEAR_ROUGH_SIGMA, 1.0 / points), seen)
     off = np.fmax(np.abs(height - known_median(height[:, road], 1)[:, None]) / HEIGHT_SIGMA,
                   (rough - known_median(rough[:, road], 1)[:, None]) / ROUGH_SIGMA)
@@ -154,6 +160,30 @@ def _without_slope(values):
     i, j = np.triu_indices(ROAD_CELLS, 4)
     slope = np.nan_to_num(known_median((values[:, j] - values[:, i]) / (j - i), 1))
     return values - slope[:, None] * np.arange(values.shape[1])
+
+
+def _darker_patch(values, sigma, first):
+    """(P, 1) by how much the road of each row becomes darker at once, as at the edge of a patch; 0 where it does not.
+
+    What it changes by at the same offset all along the road is no patch: there it is seen by another scanner, or from elsewhere.
+
+    values : (P, K) logarithms of brightness, NaN at paint; `sigma` : (P, K) of single cells; `first` : (P,) the first cell of each row
+    """
+    about = np.lib.stride_tricks.sliding_window_view(values[:, :ROAD_CELLS], 2 * PATCH_EDGE_CELLS, axis=1)
+    inner, outer = about[..., :PATCH_EDGE_CELLS], about[..., PATCH_EDGE_CELLS:]
+    change = known_median(outer, 2) - known_median(inner, 2)
+    # what it loses over as many cells elsewhere is due to range and angle
+    change = change - known_median(change, 1)[:, None]
+    columns = (first - first.min())[:, None] + np.arange(change.shape[1])
+    along, seen = np.zeros((2, len(change), columns.max() + 1))
+    np.put_along_axis(along, columns, np.nan_to_num(change), 1)
+    np.put_along_axis(seen, columns, np.isfinite(change).astype(float), 1)
+    usual = _added(along, PATCH_ROWS) / np.maximum(_added(seen, PATCH_ROWS), 1.0)
+    change = change - np.take_along_axis(usual, columns, 1)
+    least = PATCH_EDGE_SIGMAS * known_median(sigma[:, :ROAD_CELLS], 1)[:, None]
+    sure = (np.isfinite(inner).sum(2) > 1) & (np.isfinite(outer).sum(2) > 1) & (change < -least)
+    # a patch is seen on most of the rows about each of its own
+    return -median_filter(np.where(sure, change, 0.0).min(1), MIN_PATCH_ROWS, mode="nearest")[:, None]
 
 
 def _off_course(values, sigma, seen):

@@ -129,6 +129,12 @@ def test_a_patch_of_other_asphalt_does_not_move_the_edge(patch):
     assert min(covered(edges, survey, side) for side in (1, -1)) >= 0.95
 
 
+def test_behind_a_dark_patch_beside_the_edge_the_road_goes_on():
+    survey = street(gravel=0.8, grey_of=lambda s, d: np.where((s > 20) & (s < 33) & (np.abs(d) < 2.9) & (np.abs(d) > 1.6), 0.82, 1.0))
+    edges = found(survey)
+    assert min(covered(edges, survey, side, within=0.1) for side in (1, -1)) >= 0.95
+
+
 def test_between_scan_lines_far_apart_the_edge_lies_in_the_middle_and_is_less_certain():
     apart = 0.3
     survey = street(gravel=0.8, density=1500, keep=lambda s, d: np.abs(d) % apart < 0.05)
