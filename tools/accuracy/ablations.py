@@ -82,6 +82,6 @@ ABLATIONS = (
         ("markings.objects.cluster", "join_fragments", lambda shapes, width: np.arange(len(shapes))),)),
     Ablation("Lines: gaps longer than 13 m are not bridged", "lines", set_in(DEFAULT, "lines", max_bridge=DEFAULT.lines.max_gap)),
     Ablation("Lines: strays beside a line are not dropped", "lines", swaps=(
-        ("markings.lines.fit", "without_strays", lambda line, drift: line),)),
+        ("markings.lines.fit", "without_strays", lambda line, trend, edges: line),)),
     Ablation("Driving lines: from marking lines alone, without road edges and hatching", "driving", stages=dict(driving=_driving_alone)),
 )
