@@ -140,10 +140,9 @@ def _unlike_road(height, rough, brightness, scatter, seen, first):
     """
     road = np.arange(height.shape[1]) < ROAD_CELLS
     points = np.sqrt(np.maximum(seen, 1.0))
-    level_brightness, rough_course = _without_slope(brightness), _without_slope(rough)
+    brightness, rough_course = _without_slope(brightness), _without_slope(rough)
     sigma = np.hypot(MIN_SIGMA_SHARE * scatter, scatter / points)
-    # the slope of a road that is dark in part would hide worn paint outside of that part
-    unpainted = np.where(_painted(level_brightness, sigma) | _painted(brightness, sigma), np.nan, level_brightness)
+    unpainted = np.where(_painted(brightness, sigma), np.nan, brightness)
     bright = _off_course(unpainted, sigma, seen)
     # behind a dark patch the road is as bright as it was before the patch
     bright = np.where(bright > 0.0, np.fmax(bright - _darker_patch(unpainted, sigma, first) / sigma, 0.0), bright)
