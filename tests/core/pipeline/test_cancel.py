@@ -9,10 +9,12 @@ from lanewright.core.common.progress import Progress
 from lanewright.core.pipeline import road_map as chain
 from lanewright.core.pipeline.road_map import RoadMapSettings, make_road_map
 from lanewright.core.pipeline.stages import STAGE_NAMES
+from lanewright.core.survey.open_survey import SurveySettings
 
 pytestmark = pytest.mark.slow
 
 SHORT, LONG = 60.0, 180.0   # m
+SECTION = 5.0               # m of a section of the store, as on dense streets: longer ones hold no more points than these do there
 
 
 class Questions(Progress):
@@ -42,7 +44,7 @@ def questions(monkeypatch, survey, folder, last=None):
     with monkeypatch.context() as patch, cancellation_scope(found):
         patch.setattr(chain.Stages, "run", noted)
         patch.setattr("lanewright.core.common.parallel.POLL_INTERVAL", 60.0)  # no question depends on the machine's speed
-        make_road_map([cloud], sample.trajectory, folder / "image.tif", RoadMapSettings(), found)
+        make_road_map([cloud], sample.trajectory, folder / "image.tif", RoadMapSettings(survey=SurveySettings(section_length=SECTION)), found)
     return found.asked
 
 

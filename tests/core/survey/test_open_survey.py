@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from drives import EAST, NORTH, ahead, bend, chain, contents, drive, joined, sur
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.progress import Progress
 from lanewright.core.survey.open_survey import SurveySettings, open_survey
+from lanewright.core.survey.read_survey import section_length
 from lanewright.core.survey.trajectory.trajectory import Trajectory
 
 CRS = "EPSG:32632"
@@ -351,3 +353,10 @@ def test_points_without_a_time_are_counted_aloud(street, tmp_path):
     survey = open_survey([write_cloud(tmp_path / "nan.laz", x, y, z, time, crs=CRS)], trajectory, progress=heard)
     lost = np.count_nonzero(np.isnan(time))
     assert survey.counts["kept"] == len(x) - lost and f"{lost:,} of {len(x):,} points were left out" in heard.warnings[0]
+
+
+@pytest.mark.parametrize("points, metres", [(80_000, 5.0), (20_000, 10.0), (8_400, 25.0), (100, 25.0)])
+def test_sections_are_as_long_as_hold_some_hundred_thousand_points(points, metres):
+    roads = [SimpleNamespace(length=1500.0), SimpleNamespace(length=500.0)]
+    files = [SimpleNamespace(count=points * 500), SimpleNamespace(count=points * 1500)]
+    assert section_length(files, SimpleNamespace(roads=roads)) == metres
