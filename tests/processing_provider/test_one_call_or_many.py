@@ -55,7 +55,7 @@ def stage_by_stage(survey, tmp_path_factory):
     run("clustermarkings", MARKING_POINTS=str(folder / "kept.laz"), **drive, MARKINGS=str(folder / "clusters.gpkg"),
         CLUSTERED_POINTS=str(folder / "clustered.laz"))
     run("fitmarkinglines", CLUSTERED_POINTS=str(folder / "clustered.laz"), MARKINGS=str(folder / "clusters.gpkg"), **drive,
-        MARKING_LINES=to["MARKING_LINES"], NAMED_MARKINGS=to["MARKINGS"])
+        ROAD_EDGES=to["ROAD_EDGES"], ROAD_POINTS=to["ROAD_POINTS"], MARKING_LINES=to["MARKING_LINES"], NAMED_MARKINGS=to["MARKINGS"])
     run("drivinglines", MARKING_LINES=to["MARKING_LINES"], MARKINGS=to["MARKINGS"], ROAD_EDGES=to["ROAD_EDGES"],
         ROAD_POINTS=to["ROAD_POINTS"], **drive, DRIVING_LINES=to["DRIVING_LINES"], CURVE_ELEMENTS=to["CURVE_ELEMENTS"])
     return folder

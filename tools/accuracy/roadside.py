@@ -54,7 +54,7 @@ def judged_roadside(truth, rows):
 
 def roadside_section(figures):
     """The table of all surveys whose truth says what runs beside the road."""
-    judged = [(f"{f['name']} ({f['kind']})", f["streets"]["as surveyed"]) for f in figures if "roadside" in f["has"]]
+    judged = [(f"{f['name']} ({f['kind']})", f["streets"]["as surveyed"]) for f in figures if "roadside" in f.get("has", ())]
     judged = [(name, found) for name, found in judged if "refused" not in found]
     if not judged:
         return ""
