@@ -120,6 +120,8 @@ def translate_legend(layer):
     elif isinstance(renderer, QgsRuleBasedRenderer):
         for rule in renderer.rootRule().descendants():
             rule.setLabel(tr(rule.label()))
+    if isinstance(layer, QgsVectorLayer):
+        layer.rendererChanged.emit()  # a layer tree that shows the layer already reads its legend again
 
 
 def style_on_load(name, dest, title, context, schema=(), run=None, provenance=None):

@@ -3,14 +3,12 @@
 import os
 from pathlib import Path
 
+from palette import with_palette
 from qgis.core import QgsProject
-from qgis.PyQt.QtCore import QCoreApplication, QElapsedTimer, Qt
-from qgis.PyQt.QtGui import QImage
+from qgis.PyQt.QtCore import QCoreApplication, QElapsedTimer
 from qgis.utils import plugins
 
 PICTURES = Path(os.environ["LANEWRIGHT_PICTURES"])
-MAPS = ("window_result", "window_web_map", "window_orthoimage", "window_database", "window_section", "window_corrections", "window_layout",
-        "window_model", "window_pairs", "window_two_points")
 SAID = Path(os.environ["LANEWRIGHT_SAID"])
 
 
@@ -37,10 +35,7 @@ def keep(widget, name):
 
 def save(picture, name):
     assert not picture.isNull(), name
-    image = picture.toImage()
-    if name not in MAPS:  # 256 colours do for windows, and a manual travels in the plugin's zip
-        image = image.convertToFormat(QImage.Format.Format_Indexed8, Qt.ImageConversionFlag.ThresholdDither | Qt.ImageConversionFlag.AvoidDither)
-    image.save(str(PICTURES / f"{name}.png"))
+    needed(with_palette(picture.toImage()).save(str(PICTURES / f"{name}.png"), quality=0), f"{name}.png was not written")  # 0: as small as it gets
     say(f"{name}.png {picture.width()} x {picture.height()}")
 
 

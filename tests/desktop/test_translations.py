@@ -8,7 +8,10 @@ import xml.etree.ElementTree as ET
 from pathlib import Path
 
 import pytest
+from lanewright.processing_provider.styling import STYLES, apply_style
 from lanewright.processing_provider.texts import TRANSLATIONS, chosen_language, install_translator, remove_translator, told, tr
+from qgis.core import QgsLayerTreeModel, QgsProject, QgsVectorLayer
+from qgis.PyQt.QtCore import Qt
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools"))
@@ -119,6 +122,17 @@ def german(qgis_app):
     translator = install_translator("de")
     yield
     remove_translator(translator)
+
+
+def test_the_legend_of_a_layer_that_is_in_the_tree_already_turns_german(german):
+    """QGIS adds a result to the layer tree first and gives it its style then."""
+    layer = QgsVectorLayer("LineStringZ?crs=EPSG:32650&field=role:string", "Residuals", "memory")
+    project = QgsProject()
+    project.addMapLayer(layer)
+    model = QgsLayerTreeModel(project.layerTreeRoot())
+    apply_style(layer, STYLES / "residuals.qml")
+    nodes = model.layerLegendNodes(project.layerTreeRoot().findLayer(layer.id()))
+    assert [str(node.data(Qt.ItemDataRole.DisplayRole)) for node in nodes][1:] == ["Prüfpunkt (Restklaffung × 100)", "Abgeschalteter Punkt"]
 
 
 @pytest.mark.parametrize(("said", "told_in_german"), [
