@@ -45,6 +45,10 @@ def test_qgis_process_and_qgis_4_are_told_that_they_may_load_us(metadata):
     assert metadata["qgisMinimumVersion"] == "3.40" and metadata["qgisMaximumVersion"] == "4.99"
 
 
+def test_no_empty_dependency_makes_the_plugin_manager_ask_for_a_plugin_without_a_name(metadata):
+    assert metadata.get("plugin_dependencies", "no line at all").strip()
+
+
 def test_every_package_one_must_install_is_named_to_the_user(metadata):
     for line in (ROOT / "requirements.txt").read_text().splitlines():
         if line and not line.startswith("#"):
