@@ -58,7 +58,7 @@ class PavementLimits:
     gap : (P,) cells, within which it lies: 1 or more where not every cell was measured
     shown : (P,) bool, whether road before and other ground behind it were measured
     likely : (P,) bool, whether rather so than not
-    hidden : (P,) bool, whether hardly anything was measured right behind it
+    hidden : (P,) bool, whether hardly anything was measured right behind it, or nothing that tells road from other ground
     """
 
     cell: np.ndarray
@@ -86,11 +86,12 @@ def pavement_limits(rows: SurfaceProfiles, change: np.ndarray) -> PavementLimits
     there = (at >= 0) & (at < rows.height.shape[1])
     height, rough, brightness, scatter, count = (np.where(there, np.take_along_axis(values, np.clip(at, 0, values.shape[1] - 1), 1), np.nan)
                                                  for values in (rows.height, rows.rough, rows.brightness, rows.scatter, rows.count))
-    own, known = (_added(np.isfinite(height), reach) for reach in (OWN_ROWS, AVERAGED_ROWS))
+    measured, known = np.isfinite(height), _added(np.isfinite(height), AVERAGED_ROWS)
     seen = _added(np.nan_to_num(count), AVERAGED_ROWS)
     height, rough, brightness, scatter = (_around(values) for values in (height, rough, brightness, scatter))
     share = known_median((scatter / np.maximum(brightness, 1.0))[:, :ROAD_CELLS], 1)[:, None]
     off = _unlike_road(height, np.log(np.maximum(rough, 1e-4)), np.log(np.maximum(brightness, 1.0)), share, seen, at[:, 0])
+    own = _added(measured & np.isfinite(off), OWN_ROWS)
     weight = np.minimum(known / MIN_KNOWN_ROWS, 1.0)
     costs = weight * np.nan_to_num(np.clip(off, 0.0, MAX_SIGMAS) ** 2 - OTHER_SIGMAS ** 2) / 2
     # cell by cell outward, the cost of counting all cells before it as road
@@ -133,7 +134,7 @@ def _mixed(limit, off, weight):
 
 
 def _unlike_road(height, rough, brightness, scatter, seen, first):
-    """(P, K) sigmas by which cells differ from the road before them.
+    """(P, K) sigmas by which cells differ from the road before them; NaN where nothing tells.
 
     brightness and roughness are logarithms; `scatter` : (P, 1) of the brightness of single points; `seen` : (P, K) points;
     `first` : (P,) the first cell of each row
@@ -144,15 +145,17 @@ def _unlike_road(height, rough, brightness, scatter, seen, first):
     sigma = np.hypot(MIN_SIGMA_SHARE * scatter, scatter / points)
     unpainted = np.where(_painted(brightness, sigma), np.nan, brightness)
     bright = _off_course(unpainted, sigma, seen)
-    # behind a dark patch the road is as bright as it was before the patch
-    bright = np.where(bright > 0.0, np.fmax(bright - _darker_patch(unpainted, sigma, first) / sigma, 0.0), bright)
+    # behind a dark patch, ground as bright as the road before the patch may be road or gravel: the rows about the patch decide
+    doubtful = (bright > OTHER_SIGMAS) & (bright < OTHER_SIGMAS + _darker_patch(unpainted, sigma, first) / sigma)
+    bright = np.where(doubtful, 0.0, bright)
     rougher = _off_course(rough_course, np.hypot(NEAR_ROUGH_SIGMA, 1.0 / points), seen)
     off = np.fmax(np.abs(height - known_median(height[:, road], 1)[:, None]) / HEIGHT_SIGMA,
                   (rough - known_median(rough[:, road], 1)[:, None]) / ROUGH_SIGMA)
     # hardly any ground is darker than asphalt
     off = np.fmax(off, np.where(bright < 0.0, np.fmin(-bright, OTHER_SIGMAS), bright))
     # of two that are both off by chance the sum is off by one more
-    return np.fmax(off, np.sqrt(np.fmax(np.fmax(rougher, 0.0) ** 2 + np.fmax(bright, 0.0) ** 2 - 1.0, 0.0)))
+    off = np.fmax(off, np.sqrt(np.fmax(np.fmax(rougher, 0.0) ** 2 + np.fmax(bright, 0.0) ** 2 - 1.0, 0.0)))
+    return np.where(doubtful & (off < OTHER_SIGMAS), np.nan, off)
 
 
 def _without_slope(values):

@@ -135,6 +135,12 @@ def test_behind_a_dark_patch_beside_the_edge_the_road_goes_on():
     assert min(covered(edges, survey, side, within=0.1) for side in (1, -1)) >= 0.95
 
 
+def test_behind_a_dark_patch_that_reaches_the_edge_gravel_as_bright_as_the_road_is_not_taken_for_road():
+    survey = street(gravel=0.8, grey_of=lambda s, d: np.where((s > 20) & (s < 29) & (np.abs(d) < HALF) & (np.abs(d) > 2.4), 0.82, 1.0))
+    edges = found(survey)
+    assert min(covered(edges, survey, side) for side in (1, -1)) >= 0.95
+
+
 def test_between_scan_lines_far_apart_the_edge_lies_in_the_middle_and_is_less_certain():
     apart = 0.3
     survey = street(gravel=0.8, density=1500, keep=lambda s, d: np.abs(d) % apart < 0.05)
