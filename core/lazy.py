@@ -1,4 +1,4 @@
-"""Public names of a folder, imported when they are first asked for: opening one file need not load all others."""
+"""What is imported when it is first used: public names of a folder, and OpenCV, a large library that QGIS need not wait for at its start."""
 
 from __future__ import annotations
 
@@ -37,3 +37,34 @@ def public(package: str, modules: dict[str, tuple[str, ...]]) -> tuple[Callable[
         return value
 
     return get, sorted(module_of)
+
+
+class LazyModule:
+    """A module that is imported when one of its names is first used.
+
+    QGIS asks every algorithm for its parameters when it starts, and their defaults stand in the files of the
+    stages; what those files compute with is needed only when a stage runs.
+
+    Parameters
+    ----------
+    name : of the module
+
+    Raises
+    ------
+    ImportError : at the first use, where it is not installed
+
+    Examples
+    --------
+    `cv2 = LazyModule("cv2")`
+    """
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+
+    def __getattr__(self, attribute: str) -> Any:
+        value = getattr(import_module(self._name), attribute)
+        setattr(self, attribute, value)  # the next use finds it at once
+        return value
+
+
+cv2: Any = LazyModule("cv2")

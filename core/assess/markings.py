@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-import cv2
 import numpy as np
 
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from ..common.setting import check_limits, setting
+from ..lazy import cv2
 from .burn import BURN_TILE, DataMask, PolygonRasteriser, covering_tiles, tile_bounds
 from .metrics import Rates
 

@@ -7,12 +7,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-import cv2
 import numpy as np
 from scipy import sparse
 
 from ..common.memory import ScratchBuffers
 from ..common.order_statistics import order_by
+from ..lazy import cv2
 from ..survey.store.records import COORDINATE_SCALE, Points
 
 if TYPE_CHECKING:

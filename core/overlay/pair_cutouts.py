@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-import cv2
 import numpy as np
 
 from ..io.gdal_errors import gdal_exceptions
 from ..io.geotiff import IntensityImage
+from ..lazy import cv2
 from .rough_place import similarity
 from .source_image import SourceImage
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-import cv2
 import numpy as np
 import shapely
 
@@ -13,6 +12,7 @@ from ..assess.metrics import Errors
 from ..common.features import Features
 from ..common.texts import tr
 from ..common.words import word
+from ..lazy import cv2
 from .figures import Chart
 from .map_figure import MAP_MARGIN, draw_map, png
 from .page import Page

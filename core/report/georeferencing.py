@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import cv2
 import numpy as np
 
 from ..common.texts import told, tr
 from ..common.words import word
 from ..io.crs import horizontal_part, parse_crs
 from ..io.gdal_errors import gdal_exceptions
+from ..lazy import cv2
 from ..overlay.control_points import CHECK, CONTROL, DISABLED
 from ..overlay.warp import drawn_area, output_grid
 from .map_figure import png

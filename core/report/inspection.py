@@ -5,11 +5,11 @@ from __future__ import annotations
 from datetime import datetime, timedelta
 from typing import TYPE_CHECKING, Any
 
-import cv2
 import numpy as np
 
 from ..common.texts import told, tr
 from ..io.crs import horizontal_part, parse_crs
+from ..lazy import cv2
 from .map_figure import png
 from .page import Page
 

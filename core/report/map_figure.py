@@ -9,12 +9,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-import cv2
 import numpy as np
 import shapely
 
 from ..io.gdal_errors import gdal_exceptions
 from ..io.geotiff import GEOTIFF_TILE, filled_tiles
+from ..lazy import cv2
 
 MAP_LONGEST_SIDE = 1800      # px
 MAX_AVERAGED_SIDE = 500_000  # px; GDAL averages rasters up to this size, empty tiles included; larger ones are read by tile

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import cv2
 import numpy as np
 
 from ..common.texts import told, tr
+from ..lazy import cv2
 from ..overlay.pair_cutouts import pair_cutouts
 from .map_figure import png
 from .page import Page

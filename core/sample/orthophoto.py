@@ -12,7 +12,6 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import cv2
 import numpy as np
 
 from ..common.errors import RoadExtractionError
@@ -20,6 +19,7 @@ from ..common.features import Features
 from ..common.progress import Progress
 from ..common.schemas import CONTROL_POINTS
 from ..io.gdal_errors import gdal_exceptions
+from ..lazy import cv2
 from .camera import GROUND_PIXEL, Camera
 from .camera_tags import camera_tags
 from .parts.materials import LABEL

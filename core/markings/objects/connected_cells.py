@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import cv2
 import numpy as np
 
 from ...common.groups import linked_groups
 from ...common.order_statistics import order_by
+from ...lazy import cv2
 
 
 def occupied(row: np.ndarray, column: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -7,9 +7,9 @@ them belong to the marking; where the tracks lie closer than cells, nothing is a
 
 from __future__ import annotations
 
-import cv2
 import numpy as np
 
+from ...lazy import cv2
 from .road_grid import CELL_SIZE
 
 TRACK_WIDTH = 0.03       # m that points may lie farther apart than the middles of their tracks

@@ -9,11 +9,11 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import cv2
 import numpy as np
 
 from ...common.groups import linked_groups
 from ...curves.robust import percentiles
+from ...lazy import cv2
 from .zebra import MAX_ROW_SKEW, MIN_STRIPES, STRIPE_LENGTH, STRIPE_WIDTH
 
 COMB_WINDOW = 5.0               # m either way that a pitch is looked for in; windows overlap by half

@@ -15,13 +15,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-import cv2
 import numpy as np
 from scipy.spatial import cKDTree
 
 from ...common.groups import linked_groups
 from ...common.order_statistics import order_by
 from ...common.parallel import check_cancelled
+from ...lazy import cv2
 from ...survey.store.records import COORDINATE_SCALE
 from .classify import columns_of
 from .connected_cells import occupied

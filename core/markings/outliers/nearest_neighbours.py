@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import cv2
 import numpy as np
 from scipy.spatial import cKDTree
 
 from ...common.order_statistics import order_by
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
+from ...lazy import cv2
 from ...survey.store.records import COORDINATE_SCALE
 
 QUERY_PATCH_BITS = 11  # bits: points of one 0.2 m patch are asked for one after the other, in the processor's cache

@@ -10,13 +10,13 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import cv2
 import numpy as np
 
 from ...common.errors import RoadExtractionError
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ...common.setting import check_limits, setting
+from ...lazy import cv2
 from ...survey.store.records import COORDINATE_SCALE, take_rows
 from ...survey.store.road_points import RoadPoints
 from .nearest_neighbours import Neighbours, mean_distances

@@ -9,11 +9,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-import cv2
 import numpy as np
 from scipy import ndimage
 
 from ...intensity.asphalt_model import asphalt_statistics
+from ...lazy import cv2
 from ..objects.road_grid import RoadGrid
 from .gutters import COARSE_CELLS, gutter_cells
 from .threshold_bins import MAX_BIN_WIDTH, AsphaltBin, OtsuSplit

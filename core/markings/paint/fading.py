@@ -6,8 +6,9 @@ the joint with the asphalt and fade into the ground behind them.
 
 from __future__ import annotations
 
-import cv2
 import numpy as np
+
+from ...lazy import cv2
 
 FADING_BESIDE = 2, 4   # cells from a run of paint across the road: where its fading is measured
 TOP_REACH = 6          # cells in which the brightest of a run stands for it

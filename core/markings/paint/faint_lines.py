@@ -6,9 +6,9 @@ as at the inside of a hairpin. What is painted there still stands out against bo
 
 from __future__ import annotations
 
-import cv2
 import numpy as np
 
+from ...lazy import cv2
 from ..objects.scan_tracks import fill_gaps
 from .noisy import local_scatter
 

@@ -9,9 +9,9 @@ the brighter of the two.
 
 from __future__ import annotations
 
-import cv2
 import numpy as np
 
+from ...lazy import cv2
 from ..objects.road_grid import CELL_SIZE
 from ..objects.scan_tracks import fill_gaps
 from .spacing import MAX_TRACK_GAP

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import cv2
 import numpy as np
 
+from ...lazy import cv2
 from ..objects.road_grid import CELL_SIZE
 from ..objects.scan_tracks import fill_gaps
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import cv2
 import numpy as np
 
+from ...lazy import cv2
 from ..objects.road_grid import CELL_SIZE
 
 ALONG_REACH = 6       # cells of 4 cm along the road, either way: points so near are on the same track

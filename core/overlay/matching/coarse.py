@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
-import cv2
 import numpy as np
 from scipy import fft
 
 from ...common.progress import Progress
+from ...lazy import cv2
 from .contrast import reduced
 
 _CELLS = (0.64, 0.32)     # m, of the two rounds: the lines of a road, 0.15 m wide, still stand out in cells of half a metre

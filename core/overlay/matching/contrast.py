@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import cv2
 import numpy as np
+
+from ...lazy import cv2
 
 SURROUNDINGS = 1.0   # m, standard deviation of the Gaussian window of the local mean; paint is at most half a metre wide
 FULL_CONTRAST = 0.6  # difference of logarithms between fresh paint and asphalt that counts as 1

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import cv2
 import numpy as np
+
+from ...lazy import cv2
 
 _SMOOTHING = 0.05    # m, standard deviation: the noise of single cells has corners too
 _WINDOW = 0.5        # m, over which the directions of edges are collected

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import cv2
 import numpy as np
 
+from ...lazy import cv2
 from .contrast import reduced
 from .patches import correlation_maps
 from .photo import Photo, SurveyedPaint

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
-import cv2
 import numpy as np
+
+from ...lazy import cv2
 
 _OTHER_PEAK = 0.3     # of the patch's half-width, from the best place, beyond which a second one is another
 _LEAST_KNOWN = 0.3    # of a patch that the intensity image must hold

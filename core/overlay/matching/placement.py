@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import cv2
 import numpy as np
 
+from ...lazy import cv2
 from ..polynomial import ImagePolynomial, fit_image_polynomial
 from .contrast import reduced
 

@@ -10,10 +10,10 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-import cv2
 import numpy as np
 
 from ...common.order_statistics import order_by
+from ...lazy import cv2
 from ..common.pseudo_scanlines import DEFAULT_SCANNER_NOISE, MIN_SCANNER_NOISE, lowest_layers
 
 PLAN_CELL = 0.10              # m

@@ -14,10 +14,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import cv2
 import numpy as np
 
 from ...common.rows import Rows
+from ...lazy import cv2
 from ..common.corners import FACE_MARGIN, MAX_ROAD_SLOPE, ROAD_SIDE_LENGTH
 from .grid import LINE_SEPARATION, MAX_GROUND_DEPTH, SCANLINE_RESOLUTION, HeightGrid, row_of_lines
 from .scanlines import Scanlines

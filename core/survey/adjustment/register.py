@@ -11,12 +11,12 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any
 
-import cv2
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
+from ...lazy import cv2
 from .corrections import CORRECTION_STEP
 
 AXES = "along", "left", "up"
