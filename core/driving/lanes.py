@@ -34,7 +34,7 @@ def estimated_lanes(boundaries: Boundaries, estimate: RoadEstimate, lane_width: 
         spans.setdefault(span.interval, []).append(span)
     for i, (first, last) in enumerate(zip(estimate.candidates.first.tolist(), estimate.candidates.last.tolist())):
         parts = [part for span in spans.get(i, []) for part in [_part(boundaries, span, first, last, lane_width, line_distance)] if part is not None]
-        follows = _followed([track for track, _ in open_tracks], parts, first)
+        follows = _followed(open_tracks, parts, first)
         closed += [track for k, (track, _) in enumerate(open_tracks) if k not in follows.values()]
         open_tracks = [_appended(open_tracks[follows[k]], part) if k in follows else (part, np.zeros(2)) for k, part in enumerate(parts)]
     return [_to_its_ends(track, boundaries) for track in closed + [track for track, _ in open_tracks]]
@@ -148,18 +148,22 @@ def _filled(values):
     return np.interp(np.arange(len(values)), known, values[known]) if len(known) else None
 
 
-def _followed(tracks, parts, first):
-    """{part: track} of the parts that go on as a track which ends right before them, one to one, the nearest first."""
+def _followed(found, parts, first):
+    """{part: track} of the parts that go on as a track which ends right before them, one to one, the nearest first.
+
+    found : (track, by how much its end is moved) of `_appended`. An end that was moved to meet a surer stretch before it is no farther from
+    what follows than where it was seen
+    """
     pairs = []
     for k, part in enumerate(parts):
-        for j, track in enumerate(tracks):
-            step = abs(part.d[0] - track.d[-1])
+        for j, (track, moved) in enumerate(found):
+            step = min(abs(part.d[0] - track.d[-1]), abs(part.d[0] - track.d[-1] + moved[0]))
             if track.last == first - 1 and track.direction == part.direction \
                     and step < MAX_LANE_JUMP_SHARE * min(part.width[0], track.width[-1]):
                 pairs.append((step, k, j))
-    found, used = {}, set()
+    follows, used = {}, set()
     for _, k, j in sorted(pairs):
-        if k not in found and j not in used:
-            found[k] = j
+        if k not in follows and j not in used:
+            follows[k] = j
             used.add(j)
-    return found
+    return follows

@@ -18,9 +18,10 @@ from .model import OPEN_END, MapLane, MapRoad, OpenDriveMap, RoadMark
 from .network import LaneNetwork
 from .road_objects import add_objects
 from .road_shape import add_lanes, centre_of, shape_of
-from .strips import Cell, Slice, cut_into_cells, end_to_end, is_connector, mark_junctions, slices_of, strips_of
+from .strips import Cell, Slice, cut_into_cells, directions_where_met, end_to_end, is_connector, mark_junctions, slices_of, strips_of
 
 ROUND_ORIGIN = 100.0      # m: the false origin is a multiple of it
+MIDDLES_SHARE = 0.4       # of the tolerance by which borders are moved to their driving lines; what is left has the curves
 LONGEST_JUNCTION = 100.0  # m of road between two ends of a junction
 SHORTEST_WAY = 2.0        # m at least of a road that is cut off for a way straight on through a junction
 LONGEST_WAY = 10.0        # m at most
@@ -87,7 +88,7 @@ def draft_opendrive(source: RoadMapSource, settings: OpenDriveSettings = OpenDri
     -------
     OpenDriveDraft
     """
-    source = with_driven_middles(source, settings.tolerance / 2)
+    source = with_driven_middles(source, MIDDLES_SHARE * settings.tolerance)
     lanes = source.lanes
     places = np.concatenate([lanes.left, lanes.right])
     origin = np.append(np.floor(places[:, :2].mean(0) / ROUND_ORIGIN) * ROUND_ORIGIN, 0.0)
@@ -96,8 +97,9 @@ def draft_opendrive(source: RoadMapSource, settings: OpenDriveSettings = OpenDri
     draft = OpenDriveDraft(OpenDriveMap((1, int(settings.version[-1])), "Lanewright", offset=(float(origin[0]), float(origin[1]), 0.0, 0.0)))
     draft.notes += drafting.notes
     strips = drafting.strips()
+    directions = directions_where_met([cell for strip, _ in strips for one in strip for cell in one.cells])
     for number, (strip, single) in enumerate(strips, start=1):
-        made = drafting.road(strip, number, single)
+        made = drafting.road(strip, number, single, directions)
         draft.roads.append(made)
         draft.map.roads.append(made.road)
         progress.report(number / len(strips))
@@ -167,13 +169,13 @@ class _Drafting:
             found.append(([part_of[id(cell)] for cell in way], bool(way[0].before) and bool(way[-1].after)))
         return found
 
-    def road(self, strip: list[Slice], number: int, single: bool) -> DraftRoad:
+    def road(self, strip: list[Slice], number: int, single: bool, directions: dict[int, float]) -> DraftRoad:
         tolerance = self.settings.tolerance
         centres = [centre_of(one, self.left_hand) for one in strip]
         shape = shape_of(strip, centres, tolerance / 2)
         roads = sorted({int(self.lanes.road[cell.piece]) for one in strip for cell in one.cells})
         road = MapRoad(str(number), shape.plan.length, shape.plan, f"Road {', '.join(map(str, roads))}", rule="LHT" if self.left_hand else "RHT")
-        numbers = add_lanes(road, shape, strip, centres, tolerance / 2)
+        numbers = add_lanes(road, shape, strip, centres, tolerance / 2, directions)
         add_heights(road, shape, tolerance)
         status: dict[str, float] = defaultdict(float)
         for one, ids, section, centre in zip(strip, numbers, road.sections, centres):

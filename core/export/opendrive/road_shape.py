@@ -10,7 +10,7 @@ from .geometry import Cubics, PlanView
 from .model import LaneSection, MapLane, MapRoad
 from .profiles import broken_lines, difference, fit_cubics, simplified
 from .reference_line import fit_reference, polynomial_reference
-from .strips import Slice
+from .strips import MOST_TURN, SLOPE_REACH, Slice
 
 NEAREST_POINTS = 0.005   # m between points of a guide line
 LEAST_END = 0.5          # m of width from which the end of a road has a direction
@@ -26,8 +26,6 @@ END_ROUNDS = 4
 LEAST_STEP = 0.001       # m along the road between places that count
 SAME_LINE = 0.02         # m by which lane 0 may jump from section to section and still go on
 MOST_LEAD = 0.5          # m aside to which lane 0 is led back along a section that lies beside it
-SLOPE_REACH = 1.5        # m along a border before and after a cut from which its slope there is taken
-MOST_TURN = 0.3          # of that slope from before to after the cut: more is a corner, which is kept
 LEAST_CHORD = 1.0        # m of a border's end, along which it goes straight on
 
 
@@ -246,17 +244,25 @@ def feet(plan: PlanView, places: np.ndarray, near: np.ndarray) -> tuple[np.ndarr
     return s, dy * np.cos(heading) - dx * np.sin(heading)
 
 
-def add_lanes(road: MapRoad, shape: RoadShape, strip: list[Slice], centres: list[int], tolerance: float) -> list[list[int]]:
+def add_lanes(road: MapRoad, shape: RoadShape, strip: list[Slice], centres: list[int], tolerance: float,
+              directions: dict[int, float]) -> list[list[int]]:
     """Give a road its lane offset and sections with widths.
+
+    directions : {number of a vertex: radians} of the borders where the road meets others
 
     Returns
     -------
     the number of the lane of every cell of every slice
     """
     sections = []
-    for courses, centre, start, end in zip(shape.courses, centres, shape.starts[:-1], shape.starts[1:]):
+    for k, (courses, centre, start, end) in enumerate(zip(shape.courses, centres, shape.starts[:-1], shape.starts[1:])):
         s, t = zip(*(_within(start, end, *course[:2]) for course in courses))
-        functions = fit_cubics(s, t, start, end, tolerance, [(_slope_at(start, course), _slope_at(end, course)) for course in courses])
+        slopes = [_slope_at(start, course) for course in courses], [_slope_at(end, course) for course in courses]
+        if k == 0:
+            slopes = _slopes_where_met(shape, strip, directions, False), slopes[1]
+        if k == len(strip) - 1:
+            slopes = slopes[0], _slopes_where_met(shape, strip, directions, True)
+        functions = fit_cubics(s, t, start, end, tolerance, list(zip(*slopes)))
         if _crossing(functions, end - start):
             functions = broken_lines(s, _untangled(s, t, centre), start, end)
         sections.append(functions)
@@ -322,6 +328,17 @@ def _slope_at(place, course):
     at = np.interp(place, s, t)
     before, after = (float((s[side] - place) @ (t[side] - at) / ((s[side] - place) @ (s[side] - place))) for side in sides)
     return (before + after) / 2 if abs(after - before) < MOST_TURN else np.nan
+
+
+def _slopes_where_met(shape, strip, directions, at_end):
+    """The slope of every border at an end of the road, as the borders of the roads that it meets have it; NaN where it meets none."""
+    row = -1 if at_end else 0
+    _, (heading,), (bend,) = shape.plan.at(np.array([shape.plan.length if at_end else 0.0]))
+    found = []
+    for nodes, t in zip(strip[row].nodes(), shape.t[row][:, row]):
+        turn = (directions.get(nodes[row], np.nan) - heading + np.pi / 2) % np.pi - np.pi / 2
+        found.append(float(np.tan(turn) * (1 - bend * t)) if abs(turn) < MOST_TURN else np.nan)
+    return found
 
 
 def _within(start, end, s, values):

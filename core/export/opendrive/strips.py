@@ -12,6 +12,8 @@ from ...driving.lanes_layer import Lanes
 
 SAME_VERTEX = 0.001      # m in plan between vertices that are one
 SAME_VERTEX_RISE = 0.3   # m in height: a border between road and curb has two
+SLOPE_REACH = 1.5        # m along a border before and after a place from which its direction there is taken
+MOST_TURN = 0.3          # rad from before to after it: more is a corner, which is kept
 
 
 @dataclass
@@ -191,6 +193,36 @@ def slices_of(cells: list[Cell], lanes: Lanes) -> list[Slice]:
         while (beside := right_of[id(row[-1])]) is not None and not any(beside is known for known in row):
             row.append(beside)
         found.append(Slice(row))
+    return found
+
+
+def directions_where_met(cells: list[Cell]) -> dict[int, float]:
+    """The direction of borders where some end and others go on: one for all of them, so that no lane has a kink where roads meet.
+
+    Returns
+    -------
+    {number of a vertex: radians, either way along}; vertices where nothing goes on, or a border turns, are left out
+    """
+    ways: dict[int, dict[int, np.ndarray]] = defaultdict(dict)
+    for cell in cells:
+        for line, nodes in ((cell.left, cell.left_nodes), (cell.right, cell.right_nodes)):
+            for step in (1, -1):
+                away = (line[::step, :2] - line[::step, :2][0])[1:]
+                near = np.hypot(*away.T) <= SLOPE_REACH
+                near[0] = True
+                way = away[near].sum(0)
+                if (length := float(np.hypot(*way))) > SAME_VERTEX:
+                    ways[nodes[::step][0]][nodes[::step][1]] = way / length
+    found = {}
+    for node, all_ways in ways.items():
+        first, *_ = some = np.array(list(all_ways.values()))
+        ahead, behind = some[some @ first > 0], -some[some @ first <= 0]
+        if not len(behind):
+            continue
+        way = ahead.mean(0) + behind.mean(0)
+        turned = np.abs(np.arctan2(*np.array([[way[0] * one[1] - way[1] * one[0], way @ one] for one in (*ahead, *behind)]).T))
+        if turned.max() < MOST_TURN / 2:
+            found[node] = float(np.arctan2(way[1], way[0]))
     return found
 
 

@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from lanewright.core.driving.lane_track import led_over
+from lanewright.core.driving.lane_track import INFERRED, LaneTrack, led_over
+from lanewright.core.driving.lanes import _followed
 
 S = np.arange(0.0, 60.0, 0.5)
 
@@ -40,3 +41,17 @@ def test_a_place_aside_at_the_very_end_is_led_on_with_the_others(last):
 def test_a_border_without_jumps_stays_as_it_is():
     wave = 1.75 + 0.02 * np.sin(S)
     assert led_over(S, wave, np.zeros(len(S), int)) is not wave and led_over(S, wave, np.zeros(len(S), int)) == pytest.approx(wave)
+
+
+def track(first, d, width=3.0):
+    """A lane at constant places across, from a grid station on."""
+    nothing = np.full(len(d), -1)
+    return LaneTrack(first, np.array(d), np.full(len(d), width), np.full(len(d), INFERRED), np.ones(len(d), bool), *[nothing] * 4, np.ones(len(d)), 1)
+
+
+def test_a_lane_whose_end_was_moved_to_meet_what_lies_before_goes_on_where_it_was_seen():
+    seen, moved = track(0, [0.0] * 10), track(0, [-0.2] * 10)
+    beyond = track(10, [0.95] * 10)
+    assert _followed([(seen, np.zeros(2))], [beyond], 10) == {0: 0}
+    assert _followed([(moved, np.array([-0.2, 0.0]))], [beyond], 10) == {0: 0}
+    assert _followed([(moved, np.zeros(2))], [beyond], 10) == {}

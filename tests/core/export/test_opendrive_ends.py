@@ -120,3 +120,18 @@ def test_noise_of_the_survey_makes_no_kinks_where_a_road_is_cut_into_sections(tm
     whole, across, _ = missed(tmp_path, scene.lanes())
     assert len(whole.roads[0].sections) == 8 and across <= TOLERANCE
     assert not check_opendrive(whole).found
+
+
+def test_noise_at_the_last_vertices_of_a_lane_makes_no_kink_where_a_way_through_a_junction_begins(tmp_path):
+    scene, line = LaneScene(), Axis(((80.0, 0.0, 0.0),))
+    scene.add(line, 0.0, -3.5, 5.0, 40.0, lane=1, **kinds())
+    scene.add(line, 0.0, -3.5, 40.0, 55.0, lane=1, piece=2, type="connector", left_kind="none", right_kind="none", left_pattern="", right_pattern="")
+    scene.add(line, 0.0, -3.5, 55.0, 75.0, lane=1, piece=3, **kinds())
+    lanes = scene.lanes()
+    last = lanes.start[1] - 1
+    # the last metre of both borders of the lane, and the first of the connector, turn aside by 0.04 m a metre
+    for border in (lanes.left, lanes.right):
+        border[last - 1, 1] -= 0.04
+        border[last + 2, 1] -= 0.04
+    whole, across, _ = missed(tmp_path, lanes)
+    assert not check_opendrive(whole).found and across <= TOLERANCE

@@ -1,8 +1,8 @@
 """Files that are no maps are refused before they cost time or memory."""
 
+import resource
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -56,11 +56,12 @@ def test_a_huge_file_is_refused_in_seconds_within_200_mb(tmp_path, what):
         file.write(head)
         for _ in range(megabytes):
             file.write(block)
-    start = time.monotonic()
-    run = subprocess.run([sys.executable, "-c", READ, str(ROOT), str(path)], capture_output=True, text=True, timeout=120)
+    start = resource.getrusage(resource.RUSAGE_CHILDREN)   # not by the clock: others may have the cores
+    run = subprocess.run([sys.executable, "-c", READ, str(ROOT), str(path)], capture_output=True, text=True, timeout=300)
     said, memory = run.stdout.strip().rsplit("\n", 1)
     assert said.startswith("RoadExtractionError") and int(memory) < 200, (said, memory, run.stderr)
-    assert time.monotonic() - start < 20
+    end = resource.getrusage(resource.RUSAGE_CHILDREN)
+    assert end.ru_utime + end.ru_stime - start.ru_utime - start.ru_stime < 20
 
 
 @pytest.mark.parametrize("value", ["1e400", "nan", "9" * 100_000, "0x10", "", "1,5"])
