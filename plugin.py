@@ -5,6 +5,7 @@ from qgis.core import Qgis, QgsApplication
 from . import add_library_folders
 from .processing_provider.dependencies import how_to_install, missing_packages
 from .processing_provider.provider import LanewrightProvider
+from .processing_provider.task_threads import keep_task_threads
 from .processing_provider.texts import remove_translator
 
 
@@ -18,6 +19,7 @@ class LanewrightPlugin:
     def initProcessing(self):
         """qgis_process calls only this one; the desktop comes here through initGui."""
         add_library_folders()
+        keep_task_threads()
         self.provider = LanewrightProvider()
         QgsApplication.processingRegistry().addProvider(self.provider)
         # A model looks its stages up in the registry, which holds them only now

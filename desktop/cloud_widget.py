@@ -43,6 +43,10 @@ class PointCloudsWidget(QWidget):
         self.menu.aboutToShow.connect(self._fill_menu)
         self.button.setMenu(self.menu)
         self.told = QLabel() if told else None
+        if self.told is not None:  # what stands below does not move when the first file is named
+            policy = self.told.sizePolicy()
+            policy.setRetainSizeWhenHidden(True)
+            self.told.setSizePolicy(policy)
         row = QHBoxLayout()
         row.setContentsMargins(0, 0, 0, 0)
         row.addWidget(self.names, 1)

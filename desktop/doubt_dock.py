@@ -66,7 +66,8 @@ class DoubtDock(QDockWidget):
         self.tool.drawn.connect(self._line_drawn)
         self.tool.given_up.connect(self._stop_drawing)
         self._build()
-        iface.addDockWidget(Qt.DockWidgetArea.RightDockWidgetArea, self)
+        # beside the Results Viewer, which opens with the first report: below it the list had room for three lines
+        iface.addTabifiedDockWidget(Qt.DockWidgetArea.RightDockWidgetArea, self, [], True)
         self.visibilityChanged.connect(lambda visible: self._highlight() if visible else self._unlight())
 
     def _build(self):
@@ -136,6 +137,7 @@ class DoubtDock(QDockWidget):
         if of != self._of:
             self.places, self.at, self._of, self.group = doubts_of(group), -1 if step > 0 else 0, of, group
         self.show()
+        self.raise_()
         if self.places:
             self.at = (self.at + step) % len(self.places)
         self._fill()

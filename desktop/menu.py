@@ -17,7 +17,7 @@ from .manual import ManualWindow
 from .map_layout import road_map_layout
 from .overlay.pairs_dialog import PairsDialog
 from .sample_run import SampleRun
-from .section import clouds_of
+from .section import inputs_of
 from .section_dock import SectionDock
 
 PROVIDER = "lanewright"
@@ -97,9 +97,11 @@ class Menu(QObject):
         self.designer.show()
 
     def open_section(self):
-        """The cross-section window, with the map waiting for a click."""
+        """The cross-section window, with the map waiting for a click; at the doubtful place that is looked at, its section."""
         self._section_dock().show()
         self.section.pick.click()
+        if self.doubts is not None and self.doubts.isVisible() and self.doubts.place is not None:
+            self._show_section(self.doubts.place)
 
     def _section_dock(self):
         if self.section is None:
@@ -132,8 +134,8 @@ class Menu(QObject):
             self.section.show_at(place.middle, place.crs)
 
     def run_again(self, group, corrections):
-        """Road map with the point clouds of a road map and the corrections made in it."""
-        self.open_road_map(POINT_CLOUDS=clouds_of(group), CORRECTIONS=corrections.id())
+        """Road map with all that a road map was made from, and the corrections made in it."""
+        self.open_road_map(**{**inputs_of(group), "CORRECTIONS": corrections.id()})
 
     def open_report(self):
         """The report written last, in the user's web browser."""

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from qgis.core import (
@@ -21,7 +23,7 @@ from qgis.core import (
     QgsVectorLayer,
 )
 
-from ..processing_provider.results.layer_tree import CLOUDS, OUTPUT
+from ..processing_provider.results.layer_tree import CLOUDS, INPUTS, OUTPUT
 
 HALF_WIDTH = 20.0     # m of the section either side
 REACH = 60.0          # m about a place within which the road's direction is sought
@@ -93,13 +95,24 @@ def clouds_of(group: QgsLayerTreeGroup) -> list[str]:
     return [path for path in str(group.customProperty(CLOUDS) or "").split("\n") if path]
 
 
+def inputs_of(group: QgsLayerTreeGroup) -> dict[str, Any]:
+    """{parameter: value} of the run that made a road map; only its point clouds where nothing else was noted."""
+    try:
+        return json.loads(group.customProperty(INPUTS))
+    except (TypeError, ValueError):
+        return {"POINT_CLOUDS": clouds_of(group)}
+
+
 def layers_of(group: QgsLayerTreeGroup) -> list[QgsVectorLayer]:
     """The vector layers of a road map."""
     return [node.layer() for node in group.findLayers() if node.layer() and node.layer().type() == Qgis.LayerType.Vector and node.layer().isSpatial()]
 
 
 def section_at(x: float, y: float, layers: Iterable[QgsVectorLayer]) -> Section | None:
-    """The section through a place, across the nearest line of the best kind there is; None where there is no line near."""
+    """The section through a place, across the nearest line of the best kind there is; None where there is no line near.
+
+    It looks along the road, so that its left is the left of the layers' fields, whichever way the traffic of the nearest lane goes.
+    """
     here = QgsGeometry.fromPointXY(QgsPointXY(x, y))
     for output in LEADING:
         nearest, azimuth = REACH, None
@@ -111,10 +124,15 @@ def section_at(x: float, y: float, layers: Iterable[QgsVectorLayer]) -> Section 
                 distance = geometry.distance(here)
                 if distance < nearest:
                     at = geometry.lineLocatePoint(here)
-                    nearest, azimuth = distance, math.degrees(geometry.interpolateAngle(at))
+                    nearest, azimuth = distance, math.degrees(geometry.interpolateAngle(at)) + (180.0 if _against_the_road(feature) else 0.0)
         if azimuth is not None:
             return Section(x, y, azimuth % 360.0)
     return None
+
+
+def _against_the_road(feature):
+    """Whether a line runs against the road: driving lines run with the traffic."""
+    return feature.fieldNameIndex("direction") >= 0 and feature["direction"] == -1
 
 
 def crossings(section: Section, layers: Iterable[QgsVectorLayer]) -> list[Crossing]:

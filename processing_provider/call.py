@@ -165,7 +165,7 @@ class QgisCall(Call):
         replaced.forget()
         provenance = self.commit_files()
         schemas = {name: features.schema for name, features in self._layers}
-        run = run_of(self.algorithm.ID, self.surveyed(), self.algorithm.WHOLE_MAP, self.context)
+        run = run_of(self.algorithm.ID, self.surveyed(), self.algorithm.WHOLE_MAP, self.context, self.values())
         for name, dest in self._results.items():
             note_report(dest)
             look = self.algorithm.LOOKS.get(name, name)

@@ -111,7 +111,6 @@ def sample():
     iface.messageBar().clearWidgets()
     iface.setActiveLayer(result("ROAD_SURFACE"))
     iface.zoomToActiveLayer()
-    wait(3)
     keep(iface.mainWindow(), "window_result")
 
 
@@ -163,7 +162,7 @@ def corrections(dock):
     window = plugins["lanewright"].menu.dialog
     needed(wait(5, window.isVisible), "the road map dialog did not open for the corrections")
     values = window.createProcessingParameters()
-    needed(values.get("CORRECTIONS") and values.get("POINT_CLOUDS"), f"the dialog does not have the corrections and point clouds: {values}")
+    needed(all(values.get(name) for name in ("CORRECTIONS", "POINT_CLOUDS", "TRAJECTORY")), f"the dialog lacks something: {values}")
     say(f"made again from: {sorted(name for name, value in values.items() if value not in (None, '', False))}")
     window.close()
 

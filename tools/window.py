@@ -6,7 +6,7 @@ from pathlib import Path
 from palette import with_palette
 from qgis.core import QgsProject
 from qgis.PyQt.QtCore import QCoreApplication, QElapsedTimer
-from qgis.utils import plugins
+from qgis.utils import iface, plugins
 
 PICTURES = Path(os.environ["LANEWRIGHT_PICTURES"])
 SAID = Path(os.environ["LANEWRIGHT_SAID"])
@@ -28,8 +28,22 @@ def wait(seconds, until=lambda: False):
     return until()
 
 
+def settle(busy, seconds=240, calm=2):
+    """Wait until nothing is being drawn any more, and nothing was for a while: layers, tiles and docks each ask for another drawing."""
+    clock, since = QElapsedTimer(), QElapsedTimer()
+    clock.start()
+    since.start()
+    while since.elapsed() < 1000 * calm:
+        QCoreApplication.processEvents()
+        if busy():
+            since.restart()
+        needed(clock.elapsed() < 1000 * seconds, f"drawing took longer than {seconds} s")
+
+
 def keep(widget, name):
     wait(0.7)
+    if widget is iface.mainWindow():
+        settle(iface.mapCanvas().isDrawing)
     save(widget.grab(), name)
 
 

@@ -15,7 +15,7 @@ from qgis.PyQt.QtCore import QCoreApplication, QEvent, Qt
 from qgis.PyQt.QtWidgets import QDockWidget, QProgressBar, QTextEdit
 from qgis.utils import iface, plugins
 from web_map_tiles import served_tiles
-from window import action_of, keep, needed, result, say, wait
+from window import action_of, keep, needed, result, say, settle, wait
 
 POSTGRES = sorted(Path("/usr/lib/postgresql").glob("*/bin"), reverse=True)
 PORT = "54329"
@@ -63,8 +63,7 @@ def show_map(output):
     iface.messageBar().clearWidgets()
     iface.setActiveLayer(result(output))
     iface.zoomToActiveLayer()
-    wait(3)
-    needed(wait(120, lambda: not iface.mapCanvas().isDrawing()), "the map was not drawn")
+    settle(iface.mapCanvas().isDrawing)
 
 
 def batch():
@@ -138,7 +137,7 @@ def own_survey():
     groups = [node.name() for node in QgsProject.instance().layerTreeRoot().findGroups()]
     needed(any(name.startswith("B12/survey") for name in groups), f"the groups are {groups}")
     show_map("ROAD_SURFACE")
-    say(f"project in {QgsProject.instance().crs().authid()}, layers from above: "
+    say(f"map in {iface.mapCanvas().mapSettings().destinationCrs().authid()}, layers from above: "
         f"{[node.name() for node in QgsProject.instance().layerTreeRoot().children()]}")
     keep(iface.mainWindow(), "window_web_map")
 
@@ -157,8 +156,7 @@ def layout():
     window = designers[0].window()
     window.resize(1300, 800)
     designers[0].view().zoomFull()
-    wait(4)
-    needed(wait(120, lambda: not any(bar.isVisible() for bar in window.findChildren(QProgressBar))), "the layout was not drawn")
+    settle(lambda: any(bar.isVisible() for bar in window.findChildren(QProgressBar)), calm=4)
     keep(window, "window_layout")
     designers[0].close()
     # QGIS ends with an error where a project is closed before the window is gone
@@ -177,6 +175,7 @@ def orthoimage():
     project = QgsProject.instance()
     image = next(layer for layer in project.mapLayers().values() if layer.source().endswith("orthoimage.tif"))
     node = project.layerTreeRoot().findLayer(image.id())
+    needed(image.crs().isValid() and result("RESIDUALS").crs().isValid(), "the orthoimage has no CRS")
     needed(node.parent().name().startswith("B12/survey"), f"the orthoimage is in {node.parent().name()!r}, not with the map it lies under")
     for output in ("ROAD_SURFACE", "INTENSITY_IMAGE", "RESIDUALS"):
         project.layerTreeRoot().findLayer(result(output).id()).setItemVisibilityChecked(False)

@@ -8,6 +8,7 @@ from .runs import Run
 
 SURVEY, ALGORITHM, OUTPUT = "lanewright/survey", "lanewright/algorithm", "lanewright/output"  # custom properties of our groups and layers
 CLOUDS = "lanewright/clouds"  # paths, one a line
+INPUTS = "lanewright/inputs"  # JSON of what the run was given
 REPLACE = "lanewright/replace_last_run"  # setting of the user
 IMAGES = ("ORTHOIMAGE", "UAV_IMAGE")
 BELOW_IMAGES = ("INTENSITY_IMAGE", "DENSITY")
@@ -43,6 +44,8 @@ def place_layer(layer: QgsMapLayer, project: QgsProject, output: str, run: Run) 
     group.setCustomProperty(ALGORITHM, run.algorithm)
     if run.clouds:
         group.setCustomProperty(CLOUDS, "\n".join(run.clouds))
+    if run.inputs:
+        group.setCustomProperty(INPUTS, run.inputs)
     if replaces_last_run():
         _remove_former(layer, output, group, project)
     if output in IMAGES:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import json
 import os
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
+from typing import Any
 
 from qgis.core import QgsProcessingContext
 
@@ -21,15 +23,17 @@ class Run:
     survey : name of the survey, "" where none is known
     group : name of the layer group
     clouds : absolute paths of the point clouds
+    inputs : JSON of all that it was given, but for destinations
     """
 
     algorithm: str
     survey: str
     group: str
     clouds: tuple[str, ...] = ()
+    inputs: str = ""
 
 
-def run_of(algorithm: str, clouds: list[str], whole: bool, context: QgsProcessingContext) -> Run:
+def run_of(algorithm: str, clouds: list[str], whole: bool, context: QgsProcessingContext, inputs: dict[str, Any] | None = None) -> Run:
     """The run that has just ended.
 
     Parameters
@@ -39,13 +43,14 @@ def run_of(algorithm: str, clouds: list[str], whole: bool, context: QgsProcessin
     whole : whether it makes a map in one call. Each such run has a group of its own, named by survey and time;
         the stages of a survey share one, since together they make one map
     context : of the run; the stages of a model have one in common
+    inputs : what it was given, as JSON holds it; kept where the run makes a map in one call
     """
     store = context.temporaryLayerStore()  # an object of Qt, which keeps a value for whoever comes next
     survey = survey_name(clouds) or str(store.property(SURVEY_OF_RUN) or "")
     store.setProperty(SURVEY_OF_RUN, survey)
     name = survey or GROUP
     return Run(algorithm, survey, f"{name}, {datetime.now():%Y-%m-%d %H:%M:%S}" if whole else name,
-               tuple(str(Path(path).absolute()) for path in clouds))
+               tuple(str(Path(path).absolute()) for path in clouds), json.dumps(inputs) if whole and inputs else "")
 
 
 def survey_name(clouds: list[str]) -> str:

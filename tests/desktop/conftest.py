@@ -1,6 +1,31 @@
-"""Makes what several tests share importable by the tests beside it."""
+"""Makes what several tests share importable by the tests beside it, and ends what a test leaves: its windows and what runs behind them."""
 
 import sys
 from pathlib import Path
 
+import pytest
+
 sys.path.insert(0, str(Path(__file__).parent))
+
+
+@pytest.fixture(autouse=True)
+def nothing_is_left(qgis_app):
+    """After a test its windows are gone and nothing that it began runs on.
+
+    A window whose buttons call lambdas about itself is never collected by Python: it would go on listening to the project of later tests. A
+    legend that is filtered by its map is looked through in the background, where its layers may be gone before the end.
+    """
+    from qgis.PyQt.QtCore import QCoreApplication, QElapsedTimer, QEvent
+    from qgis.PyQt.QtWidgets import QApplication
+
+    before = set(QApplication.topLevelWidgets())
+    yield
+    tasks, clock = qgis_app.taskManager(), QElapsedTimer()
+    tasks.cancelAll()
+    clock.start()
+    while tasks.countActiveTasks() and clock.elapsed() < 20_000:
+        QCoreApplication.processEvents()
+    for window in set(QApplication.topLevelWidgets()) - before:
+        if window.parent() is None:
+            window.deleteLater()
+    QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)

@@ -29,7 +29,7 @@ def window(qgis_app):
     canvas.setDestinationCrs(project.mapLayers()[next(iter(project.mapLayers()))].crs())
     canvas.setExtent(QgsRectangle(EAST - 10, NORTH - 40, EAST + 110, NORTH + 50))
     iface = SimpleNamespace(mainWindow=lambda: main, mapCanvas=lambda: canvas, messageBar=lambda: bar, removeDockWidget=main.removeDockWidget,
-                            addDockWidget=main.addDockWidget)
+                            addTabifiedDockWidget=lambda area, dock, beside, in_front: main.addDockWidget(area, dock))
     dock = DoubtDock(iface)
     main.show()
     yield dock

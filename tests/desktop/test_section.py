@@ -5,9 +5,11 @@ import pytest
 from lanewright.core.common.schemas import CURB_POINTS, DRIVING_LINES, ROAD_EDGES
 from lanewright.core.road.scanlines.from_points import slice_lines
 from lanewright.desktop.doubtful import doubts_of, reason
-from lanewright.desktop.section import Crossing, Section, clouds_of, corners, crossings, middle_of, section_at
+from lanewright.desktop.section import Crossing, Section, clouds_of, corners, crossings, inputs_of, middle_of, section_at
 from lanewright.desktop.section_view import SectionView
-from qgis.core import QgsProject
+from lanewright.processing_provider.results.layer_tree import place_layer
+from lanewright.processing_provider.results.runs import run_of
+from qgis.core import QgsProcessingContext, QgsProject
 from qgis.PyQt.QtGui import QFontMetricsF
 from road_map_layers import EAST, NORTH, added
 
@@ -36,6 +38,12 @@ def test_the_section_lies_across_the_road_and_left_is_positive(project):
     assert section.moved(10.0) == pytest.approx((EAST + 30 + 7.071, NORTH + 30 + 7.071), abs=0.02)
 
 
+def test_left_is_left_of_the_road_on_a_lane_against_it_too(project):
+    lane = added(project, "DRIVING_LINES", DRIVING_LINES, ("LINESTRING Z (70.7107 70.7107 100, 0 0 100)", dict(lane=2, direction=-1, length_m=100.0)))
+    section = section_at(EAST + 30, NORTH + 30, [lane])
+    assert section.azimuth == pytest.approx(45.0, abs=0.1) and section.offset(EAST + 20, NORTH + 40) > 0
+
+
 def test_lines_cross_it_at_their_offset_and_height_and_say_what_they_are(project):
     layers = road(project)
     left, middle = crossings(section_at(EAST + 30, NORTH + 30, layers), layers)
@@ -57,6 +65,16 @@ def test_only_points_of_the_slice_are_shown(qgis_app):
 def test_the_road_map_knows_its_point_clouds(project):
     road(project)
     assert clouds_of(project.layerTreeRoot().findGroup("B12, 8:00")) == ["/data/B12/a.laz", "/data/B12/b.laz"]
+
+
+def test_it_can_be_made_again_from_all_that_it_was_made_from(project):
+    road(project)
+    group = project.layerTreeRoot().findGroup("B12, 8:00")
+    assert inputs_of(group) == {"POINT_CLOUDS": ["/data/B12/a.laz", "/data/B12/b.laz"]}, "a map of an earlier version"
+    given = {"POINT_CLOUDS": ["/data/B12/a.laz"], "TRAJECTORY": "/data/B12/drive.csv", "MIN_HEIGHT": 0.08}
+    layer = group.findLayers()[0].layer()
+    place_layer(layer, project, "ROAD_EDGES", run_of("roadmap", given["POINT_CLOUDS"], True, QgsProcessingContext(), given))
+    assert inputs_of(group) == given
 
 
 def test_the_picture_shows_points_on_their_side(qgis_app):
