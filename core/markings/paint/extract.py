@@ -35,6 +35,7 @@ from .morphology import morphology
 from .noisy import CellAverages, ViewSamples, noisy_paint_cells, views
 from .peaks import PeakSettings, points_on_peaks
 from .point_segments import SegmentSettings, points_in_segments
+from .raised import raised_cells
 from .scatter import ScannerScatter
 from .spacing import track_spacing
 from .threshold_bins import MIN_BIN_CELLS, AsphaltBin, OtsuSplit, asphalt_bins, bin_edges, split_bins
@@ -43,6 +44,7 @@ RIM_WIDTH = 0.60         # m from the rim of the road: gutters; asphalt is taken
 MARKING_METHODS = ("multi-threshold", "intensity-peaks", "point-segments")
 THRESHOLD_WINDOW = 500   # cells: thresholds are taken from 20 m of road
 WINDOW_HALO = 100        # cells: 4 m around a window that are read too, for rims and runs that cross its ends
+MAX_HEIGHTS = 30_000     # points of a piece of 5 m whose heights are compared; of twice as many an evenly spread share
 MAX_OFFSET_POINTS = 300_000  # points of a window whose offsets are kept; of twice as many an evenly spread share
 
 Paint = tuple[Columns, np.ndarray, np.ndarray]   # records on paint; local x, y of the mask's pixels, empty where no mask is asked for
@@ -320,7 +322,16 @@ class WindowExtractor:
         lines, halfway = faint_lines(brightness, view.occupied, view.rims[0], mask, bright & ~mask)
         least = np.where(lines & ~mask, halfway, least)
         mask |= lines
+        mask &= ~raised_cells([self._heights(part, grid) for part in parts], mask)
         return self._paint_in(parts, grid, view.occupied, mask, least)
+
+    def _heights(self, part: PieceOfRoad, grid: RoadGrid) -> tuple[np.ndarray, np.ndarray]:
+        """Flat numbers in the grid of the cells of an even share of the points of a part, and the heights of these."""
+        step = max(len(part.cell) // MAX_HEIGHTS, 1)
+        row, column = np.divmod(part.cell[::step], np.int32(part.grid.shape[1]))
+        row += np.int32(part.grid.first - grid.first)
+        column += np.int32(part.grid.low - grid.low)
+        return row * np.int32(grid.shape[1]) + column, self._points(part.grid.first, part.grid.last).records["z"][::step]
 
     def _from_averages(self, window: int) -> Paint:
         """Paint where single points are noisy: bright pieces must have the shape of paint, too."""
