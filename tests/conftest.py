@@ -68,3 +68,18 @@ def provider(qgis_app, qgis_processing):
     plugin.initProcessing()
     yield plugin.provider
     plugin.unload()
+
+
+@pytest.fixture
+def project(qgis_app):
+    """The project of QGIS, empty before and after a test.
+
+    A legend looks into the project of its layers once more by a timer, after the test that drew it: a project of the
+    test's own would be gone by then, and the process with it.
+    """
+    from qgis.core import QgsProject
+
+    project = QgsProject.instance()
+    project.clear()
+    yield project
+    project.clear()

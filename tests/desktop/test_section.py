@@ -9,16 +9,9 @@ from lanewright.desktop.section import Crossing, Section, clouds_of, corners, cr
 from lanewright.desktop.section_view import SectionView
 from lanewright.processing_provider.results.layer_tree import place_layer
 from lanewright.processing_provider.results.runs import run_of
-from qgis.core import QgsProcessingContext, QgsProject
+from qgis.core import QgsProcessingContext
 from qgis.PyQt.QtGui import QFontMetricsF
 from road_map_layers import EAST, NORTH, added
-
-
-@pytest.fixture
-def project(qgis_app):
-    project = QgsProject()
-    yield project
-    project.clear()
 
 
 def road(project):

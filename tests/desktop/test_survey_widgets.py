@@ -5,7 +5,7 @@ from lanewright.algorithms.cloud_files import cloud_files
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.desktop.cloud_widget import PointCloudsWidget, PointCloudsWrapper, described, dropped_clouds
 from lanewright.desktop.trajectory_widget import TrajectoryWrapper
-from qgis.core import QgsApplication, QgsProcessingContext, QgsProcessingModelAlgorithm, QgsProject, QgsVectorLayer
+from qgis.core import QgsApplication, QgsProcessingContext, QgsProcessingModelAlgorithm, QgsVectorLayer
 from qgis.gui import QgsProcessingModelerParameterWidget
 from qgis.PyQt.QtCore import QMimeData, QUrl
 
@@ -16,12 +16,6 @@ def folder(tmp_path):
     for name in ("tile_2.LAZ", "tile_1.laz", "tile_1.copc.laz", "drive.csv"):
         (tmp_path / name).write_bytes(b"0" * 1_000_000)
     return tmp_path
-
-
-@pytest.fixture
-def project(qgis_app):
-    yield QgsProject.instance()
-    QgsProject.instance().clear()
 
 
 @pytest.fixture(autouse=True)

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from lanewright.processing_provider.styling import STYLES, apply_style
 from lanewright.processing_provider.texts import TRANSLATIONS, chosen_language, install_translator, remove_translator, told, tr
-from qgis.core import QgsLayerTreeModel, QgsProject, QgsVectorLayer
+from qgis.core import QgsLayerTreeModel, QgsVectorLayer
 from qgis.PyQt.QtCore import Qt
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -124,10 +124,9 @@ def german(qgis_app):
     remove_translator(translator)
 
 
-def test_the_legend_of_a_layer_that_is_in_the_tree_already_turns_german(german):
+def test_the_legend_of_a_layer_that_is_in_the_tree_already_turns_german(german, project):
     """QGIS adds a result to the layer tree first and gives it its style then."""
     layer = QgsVectorLayer("LineStringZ?crs=EPSG:32650&field=role:string", "Residuals", "memory")
-    project = QgsProject()
     project.addMapLayer(layer)
     model = QgsLayerTreeModel(project.layerTreeRoot())
     apply_style(layer, STYLES / "residuals.qml")

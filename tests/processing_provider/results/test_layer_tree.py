@@ -5,14 +5,12 @@ import re
 import pytest
 from lanewright.processing_provider.results.layer_tree import place_layer, replaces_last_run, set_replaces_last_run
 from lanewright.processing_provider.results.runs import Run, run_of, survey_name
-from qgis.core import QgsFeature, QgsGeometry, QgsProcessingContext, QgsProject, QgsVectorLayer
+from qgis.core import QgsFeature, QgsGeometry, QgsProcessingContext, QgsVectorLayer
 
 
-@pytest.fixture
-def project(qgis_app):
-    project = QgsProject()
-    yield project
-    project.clear()
+@pytest.fixture(autouse=True)
+def runs_stay_beside_each_other(qgis_app):
+    yield
     set_replaces_last_run(False)
 
 
