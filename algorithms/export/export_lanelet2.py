@@ -43,6 +43,7 @@ class ExportLanelet2(Algorithm):
         from pathlib import Path
 
         from ...core.export.check.lanelets import check_lanelets
+        from ...core.export.inferred_ways import with_inferred_ways
         from ...core.export.lanelet.exporter import draft_lanelets
         from ...core.export.lanelet.layers import layers_of_lanelets, node_places
         from ...core.export.lanelet.reader import read_lanelet2
@@ -50,7 +51,7 @@ class ExportLanelet2(Algorithm):
         from ...core.export.shared_borders import with_shared_borders
         from ...core.report.map_export import map_export_report
 
-        source = with_shared_borders(road_map_source(call, progress.part(0.0, 0.2)))
+        source = with_shared_borders(with_inferred_ways(road_map_source(call, progress.part(0.0, 0.2))))
         progress.report(0.2)
         draft = draft_lanelets(source, call.settings(LANELET_SETTINGS, location=call.choice("LOCATION")))
         degrees = to_degrees(draft.nodes, source.lanes.crs)

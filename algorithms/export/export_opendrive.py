@@ -47,6 +47,7 @@ class ExportOpenDrive(Algorithm):
 
         from ...core.export.check.roads import check_opendrive
         from ...core.export.fit_of_export import border_misses, driving_line_misses
+        from ...core.export.inferred_ways import with_inferred_ways
         from ...core.export.map_crs import reference_of_crs
         from ...core.export.opendrive.exporter import draft_opendrive
         from ...core.export.opendrive.layers import layers_of_opendrive
@@ -54,7 +55,7 @@ class ExportOpenDrive(Algorithm):
         from ...core.export.opendrive.writer import opendrive_text
         from ...core.export.shared_borders import with_shared_borders
 
-        source = with_shared_borders(road_map_source(call, progress.part(0.0, 0.2)))
+        source = with_shared_borders(with_inferred_ways(road_map_source(call, progress.part(0.0, 0.2))))
         settings = call.settings(ROAD_SETTINGS, version=call.choice("VERSION"), traffic_side=call.choice("TRAFFIC_SIDE"))
         draft = draft_opendrive(source, settings, progress.part(0.2, 0.7))
         draft.map.reference = reference_of_crs(source.lanes.crs)

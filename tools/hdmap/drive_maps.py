@@ -40,10 +40,10 @@ def drive(whole, lane):
     return float(apart.max()), float(np.ptp(along)), following
 
 
-def is_led_to(whole, start, end, lanes):
-    """Whether a drive from one place, (x, y), can come to another along the lanes that follow each other."""
-    goals = {(lane["road"], lane["lane"]) for lane in lanes_at(lanes, end)}
-    places = [place for lane in lanes_at(lanes, start)
+def is_led_to(whole, starts, ends, lanes):
+    """Whether a drive from one of some places, (x, y) each, can come to one of others along the lanes that follow each other."""
+    goals = {(lane["road"], lane["lane"]) for end in ends for lane in lanes_at(lanes, end)}
+    places = [place for start in starts for lane in lanes_at(lanes, start)
               if (place := whole.get_waypoint_xodr(lane["road"], lane["lane"], station(lane, start))) is not None]
     seen = set()
     while places:

@@ -26,6 +26,7 @@ def main():
 def write(folder, name, one):
     """The files of one road map, and the JSON with what must be found in them."""
     from lanewright.core.export.cad.dxf import dxf_lines, write_dxf
+    from lanewright.core.export.inferred_ways import with_inferred_ways
     from lanewright.core.export.lanelet.exporter import draft_lanelets
     from lanewright.core.export.lanelet.writer import lanelet2_text, to_degrees
     from lanewright.core.export.map_crs import reference_of_crs
@@ -33,7 +34,7 @@ def write(folder, name, one):
     from lanewright.core.export.opendrive.writer import opendrive_text
     from lanewright.core.export.shared_borders import with_shared_borders
 
-    source = with_shared_borders(one.source)
+    source = with_shared_borders(with_inferred_ways(one.source))
     lanes, crs = source.lanes, source.lanes.crs or SOME_CRS
     for version in ("1.7", "1.8"):
         draft = draft_opendrive(source, OpenDriveSettings(version=version))
@@ -47,14 +48,13 @@ def write(folder, name, one):
     driven = {lanes.lane_id[k] for k in range(len(lanes)) if lanes.type[k] in ("driving", "connector")}
     passable = sum(lanelet.name in driven for lanelet in lanelets.lanelets)
     links = sum(next in driven for id, others in zip(lanes.lane_id, lanes.successors) if id in driven for next in others)
-    ways = [[place.tolist() for place in way] for way in one.ways()]
     expected = {
         # each cut of a lane makes one lanelet more and one link more
         "lanes": passable, "successors": links + passable - len(driven), "lanelets": len(lanelets.lanelets), "dxf": len(lines),
         "borders": borders(folder / f"{name}_1.7.xodr"), "driven": driven_lanes(folder / f"{name}_1.7.xodr"),
         "vertices": (np.concatenate([lanes.left, lanes.right])[:, :2] - origin).round(4).tolist(), "origin": origin.tolist(),
-        "ways": [(np.array(way) - origin).tolist() for way in ways],
-        "ways_in_degrees": [to_degrees(np.array(way), crs).lonlat[:, ::-1].tolist() for way in ways]}
+        "ways": [[(places - origin).tolist() for places in way] for way in one.ways()],
+        "ways_in_degrees": [[to_degrees(places, crs).lonlat[:, ::-1].tolist() for places in way] for way in one.ways()]}
     (folder / f"{name}.json").write_text(json.dumps(expected), encoding="utf-8")
 
 

@@ -64,10 +64,13 @@ graph = lanelet2.routing.RoutingGraph(loaded, rules)
 lanelets = list(loaded.laneletLayer)
 driven = [one for one in lanelets if rules.canPass(one)]
 
-def on(place):
-    point = projector.forward(lanelet2.core.GPSPoint(*place, 0.0))
-    near = lanelet2.geometry.findNearest(loaded.laneletLayer, lanelet2.core.BasicPoint2d(point.x, point.y), 20)
-    return [one for distance, one in near if distance < 0.01 and rules.canPass(one)]
+def on(places):
+    found = []
+    for place in places:
+        point = projector.forward(lanelet2.core.GPSPoint(*place, 0.0))
+        near = lanelet2.geometry.findNearest(loaded.laneletLayer, lanelet2.core.BasicPoint2d(point.x, point.y), 20)
+        found += [one for distance, one in near if distance < 0.01 and rules.canPass(one)]
+    return found
 
 routes = [any(graph.getRoute(a, b) is not None for a in on(start) for b in on(end)) for start, end in ways]
 print(json.dumps({"errors": list(errors), "lanelets": len(lanelets), "passable": len(driven),

@@ -23,6 +23,7 @@ ROAD_POINTS = "road.laz"
 TRAJECTORIES = ("survey/trajectory.gpkg", "survey/trajectory.csv")   # in the folder of a survey's results
 SAME_ARM = 25.0     # m between the ends of two drives on one arm
 PAUSE = 5.0         # s between two drives
+SAME_SECTION = 1.0  # m along the road between places of lanes side by side
 MOST_TURNED = 0.5   # rad between a drive and the lane that it is on
 
 
@@ -34,9 +35,11 @@ class RoadMap:
     drives: list = field(default_factory=list)
 
     def ways(self):
-        """(from, to) places between which a route must exist: from every arm that a drive came from to every other one that a drive led to."""
+        """(from, to) between which a route must exist, of one of the places of the first to one of the second: from every arm that a drive came
+        from to every other one that a drive led to. (N, 2) places each, in the lanes of the arm side by side: any of them may be taken."""
         starts, ends = (_apart([drive[end] for drive in self.drives]) for end in (0, 1))
-        return [(start, end) for start in starts for end in ends if np.hypot(*(start - end)) > SAME_ARM]
+        return [(_beside(start, self.source.lanes), _beside(end, self.source.lanes)) for start in starts for end in ends
+                if np.hypot(*(start - end)) > SAME_ARM]
 
 
 def streets():
@@ -108,6 +111,21 @@ def _trajectory(path):
     with fiona.open(path) as layer:
         rows = [(*row.geometry.coordinates[:3], row.properties["time"]) for row in layer]
     return trajectory_from_columns(dict(zip(("x", "y", "z", "time"), np.array(rows).T)))
+
+
+def _beside(place, lanes):
+    """(N, 2) a place on a lane, and those beside it in the other lanes of its road that are driven the same way."""
+    middles = {k: sum(lanes.borders(k))[:, :2] / 2 for k in range(len(lanes)) if lanes.type[k] == "driving"}
+    nearest = {k: int(np.argmin(np.hypot(*(middle - place).T))) for k, middle in middles.items()}
+    own = min(middles, key=lambda k: np.hypot(*(middles[k][nearest[k]] - place)))
+    ahead = np.gradient(middles[own], axis=0)[nearest[own]]
+    found = [place]
+    for k, middle in middles.items():
+        away = middle[nearest[k]] - place
+        if k != own and lanes.road[k] == lanes.road[own] and lanes.direction[k] == lanes.direction[own] \
+                and abs(away @ ahead) < np.hypot(*ahead) * SAME_SECTION and np.hypot(*away) < SAME_ARM:
+            found.append(middle[nearest[k]])
+    return np.array(found)
 
 
 def _apart(places):
