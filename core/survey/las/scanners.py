@@ -12,6 +12,7 @@ from ...common.errors import RoadExtractionError
 
 MAX_SCANNERS = 8
 MIN_INTERLEAVED_SHARE = 0.8   # of the points: their values must overlap in time if the values identify scanners
+EVER = (-np.inf, np.inf)      # s
 
 
 @dataclass
@@ -78,8 +79,14 @@ class ScannerCensus:
         return None, [0]
 
 
-def times_by_value(values: np.ndarray, time: np.ndarray) -> dict[int, tuple[float, float, int]]:
-    """{value: (first time, last time, count)} of (N,) small integers and times; incomplete if there are too many values."""
+def times_by_value(values: np.ndarray, time: np.ndarray, span: tuple[float, float] = EVER) -> dict[int, tuple[float, float, int]]:
+    """{value: (first time, last time, count)} of (N,) small integers and times; incomplete if there are too many values.
+
+    Points at times out of the span, or at none, do not count: some exporters write a wrong time here and there.
+    """
+    if len(values) and not (time.min() >= span[0] and time.max() <= span[1]):
+        usable = np.flatnonzero((time >= span[0]) & (time <= span[1]))
+        values, time = values[usable], time[usable]
     if not len(values):
         return {}
     # a broadcast column has one value

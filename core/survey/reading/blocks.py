@@ -12,7 +12,7 @@ from ...common.memory import ScratchBuffers
 from ..frame.projection import POINTS_PER_PROJECTION, RoadProjection
 from ..las.luminance import luminance
 from ..las.scale import LasAxis
-from ..las.scanners import times_by_value
+from ..las.scanners import EVER, times_by_value
 from ..las.time_slots import TimeSlots
 from ..store.columns import Columns
 from ..store.records import COORDINATE_SCALE, SURVEY_POINT, fill_units, point_dtype, to_units
@@ -55,19 +55,20 @@ class BlockSummary:
         for name, times in other.scanners.items():
             self._note(name, times)
 
-    def add(self, columns: dict[str, np.ndarray], names: set[str]) -> None:
+    def add(self, columns: dict[str, np.ndarray], names: set[str], span: tuple[float, float] = EVER) -> None:
         """Count points of the block.
 
         Parameters
         ----------
         columns : (N,) intensity, source, scanner and time
         names : LAS fields that the file has
+        span : s, (first, last) time of the drive: points at other times say nothing of the scanners
         """
         self.darkest = min(self.darkest, int(columns["intensity"].min()))
         self.brightest = max(self.brightest, int(columns["intensity"].max()))
         for name, key in zip(SCANNER_FIELDS, ("source", "scanner")):
             if name in names:
-                self._note(name, times_by_value(columns[key], columns["time"]))
+                self._note(name, times_by_value(columns[key], columns["time"], span))
 
     def _note(self, name, times):
         seen = self.scanners.setdefault(name, {})
@@ -152,6 +153,7 @@ class BlockProjector:
         self.frame, self.choice, self.corridor, self.has_time = frame, choice, choice.corridor, choice.has_time
         self.dtype = point_dtype(SURVEY_POINT, frame.farthest)
         self.projection = RoadProjection(frame, choice.corridor) if choice.has_time else None
+        self._span = (min(p.time[0] for p in frame.passes), max(p.time[-1] for p in frame.passes)) if choice.has_time else EVER
         self.roads = np.array([p.road for p in frame.passes] + [-1])
         self._scratch = ScratchBuffers()
 
@@ -179,7 +181,7 @@ class BlockProjector:
         buffers = self._scratch.of(len(piece))
         flagged = _flagged(piece)
         columns = self._columns(piece, names, flagged, buffers)
-        found.add(columns, names)
+        found.add(columns, names, self._span)
         usable = _not_withheld(piece, names) if flagged else None
         for axis, name in zip(axes, "xyz"):
             columns[name], there = axis.units(piece.array, buffers)

@@ -21,6 +21,7 @@ MAX_SAMPLES = 6_000_000   # points held in memory: 250 MB while they are sorted
 MAX_GAP_IN_DRIVE = 1.0    # s without points end a drive
 UNKNOWN_SCANNER = 255     # number of a point whose scanner is not known
 MIN_DRIVE_SAMPLES = 2000  # a drive with fewer is not estimated
+MIN_DRIVE_TIME = 1.0      # s: points at one wrong time, however many, are no drive
 COLUMN_OF_FIELD = {"point_source_id": 0, "scanner_channel": 1}
 
 
@@ -30,10 +31,10 @@ class Samples:
 
     Attributes
     ----------
-    time : (N,) seconds since `start`; zeros without time
+    time : (N,) seconds since `start`, of the drives; zeros without time
     place : (N, 3) metres from `origin`
     scanner : (N,) numbers of the scanners from 0
-    start : s, the first gps_time
+    start : s, the gps_time of the first drive's first point
     origin : (3,) map coordinates
     has_time : whether the points' times differ
     drives : slices of the rows between gaps in time
@@ -114,13 +115,18 @@ def samples_of(time: np.ndarray, place: np.ndarray, scanner: np.ndarray, origin:
     """
     order = np.argsort(time, kind="stable")
     time, place, scanner = time[order], place[order], scanner[order]
-    start = float(time[0])
-    time -= start
     cuts = np.flatnonzero(np.diff(time) > MAX_GAP_IN_DRIVE) + 1
-    drives = [slice(int(a), int(b)) for a, b in zip(np.r_[0, cuts], np.r_[cuts, len(time)])]
-    long = [drive for drive in drives if drive.stop - drive.start >= MIN_DRIVE_SAMPLES]
-    left_out = len(time) - sum(drive.stop - drive.start for drive in long)
-    return Samples(time, place, scanner, start, origin, True, long, left_out * stride)
+    pieces = zip(np.r_[0, cuts].tolist(), np.r_[cuts, len(time)].tolist())
+    long = [(a, b) for a, b in pieces if b - a >= MIN_DRIVE_SAMPLES and time[b - 1] - time[a] >= MIN_DRIVE_TIME]
+    # from the first drive on: times long before it, which are wrong, would cost the precision of all others
+    start = float(time[long[0][0]]) if long else float(time[0])
+    ends = np.cumsum([0] + [b - a for a, b in long]).tolist()
+    total = len(time)
+    if ends[-1] < total and long:
+        kept = np.concatenate([np.arange(a, b) for a, b in long])
+        time, place, scanner = time[kept], place[kept], scanner[kept]
+    return Samples(time - start, place, scanner, start, origin, True, [slice(a, b) for a, b in zip(ends[:-1], ends[1:])],
+                   (total - ends[-1]) * stride)
 
 
 def _sample(block, slots, origin):

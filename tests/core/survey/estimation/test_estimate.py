@@ -92,6 +92,22 @@ def test_files_may_come_in_any_order_and_the_points_too(tmp_path, street):
     np.testing.assert_allclose(np.c_[parts.x, parts.y, parts.z][25:-25], np.c_[whole.x, whole.y, whole.z][25:-25], atol=0.002)
 
 
+def test_points_at_wrong_times_are_no_drive(tmp_path, street):
+    """Thousands at one time long before, and at one long after: the drive is as precise as without them."""
+    import laspy
+
+    path = street.write(tmp_path / "cloud.laz")
+    las = laspy.read(path)
+    time = np.array(las.gps_time)
+    assert len(time) > 40_000
+    time[::20], time[1::20] = -5.0, 1e300
+    las.gps_time = time
+    las.write(path)
+    found = estimate_trajectory([path])
+    assert found.method == "rays"
+    close(street, found)
+
+
 def test_a_gap_in_time_makes_two_drives(tmp_path):
     drive = mirror_drive(BUTTERFLY, seconds=14.0)
     since = drive.time - START

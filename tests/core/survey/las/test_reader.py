@@ -6,7 +6,7 @@ from drives import EAST, NORTH, write_cloud
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.io.crs import check_projected
 from lanewright.core.survey.las.reader import read_blocks, read_header, read_headers
-from lanewright.core.survey.las.scanners import ScannerCensus, numbers_by_value
+from lanewright.core.survey.las.scanners import ScannerCensus, numbers_by_value, times_by_value
 
 
 def places(count=5000):
@@ -145,6 +145,24 @@ TIME = np.arange(1000.0)
 
 def test_two_scanners_that_measure_at_the_same_time_are_distinguished():
     assert census(point_source_id=(np.arange(1000) % 2 + 1, TIME)).choose() == ("point_source_id", [1, 2])
+
+
+@pytest.mark.parametrize("wrong", [np.nan, 1e300, -5.0])
+def test_scanners_are_told_apart_whatever_some_times_are(wrong):
+    time = TIME.copy()
+    time[::7] = wrong
+    found = ScannerCensus()
+    found.take("point_source_id", times_by_value(np.arange(1000) % 2 + 1, time, (0.0, 999.0)))
+    assert found.choose() == ("point_source_id", [1, 2])
+
+
+def test_flight_lines_stay_one_scanner_where_single_times_are_wrong():
+    time = TIME.copy()
+    time[::7] = 1e300
+    found = ScannerCensus()
+    found.take("point_source_id", times_by_value(np.arange(1000) // 500, time, (0.0, 999.0)))
+    assert found.choose() == (None, [0])
+    assert times_by_value(np.arange(3), np.full(3, np.nan)) == {}
 
 
 def test_flight_lines_one_after_the_other_are_one_scanner():
