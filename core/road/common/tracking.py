@@ -8,6 +8,7 @@ jumps, with a weak preference for what is near the vehicle.
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -181,7 +182,7 @@ def _wander(steps, members):
 
 def select_along_road(chains: Sequence[StepChain], steps: CurbSteps,
                       near: Callable[[float], np.ndarray]) -> list[tuple[int, float, float]]:
-    """Which chain is the curb at every station: the sequence of chains of the highest value, by dynamic programming.
+    """Which chain is the curb at every station: the sequence of chains of the highest value, by dynamic programming, and what continues it.
 
     Parameters
     ----------
@@ -232,7 +233,35 @@ def select_along_road(chains: Sequence[StepChain], steps: CurbSteps,
     while old_path:
         selected.append(old_path[:3])
         old_path = old_path[3]
-    return _merged(selected[::-1])
+    return _continued(_merged(selected[::-1]), chains, steps)
+
+
+def _continued(selected, chains, steps):
+    """The selection with the chains that go on from a selected one where nothing else was selected.
+
+    To the selection a long gap allows a larger jump: that a curb goes on before the jump must not speak against the curb.
+    """
+    free = [number for number in sorted(range(len(chains)), key=lambda k: chains[k].start) if number not in {chain for chain, _, _ in selected}]
+    for onward in (True, False):
+        for number in free if onward else free[::-1]:
+            own = chains[number]
+            at = bisect_left(selected, own.start, key=lambda part: part[1])
+            before, after = selected[at - 1] if at else None, selected[at] if at < len(selected) else None
+            if (before and before[2] > own.start) or (after and after[1] < own.end):
+                continue
+            if (before if onward else after) and _goes_on(steps, chains, before if onward else after, own, onward):
+                selected.insert(at, (number, own.start, own.end))
+    return selected
+
+
+def _goes_on(steps, chains, part, own, onward):
+    """Whether a chain continues a selected interval, onward or back, and keeps to its offset."""
+    number, a, b = part
+    known = chains[number].steps
+    known = known[(steps.s[known] >= a) & (steps.s[known] <= b)]
+    if not len(known) or np.abs(steps.u[own.steps] - steps.u[known[-1 if onward else 0]]).max() > MAX_STEADY_JUMP:
+        return False
+    return any(_in_line(steps, *((known, own.steps) if onward else (own.steps, known))))
 
 
 def drop_short_curbs(selected: Sequence[tuple[int, float, float]], chains: Sequence[StepChain],
