@@ -16,6 +16,7 @@ from ..processing_provider.texts import tr
 from .destinations import LAST_OUTPUT, outputs_by_default, survey_destinations
 
 CLOUDS = "POINT_CLOUDS"
+PATH_WIDTH = 330  # px
 
 
 class BatchAlgorithmDialog(qgis_batch.BatchAlgorithmDialog):
@@ -28,6 +29,9 @@ class BatchAlgorithmDialog(qgis_batch.BatchAlgorithmDialog):
         super().__init__(algorithm, parent)
         self.setWindowTitle(tr("Batch: {title}").format(title=title))
         self.mainWidget().checkLoadLayersOnCompletion.setChecked(True)
+        for name in (CLOUDS, "TRAJECTORY"):  # QGIS shows the last ten letters of a path
+            if name in self.mainWidget().parameter_to_column:
+                self.mainWidget().tblParameters.setColumnWidth(self.mainWidget().parameter_to_column[name], PATH_WIDTH)
         save = QPushButton(tr("Save everything to…"))
         save.setToolTip(tr("One folder for all surveys: of each the layers in one GeoPackage called like the survey, images and reports beside it"))
         save.clicked.connect(lambda checked=False: self.choose_folder())

@@ -84,7 +84,6 @@ def batch():
         fill = panel.tblParameters.cellWidget(0, column)
         for row, day in enumerate(days):
             fill.setRowValue(row, str(place / day / file), QgsProcessingContext())
-        panel.tblParameters.setColumnWidth(column, 330)
     window.resize(1000, 420)
     (place / "results").mkdir()
     window.save_everything_to(str(place / "results"))

@@ -9,7 +9,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-from qgis.core import QgsProcessingContext
+from qgis.core import QgsProcessingContext, QgsVariantUtils
 
 GROUP = "Lanewright"
 SURVEY_OF_RUN = "lanewright_survey"  # what the stages of a model tell each other through their common context
@@ -50,7 +50,12 @@ def run_of(algorithm: str, clouds: list[str], whole: bool, context: QgsProcessin
     store.setProperty(SURVEY_OF_RUN, survey)
     name = survey or GROUP
     return Run(algorithm, survey, f"{name}, {datetime.now():%Y-%m-%d %H:%M:%S}" if whole else name,
-               tuple(str(Path(path).absolute()) for path in clouds), json.dumps(inputs) if whole and inputs else "")
+               tuple(str(Path(path).absolute()) for path in clouds), _as_json(inputs) if whole and inputs else "")
+
+
+def _as_json(inputs):
+    """What was given, without what was left empty: None, or in a batch a NULL of QGIS."""
+    return json.dumps({name: value for name, value in inputs.items() if not QgsVariantUtils.isNull(value)}, default=str)
 
 
 def survey_name(clouds: list[str]) -> str:
