@@ -104,7 +104,7 @@ def pavement_limits(rows: SurfaceProfiles, change: np.ndarray) -> PavementLimits
     inside, outside = slice(CELLS_INSIDE), slice(CELLS_INSIDE, None)
     # far away only every third cell may hold a scan line
     usual = known[:, inside].mean(1) / (2 * AVERAGED_ROWS + 1)
-    hidden = own[:, outside].mean(1) / (2 * OWN_ROWS + 1) < MIN_MEASURED_SHARE * usual
+    hidden = (own[:, outside].mean(1) / (2 * OWN_ROWS + 1) < MIN_MEASURED_SHARE * usual) | (usual == 0.0)
     costs_inside, costs_outside = costs[:, inside].sum(1), costs[:, outside].sum(1)
     flat, seen = ground[:, outside].mean(1), (known[:, outside] > 0).mean(1)
     goes_on = (flat >= MIN_GROUND_SHARE * seen) & (seen >= MIN_GROUND_SEEN * usual)

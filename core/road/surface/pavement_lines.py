@@ -13,7 +13,8 @@ from scipy.interpolate import splev, splrep
 from scipy.ndimage import uniform_filter1d
 
 from ...common.progress import Progress
-from ..edges.fit import EDGE_VERTEX_SPACING, MAX_EDGE_JUMP, MIN_HIDDEN_SHARE, EdgeSettings
+from ..common.in_line import GapLine
+from ..edges.fit import EDGE_VERTEX_SPACING, IN_LINE_GAP_FACTOR, MAX_EDGE_JUMP, MIN_HIDDEN_SHARE, EdgeSettings
 from ..edges.road_edges import EdgePiece, RoadEdges
 from .extract import Carriageway, SurfaceSettings, find_carriageway
 from .ground_grid import COLUMN_WIDTH, ROW_LENGTH
@@ -28,6 +29,7 @@ AGREEING_LENGTH = 7.0       # m of road of which most must show the edge
 MIN_PAVEMENT_LENGTH = 10.0  # m of a line: rows are averages of 7 m, so a shorter one is a single observation
 MAX_ROW_JUMP = 0.5          # m across from one row to the next at which a line ends: a street joins
 MAX_BRIDGED_SKEW = 0.15     # m across per m along of a gap, beside MAX_EDGE_JUMP: tapers widen by 1 in 10 and less
+MAX_LINE_MISS = 0.2         # m, of single rows from one even bend through both sides of a gap that is longer than `max_gap`
 MIN_LIKELY_SHARE = 0.5      # of a gap in which the edge is rather there than not, for the line to go on as measured
 
 
@@ -83,12 +85,13 @@ def pavement_pieces(frame: RoadFrame, road: int, carriageway: Carriageway, edges
     for side, grown in carriageway.grown.items():
         free = there & np.isnan(curbs[side][0])
         agreeing = uniform_filter1d((grown.shown & free).astype(float), int(AGREEING_LENGTH / ROW_LENGTH) | 1, mode="constant")
-        for runs in _lines(free & (agreeing > 0.5), free & grown.likely, free & (grown.likely | grown.hidden), grown.offset, max_gap):
+        places = frame.to_map(road, stations, grown.offset)
+        for runs in _lines(free & (agreeing > 0.5), free & grown.likely, free & (grown.likely | grown.hidden), grown.offset, np.array(places), max_gap):
             found += _drawn(frame, road, side, carriageway, grown, runs, chain + len(found))
     return found
 
 
-def _lines(shown, likely, possible, offset, max_gap):
+def _lines(shown, likely, possible, offset, places, max_gap):
     """[[(first, last + 1), …], …] rows of runs that are joined to lines; what lies between the runs of a line is bridged."""
     broken = np.abs(np.diff(offset)) > MAX_ROW_JUMP
     cuts = np.flatnonzero((shown[1:] != shown[:-1]) | broken) + 1
@@ -98,7 +101,8 @@ def _lines(shown, likely, possible, offset, max_gap):
     for run in runs:
         last = lines[-1][-1] if lines else (0, -len(offset))
         gap = slice(last[1], run[0])
-        if not lines or not _go_on(offset, gap, max_gap) or not possible[gap].mean() >= MIN_HIDDEN_SHARE:
+        if not lines or not _go_on(offset, gap, IN_LINE_GAP_FACTOR * max_gap) or not possible[gap].mean() >= MIN_HIDDEN_SHARE \
+                or (gap.stop - gap.start) * ROW_LENGTH > max_gap and not _in_line(places[:, slice(*last)], places[:, slice(*run)]):
             lines.append([run])
         elif likely[gap].mean() >= MIN_LIKELY_SHARE:
             lines[-1][-1] = (last[0], run[1])
@@ -111,6 +115,12 @@ def _go_on(offset, gap, max_gap):
     """Whether a line may go on after a gap of rows."""
     length = (gap.stop - gap.start) * ROW_LENGTH
     return 0 < length <= max_gap and abs(offset[gap.stop] - offset[gap.start - 1]) <= MAX_EDGE_JUMP + MAX_BRIDGED_SKEW * length
+
+
+def _in_line(before, after):
+    """Whether the (2, N) and (2, M) places before and after a gap lie on one even bend."""
+    long = min(before.shape[1], after.shape[1]) * ROW_LENGTH >= AGREEING_LENGTH
+    return long and GapLine(before, after, max_degree=2).miss <= MAX_LINE_MISS
 
 
 def _drawn(frame, road, side, carriageway, grown, runs, chain):

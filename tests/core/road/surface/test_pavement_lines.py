@@ -187,7 +187,29 @@ def test_behind_a_vehicle_the_edge_is_bridged_and_says_so():
     assert len(bridged) == 1
     assert (bridged[0][:, 0].min(), bridged[0][:, 0].max()) == pytest.approx(hidden, abs=1.0)
     assert np.abs(bridged[0][:, 1] - HALF).max() <= 0.2
-    assert "bridged" not in found(survey, max_gap=5.0).status
+    assert "bridged" not in found(survey, max_gap=3.0).status
+
+
+def behind_a_lorry(half=half_of, **settings):
+    """Lines of the left side of a street, half of it hidden by what drives beside the vehicle."""
+    survey = street(half, keep=lambda s, d: ~((s > 19.0) & (s < 41.0) & (d > 1.0)))
+    return [line for line in on_map(found(survey, **settings), survey) if line[1][0, 1] > 0]
+
+
+@pytest.mark.parametrize("bend", [0.0, 0.001])
+def test_a_longer_gap_is_bridged_where_both_sides_of_it_lie_in_one_line(bend):
+    def half(s):
+        return HALF + bend * (s - 30.0) ** 2
+
+    lines = behind_a_lorry(half)
+    bridge, = (places for status, places in lines if status == "bridged")
+    assert np.ptp(bridge[:, 0]) > 18.0 and np.abs(bridge[:, 1] - half(bridge[:, 0])).max() <= 0.2
+    assert "bridged" not in [status for status, _ in behind_a_lorry(half, max_gap=8.0)]
+
+
+def test_a_longer_gap_in_which_the_road_widens_is_not_bridged():
+    lines = behind_a_lorry(lambda s: HALF + np.where(s < 30.0, 0.0, 1.0))
+    assert len(lines) == 2 and {status for status, _ in lines} == {"measured"}
 
 
 def test_a_curb_stays_what_it_is_and_the_pavement_ends_on_the_other_side_alone():
