@@ -11,6 +11,7 @@ from ..common.progress import Progress
 from .agreement import measure_agreement, select_curb_points
 from .common.curb_points import CurbPoints
 from .common.decimation import LevelGround, PointDecimation
+from .common.occlusion import OcclusionGrid
 from .curb_returns.detect import with_curb_returns
 from .edges.fit import EdgeSettings, fit_road_edges
 from .edges.road_edges import RoadEdges
@@ -99,19 +100,20 @@ def find_curb_points(survey: Survey, settings: BoundarySettings = BoundarySettin
 def _find_curb_points(decimation, settings, progress):
     """`find_curb_points` with the points of a PointDecimation."""
     survey, both, found = decimation.survey, settings.method == "both", {}
+    beside: dict[int, dict[str, OcclusionGrid]] = {}
     if settings.method != "scanlines":
         part = progress.part(0.0, PROFILES_PROGRESS) if both else progress
-        found["profiles"] = detect_curbs(survey, settings.curbs, part, include_returns=not both, decimation=decimation)
+        found["profiles"] = detect_curbs(survey, settings.curbs, part, include_returns=not both, decimation=decimation, beside=beside)
     if settings.method != "profiles":
         part = progress.part(PROFILES_PROGRESS if both else 0.0, 1.0)
         source = SurveyScanlines(survey, settings.planes, settings.scanlines.sensor_height, progress=part.part(0.0, LATTICE_PROGRESS),
                                  level=_level_for(decimation, settings.scanlines))
         found["scanlines"] = curbs_from_scanlines(source, settings.scanlines, settings.curbs.block_length,
-                                                  part.part(LATTICE_PROGRESS, RETURNS_PROGRESS))
+                                                  part.part(LATTICE_PROGRESS, RETURNS_PROGRESS), None if both else beside)
         drawn = "both" if both else "scanlines"
         if both:
             found["both"] = _better_points(found, survey.frame)
-        found[drawn] = with_curb_returns(found[drawn], decimation, settings.curbs, part.part(RETURNS_PROGRESS, 1.0))
+        found[drawn] = with_curb_returns(found[drawn], decimation, settings.curbs, part.part(RETURNS_PROGRESS, 1.0), beside)
     return found
 
 

@@ -19,6 +19,8 @@ from ...execution.phase import Phase
 from ...survey.frame.road import CORRIDOR
 from ..common.curb_points import CurbPoints, curb_points_at
 from ..common.decimation import POINTS_PER_LEVEL_CELL_IN_PLAN, PointDecimation
+from ..common.hidden_curb import hidden_beside
+from ..common.occlusion import OcclusionGrid
 from ..common.sides import MAX_LOOK_ALONG, SIDE_SIGNS, ahead_of_vehicle, expected_height, work_sections
 from ..common.tracking import MAX_JOINED_GAP
 from .classify import CurbReturn, classify_curbs, is_curb_like
@@ -47,8 +49,10 @@ MAX_ISLAND_WIDTH = 8.0        # m within which the ground behind an island's cur
 
 
 def with_curb_returns(curb_points: CurbPoints, decimation: PointDecimation, settings: CurbSettings,
-                      progress: Progress = Progress()) -> CurbPoints:
+                      progress: Progress = Progress(), beside: Mapping[int, Mapping[str, OcclusionGrid]] | None = None) -> CurbPoints:
     """The points of the main curbs, and behind them those of corners, side streets and islands.
+
+    Where a piece of main curb is found here, hidden places are looked for in the gaps next to it.
 
     Parameters
     ----------
@@ -56,6 +60,7 @@ def with_curb_returns(curb_points: CurbPoints, decimation: PointDecimation, sett
     decimation : PointDecimation of the survey
     settings : CurbSettings
     progress : Progress
+    beside : number of the road -> side -> OcclusionGrid, what was seen beside it; without, no hidden place is added
     """
     survey, parts = decimation.survey, [curb_points]
     length = dict.fromkeys(KIND_TITLES, 0.0)
@@ -66,10 +71,15 @@ def with_curb_returns(curb_points: CurbPoints, decimation: PointDecimation, sett
         part = progress.part(i / len(roads), (i + 1) / len(roads))
         main, chain = mains[road]
         elsewhere = [run for other in roads if other != road for run in runs[other]]
+        later: list[CurbPoints] = []
         for number, curb in enumerate(find_curb_returns(decimation, road, main, settings, part, elsewhere), chain):
             points = _points_of(survey, road, curb, number)
             length[curb.kind] += points.along[-1]
             parts.append(points)
+            if curb.kind == "main" and beside is not None:
+                later.append(points)
+        if later:
+            parts.append(hidden_beside(CurbPoints.join(later, curb_points.crs), main, beside[road], survey, road))
     found = ", ".join(f"{length[kind]:.0f} m {title}" for kind, title in KIND_TITLES.items() if length[kind])
     progress.info(f"Curbs away from the road's direction: {found or 'none'}.")
     return CurbPoints.join(parts, curb_points.crs)

@@ -16,8 +16,9 @@ from ..common.corners import CurbSteps
 from ..common.curb_limits import CurbLimits
 from ..common.curb_points import CurbPoints, curb_points_at
 from ..common.decimation import POINTS_PER_LEVEL_CELL, PointDecimation
+from ..common.hidden_curb import hidden_points
 from ..common.in_line import with_pieces_in_line
-from ..common.occlusion import HIDDEN_POINT_SPACING, OcclusionGrid
+from ..common.occlusion import OcclusionGrid
 from ..common.pseudo_scanlines import SPREAD_PROFILES
 from ..common.sides import (
     BLOCK_SECTION_LENGTH,
@@ -48,7 +49,6 @@ MAX_BLOCK_TURN = np.radians(1.0)   # turn of the road within a block
 MAX_BLOCK_BEND = 0.015        # m off its own straight line above which a block is divided
 CHAIN_END_STEPS = 3           # profiles that give the end point of a chain
 MAIN_CURB_PROGRESS = 0.6      # share of the work
-MAX_HIDDEN_GAP = 30.0         # m between curbs within which hidden curb is reported
 
 
 @dataclass(frozen=True)
@@ -86,7 +86,8 @@ class CurbSettings:
 
 
 def detect_curbs(survey: Survey, settings: CurbSettings = CurbSettings(), progress: Progress = Progress(),
-                 include_returns: bool = True, decimation: PointDecimation | None = None) -> CurbPoints:
+                 include_returns: bool = True, decimation: PointDecimation | None = None,
+                 beside: dict[int, dict[str, OcclusionGrid]] | None = None) -> CurbPoints:
     """Bottom corners of the curb on each side of every road, one per block.
 
     Parameters
@@ -96,6 +97,7 @@ def detect_curbs(survey: Survey, settings: CurbSettings = CurbSettings(), progre
     progress : Progress
     include_returns : are corners, side streets and islands looked for too?
     decimation : PointDecimation of the survey, where it is used again
+    beside : is given what was seen beside each road: number of the road -> side -> OcclusionGrid
 
     Returns
     -------
@@ -104,18 +106,18 @@ def detect_curbs(survey: Survey, settings: CurbSettings = CurbSettings(), progre
     """
     if decimation is None:
         with closing(PointDecimation(survey, settings.profile_width, settings.point_spacing)) as own:
-            return detect_curbs(survey, settings, progress, include_returns, own)
-    parts = []
+            return detect_curbs(survey, settings, progress, include_returns, own, beside)
+    parts, beside = [], {} if beside is None else beside
     roads = survey.store.roads()
     for i, road in enumerate(roads):
         part = progress.part(MAIN_CURB_PROGRESS * i / len(roads), MAIN_CURB_PROGRESS * (i + 1) / len(roads))
-        steps, occlusion = _steps_of_road(decimation, road, settings, part)
+        steps, beside[road] = _steps_of_road(decimation, road, settings, part)
         for side in SIDE_SIGNS:
-            parts.append(_points_of_side(survey, road, side, steps[side], occlusion[side], settings))
+            parts.append(_points_of_side(survey, road, side, steps[side], beside[road][side], settings))
     found = CurbPoints.join(parts, survey.crs)
     measured, main = np.count_nonzero(found.status == "measured"), len(found)
     if include_returns:
-        found = with_curb_returns(found, decimation, settings, progress.part(MAIN_CURB_PROGRESS, 1.0))
+        found = with_curb_returns(found, decimation, settings, progress.part(MAIN_CURB_PROGRESS, 1.0), beside)
     progress.info(f"Curb points: {measured:,} measured, {main - measured:,} hidden by something in front.")
     return found
 
@@ -299,31 +301,3 @@ def block_numbers(steps: CurbSteps, bounds: np.ndarray) -> np.ndarray:
         block[:CHAIN_END_STEPS] = block[0] - 1
         block[-CHAIN_END_STEPS:] = block[-1] + 1
     return block
-
-
-def hidden_points(measured: np.ndarray, occlusion: OcclusionGrid, track: OutermostTrack) -> list[dict]:
-    """Places in the gaps between curb points where something hides the curb.
-
-    Parameters
-    ----------
-    measured : (N, 3) m, station, outward offset and height above the expected road of the measured points
-    occlusion : OcclusionGrid of the side
-    track : OutermostTrack of the side
-
-    Returns
-    -------
-    list of dict: s, u, h as above, and `fields`, what else is known of the point
-    """
-    if len(measured) < 2:
-        return []
-    measured = measured[np.argsort(measured[:, 0], kind="stable")]
-    s = np.arange(np.ceil(measured[0, 0] / HIDDEN_POINT_SPACING), np.floor(measured[-1, 0] / HIDDEN_POINT_SPACING) + 1) * HIDDEN_POINT_SPACING
-    after = np.clip(np.searchsorted(measured[:, 0], s, side="right"), 1, len(measured) - 1)
-    before_s, after_s = measured[after - 1, 0], measured[after, 0]
-    wide = (after_s - before_s <= MAX_HIDDEN_GAP) & (after_s - before_s > MAX_BLOCK_LENGTH) \
-        & (s - before_s > 0.5 * HIDDEN_POINT_SPACING) & (after_s - s > 0.5 * HIDDEN_POINT_SPACING)
-    s = s[wide]
-    u, h = (np.interp(s, measured[:, 0], measured[:, k]) for k in (1, 2))
-    hidden = occlusion.hidden(s, u, h, track(s))
-    return [dict(s=float(a), u=float(b), h=float(c), fields=dict(status="occluded"))
-            for a, b, c in zip(s[hidden], u[hidden], h[hidden])]

@@ -22,6 +22,7 @@ from ...common.setting import check_limits, setting
 from ...execution.phase import Phase
 from ..common.curb_limits import CurbLimits
 from ..common.curb_points import CurbPoints, curb_points_at
+from ..common.hidden_curb import hidden_points
 from ..common.in_line import with_pieces_in_line
 from ..common.occlusion import HIDDEN_POINT_SPACING, MIN_OCCLUDER_HEIGHT, OcclusionGrid
 from ..common.pseudo_scanlines import MIN_SCANNER_NOISE
@@ -30,7 +31,7 @@ from ..common.tracking import curb_chains, drop_short_curbs, link_apart, select_
 from ..edges.fit import EDGE_VERTEX_SPACING, MAX_EDGE_JUMP, MAX_EDGE_SKEW, MIN_EDGE_LENGTH, MIN_HIDDEN_SHARE, EdgeCurve, without_outliers
 from ..edges.road_edges import EdgePiece, RoadEdges, joined_pieces
 from ..edges.uncertainty import edge_sigma
-from ..profiles.detect import MIN_TRACK_DISTANCE, PASS_MERGE_ACROSS, PASS_MERGE_HEIGHT, block_bounds, block_numbers, hidden_points
+from ..profiles.detect import MIN_TRACK_DISTANCE, PASS_MERGE_ACROSS, PASS_MERGE_HEIGHT, block_bounds, block_numbers
 from .candidates import NEIGHBOUR_LINES, find_candidates, gap_fill_rows, samples_near
 from .corners import CurbCorners, corners_of, plane_fit_rows
 from .grid import LINE_SEPARATION, height_grid, nearest_distance
@@ -94,7 +95,8 @@ class ScanlineBoundarySettings:
 
 
 def curbs_from_scanlines(source: SurveyScanlines | LayerScanlines, settings: ScanlineBoundarySettings = ScanlineBoundarySettings(),
-                         block_length: float = 0.0, progress: Progress = Progress()) -> CurbPoints:
+                         block_length: float = 0.0, progress: Progress = Progress(),
+                         beside: dict[int, dict[str, OcclusionGrid]] | None = None) -> CurbPoints:
     """Bottom and top corners of the curb on each side of every road, one of each per block.
 
     Parameters
@@ -103,6 +105,7 @@ def curbs_from_scanlines(source: SurveyScanlines | LayerScanlines, settings: Sca
     settings : ScanlineBoundarySettings
     block_length : m of road per corner; 0 = 0.5 to 2.0, shorter in sharp bends
     progress : Progress
+    beside : is given what was seen beside each road: number of the road -> side -> OcclusionGrid
 
     Returns
     -------
@@ -113,6 +116,8 @@ def curbs_from_scanlines(source: SurveyScanlines | LayerScanlines, settings: Sca
     for i, road in enumerate(roads):
         part = progress.part(i / len(roads), (i + 1) / len(roads))
         corners, occlusion = _corners_of_road(source, road, settings, part)
+        if beside is not None:
+            beside[road] = occlusion
         for side in SIDE_SIGNS:
             if corners[side] is not None and len(corners[side]):
                 parts.append(_points_of_side(source, road, side, corners[side], occlusion[side], settings, block_length))
