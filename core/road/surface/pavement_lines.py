@@ -85,8 +85,8 @@ def pavement_pieces(frame: RoadFrame, road: int, carriageway: Carriageway, edges
     for side, grown in carriageway.grown.items():
         free = there & np.isnan(curbs[side][0])
         agreeing = uniform_filter1d((grown.shown & free).astype(float), int(AGREEING_LENGTH / ROW_LENGTH) | 1, mode="constant")
-        places = frame.to_map(road, stations, grown.offset)
-        for runs in _lines(free & (agreeing > 0.5), free & grown.likely, free & (grown.likely | grown.hidden), grown.offset, np.array(places), max_gap):
+        places, likely = np.array(frame.to_map(road, stations, grown.offset)), free & grown.likely
+        for runs in _lines(free & (agreeing > 0.5), likely, likely | free & grown.hidden, grown.offset, places, max_gap):
             found += _drawn(frame, road, side, carriageway, grown, runs, chain + len(found))
     return found
 

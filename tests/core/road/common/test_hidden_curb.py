@@ -20,7 +20,8 @@ def survey():
 def piece(survey, start, end, side="left"):
     s = np.arange(start, end + 0.25, 0.5)
     d = np.full(len(s), OUT if side == "left" else -OUT)
-    return curb_points_at(survey.frame, 0, survey.frame.to_map(0, s, d, expected_height(survey, 0, s)), side=side, status="measured", station=s, offset=d)
+    places = survey.frame.to_map(0, s, d, expected_height(survey, 0, s))
+    return curb_points_at(survey.frame, 0, places, side=side, status="measured", station=s, offset=d)
 
 
 def known(start, end, seen=1.0):
