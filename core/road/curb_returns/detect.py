@@ -76,9 +76,9 @@ def with_curb_returns(curb_points: CurbPoints, decimation: PointDecimation, sett
             points = _points_of(survey, road, curb, number)
             length[curb.kind] += points.along[-1]
             parts.append(points)
-            if curb.kind == "main" and beside is not None:
+            if curb.kind == "main":
                 later.append(points)
-        if later:
+        if later and beside is not None:
             parts.append(hidden_beside(CurbPoints.join(later, curb_points.crs), main, beside[road], survey, road))
     found = ", ".join(f"{length[kind]:.0f} m {title}" for kind, title in KIND_TITLES.items() if length[kind])
     progress.info(f"Curbs away from the road's direction: {found or 'none'}.")
