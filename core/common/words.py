@@ -36,7 +36,8 @@ def _words():
         # markings and lines
         **{f"{field}.{value}": text for field in ("class", "kind") for value, text in (
             ("edge", tr("Edge line")), ("lane", tr("Lane line")), ("centre", tr("Centre line")))}, "zebra": tr("Zebra crossing"),
-        "stop": tr("Stop line"), "give_way": tr("Give-way line"), "arrow": tr("Arrow"), "symbol": tr("Symbol"), "hatch": tr("Hatching"),
+        "stop": tr("Stop line"), "give_way": tr("Give-way line"), "zigzag": tr("Zigzag line"),
+        "arrow": tr("Arrow"), "symbol": tr("Symbol"), "hatch": tr("Hatching"),
         "use.keep": tr("marking"), "use.other": tr("other paint"),
         "solid": tr("solid"), "dashed": tr("dashed"), "double-solid": tr("double, solid"), "double-dashed": tr("double, dashed"),
         "solid-dashed": tr("solid and dashed"), "dashed-solid": tr("dashed and solid"),

@@ -2490,8 +2490,8 @@
         </message>
         <message>
             <location filename="../../algorithms/markings/cluster_markings.py" />
-            <source>The field class is edge, lane or centre for lines, and zebra, stop, give_way (a row of equal blocks across a lane), arrow, hatch or symbol for what is no line. Far from the vehicle, points join over the distance between the tracks of the scan.</source>
-            <translation>Das Feld class ist edge, lane oder centre bei Linien und zebra, stop, give_way (eine Reihe gleicher Blöcke quer über einen Fahrstreifen), arrow, hatch oder symbol bei dem, was keine Linie ist. Fern vom Fahrzeug verbinden sich Punkte über den Abstand der Spuren des Scans.</translation>
+            <source>The field class is edge, lane or centre for lines, and zebra, stop, give_way (a row of equal blocks across a lane), zigzag (a line along the road that turns back again and again: no stopping), arrow, hatch or symbol for what is no line. Far from the vehicle, points join over the distance between the tracks of the scan.</source>
+            <translation>Das Feld class ist edge, lane oder centre bei Linien und zebra, stop, give_way (eine Reihe gleicher Blöcke quer über einen Fahrstreifen), zigzag (eine Linie längs der Straße, die immer wieder umkehrt: Halten verboten), arrow, hatch oder symbol bei dem, was keine Linie ist. Fern vom Fahrzeug verbinden sich Punkte über den Abstand der Spuren des Scans.</translation>
         </message>
         <message>
             <location filename="../../algorithms/markings/cluster_markings.py" />
@@ -2507,6 +2507,11 @@
             <location filename="../../algorithms/markings/cluster_markings.py" />
             <source>give-way line</source>
             <translation>Wartelinie</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/cluster_markings.py" />
+            <source>zigzag line</source>
+            <translation>Zickzacklinie</translation>
         </message>
         <message>
             <location filename="../../algorithms/markings/cluster_markings.py" />
@@ -4647,6 +4652,11 @@
             <location filename="../../core/common/words.py" />
             <source>Give-way line</source>
             <translation>Wartelinie</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>Zigzag line</source>
+            <translation>Zickzacklinie</translation>
         </message>
         <message>
             <location filename="../../core/common/words.py" />

@@ -8,6 +8,7 @@
       <category uuid="{a6d02a2f-a684-402a-8a87-aa56f51152f7}" value="zebra" symbol="3" render="true" type="string" label="Zebra crossing"/>
       <category uuid="{26b80e9d-6f14-433e-b893-94e711f02f85}" value="stop" symbol="4" render="true" type="string" label="Stop line"/>
       <category uuid="{d76d4330-f144-4bea-b0c1-1fdecb91ce37}" value="give_way" symbol="9" render="true" type="string" label="Give-way line"/>
+      <category uuid="{9ecd261a-c535-5df8-a0ae-21919c717433}" value="zigzag" symbol="10" render="true" type="string" label="Zigzag line"/>
       <category uuid="{b8453c76-28df-48fb-b2a7-d22b0547278a}" value="arrow" symbol="5" render="true" type="string" label="Arrow"/>
       <category uuid="{960d7e53-c4f6-4f74-93b7-363e4f95d0ba}" value="symbol" symbol="6" render="true" type="string" label="Symbol"/>
       <category uuid="{497e8c9d-72b6-44f2-9c7b-a81cc9ec8b1f}" value="hatch" symbol="7" render="true" type="string" label="Hatching"/>
@@ -310,6 +311,37 @@
             <Option value="3x:0,0,0,0,0,0" type="QString" name="offset_map_unit_scale"/>
             <Option value="MM" type="QString" name="offset_unit"/>
             <Option value="0,96,88,255,rgb:0,0.3764706,0.3450980,1" type="QString" name="outline_color"/>
+            <Option value="solid" type="QString" name="outline_style"/>
+            <Option value="0.1" type="QString" name="outline_width"/>
+            <Option value="MM" type="QString" name="outline_width_unit"/>
+            <Option value="solid" type="QString" name="style"/>
+          </Option>
+          <data_defined_properties>
+            <Option type="Map">
+              <Option value="" type="QString" name="name"/>
+              <Option name="properties"/>
+              <Option value="collection" type="QString" name="type"/>
+            </Option>
+          </data_defined_properties>
+        </layer>
+      </symbol>
+      <symbol is_animated="0" type="fill" force_rhr="0" name="10" frame_rate="10" clip_to_extent="1" alpha="1">
+        <data_defined_properties>
+          <Option type="Map">
+            <Option value="" type="QString" name="name"/>
+            <Option name="properties"/>
+            <Option value="collection" type="QString" name="type"/>
+          </Option>
+        </data_defined_properties>
+        <layer class="SimpleFill" id="{dbb250b8-6576-5a39-8726-1f1b2091b6e0}" pass="0" enabled="1" locked="0">
+          <Option type="Map">
+            <Option value="3x:0,0,0,0,0,0" type="QString" name="border_width_map_unit_scale"/>
+            <Option value="240,98,146,190,rgb:0.9411765,0.3843137,0.5725490,0.7450980" type="QString" name="color"/>
+            <Option value="bevel" type="QString" name="joinstyle"/>
+            <Option value="0,0" type="QString" name="offset"/>
+            <Option value="3x:0,0,0,0,0,0" type="QString" name="offset_map_unit_scale"/>
+            <Option value="MM" type="QString" name="offset_unit"/>
+            <Option value="160,40,84,255,rgb:0.6274510,0.1568627,0.3294118,1" type="QString" name="outline_color"/>
             <Option value="solid" type="QString" name="outline_style"/>
             <Option value="0.1" type="QString" name="outline_width"/>
             <Option value="MM" type="QString" name="outline_width_unit"/>

@@ -136,10 +136,11 @@ def classify_markings(shapes: list[Shape], half_widths: Sequence[float], setting
     column = columns_of(shapes)
     clearance = np.asarray(half_widths) - np.abs(column["offset"])
     curb = np.array([_curb(shape, r) for shape, r in zip(shapes, clearance)])
-    line = _is_line(column, settings) & ~curb
+    zigzag = np.array([shape.legs > 0 for shape in shapes])
+    line = _is_line(column, settings) & ~curb & ~zigzag
     zebra = zebra_stripes(column)
     line |= _dashes_in_rows(shapes, column, clearance, settings)
-    line &= ~zebra
+    line &= ~zebra & ~zigzag
     outside = _beyond_the_edge_line(column, line, clearance)
     found = []
     doubles = _has_partner(column, line)
@@ -148,7 +149,9 @@ def classify_markings(shapes: list[Shape], half_widths: Sequence[float], setting
     for k, shape in enumerate(shapes):
         no_paint = _speck(shape) and not (line[k] and shape.length >= MIN_ROW_OF_POINTS) or outside[k] or covered_feet[k] \
             or curb[k] or _round_cover(shape) and not blocks[k]
-        if clearance[k] < -settings.margin or no_paint or _gutter(shape, clearance[k], line[k], zebra[k]):
+        if zigzag[k] and clearance[k] >= -settings.margin and not covered_feet[k]:
+            kind = "zigzag"
+        elif clearance[k] < -settings.margin or no_paint or _gutter(shape, clearance[k], line[k], zebra[k]):
             kind = NOT_PAINT
         elif blocks[k]:
             kind = "give_way"

@@ -12,6 +12,7 @@ from ...survey.store.records import COORDINATE_SCALE
 from .connected_cells import occupied
 from .road_grid import CELL_UNITS
 from .scan_tracks import fill_gaps, filled_between_tracks, track_reach
+from .zigzag import zigzag_legs
 
 MIDDLE_LINE_STEP_UNITS = 5000                         # units: 0.5 m of station that the run of a line is followed in
 TRACKS_PER_STEP = 10.0                                # times the distance between the tracks of the scan that the step is at least
@@ -34,6 +35,7 @@ class Shape:
     `begin` and `finish` are the offsets of its middle line at s0 and s1 (the median for what is not along the road).
     `stems` are the shares of its length, from s0 on and from s1 back, over which it is a single stroke.
     `spacing` is the distance between the tracks of the scan that it was seen on, where these are farther apart than cells, else 0;
+    `legs` are those of a zigzag line, 0 of anything else.
     `askew` is then how fast the tracks cross it at s0 and at s1, metres across per metre along, 0 where it is not known.
     """
 
@@ -53,6 +55,7 @@ class Shape:
     stems: tuple
     spacing: float = 0.0
     askew: tuple[float, float] = (0.0, 0.0)
+    legs: int = 0
 
     @property
     def elongation(self) -> float:
@@ -113,7 +116,7 @@ def measure(s: np.ndarray, d: np.ndarray, spacing: np.ndarray | None = None) -> 
     area, closed_area = (count * (CELL_UNITS * COORDINATE_SCALE) ** 2 for count in (len(cells), closed))
     return Shape(s0 * COORDINATE_SCALE, s1 * COORDINATE_SCALE, d0 * COORDINATE_SCALE, d1 * COORDINATE_SCALE, median(d) * COORDINATE_SCALE,
                  float(length), full_width(across) * COORDINATE_SCALE, direction, area, len(s), float(begin), float(finish), closed_area,
-                 _stems(cells), apart, _askew(s, d) if apart else (0.0, 0.0))
+                 _stems(cells), apart, _askew(s, d) if apart else (0.0, 0.0), 0 if apart else zigzag_legs(cells))
 
 
 def _closed(cells, gaps):
