@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..common.errors import RoadExtractionError
 from ..driving.lanes_layer import Lanes
 
 if TYPE_CHECKING:
@@ -30,6 +31,11 @@ def with_surface_heights(lanes: Lanes, road_points: RoadPoints) -> tuple[Lanes, 
     lanes : Lanes; vertices without points are raised or lowered as those before and after them on the border, and keep their heights on a
         border without any
     share : 0 to 1, of the vertices that have points
+
+    Raises
+    ------
+    RoadExtractionError
+        If no vertex has points.
     """
     from scipy.spatial import cKDTree
 
@@ -53,6 +59,9 @@ def with_surface_heights(lanes: Lanes, road_points: RoadPoints) -> tuple[Lanes, 
     counts = np.bincount(place, minlength=len(same))
     first = np.append(0, np.cumsum(counts))[:-1]
     enough = counts >= FEWEST_POINTS
+    if not enough.any():
+        raise RoadExtractionError("Road points do not lie where the lanes are: no border has any beside it. Choose the road points of the same "
+                                  "survey, or leave them out.")
     median = np.full(len(same), np.nan)
     median[enough] = height[(first + counts // 2)[enough]]
     change = median[which] - vertices[:, 2]

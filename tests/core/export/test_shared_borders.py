@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.export.check.roads import check_opendrive
 from lanewright.core.export.fit_of_export import border_misses
 from lanewright.core.export.opendrive.exporter import draft_opendrive
@@ -154,3 +155,9 @@ def test_borders_follow_the_surface_across_a_gap_of_its_points():
     np.testing.assert_allclose(found.left[:, 2], lanes.left[:, 2] + 0.2, atol=1e-9)
     np.testing.assert_array_equal(found.right, lanes.right)
     assert 0.3 < share < 0.5
+
+
+def test_road_points_of_another_survey_are_refused():
+    section = SimpleNamespace(x=np.arange(9.0), y=np.zeros(9), z=np.zeros(9))
+    with pytest.raises(RoadExtractionError, match="do not lie where the lanes are"):
+        with_surface_heights(street(), SimpleNamespace(origin=np.zeros(3), all_sections=lambda: [(1, 0)], section=lambda *key: section))
