@@ -48,6 +48,12 @@ class Chain:
         """m, median distance of its uprights from the smoothed line across"""
         return float(np.median(np.abs(self.members.d - self.d)))
 
+    @property
+    def roughness(self) -> float:
+        """m, median distance of its uprights across from the middle between the two beside them: 0 where it is straight from kink to kink"""
+        d = self.members.d
+        return float(np.median(np.abs(d[1:-1] - 0.5 * (d[:-2] + d[2:])))) if len(d) > 2 else 0.0
+
     def part(self, rows: np.ndarray) -> Chain:
         """The Chain of some of its uprights."""
         return replace(self, members=self.members[rows], d=self.d[rows], ground=self.ground[rows], top=self.top[rows])

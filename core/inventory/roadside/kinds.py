@@ -43,7 +43,8 @@ def kind_of(chain: Chain) -> str | None:
     if tall:
         return "wall" if through < SEEN_THROUGH_TALL else None
     built = chain.wobble < MAX_WOBBLE
-    if built and thickness < THIN_LINE and RAIL_TOP[0] < top < RAIL_TOP[1] and _is_beam(members.bins.mean(axis=0)):
+    # the beams of a rail are straight: in a bend its line has a kink at every post or so
+    if (built or chain.roughness < MAX_WOBBLE) and thickness < THIN_LINE and RAIL_TOP[0] < top < RAIL_TOP[1] and _is_beam(members.bins.mean(axis=0)):
         return "guard_rail"
     if thickness > ROUGH_HEDGE and through < OPEN_HEDGE:
         is_barrier = built and BARRIER_TOP[0] < top < BARRIER_TOP[1] and batter > MIN_BATTER and thickness < BARRIER_DEPTH and through < SEEN_THROUGH

@@ -6,9 +6,12 @@ import shapely
 from lanewright.core.common.features import Features
 from lanewright.core.inventory.borders import BorderLayers
 from lanewright.core.inventory.roadside import find as finding
+from lanewright.core.inventory.roadside.chains import find_chains
+from lanewright.core.inventory.roadside.divide import things_of
 from lanewright.core.inventory.roadside.find import find_roadside
 from lanewright.core.inventory.roadside.layers import roadside_to_features
 from lanewright.core.inventory.roadside.settings import RoadsideSettings
+from lanewright.core.inventory.roadside.uprights import LOW_BINS, Uprights
 from lanewright.core.report.roadside import roadside_report
 from measured_streets import GROUND, Drive, edges_of, measured_road
 from roadside_streets import BESIDE, HEIGHTS, LENGTH, Thing, points_of, road_with
@@ -77,6 +80,27 @@ def test_nothing_is_invented_on_an_empty_road_or_among_cars_and_buildings():
         survey, edges = road_with(things)
         found = found_in(survey, edges)
         assert not [line.kind for line in found.lines if line.kind != "gutter"] and not sum(map(len, found.poles.values()))
+
+
+def rail_of(d, thickness=0.05):
+    """Uprights of a guard rail at (N,) offsets."""
+    n = len(d)
+    bins = np.zeros((n, LOW_BINS), bool)
+    bins[:, 5:8] = True
+    ones = np.ones(n)
+    return Uprights(np.arange(n), d, 0 * ones, 0.78 * ones, 0.5 * ones, bins, thickness * ones, 0 * ones, 200 * ones, 150 * ones)
+
+
+def test_a_rail_in_a_hairpin_runs_straight_from_kink_to_kink():
+    """Beams of 3.5 m along the road, whose middles lie 21 cm nearer to it than their ends."""
+    share = (0.5 * np.arange(60) % 3.5) / 3.5
+    (chain,) = find_chains(rail_of(5.65 + 0.84 * (share - 0.5) ** 2), 0, 1, 3.0, 8.0)
+    assert chain.wobble > 0.06 and [kind for kind, _ in things_of(chain, 8.0)] == ["guard_rail"]
+
+
+def test_what_is_uneven_from_place_to_place_is_no_rail():
+    (chain,) = find_chains(rail_of(np.random.default_rng(2).normal(5.65, 0.12, 60).clip(5.5, 5.8)), 0, 1, 3.0, 8.0)
+    assert chain.wobble > 0.06 and not [kind for kind, _ in things_of(chain, 8.0) if kind == "guard_rail"]
 
 
 def test_what_only_hangs_beside_the_road_is_no_line():
