@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..common.progress import Progress
 from ..countries.catalogue import country
+from ..markings.cross_section.confidence import calibrated
 from ..markings.cross_section.roads import EstimatedRoad, estimate_roads
 from ..markings.cross_section.sections import STATION_STEP, CrossSections, sections_of_edges, sections_of_lines, sections_of_pavement
 from ..markings.lines.painted_lines import PaintedLines
@@ -106,7 +108,8 @@ def road_lanes(road: EstimatedRoad, settings: DrivingSettings, lane_width: float
     tracks = estimated_lanes(road.boundaries, road.estimate, lane_width, settings.line_distance)
     tracks = connect(tracks, road.lines, settings.max_bridge, settings.max_inferred, road.boundaries.seen[road.boundaries.painted].any(0))
     known = [track.without_doubtful_ends() for track in laid_out(tracks)]
-    tracks = [track for track in known if track is not None and len(track) * STATION_STEP >= settings.shortest]
+    tracks = [replace(track, confidence=calibrated(track.confidence)) for track in known
+              if track is not None and len(track) * STATION_STEP >= settings.shortest]
     return sorted(tracks, key=lambda track: (track.first, float(track.d[0])))
 
 

@@ -1,7 +1,7 @@
 """What each kind of evidence brings to the estimate of lines and lanes, and how often a lane is right that says how sure it is.
 
 Each kind is left out in turn by setting what it weighs to nothing, or to a value that tells no cross-section from another; the stages before
-the estimate are not run again.
+the estimate are not run again, but for what tells where lines go on.
 """
 
 from contextlib import ExitStack
@@ -15,6 +15,8 @@ from lanewright.core.driving.driving_layers import driving_lines_to_features
 from lanewright.core.driving.driving_lines import make_driving_lines
 from lanewright.core.markings.cross_section.roads import estimate_roads
 from lanewright.core.markings.cross_section.weights import EstimateWeights
+from lanewright.core.markings.lines.edges_beside import edges_beside
+from lanewright.core.markings.lines.fit import fit_marking_lines
 from lanewright.core.markings.lines.naming import named_by_estimate
 
 from .chain import swapped
@@ -22,6 +24,7 @@ from .streets import BROAD, distance, driving_figures, in_a_true_lane, sampled
 
 ALIKE = (1.0, 1.0, 1.0, 1.0)
 WITHOUT_CURBS = "curbs"
+WITHOUT_EDGES_BESIDE = "edges beside lines"
 
 # What is left out, and how; a name of an argument is what the estimate is not given
 EVIDENCE = {
@@ -43,6 +46,7 @@ EVIDENCE = {
     "traffic keeps to its side": dict(wrong_side=0.0, left_hand=0.0),
     "lanes go on along the road": dict(change=0.0, turn=0.0, divider_change=0.0),
     "lines that are short": dict(short=0.0),
+    "edges of the road beside lines, where these are linked and led on": WITHOUT_EDGES_BESIDE,
 }
 BINS = (0.0, 0.5, 0.7, 0.85, 0.95, 1.001)   # of the confidence that a piece of lane has
 
@@ -62,17 +66,24 @@ def evidence_figures(case, track, work):
 
 def _lanes_without(change, work):
     """Features of the driving lines where some evidence is left out."""
-    weights = EstimateWeights() if change == WITHOUT_CURBS else replace(EstimateWeights(), **change)
+    weights = EstimateWeights() if isinstance(change, str) else replace(EstimateWeights(), **change)
     estimate = partial(estimate_roads, weights=weights)
     edges = None if change == WITHOUT_CURBS else work.edges.densified(work.frame)
     with ExitStack() as stack:
         for module in ("markings.lines.naming", "driving.driving_lines"):
             stack.enter_context(swapped(module, "estimate_roads", estimate))
+        drawn = work.lines if change != WITHOUT_EDGES_BESIDE else _lines_alone(work, edges)
         # what was named with all evidence must not tell now
-        unnamed = replace(work.lines, kind=np.full(len(work.lines), "", object))
+        unnamed = replace(drawn, kind=np.full(len(drawn), "", object))
         lines = named_by_estimate(unnamed, work.frame, NEUTRAL.usual_lane, work.marking_objects, edges, work.bright, work.clustered)
         lanes, *_ = make_driving_lines(lines, work.frame, markings=work.marking_objects, edges=edges, road_points=work.bright)
     return driving_lines_to_features(lanes, work.frame)
+
+
+def _lines_alone(work, edges):
+    """Marking lines that are linked and led on without what is known of the edges of the road beside them."""
+    with swapped("markings.lines.fit", "edges_beside", lambda _, roads: edges_beside(None, roads)):
+        return fit_marking_lines(work.clustered, work.marking_objects, work.frame, edges=edges, road_points=work.bright)
 
 
 def confidence_figures(case, track, lanes):

@@ -10,8 +10,11 @@ from .across import SEPARATES, Sections, best_sections, lane_strips
 from .along import best_sequence, occupancy, transition_costs
 from .candidates import Candidates
 from .evidence import Evidence
+from .lane_width import lane_places
 from .strips import FIRST, SECOND, StripCosts, strip_costs
 from .weights import CENTRE_LINE, DASHED, LANE_LINE, EstimateWeights
+
+SAME_LANE = 0.15   # m across within which lanes of two cross-sections are the same: as near as a driving line is right
 
 
 @dataclass
@@ -109,17 +112,38 @@ def lane_spans(estimate: RoadEstimate) -> list[LaneSpan]:
     c, sections, borders = estimate.candidates, estimate.sections, boundary_uses(estimate)
     strips = lane_strips(sections, estimate.costs)
     best = np.flatnonzero(strips.section == estimate.choice[strips.interval])
-    for i, m, end, kind, number, first in zip(*(values[best].tolist() for values in (
-            strips.interval, strips.left, strips.right, strips.kind, strips.number, strips.first))):
-        same = (sections.strip[i, :, m] == kind) & (sections.right[i, :, m] == end)
-        sure = float(estimate.posterior[i, same].sum())
+    for sure, i, m, end, number, first in zip(_place_shares(estimate, strips, best), *(values[best].tolist() for values in (
+            strips.interval, strips.left, strips.right, strips.number, strips.first))):
         # what the borders of its lanes separate, from left to right
         uses = [int(borders[i, m]), *(CENTRE_LINE if inner == first else LANE_LINE for inner in range(1, number)), int(borders[i, end])]
         for place in range(number):
             direction = estimate.first_direction if place < first else -estimate.first_direction
-            found.append(LaneSpan(i, int(c.rows[i, m, 1]), int(c.rows[i, end, 0]), number - 1 - place, number, direction, sure,
+            found.append(LaneSpan(i, int(c.rows[i, m, 1]), int(c.rows[i, end, 0]), number - 1 - place, number, direction, sure[place],
                                   uses[place], uses[place + 1]))
     return found
+
+
+def _place_shares(estimate, strips, chosen):
+    """Lists of one value for each lane of the chosen strips, from left to right: the probability that a lane of its direction lies there.
+
+    That is of all cross-sections that have a lane of that direction within SAME_LANE, whatever bounds it and whatever lies beside it.
+    """
+    c, at = estimate.candidates, strips.interval
+    d_left, each = lane_places(c.right[at, strips.left], c.left[at, strips.right], c.made_of[at, strips.left], c.made_of[at, strips.right],
+                               strips.number, estimate.costs.lane_width, c.bend[at])
+    # every lane of every strip, in order of interval
+    begin = np.cumsum(strips.number) - strips.number
+    of = np.repeat(np.arange(len(begin)), strips.number)
+    place = np.arange(len(of)) - begin[of]
+    d, ahead, share = d_left[of] - each[of] * (place + 0.5), place < strips.first[of], estimate.posterior[at[of], strips.section[of]]
+    first, last = (np.searchsorted(at[of], np.arange(len(c.first)), side=side) for side in ("left", "right"))
+    lanes = np.flatnonzero(np.isin(of, chosen))
+    size = (last - first)[at[of[lanes]]]
+    one = np.repeat(lanes, size)
+    other = np.arange(len(one)) - np.repeat(np.cumsum(size) - size, size) + first[at[of[one]]]
+    alike = (np.abs(d[other] - d[one]) < SAME_LANE) & (ahead[other] == ahead[one])
+    total = np.bincount(one[alike], share[other[alike]], minlength=len(of))
+    return [total[begin[k]:begin[k] + strips.number[k]].tolist() for k in chosen]
 
 
 def boundary_uses(estimate: RoadEstimate) -> np.ndarray:

@@ -55,3 +55,12 @@ def test_a_lane_whose_end_was_moved_to_meet_what_lies_before_goes_on_where_it_wa
     assert _followed([(seen, np.zeros(2))], [beyond], 10) == {0: 0}
     assert _followed([(moved, np.array([-0.2, 0.0]))], [beyond], 10) == {0: 0}
     assert _followed([(moved, np.zeros(2))], [beyond], 10) == {}
+
+
+@pytest.mark.parametrize("beside_one, left", [(True, 80), (False, 120)])
+def test_a_lane_beside_one_line_ends_where_it_is_less_probable_than_four_in_five(beside_one, left):
+    count = len(S)
+    unsure = np.arange(count) >= 80
+    track = LaneTrack(0, np.zeros(count), np.full(count, 3.5), np.full(count, INFERRED), unsure & beside_one, np.full(count, 1), np.full(count, 2),
+                      np.full(count, -1), np.full(count, -1), np.where(unsure, 0.7, 0.99), 1)
+    assert len(track.without_doubtful_ends()) == left
