@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import gc
 import sys
 import threading
 from collections.abc import Callable
@@ -23,6 +24,23 @@ def trim_heap() -> None:
         trim = getattr(ctypes.CDLL(None), "malloc_trim", None)
         if trim is not None:
             trim(0)
+
+
+_kept: list[Callable[[], None]] = []
+
+
+def freed_on_demand(free: Callable[[], None]) -> Callable[[], None]:
+    """Decorator of functions that let go of what a module keeps for later: `free_memory` calls them."""
+    _kept.append(free)
+    return free
+
+
+def free_memory() -> None:
+    """Let go of what modules keep for later, and return all freed memory to the operating system."""
+    for free in _kept:
+        free()
+    gc.collect()
+    trim_heap()
 
 
 class ScratchBuffers(threading.local):

@@ -148,6 +148,9 @@ class Cluster:
         """A new name in the folder."""
         return self.folder / f"file{next(self._numbers)}.npz"
 
+    def forget(self) -> None:
+        """Memory of workers is not ours."""
+
     def release(self) -> None:
         """Memory of workers is not ours."""
 

@@ -118,8 +118,11 @@ class Executor(Protocol):
     def sees(self, paths: Sequence[Path]) -> bool:
         """Whether all workers can read these files, which are point clouds."""
 
+    def forget(self) -> None:
+        """Free the memory in which workers keep what the phases before read from; no phase is running."""
+
     def release(self) -> None:
-        """Free memory that is of use in further phases alone."""
+        """Free all memory that is of use in further phases alone; it is some time until the next one."""
 
     def close(self) -> None:
         """End what was started and remove what was written."""

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ..common.errors import Cancelled, RoadExtractionError
+from ..common.memory import free_memory
 from .phase import Phase, Recipe, named
 from .plain import read_plain, write_plain
 
@@ -65,6 +66,13 @@ class Tasks:
         except Exception:
             return {"bug": traceback.format_exc()}
         return {}
+
+    def forget(self) -> None:
+        """Close what is kept open between items, and return its memory to the operating system; no item is being computed."""
+        with self._lock:
+            self._open.clear()
+            self._sources.clear()
+        free_memory()
 
     def _phase(self, path):
         with self._lock:

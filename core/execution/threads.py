@@ -40,6 +40,9 @@ class Threads:
         """What this process sees."""
         return True
 
+    def forget(self) -> None:
+        """Nothing is kept between phases."""
+
     def release(self) -> None:
         """Nothing is kept between phases."""
 

@@ -169,8 +169,12 @@ class KeptResults:
         """Whether the workers see files."""
         return self.executor.sees(paths)
 
+    def forget(self) -> None:
+        """Free the memory in which workers keep what the phases before read from."""
+        self.executor.forget()
+
     def release(self) -> None:
-        """Free memory that is of use in further phases alone."""
+        """Free all memory that is of use in further phases alone."""
         self.executor.release()
 
     def close(self) -> None:

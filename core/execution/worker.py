@@ -6,7 +6,8 @@ Run as a file by an interpreter that knows nothing of Lanewright:
     python -I worker.py FOLDER         works until its input ends
 
 The first line of the input lists the folders to import from. A task names a phase, a file with one item and the file for its
-result; the answer is one line: {} or what went wrong. FOLDER is removed where the caller is gone without saying so.
+result; the answer is one line: {} or what went wrong. Between tasks it may be told to forget what it keeps open. FOLDER is removed
+where the caller is gone without saying so.
 """
 
 from __future__ import annotations
@@ -53,6 +54,9 @@ def main() -> None:
         task = json.loads(line)
         if task.get("end"):
             return
+        if task.get("forget"):
+            tasks.forget()
+            continue
         try:
             answers.write(json.dumps(tasks.answer(*(folder / task[name] for name in ("phase", "item", "result")))) + "\n")
             answers.flush()

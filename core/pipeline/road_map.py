@@ -183,7 +183,7 @@ def _map_of(survey, image_path, settings, stages, corrections):
         check_fits(*_span(survey), settings.image)
     found = stages.run("curbs", "Detecting curbs …", find_curb_points, survey, settings.boundaries)
     # what workers keep of the curbs is of no use to the stages that follow
-    survey.executor.release()
+    survey.executor.forget()
     boundaries = stages.run("edges", "Fitting road edges …", draw_boundaries, found, survey.frame, settings.edges,
                             survey=survey)
     edges = correct_edges(boundaries.edges, survey.frame, wanted)
@@ -237,7 +237,7 @@ def _paint(result, image_path, settings, stages, executor):
         result.road_points, result.intensity_report = stages.run(
             "intensity", "Correcting intensity …", correct_intensity, result.road_points, frame, settings.intensity)
     # without what they keep of the intensities they take a quarter less memory for the image
-    executor.release()
+    executor.forget()
     image = stages.run("image", "Making the intensity image …", make_intensity_image,
                        result.road_points, settings.image, path=image_path)
     executor.release()

@@ -53,7 +53,7 @@ def open_survey(paths: Sequence[str | Path], trajectory: Trajectory, settings: S
         executor.close()
         raise
     # what workers keep of reading is of no use to the stages that follow
-    executor.release()
+    executor.forget()
     survey.executor, survey.store.at_close = executor, executor.close
     return survey
 

@@ -1,6 +1,5 @@
 """The whole chain, with what its user sees of the time: how the bar moves and how long Cancel is not heard."""
 
-import os
 import resource
 import threading
 import time
@@ -45,30 +44,31 @@ class Watch(Progress):
 
 
 def run(survey, size, method="profiles", suffix="laz", workers=0):
-    """Figures of the chain on a survey; `seconds` of every stage. With workers, memory is that of all processes together."""
+    """Figures of the chain on a survey; `seconds` of every stage. With workers, memory is that of all processes at one moment."""
     target = prepared(f"chain_{survey}.tif", size)
     target.parent.mkdir(parents=True, exist_ok=True)
     watch = Watch()
     settings = RoadMapSettings(boundary_method=method, execution=ExecutionSettings(workers=workers))
     clouds = clouds_of(survey, size, suffix)
-    with cancellation_scope(watch), memory_of_children() as children:
+    with cancellation_scope(watch), memory_together() as together:
         road_map, seconds = timed(lambda: make_road_map(clouds, read_trajectory(trajectory_of(survey, size)), target, settings, watch))
     Path(target).unlink()
     found = {name: len(getattr(road_map, name) or ()) for name in ("edges", "markings", "marking_lines", "driving_lines")}
     ended = resource.getrusage(resource.RUSAGE_CHILDREN)
     seconds["cpu"] += ended.ru_utime + ended.ru_stime
+    peak = max(together) if workers else peak_mib()
     return dict(seconds, seconds=road_map.seconds, points=road_map.survey_facts["read"], road_points=len(road_map.road_points),
-                length=sum(road.length for road in road_map.frame.roads), peak=peak_mib() + max(children), found=found, **watch.figures())
+                length=sum(road.length for road in road_map.frame.roads), peak=peak, found=found, **watch.figures())
 
 
 @contextmanager
-def memory_of_children():
-    """A list to which the resident memory (MiB) of all child processes is added again and again."""
+def memory_together():
+    """A list to which the memory (MiB) of this process and all its children is added again and again; what they share counts once."""
     seen, done = [0.0], threading.Event()
 
     def look():
         while not done.wait(SAMPLING):
-            seen.append(sum(map(_resident_mib, _children())))
+            seen.append(sum(map(_own_mib, ["self", *_children()])))
 
     thread = threading.Thread(target=look, daemon=True)
     thread.start()
@@ -85,10 +85,10 @@ def _children():
     return [number for task in tasks.iterdir() for number in _text(task / "children").split()] if tasks.exists() else []
 
 
-def _resident_mib(process):
-    """MiB of a process that are in memory; 0 if it has ended."""
-    fields = _text(Path("/proc") / process / "statm").split()
-    return int(fields[1]) * os.sysconf("SC_PAGE_SIZE") / 2**20 if fields else 0.0
+def _own_mib(process):
+    """MiB of a process that are in memory, of what it shares with others its part (Linux: proportional set size); 0 if it has ended."""
+    lines = (line.split() for line in _text(Path("/proc") / process / "smaps_rollup").splitlines())
+    return sum(int(line[1]) for line in lines if line[0] == "Pss:") / 2**10
 
 
 def _text(path):

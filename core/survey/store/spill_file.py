@@ -20,7 +20,7 @@ from uuid import uuid4
 
 import numpy as np
 
-from ...common.memory import column_buffers
+from ...common.memory import column_buffers, freed_on_demand
 
 PACKING_CHUNK = 1 << 15  # values packed at a time: they fit the processor's cache
 PART_WIDTHS = {0: (), 1: (1,), 2: (2,), 3: (2, 1), 4: (4,), 5: (4, 1), 6: (4, 2)}  # bytes of a value -> bytes of its parts, lowest first
@@ -233,6 +233,7 @@ def _opened(path):
     return _OpenFile(open(path, "rb", buffering=0))
 
 
+@freed_on_demand
 def close_parts() -> None:
     """Close the files that are held open: Windows removes none that is."""
     _opened.cache_clear()

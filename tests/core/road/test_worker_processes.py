@@ -2,6 +2,7 @@
 
 import threading
 import time
+from contextlib import closing
 
 import pytest
 from curbed_streets import street, survey_of
@@ -13,6 +14,7 @@ from lanewright.core.execution.choice import ExecutionSettings, executor_for
 from lanewright.core.execution.phase import Phase
 from lanewright.core.execution.processes import WorkerProcesses
 from lanewright.core.execution.threads import Threads
+from lanewright.core.survey.point_density import cubes_of_stretch
 from lanewright.core.survey.reading.sensor_height import sensor_height_of
 
 
@@ -58,6 +60,20 @@ def test_a_worker_that_is_killed_is_replaced_and_nothing_is_lost(by_threads, pyt
     executor = killed_while_it_works(WorkerProcesses(python, 1), 1)
     assert numbers_of(boundaries(executor)) == by_threads
     assert not executor.folder.exists()
+
+
+def test_workers_that_forget_what_they_read_go_on_with_the_next_phase(python):
+    survey = survey_of(street())
+    stretches = survey.store.stretches()[:4]
+    with closing(WorkerProcesses(python, 1)) as executor:
+        found, workers = [], []
+        for _ in range(2):
+            counted = executor.run(Phase(cubes_of_stretch, survey), stretches)
+            found.append([[part.tolist() for part in section] for stretch in counted for section in stretch])
+            workers.append([worker._process.pid for worker in executor._all])
+            executor.forget()
+    assert found[0] == found[1] and found[0]
+    assert workers[0] == workers[1] and len(workers[0]) == 1
 
 
 def test_where_workers_keep_ending_the_road_is_named(python, monkeypatch):
