@@ -1,5 +1,6 @@
 """The whole chain, with what its user sees of the time: how the bar moves and how long Cancel is not heard."""
 
+import os
 import resource
 import threading
 import time
@@ -63,12 +64,16 @@ def run(survey, size, method="profiles", suffix="laz", workers=0):
 
 @contextmanager
 def memory_together():
-    """A list to which the memory (MiB) of this process and all its children is added again and again; what they share counts once."""
+    """A list to which the memory (MiB) of this process and all its children is added again and again.
+
+    Pages of files, which are those of the libraries that all of them have loaded, count once, as many as the process with the most has.
+    """
     seen, done = [0.0], threading.Event()
 
     def look():
         while not done.wait(SAMPLING):
-            seen.append(sum(map(_own_mib, ["self", *_children()])))
+            own, of_files = zip(*map(_resident_mib, ["self", *_children()]))
+            seen.append(sum(own) + max(of_files))
 
     thread = threading.Thread(target=look, daemon=True)
     thread.start()
@@ -85,10 +90,11 @@ def _children():
     return [number for task in tasks.iterdir() for number in _text(task / "children").split()] if tasks.exists() else []
 
 
-def _own_mib(process):
-    """MiB of a process that are in memory, of what it shares with others its part (Linux: proportional set size); 0 if it has ended."""
-    lines = (line.split() for line in _text(Path("/proc") / process / "smaps_rollup").splitlines())
-    return sum(int(line[1]) for line in lines if line[0] == "Pss:") / 2**10
+def _resident_mib(process):
+    """MiB of a process that are in memory: its own, and pages of files; 0 and 0 if it has ended."""
+    fields = _text(Path("/proc") / process / "statm").split()
+    resident, of_files = (int(field) * os.sysconf("SC_PAGE_SIZE") / 2**20 for field in fields[1:3]) if fields else (0.0, 0.0)
+    return resident - of_files, of_files
 
 
 def _text(path):

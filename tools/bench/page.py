@@ -143,8 +143,9 @@ def _memory(rounds):
         if found:
             rows.append([title, f"{found[0]['points'] / 1e6:.1f}", f"{found[0]['length']:.0f}", _spread([f["peak"] for f in found], 0)])
     return rows and ("## Memory\n\nThe highest resident memory of the process, Python and its libraries included. Each store of points keeps up to "
-                     "64 MiB in memory and puts the rest into a temporary file, so that a short street does not fill what a long one fills.\n\n"
-                     + table(["street", "points (million)", "m", "peak (MiB)"], rows))
+                     "64 MiB in memory and puts the rest into a temporary file, so that a short street does not fill what a long one fills. "
+                     "Of worker processes and their caller it is what all of them hold at one moment; pages of libraries, which they share, "
+                     "count once.\n\n" + table(["street", "points (million)", "m", "peak (MiB)"], rows))
 
 
 def _time(rounds):

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from scipy.ndimage import binary_closing
 
+from ...common.parallel import ordered_map
+from ...survey.store.records import COORDINATE_SCALE
 from .candidates import FAR, Candidates
 from .sections import STATION_STEP
 
@@ -22,6 +25,8 @@ CARRIAGEWAY_DISTANCE = 40.0  # m between the tracks on two carriageways of one r
 OWN_ROAD = 6.0         # m: what runs nearer is on this road
 PASS_SPACING = 20      # stations, between the places of a pass at most
 STOP_REACH = 5.0    # m before and after a stop line where its lanes are still its lanes
+
+_known: WeakKeyDictionary[Any, dict[Any, Any]] = WeakKeyDictionary()   # stores of road points -> what `surface_coverage` found
 
 
 @dataclass
@@ -94,7 +99,7 @@ def other_carriageway(frame: RoadFrame, road: int, s: np.ndarray) -> np.ndarray:
 
 
 def surface_coverage(points: RoadPoints, road: int, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Where the road surface was scanned, and where it ends.
+    """Where the road surface was scanned, and where it ends; found once for points that are asked for again, as for lines and then for lanes.
 
     Parameters
     ----------
@@ -104,25 +109,51 @@ def surface_coverage(points: RoadPoints, road: int, s: np.ndarray) -> tuple[np.n
 
     Returns
     -------
-    covered : (K, BINS) bool, whether there are road points in a cell of STATION_STEP by BIN metres
-    ends : (2, K) metres, offsets of the left and the right end of the surface, NaN where unknown
+    covered : (K, BINS) bool, whether there are road points in a cell of STATION_STEP by BIN metres; read-only
+    ends : (2, K) metres, offsets of the left and the right end of the surface, NaN where unknown; read-only
     """
     count, first = len(s), int(np.floor(s[0] / STATION_STEP + 0.5))
-    covered = np.zeros(count * BINS, bool)
-    total, number = np.zeros((2, 2 * count))
-    for section in points.sections(road):
-        records = points.section(road, section)
-        k = np.floor(records.s / STATION_STEP + 0.5).astype(np.int64) - first
-        d = records.d
-        inside = (k >= 0) & (k < count) & (np.abs(d) < FAR)
-        k, d = k[inside], d[inside]
-        covered[k * BINS + ((d + FAR) / BIN).astype(np.int64)] = True
-        side = 2 * k + (d < 0)
-        total += np.bincount(side, records.half_width[inside], minlength=2 * count)
-        number += np.bincount(side, minlength=2 * count)
+    known, key = _known.setdefault(points.store, {}), (road, first, count, points.store.count)
+    if key not in known:
+        known[key] = _surface_coverage(points, road, first, count)
+        for found in known[key]:
+            found.flags.writeable = False
+    return known[key]
+
+
+def _surface_coverage(points, road, first, count):
+    """The same for stations first to first + count of the grid."""
+    covered = np.zeros((count, BINS), bool)
+    total, number = np.zeros((2, count, 2))
+    for begin, *seen in ordered_map(lambda section: _seen_in_section(points.section(road, section).records, first, count), points.sections(road)):
+        own = slice(begin, begin + len(seen[0]))
+        covered[own] |= seen[0]
+        total[own] += seen[1]
+        number[own] += seen[2]
     with np.errstate(invalid="ignore", divide="ignore"):
-        ends = (total / number).reshape(-1, 2).T * np.array([[1.0], [-1.0]])
-    return covered.reshape(count, BINS), ends
+        ends = (1e-3 * total / number).T * np.array([[1.0], [-1.0]])
+    return covered, ends
+
+
+def _seen_in_section(records, first, count):
+    """Of the stations first to first + count that a section shows: the first one of these, less `first`, and by station the bins with
+    points, the sum of half widths (mm) and the number of points on the left and on the right."""
+    step, wide, far = (int(round(length / COORDINATE_SCALE)) for length in (STATION_STEP, BIN, FAR))
+    k, d = (records["s"] + step // 2) // step - first, records["d"]
+    inside = (k >= 0) & (k < count) & (np.abs(d) < far)
+    if not inside.any():
+        return 0, np.zeros((0, BINS), bool), np.zeros((0, 2)), np.zeros((0, 2))
+    half_width = records["half_width"]
+    if not inside.all():
+        k, d, half_width = k[inside], d[inside], half_width[inside]
+    begin = int(k.min())
+    k -= begin
+    stations = int(k.max()) + 1
+    covered = np.zeros((stations, BINS), bool)
+    covered.reshape(-1)[k * BINS + (d + far) // wide] = True
+    side = 2 * k + (d < 0)
+    total, number = (np.bincount(side, weights, 2 * stations).reshape(-1, 2) for weights in (half_width, None))
+    return begin, covered, total, number
 
 
 def between_ends(ends: np.ndarray, likely: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
