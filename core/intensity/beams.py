@@ -264,20 +264,29 @@ class Beams:
 
 def _samples(road_points: RoadPoints, frame: RoadFrame, scanners: int) -> dict[int, list[Points]]:
     """{scanner: [Points]} of a few windows of each road, at the same stations however the sections are cut; scanners without are left out."""
-    samples: dict[int, list[Points]] = {}
+    places = []
     for road in road_points.roads():
         start, end = frame.road(road).start, frame.road(road).end
-        for s in np.linspace(start, max(end - SAMPLE_WINDOW, start), SAMPLE_WINDOWS):
-            points = road_points.window(road, s, s + SAMPLE_WINDOW)
-            of = points.scanner
-            for scanner in range(scanners):
-                rows = np.flatnonzero(of == scanner)
-                if len(rows) >= MIN_ASPHALT_POINTS:
-                    some = points[rows[::-(-len(rows) // MAX_SAMPLE_POINTS)]].records
-                    # copies of the columns, so that the memory of the sections is freed
-                    own = Columns({name: some[name] for name in SAMPLE_COLUMNS}, np.dtype([(name, some.dtype[name]) for name in SAMPLE_COLUMNS]))
-                    samples.setdefault(scanner, []).append(Points(own))
+        places += [(road, s) for s in np.linspace(start, max(end - SAMPLE_WINDOW, start), SAMPLE_WINDOWS)]
+    samples: dict[int, list[Points]] = {}
+    for found in ordered_map(lambda place: _samples_of_window(road_points, *place, scanners), places):
+        for scanner, points in found:
+            samples.setdefault(scanner, []).append(points)
     return {scanner: samples[scanner] for scanner in sorted(samples)}
+
+
+def _samples_of_window(road_points, road, s, scanners):
+    """[(scanner, Points)] of the window that begins at station s."""
+    points, found = road_points.window(road, s, s + SAMPLE_WINDOW), []
+    of = points.scanner
+    for scanner in range(scanners):
+        rows = np.flatnonzero(of == scanner)
+        if len(rows) >= MIN_ASPHALT_POINTS:
+            some = points[rows[::-(-len(rows) // MAX_SAMPLE_POINTS)]].records
+            # copies of the columns, so that the memory of the sections is freed
+            own = Columns({name: some[name] for name in SAMPLE_COLUMNS}, np.dtype([(name, some.dtype[name]) for name in SAMPLE_COLUMNS]))
+            found.append((scanner, Points(own)))
+    return found
 
 
 def _sharpest(samples: list[Points], passes: Sequence[Pass], turns: ScannerTurns) -> ElevationModel | None:

@@ -1,0 +1,49 @@
+"""Where the road surface was scanned and where it ends, from road points."""
+
+import numpy as np
+from lanewright.core.markings.cross_section.evidence import BIN, FAR, surface_coverage
+from lanewright.core.markings.cross_section.sections import STATION_STEP
+from lanewright.core.survey.store.records import COORDINATE_SCALE
+from lanewright.core.survey.store.road_points import RoadPoints
+
+STATIONS = 10.0 + STATION_STEP * np.arange(40)   # m: 10 to 29.5
+
+
+def road_points(*places):
+    """Points at (station, offset, half width of the road), m."""
+    points = RoadPoints.empty_like(origin=np.zeros(3))
+    add(points, *places)
+    return points
+
+
+def add(points, *places):
+    records = np.zeros(len(places), points.store.dtype)
+    s, d, half_width = np.array(places).T
+    records["s"], records["d"] = np.rint(s / COORDINATE_SCALE), np.rint(d / COORDINATE_SCALE)
+    records["half_width"] = np.rint(1000 * half_width)
+    points.store.append(0, records)
+
+
+def bin_of(d):
+    return int((d + FAR) // BIN)
+
+
+def test_cells_with_points_are_covered_and_half_widths_tell_the_ends_of_both_sides():
+    covered, ends = surface_coverage(road_points((12.0, 1.05, 4.0), (12.1, 1.35, 4.2), (12.2, -2.5, 3.5), (28.0, 0.1, 4.5)), 0, STATIONS)
+    assert np.argwhere(covered).tolist() == [[4, bin_of(-2.5)], [4, bin_of(1.05)], [4, bin_of(1.35)], [36, bin_of(0.1)]]
+    assert np.allclose(ends[:, 4], [4.1, -3.5]) and np.isclose(ends[0, 36], 4.5)
+    assert np.isnan(ends[1, 36]) and np.isnan(np.delete(ends, [4, 36], axis=1)).all()
+
+
+def test_points_beyond_the_stations_or_far_aside_do_not_count():
+    covered, ends = surface_coverage(road_points((9.7, 1.0, 4.0), (29.8, 1.0, 4.0), (15.0, 30.0, 4.0), (15.0, -31.0, 4.0)), 0, STATIONS)
+    assert not covered.any() and np.isnan(ends).all()
+
+
+def test_what_was_found_is_kept_until_points_are_added():
+    points = road_points((12.0, 1.05, 4.0))
+    first = surface_coverage(points, 0, STATIONS)
+    assert surface_coverage(points, 0, STATIONS)[0] is first[0] and not first[0].flags.writeable
+    assert surface_coverage(points, 0, STATIONS[:20])[0].shape == (20, first[0].shape[1])
+    add(points, (20.0, -1.05, 4.0))
+    assert surface_coverage(points, 0, STATIONS)[0].sum() == first[0].sum() + 1
