@@ -299,15 +299,17 @@ class PairsDialog(QDialog):
         from processing.gui.Postprocessing import handleAlgorithmResults
 
         _, context, feedback = self._run
-        if ok:
-            handleAlgorithmResults(algorithm, context, feedback, inputs)
-            layer = QgsProject.instance().mapLayer(results.get("CONTROL_POINTS", ""))
-            if layer is not None:
-                one.found(layer)
-        elif "CONTROL_POINTS" in inputs:
-            said = feedback.textLog().strip().splitlines()
-            one.failed_because(said[-1] if said else tr("cancelled"))
-        self._next()
+        try:
+            if ok:
+                handleAlgorithmResults(algorithm, context, feedback, inputs)
+                layer = QgsProject.instance().mapLayer(results.get("CONTROL_POINTS", ""))
+                if layer is not None:
+                    one.found(layer)
+            elif "CONTROL_POINTS" in inputs:
+                said = feedback.textLog().strip().splitlines()
+                one.failed_because(said[-1] if said else tr("cancelled"))
+        finally:  # or the window would wait for ever
+            self._next()
 
 
 def _row(*widgets):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from lanewright.desktop.overlay.pairs_dialog import PairsDialog
 from paint_from_above import Ground, Overhead, about, street
-from qgis.core import QgsLayerTreeModel, QgsPointXY, QgsProject, QgsRasterLayer
+from qgis.core import QgsFeatureRequest, QgsLayerTreeModel, QgsPointXY, QgsProject, QgsRasterLayer, QgsVectorLayer
 from qgis.gui import QgsLayerTreeView, QgsMapCanvas
 from qgis.PyQt.QtCore import QCoreApplication, QElapsedTimer, Qt
 from qgis.PyQt.QtWidgets import QDialogButtonBox, QMainWindow
@@ -59,11 +59,24 @@ def finished(window):
     assert window._run is None
 
 
+@pytest.fixture(scope="module")
+def pairs_of_first(provider, flight, tmp_path_factory):
+    """The pairs of the first image, found once for the tests that go on from there."""
+    from qgis import processing
+
+    path = str(tmp_path_factory.mktemp("pairs") / "pairs.gpkg")
+    processing.run("lanewright:proposecontrolpoints", {"IMAGE": flight[0][0], "INTENSITY_IMAGE": flight[1], "CONTROL_POINTS": path})
+    return path
+
+
 @pytest.fixture
-def proposed(window, flight):
+def proposed(window, flight, pairs_of_first):
+    """The window as it is when the pairs of one image were found."""
+    layer = QgsVectorLayer(pairs_of_first, "pairs").materialize(QgsFeatureRequest())
+    QgsProject.instance().addMapLayer(layer)
     window.add(flight[0][:1])
-    window.propose()
-    finished(window)
+    window.images[0].found(layer)
+    window._show_pairs()
     return window
 
 
@@ -99,6 +112,7 @@ def test_a_double_click_shows_the_pair_on_the_map(proposed):
     assert proposed.iface.mapCanvas().extent().contains(at) and proposed.iface.mapCanvas().extent().width() < 100
 
 
+@pytest.mark.slow
 def test_several_images_of_a_flight_are_placed_side_by_side_and_one_that_fails_says_why(window, flight):
     window.add(flight[0])
     window.add(flight[0])
@@ -121,6 +135,7 @@ def test_a_layer_that_was_taken_out_of_the_project_is_looked_for_anew(proposed):
     assert "not looked for" in proposed.images[0].summary()
 
 
+@pytest.mark.slow
 def test_an_image_that_says_nothing_is_placed_by_two_clicks_in_each_image(window, flight, tmp_path):
     bare = tmp_path / "bare.png"
     bare.write_bytes(Path(flight[0][0]).read_bytes())
