@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import time
+from pathlib import Path
 
 from processing.core.ProcessingResults import resultsList
 from processing.gui import BatchAlgorithmDialog as qgis_batch
-from qgis.core import Qgis, QgsProcessing, QgsProcessingAlgorithm, QgsProcessingOutputHtml, QgsSettings
+from qgis.core import Qgis, QgsProcessing, QgsProcessingAlgorithm, QgsProcessingOutputHtml, QgsProcessingUtils, QgsSettings
 from qgis.PyQt.QtWidgets import QDialogButtonBox, QFileDialog, QPushButton, QWidget
 
 from ..algorithms.cloud_files import cloud_files
@@ -79,10 +80,13 @@ class BatchAlgorithmDialog(qgis_batch.BatchAlgorithmDialog):
         return panel.tblParameters.cellWidget(row + 1, panel.parameter_to_column[output])
 
     def loadHtmlResults(self, results: dict, num: int) -> None:
-        """The report of a row into the Results Viewer. That of QGIS 3.40 forgets the time, and the batch would end with an error."""
+        """The report of a run into the Results Viewer, by its file. That of QGIS 3.40 forgets the time, and the batch would end with an error."""
         for output in self.algorithm().outputDefinitions():
             if isinstance(output, QgsProcessingOutputHtml) and results.get(output.name()):
-                resultsList.addResult(self.algorithm().icon(), f"{output.description()} [{num}]", time.localtime(), results[output.name()])
+                file = Path(results[output.name()])
+                temporary = file.is_relative_to(QgsProcessingUtils.tempFolder())
+                said = num + 1 if temporary else f"{file.parent.name}/{file.stem}"
+                resultsList.addResult(self.algorithm().icon(), f"{output.description()} [{said}]", time.localtime(), str(file))
 
     def runAlgorithm(self) -> None:
         """Run all rows; one that names no destination makes temporary layers, as in the dialog of a single run."""

@@ -10,36 +10,32 @@ from qgis.core import (
     QgsCoordinateReferenceSystem,
     QgsCoordinateTransform,
     QgsCsException,
-    QgsExpressionContextUtils,
     QgsFeature,
     QgsGeometry,
     QgsLayoutItemLabel,
-    QgsLayoutItemLegend,
     QgsLayoutItemMap,
     QgsLayoutItemPicture,
     QgsLayoutItemScaleBar,
     QgsLayoutObject,
     QgsLayoutPoint,
     QgsLayoutSize,
-    QgsLegendStyle,
     QgsMapLayer,
     QgsPrintLayout,
     QgsProject,
     QgsProperty,
     QgsRectangle,
-    QgsRenderContext,
     QgsTextFormat,
     QgsVectorLayer,
 )
-from qgis.PyQt.QtCore import Qt
+from qgis.PyQt.QtCore import QRectF, Qt
 from qgis.PyQt.QtGui import QColor, QFont
 
 from ..processing_provider.texts import tr
+from .layout_legend import add_legend, legend_height
 from .page_series import MapPage, pages_along
 
 PAPERS = {"A4": (297.0, 210.0), "A3": (420.0, 297.0)}  # mm, landscape
 BORDER, HEADING = 8.0, 10.0   # mm: rim of the page, and the line of the title
-LEGEND, ENTRY = 12.0, 5.4     # mm: titles and margins of the legend, and each entry below a title
 MOST_LEGEND = 0.4             # of the page's height
 MARGIN = 4.0                  # m of ground around the road
 ARROW = 12.0                  # mm
@@ -98,7 +94,8 @@ def road_map_layout(project: QgsProject, layers: list[QgsMapLayer], title: str, 
         shown = fitting
     chart = _add_map(layout, [*layers, *(below or [])], crs, frame, centre, angle, shown)
     _add_heading(layout, title, crs, frame, atlas=len(pages) > 1)
-    _add_legend(layout, chart, layers, frame)
+    below_map = BORDER + HEADING + frame.map_height + 2
+    add_legend(layout, layers, QRectF(BORDER, below_map, frame.map_width, frame.page_height - BORDER / 2 - below_map))
     _add_scale_bar(layout, chart, frame, shown)
     _add_north_arrow(layout, chart, frame)
     if credit:
@@ -178,20 +175,6 @@ def _largest(paper: str, legend: float, length: float, width: float) -> tuple[Fr
     return best
 
 
-def legend_height(layers: list[QgsMapLayer]) -> float:
-    """mm that the longest column of the legend takes, with the classes there are."""
-    entries = [1]
-    for layer in layers:
-        if layer.type() == Qgis.LayerType.Vector and layer.isSpatial():
-            context = QgsRenderContext()
-            context.expressionContext().appendScopes(QgsExpressionContextUtils.globalProjectLayerScopes(layer))
-            renderer = layer.renderer().clone()
-            renderer.startRender(context, layer.fields())
-            entries.append(len(set().union(*(renderer.legendKeysForFeature(feature, context) for feature in layer.getFeatures()))))
-            renderer.stopRender(context)
-    return LEGEND + ENTRY * max(entries)
-
-
 def _place(layout, item, x, y, width=None, height=None):
     layout.addLayoutItem(item)
     item.attemptMove(QgsLayoutPoint(x, y, Qgis.LayoutUnit.Millimeters))
@@ -231,29 +214,6 @@ def _add_heading(layout, title, crs, frame, atlas):
         heading.setVAlign(Qt.AlignmentFlag.AlignVCenter)
         heading.setTextFormat(_text(size))
         _place(layout, heading, BORDER, BORDER - 1, frame.map_width, HEADING - 1)
-
-
-def _add_legend(layout, chart, layers, frame):
-    legend = QgsLayoutItemLegend(layout)
-    legend.setLinkedMap(chart)
-    _place(layout, legend, BORDER, BORDER + HEADING + frame.map_height + 2)
-    legend.setAutoUpdateModel(False)
-    root = legend.model().rootGroup()
-    root.clear()
-    vectors = [layer for layer in layers if layer.type() == Qgis.LayerType.Vector and layer.isSpatial()]
-    for layer in vectors:
-        root.addLayer(layer)
-    for style in (QgsLegendStyle.Style.Title, QgsLegendStyle.Style.Group, QgsLegendStyle.Style.Subgroup, QgsLegendStyle.Style.SymbolLabel):
-        one = legend.style(style)
-        one.setTextFormat(_text(8 if style != QgsLegendStyle.Style.SymbolLabel else 7))
-        legend.setStyle(style, one)
-    legend.setColumnCount(max(1, min(len(vectors), 5 if frame.page_width > frame.page_height else 3)))
-    legend.setSplitLayer(False)
-    legend.setEqualColumnWidth(False)
-    legend.setColumnSpace(3)
-    # Of all the classes there may be, those that are there
-    legend.setLegendFilterByMapEnabled(True)
-    legend.adjustBoxSize()
 
 
 def _add_scale_bar(layout, chart, frame, scale):

@@ -21,6 +21,7 @@ from .section import inputs_of
 from .section_dock import SectionDock
 
 PROVIDER = "lanewright"
+LAYOUT_WINDOW = (1300, 850)  # px
 ICON = Path(__file__).resolve().parents[1] / "resources" / "icon.svg"
 
 
@@ -197,7 +198,11 @@ class Menu(QObject):
         layers = shown_layers(group) or shown_layers(group, hidden=True)
         layout = road_map_layout(project, layers, unused_name(project, group.name()), **chosen)
         project.layoutManager().addLayout(layout)
-        self.iface.openLayoutDesigner(layout)
+        designer = self.iface.openLayoutDesigner(layout)
+        window = designer.window() if designer is not None else None
+        if window is not None and window.width() < LAYOUT_WINDOW[0] / 2:  # the first one of a profile is as small as a palette
+            window.resize(*LAYOUT_WINDOW)
+            designer.view().zoomFull()
 
 
 def unused_name(project, name):

@@ -57,6 +57,8 @@ def test_a_batch_of_three_surveys_goes_on_after_one_fails_and_sums_up(surveys, m
     assert [(surveys / day / "edges.gpkg").exists() for day in ("monday", "tuesday", "wednesday")] == [True, False, True]
     reports = [result.filename for result in resultsList.getResults()[before:] if "[summary]" not in result.name]
     assert sorted(reports) == [str(surveys / day / "report.html") for day in ("monday", "wednesday")]
+    shown = [result.name for result in resultsList.getResults()[before:]]
+    assert all(any(f"[{day}/report]" in name for name in shown) for day in ("monday", "wednesday")), shown
     groups = [group.name() for group in road_maps(QgsProject.instance().layerTreeRoot())]
     assert len(groups) == 2 and "wednesday/cloud" in groups[0] and "monday/cloud" in groups[1]
     summary = resultsList.getResults()[before:][-1].filename

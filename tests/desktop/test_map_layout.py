@@ -8,6 +8,7 @@ from lanewright.desktop.layout_dialog import LayoutDialog, credit_of, road_map_g
 from lanewright.desktop.map_layout import MARGIN, SCALES, road_map_layout
 from lanewright.desktop.menu import unused_name
 from qgis.core import (
+    QgsCategorizedSymbolRenderer,
     QgsCoordinateReferenceSystem,
     QgsFeature,
     QgsGeometry,
@@ -16,9 +17,12 @@ from qgis.core import (
     QgsLayoutItemMap,
     QgsLayoutItemPicture,
     QgsLayoutItemScaleBar,
+    QgsLineSymbol,
     QgsRasterLayer,
+    QgsRendererCategory,
     QgsVectorLayer,
 )
+from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtGui import QImage
 
 
@@ -193,3 +197,36 @@ def test_the_credit_stands_in_the_corner_of_the_map(project, credit):
     label, chart = layout.itemById("Credit"), item(layout, QgsLayoutItemMap)
     assert label.text() == credit and chart.sceneBoundingRect().contains(label.sceneBoundingRect())
     assert road_map_layout(project, [street(project)], "Without").itemById("Credit") is None
+
+
+def classes(project, name, values, width=14):
+    """A layer with a class for each of these values, of which the first two thirds have a feature."""
+    layer = QgsVectorLayer("LineString?crs=EPSG:32650&field=kind:string", name, "memory")
+    for y, value in enumerate(values[:2 * len(values) // 3]):
+        feature = QgsFeature(layer.fields())
+        feature.setGeometry(QgsGeometry.fromWkt(f"LINESTRING(0 {y}, 100 {y})"))
+        feature["kind"] = value
+        layer.dataProvider().addFeature(feature)
+    layer.updateExtents()
+    layer.setRenderer(QgsCategorizedSymbolRenderer("kind", [
+        QgsRendererCategory(value, QgsLineSymbol.createSimple({}), f"{value}, {'m' * width}") for value in values]))
+    project.addMapLayer(layer)
+    return layer
+
+
+def test_the_legend_lists_the_classes_that_there_are(project):
+    layout = road_map_layout(project, [classes(project, "Lines", ["solid", "dashed", "none"])], "A street")
+    model = item(layout, QgsLayoutItemLegend).model()
+    nodes = model.layerLegendNodes(model.rootGroup().findLayers()[0])
+    assert [str(node.data(Qt.ItemDataRole.DisplayRole)).partition(",")[0] for node in nodes] == ["solid", "dashed"]
+
+
+@pytest.mark.parametrize("angle", [0, 45])
+def test_a_legend_of_many_layers_stays_on_the_page(project, angle):
+    layers = [street(project, angle)] + [classes(project, f"Layer {number}", [f"class {row}" for row in range(9)]) for number in range(6)]
+    layout = road_map_layout(project, layers, "A street")
+    legend, page = item(layout, QgsLayoutItemLegend), layout.pageCollection().page(0)
+    QgsLayoutExporter(layout).renderPageToImage(0, dpi=60)  # QGIS sizes it anew when it is drawn
+    x, y, width, height = legend.pos().x(), legend.pos().y(), legend.rect().width(), legend.rect().height()
+    assert width > 100 and height > 20
+    assert x + width <= page.pageSize().width() and y + height <= page.pageSize().height()

@@ -1,0 +1,113 @@
+"""The legend of a print layout: the classes that a road map has, in as many columns as fit below the map."""
+
+from __future__ import annotations
+
+from qgis.core import (
+    Qgis,
+    QgsExpressionContextUtils,
+    QgsLayerTreeLayer,
+    QgsLayerTreeModelLegendNode,
+    QgsLayoutItemLegend,
+    QgsLayoutPoint,
+    QgsLayoutSize,
+    QgsLayoutUtils,
+    QgsLegendRenderer,
+    QgsLegendSettings,
+    QgsLegendStyle,
+    QgsMapLayer,
+    QgsMapLayerLegendUtils,
+    QgsPrintLayout,
+    QgsRenderContext,
+    QgsTextFormat,
+)
+from qgis.PyQt.QtCore import QRectF, QSizeF
+from qgis.PyQt.QtGui import QFont
+
+TITLES, ENTRY = 12.0, 5.4        # mm: titles and margins of the legend, and each entry below a title
+SIZES = ((8.0, 7.0), (7.0, 6.0), (6.0, 5.0))  # of titles and entries, the first that fits
+COLUMNS = 3                      # at least, where there are so many layers
+FONT = "DejaVu Sans"
+DPI = 300.0                      # of the measurement; any would do
+STYLES = (QgsLegendStyle.Style.Title, QgsLegendStyle.Style.Group, QgsLegendStyle.Style.Subgroup, QgsLegendStyle.Style.Symbol,
+          QgsLegendStyle.Style.SymbolLabel)
+
+
+def drawn(layers: list[QgsMapLayer]) -> list[QgsMapLayer]:
+    """The layers of which a legend says something: lines, points and areas."""
+    return [layer for layer in layers if layer.type() == Qgis.LayerType.Vector and layer.isSpatial()]
+
+
+def classes_of(layer: QgsMapLayer) -> set[str]:
+    """The keys of those classes of a layer's style that some feature has."""
+    context = QgsRenderContext()
+    context.expressionContext().appendScopes(QgsExpressionContextUtils.globalProjectLayerScopes(layer))
+    renderer = layer.renderer().clone()
+    renderer.startRender(context, layer.fields())
+    found = set().union(*(renderer.legendKeysForFeature(feature, context) for feature in layer.getFeatures()))
+    renderer.stopRender(context)
+    return found
+
+
+def legend_height(layers: list[QgsMapLayer]) -> float:
+    """mm that the longest layer takes in the legend, with the classes there are."""
+    return TITLES + ENTRY * max([1, *(len(classes_of(layer)) for layer in drawn(layers))])
+
+
+def add_legend(layout: QgsPrintLayout, layers: list[QgsMapLayer], room: QRectF) -> QgsLayoutItemLegend:
+    """A legend in the upper left corner of `room` (mm).
+
+    It lists the classes that there are. QGIS's own filter by the map is not used for that: it looks through the layers in the background and
+    has timers, which may outlive the layers, and how large the legend becomes is not known before.
+    """
+    legend = QgsLayoutItemLegend(layout)
+    layout.addLayoutItem(legend)
+    legend.attemptMove(QgsLayoutPoint(room.x(), room.y(), Qgis.LayoutUnit.Millimeters))
+    legend.setAutoUpdateModel(False)
+    root = legend.model().rootGroup()
+    root.clear()
+    vectors = drawn(layers)
+    for layer in vectors:
+        _leave_out_empty_classes(legend, root.addLayer(layer), layer)
+    legend.setSplitLayer(False)
+    legend.setEqualColumnWidth(False)
+    legend.setColumnSpace(3)
+    for sizes in SIZES:
+        _set_sizes(legend, *sizes)
+        for columns in range(min(COLUMNS, max(1, len(vectors))), max(1, len(vectors)) + 1):
+            legend.setColumnCount(columns)
+            size = _size(layout, legend)
+            if size.height() <= room.height() and size.width() <= room.width():
+                legend.attemptResize(QgsLayoutSize(size, Qgis.LayoutUnit.Millimeters))
+                return legend
+    return legend
+
+
+def _size(layout, legend):
+    """mm that a legend will take; it knows by itself only once it is drawn."""
+    settings = QgsLegendSettings()
+    for style in STYLES:
+        settings.setStyle(style, legend.style(style))
+    settings.setColumnCount(legend.columnCount())
+    settings.setColumnSpace(legend.columnSpace())
+    settings.setBoxSpace(legend.boxSpace())
+    settings.setSymbolSize(QSizeF(legend.symbolWidth(), legend.symbolHeight()))
+    return QgsLegendRenderer(legend.model(), settings).minimumSize(QgsLayoutUtils.createRenderContextForLayout(layout, None, DPI))
+
+
+def _leave_out_empty_classes(legend, node: QgsLayerTreeLayer, layer):
+    found = classes_of(layer)
+    key = QgsLayerTreeModelLegendNode.LegendNodeRoles.RuleKeyRole
+    order = [row for row, entry in enumerate(legend.model().layerOriginalLegendNodes(node)) if str(entry.data(key)) in found]
+    if order:
+        QgsMapLayerLegendUtils.setLegendNodeOrder(node, order)
+        legend.model().refreshLayerLegend(node)
+
+
+def _set_sizes(legend, title, entry):
+    for style in STYLES:
+        one = legend.style(style)
+        text = QgsTextFormat()
+        text.setFont(QFont(FONT))
+        text.setSize(entry if style == QgsLegendStyle.Style.SymbolLabel else title)
+        one.setTextFormat(text)
+        legend.setStyle(style, one)
