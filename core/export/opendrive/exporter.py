@@ -21,7 +21,8 @@ from .road_shape import add_lanes, centre_of, shape_of
 from .strips import Cell, Slice, cut_into_cells, directions_where_met, end_to_end, is_connector, mark_junctions, slices_of, strips_of
 
 ROUND_ORIGIN = 100.0      # m: the false origin is a multiple of it
-MIDDLES_SHARE = 0.4       # of the tolerance by which borders are moved to their driving lines; what is left has the curves
+MIDDLES_SHARE = 0.5       # of the tolerance by which borders are moved to their driving lines
+CURVES_SHARE = 0.4        # of it by which widths may miss the moved borders: what is left is for corners, where two roads meet
 LONGEST_JUNCTION = 100.0  # m of road between two ends of a junction
 SHORTEST_WAY = 2.0        # m at least of a road that is cut off for a way straight on through a junction
 LONGEST_WAY = 10.0        # m at most
@@ -175,7 +176,7 @@ class _Drafting:
         shape = shape_of(strip, centres, tolerance / 2)
         roads = sorted({int(self.lanes.road[cell.piece]) for one in strip for cell in one.cells})
         road = MapRoad(str(number), shape.plan.length, shape.plan, f"Road {', '.join(map(str, roads))}", rule="LHT" if self.left_hand else "RHT")
-        numbers = add_lanes(road, shape, strip, centres, tolerance / 2, directions)
+        numbers = add_lanes(road, shape, strip, centres, CURVES_SHARE * tolerance, directions)
         add_heights(road, shape, tolerance)
         status: dict[str, float] = defaultdict(float)
         for one, ids, section, centre in zip(strip, numbers, road.sections, centres):
