@@ -59,6 +59,9 @@ def explain(model):
         model.updateModelParameter(definition)
     said.update(handed_back(model))
     model.setHelpContent(said)
+    for stage in model.childAlgorithms().values():
+        stage.setDescription(tr(stage.description()))  # the boxes in the designer, and the lines of the log
+        model.setChildAlgorithm(stage)
     model.setGroup(tr("Models"))
 
 

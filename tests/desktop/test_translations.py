@@ -181,3 +181,11 @@ def test_nearly_all_that_the_core_says_has_a_translation_with_its_places():
     said = core_messages()
     assert sum(bool(known.get(text)) for text in said) > 0.9 * len(said)
     assert not [text for text, german in known.items() if german and text.count("{}") != german.count("{}")]
+
+
+def test_the_stages_of_a_model_have_german_names_in_the_designer(german, provider):
+    from lanewright.processing_provider.models import read_model
+
+    model = read_model(ROOT / "resources" / "models" / "road_map.model3")
+    stages = [stage.description() for stage in model.childAlgorithms().values()]
+    assert "Straßenränder erkennen" in stages and not [stage for stage in stages if stage.startswith(("Extract", "Detect", "Fit"))]
