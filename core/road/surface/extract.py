@@ -18,12 +18,12 @@ from ...execution.phase import Phase
 from ...survey.store.road_points import RoadPoints
 from ...survey.store.section_store import STRETCH_POINTS
 from .ground_grid import ROW_LENGTH, GroundCells
-from .limits import edge_offsets, rows_with_curb
+from .limits import edge_offsets, rows_with_edge
 from .measured_ground import WINDOW_ROWS, MeasuredGround
 from .openings import cells_driven, opened_limits, street_ground
 from .outline import outlines
 from .pavement_edge import GrownLimit, SurfaceProfiles, grown_limit
-from .point_spacing import said_of_thin, thin_margins
+from .point_spacing import Margins, said_of_thin
 from .region_growing import follow_road, smooth_road
 from .road_points import surface_about, surface_points
 from .road_surface import SurfaceOutlines
@@ -113,7 +113,7 @@ def extract_road_surface(survey: Survey, edges: RoadEdges | None = None, setting
         If no road surface is found.
     """
     road_points = RoadPoints.subset_of(survey)
-    stretches, thin = [], []
+    stretches, margins = [], Margins()
     roads = survey.store.roads()
     for k, road in enumerate(roads):
         part = progress.part(k / len(roads), (k + 1) / len(roads))
@@ -123,11 +123,11 @@ def extract_road_surface(survey: Survey, edges: RoadEdges | None = None, setting
             continue
         per_row = _take_points(survey, road, carriageway, road_points, part.part(0.5, 1.0))
         stretches += outlines(survey.frame, road, carriageway, per_row)
-        thin += thin_margins(road, carriageway, rows_with_curb(edges, road, carriageway.cells.stations))
+        margins.add(road, carriageway, *(rows_with_edge(edges, road, carriageway.cells.stations, curb) for curb in (True, False)))
     if not len(road_points):
         raise RoadExtractionError("No road surface was found: no points lie under or beside the trajectory at the height "
                                   "of the road. Check that the trajectory belongs to the point cloud.")
-    surface = SurfaceOutlines.of_rows(stretches, survey.crs, said_of_thin(thin))
+    surface = SurfaceOutlines.of_rows(stretches, survey.crs, said_of_thin(margins.unknown))
     if surface.thin:
         progress.warn(surface.thin)
     progress.info(f"Road surface: {len(road_points):,} points, {surface.area.sum():.0f} m², "

@@ -48,12 +48,12 @@ def edge_offsets(edges: RoadEdges | None, road: int, stations: np.ndarray) -> di
     return found
 
 
-def rows_with_curb(edges: RoadEdges | None, road: int, stations: np.ndarray) -> dict[str, np.ndarray]:
-    """Side (left, right) to (N,) bool, stations (ascending, m) beside which an edge at a curb was drawn; edges of the pavement do not count."""
+def rows_with_edge(edges: RoadEdges | None, road: int, stations: np.ndarray, curb: bool) -> dict[str, np.ndarray]:
+    """Side (left, right) to (N,) bool, stations (ascending, m) beside which an edge was drawn at a curb, or one of the pavement without a curb."""
     found = {}
     for side in ("left", "right"):
         found[side] = np.zeros(len(stations), bool)
-        for s, _, _ in () if edges is None else _lines_of(edges, road, side, edges.of_curb):
+        for s, _, _ in () if edges is None else _lines_of(edges, road, side, edges.of_curb == curb):
             found[side] |= (stations >= s[0]) & (stations <= s[-1])
     return found
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -20,38 +21,77 @@ STRETCH_ROWS = 20         # rows of ground cells that are looked at together
 SEEN_SHARE = 0.3          # of the cells of a stretch that must hold ground: where something hides it, nothing is said
 SHORTEST_TOLD = 20.0      # m of all thin margins together from which they are told
 TOLD_STRETCHES = 4        # that are named, the longest first
+SHORTEST_SEEN = 50.0      # m of margins without a curb that hold points enough, from which a survey shows whether its roads have curbs
+FEW_CURBS = 0.05          # share of the margins that have a curb on roads without curbs: one at a bridge or a bus stop
 
 
 class ThinMargin(NamedTuple):
-    """A stretch of one side of a road without a curb: road number, side, stations (m), and points per m² there."""
+    """A stretch of one side of a road without a curb.
+
+    road, side : number of the road; left or right
+    start, end : stations, m
+    density : points per m² there
+    pavement : whether an edge of the pavement was drawn there
+    """
 
     road: int
     side: str
     start: float
     end: float
     density: float
+    pavement: bool = False
 
 
-def thin_margins(road: int, carriageway: Carriageway, curbs: dict[str, np.ndarray]) -> list[ThinMargin]:
-    """Stretches of a road that no curb bounds and whose margins hold fewer points than curbs need.
+@dataclass
+class Margins:
+    """What the margins of the roads of a survey show of curbs.
 
-    Parameters
-    ----------
-    road : number
-    carriageway : Carriageway, its limits are taken as they are
-    curbs : side to (R,) bool, the rows beside which a curb was found
+    thin : stretches that no curb bounds and that hold fewer points than curbs need
+    curb, bare : m of margins along a curb, and without one though the points are enough
     """
-    cells = carriageway.cells
-    found = []
-    for side, sign, limit in (("left", 1.0, carriageway.left), ("right", -1.0, carriageway.right)):
-        density = _densities(cells, carriageway.ground, sign, np.where(curbs[side], np.nan, limit))
-        thin = np.r_[False, density < MIN_CURB_DENSITY, False]
-        turns = np.flatnonzero(np.diff(thin.astype(int)))
+
+    thin: list[ThinMargin] = field(default_factory=list)
+    curb: float = 0.0
+    bare: float = 0.0
+
+    def add(self, road: int, carriageway: Carriageway, curbs: dict[str, np.ndarray], pavement: dict[str, np.ndarray]) -> None:
+        """Add those of a road.
+
+        Parameters
+        ----------
+        road : number
+        carriageway : Carriageway, its limits are taken as they are
+        curbs, pavement : side to (R,) bool, the rows beside which a curb, or an edge of the pavement, was drawn
+        """
+        cells = carriageway.cells
         length = STRETCH_ROWS * cells.row_size
-        for first, after in zip(turns[::2], turns[1::2]):
-            found.append(ThinMargin(road, side, cells.first_row * cells.row_size + first * length,
-                                    cells.first_row * cells.row_size + after * length, float(np.median(density[first:after]))))
-    return found
+        for side, sign, limit in (("left", 1.0, carriageway.left), ("right", -1.0, carriageway.right)):
+            density = _densities(cells, carriageway.ground, sign, np.where(curbs[side], np.nan, limit))
+            self.curb += float(curbs[side].sum()) * cells.row_size
+            self.bare += float((density >= MIN_CURB_DENSITY).sum()) * length
+            paved = _mostly(pavement[side])
+            # 0 where it is not thin, 1 where it is, 2 where it is and the pavement was seen to end
+            state = np.r_[0, np.where(density < MIN_CURB_DENSITY, 1 + paved, 0), 0]
+            turns = np.flatnonzero(np.diff(state))
+            for first, after in zip(turns[:-1], turns[1:]):
+                if state[first + 1]:
+                    begin, end = (cells.first_row * cells.row_size + k * length for k in (first, after))
+                    self.thin.append(ThinMargin(road, side, begin, end, float(np.median(density[first:after])), bool(state[first + 1] == 2)))
+
+    @property
+    def unknown(self) -> list[ThinMargin]:
+        """Those thin stretches where there may be a curb.
+
+        On a survey that has hardly a curb where one could be seen, as on a motorway, what ends the pavement elsewhere is none either.
+        """
+        none = self.bare >= SHORTEST_SEEN and self.curb <= FEW_CURBS * (self.curb + self.bare)
+        return [margin for margin in self.thin if not (none and margin.pavement)]
+
+
+def _mostly(rows):
+    """(K,) bool, whether most rows of stretches of STRETCH_ROWS are true."""
+    first = np.arange(0, len(rows), STRETCH_ROWS)
+    return 2 * np.add.reduceat(rows.astype(int), first) >= np.diff(np.r_[first, len(rows)]) if len(rows) else np.zeros(0, bool)
 
 
 def _densities(cells: GroundCells, ground: np.ndarray, sign: float, limit: np.ndarray) -> np.ndarray:

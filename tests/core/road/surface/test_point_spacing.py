@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from lanewright.core.road.surface.extract import Carriageway
 from lanewright.core.road.surface.ground_grid import GroundCells
-from lanewright.core.road.surface.point_spacing import ThinMargin, said_of_thin, thin_margins
+from lanewright.core.road.surface.point_spacing import Margins, ThinMargin, said_of_thin
 
 ROWS, COLUMNS = 200, 80    # 100 m of road, 10 m to either side
 
@@ -25,6 +25,12 @@ def road(left, right, hidden=()):
     return Carriageway(cells, flat, ground, -edge, edge, edge < 0, edge < 0, 0.05)
 
 
+def thin_margins(number, carriageway, curbs, pavement=NO_CURBS):
+    margins = Margins()
+    margins.add(number, carriageway, curbs, pavement)
+    return margins.unknown
+
+
 def test_a_side_without_a_curb_and_with_few_points_is_told_with_its_place():
     margins = thin_margins(1, road(np.where(np.arange(ROWS) < 80, 200.0, 32.0), 200.0), NO_CURBS)
     assert margins == [ThinMargin(1, "left", 60.0, 120.0, pytest.approx(32.0))]
@@ -37,6 +43,18 @@ def test_where_a_curb_was_found_or_points_are_enough_nothing_is_told():
     assert thin_margins(0, road(32.0, 32.0), both) == [] and len(thin_margins(0, road(32.0, 32.0), {**both, "left": NO_CURBS["left"]})) == 1
     assert thin_margins(0, road(120.0, 300.0), NO_CURBS) == []
     assert said_of_thin([]) == "" and said_of_thin([ThinMargin(0, "left", 0.0, 10.0, 30.0)]) == ""
+
+
+def test_where_curbs_could_be_seen_and_there_is_none_the_end_of_the_pavement_elsewhere_is_none():
+    """A motorway: enough points beside the fast lane, few beyond the hard shoulder."""
+    paved = {side: np.ones(ROWS, bool) for side in NO_CURBS}
+    half = {**NO_CURBS, "right": np.arange(ROWS) < 100}
+    assert thin_margins(0, road(200.0, 32.0), NO_CURBS, paved) == []
+    # where no edge was drawn, where curbs were seen, and where nothing could be seen, a curb may be
+    (part,) = thin_margins(0, road(200.0, 32.0), NO_CURBS, half)
+    assert (part.start, part.end, part.pavement) == (70.0, 120.0, False)
+    assert len(thin_margins(0, road(200.0, 32.0), {**NO_CURBS, "left": np.arange(ROWS) < 60}, paved)) == 1
+    assert len(thin_margins(0, road(32.0, 32.0), NO_CURBS, paved)) == 2
 
 
 def test_a_row_of_parked_cars_does_not_count_as_few_points():
