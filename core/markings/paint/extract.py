@@ -344,7 +344,7 @@ class WindowExtractor:
             return self._nothing()
         points = self._points(first - WINDOW_HALO, last + WINDOW_HALO)
         cell = np.concatenate([cell for _, cell in cell_numbers(points.records, cells.grid)])
-        averages = CellAverages.of(cell, points.value, points.records["z"], cells.grid.shape)
+        averages = CellAverages.of(cell, points.value, points.records["z"], cells.grid.shape, self.settings.faint)
         samples = ViewSamples(cell, points.value, points.covered > 0, views(points, self.frame))
         mask = noisy_paint_cells(averages, rim_distance(cells.occupied), samples, self.settings.faint)
         return self._paint_in([part for part in parts if part.grid.first >= first and part.grid.last <= last], cells.grid, cells.occupied, mask)

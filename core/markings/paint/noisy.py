@@ -28,7 +28,8 @@ SCATTER_BLOCKS = 5      # squares in each direction: their median is the scatter
 MIN_BLOCK_CELLS = 200
 SCATTER_QUANTILE = 0.30     # of a square's contrasts: dark rails are below it, paint is above the median
 SCATTER_SIGMAS = 0.5244     # standard deviations of a normal distribution that it lies below the median
-GROUND_CONTRAST = 2.0       # spreads: darker cells are no ground
+GROUND_CONTRAST = 2.0       # spreads: darker cells are no ground,
+PAINT_CONTRAST = 3.0        # and no brighter ones, which may be paint: the default of the threshold on averages
 SLOPE_SIGMA, GROUND_SLOPE_SIGMA = 3.0, 12.0      # cells, of the averaged heights whose slopes are compared
 BRIGHTNESS_STEPS = 64   # brightness is summed in whole 64ths: their sums are exact in any order
 
@@ -71,7 +72,8 @@ class CellAverages:
     slope: np.ndarray
 
     @classmethod
-    def of(cls, cell: np.ndarray, value: np.ndarray, height: np.ndarray, shape: tuple[int, int]) -> CellAverages:
+    def of(cls, cell: np.ndarray, value: np.ndarray, height: np.ndarray, shape: tuple[int, int],
+           paint: float = PAINT_CONTRAST) -> CellAverages:
         """CellAverages of points.
 
         Parameters
@@ -80,6 +82,7 @@ class CellAverages:
         value : (N,) its brightness
         height : (N,) int, its height in units of 0.1 mm
         shape : (rows, columns)
+        paint : spreads above the average about it at which a cell may be paint
         """
         count = np.bincount(cell, minlength=shape[0] * shape[1]).reshape(shape).astype(float)
         total = np.bincount(cell, np.rint(value.astype(float) * BRIGHTNESS_STEPS), count.size).reshape(shape) / BRIGHTNESS_STEPS
@@ -89,7 +92,8 @@ class CellAverages:
         # paint, rails and drains are no ground: cells beside them are compared with asphalt
         contrast = spot - around
         with np.errstate(invalid="ignore"):
-            plain = contrast > -GROUND_CONTRAST * local_scatter(contrast)
+            scatter = local_scatter(contrast)
+            plain = (contrast > -GROUND_CONTRAST * scatter) & (contrast < paint * scatter)
         asphalt = _mean(count * plain, total * plain, GROUND_SIGMA)
         around = np.where(np.isfinite(asphalt), asphalt, around)
         contrast = (spot - around).astype(np.float32)

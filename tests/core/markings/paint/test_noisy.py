@@ -6,6 +6,7 @@ from lanewright.core.intensity.correction import correct_intensity
 from lanewright.core.markings.objects.dash_rows import rows_of_dashes
 from lanewright.core.markings.objects.shape import measure
 from lanewright.core.markings.paint.extract import extract_markings
+from lanewright.core.markings.paint.noisy import CellAverages
 from spun_streets import spun
 
 
@@ -128,3 +129,15 @@ def test_spots_strewn_about_are_no_row():
     rng = np.random.default_rng(3)
     places = rng.uniform(0, 12, (40, 2))
     assert sum(len(row) for row in rows_of_dashes([shape_of(s, d) for s, d in places])) < 8
+
+
+def test_paint_is_no_ground_that_it_is_compared_with():
+    shape, rng = (300, 150), np.random.default_rng(8)
+    cell = np.repeat(np.arange(shape[0] * shape[1]), 2)
+    row, column = np.divmod(cell, shape[1])
+    bar = (row >= 150) & (row < 160) & (column >= 30) & (column < 120)
+    value = 100.0 + 60.0 * bar + rng.normal(0.0, 40.0, len(cell))
+    middle = np.s_[153:157, 50:100]
+    height = np.zeros(len(cell), np.int32)
+    known, counted = (np.median(CellAverages.of(cell, value, height, shape, paint=paint).contrast[middle]) for paint in (3.0, np.inf))
+    assert known > 0.8 * 60.0 and known > 1.15 * counted
