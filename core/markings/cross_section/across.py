@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .candidates import Candidates
-from .strips import BOTH, FIRST, REST_FIRST, REST_SECOND, SECOND, STRIPS, StripCosts, stops_across
+from .strips import BOTH, FIRST, MOST_FIRST, REST_FIRST, REST_SECOND, SECOND, STRIPS, StripCosts, stops_across
 from .weights import CENTRE_LINE, EDGE_LINE, LANE_LINE, OTHER_LINE, EstimateWeights
 
 KEPT = 32     # cross-sections of an interval that are kept
@@ -15,9 +15,11 @@ KEPT = 32     # cross-sections of an interval that are kept
 # What a boundary between two strips separates, -1 where the two cannot follow each other, and whether traffic is on the wrong side there
 SEPARATES = np.full((len(STRIPS), len(STRIPS)), -1)
 for _left, _right, _what in (
-        (REST_FIRST, REST_FIRST, OTHER_LINE), (REST_FIRST, FIRST, EDGE_LINE), (REST_FIRST, BOTH, EDGE_LINE), (REST_FIRST, SECOND, EDGE_LINE),
-        (FIRST, FIRST, LANE_LINE), (FIRST, BOTH, LANE_LINE), (FIRST, SECOND, CENTRE_LINE), (FIRST, REST_FIRST, EDGE_LINE),
-        (BOTH, SECOND, LANE_LINE), (BOTH, REST_SECOND, EDGE_LINE), (SECOND, SECOND, LANE_LINE), (SECOND, REST_SECOND, EDGE_LINE),
+        (REST_FIRST, REST_FIRST, OTHER_LINE), (REST_FIRST, FIRST, EDGE_LINE), (REST_FIRST, SECOND, EDGE_LINE),
+        *((before, both, what) for both in (MOST_FIRST, BOTH) for before, what in ((REST_FIRST, EDGE_LINE), (FIRST, LANE_LINE))),
+        *((both, after, what) for both in (MOST_FIRST, BOTH) for after, what in ((SECOND, LANE_LINE), (REST_SECOND, EDGE_LINE))),
+        (FIRST, FIRST, LANE_LINE), (FIRST, SECOND, CENTRE_LINE), (FIRST, REST_FIRST, EDGE_LINE),
+        (SECOND, SECOND, LANE_LINE), (SECOND, REST_SECOND, EDGE_LINE),
         (REST_SECOND, REST_SECOND, OTHER_LINE), (REST_SECOND, SECOND, EDGE_LINE), (REST_SECOND, FIRST, EDGE_LINE), (SECOND, FIRST, CENTRE_LINE)):
     SEPARATES[_left, _right] = _what
 _WRONG_SIDE = {(REST_SECOND, FIRST), (SECOND, FIRST)}
@@ -42,7 +44,7 @@ class LaneStrips:
     """The strips of cross-sections that hold lanes.
 
     interval, section, left, right : (S,) int, where they are and the boundaries they lie between
-    kind : (S,) FIRST, BOTH or SECOND; number, first : (S,) lanes in them, and how many of these are of the direction that is met first
+    kind : (S,) FIRST ... SECOND; number, first : (S,) lanes in them, and how many of these are of the direction that is met first
     """
 
     interval: np.ndarray
@@ -76,12 +78,12 @@ def best_sections(candidates: Candidates, costs: StripCosts, stops: np.ndarray, 
             back[:, j, kind], best[:, j, kind] = _lowest(reach + between[:, j, :, kind][:, None, :, None], kept)
         best[:, j][~candidates.valid[:, j]] = np.inf
     reach = _reach(best, costs, size - 1)
-    reach[:, :, [FIRST, BOTH, SECOND]] = np.inf
+    reach[:, :, FIRST:SECOND + 1] = np.inf
     return _traced(back, *_lowest(reach, kept))
 
 
 def _reach(best, costs, j):
-    """(I, j, 5, kept) nats up to boundary j with a strip of a kind that begins at an earlier boundary."""
+    """(I, j, 6, kept) nats up to boundary j with a strip of a kind that begins at an earlier boundary."""
     return best[:, :j] + costs.cost[:, :, :j, j].transpose(1, 2, 0)[..., None]
 
 
@@ -96,7 +98,7 @@ def _lowest(values, kept):
 
 
 def _boundary_costs(c, stops, w):
-    """(I, M, 5, 5) nats of a boundary between a strip on its left and one on its right."""
+    """(I, M, 6, 6) nats of a boundary between a strip on its left and one on its right."""
     scale = (c.length / w.correlation)[:, None]
     table = w.boundary[c.made_of]
     extra = c.painted * w.short * (1 - c.trust)

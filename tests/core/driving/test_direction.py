@@ -74,3 +74,15 @@ def test_driving_the_street_backwards_gives_the_same_lines():
         assert max(other.distance(Point(place)) for place in inner) < 0.005
         assert other_row["direction"] == -row["direction"]
     assert sorted(r["radius_m"] for r in elements.rows) == pytest.approx(sorted(r["radius_m"] for r in turned_elements.rows), rel=2e-3)
+
+
+@pytest.mark.parametrize("mirror", [1, -1])
+@pytest.mark.parametrize("two", [1, -1])
+def test_lanes_whose_lines_begin_later_lead_the_same_way_before(two, mirror):
+    """Three lanes up to a junction, parted by a double and a dashed line on the last stretch alone; two lead ahead or two come towards it."""
+    street = Street(vehicle=-3.5 * mirror, again=(3.5 * mirror,)).paint(5.25, kind="edge").paint(-5.25, kind="edge")
+    street.paint(1.75 * two * mirror, first=60.0, kind="centre", pattern="double-solid").paint(-1.75 * two * mirror, first=60.0, pattern="dashed")
+    lines, _ = street.lanes()
+    middle_lane = [(line, row["direction"]) for line, row in lines if abs(street.offsets(line).mean()) < 0.3]
+    assert {way for _, way in middle_lane} == {two}
+    assert sum(line.length for line, _ in middle_lane) > 100.0
