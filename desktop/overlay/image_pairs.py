@@ -33,11 +33,12 @@ class ImagePairs:
     path : of the image
     failed : why no pairs were found, "" where none were looked for or some were found
     rough : layer of two points that say roughly where it lies, None where none were given
+    placed : what became of placing it on the map, "" before
     """
 
     def __init__(self, path: str):
         self.path = path
-        self.failed = ""
+        self.failed = self.placed = ""
         self.rough: QgsVectorLayer | None = None
         self._layer = ""
 
@@ -52,7 +53,7 @@ class ImagePairs:
 
     def found(self, layer: QgsVectorLayer) -> None:
         """Take the layer that "Propose control points" made."""
-        self._layer, self.failed = layer.id(), ""
+        self._layer, self.failed, self.placed = layer.id(), "", ""
         layer.setName(tr("Control points of {image}").format(image=Path(self.path).stem))
 
     def lies_about(self, rough: QgsVectorLayer) -> None:
@@ -107,7 +108,7 @@ class ImagePairs:
         said = tr("{accepted} of {count} pairs accepted").format(accepted=sum(bool(row["accepted"]) for row in rows), count=len(rows))
         if residuals:
             said += tr(", RMSE {rmse:.1f} cm, each left out in turn").format(rmse=100.0 * float(np.sqrt(np.mean(np.square(residuals)))))
-        return said
+        return f"{said}\n{self.placed}" if self.placed else said
 
     def pictures(self, intensity_path: str) -> list[QPixmap]:
         """Both cut-outs of each pair side by side, in the order of the rows."""

@@ -305,9 +305,14 @@ class PairsDialog(QDialog):
                 layer = QgsProject.instance().mapLayer(results.get("CONTROL_POINTS", ""))
                 if layer is not None:
                     one.found(layer)
-            elif "CONTROL_POINTS" in inputs:
-                said = feedback.textLog().strip().splitlines()
-                one.failed_because(said[-1] if said else tr("cancelled"))
+                else:
+                    one.placed = tr("On the map: {file}").format(file=Path(str(results.get("OUTPUT", ""))).name)
+            else:
+                said = (feedback.textLog().strip().splitlines() or [tr("cancelled")])[-1]
+                if "CONTROL_POINTS" in inputs:
+                    one.failed_because(said)
+                else:
+                    one.placed = said
         finally:  # or the window would wait for ever
             self._next()
 

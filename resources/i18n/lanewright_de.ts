@@ -7250,6 +7250,11 @@
         </message>
         <message>
             <location filename="../../desktop/overlay/pairs_dialog.py" />
+            <source>On the map: {file}</source>
+            <translation>Auf der Karte: {file}</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/overlay/pairs_dialog.py" />
             <source>cancelled</source>
             <translation>abgebrochen</translation>
         </message>

@@ -123,6 +123,7 @@ def test_several_images_of_a_flight_are_placed_side_by_side_and_one_that_fails_s
     assert "do not fit each other" in window.list.item(2).text()
     window.place()
     finished(window)
+    assert "On the map: first_map" in window.list.item(0).text() and "On the map" not in window.list.item(2).text()
     drawn = [layer for layer in QgsProject.instance().mapLayers().values() if layer.source().endswith("_map.tif")]
     assert len(drawn) == 2 and all(layer.crs().authid() == "EPSG:32650" for layer in drawn)
     between = [layer.extent().center().x() for layer in sorted(drawn, key=lambda layer: layer.source())]
