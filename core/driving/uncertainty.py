@@ -23,9 +23,9 @@ if TYPE_CHECKING:
     from .centreline import Course
     from .lane_track import LaneTrack
 
-SEEN_SHARE, UNSEEN_SHARE = 0.3, 0.6   # of the RMS distance of the paint of both borders from their curves, where both are seen and where not
+SEEN_SHARE, UNSEEN_SHARE = 0.3, 0.45   # of the RMS distance of the paint of both borders from their curves, where both are seen and where not
 USUAL_SCATTER = 0.010          # m, of paint about its curve, where neither border says it
-BESIDE_SIGMA, BRIDGED_SIGMA = 0.020, 0.015     # m; beside: placed from one line only
+BESIDE_SIGMA, BRIDGED_SIGMA = 0.015, 0.015     # m; beside: placed from one line only
 SCATTER_SHARE = 0.7            # of the RMS distance of the line from the lane's places
 DISTANCE_SHARE = 0.0001        # m per m to the nearest measured place, where the lane is not measured
 MAX_MEASURED_DISTANCE = 50.0   # m, beyond which a measured place says nothing
