@@ -125,7 +125,9 @@ def scanner_lines(records: Columns | np.ndarray, p: Pass, mirror: MirrorPhase, c
         return None
     time = np.ascontiguousarray(records["time"])
     order = time_order(time)
-    records, time = take_rows(records, order), time[order]
+    time = time[order]
+    # the rows of a column lie in order where they are read, and only then by time
+    columns = {name: records[name].take(order) for name in ("s", "d", "z", "intensity")}
     first, last = np.floor(mirror.turns_at(time[[0, -1]])).astype(int)
     turns = np.arange(first, last + 2)
     begins = mirror.times_at(turns)
@@ -139,15 +141,15 @@ def scanner_lines(records: Columns | np.ndarray, p: Pass, mirror: MirrorPhase, c
         return None
     if not new.all():
         used_points = np.repeat(new, counts)
-        records, time = take_rows(records, used_points), time[used_points]
+        columns, time = {name: column[used_points] for name, column in columns.items()}, time[used_points]
         counts = counts[used]
     line = np.repeat(np.arange(len(used), dtype=np.int32), counts)
     length = (begins[1:] - begins[:-1])[used]
     phase = (time - np.repeat(begins[:-1][used], counts)) / np.repeat(length, counts)
-    s, d, z = (records[name] * COORDINATE_SCALE for name in ("s", "d", "z"))
-    ranges = _ranges(records, p, begins[:-1][used], counts)
+    s, d, z = (columns[name] * COORDINATE_SCALE for name in ("s", "d", "z"))
+    ranges = _ranges(columns, p, begins[:-1][used], counts)
     joined = _side_by_side(line, phase, ranges, (s, d, z), mirror)
-    return ScannerLines(line, phase, s, d, z, records["intensity"], ranges, joined, np.diff(driven)[used])
+    return ScannerLines(line, phase, s, d, z, columns["intensity"], ranges, joined, np.diff(driven)[used])
 
 
 def _side_by_side(line, phase, ranges, places, mirror):
@@ -167,12 +169,12 @@ def _side_by_side(line, phase, ranges, places, mirror):
     return joined
 
 
-def _ranges(records, p, time, counts):
+def _ranges(columns, p, time, counts):
     """(N,) float32 m from the vehicle to its points; the vehicle is taken as standing during a turn."""
-    away = np.zeros(len(records), np.float32)
+    away = np.zeros(len(columns["s"]), np.float32)
     for name, track in (("s", p.s), ("d", p.d), ("z", p.z)):
         stood = np.rint(np.interp(time, p.time, track) / COORDINATE_SCALE).astype(np.int32)
-        across = (records[name] - np.repeat(stood, counts)).astype(np.float32)
+        across = (columns[name] - np.repeat(stood, counts)).astype(np.float32)
         across *= across
         away += across
     np.sqrt(away, out=away)
