@@ -23,8 +23,8 @@ from qgis.core import (
 from qgis.PyQt.QtCore import QRectF, QSizeF
 from qgis.PyQt.QtGui import QFont
 
-TITLES, ENTRY = 12.0, 5.4        # mm: titles and margins of the legend, and each entry below a title
-SIZES = ((8.0, 7.0), (7.0, 6.0), (6.0, 5.0))  # of titles and entries, the first that fits
+TITLES, ENTRY = 12.0, 6.5        # mm: titles and margins of the legend, and each entry below a title
+SIZES = ((8.0, 7.0, 4.0), (7.0, 6.0, 3.0), (6.0, 5.0, 2.0))  # letters of titles and entries, points, and symbols, mm: the first that fits
 COLUMNS = 3                      # at least, where there are so many layers
 FONT = "DejaVu Sans"
 DPI = 300.0                      # of the measurement; any would do
@@ -43,7 +43,10 @@ def classes_of(layer: QgsMapLayer) -> set[str]:
     context.expressionContext().appendScopes(QgsExpressionContextUtils.globalProjectLayerScopes(layer))
     renderer = layer.renderer().clone()
     renderer.startRender(context, layer.fields())
-    found = set().union(*(renderer.legendKeysForFeature(feature, context) for feature in layer.getFeatures()))
+    found: set[str] = set()
+    for feature in layer.getFeatures():
+        context.expressionContext().setFeature(feature)  # classes may be told apart by an expression
+        found |= set(renderer.legendKeysForFeature(feature, context))
     renderer.stopRender(context)
     return found
 
@@ -103,7 +106,8 @@ def _leave_out_empty_classes(legend, node: QgsLayerTreeLayer, layer):
         legend.model().refreshLayerLegend(node)
 
 
-def _set_sizes(legend, title, entry):
+def _set_sizes(legend, title, entry, symbol):
+    legend.setSymbolHeight(symbol)
     for style in STYLES:
         one = legend.style(style)
         text = QgsTextFormat()

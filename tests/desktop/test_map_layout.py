@@ -199,7 +199,7 @@ def test_the_credit_stands_in_the_corner_of_the_map(project, credit):
     assert road_map_layout(project, [street(project)], "Without").itemById("Credit") is None
 
 
-def classes(project, name, values, width=14):
+def classes(project, name, values, width=14, attribute="kind"):
     """A layer with a class for each of these values, of which the first two thirds have a feature."""
     layer = QgsVectorLayer("LineString?crs=EPSG:32650&field=kind:string", name, "memory")
     for y, value in enumerate(values[:2 * len(values) // 3]):
@@ -208,14 +208,15 @@ def classes(project, name, values, width=14):
         feature["kind"] = value
         layer.dataProvider().addFeature(feature)
     layer.updateExtents()
-    layer.setRenderer(QgsCategorizedSymbolRenderer("kind", [
+    layer.setRenderer(QgsCategorizedSymbolRenderer(attribute, [
         QgsRendererCategory(value, QgsLineSymbol.createSimple({}), f"{value}, {'m' * width}") for value in values]))
     project.addMapLayer(layer)
     return layer
 
 
-def test_the_legend_lists_the_classes_that_there_are(project):
-    layout = road_map_layout(project, [classes(project, "Lines", ["solid", "dashed", "none"])], "A street")
+@pytest.mark.parametrize("attribute", ["kind", "concat(\"kind\", '')"])
+def test_the_legend_lists_the_classes_that_there_are(project, attribute):
+    layout = road_map_layout(project, [classes(project, "Lines", ["solid", "dashed", "none"], attribute=attribute)], "A street")
     model = item(layout, QgsLayoutItemLegend).model()
     nodes = model.layerLegendNodes(model.rootGroup().findLayers()[0])
     assert [str(node.data(Qt.ItemDataRole.DisplayRole)).partition(",")[0] for node in nodes] == ["solid", "dashed"]
