@@ -45,7 +45,6 @@ EVIDENCE = {
     "another carriageway driven beside this one": dict(two_way_carriageway=0.0),
     "traffic keeps to its side": dict(wrong_side=0.0, left_hand=0.0),
     "lanes go on along the road": dict(change=0.0, turn=0.0, divider_change=0.0),
-    "lines that are short": dict(short=0.0),
     "edges of the road beside lines, where these are linked and led on": WITHOUT_EDGES_BESIDE,
 }
 BINS = (0.0, 0.5, 0.7, 0.85, 0.95, 1.001)   # of the confidence that a piece of lane has

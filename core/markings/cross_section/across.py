@@ -101,7 +101,6 @@ def _boundary_costs(c, stops, w):
     """(I, M, 6, 6) nats of a boundary between a strip on its left and one on its right."""
     scale = (c.length / w.correlation)[:, None]
     table = w.boundary[c.made_of]
-    extra = c.painted * w.short * (1 - c.trust)
     stopped = stops_across(stops, (c.left + c.right) / 2)
     cost = np.full((*c.left.shape, len(STRIPS), len(STRIPS)), np.inf)
     for left in STRIPS:
@@ -110,7 +109,7 @@ def _boundary_costs(c, stops, w):
             if what >= 0:
                 misnamed = w.named * ((c.named >= 0) & (c.named != what) & (what != OTHER_LINE))
                 wrong = w.wrong_side if (left, right) in _WRONG_SIDE else 0.0
-                cost[:, :, left, right] = scale * (table[:, :, what] + wrong + misnamed + (extra if what != OTHER_LINE else 0.0)) \
+                cost[:, :, left, right] = scale * (table[:, :, what] + wrong + misnamed) \
                     + w.split_stop * stopped * (what == CENTRE_LINE)
     return cost
 

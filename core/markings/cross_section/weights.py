@@ -29,7 +29,6 @@ class EstimateWeights:
     open_end : the same where nothing is known beyond the outermost line
     hatching : the same of boundaries that are the border of a hatched area
     named : of a line that separates something else than its layer says
-    short : of a painted boundary by the metres that it lacks to `long_line`, at most
     stroke, long_line : m of paint that strokes of symbols have too, and that make a line sure
     lane_through_paint, lane_through_curb, lane_through_hatching, lane_through_surface : of a seen line, curb, border of a hatched area or end
         of the surface inside a lane
@@ -69,7 +68,6 @@ class EstimateWeights:
     open_end: tuple[float, ...] = (np.inf, np.inf, 2.3, np.inf)
     hatching: tuple[float, ...] = _costs(0.01, 0.01, 0.9, 0.5)
     named: float = 3.0
-    short: float = 0.3
     stroke: float = 3.0
     long_line: float = 25.0
     lane_through_paint: float = 10.0
