@@ -55,7 +55,7 @@ class EstimateWeights:
         more; two_and_one : of two lanes one way and one the other; two_way_carriageway : of two directions on one of two carriageways
     dashed_between_many : of dashes between the directions of a road of more than two lanes
     left_hand : of traffic on the left, against traffic on the right
-    calibration : slope and offset of the curve by which probable lanes are right, over the log odds; fitted to 8.6 km of lanes of 21 simulated
+    calibration : slope and offset of the curve by which probable lanes are right, over the log odds; fitted to 8.4 km of lanes of 19 simulated
         streets, most of another simulator, and checked on others (docs/accuracy.md)
     """
 
