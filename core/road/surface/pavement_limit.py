@@ -141,6 +141,7 @@ def _unlike_road(height, rough, brightness, scatter, seen, first):
     """
     road = np.arange(height.shape[1]) < ROAD_CELLS
     points = np.sqrt(np.maximum(seen, 1.0))
+    scatter = np.where(scatter > 0.0, scatter, np.nan)  # one brightness everywhere tells nothing
     brightness, rough_course = _without_slope(brightness), _without_slope(rough)
     sigma = np.hypot(MIN_SIGMA_SHARE * scatter, scatter / points)
     unpainted = np.where(_painted(brightness, sigma), np.nan, brightness)
