@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .candidates import Candidates
-from .strips import BOTH, FIRST, MOST_FIRST, REST_FIRST, REST_SECOND, SECOND, STRIPS, StripCosts, stops_across
+from .strips import FIRST, REST_FIRST, REST_SECOND, SECOND, STRIPS, TWO_WAY, StripCosts, stops_across
 from .weights import CENTRE_LINE, EDGE_LINE, LANE_LINE, OTHER_LINE, EstimateWeights
 
 KEPT = 32     # cross-sections of an interval that are kept
@@ -16,8 +16,8 @@ KEPT = 32     # cross-sections of an interval that are kept
 SEPARATES = np.full((len(STRIPS), len(STRIPS)), -1)
 for _left, _right, _what in (
         (REST_FIRST, REST_FIRST, OTHER_LINE), (REST_FIRST, FIRST, EDGE_LINE), (REST_FIRST, SECOND, EDGE_LINE),
-        *((before, both, what) for both in (MOST_FIRST, BOTH) for before, what in ((REST_FIRST, EDGE_LINE), (FIRST, LANE_LINE))),
-        *((both, after, what) for both in (MOST_FIRST, BOTH) for after, what in ((SECOND, LANE_LINE), (REST_SECOND, EDGE_LINE))),
+        *((before, both, what) for both in TWO_WAY for before, what in ((REST_FIRST, EDGE_LINE), (FIRST, LANE_LINE))),
+        *((both, after, what) for both in TWO_WAY for after, what in ((SECOND, LANE_LINE), (REST_SECOND, EDGE_LINE))),
         (FIRST, FIRST, LANE_LINE), (FIRST, SECOND, CENTRE_LINE), (FIRST, REST_FIRST, EDGE_LINE),
         (SECOND, SECOND, LANE_LINE), (SECOND, REST_SECOND, EDGE_LINE),
         (REST_SECOND, REST_SECOND, OTHER_LINE), (REST_SECOND, SECOND, EDGE_LINE), (REST_SECOND, FIRST, EDGE_LINE), (SECOND, FIRST, CENTRE_LINE)):
@@ -83,7 +83,7 @@ def best_sections(candidates: Candidates, costs: StripCosts, stops: np.ndarray, 
 
 
 def _reach(best, costs, j):
-    """(I, j, 6, kept) nats up to boundary j with a strip of a kind that begins at an earlier boundary."""
+    """(I, j, 7, kept) nats up to boundary j with a strip of a kind that begins at an earlier boundary."""
     return best[:, :j] + costs.cost[:, :, :j, j].transpose(1, 2, 0)[..., None]
 
 
@@ -98,7 +98,7 @@ def _lowest(values, kept):
 
 
 def _boundary_costs(c, stops, w):
-    """(I, M, 6, 6) nats of a boundary between a strip on its left and one on its right."""
+    """(I, M, 7, 7) nats of a boundary between a strip on its left and one on its right."""
     scale = (c.length / w.correlation)[:, None]
     table = w.boundary[c.made_of]
     stopped = stops_across(stops, (c.left + c.right) / 2)

@@ -13,8 +13,10 @@ from .lane_width import beside_surface_end, lane_places
 from .weights import CURB, HATCHING, ISLAND, OUTSIDE, SURFACE, EstimateWeights
 
 # Strips from left to right: what nobody drives on, lanes of the direction that is met first, lanes of both directions without
-# paint between them, most of them of the first direction or not, lanes of the other direction, and again what nobody drives on
-REST_FIRST, FIRST, MOST_FIRST, BOTH, SECOND, REST_SECOND = STRIPS = range(6)
+# paint between them, most of them of the first direction, as many of either, or most of the other, lanes of the other direction,
+# and again what nobody drives on
+REST_FIRST, FIRST, MOST_FIRST, BOTH, MOST_SECOND, SECOND, REST_SECOND = STRIPS = range(7)
+TWO_WAY = MOST_FIRST, BOTH, MOST_SECOND
 MAX_LANES = 4              # between two boundaries without paint between them
 HATCHED_SHARE = 0.12       # of a strip that is covered by hatching: its bars leave most of it free
 ASPHALT_OF_A_LANE = 2.2, 3.0   # m of asphalt that could be a lane: between two lines, and elsewhere
@@ -28,8 +30,8 @@ MIN_SCANNED_SHARE = 0.6    # of a lane's width that must be seen of a lane besid
 class StripCosts:
     """Costs of all strips.
 
-    cost : (6, I, M, M) nats, of a strip of one kind between two boundaries; inf where it cannot be
-    lanes, first_lanes : (6, I, M, M) how many lanes it holds at that cost, and how many of them are of the direction that is met first
+    cost : (7, I, M, M) nats, of a strip of one kind between two boundaries; inf where it cannot be
+    lanes, first_lanes : (7, I, M, M) how many lanes it holds at that cost, and how many of them are of the direction that is met first
     lane_width : metres, the usual width of a lane; beside a curb or the end of the surface no lane is wider
     """
 
@@ -79,12 +81,12 @@ def strip_costs(candidates: Candidates, evidence: Evidence, weights: EstimateWei
         scanned = ~hidden | (width > MIN_SCANNED_SHARE * number * lane_width)
         total = np.where(possible & scanned & (each >= NEUTRAL.narrowest_lane), total, np.inf)
         for split in range(number + 1):
-            kind = SECOND if split == 0 else FIRST if split == number else MOST_FIRST if 2 * split > number else BOTH
+            kind = SECOND if split == 0 else FIRST if split == number else TWO_WAY[1 + int(np.sign(number - 2 * split))]
             alike = max(split - 1, 0) + max(number - split - 1, 0)
             unpainted = (0 < split < number) * w.unpainted_divider + alike * w.unpainted_lane_line
             driven = total + scale * (unpainted + _driven_cost(evidence, inside, begin, each, number, split, first_direction, w)) \
                 + _arrow_cost(arrows, each, number, split, first_direction, begin, w)
-            if kind in (MOST_FIRST, BOTH):
+            if kind in TWO_WAY:
                 driven += w.split_stop * stops_across(evidence.stops, begin - split * each)
             better = driven < cost[kind]
             cost[kind][better], lanes[kind][better], first_lanes[kind][better] = driven[better], number, split

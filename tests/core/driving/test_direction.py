@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lined_streets import Street, middle
+from lined_streets import EAST, Street, middle
 from shapely.geometry import Point
 
 
@@ -86,3 +86,18 @@ def test_lanes_whose_lines_begin_later_lead_the_same_way_before(two, mirror):
     middle_lane = [(line, row["direction"]) for line, row in lines if abs(street.offsets(line).mean()) < 0.3]
     assert {way for _, way in middle_lane} == {two}
     assert sum(line.length for line, _ in middle_lane) > 100.0
+
+
+@pytest.mark.parametrize("mirror", [1, -1])
+@pytest.mark.parametrize("backwards", [False, True])
+def test_two_lanes_towards_a_junction_and_one_back_reach_as_far_on_either_side_of_the_road(backwards, mirror):
+    """The lines between the lanes end seven metres before those beside them, as where a stop line was worn away."""
+    street = Street(vehicle=0.0, backwards=backwards).paint(-2.0 * mirror, last=100.0, kind="edge").paint(8.4 * mirror, last=100.0, kind="edge")
+    street.paint(2.0 * mirror, last=93.0, kind="centre").paint(5.2 * mirror, last=93.0)
+    lines, _ = street.lanes()
+    found = {}
+    for line, row in lines:
+        found.setdefault(round(float(np.median(street.offsets(line))) * mirror, 1), []).append(row["direction"])
+    assert {lane: set(way) for lane, way in found.items()} == {0.0: {1}, 3.6: {-1}, 6.8: {-1}}
+    assert [max(line.bounds[2] for line, _ in lines if abs(np.median(street.offsets(line)) * mirror - lane) < 0.2) - EAST
+            for lane in (0.0, 3.6, 6.8)] == pytest.approx([100.0] * 3, abs=1.0)
