@@ -63,7 +63,8 @@ def road_heights(road_points: RoadPoints, road: int, s: np.ndarray, tracks: list
 def _heights(sections, s, lanes):
     """Median heights along lanes, each (cells, offsets), of sections of road points about grid stations s."""
     # where points are dense, those right beside the grid stations are enough
-    found = _Near(sections, s, np.arange(len(s)), DENSE_SLICE, lanes).medians(lanes)
+    beside = _Near(sections, s, np.arange(len(s)), DENSE_SLICE, lanes)
+    found = beside.medians(lanes) if beside.most >= DENSE_COUNT else [(np.full(len(d), np.nan), np.zeros(len(d), int)) for _, d in lanes]
     few = [np.flatnonzero(count < DENSE_COUNT) for _, count in found]
     lacking = [(cells[which], d[which]) for (cells, d), which in zip(lanes, few)]
     cells = np.unique(np.concatenate([cells for cells, _ in lacking]))
@@ -85,7 +86,7 @@ def _beside(lanes):
 
 
 class _Near:
-    """Road points at most `reach` metres of station from some cells of a grid and near lanes, sorted by offset."""
+    """Road points at most `reach` metres of station from some cells of a grid and near lanes; `most` of them in a cell."""
 
     def __init__(self, sections, s, cells, reach, lanes):
         # of the points' own kind, or all stations would be copied to compare them
@@ -96,18 +97,26 @@ class _Near:
             # points lie by station
             low, high = np.searchsorted(records["s"], bounds)
             count = high - low
-            rows = np.arange(count.sum()) + np.repeat(low - (np.cumsum(count) - count), count)
-            offset = records.take(rows)["d"]
+            end = np.cumsum(count)
+            even = np.array_equal(low[1:], high[:-1])   # one cell begins where the last one ends
+            rows = low[:1] if even else np.arange(end[-1]) + np.repeat(low - (end - count), count)
+            offset = (records.row_range(int(low[0]), int(high[-1])) if even else records.take(rows))["d"]
             near = np.flatnonzero(beside.take((offset >> OFFSET_GRAIN_BITS) - first, mode="clip"))
-            parts.append((np.repeat(cells, count)[near], offset[near], records.take(rows[near])["z"]))
-        cell, offset, height = (np.concatenate(columns) for columns in zip(*parts))
-        across = offset >> OFFSET_GRAIN_BITS
-        order = order_by(across)
-        self.across, self.offset, self.cell, self.height = across[order], offset[order], cell[order], height[order]
+            parts.append((np.repeat(cells, np.diff(np.searchsorted(near, end), prepend=0)), offset.take(near),
+                          records.take(near + rows if even else rows.take(near))["z"]))
+        self.cell, self.offset, self.height = (np.concatenate(columns) for columns in zip(*parts))
+        self.most = int(np.bincount(self.cell).max(initial=0))
 
     def medians(self, lanes):
         """[((M,) median heights, (M,) number of points)] within reach of each lane: (M,) cells, ascending, and (M,) offsets there."""
+        self._sort()
         return [self._medians(*lane) if len(lane[0]) else (np.empty(0), np.empty(0, int)) for lane in lanes]
+
+    def _sort(self):
+        """Sort the points by offset."""
+        across = self.offset >> OFFSET_GRAIN_BITS
+        order = order_by(across)
+        self.across, self.offset, self.cell, self.height = (values.take(order) for values in (across, self.offset, self.cell, self.height))
 
     def _medians(self, cells, d):
         middle, reach = np.rint(d / COORDINATE_SCALE).astype(np.int32), int(HEIGHT_REACH / COORDINATE_SCALE)

@@ -168,12 +168,16 @@ class _Kernel:
         runs = sparse.csr_matrix((weight, np.arange(len(number), dtype=np.int32), np.append(starts, len(number)).astype(np.int32)),
                                  shape=(len(starts), len(number)))
         weights = self.weights(east, north)
-        added = self._kept.of(len(starts) * len(self.offsets))("added", np.complex64).reshape(len(starts), -1)
-        added.real = runs @ weights
-        runs.data = weight * value
-        added.imag = runs @ weights
+        # by cell of the neighbourhood, weights and weighted values side by side, as they are added
+        size, kept = (len(self.offsets), len(starts)), self._kept.of(len(starts) * len(self.offsets))
+        sums_of_runs = []
+        for name, factor in (("weights", None), ("values", value)):
+            if factor is not None:
+                runs.data = weight * factor
+            sums_of_runs.append(cv2.transpose(runs @ weights, kept(name, np.float32).reshape(size)))
+        added = cv2.merge(sums_of_runs, self._kept.of(2 * len(starts) * len(self.offsets))("added", np.float32).reshape(*size, 2))
         target = number[starts].astype(np.intp)
-        for (right, up), both in zip(self.offsets, added.T):
+        for (right, up), both in zip(self.offsets, added.view(np.complex64)[:, :, 0]):
             sums[target + (right - up * width)] += both
 
     def weights(self, east: np.ndarray, north: np.ndarray) -> np.ndarray:

@@ -120,12 +120,12 @@ def ground_cells(points: Points, first_row: int, rows: int, reach: float, road_h
     order = order_by(z, cell)
     index, cell, z = index[order], cell[order], z[order] * COORDINATE_SCALE
     low = np.flatnonzero(_in_lowest_layer(cell, z, np.bincount(cell, minlength=rows * columns)))
-    index, at, z = index[low], cell[low], z[low]
+    index, at, z = index[low], cell[low].astype(np.intp), z[low]
     count = np.bincount(at, minlength=rows * columns)
     row, column = np.divmod(np.arange(rows * columns), columns)
-    u, v = (points.records[name].take(index) * COORDINATE_SCALE - np.repeat(middle, count) for name, middle in
+    u, v = (points.records[name].take(index) * COORDINATE_SCALE - middle.take(at) for name, middle in
             (("d", (column - half + 0.5) * column_size), ("s", (row + first_row + 0.5) * row_size)))
-    height, rough = _planes(count, u, v, z)
+    height, rough = _planes(at, count, u, v, z)
     shape = rows, columns
     brightness, scatter = np.full((2, len(count)), np.nan) if bright is None else _looks(points[index], at, shape, column_size, bright)
     return GroundCells(first_row, -half, row_size, column_size,
@@ -186,8 +186,8 @@ def _in_lowest_layer(cell, z, total):
     return (layer_of_cell[cell] == layer) & (z - lowest[layer] < GROUND_LAYER_DEPTH)
 
 
-def _planes(count, u, v, z):
-    """Height at the middle of each cell, and roughness, from a least-squares plane; points are sorted by cell."""
+def _planes(at, count, u, v, z):
+    """Height at the middle of each cell, and roughness, from a least-squares plane; points are sorted by cell, `at`."""
     n = np.maximum(count, 1).astype(float)
     filled = np.flatnonzero(count)
     starts = (np.cumsum(count) - count)[filled]
@@ -199,7 +199,7 @@ def _planes(count, u, v, z):
         return sums / n
 
     mu, mv, mz = mean(u), mean(v), mean(z)
-    du, dv, dz = (values - np.repeat(middle, count) for values, middle in ((u, mu), (v, mv), (z, mz)))
+    du, dv, dz = (values - middle.take(at) for values, middle in ((u, mu), (v, mv), (z, mz)))
     uu, uv, vv, uz, vz, zz = mean(du * du), mean(du * dv), mean(dv * dv), mean(du * dz), mean(dv * dz), mean(dz * dz)
     # ridge: the plane of points on one line stays level across that line
     uu, vv = uu + 1e-4, vv + 1e-4
