@@ -42,7 +42,8 @@ def measured_road(drives=(Drive(),), scanners=((0.0, 0.0),), length=60.0, densit
                   above=None, hides=None, north=False, **road):
     """A Survey of a straight road.
 
-    scanners : (step in m, tilt in m/m) of each on its vehicle, the tilt positive where it measures its left side too high
+    scanners : (step in m, tilt in m/m) of each on its vehicle, the tilt positive where it measures its left side too high; the third, if
+        given, is its turn about the vertical, in m that a point is placed too far ahead for each m that it lies to the left
     density : points per m² of one drive beneath the vehicle; it falls off to either side as a rotating mirror's does
     above : function of a random generator that gives further points (x, y, z) above z = 0
     hides : function of the drive's offset and points x, y, z; which of them something hides
@@ -54,7 +55,7 @@ def measured_road(drives=(Drive(),), scanners=((0.0, 0.0),), length=60.0, densit
         x = step if drive.direction > 0 else step[::-1]
         time = 1000.0 * (number + 1) + np.arange(len(x)) * 0.025
         rows.append(np.stack([time, x, np.full(len(x), drive.offset), grade * x + SENSOR + GROUND]))
-        for scanner, (up, tilt) in enumerate(scanners):
+        for scanner, (up, tilt, *turn) in enumerate(scanners):
             count = int(density * np.pi * SENSOR * length / len(scanners))
             across = SENSOR * np.tan(rng.uniform(-np.pi / 2, np.pi / 2, count))
             px, py = rng.uniform(0, length, count), drive.offset + across
@@ -68,6 +69,7 @@ def measured_road(drives=(Drive(),), scanners=((0.0, 0.0),), length=60.0, densit
                 seen = ~hides(drive.offset, px, py, pz - grade * px)
                 px, py, pz, across = px[seen], py[seen], pz[seen], across[seen]
             pz = pz + drive.up + up + (drive.roll + tilt) * drive.direction * across + rng.normal(0, noise, len(px))
+            px = px + sum(turn) * across
             parts.append((number, scanner, np.interp(px, x[:: drive.direction], time[:: drive.direction]), px, py, pz + GROUND))
 
     def placed(x, y):
