@@ -1,7 +1,9 @@
 """Where the ground across the road changes: the first cell outward that is no longer like the road before it.
 
 The ground changes where, over some cells, it is off the height of the road, tilts away, or is rougher than the road before, or
-where nothing was measured and no road follows. The rules are our own.
+where nothing was measured and no road follows. A flush sidewalk or bicycle path before such a place changes in brightness alone: paving
+and concrete are about twice as bright as asphalt. Falloff with range has no step, painted lines are narrower than what is compared, and
+patches are shorter. The rules are our own.
 """
 
 from __future__ import annotations
@@ -9,8 +11,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.ndimage import median_filter, uniform_filter1d
 
 from .ground_grid import known_median
+from .pavement_limit import INNER_CELLS
 from .region_growing import MAX_HEIGHT_DEVIATION
 
 CERTAIN_ROAD = 1.2           # m beside the track that belong to the road: the vehicle drove there
@@ -31,6 +35,11 @@ OBSTACLE_HEIGHT = 0.25       # m above the road of a cell that hides the road be
 OBSTACLE_CELLS = 5           # where road follows within so many cells
 MIN_AGREEING_SHARE = 0.7     # of the cells ahead that must show the change
 PROFILES_PER_BATCH = 64      # profiles compared at a time; their windows take some megabytes
+COMPARED_CELLS = 10          # either side of a step of brightness: 1 m, of which paint covers less than half
+BRIGHTER = np.log(1.5)       # step of the logarithm of brightness; asphalt of another age differs by less
+LASTING_SHARE = 1.0 / 3.0    # of the step by which the ground right before the limit is still brighter: it falls off with range
+LASTING_PROFILES = 31        # 2 m apart, of which most must show it: patches of asphalt are shorter
+AGREEING_PROFILES = 5        # whose median place of the step counts
 
 
 @dataclass
@@ -177,3 +186,40 @@ def _lines(at, values, known):
     with np.errstate(invalid="ignore", divide="ignore"):
         slope = (away * values).sum(axis=2) / (away * at).sum(axis=2)
     return mean - slope * middle, slope
+
+
+def other_ground_begins(brightness: np.ndarray, track: np.ndarray, limit: np.ndarray) -> np.ndarray:
+    """Where brighter ground begins between the vehicle and the limit of the road, and goes on as far as that.
+
+    A narrower strip along the limit than `pavement_limits` searches is left to it.
+
+    Parameters
+    ----------
+    brightness : (P, K) counts, profiles of cells outward
+    track : (P,) cells, not necessarily whole, of the vehicle's track
+    limit : (P,) cells, not necessarily whole, at which the ground changes
+
+    Returns
+    -------
+    (P,) cells; NaN where there is no such ground
+    """
+    count = brightness.shape[1]
+    level = np.log(np.maximum(brightness, 1.0))
+    padded = np.pad(level, ((0, 0), (COMPARED_CELLS, COMPARED_CELLS)), constant_values=np.nan)
+    beside = known_median(np.lib.stride_tricks.sliding_window_view(padded, COMPARED_CELLS, axis=1), 2)
+    # median of the cells before each cell, and of those from it on
+    inner, outer = beside[:, :count], beside[:, COMPARED_CELLS:COMPARED_CELLS + count]
+    cell = np.arange(count)
+    # medians rise half a window before the step itself
+    between = (cell >= track[:, None]) & (cell + COMPARED_CELLS // 2 + INNER_CELLS < limit[:, None])
+    step = np.where(between & np.isfinite(outer - inner), outer - inner, -np.inf)
+    rows, begins = np.arange(len(step)), step.argmax(axis=1)
+    last = beside[rows, np.clip(np.rint(limit).astype(np.int64), 0, count)]
+    there = step[rows, begins] >= BRIGHTER
+    there[there] = last[there] - inner[rows[there], begins[there]] >= LASTING_SHARE * step[rows[there], begins[there]]
+    lasting = there & (uniform_filter1d(there.astype(float), LASTING_PROFILES, mode="nearest") > 0.5)
+    if not lasting.any():
+        return np.full(len(step), np.nan)
+    known = np.flatnonzero(there)
+    place = median_filter(np.interp(rows, known, begins[known]), AGREEING_PROFILES, mode="nearest")
+    return np.where(lasting, place, np.nan)

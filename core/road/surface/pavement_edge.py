@@ -13,7 +13,7 @@ import numpy as np
 
 from ...survey.store.records import Points
 from .edge_path import cheapest_path
-from .ground_change import HalfProfiles
+from .ground_change import HalfProfiles, other_ground_begins
 from .ground_grid import GroundCells, ground_cells, known_median
 from .pavement_limit import pavement_limits
 
@@ -146,7 +146,9 @@ def grown_limit(profiles: SurfaceProfiles, cells: GroundCells, above: np.ndarray
         return GrownLimit(track + sign * max_width, np.full(len(track), np.inf), nowhere, nowhere, ~nowhere)
     # at the last cell, nothing beyond it was looked for
     blind = np.pad(halves.blind(), ((0, 0), (0, 1)))[np.arange(len(changes)), changes]
-    changes = np.interp(rows.stations, pooled.stations[known], _agreed(changes[known], blind[known], len(pooled.offsets)))
+    changes = np.interp(pooled.stations, pooled.stations[known], _agreed(changes[known], blind[known], len(pooled.offsets)))
+    other = other_ground_begins(pooled.brightness, (beside - pooled.offsets[0]) / PROFILE_COLUMN, changes)
+    changes = np.interp(rows.stations, pooled.stations, np.where(np.isfinite(other), other, changes))
     found = pavement_limits(rows, changes)
     outward = np.interp(stations, rows.stations, rows.offsets[0] + (found.cell - 0.5) * PROFILE_COLUMN)
     row = np.clip(np.searchsorted(rows.stations + 0.5 * PROFILE_ROW, stations), 0, len(rows.stations) - 1)

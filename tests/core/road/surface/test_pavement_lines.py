@@ -241,3 +241,40 @@ def test_written_and_read_again_an_edge_of_the_pavement_is_one():
     for row in layer.rows:
         del row["edge"]
     assert set(edges_from_features(layer, survey.frame).what) == {"curb"}
+
+
+def wide(s):
+    """Where level ground ends beside a street that is half as wide: a sidewalk lies between, flush with the road."""
+    return np.full_like(s, HALF + 2.6)
+
+
+@pytest.mark.parametrize("falloff", [0.0, 0.06])
+def test_the_road_ends_where_a_flush_sidewalk_twice_as_bright_begins(falloff):
+    """The ground changes in height and roughness 2.6 m farther out; brightness falls off by so much per metre."""
+    survey = street(half=wide, grey_of=lambda s, d: np.where(np.abs(d) > HALF, 2.0, 1.0) * np.exp(-falloff * np.abs(d)))
+    edges = found(survey)
+    assert min(covered(edges, survey, side) for side in (1, -1)) >= 0.9
+    assert max(covered(edges, survey, side, half=wide, within=1.0) for side in (1, -1)) == 0.0
+
+
+def bright_strip(s, d):
+    return np.where((np.abs(d) > 1.5) & (np.abs(d) < 1.9), 4.0, 1.0)   # a double line
+
+
+def dark_patch(s, d):
+    return np.where((s > 20) & (s < 40) & (np.abs(d) < 2.5), 0.5, 1.0)
+
+
+def falls_off(s, d):
+    return np.exp(-0.15 * np.abs(d))
+
+
+def rises(s, d):
+    return np.exp(0.12 * np.abs(d))     # a scanner that sees less of what is near
+
+
+@pytest.mark.parametrize("grey_of", [bright_strip, dark_patch, falls_off, rises])
+def test_paint_a_patch_and_the_range_are_no_other_ground(grey_of):
+    survey = street(half=wide, grey_of=grey_of)
+    edges = found(survey)
+    assert min(covered(edges, survey, side, half=wide) for side in (1, -1)) >= 0.9
