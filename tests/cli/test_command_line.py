@@ -1,4 +1,4 @@
-"""The command line as a user has it: the real qgis_process, called from any folder."""
+"""The command line as a user has it, called from any folder: the real qgis_process where it matters that it is (see `words`)."""
 
 import json
 import os
@@ -81,29 +81,25 @@ def test_the_same_sample_is_made_again_in_the_folder_one_calls_from(survey, tmp_
     assert first.points.array.tobytes() == second.points.array.tobytes()
 
 
-def test_a_trajectory_comes_from_a_csv_as_from_its_layer(survey, tmp_path):
-    rows = {}
-    for name in ("drive.gpkg", "drive.csv"):
-        run = qgis_process(
-            "run", "lanewright:importtrajectory", f"--INPUT={survey / name}", "--TARGET_CRS=EPSG:32650", "--OUTPUT=out.gpkg",
-            "--json", folder=tmp_path,
-        )
-        assert run.returncode == 0, run.stderr
-        rows[name] = json.loads(run.stdout)["results"]["ROWS"]
-    assert rows["drive.gpkg"] == rows["drive.csv"] > 100
+def test_a_trajectory_comes_from_a_csv_as_from_its_layer(survey, called, tmp_path):
+    stage = ("run", "lanewright:importtrajectory", "--TARGET_CRS=EPSG:32650", "--OUTPUT=out.gpkg")
+    layer = called(*stage, f"--INPUT={survey / 'drive.gpkg'}", folder=tmp_path)
+    table = qgis_process(*stage, f"--INPUT={survey / 'drive.csv'}", "--json", folder=tmp_path)
+    assert layer.returncode == table.returncode == 0, layer.stderr + table.stderr
+    assert layer.results["ROWS"] == json.loads(table.stdout)["results"]["ROWS"] > 100
 
 
-def test_a_trajectory_without_crs_is_taken_with_a_warning(survey, tmp_path):
-    run = qgis_process("run", "lanewright:importtrajectory", f"--INPUT={survey / 'drive.csv'}", "--OUTPUT=out.gpkg", folder=tmp_path)
+def test_a_trajectory_without_crs_is_taken_with_a_warning(survey, called, tmp_path):
+    run = called("run", "lanewright:importtrajectory", f"--INPUT={survey / 'drive.csv'}", "--OUTPUT=out.gpkg", folder=tmp_path)
     assert run.returncode == 0 and "names no CRS and none was given" in run.stdout + run.stderr
-    run = qgis_process("run", "lanewright:importtrajectory", f"--INPUT={survey / 'drive.csv'}", "--INPUT_CRS=EPSG:32650", "--OUTPUT=out.gpkg",
+    run = called("run", "lanewright:importtrajectory", f"--INPUT={survey / 'drive.csv'}", "--INPUT_CRS=EPSG:32650", "--OUTPUT=out.gpkg",
                        folder=tmp_path)
     assert run.returncode == 0 and "CRS" not in (run.stdout + run.stderr).replace("INPUT_CRS", "")
 
 
-def test_an_image_without_a_position_is_georeferenced_and_the_false_alarm_explained(tmp_path):
-    made = qgis_process("run", "lanewright:samplesurvey", "--LENGTH=30", "--PULSE_RATE=20000", "--POINT_CLOUD=s.laz", "--TRAJECTORY=drive.gpkg",
-                        "--UAV_IMAGE=uav.tif", "--UAV_GCPS=gcps.gpkg", folder=tmp_path)
+def test_an_image_without_a_position_is_georeferenced_and_the_false_alarm_explained(called, tmp_path):
+    made = called("run", "lanewright:samplesurvey", "--LENGTH=30", "--PULSE_RATE=20000", "--POINT_CLOUD=s.laz", "--TRAJECTORY=drive.gpkg",
+                  "--UAV_IMAGE=uav.tif", "--UAV_GCPS=gcps.gpkg", folder=tmp_path)
     assert made.returncode == 0, made.stderr
     run = qgis_process("run", "lanewright:georeferenceimage", "--IMAGE=uav.tif", "--GCPS=gcps.gpkg", "--ORDER=2", "--OUTPUT=map.tif", folder=tmp_path)
     assert run.returncode == 0 and (tmp_path / "map.tif").stat().st_size > 10_000
@@ -198,10 +194,10 @@ def nothing(survey, folder):
     (a_zip, "cannot be read as a LAS/LAZ file"),
     (without_scale, "bad.laz is damaged: its header says scales of nan"),
 ], ids=lambda value: getattr(value, "__name__", ""))
-def test_a_cloud_that_cannot_be_worked_with_is_told_in_one_sentence(survey, tmp_path, cloud, says):
+def test_a_cloud_that_cannot_be_worked_with_is_told_in_one_sentence(survey, called, tmp_path, cloud, says):
     cloud(survey, tmp_path)
     before = set(os.listdir(tmp_path))
-    run = qgis_process(
+    run = called(
         "run", "lanewright:detectcurbs", "--POINT_CLOUDS=bad.laz", f"--TRAJECTORY={survey / 'drive.csv'}",
         "--CURB_POINTS=curbs.gpkg", folder=tmp_path,
     )
@@ -209,8 +205,8 @@ def test_a_cloud_that_cannot_be_worked_with_is_told_in_one_sentence(survey, tmp_
     assert set(os.listdir(tmp_path)) == before
 
 
-def test_a_folder_that_is_not_there_is_told_before_the_work(survey, tmp_path):
-    run = qgis_process(
+def test_a_folder_that_is_not_there_is_told_before_the_work(survey, called, tmp_path):
+    run = called(
         "run", "lanewright:detectcurbs", f"--POINT_CLOUDS={survey / 's.laz'}", f"--TRAJECTORY={survey / 'drive.csv'}",
         "--CURB_POINTS=nowhere/curbs.gpkg", folder=tmp_path,
     )
@@ -218,17 +214,17 @@ def test_a_folder_that_is_not_there_is_told_before_the_work(survey, tmp_path):
     assert "Points read" not in run.stdout
 
 
-def test_yesterdays_layer_stands_when_todays_run_fails(survey, tmp_path):
+def test_yesterdays_layer_stands_when_todays_run_fails(survey, called, tmp_path):
     good = ("run", "lanewright:importtrajectory", "--OUTPUT=out.gpkg")
-    assert qgis_process(*good, f"--INPUT={survey / 'drive.gpkg'}", folder=tmp_path).returncode == 0
+    assert called(*good, f"--INPUT={survey / 'drive.gpkg'}", folder=tmp_path).returncode == 0
     yesterday = (tmp_path / "out.gpkg").read_bytes()
     (tmp_path / "bad.csv").write_text("time,x,y,z\n1,2,3,4\n")
-    one_sentence(qgis_process(*good, "--INPUT=bad.csv", folder=tmp_path))
+    one_sentence(called(*good, "--INPUT=bad.csv", folder=tmp_path))
     assert (tmp_path / "out.gpkg").read_bytes() == yesterday
 
 
-def test_a_setting_beyond_reason_is_refused(survey, tmp_path):
-    run = qgis_process(
+def test_a_setting_beyond_reason_is_refused(survey, called, tmp_path):
+    run = called(
         "run", "lanewright:detectcurbs", f"--POINT_CLOUDS={survey / 's.laz'}", f"--TRAJECTORY={survey / 'drive.csv'}",
         "--MIN_HEIGHT=0.3", "--MAX_HEIGHT=0.1", "--CURB_POINTS=curbs.gpkg", folder=tmp_path,
     )
@@ -242,17 +238,30 @@ def test_a_setting_beyond_reason_is_refused(survey, tmp_path):
     (("--CELL_SIZE=-0.04",), "CELL_SIZE) is -0.04; it must be a number from"),
     (("--BOUNDARY_METHOD=magic",), "BOUNDARY_METHOD) is magic; it must be one of profiles, scanlines, both"),
 ])
-def test_what_cannot_be_meant_is_told_before_the_work(survey, tmp_path, outputs, says):
-    run = qgis_process(
+def test_what_cannot_be_meant_is_told_before_the_work(survey, called, tmp_path, outputs, says):
+    run = called(
         "run", "lanewright:roadmap", f"--POINT_CLOUDS={survey / 's.laz'}", f"--TRAJECTORY={survey / 'drive.csv'}", *outputs, folder=tmp_path,
     )
     assert run.returncode == 1 and says in run.stderr and "Points read" not in run.stdout
     assert os.listdir(tmp_path) == []
 
 
-def test_files_of_another_stage_or_drive_are_refused_by_name(survey, tmp_path):
+@pytest.mark.parametrize("words, says", [
+    (("lanewright:detectcurbs", "--POINT_CLOUDS=bad.laz", "--CURB_POINTS=curbs.gpkg"), "damaged|cut off|cannot be read"),
+    (("lanewright:roadmap", "--POINT_CLOUDS={survey}/s.laz", "--CELL_SIZE=-0.04"), r"CELL_SIZE\) is -0.04; it must be a number from"),
+    (("lanewright:detectcurbs", "--POINT_CLOUDS={survey}/s.laz", "--CURB_POINTS=nowhere/curbs.gpkg"), "there is no folder"),
+], ids=["in the work", "by QGIS before the work", "by us before the work"])
+def test_the_real_program_fails_with_that_sentence_and_leaves_nothing(survey, tmp_path, words, says):
+    """What the other tests of refusals ask in a QGIS that has already started."""
+    cut_off(survey, tmp_path)
+    run = qgis_process("run", *(word.format(survey=survey) for word in words), f"--TRAJECTORY={survey / 'drive.csv'}", folder=tmp_path)
+    assert run.returncode == 1 and sum(bool(re.search(says, line)) for line in complaints(run.stderr)) == 1, run.stderr
+    assert "Points read" not in run.stdout and os.listdir(tmp_path) == ["bad.laz"]
+
+
+def test_files_of_another_stage_or_drive_are_refused_by_name(survey, called, tmp_path):
     cloud, drive = survey / "s.laz", f"--TRAJECTORY={survey / 'drive.csv'}"
-    curbs = qgis_process("run", "lanewright:detectcurbs", f"--POINT_CLOUDS={cloud}", drive, "--CURB_POINTS=curbs.gpkg", folder=tmp_path)
+    curbs = called("run", "lanewright:detectcurbs", f"--POINT_CLOUDS={cloud}", drive, "--CURB_POINTS=curbs.gpkg", folder=tmp_path)
     assert curbs.returncode == 0, curbs.stderr
     rows = (survey / "drive.csv").read_text().splitlines()
     (tmp_path / "later.csv").write_text("\n".join([rows[0], *rows[len(rows) // 4:]]))
@@ -262,12 +271,12 @@ def test_files_of_another_stage_or_drive_are_refused_by_name(survey, tmp_path):
         "Road edges lacks the field": ("extractroadsurface", f"--POINT_CLOUDS={cloud}", drive, "--ROAD_EDGES=curbs.gpkg", "--ROAD_POINTS=r.laz"),
         "do not belong together": ("fitroadedges", "--CURB_POINTS=curbs.gpkg", "--TRAJECTORY=later.csv", "--ROAD_EDGES=e.gpkg"),
     }.items():
-        assert re.search(says, one_sentence(qgis_process("run", f"lanewright:{stage[0]}", *stage[1:], folder=tmp_path))), stage
+        assert re.search(says, one_sentence(called("run", f"lanewright:{stage[0]}", *stage[1:], folder=tmp_path))), stage
     assert sorted(os.listdir(tmp_path)) == ["curbs.gpkg", "later.csv"]
 
 
-def test_a_trajectory_file_that_is_not_there_is_named(survey, tmp_path):
-    run = qgis_process("run", "lanewright:detectcurbs", f"--POINT_CLOUDS={survey / 's.laz'}", "--TRAJECTORY=no.csv", "--CURB_POINTS=c.gpkg",
+def test_a_trajectory_file_that_is_not_there_is_named(survey, called, tmp_path):
+    run = called("run", "lanewright:detectcurbs", f"--POINT_CLOUDS={survey / 's.laz'}", "--TRAJECTORY=no.csv", "--CURB_POINTS=c.gpkg",
                        folder=tmp_path)
     assert "Trajectory: there is no file no.csv" in one_sentence(run)
 
@@ -313,11 +322,11 @@ def feature_count(path):
     return source.GetLayer(0).GetFeatureCount()
 
 
-def test_without_intensity_edges_are_drawn_and_markings_say_why_not(street, tmp_path):
+def test_without_intensity_edges_are_drawn_and_markings_say_why_not(street, called, tmp_path):
     cloud = laspy.read(street / "s.laz")
     cloud.intensity = np.zeros(len(cloud.points), np.uint16)
     cloud.write(str(tmp_path / "dark.laz"))
-    run = qgis_process(
+    run = called(
         "run", "lanewright:roadmap", "--POINT_CLOUDS=dark.laz", f"--TRAJECTORY={street / 'drive.gpkg'}", "--ROAD_EDGES=edges.gpkg",
         "--ROAD_POINTS=road.laz", "--MARKINGS=markings.gpkg", "--INTENSITY_IMAGE=image.tif", folder=tmp_path,
     )
@@ -329,11 +338,11 @@ def test_without_intensity_edges_are_drawn_and_markings_say_why_not(street, tmp_
         ("correctintensity", "--ROAD_POINTS=road.laz", f"--TRAJECTORY={street / 'drive.gpkg'}", "--OUTPUT=bright.laz"),
         ("intensityimage", "--ROAD_POINTS=road.laz", "--INTENSITY_IMAGE=image.tif"),
     ):
-        assert "no intensity" in one_sentence(qgis_process("run", f"lanewright:{stage[0]}", *stage[1:], folder=tmp_path))
+        assert "no intensity" in one_sentence(called("run", f"lanewright:{stage[0]}", *stage[1:], folder=tmp_path))
 
 
-def test_a_road_without_paint_gives_empty_layers_stage_by_stage(street, tmp_path):
-    road = qgis_process(
+def test_a_road_without_paint_gives_empty_layers_stage_by_stage(street, called, tmp_path):
+    road = called(
         "run", "lanewright:roadmap", f"--POINT_CLOUDS={street / 's.laz'}", f"--TRAJECTORY={street / 'drive.gpkg'}",
         "--ROAD_POINTS=road.laz", folder=tmp_path,
     )
@@ -348,6 +357,6 @@ def test_a_road_without_paint_gives_empty_layers_stage_by_stage(street, tmp_path
         ("fitmarkinglines", "--CLUSTERED_POINTS=clusters.laz", "--MARKINGS=markings.gpkg", drive, "--MARKING_LINES=lines.gpkg"),
         ("drivinglines", "--MARKING_LINES=lines.gpkg", drive, "--DRIVING_LINES=driving.gpkg", "--CURVE_ELEMENTS=curves.gpkg"),
     ):
-        run = qgis_process("run", f"lanewright:{stage[0]}", *stage[1:], folder=tmp_path)
+        run = called("run", f"lanewright:{stage[0]}", *stage[1:], folder=tmp_path)
         assert run.returncode == 0, run.stderr
     assert feature_count(tmp_path / "driving.gpkg") == feature_count(tmp_path / "lines.gpkg") == 0

@@ -1,4 +1,4 @@
-"""Results in the formats and databases a mapping office keeps them in, by the real qgis_process."""
+"""Results in the formats and databases a mapping office keeps them in."""
 
 import os
 import pwd
@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 from osgeo import ogr
+from words import call
 
 pytestmark = pytest.mark.slow
 
@@ -20,8 +21,8 @@ PORT = "5433"
 ogr.UseExceptions()
 
 
-def run(*arguments, folder):
-    done = subprocess.run([QGIS_PROCESS, "run", *arguments], cwd=folder, capture_output=True, text=True, stdin=subprocess.DEVNULL)
+def run(*words, folder):
+    done = call("run", *words, folder=folder)
     assert done.returncode == 0, done.stderr
     return done
 
@@ -80,9 +81,8 @@ def test_a_drawing_takes_the_lines_with_their_heights(survey, tmp_path):
 
 @pytest.mark.parametrize("name, says", [("edges.dxf", "Export layers to DXF"), ("edges.lines", "no format that QGIS writes")])
 def test_a_format_that_cannot_hold_the_result_is_refused_before_the_work(survey, tmp_path, name, says):
-    done = subprocess.run([QGIS_PROCESS, "run", "lanewright:detectboundaries", f"--POINT_CLOUDS={survey / 's.laz'}",
-                           f"--TRAJECTORY={survey / 'drive.gpkg'}", f"--ROAD_EDGES={name}"],
-                          cwd=tmp_path, capture_output=True, text=True, stdin=subprocess.DEVNULL)
+    done = call("run", "lanewright:detectboundaries", f"--POINT_CLOUDS={survey / 's.laz'}", f"--TRAJECTORY={survey / 'drive.gpkg'}",
+                f"--ROAD_EDGES={name}", folder=tmp_path)
     assert done.returncode == 1 and says in done.stderr and "Reading" not in done.stdout
     assert not list(tmp_path.iterdir())
 
