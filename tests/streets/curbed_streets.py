@@ -65,10 +65,12 @@ def survey_of(points, drive=None, east=EAST, section_length=20.0, second=None, s
     rows = np.concatenate([np.array(d) for _, d in parts], axis=1)
     frame = build_frame(Trajectory(rows[0], rows[1] + east, rows[2] + NORTH, rows[3] + GROUND))
     store = SectionStore(SURVEY_POINT, section_length)
-    for number, (cloud, _) in enumerate(parts):
+    road = frame.road(0)
+    for number, (cloud, (driven_at, *track)) in enumerate(parts):
         x, y, z, time = cloud
         x, y, z = frame.to_local(x + east, y + NORTH, z + GROUND)
-        s, d = frame.road(0).locate(x, y)
+        along, _ = road.locate(*frame.to_local(track[0] + east, track[1] + NORTH, track[2] + GROUND)[:2])
+        s, d = road.locate(x, y, start=np.interp(time, driven_at, along))
         good = np.isfinite(s)
         records = np.zeros(good.sum(), SURVEY_POINT)
         for name, values in zip("xyzsd", (x, y, z, s, d)):

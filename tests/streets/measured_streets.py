@@ -58,7 +58,8 @@ def measured_road(drives=(Drive(),), scanners=((0.0, 0.0),), length=60.0, densit
         for scanner, (up, tilt, *turn) in enumerate(scanners):
             count = int(density * np.pi * SENSOR * length / len(scanners))
             across = SENSOR * np.tan(rng.uniform(-np.pi / 2, np.pi / 2, count))
-            px, py = rng.uniform(0, length, count), drive.offset + across
+            ahead = np.cumsum(rng.standard_exponential(count))  # strewn evenly, in order, from the first metre to the last
+            px, py = (ahead - ahead[0]) / (ahead[-1] - ahead[0]) * length, drive.offset + across
             kept = np.abs(py) < reach
             px, py, across = px[kept], py[kept], across[kept]
             pz = surface(py, **road) + grade * px
@@ -79,9 +80,12 @@ def measured_road(drives=(Drive(),), scanners=((0.0, 0.0),), length=60.0, densit
     frame = build_frame(Trajectory(time, *placed(x, y), z))
     store = SectionStore(SURVEY_POINT, 20.0)
     passes = {drive: next(p.number for p in frame.passes if abs(p.time[0] - 1000.0 * (drive + 1)) < 1.0) for drive in range(len(drives))}
+    road = frame.road(0)
     for drive, scanner, time, x, y, z in parts:
         lx, ly, lz = frame.to_local(*placed(x, y), z)
-        s, d = frame.road(0).locate(lx, ly)
+        track = rows[drive]
+        along, _ = road.locate(*frame.to_local(*placed(track[1], track[2]), track[3])[:2])
+        s, d = road.locate(lx, ly, start=np.interp(time, track[0], along))
         good = np.isfinite(s)
         records = np.zeros(good.sum(), SURVEY_POINT)
         for name, values in zip("xyzsd", (lx, ly, lz, s, d)):

@@ -30,10 +30,11 @@ def disc(s0, d0, diameter):
 
 
 def strewn(length, left, right, density, seed=1):
-    """Stations and offsets strewn evenly over a carriageway from offset `right` to `left`."""
+    """Stations, in order, and offsets strewn evenly over a carriageway from offset `right` to `left`."""
     rng = np.random.default_rng(seed)
     count = int(length * (left - right) * density)
-    return rng.uniform(0, length, count), rng.uniform(right, left, count)
+    ahead = np.cumsum(rng.standard_exponential(count + 1))  # as far apart as evenly strewn places in order are: nothing is sorted
+    return ahead[:-1] / ahead[-1] * length, rng.uniform(right, left, count)
 
 
 def street(frame, marks=(), length=80.0, left=4.0, right=-4.0, density=1500, noise=0.08, level=None, seed=1):

@@ -97,10 +97,11 @@ def test_other_paint_of_another_year_gives_no_pair(tmp_path, surveyed):
 
 
 def test_a_wrong_scale_and_a_bare_road_are_told(tmp_path, surveyed):
+    camera = Overhead(width=1200, height=500)
     with pytest.raises(RoadExtractionError, match="another scale"):
-        proposal(tmp_path, surveyed, Overhead(), rough=about(Overhead(), size=1.6))
+        proposal(tmp_path, surveyed, camera, rough=about(camera, size=1.6))
     with pytest.raises(RoadExtractionError, match="do not fit each other"):
-        proposal(tmp_path, surveyed, Overhead(), Ground([]))
+        proposal(tmp_path, surveyed, camera, Ground([]))
 
 
 def test_an_image_of_another_place_is_told_how_far_away_it_lies(tmp_path, surveyed):

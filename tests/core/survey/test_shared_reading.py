@@ -37,7 +37,7 @@ def street(tmp_path_factory):
     drives = [drive(path, start=1000.0), drive(path, start=2000.0)]
     clouds = []
     for k, (trajectory, kind) in enumerate(zip(drives, ("las", "laz"))):
-        x, y, z, measured = surveyed_points(trajectory)
+        x, y, z, measured = surveyed_points(trajectory, lines=4)
         clouds.append(write_cloud(folder / f"drive{k}.{kind}", x, y, z + 0.06 * k, measured, crs="EPSG:32632",
                                   intensity=np.arange(len(x)) % 997, channel=np.arange(len(x)) % 2))
     return joined(*drives), clouds
