@@ -92,7 +92,7 @@ def measure_corners(lines: PseudoScanLines, rows: np.ndarray, cells: np.ndarray,
     best = _measure(lines, rows, cells, owner, index, min_height, max_height)
     # positions that drifted between one view and the next blur a face that each view shows sharply: what is no
     # step in all points together may be one in the points seen from one side of the vehicle
-    ahead = lines.along.take(index) > 0
+    ahead = lines.along.take(lines.point.take(index)) > 0
     ahead_of, count = np.bincount(owner, ahead, len(rows)), np.bincount(owner, minlength=len(rows))
     mixed = np.minimum(ahead_of, count - ahead_of) >= MIN_VIEW_POINTS
     again = np.flatnonzero(best["likely"] & ~best["good"] & mixed)
@@ -115,7 +115,8 @@ def measure_corners(lines: PseudoScanLines, rows: np.ndarray, cells: np.ndarray,
 def _measure(lines, rows, cells, owner, index, min_height, max_height):
     """`StepPatches.corners` of rising cells, as stations and offsets; the points `index` belong to the cells `owner`."""
     edge, middle = lines.offset(cells), (lines.first + rows + 0.5) * lines.width
-    patches = StepPatches(owner, lines.u.take(index) - edge.take(owner), lines.s.take(index) - middle.take(owner), lines.h.take(index),
+    point = lines.point.take(index)
+    patches = StepPatches(owner, lines.u.take(point) - edge.take(owner), lines.s.take(point) - middle.take(owner), lines.h.take(index),
                           lines.noise[rows], min_height, max_height)
     found = patches.corners()
     skewed = np.flatnonzero(np.abs(found["skew"]) > REMEASURE_SKEW)
@@ -156,9 +157,6 @@ class StepPatches:
         owner = number[self.owner[own]]
         return StepPatches(owner, self.u[own] - skew[owner] * self.s[own], self.s[own], self.h[own], self.scanner_noise[which],
                            self.min_height, self.max_height, skew, self.graded)
-
-    def _total(self, mask, values=None):
-        return np.bincount(self.owner[mask], None if values is None else values[mask], minlength=self.count)
 
     def corners(self) -> dict[str, np.ndarray]:
         """The corner of every candidate.
@@ -218,20 +216,23 @@ class StepPatches:
 
     def _faces(self, rise, level, slope, grade, noise, n_road, height, n_behind, stays):
         """What `corners` returns, for candidates whose road side and height are known; `rise` : (N,) m of the points above the road."""
-        owner, u, s, count, total = self.owner, self.u, self.s, self.count, self._total
+        owner, u, s, count = self.owner, self.u, self.s, self.count
         scatter = np.maximum(noise, self.scanner_noise)
         # the part of the height that is surely neither road nor raised ground
         lower = np.minimum(np.maximum(FACE_LOWER_SHARE * height, 2 * scatter), 0.45 * height)
         upper = np.maximum(np.minimum(FACE_UPPER_SHARE * height, height - 2 * scatter), 0.55 * height)
-        face = (np.abs(u) < FACE_SEARCH_HALF_WIDTH) & (rise > lower[owner]) & (rise < upper[owner])
-        skew, straight = _skew(owner, u, s, face, scatter, count)
-        mid, spread = _median_and_spread(owner, straight, face, count)
-        face &= np.abs(straight - mid[owner]) < 0.05 + 2 * scatter[owner]
-        skew, straight = _skew(owner, u, s, face, scatter, count)
-        n_face = total(face)
-        mid, up, at = (_mean(total(face, v), n_face) for v in (straight, rise, s))
-        var_up = total(face, (rise - up[owner]) ** 2)
-        lean = total(face, (straight - mid[owner]) * (rise - up[owner])) / (var_up + n_face * FACE_PRIOR + 1e-9)
+        face = np.flatnonzero((np.abs(u) < FACE_SEARCH_HALF_WIDTH) & (rise > lower.take(owner)) & (rise < upper.take(owner)))
+        owner, u, s, rise = (v.take(face) for v in (owner, u, s, rise))
+        skew, straight = _skew(owner, u, s, scatter, count)
+        mid, spread = _median_and_spread(owner, straight, count)
+        near = np.flatnonzero(np.abs(straight - mid.take(owner)) < 0.05 + 2 * scatter.take(owner))
+        owner, u, s, rise = (v.take(near) for v in (owner, u, s, rise))
+        skew, straight = _skew(owner, u, s, scatter, count)
+        n_face = np.bincount(owner, minlength=count)
+        mid, up, at = (_mean(np.bincount(owner, v, count), n_face) for v in (straight, rise, s))
+        off = rise - up.take(owner)
+        var_up = np.bincount(owner, off ** 2, count)
+        lean = np.bincount(owner, (straight - mid.take(owner)) * off, count) / (var_up + n_face * FACE_PRIOR + 1e-9)
         corner = mid - np.clip(lean, -0.2, 0.8) * up
         # half the points of an even face lie within half its run; noise widens that
         share = np.maximum((upper - lower) / np.maximum(height, 1e-3), MIN_FACE_SHARE)
@@ -269,24 +270,23 @@ class StepPatches:
         return height, n_behind, level & (low <= np.maximum(MAX_LOW_SHARE * far, 1))
 
 
-def _skew(owner, u, s, mask, scatter, count):
+def _skew(owner, u, s, scatter, count):
     """How far the face turns away from the road's direction, and offsets with that taken out.
 
     Returns (count,) m outward per m along, close to 0 where there are few points or a
     short stretch, and (N,) m offsets moved along the face to its mean station.
     """
-    n = np.bincount(owner[mask], minlength=count)
-    at, out = (_mean(np.bincount(owner[mask], v[mask], count), n) for v in (s, u))
-    ds, du = s - at[owner], u - out[owner]
-    along = np.bincount(owner[mask], ds[mask] ** 2, count)
-    skew = np.bincount(owner[mask], (ds * du)[mask], count) / (along + SKEW_PRIOR + (5 * scatter) ** 2)
+    n = np.bincount(owner, minlength=count)
+    at, out = (_mean(np.bincount(owner, v, count), n) for v in (s, u))
+    ds, du = s - at.take(owner), u - out.take(owner)
+    along = np.bincount(owner, ds ** 2, count)
+    skew = np.bincount(owner, ds * du, count) / (along + SKEW_PRIOR + (5 * scatter) ** 2)
     skew = np.minimum(np.maximum(skew, -MAX_FACE_SKEW), MAX_FACE_SKEW)
-    return skew, u - skew[owner] * ds
+    return skew, u - skew.take(owner) * ds
 
 
-def _median_and_spread(owner, values, mask, count):
-    """Median and interquartile range of the masked values of each owner (0 where it has none)."""
-    owner, values = owner[mask], values[mask]
+def _median_and_spread(owner, values, count):
+    """Median and interquartile range of the values of each owner (0 where it has none)."""
     order = np.lexsort((values, owner))
     values = np.r_[values[order], 0.0]
     n = np.bincount(owner, minlength=count)

@@ -16,7 +16,7 @@ import numpy as np
 
 from ...common.order_statistics import decimate_cells
 from ...execution.phase import Executor, Recipe
-from ...survey.store.records import COORDINATE_SCALE, Points
+from ...survey.store.records import COORDINATE_SCALE, Points, join_columns
 from ...survey.store.spill_file import SpillFile
 from .level_strip import MIN_LEVEL_POINTS, LevelStrip, find_level_strip
 
@@ -34,6 +34,7 @@ MIN_STEP_HEIGHT = 0.03              # m, the least step that is looked for anywh
 MOSTLY_UNEVEN_SHARE = 0.7           # share of points in cells that are not level
 STRETCH_LENGTH = 5.0                # m of road that are read together
 DECIMATION_BLOCK_POINTS = 256_000   # points that are decided together
+JOINED_POINTS = 60_000              # points below which those of one stretch and the next are yielded together
 MIN_DENSE_SHARE = 0.5               # share of points in dense cells, below which the heights of the others are not looked at
 PROFILE_BOUND_TOLERANCE = 1e-6      # 0.1 mm: bounds between profiles are whole numbers of it, except for rounding
 DECIMATION_LOCKS = 16               # locks that stretches share while they are decided; the last one is the file's
@@ -95,7 +96,9 @@ class PointDecimation:
         ------
         Points of whole profiles in canonical order. The selection in a cell depends on the points of its profile alone.
         """
-        for first in range(profiles[0] // self._stretch * self._stretch, profiles[1], self._stretch):
+        waiting: list[Points] = []
+        begins = range(profiles[0] // self._stretch * self._stretch, profiles[1], self._stretch)
+        for first in begins:
             start, end = max(first, profiles[0]), min(first + self._stretch, profiles[1])
             points = self._window(road, start, end)
             if points_per_cell is not None and len(points):
@@ -104,7 +107,12 @@ class PointDecimation:
                 if rows is not None:
                     a, b = np.searchsorted(rows, (before, before + len(points)))
                     points = points[rows[a:b] - before]
-            yield from blocks_of_profiles(points, start * self.width, self.width)
+            # few points are worked on together with the next ones
+            waiting.append(points)
+            if first == begins[-1] or sum(map(len, waiting)) >= JOINED_POINTS:
+                joined = waiting[0] if len(waiting) == 1 else Points(join_columns([part.records for part in waiting], points.records.dtype))
+                waiting = []
+                yield from blocks_of_profiles(joined, start * self.width, self.width)
 
     def mostly_uneven(self, road: int, profile: int) -> bool:
         """Is the ground about a profile uneven nearly everywhere, as a noisy scanner shows it? Decimation would leave little out there."""
@@ -279,33 +287,53 @@ class _PointCells:
 
     def select(self) -> dict[int, Any]:
         """For every one of LEVEL_CELL_LIMITS (N,) bool, the points that are used, or True for all."""
-        dense = self.count > min(LEVEL_CELL_LIMITS)
-        in_dense = self.count[dense].sum()
+        dense = np.flatnonzero(self.count > min(LEVEL_CELL_LIMITS))
+        count = self.count.take(dense)
+        in_dense = count.sum()
         if not in_dense:
             return dict.fromkeys(LEVEL_CELL_LIMITS, True)
         if in_dense < MIN_DENSE_SHARE * len(self.s):
-            level = self.is_level(np.flatnonzero(dense.take(self.cell)))
+            # of the other cells all points are used
+            number = np.full(len(self.count), -1)
+            number[dense] = np.arange(len(dense))
+            cell = number.take(self.cell)
+            own = np.flatnonzero(cell >= 0)
+            s, d, cell = self.s.take(own), self.d.take(own), cell.take(own)
+            level = _is_level(_sums(cell, self.z.take(own), count)[1], count)
         else:
-            level = self.is_level()
-        rank, per_point = _hash_of_place(self.s, np.abs(self.d)), 65536.0 / np.maximum(self.count, 1)
-        return {limit: rank <= np.minimum(np.where(level, limit, POINTS_PER_UNEVEN_CELL) * per_point, 65535.0).astype(np.uint16).take(self.cell)
-                for limit in LEVEL_CELL_LIMITS}
+            own, s, d, cell, count, level = None, self.s, self.d, self.cell, self.count, self.is_level()
+        rank, per_point = _hash_of_place(s, np.abs(d)), 65536.0 / np.maximum(count, 1)
+        found = {}
+        for limit in LEVEL_CELL_LIMITS:
+            used = rank <= np.minimum(np.where(level, limit, POINTS_PER_UNEVEN_CELL) * per_point, 65535.0).astype(np.uint16).take(cell)
+            if own is not None:
+                those, used = used, np.ones(len(self.s), bool)
+                used[own] = those
+            found[limit] = used
+        return found
 
-    def is_level(self, own: np.ndarray | None = None) -> np.ndarray:
-        """(C,) bool: is the ground of each cell level? Known for cells of which all points are among `own` (indices, None for all)."""
-        cell, z = (self.cell, self.z) if own is None else (self.cell.take(own), self.z.take(own))
-        z = z.astype(float)
-        self.total = total = np.bincount(cell, z, len(self.count))
-        z *= z
-        squares = np.bincount(cell, z, len(self.count))
-        self.squares = squares - total * total / np.maximum(self.count, 1)
-        self.complete = own is None
-        return self.squares <= self.count * (LEVEL_CELL_STD / COORDINATE_SCALE) ** 2
+    def is_level(self) -> np.ndarray:
+        """(C,) bool: is the ground of each cell level?"""
+        self.total, self.squares = _sums(self.cell, self.z, self.count)
+        self.complete = True
+        return _is_level(self.squares, self.count)
 
     def grids(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """count, total and squares as (profiles, 2 sides, cells outward)."""
         shape = self.profiles, 2, self.half
         return self.count.reshape(shape), self.total.reshape(shape), self.squares.reshape(shape)
+
+
+def _sums(cell, z, count):
+    """Of every cell, with (C,) count points, the sum of heights and of their squared deviations from the mean."""
+    z = z.astype(float)
+    total = np.bincount(cell, z, len(count))
+    z *= z
+    return total, np.bincount(cell, z, len(count)) - total * total / np.maximum(count, 1)
+
+
+def _is_level(squares, count):
+    return squares <= count * (LEVEL_CELL_STD / COORDINATE_SCALE) ** 2
 
 
 def _mostly_uneven(records, width, spacing):

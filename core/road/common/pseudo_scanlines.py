@@ -30,6 +30,8 @@ MIN_SCANNER_NOISE = 0.002       # m
 DEFAULT_SCANNER_NOISE = 0.005   # m, where too few cells hold enough points for an estimate
 SIGMA_PER_MEAN_DEVIATION = 1.2533   # of a normal distribution: sqrt(pi / 2)
 MAX_GROUND_DEVIATION = 0.15     # m from a cell's ground within which points count for the scanner's noise
+PROFILE_NOISE_POINTS = 4        # points of the lowest layer of a cell, and
+PROFILE_NOISE_CELLS = 20        # such cells of a profile, that an estimate of its noise needs
 MIN_SPREAD_POINTS = 5           # points of a cell, and
 MIN_SPREAD_CELLS = 10           # such cells of a profile, that an estimate of its spread needs
 SPREAD_PROFILES = 6             # profiles on either side that are estimated together
@@ -102,11 +104,12 @@ class PseudoScanLines:
     first : number of the first of P profiles; station of profile k's middle is (k + 1/2) * width
     width, spacing : m of road per profile, and m across per cell
     origin : m, outward offset at which the first of C cells begins
-    u, s, h : (N,) m, the points, sorted by profile, cell and height: outward offset, station, and height above the
-        expected road, which removes the grade
+    point : (N,) the points, sorted by profile, cell and height, by their rows in the next three
+    u, s : (N,) m, outward offset and station
     along : (N,) m along the road from the vehicle to the point when it was measured
-    ground : (N,) bool, points of the lowest layer
-    starts : (P * C + 1,) index of the first point of every cell
+    h : (N,) m, height of the sorted points above the expected road, which removes the grade
+    ground : (N,) bool, sorted points of the lowest layer
+    starts : (P * C + 1,) index of the first sorted point of every cell
     low, high : (P, C) m, median and high quantile of the lowest layer, NaN where there is no point
     noise : (P,) m, spread of heights within a cell of level road
     spread : (P,) m, the same with the points of all layers near the ground, in the smoother cells over a few
@@ -117,10 +120,11 @@ class PseudoScanLines:
     width: float
     spacing: float
     origin: float
+    point: np.ndarray
     u: np.ndarray
     s: np.ndarray
-    h: np.ndarray
     along: np.ndarray
+    h: np.ndarray
     ground: np.ndarray
     starts: np.ndarray
     low: np.ndarray
@@ -146,9 +150,10 @@ class PseudoScanLines:
 
 def seen_from(lines: PseudoScanLines, nearest: float, farthest: float, layer_jump: float) -> PseudoScanLines:
     """The same profiles from the points alone that lay `nearest` <= distance < `farthest` metres ahead when they were measured."""
-    own = np.flatnonzero((lines.along >= nearest) & (lines.along < farthest))
-    rows, cells = lines.shape
-    seen = pseudo_scan_lines(lines.u[own], lines.s[own], lines.h[own], lines.along[own], (lines.first, lines.first + rows),
+    along = lines.along.take(lines.point)
+    own = np.flatnonzero((along >= nearest) & (along < farthest))
+    point, (rows, cells) = lines.point.take(own), lines.shape
+    seen = pseudo_scan_lines(lines.u.take(point), lines.s.take(point), lines.h.take(own), along.take(own), (lines.first, lines.first + rows),
                              lines.width, lines.spacing, layer_jump, lines.origin, lines.origin + cells * lines.spacing)
     return replace(seen, spread=lines.spread)
 
@@ -188,10 +193,11 @@ class ProfileRun:
     """
 
     profiles: tuple[int, int]
+    point: np.ndarray
     u: np.ndarray
     s: np.ndarray
-    h: np.ndarray
     along: np.ndarray
+    h: np.ndarray
     ground: np.ndarray
     count: np.ndarray
     low: np.ndarray
@@ -213,22 +219,21 @@ def ground_of_profiles(points: Sequence[np.ndarray], inside: np.ndarray, place: 
     layer_jump : m of height between two layers
     """
     rows = profiles[1] - profiles[0]
-    height = points[2].take(inside)
-    height += GROUND_DEPTH
+    u, s, h, along = (v.take(inside) for v in points)
+    height = h + GROUND_DEPTH
     height *= 1e4
     order = order_by(np.rint(height, out=height).astype(np.int32), place)
-    place, inside = place.take(order), inside.take(order)
-    u, s, h, along = (v.take(inside) for v in points)
+    place, h = place.take(order), h.take(order)
     ground, first_of, count = lowest_layers(place, h, layer_jump)
-    low, high, noise = (np.full((rows, cells), np.nan) for _ in range(3))
+    low, high = (np.full((rows, cells), np.nan) for _ in range(2))
     owner = place[first_of]
     middle = 0.5 * (h[first_of + (count - 1) // 2] + h[first_of + count // 2])
     top = h[first_of + np.rint(TOP_QUANTILE * (count - 1)).astype(np.int64)]
     low.flat[owner], high.flat[owner] = middle, top
-    many = count >= 4
-    noise.flat[owner[many]] = (top - middle)[many] / TOP_QUANTILE_SIGMAS
+    many = np.flatnonzero(count >= PROFILE_NOISE_POINTS)
+    noise = _profile_noise(owner.take(many) // cells, (top.take(many) - middle.take(many)) / TOP_QUANTILE_SIGMAS, rows)
     held = np.bincount(place, minlength=rows * cells).reshape(rows, cells)
-    return ProfileRun(profiles, u, s, h, along, ground, held, low, high, _profile_noise(noise), _smooth(h, held, low))
+    return ProfileRun(profiles, order, u, s, along, h, ground, held, low, high, noise, _smooth(h, held, low))
 
 
 def join_profile_runs(runs: Sequence[ProfileRun], profiles: tuple[int, int], width: float, spacing: float,
@@ -241,10 +246,11 @@ def join_profile_runs(runs: Sequence[ProfileRun], profiles: tuple[int, int], wid
     for run in runs:
         own = slice(run.profiles[0] - profiles[0], run.profiles[1] - profiles[0])
         low[own], high[own], held[own], noise[own], smooth[own] = run.low, run.high, run.count, run.noise, run.smooth
-    u, s, h, along, ground = (np.concatenate([getattr(run, name) for run in runs]) for name in ("u", "s", "h", "along", "ground"))
-    return PseudoScanLines(profiles[0], width, spacing, origin, u, s, h, along, ground, np.r_[0, np.cumsum(held)], low, high, noise,
+    u, s, along, h, ground = (np.concatenate([getattr(run, name) for run in runs]) for name in ("u", "s", "along", "h", "ground"))
+    before = np.cumsum([0] + [len(run.point) for run in runs[:-1]])
+    point = np.concatenate([run.point + first for run, first in zip(runs, before)])
+    return PseudoScanLines(profiles[0], width, spacing, origin, point, u, s, along, h, ground, np.r_[0, np.cumsum(held)], low, high, noise,
                            _spread(smooth))
-
 
 
 def cells_of_points(u: np.ndarray, s: np.ndarray, h: np.ndarray, rows: np.ndarray, profiles: tuple[int, int], cells: int,
@@ -274,28 +280,34 @@ def cells_of_points(u: np.ndarray, s: np.ndarray, h: np.ndarray, rows: np.ndarra
     return (rows, place) if within.all() else (rows[within], place[within])
 
 
-def _profile_noise(noise):
-    """(P,) median spread of each profile's cells."""
-    dense = np.isfinite(noise).sum(1) >= 20
-    return np.where(dense, np.fmax(_row_median(noise), MIN_SCANNER_NOISE), DEFAULT_SCANNER_NOISE)
+def _profile_noise(profile, spread, count):
+    """(count,) median spread of each profile's cells; (M,) the profile, ascending, and the spread of cells."""
+    ordered, n = _sorted_rows(profile, spread, count)
+    k, own = np.maximum(n - 1, 0), np.arange(count)
+    median = 0.5 * (ordered[own, k // 2] + ordered[own, (k + 1) // 2])
+    return np.where(n >= PROFILE_NOISE_CELLS, np.fmax(median, MIN_SCANNER_NOISE), DEFAULT_SCANNER_NOISE)
 
 
 def _smooth(h, held, low):
     """(P,) spread of heights about the ground of their cells, in the smoother cells of every profile; NaN where there are too few."""
-    rows, there = len(low), np.flatnonzero(held)
-    own = np.full(low.shape, np.nan)
-    if len(there):
-        size = held.flat[there]
-        first = np.cumsum(size) - size
-        off = np.abs(h - np.repeat(low.flat[there], size))
-        near, count = off < MAX_GROUND_DEVIATION, size
-        if not near.all():
-            off = np.where(near, off, 0.0)
-            count = np.add.reduceat(near, first, dtype=np.int64)
-        mean = SIGMA_PER_MEAN_DEVIATION * np.add.reduceat(off, first) / np.maximum(count, 1)
-        own.flat[there] = np.where(count >= MIN_SPREAD_POINTS, mean, np.nan)
+    rows, cells = low.shape
+    held, low = held.ravel(), low.ravel()
+    crowded = np.flatnonzero(held >= MIN_SPREAD_POINTS)
+    if not len(crowded):
+        return np.full(rows, np.nan)
+    size = held.take(crowded)
+    start = (np.cumsum(held) - held).take(crowded)
+    _, index = expand_ranges(start, start + size)
+    first = np.cumsum(size) - size
+    off = np.abs(h.take(index) - np.repeat(low.take(crowded), size))
+    near, count = off < MAX_GROUND_DEVIATION, size
+    if not near.all():
+        off = np.where(near, off, 0.0)
+        count = np.add.reduceat(near, first, dtype=np.int64)
+    mean = SIGMA_PER_MEAN_DEVIATION * np.add.reduceat(off, first) / np.maximum(count, 1)
+    enough = np.flatnonzero(count >= MIN_SPREAD_POINTS)
     # grass is rough to any scanner, so the smoother cells give the estimate
-    ordered, n = _sorted_rows(own)
+    ordered, n = _sorted_rows(crowded.take(enough) // cells, mean.take(enough), rows)
     return np.where(n >= MIN_SPREAD_CELLS, ordered[np.arange(rows), np.maximum(n - 1, 0) * 3 // 10], np.nan)
 
 
@@ -309,19 +321,10 @@ def _spread(smooth):
     return np.where(known > 0, middle, MIN_SCANNER_NOISE)
 
 
-def _sorted_rows(values):
-    """Every row sorted, without its NaN, padded with NaN to the longest; and the number of values of each."""
-    there = np.isfinite(values)
-    count = there.sum(1)
-    found = np.full((len(values), max(int(count.max(initial=0)), 1)), np.nan)
-    found[np.arange(found.shape[1]) < count[:, None]] = values[there]
+def _sorted_rows(row, values, rows):
+    """The (M,) values of every row, (M,) ascending, sorted and padded with NaN to the longest; and the number of values of each."""
+    count = np.bincount(row, minlength=rows)
+    found = np.full((rows, max(int(count.max(initial=0)), 1)), np.nan)
+    found[np.arange(found.shape[1]) < count[:, None]] = values
     found.sort(axis=1)
     return found, count
-
-
-def _row_median(values):
-    """Median of every row without its NaN (NaN where a row has none)."""
-    ordered, count = _sorted_rows(values)
-    k = np.maximum(count - 1, 0)
-    rows = np.arange(len(values))
-    return 0.5 * (ordered[rows, k // 2] + ordered[rows, (k + 1) // 2])

@@ -232,7 +232,8 @@ class KnownPlaces:
         """(N,) bool, is one of the places within a distance of (N,) local places?"""
         if not self._tree.n or not len(x):
             return np.zeros(len(x), bool)
-        return self._tree.query(np.c_[x, y])[0] <= distance
+        # the tree finds what is nearer than its bound
+        return self._tree.query(np.c_[x, y], distance_upper_bound=np.nextafter(distance, np.inf))[0] <= distance
 
 
 def plan_steps_of_section(decimation: PointDecimation, section: tuple[int, int], road: int, limits: Mapping[str, SearchLimit],
@@ -280,26 +281,26 @@ def plan_steps_of_section(decimation: PointDecimation, section: tuple[int, int],
     clear = settings.limits.clear_height
     driven, stepped = driven_ground(raster, slopes, track[0], track[1], [v[inner] for v in place[:2]], barrier[0], barrier[1], clear)
 
-    def wanted(x, y):
-        own, _ = line.locate(x, y)
+    def wanted(x, y, before_curbs=False):
+        own, d = line.locate(x, y)
         fresh = (own >= start) & (own < end)
-        return fresh & ~known.within(x, y, MAIN_CURB_DISTANCE)
+        if before_curbs:
+            fresh &= ~np.any([sign * d > limits[side](own, 0.0, 0.0) for side, sign in SIDE_SIGNS.items()], axis=0)
+        which = np.flatnonzero(fresh)
+        fresh[which] = ~known.within(x.take(which), y.take(which), MAIN_CURB_DISTANCE)
+        return fresh
 
     x, y, nx, ny = step_places(raster, slopes, driven, stepped, clear, settings.max_height, wanted)
-    fresh = wanted(x, y)
     at, _ = line.locate(tips.x, tips.y)
     tips = tips[(at >= start) & (at < end)]
-    if not fresh.any() and not len(tips):
+    if not len(x) and not len(tips):
         return None
     views = _averaged_views(raster, place, along, settings.layer_jump) if noisy else [raster]
-    steps = measure_plan_steps(views, x[fresh], y[fresh], nx[fresh], ny[fresh], 0.5 * clear, settings.max_height)
+    steps = measure_plan_steps(views, x, y, nx, ny, 0.5 * clear, settings.max_height)
     ends = FollowedEnds.join([tips, FollowedEnds.of_chains(link_plan_steps(steps), steps)])
 
-    def before_curbs(x, y):
-        own, d = line.locate(x, y)
-        return wanted(x, y) & ~np.any([sign * d > limits[side](own, 0.0, 0.0) for side, sign in SIDE_SIGNS.items()], axis=0)
-
-    further = followed_steps(views[0], ends, 0.5 * clear, settings.max_height, settings.limits.clear_slope, before_curbs)
+    further = followed_steps(views[0], ends, 0.5 * clear, settings.max_height, settings.limits.clear_slope,
+                             lambda x, y: wanted(x, y, before_curbs=True))
     steps = PlanSteps.join([steps, further])
     if not len(steps):
         return None

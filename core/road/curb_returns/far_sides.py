@@ -44,7 +44,7 @@ def far_sides(raster: GroundRaster, steps: PlanSteps, behind: GroundBehind) -> P
     if not len(x):
         return PlanSteps.none()
     nx, ny, in_line = line_directions(x, y, -own.nx, -own.ny)
-    owner, u, _, h = points_about(raster, raster.by_cell(x, y, 2 * EDGE_REACH), x, y, nx, ny, EDGE_HALF_LENGTH)
+    owner, u, _, h = points_about(raster, raster.by_cell, x, y, nx, ny, EDGE_HALF_LENGTH)
     top = np.flatnonzero((h - bottom.take(owner) >= MIN_TOP_SHARE * own.height.take(owner)) & (np.abs(u) <= EDGE_REACH))
     edge = np.full(len(x), np.inf)
     np.minimum.at(edge, owner.take(top), u.take(top))

@@ -14,8 +14,8 @@ import numpy as np
 
 from ...common.rows import Rows
 from ..common.tracking import HEIGHT_TOLERANCE, MAX_ROAD_ROUGHNESS
-from .raster import GroundRaster
-from .steps import LONG_HALF_LENGTH, SHORT_HALF_LENGTH, PlanSteps, seen_at
+from .raster import PLAN_CELL, GroundRaster
+from .steps import LONG_HALF_LENGTH, PATCH_HALF_WIDTH, SHORT_HALF_LENGTH, PlanSteps, points_about, steps_of_points
 from .tracking import LINE_DIRECTION_LENGTH, MAX_HEIGHT_GRADE, MAX_PLAN_LINK, LineEnds, PlanStepChain
 
 FOLLOWING_STEP = 0.4          # m along a curb from one measurement to the next
@@ -87,7 +87,6 @@ def followed_steps(raster: GroundRaster, ends: FollowedEnds, min_height: float, 
     -------
     PlanSteps
     """
-    points = raster.by_cell(ends.x, ends.y, FOLLOWED_LENGTH + FOLLOWED_HALF_LENGTHS[-1])
     # the places behind an end, from which its direction follows
     back = FOLLOWING_STEP * np.arange(FOLLOWED_STEPS, 0, -1)
     trail_x, trail_y = ends.x[:, None] - back * ends.tx[:, None], ends.y[:, None] - back * ends.ty[:, None]
@@ -100,7 +99,7 @@ def followed_steps(raster: GroundRaster, ends: FollowedEnds, min_height: float, 
         if not len(x):
             break
         nx, ny = ends.uphill * ends.ty, -ends.uphill * ends.tx
-        steps, good = _measured_across(raster, points, x, y, nx, ny, min_height, max_height)
+        steps, good = _measured_across(raster, x, y, nx, ny, min_height, max_height)
         with np.errstate(invalid="ignore"):
             ratio = steps.height / ends.height
             good &= ~((ratio > FOLLOWED_HEIGHT_RATIO) | (ratio < 1 / FOLLOWED_HEIGHT_RATIO))
@@ -120,16 +119,36 @@ def followed_steps(raster: GroundRaster, ends: FollowedEnds, min_height: float, 
     return PlanSteps.join(found) if found else PlanSteps.none()
 
 
-def _measured_across(raster, points, x, y, nx, ny, min_height, max_height):
+def _measured_across(raster, x, y, nx, ny, min_height, max_height):
     """A step across each place, from near points where they show it, else from points farther along; and (M,) bool: is it one, there?"""
-    steps, good = None, np.zeros(len(x), bool)
+    good = np.zeros(len(x), bool)
+    steps = PlanSteps(*(np.zeros(len(x), column.dtype) for column in PlanSteps.none().columns()))
     for half in FOLLOWED_HALF_LENGTHS:
-        seen, those = seen_at(raster, points, x, y, nx, ny, half, min_height, max_height, graded=True)
+        left = np.flatnonzero(~good)
+        about = points_about(raster, raster.by_cell, *(v.take(left) for v in (x, y, nx, ny)), half)
+        # points on all sides, and few, are what most places lack
+        few, about = _few_all_around(about, len(left), half)
+        left = left[few]
+        if not len(left):
+            continue
+        own = tuple(v.take(left) for v in (x, y, nx, ny))
+        seen, those = steps_of_points(about, *own, raster.noise, min_height, max_height, graded=True)
         # the line says where along the curb the step is measured, and the face how far across
         across = seen["u"] - seen["skew"] * seen["s"]
-        those.x, those.y = x + across * nx, y + across * ny
-        there = seen["good"] & (np.abs(across) <= FOLLOWED_ACROSS) & (np.abs(seen["skew"]) <= FOLLOWED_SKEW) \
-            & (seen["around"] >= MIN_QUARTER_POINTS) & (seen["density"] <= MAX_FOLLOWED_POINTS)
-        steps = those if steps is None else PlanSteps(*(np.where(good, a, b) for a, b in zip(steps.columns(), those.columns())))
-        good = good | there
+        those.x, those.y = own[0] + across * own[2], own[1] + across * own[3]
+        there = seen["good"] & (np.abs(across) <= FOLLOWED_ACROSS) & (np.abs(seen["skew"]) <= FOLLOWED_SKEW)
+        for column, values in zip(steps.columns(), those.columns()):
+            column[left] = values
+        good[left] = there
     return steps, good
+
+
+def _few_all_around(about, count, half):
+    """(K,) indices of those of `count` places that have points on both sides of the curb, before and behind, but not too many; their points."""
+    owner, u, v, h = about
+    quarter = np.bincount(4 * owner + 2 * (u > 0) + (v > 0), minlength=4 * count).reshape(-1, 4)
+    density = quarter.sum(axis=1) * PLAN_CELL**2 / (4 * PATCH_HALF_WIDTH * half)
+    there = (quarter.min(axis=1) >= MIN_QUARTER_POINTS) & (density <= MAX_FOLLOWED_POINTS)
+    own = np.flatnonzero(there.take(owner))
+    number = np.cumsum(there) - 1
+    return np.flatnonzero(there), (number.take(owner.take(own)), u.take(own), v.take(own), h.take(own))

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -86,22 +87,19 @@ class GroundRaster:
         """Local x, y of the middle of cells."""
         return self.x0 + (column + 0.5) * PLAN_CELL, self.y0 + (row + 0.5) * PLAN_CELL
 
-    def by_cell(self, x: np.ndarray, y: np.ndarray, reach: float) -> tuple[np.ndarray, ...]:
-        """The points within `reach` metres of local places, sorted by cell.
+    @cached_property
+    def by_cell(self) -> tuple[np.ndarray, ...]:
+        """The points sorted by cell.
 
         Returns
         -------
-        x, y, h : (M,) m, the points
+        x, y, h : (N,) m, the points
         starts : (rows * columns + 1,) index of the first point of every cell
         """
-        near = np.zeros(self.low.shape, np.uint8)
-        near[self.inside(x, y)] = 1
-        cells = 2 * int(np.ceil(reach / PLAN_CELL)) + 1
-        near = cv2.dilate(near, np.ones((cells, cells), np.uint8)).ravel().view(bool)
-        own = np.flatnonzero(near.take(self.place))
-        order = own.take(order_by(self.place.take(own)))
-        count = np.bincount(self.place.take(order), minlength=self.low.size)
-        return self.x.take(order), self.y.take(order), self.h.take(order), np.r_[0, np.cumsum(count)]
+        order = order_by(self.place)
+        starts = np.zeros(self.low.size + 1, np.int64)
+        np.cumsum(np.bincount(self.place, minlength=self.low.size), out=starts[1:])
+        return self.x.take(order), self.y.take(order), self.h.take(order), starts
 
 
 def ground_raster(x: np.ndarray, y: np.ndarray, h: np.ndarray, layer_jump: float) -> GroundRaster | None:
@@ -125,11 +123,15 @@ def ground_raster(x: np.ndarray, y: np.ndarray, h: np.ndarray, layer_jump: float
     column -= first_column
     place = row
     place += column
-    above = _above_ground(place, h, rows * columns, layer_jump)
+    n, total, squares = _sums(place, h, rows * columns)
+    parted, above = _above_ground(place, h, n, total, squares, layer_jump)
     if above.any():
         ground = np.flatnonzero(~above)
         x, y, h, place = (v.take(ground) for v in (x, y, h, place))
-    n, total, squares = _sums(place, h, rows * columns)
+        # in the other cells all points are ground
+        again = np.flatnonzero(parted.take(place))
+        for old, new in zip((n, total, squares), _sums(place.take(again), h.take(again), rows * columns)):
+            np.copyto(old, new, where=parted)
     with np.errstate(invalid="ignore", divide="ignore"):
         low = total / n
         spread = np.sqrt(np.maximum(squares - total * low, 0.0) / (n - 1))
@@ -139,9 +141,8 @@ def ground_raster(x: np.ndarray, y: np.ndarray, h: np.ndarray, layer_jump: float
     return GroundRaster(first_column * PLAN_CELL, first_row * PLAN_CELL, x, y, h, place, low.reshape(rows, columns), noise)
 
 
-def _above_ground(place, h, cells, layer_jump):
-    """(N,) bool: does a point lie in another layer than the lowest of its cell?"""
-    n, total, squares = _sums(place, h, cells)
+def _above_ground(place, h, n, total, squares, layer_jump):
+    """Which cells may have several layers, and (N,) bool: does a point lie in another layer than the lowest of its cell?"""
     with np.errstate(invalid="ignore", divide="ignore"):
         # heights on either side of a gap have at least this sum of squares about their mean
         parted = squares - total * total / n > 0.99 * layer_jump**2 * (n - 1) / n
@@ -151,7 +152,7 @@ def _above_ground(place, h, cells, layer_jump):
         order = own.take(order_by(np.rint((h.take(own) + PLAN_GROUND_DEPTH) * 1e4).astype(np.int32), place.take(own)))
         ground, _, _ = lowest_layers(place.take(order), h.take(order), layer_jump)
         above[order] = ~ground
-    return above
+    return parted, above
 
 
 def _sums(place, h, cells):
@@ -214,11 +215,12 @@ def ground_slopes(low: np.ndarray) -> list[np.ndarray]:
 def _median_about(values, size):
     """Median of a square of cells about each one, without NaN; 0 where there is nothing else."""
     around = np.lib.stride_tricks.sliding_window_view(np.pad(values, size // 2, constant_values=np.nan), (size, size))
-    count = np.isfinite(around).sum((2, 3))
-    own = count > 0
-    ordered = np.sort(around[own].reshape(-1, size * size), axis=1)
+    count = cv2.boxFilter(np.isfinite(values).astype(np.uint8), cv2.CV_32S, (size, size), normalize=False, borderType=cv2.BORDER_CONSTANT)
     middle = np.zeros(values.shape)
-    middle[own] = ordered[np.arange(len(ordered)), (count[own] - 1) // 2]
+    full, some = count == size * size, (count > 0) & (count < size * size)
+    middle[full] = np.partition(around[full].reshape(-1, size * size), size * size // 2, axis=1)[:, size * size // 2]
+    ordered = np.sort(around[some].reshape(-1, size * size), axis=1)
+    middle[some] = ordered[np.arange(len(ordered)), (count[some] - 1) // 2]
     return middle
 
 
@@ -281,7 +283,7 @@ def step_places(raster: GroundRaster, slopes: Sequence[np.ndarray], driven: np.n
     slopes : result of `ground_slopes`
     driven, stepped : result of `driven_ground`
     min_height, max_height : m, of a step
-    wanted : function, local x, y -> (N,) bool: squares without such a cell may be left out
+    wanted : function, local x, y -> (N,) bool: only these are returned, and squares without such a cell are not looked at
 
     Returns
     -------
@@ -290,27 +292,32 @@ def step_places(raster: GroundRaster, slopes: Sequence[np.ndarray], driven: np.n
     """
     beside = _grown(driven, _diamond(MAX_CELLS_FROM_ROAD))
     row, column = np.nonzero(stepped & beside)
+    asked = np.ones(len(row), bool)
     if wanted is not None:
         x, y = raster.middle(row, column)
+        asked = wanted(x, y)
         _, square = np.unique(_squares(x, y), return_inverse=True)
-        own = np.flatnonzero(np.bincount(square, wanted(x, y))[square])
-        row, column = row[own], column[own]
+        own = np.flatnonzero(np.bincount(square, asked)[square])
+        row, column, asked = row[own], column[own], asked[own]
     ground = np.pad(raster.low, PATCH_CELLS, constant_values=np.nan)
     parts = [_rises_at(raster, ground, slopes, row[a:a + STEPS_PER_BATCH], column[a:a + STEPS_PER_BATCH], min_height, max_height)
              for a in range(0, len(row), STEPS_PER_BATCH)]
-    x, y, nx, ny, cost = np.concatenate(parts, axis=1) if parts else np.empty((5, 0))
+    good, rises = (np.concatenate(column, axis=-1) for column in zip(*parts)) if parts else (np.empty(0, bool), np.empty((5, 0)))
+    x, y, nx, ny, cost = rises
     best = _one_of_each_square(x, y, cost)
+    best = best[asked[good][best]]
     return x[best], y[best], nx[best], ny[best]
 
 
 def _rises_at(raster, ground, slopes, row, column, min_height, max_height):
-    """The cells at which the ground rises like a step: x, y, unit vector uphill, and how far the middle of the step is off; (5, M).
+    """Which cells rise like a step, and of these x, y, unit vector uphill, and how far the middle of the step is off, (5, M).
 
     ground : of the raster, padded by PATCH_CELLS empty cells
     """
     reach = np.arange(-PATCH_CELLS, PATCH_CELLS + 1)
     down, along = (v.ravel() for v in np.meshgrid(reach, reach, indexing="ij"))
-    around = ground[row[:, None] + down + PATCH_CELLS, column[:, None] + along + PATCH_CELLS]
+    width = ground.shape[1]
+    around = ground.ravel().take(((row + PATCH_CELLS) * width + column + PATCH_CELLS)[:, None] + (down * width + along))
     dx, dy = along * PLAN_CELL, down * PLAN_CELL
     sx, sy = (v[row, column] for v in slopes)
     around -= sx[:, None] * dx + sy[:, None] * dy
@@ -329,7 +336,7 @@ def _rises_at(raster, ground, slopes, row, column, min_height, max_height):
         good = (part > 0.15) & (part < 0.85) & (rise >= MIN_PLAN_RISE_SHARE * min_height) & (rise <= max_height + 0.05) \
             & (rough <= MAX_PLAN_ROUGHNESS_SHARE * rise)
     # the middle of the step, not of the cell
-    return np.array([*raster.middle(row[good], column[good]), nx[good], ny[good], np.abs(part - 0.5)[good]])
+    return good, np.array([*raster.middle(row[good], column[good]), nx[good], ny[good], np.abs(part - 0.5)[good]])
 
 
 def _gradient(values, mask, dx, dy):

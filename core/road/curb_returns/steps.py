@@ -21,7 +21,6 @@ MAX_LINE_SCATTER = 0.12       # m, scatter across that line
 MAX_FACE_OFFSET = 0.10        # m that a step may lie from the place where it is looked for
 # m either way across of the points that measure one step
 PATCH_HALF_WIDTH = max(ROAD_SIDE_LENGTH + FACE_MARGIN, BEHIND_LENGTH) + MAX_FACE_OFFSET
-MEASURING_RADIUS = 2.0        # m from where steps are looked for within which they are measured, in whatever direction
 CELL_ROUNDING = 1e-3          # cells, so that rounding leaves no point out
 MEASURING_ROUNDS = 3          # measurements of a step, each across the direction that the one before gave
 REMEASURE_OFFSET = 0.04       # m from where it was looked for above which a step is measured again
@@ -80,11 +79,13 @@ def measure_plan_steps(rasters: Sequence[GroundRaster], x: np.ndarray, y: np.nda
     # the slope of the ground gives the direction where points are dense, else the line that the steps make
     found, left = [], np.arange(len(x))
     for raster in rasters:
-        points = raster.by_cell(x[left], y[left], MEASURING_RADIUS)
+        points = raster.by_cell
         steps, good = _measured(raster, points, x[left], y[left], nx[left], ny[left], SHORT_HALF_LENGTH, min_height, max_height)
         found.append(steps)
         left = left[~good & in_line[left]]
         for half in (SHORT_HALF_LENGTH, LONG_HALF_LENGTH):
+            if not len(left):
+                return PlanSteps.join(found)
             steps, good = _measured(raster, points, x[left], y[left], line_x[left], line_y[left], half, min_height, max_height)
             found.append(steps)
             left = left[~good]
@@ -108,7 +109,7 @@ def _measured(raster, points, x, y, nx, ny, half, min_height, max_height):
 
 
 def seen_at(raster: GroundRaster, points: tuple[np.ndarray, ...], x: np.ndarray, y: np.ndarray, nx: np.ndarray, ny: np.ndarray, half: float,
-            min_height: float, max_height: float, graded: bool = False) -> tuple[dict[str, np.ndarray], PlanSteps]:
+            min_height: float, max_height: float) -> tuple[dict[str, np.ndarray], PlanSteps]:
     """What the points about each place show across a direction.
 
     Parameters
@@ -119,17 +120,19 @@ def seen_at(raster: GroundRaster, points: tuple[np.ndarray, ...], x: np.ndarray,
     nx, ny : (M,) unit vectors uphill
     half : m either way along the curb of the points that are used
     min_height, max_height : m, of a step
-    graded : as of StepPatches
 
     Returns
     -------
-    result of `StepPatches.corners`, with `around`, the least number of points on either side of the curb before and behind the place, and
-    `density`, points for each cell; and M PlanSteps, of which those are steps that are `good`
+    result of `StepPatches.corners`, and M PlanSteps, of which those are steps that are `good`
     """
-    owner, u, v, h = points_about(raster, points, x, y, nx, ny, half)
-    seen = StepPatches(owner, u, v, h, np.full(len(x), raster.noise), min_height, max_height, graded=graded).corners()
-    quarter = np.bincount(4 * owner + 2 * (u > 0) + (v > 0), minlength=4 * len(x)).reshape(-1, 4)
-    seen["around"], seen["density"] = quarter.min(axis=1), quarter.sum(axis=1) * PLAN_CELL**2 / (4 * PATCH_HALF_WIDTH * half)
+    return steps_of_points(points_about(raster, points, x, y, nx, ny, half), x, y, nx, ny, raster.noise, min_height, max_height)
+
+
+def steps_of_points(about: tuple[np.ndarray, ...], x: np.ndarray, y: np.ndarray, nx: np.ndarray, ny: np.ndarray, noise: float,
+                    min_height: float, max_height: float, graded: bool = False) -> tuple[dict[str, np.ndarray], PlanSteps]:
+    """`seen_at` of points that are known: `about` is the result of `points_about`; `noise` in m; `graded` as of StepPatches."""
+    owner, u, v, h = about
+    seen = StepPatches(owner, u, v, h, np.full(len(x), noise), min_height, max_height, graded=graded).corners()
     # the tangent is the uphill direction turned to the left
     return seen, PlanSteps(x + seen["u"] * nx - seen["s"] * ny, y + seen["u"] * ny + seen["s"] * nx, *_rotated(nx, ny, seen["skew"]),
                            *(seen[name] for name in ("h", "height", "run", "noise", "support", "behind")))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...common.runs import best_within
 from ..common.corners import BEHIND_LENGTH, FACE_MARGIN, MAX_ROAD_SLOPE, MIN_STEP_SIGMAS, ROAD_SIDE_LENGTH, CurbSteps, measure_corners
 from ..common.pseudo_scanlines import TOP_QUANTILE_SIGMAS, PseudoScanLines
 
@@ -32,27 +33,32 @@ def _rising_cells(lines, min_height, max_height):
     """(row, cell) of the cells in which a profile crosses the middle of a step."""
     low, high, spacing = lines.low, lines.high, lines.spacing
     span = max(int(round(MAX_RISE_WIDTH / spacing)), 2)
-    top = _max_ahead(high, span) - TOP_QUANTILE_SIGMAS * lines.noise[:, None]
+    # only occupied cells are looked at, profile by profile outward
+    place = np.flatnonzero(np.isfinite(high))
+    row = place // low.shape[1]
+    column = place - row * low.shape[1]
+    offset = column * spacing
+    own_low, own_high = low.ravel().take(place), high.ravel().take(place)
+    top = _max_ahead(high, span).ravel().take(place) - (TOP_QUANTILE_SIGMAS * lines.noise).take(row)
     # the cell before must still be road: the last occupied one within the window
-    before = _last_before(low, span)
+    before = np.full(len(place), np.nan)
+    near = (place[1:] - place[:-1] <= span) & (row[1:] == row[:-1])
+    np.copyto(before[1:], own_low[:-1], where=near)
     # a step's middle lies between that and its top, which it leaves half of its height below
     with np.errstate(invalid="ignore"):
-        rows, cells = np.nonzero((high > before) & (top - before > 0.4 * min_height - 1e-9))
-    base, slope, rough, count = _road_before(low, spacing, rows, cells)
+        rising = np.flatnonzero((own_high > before) & (top - before > 0.4 * min_height - 1e-9))
+    place, row, column, own_high, top, before = (v.take(rising) for v in (place, row, column, own_high, top, before))
+    base, slope, rough, count = _road_before(low, own_low, offset, spacing, row, column)
     with np.errstate(invalid="ignore"):
-        step = top[rows, cells] - base
+        step = top - base
         middle = base + 0.5 * step
-        found = np.flatnonzero((count >= 3) & (step >= np.maximum(0.8 * min_height, MIN_STEP_SIGMAS * np.maximum(lines.noise[rows], rough) / 2))
-                               & (step <= max_height + 0.05) & (high[rows, cells] >= middle) & (before[rows, cells] < middle))
-    rows, cells, base, slope = rows[found], cells[found], base[found], slope[found]
-    score = np.full(low.shape, -np.inf)
-    score[rows, cells] = step[found] - 2 * rough[found]
+        found = np.flatnonzero((count >= 3) & (step >= np.maximum(0.8 * min_height, MIN_STEP_SIGMAS * np.maximum(lines.noise.take(row), rough) / 2))
+                               & (step <= max_height + 0.05) & (own_high >= middle) & (before < middle))
     # of neighbouring cells only the best within the window is a step
-    beyond = _max_ahead(score, span, inclusive=False)
-    nearer = _max_ahead(score[:, ::-1], span, inclusive=False)[:, ::-1]
-    best = score[rows, cells] >= np.maximum(beyond[rows, cells], nearer[rows, cells])
-    best[best] = _stays_up(low, base[best], slope[best], rows[best], cells[best], min_height, spacing)
-    return rows[best], cells[best]
+    best = found[best_within(place.take(found), row.take(found), (step - 2 * rough).take(found), span)]
+    row, column, base, slope = (v.take(best) for v in (row, column, base, slope))
+    up = _stays_up(low, base, slope, row, column, min_height, spacing)
+    return row[up], column[up]
 
 
 def _stays_up(low, base, slope, rows, columns, min_height, spacing):
@@ -69,23 +75,25 @@ def _stays_up(low, base, slope, rows, columns, min_height, spacing):
     return (count < MIN_RAISED_CELLS) | (np.where(raised, rise, 0.0).sum(1) >= MIN_RAISED_HEIGHT_SHARE * min_height * count)
 
 
-def _road_before(low, spacing, rows, columns):
-    """Line through the principal points before some cells: its height at each cell, slope, scatter, and number of points, each (M,)."""
-    cells = low.shape[1]
+def _road_before(low, heights, offsets, spacing, rows, columns):
+    """Line through the principal points before some cells: its height at each cell, slope, scatter, and number of points, each (M,).
+
+    low : (P, C) principal points; heights, offsets : (N,) m, of the occupied cells, in order
+    """
     reach, skip = int(round(ROAD_SIDE_LENGTH / spacing)), int(round(FACE_MARGIN / spacing))
-    there = np.isfinite(low)
-    value = np.where(there, low, 0.0)
-    u = there * (np.arange(cells) * spacing)
-    # running sums, 0 before the first cell as far as a window reaches back
-    total = np.zeros((len(low), reach + skip + cells))
-    first = rows * total.shape[1] + columns
+    # of the occupied cells, those before a cell are a range
+    held = np.zeros(low.size + 1, np.int32)
+    np.cumsum(np.isfinite(low), out=held[1:])
+    start = rows * low.shape[1]
+    first, end = (held.take(start + np.maximum(columns + 1 - back, 0)).astype(np.intp) for back in (reach + skip, skip))
+    n = end - first
+    bounds = np.c_[first, end].ravel()
+    u, z = np.append(offsets, 0.0), np.append(heights, 0.0)
 
     def window(terms):
-        np.cumsum(terms, axis=1, out=total[:, reach + skip:])
-        return total.take(first + reach) - total.take(first)
+        return np.add.reduceat(terms, bounds)[::2] if len(bounds) else np.empty(0)
 
-    n, su, sz = window(there), window(u), window(value)
-    suz, suu, szz = window(value * u), window(np.multiply(u, u, out=u)), window(np.multiply(value, value, out=value))
+    su, sz, suz, suu, szz = (window(terms) for terms in (u, z, u * z, u * u, z * z))
     with np.errstate(all="ignore"):
         mu, mz = su / n, sz / n
         vuu, vuz, vzz = suu / n - mu * mu, suz / n - mu * mz, szz / n - mz * mz
@@ -95,20 +103,13 @@ def _road_before(low, spacing, rows, columns):
         return mz + slope * (columns * spacing - mu), slope, rough, n
 
 
-def _max_ahead(values, span, inclusive=True):
+def _max_ahead(values, span):
     """Largest value in this and the following cells, NaN taken as none."""
-    best = np.full(values.shape, -np.inf)
-    for k in range(0 if inclusive else 1, span + 1):
-        width = values.shape[1] - k
-        if width > 0:
-            np.fmax(best[:, :width], values[:, k:], out=best[:, :width])
+    best, width = np.fmax(values, -np.inf), 1
+    # windows of twice the width, and one that overlaps
+    while width <= span:
+        by = min(width, span + 1 - width, values.shape[1])
+        wider = best.copy()
+        np.maximum(best[:, :values.shape[1] - by], best[:, by:], out=wider[:, :values.shape[1] - by])
+        best, width = wider, width + by
     return best
-
-
-def _last_before(values, span):
-    """Value of the nearest occupied cell before each within the span, NaN where there is none."""
-    found = np.full(values.shape, np.nan)
-    found[:, 1:] = values[:, :-1]
-    for k in range(2, min(span, values.shape[1] - 1) + 1):
-        np.copyto(found[:, k:], values[:, :-k], where=np.isnan(found[:, k:]))
-    return found

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...common.rows import Rows
+from ...common.runs import best_within
 from ...lazy import cv2
 from ..common.corners import FACE_MARGIN, MAX_ROAD_SLOPE, ROAD_SIDE_LENGTH
 from .grid import LINE_SEPARATION, MAX_GROUND_DEPTH, SCANLINE_RESOLUTION, HeightGrid, row_of_lines
@@ -86,7 +87,7 @@ def find_candidates(side: HeightGrid, measured: np.ndarray, nearest: np.ndarray,
     middle = base + 0.5 * step
     rising = np.flatnonzero((count >= MIN_ROAD_CELLS) & (step >= MIN_RISE_SHARE * settings.limits.least_height) & (step <= settings.clipping_height)
                             & (rough <= MAX_ROUGHNESS_SHARE * step) & (low[row, cell] >= middle) & (before < middle))
-    best = rising[_best_within((row * low.shape[1] + cell)[rising], row[rising], (step - 2 * rough)[rising], span)]
+    best = rising[best_within((row * low.shape[1] + cell)[rising], row[rising], (step - 2 * rough)[rising], span)]
     row, cell = row[best], cell[best]
     found = CurbCandidates(row, cell, side.offset(cell), *(values[best].astype(float) for values in (base, slope, step, rough)))
     found = found[_stays_up(low, found) & _measured_itself(measured, found, span)]
@@ -139,16 +140,6 @@ def _road_before(low, row, cell):
             rough = np.sqrt(np.maximum(vzz - 2 * slope * vuz + slope * slope * vuu, 0.0))
             found.append((mz - slope * mu, slope, rough, n))
     return (np.concatenate(values) for values in zip(*found)) if found else (np.empty(0, np.float32),) * 4
-
-
-def _best_within(place, row, score, span):
-    """(N,) whether each score is the greatest within `span` cells of its row; places are ascending."""
-    best = np.ones(len(place), bool)
-    for lag in range(1, min(span, len(place) - 1) + 1):
-        near = (place[lag:] - place[:-lag] <= span) & (row[lag:] == row[:-lag])
-        best[:-lag] &= ~near | (score[:-lag] >= score[lag:])
-        best[lag:] &= ~near | (score[lag:] >= score[:-lag])
-    return best
 
 
 def gap_fill_rows(interval: float) -> int:

@@ -191,34 +191,47 @@ def corners_of(side: ScanlineSamples, candidates: CurbCandidates, settings: Scan
     CurbCorners, at most one per candidate, in the order of the candidates; `scanner_noise` equals `noise` here
     """
     limits = settings.limits
-    usual = _corners_with_face(side, candidates, settings, limits.clear_slope)
+    near = _Surroundings(side, candidates, settings)
+    usual = _corners_with_face(near, np.ones(len(candidates), bool), limits.clear_slope)
     if not limits.automatic_slope:
         return usual
     # a sloped face is looked for where no upright one is
     wanted = (side.first + candidates.row) * LINE_SEPARATION + candidates.u
-    again = np.flatnonzero(nearest_distance(wanted, usual.profile * LINE_SEPARATION + usual.u) >= FACE_HALF_WIDTH)
-    sloped = _corners_with_face(side, candidates[again], settings, limits.least_slope)
+    again = nearest_distance(wanted, usual.profile * LINE_SEPARATION + usual.u) >= FACE_HALF_WIDTH
+    sloped = _corners_with_face(near, again, limits.least_slope)
     sloped.sloped[:] = True
     found = CurbCorners.join([usual, sloped])
     return found[np.lexsort((found.u, found.profile))]
 
 
-def _corners_with_face(side, candidates, settings, least_slope):
-    """`corners_of` whose faces have at least this slope, radians."""
-    owner, s, u, h, steep = _neighbourhood(side, candidates, settings)
-    # heights above the line of the road, so that its slope is no part of the rise
-    over = h - candidates.slope.astype(np.float32)[owner] * u
-    share = over / candidates.step.astype(np.float32)[owner]
-    road = (u < -FACE_CLEARANCE) & (share < MAX_ROAD_SHARE) & (over > -GUTTER_DEPTH)
-    # between sparse points a scanline is less steep than the face
-    upright = steep > np.tan(max(least_slope - np.radians(FACE_SLOPE_TOLERANCE), 0.0))
-    face = upright & (np.abs(u) < FACE_HALF_WIDTH) & (share > FACE_SHARE[0]) & (share < FACE_SHARE[1])
-    raised = (u > FACE_CLEARANCE) & (share > MIN_RAISED_SHARE) & (over < (candidates.step + RAISED_MARGIN).astype(np.float32)[owner])
-    count = len(candidates)
-    parts = [_VertexSet(np.flatnonzero(part), owner, count) for part in (road, face, raised)]
-    # grass behind a curb scatters more than the road before it
-    scatter = np.maximum(candidates.rough, _scatter(owner, over, parts[2].vertices, count))
-    alive = np.flatnonzero(np.all([part.number >= MIN_PLANE_INLIERS for part in parts], axis=0))
+class _Surroundings:
+    """The samples around the candidates of one side, by what they are: road, face, of any steepness, and raised ground."""
+
+    def __init__(self, side: ScanlineSamples, candidates: CurbCandidates, settings: ScanlineBoundarySettings):
+        self.side, self.candidates, self.settings, count = side, candidates, settings, len(candidates)
+        self.owner, self.s, self.u, self.h, self.steep = owner, _, u, h, _ = _neighbourhood(side, candidates, settings)
+        # heights above the line of the road, so that its slope is no part of the rise
+        over = h - candidates.slope.astype(np.float32).take(owner) * u
+        share = over / candidates.step.astype(np.float32).take(owner)
+        road = (u < -FACE_CLEARANCE) & (share < MAX_ROAD_SHARE) & (over > -GUTTER_DEPTH)
+        self.face = np.flatnonzero((np.abs(u) < FACE_HALF_WIDTH) & (share > FACE_SHARE[0]) & (share < FACE_SHARE[1]))
+        raised = (u > FACE_CLEARANCE) & (share > MIN_RAISED_SHARE) & (over < (candidates.step + RAISED_MARGIN).astype(np.float32).take(owner))
+        self.road, self.raised = (_VertexSet(np.flatnonzero(part), owner, count) for part in (road, raised))
+        # grass behind a curb scatters more than the road before it
+        self.scatter = np.maximum(candidates.rough, _scatter(owner, over, self.raised.vertices, count))
+
+    def faces(self, least_slope: float) -> _VertexSet:
+        """The samples of faces with at least this slope, radians."""
+        # between sparse points a scanline is less steep than the face
+        upright = self.steep.take(self.face) > np.tan(max(least_slope - np.radians(FACE_SLOPE_TOLERANCE), 0.0))
+        return _VertexSet(self.face[upright], self.owner, len(self.candidates))
+
+
+def _corners_with_face(near, which, least_slope):
+    """`corners_of` some candidates, whose faces have at least this slope, radians; `which` : (M,) bool."""
+    side, candidates, settings, s, u, h, scatter = near.side, near.candidates, near.settings, near.s, near.u, near.h, near.scatter
+    parts = [near.road, near.faces(least_slope), near.raised]
+    alive = np.flatnonzero(np.all([which, *(part.number >= MIN_PLANE_INLIERS for part in parts)], axis=0))
     lean = np.tan(np.radians(settings.horizontal_angle))
     # the face first: it has the fewest samples and rejects most candidates
     front, front_points, good = _planes(parts[1], alive, MAX_FACE_VERTICES, (u, h, s), candidates.rough, settings)

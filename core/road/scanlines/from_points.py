@@ -113,7 +113,8 @@ def _vertices(cells, selected, quantile):
     """
     count = cells.shape[1]
     place = np.repeat(np.arange(len(cells.starts) - 1), np.diff(cells.starts))[selected]
-    d, h, intensity = cells.u[selected], cells.h[selected], cells.along[selected]
+    point, h = cells.point[selected], cells.h[selected]
+    d, intensity = cells.u[point], cells.along[point]
     if not len(selected):
         return (np.empty(0, np.int64),) + (np.empty(0),) * 3
     begins = np.r_[True, np.diff(place) > 0]

@@ -55,7 +55,7 @@ class ScannerLines:
     line : (N,) int32, number of the scan line, from 0 without gaps
     phase : (N,) turns, phase of the mirror, 0 to 1
     s, d, z : (N,) m, station, offset and local height
-    intensity : (N,) raw counts
+    intensity : (N,) raw counts, or None where they were not asked for
     ranges : (N,) float32 m from the vehicle
     joined : (N,) bool, whether a point and the next one are neighbours on a surface
     driven : (L,) m of road driven during the turn
@@ -66,7 +66,7 @@ class ScannerLines:
     s: np.ndarray
     d: np.ndarray
     z: np.ndarray
-    intensity: np.ndarray
+    intensity: np.ndarray | None
     ranges: np.ndarray
     joined: np.ndarray
     driven: np.ndarray
@@ -101,7 +101,7 @@ class Ribs:
 
 
 def scanner_lines(records: Columns | np.ndarray, p: Pass, mirror: MirrorPhase, corridor: float,
-                  level: LevelStrip | None = None) -> ScannerLines | None:
+                  level: LevelStrip | None = None, intensity: bool = True) -> ScannerLines | None:
     """The points of a scanner on their scan lines.
 
     Parameters
@@ -111,6 +111,7 @@ def scanner_lines(records: Columns | np.ndarray, p: Pass, mirror: MirrorPhase, c
     mirror : MirrorPhase
     corridor : m either side of the reference line within which points are used
     level : LevelStrip whose points are left out, or None
+    intensity : are intensities wanted?
 
     Returns
     -------
@@ -127,7 +128,7 @@ def scanner_lines(records: Columns | np.ndarray, p: Pass, mirror: MirrorPhase, c
     order = time_order(time)
     time = time[order]
     # the rows of a column lie in order where they are read, and only then by time
-    columns = {name: records[name].take(order) for name in ("s", "d", "z", "intensity")}
+    columns = {name: records[name].take(order) for name in ("s", "d", "z", *["intensity"] * intensity)}
     first, last = np.floor(mirror.turns_at(time[[0, -1]])).astype(int)
     turns = np.arange(first, last + 2)
     begins = mirror.times_at(turns)
@@ -149,7 +150,7 @@ def scanner_lines(records: Columns | np.ndarray, p: Pass, mirror: MirrorPhase, c
     s, d, z = (columns[name] * COORDINATE_SCALE for name in ("s", "d", "z"))
     ranges = _ranges(columns, p, begins[:-1][used], counts)
     joined = _side_by_side(line, phase, ranges, (s, d, z), mirror)
-    return ScannerLines(line, phase, s, d, z, columns["intensity"], ranges, joined, np.diff(driven)[used])
+    return ScannerLines(line, phase, s, d, z, columns.get("intensity"), ranges, joined, np.diff(driven)[used])
 
 
 def _side_by_side(line, phase, ranges, places, mirror):

@@ -158,7 +158,7 @@ def _margin(survey, road, lattice):
 
 def _cut(records, p, key, mirror, planes, settings, intensity, level):
     """Scanlines of one pass and scanner."""
-    lines = scanner_lines(records, p, mirror, settings.corridor, level)
+    lines = scanner_lines(records, p, mirror, settings.corridor, level, intensity)
     if lines is None:
         return Scanlines.none()
     ribs = Ribs.joined([ribs_of(lines, p.direction, mirror, settings.interval), slanting_edges(lines, mirror, settings.interval)])
@@ -170,7 +170,7 @@ def _cut(records, p, key, mirror, planes, settings, intensity, level):
     phase, d, z = (crossed.of(values) for values in (lines.phase, lines.d, lines.z))
     order = plane_order(plane - planes[0], phase if mirror.leftward else 1.0 - phase)
     plane, phase, d, z = (values[order] for values in (plane, phase, d, z))
-    bright = crossed.of(lines.intensity.astype(np.float64))[order].astype(np.float32) if intensity else np.zeros(len(d), np.float32)
+    bright = np.zeros(len(d), np.float32) if lines.intensity is None else crossed.of(lines.intensity.astype(np.float64))[order].astype(np.float32)
     order, first = PlaneVertices.from_track(p, settings.interval, mirror, plane, phase, d, z).lines()
     if order is not None:
         plane, d, z, bright = plane[order], d[order], z[order], bright[order] if intensity else bright
