@@ -2,9 +2,10 @@
 
 What adds up as squares: how well the painted lines of a lane are placed, a share of the scatter of their paint about their curves, since its
 errors go on over metres and do not average out; more where a border was not seen, where the lane lies beside one line only, or is bridged; the
-distance of the smooth line from the lane's places; the distance to where the lane was last measured; and what passes differ by that were
-laid on each other. A piece of a line says the mean along it. The shares were found on simulated streets with truth (docs/accuracy.md). What
-the trajectory is off as a whole is not in it, since one pass does not show it.
+distance of the smooth line from the lane's places; the distance to where the lane was last measured (a lane that was measured nowhere is not
+led on from anywhere: its borders hold it all along); and what passes differ by that were laid on each other. A piece of a line says the mean
+along it. The shares were found on simulated streets with truth (docs/accuracy.md). What the trajectory is off as a whole is not in it, since
+one pass does not show it.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ SEEN_SHARE, UNSEEN_SHARE = 0.3, 0.45   # of the RMS distance of the paint of bot
 USUAL_SCATTER = 0.010          # m, of paint about its curve, where neither border says it
 BESIDE_SIGMA, BRIDGED_SIGMA = 0.015, 0.015     # m; beside: placed from one line only
 SCATTER_SHARE = 0.7            # of the RMS distance of the line from the lane's places
-DISTANCE_SHARE = 0.0001        # m per m to the nearest measured place, where the lane is not measured
+DISTANCE_SHARE = 0.0001        # m per m to the nearest measured place, where the lane is not measured but is elsewhere
 MAX_MEASURED_DISTANCE = 50.0   # m, beyond which a measured place says nothing
 SCATTER_WINDOW = 20.0          # m along the lane, of the RMS
 
@@ -56,6 +57,7 @@ def lane_sigma(track: LaneTrack, course: Course, road: Road, lines: CrossSection
     after = np.searchsorted(known, places)
     around = np.r_[-np.inf, known, np.inf]
     away = np.minimum(np.minimum(places - around[after], around[after + 1] - places) * STATION_STEP, MAX_MEASURED_DISTANCE)
+    away = away if len(known) else np.zeros(len(track))
     placed = np.select([track.status == BRIDGED, ~measured & track.offset], [BRIDGED_SIGMA, BESIDE_SIGMA], 0.0)
     share = np.where(measured, SEEN_SHARE, UNSEEN_SHARE)
     return np.sqrt(share**2 * _paint_scatter(track, lines, paint) + placed**2 + SCATTER_SHARE**2 * scatter + (DISTANCE_SHARE * away) ** 2 + passes**2)

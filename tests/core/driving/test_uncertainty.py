@@ -53,3 +53,12 @@ def test_it_grows_with_the_scatter_of_the_paint_about_the_lines_of_the_lane(scat
     told = sigmas(street.lanes()[0], status="measured")
     assert told[0] == pytest.approx(0.3 * scatter, abs=1e-3)
     assert (told[0] > usual[0]) == (scatter > 0.010), "where nothing is known of the paint it is taken to scatter by a centimetre"
+
+
+def test_a_lane_that_was_measured_nowhere_is_as_sure_as_the_borders_that_hold_it():
+    street = Street(vehicle=-1.75)
+    for line, offset in ((1, -3.5), (2, 3.5)):
+        street.paint(offset, kind="edge", line=line)
+    lines, _ = street.lanes()
+    assert len(lines.rows) == 2 and {row["status"] for row in lines.rows} == {"inferred"}
+    np.testing.assert_allclose(sigmas(lines), 0.45 * 0.010, atol=1e-3)
