@@ -19,8 +19,8 @@ MAX_LANE_JUMP_SHARE = 0.35       # share of a lane's width by which it may jump 
 GAP_NEIGHBOURHOOD = 10.0         # m around a gap within which other lanes tell of a split or merge
 MIN_LANE_SEPARATION_SHARE = 0.6  # share of a lane's width that lanes keep from each other
 MIN_SHOWN_SHARE = 0.5            # of a gap in which lines are seen
-BRIDGED_TRUST = 0.7              # share of the confidence at both ends of a gap that is left between them
-LEAST_CONFIDENCE_OF_END = 0.25, 0.8   # of a lane at its end, between two borders and beside one, as estimated: with less it is wrong mostly
+BRIDGED_TRUST = 0.7              # share of the probability at both ends of a gap that is left between them
+LEAST_PROBABILITY_OF_END = 0.25, 0.8   # of a lane at its end, between two borders and beside one: with less it is wrong mostly
 END_WIDTH_LENGTH = 10.0          # m over which a lane's width at its end is taken
 LEAST_JUMP = 0.02     # m across from which a border that goes on as another line is led over
 JUMP_LEAD = 30.0      # m along for each m across: at 1 in 20 at its steepest, a lane can be followed without braking
@@ -35,7 +35,7 @@ class LaneTrack:
     d, width : (N,) metres; status : (N,) of MEASURED, INFERRED, BRIDGED; offset : (N,) True
     where the place comes from one line only; left, right : (N,) rows of Boundaries that it lies between, -1 where nothing is painted
     left_use, right_use : (N,) what these separate, LANE_LINE ... OTHER_LINE, -1 where unknown
-    confidence : (N,) 0 to 1; direction : 1 along the road's reference line, -1 against it
+    probability, confidence : (N,) 0 to 1, as of LaneSpan; direction : 1 along the road's reference line, -1 against it
     """
 
     first: int
@@ -47,6 +47,7 @@ class LaneTrack:
     right: np.ndarray
     left_use: np.ndarray
     right_use: np.ndarray
+    probability: np.ndarray
     confidence: np.ndarray
     direction: int
 
@@ -96,8 +97,8 @@ class LaneTrack:
     def without_doubtful_ends(self) -> LaneTrack | None:
         """The track less stretches at its ends that only led over a gap, or are improbable; None if nothing is left."""
         led_over = (self.status == BRIDGED) | self.offset & (self.left < 0) & (self.right < 0)
-        least = np.array(LEAST_CONFIDENCE_OF_END)[self.offset.astype(int)]
-        known = np.flatnonzero(~led_over & (self.confidence >= least))
+        least = np.array(LEAST_PROBABILITY_OF_END)[self.offset.astype(int)]
+        known = np.flatnonzero(~led_over & (self.probability >= least))
         return self.part(known[0], known[-1] + 1) if len(known) else None
 
 
@@ -130,10 +131,12 @@ def led_over(s: np.ndarray, offset: np.ndarray, rows: np.ndarray) -> np.ndarray:
     return found
 
 
-def _between(first, d, width, direction, confidence):
+def _between(a, b, d, width):
     """A bridged LaneTrack between two others."""
     nothing = np.full(len(d), -1)
-    return LaneTrack(first, d, width, np.full(len(d), BRIDGED), np.ones(len(d), bool), *[nothing] * 4, np.full(len(d), confidence), direction)
+    ends = (a.probability, b.probability), (a.confidence, b.confidence)
+    sure = (np.full(len(d), BRIDGED_TRUST * min(before[-1], after[0])) for before, after in ends)
+    return LaneTrack(a.last + 1, d, width, np.full(len(d), BRIDGED), np.ones(len(d), bool), *[nothing] * 4, *sure, a.direction)
 
 
 def connect(tracks: list[LaneTrack], lines: CrossSections, most_bridged: float, most_inferred: float, shown: np.ndarray) -> list[LaneTrack]:
@@ -211,7 +214,7 @@ def _join(a, b, tracks, lines, most_bridged, most_inferred, shown):
     share = np.arange(1, count + 1) / (count + 1)
     # the road's own shape is in the frame; a bridge only has to leave and arrive smoothly
     d = _hermite(a, b, count) if course is None else a.d[-1] - path[0] + jump * share + path[1:-1]
-    between = _between(a.last + 1, d, wa + (wb - wa) * share, a.direction, BRIDGED_TRUST * min(a.confidence[-1], b.confidence[0]))
+    between = _between(a, b, d, wa + (wb - wa) * share)
     if course is not None:
         between.status[:] = status[1:-1]
     if any(_crowded(between, t) for t in tracks if t is not a and t is not b):

@@ -10,6 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..markings.cross_section.candidates import STATIONS_OF_CELL
 from ..markings.cross_section.sections import STATION_STEP
 from .lane_track import END_WIDTH_LENGTH, INFERRED, LaneTrack
 
@@ -26,27 +27,34 @@ def laid_out(tracks: list[LaneTrack]) -> list[LaneTrack]:
     through = list(tracks)
     for k, head in ends:
         for j, other in enumerate(tracks):
-            if j != k and _opens_beside(tracks[k], other, head):
-                through[j] = _kept_width(through[j], tracks[k], head)
+            at = _opening(tracks[k], other, head) if j != k else None
+            if at is not None:
+                through[j] = _kept_width(through[j], tracks[k], at, head)
     for k, head in ends:
-        if any(j != k and _opens_beside(tracks[k], other, head) for j, other in enumerate(tracks)):
+        if any(j != k and _opening(tracks[k], other, head) is not None for j, other in enumerate(tracks)):
             through[k] = _from_full_width(through[k], head)
     return through
 
 
-def _opens_beside(lane, other, head):
-    """Whether a lane begins (or ends) right beside another one that leads on there."""
-    at = lane.first if head else lane.last
-    beyond = at - 1 if head else at + 1
-    if lane.direction != other.direction or not other.first <= beyond <= other.last or not other.first <= at <= other.last:
-        return False
-    (d, width), (d_other, width_other) = lane.at(at), other.at(at)
-    return abs(abs(d - d_other) - (width + width_other) / 2) < MISSING_SHARE * width_other
+def _opening(lane, other, head):
+    """The station at which a lane that begins (or ends) first lies right beside another one that leads on there; None where it does not.
+
+    The other one may reach over its very beginning: lanes are told apart by intervals, which are coarser than stations.
+    """
+    end, step = (lane.first, 1) if head else (lane.last, -1)
+    if lane.direction != other.direction or not other.first <= end - step <= other.last:
+        return None
+    for at in range(end, end + step * min(STATIONS_OF_CELL + 1, len(lane)), step):
+        (d, width), (d_other, width_other) = lane.at(at), other.at(at)
+        if abs(abs(d - d_other) - (width + width_other) / 2) < MISSING_SHARE * width_other:
+            return at
+    return None
 
 
-def _kept_width(track, opens, head):
-    """A through lane that before (or behind) the end of another one is no wider than beside it."""
-    at = (opens.first if head else opens.last) - track.first
+def _kept_width(track, opens, at, head):
+    """A through lane that before (or behind) the grid station at which another one lies beside it first is no wider than beside that."""
+    side = np.sign(opens.at(at)[0] - track.at(at)[0])
+    at -= track.first
     near, reach = int(END_WIDTH_LENGTH / STATION_STEP), int(LONGEST_TAPER / STATION_STEP)
     beside = track.width[at:at + near] if head else track.width[max(at - near + 1, 0):at + 1]
     width = float(np.median(beside))
@@ -58,7 +66,6 @@ def _kept_width(track, opens, head):
     if not wider[:int(BORDER_BEFORE_LANE / STATION_STEP)].any() or not len(as_wide):
         return track
     ahead = ahead[begin:begin + int(as_wide[0])]
-    side = np.sign(opens.at(opens.first if head else opens.last)[0] - track.d[at])
     d, widths, status = track.d.copy(), track.width.copy(), track.status.copy()
     d[ahead] -= side * (widths[ahead] - width) / 2
     widths[ahead] = width

@@ -118,5 +118,5 @@ def _confidence(figures):
             span = f"{BINS[int(k)]:.2f} to {min(BINS[int(k) + 1], 1.0):.2f}"
             rows.append([span, number(said / count, 2), number(right / count, 2), number(count * STEP, 0)])
     return ("Pieces of lanes carry a `confidence`: how often such pieces were right. The curve from what the estimate holds for probable to that "
-            "share was fitted on other simulated streets, most of them of another simulator, not on these. Of what is drawn here with some "
+            "share was fitted on other simulated streets, not on these. Of what is drawn here with some "
             "confidence, the share that lies within 15 cm of a true driving line:\n\n" + table(["said", "mean", "right", "m of driving lines"], rows))

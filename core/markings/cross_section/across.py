@@ -63,6 +63,25 @@ def lane_strips(sections: Sections, costs: StripCosts) -> LaneStrips:
     return LaneStrips(i, k, m, end, kind, costs.lanes[kind, i, m, end], costs.first_lanes[kind, i, m, end])
 
 
+def separated_kinds(sections: Sections) -> np.ndarray:
+    """(I, K, M) what each boundary separates, LANE_LINE ... OTHER_LINE; -1 where it bounds nothing."""
+    strip = sections.strip
+    before = np.full(strip.shape, -1)
+    i, k, m = np.nonzero(strip >= 0)
+    before[i, k, sections.right[i, k, m]] = strip[i, k, m]
+    return np.where((strip >= 0) & (before >= 0), SEPARATES[before, strip], -1)
+
+
+def misnamed_costs(candidates: Candidates, sections: Sections, weights: EstimateWeights) -> np.ndarray:
+    """(I, K) nats of lines that separate something else than their layer says."""
+    what, named = separated_kinds(sections), candidates.named[:, None, :]
+    return weights.named * _misnamed(what, named).sum(2) * candidates.observations(weights)[:, None]
+
+
+def _misnamed(what, named):
+    return (what >= 0) & (named >= 0) & (named != what) & (what != OTHER_LINE)
+
+
 def best_sections(candidates: Candidates, costs: StripCosts, stops: np.ndarray, weights: EstimateWeights, kept: int = KEPT) -> Sections:
     """The `kept` best cross-sections of each interval; `stops` are those of Evidence."""
     count, size = candidates.left.shape
@@ -99,7 +118,7 @@ def _lowest(values, kept):
 
 def _boundary_costs(c, stops, w):
     """(I, M, 7, 7) nats of a boundary between a strip on its left and one on its right."""
-    scale = (c.length / w.correlation)[:, None]
+    scale = c.observations(w)[:, None]
     table = w.boundary[c.made_of]
     stopped = stops_across(stops, (c.left + c.right) / 2)
     cost = np.full((*c.left.shape, len(STRIPS), len(STRIPS)), np.inf)
@@ -107,7 +126,7 @@ def _boundary_costs(c, stops, w):
         for right in STRIPS:
             what = SEPARATES[left, right]
             if what >= 0:
-                misnamed = w.named * ((c.named >= 0) & (c.named != what) & (what != OTHER_LINE))
+                misnamed = w.named * _misnamed(what, c.named)
                 wrong = w.wrong_side if (left, right) in _WRONG_SIDE else 0.0
                 cost[:, :, left, right] = scale * (table[:, :, what] + wrong + misnamed) \
                     + w.split_stop * stopped * (what == CENTRE_LINE)

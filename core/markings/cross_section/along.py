@@ -83,8 +83,8 @@ def transition_costs(area: np.ndarray, divider: np.ndarray, weights: EstimateWei
     return change * differs + weights.divider_change * np.clip(lost, 0, None), turn * turned
 
 
-def best_sequence(cost: np.ndarray, transition: np.ndarray) -> tuple[np.ndarray, float, np.ndarray]:
-    """Viterbi and forward-backward.
+def best_sequence(cost: np.ndarray, transition: np.ndarray) -> tuple[np.ndarray, float]:
+    """The most probable sequence (Viterbi).
 
     Parameters
     ----------
@@ -93,26 +93,32 @@ def best_sequence(cost: np.ndarray, transition: np.ndarray) -> tuple[np.ndarray,
 
     Returns
     -------
-    choice : (I,) the cross-section of each interval; total : nats of the whole; posterior : (I, K) probabilities
+    choice : (I,) the cross-section of each interval; total : nats of the whole
     """
     count, kept = cost.shape
     best, came = cost[0].copy(), np.zeros((count, kept), int)
-    forward, backward = np.zeros((2, count, kept))
-    forward[0] = -cost[0]
     for i in range(1, count):
         step = best[:, None] + transition[i - 1]
         came[i] = np.argmin(step, axis=0)
         best = step[came[i], np.arange(kept)] + cost[i]
-        forward[i] = _log_sum(forward[i - 1][:, None] - transition[i - 1], 0) - cost[i]
     choice = np.zeros(count, int)
     choice[-1] = int(np.argmin(best))
     for i in range(count - 1, 0, -1):
         choice[i - 1] = came[i, choice[i]]
+    return choice, float(best.min())
+
+
+def probabilities(cost: np.ndarray, transition: np.ndarray) -> np.ndarray:
+    """(I, K) how probable each cross-section is among all sequences (forward-backward); parameters as of `best_sequence`."""
+    forward, backward = np.zeros((2, *cost.shape))
+    forward[0] = -cost[0]
+    for i in range(1, len(cost)):
+        forward[i] = _log_sum(forward[i - 1][:, None] - transition[i - 1], 0) - cost[i]
+    for i in range(len(cost) - 1, 0, -1):
         backward[i - 1] = _log_sum(backward[i][None, :] - transition[i - 1] - cost[i][None, :], 1)
     log = forward + backward
-    log -= log.max(axis=1, keepdims=True)
-    posterior = np.exp(log)
-    return choice, float(best.min()), posterior / posterior.sum(axis=1, keepdims=True)
+    posterior = np.exp(log - log.max(axis=1, keepdims=True))
+    return posterior / posterior.sum(axis=1, keepdims=True)
 
 
 def _log_sum(values, axis):

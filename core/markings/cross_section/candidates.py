@@ -119,6 +119,10 @@ class Candidates:
         """(I,) metres."""
         return STATION_STEP * (self.last - self.first + 1)
 
+    def observations(self, weights: EstimateWeights) -> np.ndarray:
+        """(I,) how many observations each interval is, of what goes on along the road."""
+        return self.length / weights.correlation
+
 
 def boundary_candidates(boundaries: Boundaries, weights: EstimateWeights) -> Candidates:
     """Cut the road into intervals of the same boundaries, of at most 10 m."""

@@ -12,9 +12,9 @@ SUREST = 1e-4    # what is left to say against the surest
 def calibrated(probability: np.ndarray, weights: EstimateWeights = EstimateWeights()) -> np.ndarray:
     """The share of such lanes that run the right way and within 15 cm of the true driving line.
 
-    The estimate takes its evidence for independent and its candidates for all there are, so what it holds for improbable is right more often, and
-    what it holds for certain less often; one logistic curve over the log odds tells how often (Platt, Probabilistic outputs for support vector
-    machines, 1999).
+    The estimate takes its candidates for all there are, and evidence of different kinds for independent, so what it holds for improbable is right
+    more often, and what it holds for certain less often; one logistic curve over the log odds tells how often (Platt, Probabilistic outputs for
+    support vector machines, 1999).
 
     Parameters
     ----------

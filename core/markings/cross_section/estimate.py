@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .across import SEPARATES, Sections, best_sections, lane_strips
-from .along import best_sequence, occupancy, transition_costs
+from .across import Sections, best_sections, lane_strips, misnamed_costs, separated_kinds
+from .along import best_sequence, occupancy, probabilities, transition_costs
 from .candidates import Candidates
 from .evidence import Evidence
 from .lane_width import lane_places
@@ -22,7 +22,8 @@ class RoadEstimate:
     """The cross-sections of one road for one side of traffic.
 
     candidates : Candidates
-    sections : Sections; choice : (I,) which of them; posterior : (I, K); total : nats
+    sections : Sections; choice : (I,) which of them; total : nats of them; posterior : (I, K) how probable each is
+    sureness : (I, K) the same as far as it was seen here, where what is laid out alike along the road counts once
     first_direction : of the lanes met first from the left
     """
 
@@ -31,6 +32,7 @@ class RoadEstimate:
     sections: Sections
     choice: np.ndarray
     posterior: np.ndarray
+    sureness: np.ndarray
     total: float
     first_direction: int
 
@@ -54,7 +56,7 @@ def estimate_road(candidates: Candidates, evidence: Evidence, first_direction: i
     # where no line is seen, as on a crossing, much may change; where no line is known nothing can be said
     paint = candidates.painted
     shown = (paint * candidates.seen).sum(1) / np.maximum(paint.sum(1), 1)
-    choice, posterior = np.argmin(sections.cost, axis=1), np.zeros(sections.cost.shape)
+    choice, (posterior, sureness) = np.argmin(sections.cost, axis=1), np.zeros((2, *sections.cost.shape))
     known, total = np.flatnonzero(paint.any(1)), 0.0
     if len(known):
         between = np.r_[0.0, np.cumsum(candidates.length)]
@@ -63,8 +65,19 @@ def estimate_road(candidates: Candidates, evidence: Evidence, first_direction: i
         both = np.minimum(shown[known[:-1]], shown[known[1:]])
         transition = sum(cost * (both * np.exp(-gap / reach))[:, None, None]
                          for cost, reach in ((lanes, weights.lanes_remembered), (turns, weights.directions_remembered)))
-        choice[known], total, posterior[known] = best_sequence(sections.cost[known], transition)
-    return RoadEstimate(candidates, costs, sections, choice, posterior, total, first_direction)
+        choice[known], total = best_sequence(sections.cost[known], transition)
+        posterior[known] = probabilities(sections.cost[known], transition)
+        sureness[known] = probabilities(_seen_once(candidates, sections, weights)[known], transition)
+    return RoadEstimate(candidates, costs, sections, choice, posterior, sureness, total, first_direction)
+
+
+def _seen_once(c, sections, weights):
+    """(I, K) nats that tell how sure a cross-section is: what is laid out alike along the road was seen once.
+
+    Left out is what the lines were named, since what named them was the same evidence.
+    """
+    alike = np.clip(c.length.sum(), weights.correlation, weights.laid_out) / weights.correlation
+    return (sections.cost - misnamed_costs(c, sections, weights)) / alike
 
 
 def _roads_of_many_lanes(c, costs, sections, divided, weights):
@@ -83,7 +96,7 @@ def _roads_of_many_lanes(c, costs, sections, divided, weights):
     parts = (sections.strip == FIRST) & (kind_right == SECOND)
     drawn = np.take_along_axis(np.broadcast_to(c.made_of[:, None, :], sections.strip.shape), np.maximum(sections.right, 0), axis=2)
     cost = cost + np.where((total > 2) & (parts & (drawn == DASHED)).any(2), weights.dashed_between_many, 0.0)
-    return cost * (c.length / weights.correlation)[:, None]
+    return cost * c.observations(weights)[:, None]
 
 
 @dataclass
@@ -91,7 +104,7 @@ class LaneSpan:
     """One lane over one interval.
 
     interval : number; left, right : rows of Boundaries, place : from the right, of `count` lanes between them; direction : 1 or -1
-    confidence : 0 to 1
+    probability, confidence : 0 to 1, with the posterior and with the sureness of RoadEstimate
     left_border, right_border : what the two separate, LANE_LINE ... OTHER_LINE
     """
 
@@ -101,6 +114,7 @@ class LaneSpan:
     place: int
     count: int
     direction: int
+    probability: float
     confidence: float
     left_border: int
     right_border: int
@@ -112,19 +126,20 @@ def lane_spans(estimate: RoadEstimate) -> list[LaneSpan]:
     c, sections, borders = estimate.candidates, estimate.sections, boundary_uses(estimate)
     strips = lane_strips(sections, estimate.costs)
     best = np.flatnonzero(strips.section == estimate.choice[strips.interval])
-    for sure, i, m, end, number, first in zip(_place_shares(estimate, strips, best), *(values[best].tolist() for values in (
+    for shares, i, m, end, number, first in zip(_place_shares(estimate, strips, best), *(values[best].tolist() for values in (
             strips.interval, strips.left, strips.right, strips.number, strips.first))):
         # what the borders of its lanes separate, from left to right
         uses = [int(borders[i, m]), *(CENTRE_LINE if inner == first else LANE_LINE for inner in range(1, number)), int(borders[i, end])]
         for place in range(number):
             direction = estimate.first_direction if place < first else -estimate.first_direction
-            found.append(LaneSpan(i, int(c.rows[i, m, 1]), int(c.rows[i, end, 0]), number - 1 - place, number, direction, sure[place],
+            probability, confidence = shares[place]
+            found.append(LaneSpan(i, int(c.rows[i, m, 1]), int(c.rows[i, end, 0]), number - 1 - place, number, direction, probability, confidence,
                                   uses[place], uses[place + 1]))
     return found
 
 
 def _place_shares(estimate, strips, chosen):
-    """Lists of one value for each lane of the chosen strips, from left to right: the probability that a lane of its direction lies there.
+    """Lists of two values for each lane of the chosen strips, from left to right: posterior and sureness of a lane of its direction there.
 
     That is of all cross-sections that have a lane of that direction within SAME_LANE, whatever bounds it and whatever lies beside it.
     """
@@ -135,22 +150,18 @@ def _place_shares(estimate, strips, chosen):
     begin = np.cumsum(strips.number) - strips.number
     of = np.repeat(np.arange(len(begin)), strips.number)
     place = np.arange(len(of)) - begin[of]
-    d, ahead, share = d_left[of] - each[of] * (place + 0.5), place < strips.first[of], estimate.posterior[at[of], strips.section[of]]
+    d, ahead = d_left[of] - each[of] * (place + 0.5), place < strips.first[of]
+    shares = [values[at[of], strips.section[of]] for values in (estimate.posterior, estimate.sureness)]
     first, last = (np.searchsorted(at[of], np.arange(len(c.first)), side=side) for side in ("left", "right"))
     lanes = np.flatnonzero(np.isin(of, chosen))
     size = (last - first)[at[of[lanes]]]
     one = np.repeat(lanes, size)
     other = np.arange(len(one)) - np.repeat(np.cumsum(size) - size, size) + first[at[of[one]]]
     alike = (np.abs(d[other] - d[one]) < SAME_LANE) & (ahead[other] == ahead[one])
-    total = np.bincount(one[alike], share[other[alike]], minlength=len(of))
+    total = np.stack([np.bincount(one[alike], share[other[alike]], minlength=len(of)) for share in shares], axis=1)
     return [total[begin[k]:begin[k] + strips.number[k]].tolist() for k in chosen]
 
 
 def boundary_uses(estimate: RoadEstimate) -> np.ndarray:
     """(I, M) what each boundary separates in the best sequence, LANE_LINE ... OTHER_LINE; -1 where it bounds nothing."""
-    rows = np.arange(len(estimate.choice))
-    strip, right = estimate.sections.strip[rows, estimate.choice], estimate.sections.right[rows, estimate.choice]
-    before = np.full(strip.shape, -1)
-    i, m = np.nonzero(strip >= 0)
-    before[i, right[i, m]] = strip[i, m]
-    return np.where((strip >= 0) & (before >= 0), SEPARATES[before, strip], -1)
+    return separated_kinds(estimate.sections)[np.arange(len(estimate.choice)), estimate.choice]

@@ -45,7 +45,7 @@ def strip_costs(candidates: Candidates, evidence: Evidence, weights: EstimateWei
     """Costs of all strips, the lanes of `first_direction` (1 or -1) being met first from the left."""
     c, w = candidates, weights
     count, size = c.left.shape
-    scale = (c.length / w.correlation)[:, None, None]
+    scale = c.observations(w)[:, None, None]
     d_left, d_right = c.right[:, :, None], c.left[:, None, :]
     width = d_left - d_right
     ordered = c.valid[:, :, None] & c.valid[:, None, :] & (np.arange(size)[:, None] < np.arange(size))
@@ -72,6 +72,7 @@ def strip_costs(candidates: Candidates, evidence: Evidence, weights: EstimateWei
     off = np.clip(1 - asphalt / np.maximum(width, 0.1), 0, 1) if evidence.asphalt is not None else 0.0
     possible = ordered & ~outside & any_paint & (width < MAX_LANES * NEUTRAL.widest_lane)
     base = scale * (through + hatched * w.hatched_lane + off * w.off_asphalt)
+    driven_there = inside.any(0)
     for number in range(1, MAX_LANES + 1):
         begin, each = lane_places(d_left, d_right, made_left, made_right, number, lane_width, c.bend[:, None, None])
         fits = _width_cost(each, lane_width, w) + _unused(asphalt - number * lane_width, w.unused_asphalt[1]) * loose
@@ -79,7 +80,9 @@ def strip_costs(candidates: Candidates, evidence: Evidence, weights: EstimateWei
         beyond = np.clip(1 - width / np.maximum(number * each, 0.1), 0, 1) * hidden
         total = base + scale * (fits + beyond * w.off_asphalt)
         scanned = ~hidden | (width > MIN_SCANNED_SHARE * number * lane_width)
-        total = np.where(possible & scanned & (each >= NEUTRAL.narrowest_lane), total, np.inf)
+        # only where somebody drove is a lane known to be wider than lanes are built: elsewhere nothing tells its place in the strip
+        built = (each >= NEUTRAL.narrowest_lane) & ((each <= NEUTRAL.widest_lane) | driven_there)
+        total = np.where(possible & scanned & built, total, np.inf)
         for split in range(number + 1):
             kind = SECOND if split == 0 else FIRST if split == number else TWO_WAY[1 + int(np.sign(number - 2 * split))]
             alike = max(split - 1, 0) + max(number - split - 1, 0)

@@ -24,6 +24,7 @@ class EstimateWeights:
     where those say nothing they are our own estimates, rounded.
 
     correlation : metres of road that count as one observation: what neighbouring metres show is not independent
+    laid_out : metres of road that are laid out alike: of how sure lanes are they say no more than `correlation` does; chosen with `calibration`
     solid, dashed, double : share of lane lines, centre lines, edge lines and other lines that are drawn like that
     curb, surface : the same of boundaries that are a curb, also of an island, or where the road surface ends without one
     open_end : the same where nothing is known beyond the outermost line
@@ -55,11 +56,12 @@ class EstimateWeights:
         more; two_and_one : of two lanes one way and one the other; two_way_carriageway : of two directions on one of two carriageways
     dashed_between_many : of dashes between the directions of a road of more than two lanes
     left_hand : of traffic on the left, against traffic on the right
-    calibration : slope and offset of the curve by which probable lanes are right, over the log odds; fitted to 8.4 km of lanes of 19 simulated
-        streets, most of another simulator, and checked on others (docs/accuracy.md)
+    calibration : slope and offset of the curve by which probable lanes are right, over the log odds; fitted to 13 km of lanes of 32 simulated
+        streets of two simulators, and checked on others (docs/accuracy.md)
     """
 
     correlation: float = 20.0
+    laid_out: float = 60.0
     solid: tuple[float, ...] = _costs(0.1, 0.3, 0.9, 0.15)
     dashed: tuple[float, ...] = _costs(0.8, 0.4, 0.1, 0.3)
     double: tuple[float, ...] = _costs(0.05, 0.9, 0.05, 0.05)
@@ -108,7 +110,7 @@ class EstimateWeights:
     two_way_carriageway: float = 4.0
     dashed_between_many: float = 1.5
     left_hand: float = 0.7
-    calibration: tuple[float, float] = (0.26, 1.7)
+    calibration: tuple[float, float] = (0.38, 1.85)
 
     @property
     def boundary(self) -> np.ndarray:

@@ -218,6 +218,14 @@ def test_beside_a_centre_line_between_curbs_one_drives_in_the_middle_of_what_the
     assert middle(street, asked) == [pytest.approx(-1.6, abs=0.01), pytest.approx(1.6, abs=0.01)]
 
 
+def test_lanes_are_no_surer_for_what_their_lines_were_named_since_the_same_evidence_named_them():
+    def confidences(kind):
+        street = Street(vehicle=-1.75).paint(3.5).paint(0.0, kind=kind, pattern="dashed").paint(-3.5)
+        return [row["confidence"] for row in street.lanes()[0].rows]
+
+    assert confidences("centre") == pytest.approx(confidences("lane"), abs=0.005)
+
+
 def test_beyond_the_edge_line_nobody_drives():
     street = Street(vehicle=-1.75).paint(0.0, kind="edge").paint(-3.5, kind="edge")
     lines, _ = street.lanes()

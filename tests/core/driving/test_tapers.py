@@ -4,10 +4,18 @@ import numpy as np
 import pytest
 from lanewright.core.common.features import Features
 from lanewright.core.common.schemas import ROAD_EDGES
+from lanewright.core.driving.lane_track import MEASURED, LaneTrack
+from lanewright.core.driving.tapers import laid_out
 from lined_streets import EAST, HEIGHT, Street
 from shapely.geometry import LineString
 
 LENGTH = 200.0
+
+
+def track(first, d, width):
+    """A measured lane along the road."""
+    count = len(d)
+    return LaneTrack(first, d, width, np.full(count, MEASURED), np.zeros(count, bool), *[np.full(count, -1)] * 4, *[np.ones(count)] * 2, 1)
 
 
 def exit_street(opens):
@@ -40,6 +48,24 @@ def test_a_lane_that_opens_is_driven_from_where_it_is_as_wide_as_farther_on(open
     other = places[places[:, 1] < -3.7, 0] if opens else LENGTH - places[places[:, 1] < -3.7, 0]
     # nine tenths of it are there at 96 m
     assert other.min() == pytest.approx(96.0, abs=1.5) and other.max() == pytest.approx(195.0, abs=1.0)
+
+
+def test_a_lane_keeps_its_width_where_it_was_taken_to_reach_over_the_beginning_of_the_one_that_opens():
+    count = 200
+    widening = np.clip((np.arange(count) - 60) / 15.0, 0.0, 2.0) * (np.arange(count) < 88)
+    through = track(0, -1.6 - widening / 2, 3.2 + widening)
+    opening = track(85, np.full(count - 85, -4.8), np.full(count - 85, 3.2))
+    kept, _ = laid_out([through, opening])
+    np.testing.assert_allclose(kept.d, -1.6)
+    np.testing.assert_allclose(kept.width, 3.2)
+
+
+@pytest.mark.parametrize("again, end", [((), 86.0), ((1.75,), 114.5)])
+def test_a_lane_that_nobody_drove_goes_no_farther_than_lanes_are_built_wide(again, end):
+    street = Street(length=120.0, vehicle=-1.75, again=again).paint(-3.5, kind="edge").paint(0.0, kind="centre")
+    street.paint(lambda s: 3.5 + np.clip((s - 70.0) / 10.0, 0.0, 1.7), kind="edge")
+    oncoming = next(row for row in street.lanes()[0].rows if row["direction"] < 0)
+    assert oncoming["end_m"] == pytest.approx(end, abs=5.0)
 
 
 def test_a_broad_lane_that_divides_into_two_is_driven_in_its_middle_up_to_there():
