@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...common.parallel import ordered_map
 from .arrows import arrows_of
 from .candidates import Boundaries, boundary_candidates, gather_boundaries
 from .estimate import RoadEstimate, estimate_road, lane_spans
@@ -87,7 +88,7 @@ def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_widt
             candidates, of_road.s, *driven, covered, hatched, arrows_of(markings, frame, number) if markings is not None else None, markings,
             number, other_carriageway(frame, number, of_road.s))
     sides = {"right": (-1,), "left": (1,)}.get(side, (-1, 1))
-    found = {first: _estimates(known, first, usual_width, weights) for first in sides}
+    found = dict(zip(sides, ordered_map(lambda first: _estimates(known, first, usual_width, weights), sides)))
     total = {first: sum(one.total for one in of_roads.values()) + (weights.left_hand if first > 0 else 0.0) for first, of_roads in found.items()}
     best = min(total, key=lambda first: total[first])
     width = usual_width if width_asked else _usual_width(known, found[best], usual_width)

@@ -17,6 +17,7 @@ from scipy.spatial import cKDTree
 
 from ...common.groups import linked_groups
 from ...common.order_statistics import order_by
+from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ...common.setting import check_limits, setting
 from ...curves.robust import median
@@ -196,23 +197,24 @@ def connected_points(marking_points: RoadPoints, road: int, distance: float, pro
     records, labels, links = [], [], []
     shared_cells, shared_labels, count = np.empty((0, 2), np.int64), np.empty(0, np.int64), 0
     first_window, last_window = (int(np.floor(s / COORDINATE_SCALE / CELL_UNITS / LINKING_WINDOW_CELLS)) for s in (start, end))
-    windows = range(first_window, last_window + 1)
-    for step, window in enumerate(windows):
+
+    def linked(window):
         first, last = window * LINKING_WINDOW_CELLS, (window + 1) * LINKING_WINDOW_CELLS
         bounds = (row * CELL_UNITS * COORDINATE_SCALE for row in (first - 1, last + reach + 1))
         found = marking_points.window(road, *bounds).records
         column = found["s"] // CELL_UNITS
         found = found[(column >= first) & (column < last + reach)]
         cells, member, component = _components(found, distance)
+        own = found["s"] // CELL_UNITS < last
+        return cells, component, cells[:, 0] >= last, found[own], member[own]
+
+    for cells, component, beyond, found, member in ordered_map(linked, range(first_window, last_window + 1), progress):
         component = component + count
         count = component.max(initial=count - 1) + 1
         links.append(_shared(shared_cells, shared_labels, cells, component))
-        beyond = cells[:, 0] >= last
         shared_cells, shared_labels = cells[beyond], component[beyond]
-        own = found["s"] // CELL_UNITS < last
-        records.append(found[own])
-        labels.append(component[member[own]])
-        progress.report((step + 1) / len(windows))
+        records.append(found)
+        labels.append(component[member])
     if not records:
         return join_columns([], marking_points.store.dtype), np.empty(0, np.int64)
     pairs = np.concatenate(links)

@@ -20,7 +20,7 @@ from scipy.spatial import cKDTree
 
 from ...common.groups import linked_groups
 from ...common.order_statistics import order_by
-from ...common.parallel import check_cancelled
+from ...common.parallel import check_cancelled, ordered_map
 from ...lazy import cv2
 from ...survey.store.records import COORDINATE_SCALE
 from .classify import columns_of
@@ -76,19 +76,24 @@ def split_compounds(records: Columns, labels: np.ndarray) -> np.ndarray:
     order = order_by(labels)
     starts = np.flatnonzero(np.r_[True, np.diff(labels[order]) != 0])
     following = int(labels.max()) + 1
-    along, across = records["s"].take(order), records["d"].take(order)
+    along, across, apart = (records[name].take(order) for name in ("s", "d", "spacing"))
     ranges = [np.maximum.reduceat(values, starts).astype(np.int64) - np.minimum.reduceat(values, starts) for values in (along, across)]
     large = (ranges[0] * COORDINATE_SCALE >= COMPOUND_LENGTH) & (ranges[1] * COORDINATE_SCALE >= COMPOUND_BREADTH) \
         | (ranges[0] * COORDINATE_SCALE >= MIN_LENGTH_BESIDE_BAR) & (ranges[1] * COORDINATE_SCALE >= MIN_RUN_ACROSS)
-    for a, b in zip(starts[large], np.r_[starts[1:], len(order)][large]):
-        check_cancelled()
-        rows = order[a:b]
+
+    def split(bounds):
+        a, b = bounds
         cells, member = occupied(along[a:b] // CELL_UNITS, across[a:b] // CELL_UNITS)
         spacing = np.zeros(len(cells))
-        spacing[member] = records["spacing"][rows]
+        spacing[member] = apart[a:b]
         parts, count = _parts(cells, spacing)
+        return parts[member], count
+
+    bounds = list(zip(starts[large].tolist(), np.r_[starts[1:], len(order)][large].tolist()))
+    for (a, b), (parts, count) in zip(bounds, ordered_map(split, bounds)):
+        check_cancelled()
         if count > 1:
-            labels[rows] = following + parts[member]
+            labels[order[a:b]] = following + parts
             following += count
     return labels
 
@@ -156,9 +161,24 @@ def _in_lines(cells, longest_gap, window):
         rows = np.flatnonzero((cells[:, 0] >= first) & (cells[:, 0] < (number + 1) * chunk + 2 * length))
         column, across = cells[rows, 0] - first, cells[rows, 1]
         own = numbers[rows] == number
-        painted = [_painted_along(column, across, slope, gap, length) for slope in np.arange(-steps, steps + 1) * (MAX_BORDER_DRIFT / window)]
-        result[rows[own]] = np.any(painted, axis=0)[own]
+        # most lines run along the road: fewer and fewer cells are looked for, and none that lie too far from them to matter
+        wanted, near = np.flatnonzero(own), np.arange(len(rows))
+        for slope in sorted(range(-steps, steps + 1), key=abs):
+            painted = np.zeros(len(rows), bool)
+            painted[near] = _painted_along(column[near], across[near], slope * (MAX_BORDER_DRIFT / window), gap, length)
+            result[rows[wanted[painted[wanted]]]] = True
+            wanted = wanted[~painted[wanted]]
+            if not len(wanted):
+                break
+            near = np.flatnonzero(_within(column, column[wanted], length + gap))
     return result
+
+
+def _within(values, others, reach):
+    """(N,) whether integers lie at most `reach` from some others."""
+    others = np.unique(others)
+    after = np.searchsorted(others, values)
+    return (others[np.maximum(after - 1, 0)] + reach >= values) & (after > 0) | (others[np.minimum(after, len(others) - 1)] - reach <= values)
 
 
 def _even_strip(cells):
