@@ -24,8 +24,10 @@ def lanewright(tmp_path_factory):
     shutil.copytree(ROOT / "resources" / "i18n", source / "resources" / "i18n")
     for name in ("__init__.py", "plugin.py", "setup.py", "pyproject.toml", "metadata.txt", "README.md", "LICENSE"):
         shutil.copy(ROOT / name, source / name)
-    subprocess.run([sys.executable, "-m", "venv", "--system-site-packages", str(folder / "venv")], check=True)
-    subprocess.run([str(folder / "venv/bin/pip"), "install", "--quiet", "--no-deps", "--no-build-isolation", str(source)], check=True)
+    # the pip of these tests installs into it: to install a pip there first takes as long as all the rest
+    subprocess.run([sys.executable, "-m", "venv", "--system-site-packages", "--without-pip", str(folder / "venv")], check=True)
+    subprocess.run([sys.executable, "-m", "pip", f"--python={folder / 'venv'}", "install", "--quiet", "--no-deps", "--no-build-isolation",
+                    str(source)], check=True)
     # laspy and shapely as these tests have them
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path.endswith("site-packages"))}
 

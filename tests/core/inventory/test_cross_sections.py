@@ -179,9 +179,10 @@ def test_results_depend_neither_on_the_interval_nor_on_the_order_of_the_passes()
 
 
 def test_an_interval_longer_than_the_road_is_refused():
+    """Where points begin after the first section, which lies at station 0."""
+    survey = measured_road(length=30.0, density=300.0, hides=lambda offset, x, y, z: x < 1.0)
     with pytest.raises(RoadExtractionError, match="smaller interval"):
-        measure_cross_sections(measured_road(length=30.0, density=300.0, above=None), BorderLayers(markings_of(offsets=(20.0, 24.0))),
-                               CrossSectionSettings(interval=1000.0))
+        measure_cross_sections(survey, BorderLayers(markings_of(offsets=(20.0, 24.0))), CrossSectionSettings(interval=1000.0))
 
 
 def test_layers_of_another_place_are_refused():

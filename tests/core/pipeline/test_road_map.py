@@ -21,7 +21,7 @@ LAYERS = ("edges", "surface", "markings", "marking_lines", "driving_lines")
 
 @pytest.fixture(scope="module")
 def street(made_survey):
-    return made_survey(length=55.0, pulse_rate=120_000.0, rotation_rate=120.0)
+    return made_survey(length=45.0, pulse_rate=100_000.0, rotation_rate=100.0)
 
 
 @pytest.fixture(scope="module")
