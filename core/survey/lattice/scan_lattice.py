@@ -25,6 +25,7 @@ from .mirror_phase import MirrorPhase, mirror_phase_from_phasors
 from .rotation_rate import MIN_ROTATION_PEAK, ROTATION_WINDOW, rotation_spectrum, strongest_rotation
 
 ROTATION_SAMPLES = 6           # places along a pass at which the frequency is sought
+ROTATION_SAMPLE_PIECES = 6     # in which these are read
 ROTATION_SAMPLE_LENGTH = 30.0  # m of road about each: scan lines are oblique, and cover little of a short piece of road
 MIN_WINDOW_POINTS = 200        # points of a scanner in a window
 MIN_DISTINCT_TIMES = 0.7       # share of the points; if more share their times, the times do not give the order on the line
@@ -165,18 +166,34 @@ def _sample_windows(survey, road):
         count = int(np.clip((last - first) / ROTATION_SAMPLE_LENGTH, 1, ROTATION_SAMPLES))
         places += [(p.number, middle) for middle in first + (np.arange(count) + 0.5) * (last - first) / count]
 
+    def pieces_of(middle):
+        # a piece of road at a time: of all its points, those of half a second are used
+        bounds = np.linspace(middle - ROTATION_SAMPLE_LENGTH / 2, middle + ROTATION_SAMPLE_LENGTH / 2, ROTATION_SAMPLE_PIECES + 1)
+        for start, end in zip(bounds[:-1], bounds[1:]):
+            yield survey.window(road, start, end).records
+
     def windows_at(place):
         number, middle = place
-        records = survey.window(road, middle - ROTATION_SAMPLE_LENGTH / 2, middle + ROTATION_SAMPLE_LENGTH / 2).records
+        times: dict = {}   # (pass number, scanner) -> [times of each piece]
+        for k, records in enumerate(pieces_of(middle)):
+            for key, own in scanner_runs(records):
+                if key[0] == number:
+                    times.setdefault(key, {})[k] = own["time"]
+        near = {key: _near_in_time(list(parts.values())) for key, parts in times.items()}
+        rows = {key: dict(zip(times[key], parts)) for key, parts in near.items() if sum(map(len, parts)) >= MIN_WINDOW_POINTS}
+        chosen: dict = {key: [] for key in rows}
+        for k, records in enumerate(pieces_of(middle)):
+            if any(len(parts.get(k, ())) for parts in rows.values()):
+                for key, own in scanner_runs(records):
+                    if key in rows:
+                        some = take_rows(own, rows[key][k])
+                        chosen[key].append([some[name] for name in ("time", "d", "z")])
         found = {}
-        for key, own in scanner_runs(records):
-            if key[0] != number:
-                continue
-            time = own["time"]
-            near = np.flatnonzero(np.abs(time - np.median(time[::MEDIAN_TIME_STRIDE])) <= ROTATION_WINDOW / 2)
-            if len(near) >= MIN_WINDOW_POINTS:
-                own = take_rows(own, near[time_order(time[near])])
-                found[key] = _RotationWindow(*_phasors(survey, number, own), own["d"] * COORDINATE_SCALE)
+        for key, parts in chosen.items():
+            time, d, z = (np.concatenate(column) for column in zip(*parts))
+            order = time_order(time)
+            own = dict(time=time[order], d=d[order], z=z[order])
+            found[key] = _RotationWindow(*_phasors(survey, number, own), own["d"] * COORDINATE_SCALE)
         return found
 
     samples = {}
@@ -184,6 +201,13 @@ def _sample_windows(survey, road):
         for key, window in found.items():
             samples.setdefault(key, []).append(window)
     return samples
+
+
+def _near_in_time(parts):
+    """Of every part of the times of a scanner, the indices of those about the middle one."""
+    begins = np.cumsum([0] + [len(time) for time in parts[:-1]])
+    middle = np.median(np.concatenate([time[-begin % MEDIAN_TIME_STRIDE::MEDIAN_TIME_STRIDE] for time, begin in zip(parts, begins)]))
+    return [np.flatnonzero(np.abs(time - middle) <= ROTATION_WINDOW / 2) for time in parts]
 
 
 def time_order(time: np.ndarray) -> np.ndarray:
