@@ -86,7 +86,7 @@ def stretches(line: LinkedLine, longest_dash: float = NEUTRAL.longest_dash) -> l
     for a, b in zip(cuts[:-1], cuts[1:]):
         group = spans[a:b]
         # beside solid stretches a few worn pieces look like dashes by chance
-        dashes = None if long[a] or long.any() and len(group) < 3 else find_dash_pattern(group)
+        dashes = None if long[a] or long.any() and len(group) < 3 else find_dash_pattern(group, beside_solid=bool(long.any()))
         if found and found[-1][1] is None and dashes is None:
             found[-1] = (np.vstack([found[-1][0], group]), None)
         else:
@@ -95,13 +95,14 @@ def stretches(line: LinkedLine, longest_dash: float = NEUTRAL.longest_dash) -> l
             for group, dashes in found]
 
 
-def find_dash_pattern(spans: np.ndarray) -> DashPattern | None:
+def find_dash_pattern(spans: np.ndarray, beside_solid: bool = False) -> DashPattern | None:
     """The DashPattern of painted intervals (K, 2), or None where they follow none.
 
     Dashes may be missing: steps between dashes are then whole multiples of the
     period. Some may be worn at their ends: three of five must have the common length.
     Of three pieces alone all must have it, or their two steps must be equal: by chance
-    one step is soon a multiple of the other.
+    one step is soon a multiple of the other. In a line that is solid elsewhere (`beside_solid`)
+    all must have it: there three pieces are what wear left of it, and equal steps chance.
     """
     if len(spans) < 2:
         return None
@@ -121,7 +122,7 @@ def find_dash_pattern(spans: np.ndarray) -> DashPattern | None:
     if len(spans) == 3 and not alike.all():
         # a worn dash keeps one of its ends, or its middle
         steps = np.diff(np.column_stack([spans, spans.mean(axis=1)]), axis=0)
-        if np.ptp(steps, axis=0).min() > STEP_TOLERANCE:
+        if beside_solid or np.ptp(steps, axis=0).min() > STEP_TOLERANCE:
             return None
     return DashPattern(dash, period)
 

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from ..cross_section.sections import CrossSections
 
 LINE_TO_EDGE = 4.0   # m between a line and the edge that it runs along: the widest paved shoulders are 12 ft (AASHTO, Green Book, 4.4.2)
+LEVEL_REACH = 3.0    # m of a line at either side of a gap that say how far it lies from the edge
 
 
 class EdgesBeside:

@@ -14,6 +14,7 @@ from ...curves.curve_fit import CurveFit
 from ...curves.model_selection import fit_curve, fit_curves
 from ...curves.robust import median
 from ...survey.frame.frame_lines import LINE_VERTEX_SPACING
+from .edges_beside import LEVEL_REACH
 
 if TYPE_CHECKING:
     from ...survey.frame.road import Road
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
 MIN_POINTS_PER_PLACE = 3     # points that a place must have to count, where there are enough such places
 MIN_GUIDED_GAP = 4.0         # m: in a longer gap the curve is guided parallel to the other lines
 GUIDE_SPACING = 2.0          # m between guiding places
-GUIDE_LEVEL_REACH = 3.0      # m at either side of a gap that say where the guide begins and ends
 LINE_HEIGHT_SMOOTHING = 3.0  # m
 
 
@@ -156,7 +156,7 @@ def _guides(s, d, trend, edges, span):
     for k in wide.tolist():
         a, b = s[[k, k + 1]].tolist()
         at = np.linspace(a, b, int(np.ceil((b - a) / GUIDE_SPACING)) + 1)[1:-1]
-        near = [slice(np.searchsorted(s, a - GUIDE_LEVEL_REACH), k + 1), slice(k + 1, np.searchsorted(s, b + GUIDE_LEVEL_REACH, "right"))]
+        near = [slice(np.searchsorted(s, a - LEVEL_REACH), k + 1), slice(k + 1, np.searchsorted(s, b + LEVEL_REACH, "right"))]
         edge = edges.between((a, d[k]), (b, d[k + 1]))
         courses = [trend.at] + ([] if edge is None else [edge])
         # parallel to what the line keeps its distance from
@@ -168,7 +168,7 @@ def _guides(s, d, trend, edges, span):
         if abs(end - tip) > GUIDE_SPACING / 4:
             at = np.linspace(tip, end, int(np.ceil(abs(end - tip) / GUIDE_SPACING)) + 1)[1:]
             stations.append(at)
-            near = np.abs(s - tip) <= GUIDE_LEVEL_REACH
+            near = np.abs(s - tip) <= LEVEL_REACH
             offsets.append(median(d[near] - trend.at(s[near])) + trend.at(at))
     if not stations:
         return np.empty(0), np.empty(0)

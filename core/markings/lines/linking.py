@@ -19,6 +19,7 @@ from scipy.optimize import linear_sum_assignment
 from ...common.groups import linked_groups
 from ...curves.robust import median
 from .common_trend import MAX_LINE_SLOPE, CommonTrend, weighted_medians
+from .edges_beside import LEVEL_REACH
 
 if TYPE_CHECKING:
     from .edges_beside import EdgesBeside
@@ -57,6 +58,16 @@ class LinkedLine:
     def places(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """s, d, z, weight of all places."""
         return self._places
+
+    def end_places(self, at_start: bool) -> tuple[np.ndarray, np.ndarray]:
+        """s, d of the places within LEVEL_REACH of the first or the last point, the outermost place at least."""
+        return self._end_places[at_start]
+
+    @cached_property
+    def _end_places(self):
+        s, d, *_ = self._places
+        away = s.max() - s, s - s.min()
+        return [(s[near], d[near]) for near in (a <= LEVEL_REACH for a in away)]
 
     @cached_property
     def _places(self):
@@ -118,13 +129,19 @@ def lateral_mismatch(before: _End, after: _End) -> float:
                for trust in (0.0, _trust(before, after)))
 
 
-def _miss(before: _End, after: _End, trend: CommonTrend, edges: EdgesBeside) -> float:
-    """The same, or less where both run along one edge of the road and keep their distance from it."""
+def _miss(before: _End, after: _End, trend: CommonTrend, edges: EdgesBeside, ends: LinkedLine, begins: LinkedLine) -> float:
+    """The same, or less where both run along one edge of the road and keep their distance from it.
+
+    That is measured where they are painted: along a taper a line bends, and where its tip would lie is not known well from a straight end.
+    """
     miss = lateral_mismatch(before, after)
     s = np.array([before.s, after.s])
     d = np.array([before.d, after.d]) + trend.at(s)
     edge = edges.between((s[0], d[0]), (s[1], d[1]))
-    return miss if edge is None else min(miss, float(np.ptp(d - edge(s))))
+    if edge is None:
+        return miss
+    beside = [median(own_d - edge(own_s)) for own_s, own_d in (ends.end_places(False), begins.end_places(True))]
+    return min(miss, abs(beside[1] - beside[0]))
 
 
 def _trust(before, after):
@@ -160,7 +177,7 @@ def link_lines(lines: list[LinkedLine], trend: CommonTrend, edges: EdgesBeside, 
                 continue
             if abs(before.slope - after.slope) > MAX_LINE_SLOPE and min(before.reach, after.reach) > 3.0:
                 continue
-            miss, limit = _miss(before, after, trend, edges), allowed * (0.5 + 0.5 * max(gap, 0.0) / max(max_gap, 1e-6))
+            miss, limit = _miss(before, after, trend, edges, lines[a], lines[b]), allowed * (0.5 + 0.5 * max(gap, 0.0) / max(max_gap, 1e-6))
             if _between_twins(twin_ends[a], twin_starts[b], before, after):
                 continue
             if miss <= limit:
@@ -270,7 +287,9 @@ def link_over_long_gaps(lines: list[LinkedLine], trend: CommonTrend, edges: Edge
             low, high = np.searchsorted(stations, [before.s + max_gap - MAX_STRAND_OVERLAP, before.s + max_bridge])
             for b in by_start[low:high]:
                 after = starts[b]
-                if min(lines[a].painted, lines[b].painted) < MIN_PAINT_BESIDE_GAP or (miss := _miss(before, after, trend, edges)) > allowed:
+                if min(lines[a].painted, lines[b].painted) < MIN_PAINT_BESIDE_GAP:
+                    continue
+                if (miss := _miss(before, after, trend, edges, lines[a], lines[b])) > allowed:
                     continue
                 if same_dash_pattern(lines[a], lines[b]) or _runs_beside(lines, (a, b), before, after, trend):
                     score = (miss / allowed) ** 2 + (after.s - before.s) / max_bridge

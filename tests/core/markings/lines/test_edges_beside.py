@@ -1,6 +1,7 @@
 """Edge lines follow the edge of the road where it widens."""
 
 import numpy as np
+import pytest
 import shapely
 from clustered_streets import ClusteredStreet
 from lanewright.core.markings.lines.edges_beside import edges_beside
@@ -26,6 +27,23 @@ def test_a_worn_edge_line_is_one_line_along_the_edge_of_a_road_that_widens():
     left = [line for line, row in found if np.mean(np.asarray(line.coords)[:, 1]) > 5_400_000.0]
     x, y = np.concatenate([shapely.get_coordinates(line) for line in left]).T
     np.testing.assert_allclose(y - 5_400_000.0, widening(x - 500_000.0), atol=0.12)
+
+
+def bending(s):
+    """Offset of an edge line that bends out and back in again along a taper of 18 m."""
+    share = np.clip((s - 36.0) / 18.0, 0.0, 1.0)
+    return 3.0 + 1.8 * share**2 * (3 - 2 * share)
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_line_that_bends_away_along_a_taper_goes_on_where_it_is_seen_next_at_the_same_distance_from_the_edge(side):
+    """Where its tip points says less: it was straight until 5 m before. What wear left of it is a metre of paint in the taper."""
+    street = ClusteredStreet(radius=None).paint(0, 120, -3.0 * side, kind="edge").paint(0, 38, 3.0 * side, kind="edge")
+    for first in np.r_[np.arange(38.0, 42.5, 0.5), 46.0, 46.5]:
+        street.paint(first, first + 0.5, float(bending(first + 0.25)) * side, width=0.15, kind="edge")
+    street.paint(54, 120, 4.8 * side, kind="edge")
+    found = street.lines(edges=street.pavement(lambda s: side * (bending(s) + 0.3)))
+    assert len({row["line"] for row in found.rows}) == 2
 
 
 def test_without_an_edge_the_two_ends_of_it_are_lines_of_their_own():

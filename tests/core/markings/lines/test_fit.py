@@ -286,6 +286,13 @@ def test_lines_that_are_written_as_a_layer_and_read_again_lie_at_the_same_statio
         lines_to_features(again, street.frame)
 
 
+def test_three_worn_pieces_between_solid_stretches_are_no_dashes_though_they_lie_evenly():
+    street = ClusteredStreet().paint(0, 40, 3.5, kind="edge").paint(80, 120, 3.5, kind="edge")
+    for first, last in ((46.0, 47.0), (53.6, 55.9), (61.5, 64.4)):
+        street.paint(first, last, 3.5, kind="edge")
+    assert {row["pattern"] for row in street.lines().rows} == {"solid"}
+
+
 def test_a_road_without_painted_lines_has_none():
     assert len(zebra(ClusteredStreet(), 50.0).lines()) == 0
 
