@@ -278,13 +278,13 @@ class _VertexSet:
         size = np.minimum(number, most)
         column = np.arange(most)
         place = np.where(column < size[:, None], (column * number[:, None]) // np.maximum(size, 1)[:, None], 0)
-        return self.vertices[first[:, None] + place] if len(which) else np.zeros((0, most), np.int64), size
+        return self.vertices.take(first[:, None] + place) if len(which) else np.zeros((0, most), np.int64), size
 
 
 def _planes(part, which, most, coordinates, scatter, settings):
     """Planes of one class of some candidates, their samples, and whether enough of these are inliers."""
     index, number = part.evenly(which, most)
-    planes = fit_planes(*(values[index] for values in coordinates), number, settings.ransac_distance, INLIER_SIGMAS * scatter[which])
+    planes = fit_planes(*(values.take(index) for values in coordinates), number, settings.ransac_distance, INLIER_SIGMAS * scatter[which])
     return planes, index, (planes.inliers >= MIN_PLANE_INLIERS) & (planes.inliers >= MIN_INLIER_SHARE * planes.points)
 
 
@@ -324,10 +324,10 @@ def _neighbourhood(side, candidates, settings):
     each = length.reshape(row.shape).sum(1)
     owner = np.repeat(np.arange(len(candidates)), each)
     along = np.repeat(np.tile((ahead * side.interval).astype(np.float32), len(candidates)), length)
-    u, h = side.u[index], side.h[index]
+    u, h = side.u.take(index), side.h.take(index)
     u -= np.repeat(candidates.u, each)
     h -= np.repeat(candidates.base, each)
-    return owner, along, u.astype(np.float32), h.astype(np.float32), side.steep[index]
+    return owner, along, u.astype(np.float32), h.astype(np.float32), side.steep.take(index)
 
 
 def _meeting(level, face):
@@ -345,5 +345,5 @@ def _distance(u, h, points, count, at_u, at_h):
     if not u.size:
         return np.full(len(at_u), np.inf)
     there = np.arange(points.shape[1]) < count[:, None]
-    squared = (u[points] - at_u[:, None]) ** 2 + (h[points] - at_h[:, None]) ** 2
+    squared = (u.take(points) - at_u[:, None]) ** 2 + (h.take(points) - at_h[:, None]) ** 2
     return np.sqrt(np.where(there, squared, np.inf).min(1))

@@ -126,7 +126,7 @@ def scanner_lines(records: Columns | np.ndarray, p: Pass, mirror: MirrorPhase, c
         return None
     time = np.ascontiguousarray(records["time"])
     order = time_order(time)
-    time = time[order]
+    time = time.take(order)
     # the rows of a column lie in order where they are read, and only then by time
     columns = {name: records[name].take(order) for name in ("s", "d", "z", *["intensity"] * intensity)}
     first, last = np.floor(mirror.turns_at(time[[0, -1]])).astype(int)
@@ -205,7 +205,7 @@ def ribs_of(lines: ScannerLines, direction: int, mirror: MirrorPhase, interval: 
     longest = np.maximum(MAX_RIB, MAX_LINES_AHEAD * mirror.spacing * lines.driven) / interval
     found, rest = [], None   # rest: points without a place ahead so far, None for all
     for step in range(1, MAX_LINES_AHEAD * mirror.spacing + 1):
-        own_key, own_line, own_cell = (values if rest is None else values[rest] for values in (key, lines.line, cell))
+        own_key, own_line, own_cell = (values if rest is None else values.take(rest) for values in (key, lines.line, cell))
         place = np.interp(own_key + step, key, number)
         place += RIB_TOLERANCE
         ahead = place.astype(np.int64)
@@ -216,7 +216,7 @@ def ribs_of(lines: ScannerLines, direction: int, mirror: MirrorPhase, interval: 
         cut |= cell_after.take(ahead) != own_cell
         cut &= hit
         cut = np.flatnonzero(cut)
-        found.append(_ribs_on_surface(lines, station, longest, direction, cut if rest is None else rest[cut], ahead[cut], place[cut]))
+        found.append(_ribs_on_surface(lines, station, longest, direction, cut if rest is None else rest.take(cut), ahead.take(cut), place.take(cut)))
         rest = np.flatnonzero(~hit) if rest is None else rest[~hit]
         if not len(rest):
             break
@@ -228,17 +228,18 @@ def _ribs_on_surface(lines, station, longest, direction, point, ahead, place):
     share = place - ahead
     # a rib that ends near a point ends in it, so that no plane passes between this rib and the next one
     share = np.where(share < 2 * RIB_TOLERANCE, 0.0, share - RIB_TOLERANCE)
-    near, far = station[point], station[ahead]
-    far += share * (station[ahead + 1] - far)
+    after = ahead + 1
+    near, far = station.take(point), station.take(ahead)
+    far += share * (station.take(after) - far)
     onward = far - near
     onward *= direction
-    difference = lines.ranges[ahead]
-    difference += share * (lines.ranges[ahead + 1] - difference)
-    difference -= lines.ranges[point]
+    difference = lines.ranges.take(ahead)
+    difference += share * (lines.ranges.take(after) - difference)
+    difference -= lines.ranges.take(point)
     good = np.ceil(near) != np.ceil(far)
     good &= (onward > 0) & (onward <= longest[lines.line[point]]) & (np.abs(difference) <= RANGE_JUMP)
     good = np.flatnonzero(good)
-    return Ribs(point[good], ahead[good], share[good], near[good], far[good])
+    return Ribs(*(values.take(good) for values in (point, ahead, share, near, far)))
 
 
 def slanting_edges(lines: ScannerLines, mirror: MirrorPhase, interval: float) -> Ribs:
@@ -371,8 +372,8 @@ def plane_order(plane: np.ndarray, phase: np.ndarray) -> np.ndarray:
     (N,) int
     """
     by_phase = np.argsort((phase * PHASE_STEPS).astype(np.uint16), kind="stable")
-    plane = plane[by_phase]
-    return by_phase[np.argsort(plane.astype(np.int16) if plane.max() < 2**15 else plane, kind="stable")]
+    plane = plane.take(by_phase)
+    return by_phase.take(np.argsort(plane.astype(np.int16) if plane.max() < 2**15 else plane, kind="stable"))
 
 
 def increasing(d: np.ndarray, first: np.ndarray) -> np.ndarray:

@@ -165,11 +165,11 @@ def _cut(records, p, key, mirror, planes, settings, intensity, level):
     rib, plane = _planes_through(ribs, planes)
     if not len(rib):
         return Scanlines.none()
-    near = ribs.near[rib]
-    crossed = Crossings(ribs.point[rib], ribs.ahead[rib], ribs.share[rib], (plane - near) / (ribs.far[rib] - near))
+    near = ribs.near.take(rib)
+    crossed = Crossings(ribs.point.take(rib), ribs.ahead.take(rib), ribs.share.take(rib), (plane - near) / (ribs.far.take(rib) - near))
     phase, d, z = (crossed.of(values) for values in (lines.phase, lines.d, lines.z))
     order = plane_order(plane - planes[0], phase if mirror.leftward else 1.0 - phase)
-    plane, phase, d, z = (values[order] for values in (plane, phase, d, z))
+    plane, phase, d, z = (values.take(order) for values in (plane, phase, d, z))
     bright = np.zeros(len(d), np.float32) if lines.intensity is None else crossed.of(lines.intensity.astype(np.float64))[order].astype(np.float32)
     order, first = PlaneVertices.from_track(p, settings.interval, mirror, plane, phase, d, z).lines()
     if order is not None:
@@ -213,8 +213,8 @@ class Crossings:
 
     def of(self, values: np.ndarray) -> np.ndarray:
         """(M,) values at the intersections, interpolated from the (N,) values of the points."""
-        near, ahead = values[self.point], values[self.ahead]
-        ahead += self.share * (values[self.ahead + 1] - ahead)
+        near, ahead = values.take(self.point), values.take(self.ahead)
+        ahead += self.share * (values.take(self.ahead + 1) - ahead)
         ahead -= near
         ahead *= self.along
         return near + ahead

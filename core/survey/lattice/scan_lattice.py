@@ -215,7 +215,7 @@ def time_order(time: np.ndarray) -> np.ndarray:
     ticks = ((time - time.min()) / TIME_SORT_TICK).astype(np.int64)
     order = np.argsort(ticks.astype(np.uint16), kind="stable")
     for shift in range(RADIX_BITS, int(ticks.max()).bit_length(), RADIX_BITS):
-        order = order[np.argsort((ticks >> shift).astype(np.uint16)[order], kind="stable")]
+        order = order.take(np.argsort((ticks >> shift).astype(np.uint16).take(order), kind="stable"))
     return order
 
 
