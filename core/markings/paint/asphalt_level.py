@@ -15,7 +15,7 @@ from scipy import ndimage
 from ...intensity.asphalt_model import asphalt_statistics
 from ...lazy import cv2
 from ..objects.road_grid import RoadGrid
-from .gutters import COARSE_CELLS, gutter_cells
+from .gutters import COARSE_CELLS, RimBands, gutter_cells
 from .threshold_bins import MAX_BIN_WIDTH, AsphaltBin, OtsuSplit
 
 if TYPE_CHECKING:
@@ -29,14 +29,14 @@ PATCH_RIM = 3               # cells: the irregular rim of a patch
 PATCH_TAIL = 3.0            # of its own spreads: how far the brightest cells of a patch lie above its median
 
 
-def flatten(brightness: np.ndarray, median: np.ndarray, spread: np.ndarray, rims: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+def flatten(brightness: np.ndarray, median: np.ndarray, spread: np.ndarray, rims: Sequence[RimBands]) -> tuple[np.ndarray, np.ndarray]:
     """Brightness above the asphalt around each cell, and the cells of gutters.
 
     Parameters
     ----------
     brightness : (rows, columns) NaN where nothing was scanned
     median, spread : of asphalt, (columns,) or (rows, columns)
-    rims : (rows, columns) distances from the rim of the scanned road and from the road's edges, m
+    rims : RimBands of the rim of the scanned road and of the road's edges
 
     Returns
     -------

@@ -29,7 +29,7 @@ from ..objects.road_grid import CELL_UNITS, PieceOfRoad, RoadCells, RoadGrid, ce
 from .asphalt_level import AsphaltLevels, asphalt_profile, flatten
 from .fading import without_fading_rims
 from .faint_lines import faint_lines
-from .gutters import edge_distance, rim_distance
+from .gutters import RimBands, edge_distance, rim_distance
 from .mask import Burn, burn_points, marking_mask, painted_pixels
 from .morphology import morphology
 from .noisy import CellAverages, ViewSamples, noisy_paint_cells, views
@@ -262,8 +262,9 @@ class WindowExtractor:
             return None
         parts = [piece for beside in (window - 1, window, window + 1) for piece in self._in_cells(beside)]
         cells = RoadCells.of(parts, window * THRESHOLD_WINDOW - WINDOW_HALO, (window + 1) * THRESHOLD_WINDOW + WINDOW_HALO)
-        rims = rim_distance(cells.occupied), edge_distance(cells.half_width, cells.grid.offsets())
-        return _WindowView(cells.grid, cells.grid.read(self.image, self.frame, self.road), rims, cells.occupied)
+        brightness = cells.grid.read(self.image, self.frame, self.road)
+        distances, scanned = (rim_distance(cells.occupied), edge_distance(cells.half_width, cells.grid.offsets())), np.isfinite(brightness)
+        return _WindowView(cells.grid, brightness, [RimBands.of(distance, scanned) for distance in distances], cells.occupied)
 
     def bins(self, window: int) -> list[tuple[AsphaltBin, OtsuSplit]]:
         """Bins of asphalt and Otsu's splits of one window; an empty list where there are no data."""
@@ -277,7 +278,7 @@ class WindowExtractor:
     def _bins_of(self, window, view):
         brightness, offsets, rows = view.brightness, view.grid.offsets(), slice(WINDOW_HALO, WINDOW_HALO + THRESHOLD_WINDOW)
         scanned = np.isfinite(brightness)
-        interior = scanned[rows] & (view.rims[0][rows] > np.float32(RIM_WIDTH))
+        interior = scanned[rows] & (view.rims[0].distance[rows] > np.float32(RIM_WIDTH))
         if np.count_nonzero(interior) < MIN_BIN_CELLS:
             interior = scanned[rows]
         if not interior.any():
@@ -319,7 +320,7 @@ class WindowExtractor:
         mask = without_fading_rims(z, bright, view.occupied & ~gutter)
         # the background that was subtracted from the cell is subtracted from the point as well
         least = (brightness - z * spread) + (threshold - 0.5) * (spread * scale)
-        lines, halfway = faint_lines(brightness, view.occupied, view.rims[0], mask, bright & ~mask)
+        lines, halfway = faint_lines(brightness, view.occupied, view.rims[0].distance, mask, bright & ~mask)
         least = np.where(lines & ~mask, halfway, least)
         mask |= lines
         mask &= ~raised_cells([self._heights(part, grid) for part in parts], mask)
@@ -387,11 +388,11 @@ class _WindowView:
 
     grid : RoadGrid
     brightness : (rows, columns) float32, NaN where there is no data
-    rims : (rows, columns) distances from the rim of the scanned road and from the road's edges, m
+    rims : RimBands of the rim of the scanned road and of the road's edges
     occupied : (rows, columns) bool, cells that points lie in
     """
 
     grid: RoadGrid
     brightness: np.ndarray
-    rims: tuple[np.ndarray, np.ndarray]
+    rims: list[RimBands]
     occupied: np.ndarray

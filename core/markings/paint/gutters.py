@@ -9,6 +9,8 @@ the brighter of the two.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ...lazy import cv2
@@ -77,40 +79,67 @@ def edge_distance(half_width: np.ndarray, offsets: np.ndarray) -> np.ndarray:
     return distance
 
 
-def gutter_cells(z: np.ndarray, distance: np.ndarray) -> np.ndarray:
+@dataclass(frozen=True)
+class RimBands:
+    """The cells along one rim, by bands inwards and squares along it; the same for whatever is measured in them.
+
+    distance : (rows, columns) float32 metres from the rim, of `rim_distance` or `edge_distance`
+    near : (N,) flat numbers of the cells that were scanned within the reach of gutters
+    band : (N,) int32 band of each, from the rim inwards
+    square : (N,) int32 flat number of the square of 20 cm that each lies in
+    place : (N,) int, flat number of square and band
+    seen : (bands, squares along, squares across) cells of a band that were scanned along RIM_REACH either way
+    """
+
+    distance: np.ndarray
+    near: np.ndarray
+    band: np.ndarray
+    square: np.ndarray
+    place: np.ndarray
+    seen: np.ndarray
+
+    @classmethod
+    def of(cls, distance: np.ndarray, scanned: np.ndarray) -> RimBands:
+        """The bands along a rim at a distance, (rows, columns) m, of the cells that were scanned, (rows, columns) bool."""
+        near = np.flatnonzero((distance > 0) & (distance < np.float32((GUTTER_BANDS * BAND_CELLS + 0.5) * CELL_SIZE)) & scanned)
+        band = ((distance.take(near) / np.float32(CELL_SIZE) - np.float32(0.5)) / np.float32(BAND_CELLS)).astype(np.int32)
+        band = np.minimum(band, GUTTER_BANDS - 1)
+        rows, columns = (-(-n // COARSE_CELLS) for n in distance.shape)
+        row, column = np.divmod(near.astype(np.int32), np.int32(distance.shape[1]))
+        square = row // np.int32(COARSE_CELLS) * np.int32(columns) + column // np.int32(COARSE_CELLS)
+        place = (square * np.int32(GUTTER_BANDS) + band).astype(np.intp)
+        counts = np.bincount(place, minlength=GUTTER_BANDS * rows * columns).astype(float)
+        return cls(distance, near, band, square, place, _around(counts.reshape(rows, columns, GUTTER_BANDS)))
+
+    def sums(self, values: np.ndarray) -> np.ndarray:
+        """(bands, squares along, squares across) sums of (N,) values at the cells along RIM_REACH either way."""
+        return _around(np.bincount(self.place, values, self.seen.size).reshape(*self.seen.shape[1:], GUTTER_BANDS))
+
+
+def _around(counts):
+    """(bands, squares along, squares across) sums of (squares along, squares across, bands) along RIM_REACH either way."""
+    box = 2 * int(round(RIM_REACH / CELL_SIZE / COARSE_CELLS)) + 1
+    sums = cv2.boxFilter(counts, -1, (box, box), normalize=False, borderType=cv2.BORDER_CONSTANT)
+    return np.ascontiguousarray(np.moveaxis(sums, 2, 0))
+
+
+def gutter_cells(z: np.ndarray, rim: RimBands) -> np.ndarray:
     """Cells of concrete gutters, by our own rule.
 
     Parameters
     ----------
     z : (rows, columns) brightness in spreads above asphalt, NaN where nothing was scanned
-    distance : (rows, columns) float32 metres of `rim_distance` or `edge_distance`
+    rim : RimBands
 
     Returns
     -------
     (rows, columns) bool
     """
-    near = np.flatnonzero((distance > 0) & (distance < np.float32((GUTTER_BANDS * BAND_CELLS + 0.5) * CELL_SIZE)))
-    near = near[np.isfinite(z.take(near))]
     found = np.zeros(z.shape, bool)
-    if not len(near):
+    if not len(rim.near):
         return found
-    value = z.take(near)
-    band = ((distance.take(near) / np.float32(CELL_SIZE) - np.float32(0.5)) / np.float32(BAND_CELLS)).astype(np.int32)
-    band = np.minimum(band, GUTTER_BANDS - 1)
-    coarse = tuple(-(-n // COARSE_CELLS) for n in z.shape)
-    row, column = np.divmod(near.astype(np.int32), np.int32(z.shape[1]))
-    square = row // np.int32(COARSE_CELLS) * np.int32(coarse[1]) + column // np.int32(COARSE_CELLS)
-    place = square * np.int32(GUTTER_BANDS) + band
-    size = GUTTER_BANDS * coarse[0] * coarse[1]
-    bright = value > GUTTER_BRIGHTNESS
-    box = 2 * int(round(RIM_REACH / CELL_SIZE / COARSE_CELLS)) + 1
-
-    def around(counts):
-        sums = cv2.boxFilter(counts.reshape(*coarse, GUTTER_BANDS), -1, (box, box), normalize=False, borderType=cv2.BORDER_CONSTANT)
-        return np.ascontiguousarray(np.moveaxis(sums, 2, 0))
-
-    seen = around(np.bincount(place, minlength=size).astype(float))
-    share = around(np.bincount(place, bright, size)) / np.maximum(seen, 1e-9)
+    value, seen = z.take(rim.near), rim.seen
+    share = rim.sums(value > GUTTER_BRIGHTNESS) / np.maximum(seen, 1e-9)
     # a cell at the rim is half curb: the first band is not tested on its own
     full = (share >= MIN_BRIGHT_SHARE) & (seen > MIN_CELLS_SEEN)
     full[0] |= full[1]
@@ -118,7 +147,7 @@ def gutter_cells(z: np.ndarray, distance: np.ndarray) -> np.ndarray:
         return found
     # in whole 64ths: their sums are exact in any order
     height = np.rint(64 * np.clip(value, 0.0, 100.0))
-    level = around(np.bincount(place, height, size) / 64) / np.maximum(seen, 1e-9)
+    level = rim.sums(height / 64) / np.maximum(seen, 1e-9)
     inner = np.minimum.accumulate(level[1:], axis=0)
     painted = np.zeros(full.shape, bool)
     painted[2:] = level[2:] > PAINT_TO_GUTTER * inner[:-1]
@@ -126,5 +155,5 @@ def gutter_cells(z: np.ndarray, distance: np.ndarray) -> np.ndarray:
     # the band in which the gutter ends is half gutter, unless it is paint
     ends = np.take_along_axis(painted, np.minimum(width, GUTTER_BANDS - 1)[None], axis=0)[0]
     width = np.where(width >= MIN_GUTTER_BANDS, width + ~ends, 0)
-    found.ravel()[near] = band < width.ravel().take(square)
+    found.ravel()[rim.near] = rim.band < width.ravel().take(rim.square)
     return found
