@@ -13,7 +13,6 @@ from ...curves.robust import percentiles
 from ...survey.store.records import COORDINATE_SCALE
 from .dash_rows import rows_of_blocks, rows_of_dashes
 from .near_pairs import overlapping_pairs
-from .zebra import zebra_stripes
 
 if TYPE_CHECKING:
     from .shape import Shape
@@ -138,9 +137,8 @@ def classify_markings(shapes: list[Shape], half_widths: Sequence[float], setting
     curb = np.array([_curb(shape, r) for shape, r in zip(shapes, clearance)])
     zigzag = np.array([shape.legs > 0 for shape in shapes])
     line = _is_line(column, settings) & ~curb & ~zigzag
-    zebra = zebra_stripes(column)
     line |= _dashes_in_rows(shapes, column, clearance, settings)
-    line &= ~zebra & ~zigzag
+    line &= ~zigzag
     outside = _beyond_the_edge_line(column, line, clearance)
     found = []
     doubles = _has_partner(column, line)
@@ -151,12 +149,10 @@ def classify_markings(shapes: list[Shape], half_widths: Sequence[float], setting
             or curb[k] or _round_cover(shape) and not blocks[k]
         if zigzag[k] and clearance[k] >= -settings.margin and not covered_feet[k]:
             kind = "zigzag"
-        elif clearance[k] < -settings.margin or no_paint or _gutter(shape, clearance[k], line[k], zebra[k]):
+        elif clearance[k] < -settings.margin or no_paint or _gutter(shape, clearance[k], line[k]):
             kind = NOT_PAINT
         elif blocks[k]:
             kind = "give_way"
-        elif zebra[k]:
-            kind = "zebra"
         elif line[k]:
             kind = _line_kind(shape, clearance[k], doubles[k])
         else:
@@ -286,9 +282,9 @@ def _curb(shape, clearance):
     return shape.along and clearance < ROAD_EDGE_CLEARANCE and shape.width < narrowest
 
 
-def _gutter(shape, clearance, line, zebra):
+def _gutter(shape, clearance, line):
     """A broad bright strip that reaches the road edge: concrete, not paint."""
-    return shape.along and not zebra and not line and shape.length > 2.0 and shape.elongation > 3 and clearance < shape.width
+    return shape.along and not line and shape.length > 2.0 and shape.elongation > 3 and clearance < shape.width
 
 
 def _other_kind(shape):

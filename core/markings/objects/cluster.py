@@ -29,8 +29,8 @@ from .outline import band, cell_outline, lifted, painted_cells, parts, to_local
 from .road_grid import CELL_UNITS
 from .scan_tracks import track_reach
 from .shape import measure
-from .sparse_zebra import sparse_crossings
 from .split_merge import join_fragments, split_compounds
+from .zebra import zebra_stripes
 
 if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame
@@ -41,8 +41,7 @@ if TYPE_CHECKING:
 
 LINKING_WINDOW_CELLS = 1250                   # cells of 4 cm: 50 m of station are linked at a time
 MIN_FRAGMENT_POINTS = 1                       # points: the smallest worn rest that a line may be joined from
-STRIP_KINDS = LINE_KINDS + ("zebra", "stop")  # drawn as even strips, the others cell by cell
-MAX_SKEW_OF_EVEN_STRIPES = np.radians(5.0)    # stripes of a crossing that is more askew end askew to their run
+STRIP_KINDS = LINE_KINDS + ("stop",)  # drawn as even strips, the others cell by cell
 REACH_ALONG_FACTOR = 2.5                      # neighbours may be this times the distance apart along the road,
 REACH_ACROSS_DIVISOR = 2.0                    # and across it the distance over this, or the reach between tracks of the scan
 
@@ -87,7 +86,7 @@ def cluster_markings(marking_points: RoadPoints, frame: RoadFrame, settings: Clu
         part = progress.part(k / len(roads), (k + 1) / len(roads))
         records, labels = connected_points(marking_points, road, settings.distance, part.part(0, 0.4))
         cluster = np.zeros(len(records), np.int32)
-        found, rest = _sparse_stripes(records)
+        found, rest = _stripes_of_crossings(records, frame.road(road))
         records, labels = records.take(rest), labels[rest]
         order, starts, _ = _by_cluster(split_compounds(records, labels), MIN_FRAGMENT_POINTS)
         records = records.take(order)
@@ -134,14 +133,13 @@ class _Marking(NamedTuple):
     outline: shapely.Polygon | None = None
 
 
-def _sparse_stripes(records):
-    """[_Marking] the stripes of crossings that were scanned sparsely, and the rows of all other records."""
+def _stripes_of_crossings(records, road):
+    """[_Marking] the stripes of crossings, and the rows of all other records."""
     cells, member = occupied(records["x"] // CELL_UNITS, records["y"] // CELL_UNITS)
-    sparse = np.zeros(len(cells), bool)
-    sparse[member] = track_reach(records["spacing"]) > 0
-    places = (cells + 0.5) * CELL_UNITS * COORDINATE_SCALE
+    station = np.zeros(len(cells))
+    station[member] = records["s"] * COORDINATE_SCALE
+    stripes = zebra_stripes((cells + 0.5) * CELL_UNITS * COORDINATE_SCALE, road.heading(station))
     stripe_of, found = np.full(len(cells), -1), []
-    stripes = sparse_crossings(places, sparse)
     for k, stripe in enumerate(stripes):
         stripe_of[stripe.spots] = k
     of_point = stripe_of[member]
@@ -291,7 +289,7 @@ def _outline(marking, road):
     places = np.stack([records["x"], records["y"], records["z"]], axis=1) * COORDINATE_SCALE
     if marking.outline is not None:
         return [lifted(marking.outline, places)]
-    if kind in STRIP_KINDS and not (kind == "zebra" and abs(shape.direction) > MAX_SKEW_OF_EVEN_STRIPES):
+    if kind in STRIP_KINDS:
         drawn = band(records["s"], records["d"], shape)
     else:
         drawn = cell_outline(*painted_cells(records["s"] * COORDINATE_SCALE, records["d"] * COORDINATE_SCALE, records["spacing"]))

@@ -6,8 +6,8 @@ A cluster joins whatever touches. Where it holds a strip that runs on along the
 road, or a bar that runs on across it, and something else beside it, the two are cut
 free, so that the line keeps its width and the rest its shape.
 
-Pieces of one marking that wear has separated are joined: lines along the road, stop
-lines across it, the stripes of a crossing.
+Pieces of one marking that wear has separated are joined: lines along the road and stop
+lines across it.
 """
 
 from __future__ import annotations
@@ -28,7 +28,6 @@ from .connected_cells import occupied
 from .near_pairs import overlapping_pairs
 from .road_grid import CELL_UNITS
 from .scan_tracks import filled_between_tracks, track_reach
-from .zebra import STRIPE_WIDTH, zebra_stripes
 
 if TYPE_CHECKING:
     from ...survey.store.columns import Columns
@@ -54,7 +53,6 @@ MIN_ASKEW, MAX_UNSEEN_GAP = 0.05, 3.5   # m across per m along, and m along: a t
 MAX_UNSEEN_OFFSET = 0.08                # that are seen so far off are longer; m between the middles of two pieces with such a gap between them
 STOP_LINE_PIECE_THICKNESS = 0.18, 0.90  # m along the road of a stop line's pieces
 MIN_STOP_LINE_PIECE, MAX_STOP_LINE_GAP = 0.8, 0.30  # m across: a row of shorter blocks is a give-way line, and its gaps are painted
-MIN_STRIPE_PIECE, MAX_STRIPE_GAP = 0.8, 0.7  # m along the road: what a stripe of a crossing has left at least, and what wear takes of it
 MAX_SIDE_SHIFT = 0.10  # m by which wear has moved an edge that two pieces share
 
 
@@ -280,13 +278,12 @@ def join_fragments(shapes: Sequence[Shape], max_width: float) -> np.ndarray:
     -----
     Narrow pieces along the road are joined where one begins up to 0.9 m after the end of
     another on the same line, farther where tracks of the scan cross it askew; pieces of a bar across the road over 0.3 m where their
-    front and rear are the same; what is left of the stripes of a
-    crossing over 0.7 m within their sides.
+    front and rear are the same.
     """
     if len(shapes) < 2:
         return np.arange(len(shapes))
     column = columns_of(shapes)
-    pairs = np.concatenate([_along(shapes, max_width), _bars(column), _stripes(column)])
+    pairs = np.concatenate([_along(shapes, max_width), _bars(column)])
     return linked_groups(pairs[:, 0], pairs[:, 1], len(shapes))
 
 
@@ -340,17 +337,3 @@ def _bars(column):
     a, b = rows[pairs].T
     gap = np.maximum(d0[a], d0[b]) - np.minimum(d1[a], d1[b])
     return np.column_stack([a, b])[(gap <= MAX_STOP_LINE_GAP) & (np.maximum(broad[a], broad[b]) >= MIN_STOP_LINE_PIECE)]
-
-
-def _stripes(column):
-    """(P, 2) the stripes of a crossing, and what lies before or after them between their sides."""
-    s0, s1, d0, d1 = (column[name] for name in ("s0", "s1", "d0", "d1"))
-    # of a stripe askew the sides are not those of its box
-    stripes = np.flatnonzero(zebra_stripes(column, MIN_STRIPE_PIECE) & (d1 - d0 <= STRIPE_WIDTH[1]))
-    found = [np.empty((0, 2), np.int64)]
-    for a, b in overlapping_pairs(s0[stripes], s1[stripes], s0, s1, MAX_STRIPE_GAP):
-        a = stripes[a]
-        inside = (b != a) & (s1[b] >= s0[a] - MAX_STRIPE_GAP) & (s0[b] < s1[a] + MAX_STRIPE_GAP) \
-            & (d0[b] >= d0[a] - MAX_SIDE_SHIFT / 2) & (d1[b] <= d1[a] + MAX_SIDE_SHIFT / 2)
-        found.append(np.column_stack([a, b])[inside])
-    return np.concatenate(found)

@@ -1,63 +1,328 @@
-"""The stripes of zebra crossings: bars of one width side by side at an even pitch, in whatever direction they point.
+"""The stripes of zebra crossings: told by their pitch, all stripes together.
 
-Those of the driven road point along it. Those of a side street point along that street, which may be any way. Bars of
-hatching are parallel, too, but they lie askew to their row, which runs along the road.
+A stripe may be a handful of spots on tracks of the scan some decimetres apart, wear takes half of them, and spots of
+neighbouring stripes on one track look like a dashed line. All stripes together have one direction and one pitch, and lie
+on every track at the same places: across the stripes the spots repeat, which is told by the length of their mean phase.
+Bars of hatching are parallel, too, but they lie askew to their row; stripes along the road may do so where people cross it askew.
 """
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from ...common.groups import linked_groups
-from .near_pairs import overlapping_pairs
-from .shape import MAX_ANGLE_ALONG
+from ...common.parallel import check_cancelled
+from ...curves.robust import percentiles
+from ...lazy import cv2
 
 STRIPE_WIDTH = (0.25, 0.80)  # m
 STRIPE_LENGTH = (1.5, 10.0)  # m
-STRIPE_PITCH = (0.5, 1.6)    # m from stripe to stripe
 MIN_STRIPES = 3
-MAX_STRIPE_SKEW, MAX_STRIPE_TURN = np.radians((35.0, 8.0))  # of stripes along the road to it, and of stripes to each other
-MAX_ROW_SKEW = np.radians(15.0)   # of stripes in any direction to the square of their row: bars of hatching are more askew
-MAX_STRIPE_WIDTH_RATIO = 1.6      # times: one stripe to the next, of those in any direction
+COMB_WINDOW = 5.0               # m either way that a pitch is looked for in; windows overlap by half
+LEAST_SPOTS = 30           # cells of paint in a window
+MOST_SPOTS = 200           # looked at in a window; of more an even share
+LEAST_SPREAD = 0.4         # m, their standard deviation in the direction where it is least: three stripes spread by more
+COMB_PITCH = 0.5, 1.6           # m from stripe to stripe
+COMB_PITCH_STEP, COMB_HEADING_STEP = 0.05, np.radians(5.0)   # of the pitch, and of the direction, that are tried; then a tenth of both
+MIN_COMB_COHERENCE = 0.45       # length of the mean phase: 0.64 for stripes as broad as their gaps, 0 for spots anywhere
+MIN_SHARE_OF_STRIPE = 0.05  # of the spots of a crossing that a stripe has at least
+MIN_STRIPE_SPAN = 1.2      # m: letters and blocks are shorter
+MIN_SHARED_OF_STRIPES = 0.6           # of the longer of two stripes side by side that lies beside the other
+COMB_STEP_ALONG = 0.4           # m along the stripes that is taken together
+LEAST_PHASE = 0.3          # mean cosine of the phase where there are stripes: a stop line beside them has 0
+MIN_WIDTH_OF_PITCH, MAX_WIDTH_OF_PITCH = 0.3, 0.7   # of the pitch that a stripe is broad: lines with an arrow between them are narrower
+MIN_OF_WIDTH = 0.5         # of the width of all stripes that one of them has at least
+MIN_OF_USUAL = 0.2         # of the spots that a stripe usually has
+MIN_OF_NEIGHBOUR = 0.4     # of the spots of the next stripe that the last one has at least: it may be a curb
+SAME_HEADING, SAME_PITCH = np.radians(8.0), 0.08   # of neighbouring windows on one crossing
+REACH_OF_CROSSING = 2.5    # m about these windows that the crossing may go on: their other halves show fewer than three stripes
+ALONG_ROAD = np.radians(35.0)           # of stripes to the road: those of its own crossings
+MAX_ROW_SKEW, MAX_ROW_SKEW_ALONG = np.radians((15.0, 45.0))   # of stripes in any direction, and of those, to the square of their row
+MAX_ASIDE = 0.2            # of its width that the spots of a stripe lie on one side of its middle
+END_PERCENT = 2.0          # % of a stripe's spots beyond either end
+FRAYED = 0.06              # m beside a stripe, whose width is an estimate, that spots are of it
+MAX_STRAY_END = 0.6        # m that spots may lie beyond the line of ends to be of a stripe, and that one which ends earlier is shorter
+ENDS_SEEN = 80.0           # % of the stripes that end on that line or before it: many end where a track of the scan last met their paint
+STEPS_OF_CROSSING = 1.0, 1.0, 0.5, 0.1   # of direction and pitch, tried one after the other when all stripes are known
+
+# What is tried
+COMB_BIN = 0.10                 # m across the stripes
+COMB_HEADINGS = np.arange(-np.pi / 2, np.pi / 2, COMB_HEADING_STEP)
+COMB_PITCHES = COMB_PITCH[0] * (1 + COMB_PITCH_STEP) ** np.arange(int(np.log(COMB_PITCH[1] / COMB_PITCH[0]) / np.log(1 + COMB_PITCH_STEP)) + 1)
+COMB_ACROSS = np.stack([-np.sin(COMB_HEADINGS), np.cos(COMB_HEADINGS)])
+MOST_PEAKS = 2             # of them, the clearest, that are looked at closely: a line beside a crossing may repeat more clearly than its stripes
+COMB_REACH = int(1.5 * COMB_WINDOW / COMB_BIN)   # bins, either way
+COMB_PHASES = np.exp(2j * np.pi * COMB_BIN * np.arange(-COMB_REACH, COMB_REACH + 1)[:, None] / COMB_PITCHES)
 
 
-def zebra_stripes(column: dict[str, np.ndarray], shortest: float = STRIPE_LENGTH[0]) -> np.ndarray:
-    """Bars side by side at an even pitch, at least three of them.
+class Comb(NamedTuple):
+    """Stripes of one direction and pitch.
+
+    heading : radians from the first axis to theirs; pitch : m; phase : m, where the middle of one lies across them;
+    middle : (2,) m, the place that it is measured from; coherence : 0 to 1
+    """
+
+    heading: float
+    pitch: float
+    phase: float
+    middle: np.ndarray
+    coherence: float
+
+
+class Stripe(NamedTuple):
+    """One stripe: the spots that lie on it, and its (4, 2) corners, m."""
+
+    spots: np.ndarray
+    corners: np.ndarray
+
+
+def zebra_stripes(places: np.ndarray, way: np.ndarray) -> list[Stripe]:
+    """The stripes of crossings.
 
     Parameters
     ----------
-    column : dict of (N,) of the Shapes
-    shortest : m
+    places : (N, 2) m, spots of paint on the ground, one a cell. Where the road bends, station and offset would bend stripes, too
+    way : (N,) radians, the direction of the road at each, in the same axes
+    """
+    combs, rows = [], []
+    for own in _windows(places):
+        check_cancelled()
+        # most windows hold one line
+        comb = find_comb(places[own]) if np.sqrt(max(np.linalg.eigvalsh(np.cov(places[own].T))[0], 0.0)) >= LEAST_SPREAD else None
+        if comb is not None:
+            combs.append(comb)
+            rows.append(own)
+    found, free = [], np.ones(len(places), bool)
+    for group in _alike(combs):
+        best = max((combs[k] for k in group), key=lambda comb: comb.coherence)
+        own = _about(places, np.unique(np.concatenate([rows[k] for k in group])), best.heading)
+        stripes = _stripes(places, own[free[own]], best, way)
+        free[np.concatenate([np.empty(0, np.int64), *(stripe.spots for stripe in stripes)])] = False
+        found += stripes
+    return found
+
+
+def _about(places, rows, heading):
+    """Rows of the spots in the box about some spots, along a heading and across it, and `REACH_OF_CROSSING` beyond it."""
+    turned = places @ np.array([[np.cos(heading), -np.sin(heading)], [np.sin(heading), np.cos(heading)]])
+    low, high = turned[rows].min(axis=0) - REACH_OF_CROSSING, turned[rows].max(axis=0) + REACH_OF_CROSSING
+    return np.flatnonzero(((turned >= low) & (turned <= high)).all(axis=1))
+
+
+def _windows(places):
+    """Rows of the spots of every window that has enough of them."""
+    if len(places) < LEAST_SPOTS:
+        return []
+    low = np.floor(places / (COMB_WINDOW / 2)).astype(np.int64)
+    first = low.min(axis=0)
+    columns = int(low[:, 1].max() - first[1]) + 2
+    # a spot is in four windows
+    keys = np.concatenate([(low[:, 0] - first[0] + 1 - a) * columns + low[:, 1] - first[1] + 1 - b for a in (0, 1) for b in (0, 1)])
+    spots = np.tile(np.arange(len(places)), 4)
+    order = np.argsort(keys, kind="stable")
+    keys, spots = keys[order], spots[order]
+    starts = np.flatnonzero(np.r_[True, np.diff(keys) != 0])
+    counts = np.diff(np.r_[starts, len(keys)])
+    enough = counts >= LEAST_SPOTS
+    return [spots[a:a + n] for a, n in zip(starts[enough].tolist(), counts[enough].tolist())]
+
+
+def _across(places, heading):
+    return places @ np.array([-np.sin(heading), np.cos(heading)])
+
+
+def _mean_phase(places, headings, pitches):
+    """(H, P) complex, the mean phase of spots for every direction and pitch."""
+    across = places @ np.stack([-np.sin(headings), np.cos(headings)])
+    turn = (2 * np.pi / pitches)[:, None, None] * across
+    return (np.cos(turn).mean(axis=1) + 1j * np.sin(turn).mean(axis=1)).T
+
+
+def find_comb(places: np.ndarray) -> Comb | None:
+    """The direction and pitch in which spots repeat, as stripes side by side do.
+
+    Parameters
+    ----------
+    places : (N, 2) m
 
     Returns
     -------
-    (N,) bool
+    Comb, or None where the spots are no three stripes side by side
     """
-    stripe = (column["width"] >= STRIPE_WIDTH[0]) & (column["width"] <= STRIPE_WIDTH[1]) \
-        & (column["length"] >= shortest) & (column["length"] <= STRIPE_LENGTH[1])
-    rows = np.flatnonzero(stripe)
-    result = np.zeros(len(stripe), bool)
-    if len(rows) < MIN_STRIPES:
-        return result
-    s, d = ((column[low][rows] + column[high][rows]) / 2 for low, high in (("s0", "s1"), ("d0", "d1")))
-    heading, length, width = (column[name][rows] for name in ("direction", "length", "width"))
-    beside = [np.empty((0, 2), np.intp)]
-    for a, b in overlapping_pairs(s, s, s, s, np.hypot(STRIPE_LENGTH[1], STRIPE_PITCH[1])):
-        ds, dd = s[b] - s[a], d[b] - d[a]
-        # a bar points either way
-        turn = (heading[b] - heading[a] + np.pi / 2) % np.pi - np.pi / 2
-        middle = (heading[a] + turn / 2 + np.pi / 2) % np.pi - np.pi / 2
-        # on a crossing askew each stripe begins somewhat farther than the one before
-        ahead, pitch = np.abs(ds * np.cos(middle) + dd * np.sin(middle)), np.abs(dd * np.cos(middle) - ds * np.sin(middle))
-        shared = (length[b] + length[a]) / 2 - ahead > 0.5 * np.minimum(length[b], length[a])
-        # the bars of hatching follow each other along the road
-        along = (np.maximum(np.abs(heading[a]), np.abs(heading[b])) <= MAX_STRIPE_SKEW) \
-            & ((np.abs(dd) > np.abs(ds)) | (np.abs(middle) <= MAX_ANGLE_ALONG))
-        square = (ahead <= np.tan(MAX_ROW_SKEW) * pitch) \
-            & (np.maximum(width[a], width[b]) <= MAX_STRIPE_WIDTH_RATIO * np.minimum(width[a], width[b]))
-        found = shared & (along | square) & (np.abs(turn) <= MAX_STRIPE_TURN) & (pitch >= STRIPE_PITCH[0]) & (pitch <= STRIPE_PITCH[1])
-        beside.append(np.column_stack([a, b])[found])
-    pairs = np.concatenate(beside)
-    group = linked_groups(pairs[:, 0], pairs[:, 1], len(rows))
-    result[rows] = np.bincount(group)[group] >= MIN_STRIPES
-    return result
+    middle = places.mean(axis=0)
+    own = (places - middle)[::max(len(places) // MOST_SPOTS, 1)]
+    phase = _phases(own)
+    length = np.abs(phase)
+    peaks = np.argwhere((length >= 0.8 * MIN_COMB_COHERENCE) & (length >= cv2.dilate(length, np.ones((3, 3), np.uint8))))
+    # one line, and spots in a corner of the window, repeat at every pitch: stripes must lie side by side, each as long as one
+    for a, b in peaks[np.argsort(-length[tuple(peaks.T)], kind="stable")][:MOST_PEAKS].tolist():
+        comb = _refined(own, middle, COMB_HEADINGS[a], COMB_PITCHES[b])
+        if comb.coherence >= MIN_COMB_COHERENCE and _has_stripes(own, comb):
+            return comb
+    return None
+
+
+def _phases(own):
+    """(H, P) complex, nearly the mean phase of spots for every direction and pitch that is tried: by bins across the stripes."""
+    number = np.floor(own @ COMB_ACROSS / COMB_BIN).astype(np.int64) + COMB_REACH
+    number = np.clip(number, 0, len(COMB_PHASES) - 1) + np.arange(len(COMB_HEADINGS)) * len(COMB_PHASES)
+    counts = np.bincount(number.ravel(), minlength=len(COMB_HEADINGS) * len(COMB_PHASES)).reshape(len(COMB_HEADINGS), -1)
+    # small: shared out to threads it takes longer
+    return np.einsum("hb,bp->hp", counts.astype(float), COMB_PHASES) / len(own)
+
+
+def _refined(own, middle, heading, pitch, steps=1.0):
+    """The clearest comb within some of the steps that are tried of a direction and a pitch."""
+    headings = heading + COMB_HEADING_STEP * steps * np.linspace(-0.5, 0.5, 11)
+    pitches = pitch * (1 + COMB_PITCH_STEP * steps * np.linspace(-0.5, 0.5, 11))
+    phase = _mean_phase(own, headings, pitches)
+    a, b = np.unravel_index(np.abs(phase).argmax(), phase.shape)
+    return Comb(float(headings[a]), float(pitches[b]), float(np.angle(phase[a, b]) / (2 * np.pi) * pitches[b]), middle,
+                float(np.abs(phase[a, b])))
+
+
+def _numbered(own, comb):
+    """Number of the stripe nearest to each spot, how far off its middle the spot lies, and where along it."""
+    across = _across(own, comb.heading) - comb.phase
+    number = np.rint(across / comb.pitch).astype(np.int64)
+    return number, across - number * comb.pitch, own @ np.array([np.cos(comb.heading), np.sin(comb.heading)])
+
+
+def _has_stripes(own, comb):
+    """Whether at least three stripes side by side are long enough, and as long as each other at the same place."""
+    number, _, along = _numbered(own, comb)
+    spans = {}
+    for k, count in zip(*np.unique(number, return_counts=True)):
+        first, last = percentiles(along[number == k], (END_PERCENT, 100 - END_PERCENT))
+        if count >= MIN_SHARE_OF_STRIPE * len(own) and last - first >= MIN_STRIPE_SPAN:
+            spans[int(k)] = first, last
+    run = best = 0
+    for k, (first, last) in spans.items():
+        before = spans.get(k - 1)
+        shared = before is not None \
+            and min(last, before[1]) - max(first, before[0]) >= MIN_SHARED_OF_STRIPES * max(last - first, before[1] - before[0])
+        run = run + 1 if shared else 1
+        best = max(best, run)
+    return best >= MIN_STRIPES
+
+
+def _alike(combs):
+    """Lists of the windows of each crossing."""
+    if not combs:
+        return []
+    heading, pitch, middle = (np.array([getattr(comb, name) for comb in combs]) for name in ("heading", "pitch", "middle"))
+    turn = np.abs((heading[:, None] - heading + np.pi / 2) % np.pi - np.pi / 2)
+    same = (turn <= SAME_HEADING) & (np.abs(pitch[:, None] - pitch) <= SAME_PITCH * pitch) \
+        & (np.hypot(*(middle[:, None] - middle).transpose(2, 0, 1)) <= COMB_WINDOW)
+    group = linked_groups(*np.nonzero(same), len(combs))
+    return [np.flatnonzero(group == k).tolist() for k in range(group.max() + 1)]
+
+
+def _stripes(places, rows, comb, way):
+    """[Stripe] of one crossing."""
+    middle = places[rows].mean(axis=0)
+    own = places[rows] - middle
+    if len(own) < LEAST_SPOTS:
+        return []
+    best, some = comb, own[::max(len(own) // (8 * MOST_SPOTS), 1)]
+    # a window tells the pitch of three stripes less well than all of them do
+    for steps in STEPS_OF_CROSSING:
+        best = _refined(some, middle, best.heading, best.pitch, steps)
+    if best.coherence < MIN_COMB_COHERENCE:
+        return []
+    number, off, along = _numbered(own, best)
+    striped = _striped(off / best.pitch, along)
+    rows, own, number, off, along = (values[striped] for values in (rows, own, number, off, along))
+    if len(rows) < LEAST_SPOTS:
+        return []
+    on = np.abs(off) < MAX_WIDTH_OF_PITCH / 2 * best.pitch
+    # half of what is spread evenly over a stripe lies within a quarter of its width
+    width = 4 * float(np.median(np.abs(off[on])))
+    if width < max(STRIPE_WIDTH[0], MIN_WIDTH_OF_PITCH * best.pitch):
+        return []
+    width = min(width, STRIPE_WIDTH[1], MAX_WIDTH_OF_PITCH * best.pitch)
+    on = np.abs(off) <= width / 2
+    kept, ends = [], []
+    numbers, counts = _without_strays(*np.unique(number[on], return_counts=True))
+    usual = np.median(counts)
+    for k, count in zip(numbers, counts):
+        span = _span(along[on & (number == k)])
+        own_width, aside = _width(along[on & (number == k)], off[on & (number == k)])
+        # a curb or a line that happens to lie there is narrower, or on one side
+        full = aside <= MAX_ASIDE * width and own_width >= MIN_OF_WIDTH * width
+        if full and count >= MIN_OF_USUAL * usual and span[1] - span[0] >= MIN_STRIPE_SPAN / 2:
+            kept.append(int(k))
+            ends.append(span)
+    if max(map(len, np.split(kept, np.flatnonzero(np.diff(kept) != 1) + 1))) < MIN_STRIPES:
+        return []
+    ends = np.array(ends)
+    if (lengths := np.median(ends[:, 1] - ends[:, 0])) > STRIPE_LENGTH[1] or lengths < MIN_STRIPE_SPAN:
+        return []
+    # the ends of all stripes lie on a line
+    lines = [_line_of_ends(np.array(kept), end, outward) for end, outward in zip(ends.T, (-1, 1))]
+    turn = np.abs((best.heading - way[rows] + np.pi / 2) % np.pi - np.pi / 2)
+    skew = MAX_ROW_SKEW_ALONG if np.median(turn) <= ALONG_ROAD else MAX_ROW_SKEW
+    if np.mean([abs(slope) for _, slope in lines]) > np.tan(skew) * best.pitch:
+        return []
+    ends = np.stack([line for line, _ in lines], axis=1)
+    c, n = np.cos(best.heading), np.sin(best.heading)
+    found = []
+    for k, (first, last) in zip(kept, ends):
+        side = best.phase + k * best.pitch + np.array([-width / 2, width / 2])
+        corners = np.array([(first, side[0]), (last, side[0]), (last, side[1]), (first, side[1])]) @ np.array([[c, n], [-n, c]]) + middle
+        inside = (np.abs(off) <= width / 2 + FRAYED) & (number == k) & (along >= first - MAX_STRAY_END) & (along <= last + MAX_STRAY_END)
+        found.append(Stripe(rows[inside], corners))
+    return found
+
+
+def _striped(phase, along):
+    """(N,) bool, the spots of the stretch along the stripes over which they are stripes."""
+    step = np.floor((along - along.min()) / COMB_STEP_ALONG).astype(np.int64)
+    count = np.bincount(step)
+    mean = np.bincount(step, np.cos(2 * np.pi * phase)) / np.maximum(count, 1)
+    # one worn step parts no stripes
+    full = (mean >= LEAST_PHASE) & (count > 0)
+    full = full | (np.r_[False, full[:-1]] & np.r_[full[1:], False] & (mean >= 0))
+    runs = np.cumsum(np.diff(np.r_[False, full].astype(int)) == 1) * full
+    spots = np.bincount(runs, count * full)
+    best = int(spots[1:].argmax()) + 1 if len(spots) > 1 else -1
+    return (runs == best)[step]
+
+
+def _span(along):
+    """Where a stripe begins and ends, from spots spread evenly along it, of which a few at either end may not be its own."""
+    first, last = percentiles(along, (END_PERCENT, 100 - END_PERCENT))
+    beyond = END_PERCENT / (100 - 2 * END_PERCENT) * (last - first)
+    return first - beyond, last + beyond
+
+
+def _width(along, across):
+    """Width of a strip, straight and maybe askew, from spots spread evenly over it, and how far its middle lies aside."""
+    run = along - along.mean()
+    slope = (run * across).sum() / max((run * run).sum(), 1e-9)
+    middle = np.median(across)
+    return 4 * float(np.median(np.abs(across - middle - slope * run))), abs(float(middle))
+
+
+def _without_strays(number, count):
+    """Numbers of stripes and how many spots they have, without those at either end that have far fewer than the next."""
+    first, last = 0, len(number)
+    while last - first > 1 and count[first] < MIN_OF_NEIGHBOUR * count[first + 1]:
+        first += 1
+    while last - first > 1 and count[last - 1] < MIN_OF_NEIGHBOUR * count[last - 2]:
+        last -= 1
+    return number[first:last], count[first:last]
+
+
+def _line_of_ends(number, end, outward):
+    """The line on which stripes end, and its slope from stripe to stripe; of one that ends well before it, `MAX_STRAY_END` before it.
+
+    outward : 1 or -1, the way out along the stripes
+    """
+    a, b = np.triu_indices(len(number), 1)
+    slope = float(np.median((end[b] - end[a]) / (number[b] - number[a])))
+    off = np.sort(outward * (end - slope * number))
+    line = outward * off[int(ENDS_SEEN / 100 * (len(off) - 1))] + slope * number
+    return np.where(outward * (line - end) <= MAX_STRAY_END, line, line - outward * MAX_STRAY_END), slope

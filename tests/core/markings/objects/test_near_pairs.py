@@ -7,20 +7,8 @@ import pytest
 from lanewright.core.markings.objects import classify as classes
 from lanewright.core.markings.objects import near_pairs
 from lanewright.core.markings.objects.classify import MAX_DOUBLE_LINE_SPACING, classify_markings
-from lanewright.core.markings.objects.shape import MAX_ANGLE_ALONG, Shape
+from lanewright.core.markings.objects.shape import Shape
 from lanewright.core.markings.objects.split_merge import join_fragments
-from lanewright.core.markings.objects.zebra import (
-    MAX_ROW_SKEW,
-    MAX_STRIPE_SKEW,
-    MAX_STRIPE_TURN,
-    MAX_STRIPE_WIDTH_RATIO,
-    MIN_STRIPES,
-    STRIPE_LENGTH,
-    STRIPE_PITCH,
-    STRIPE_WIDTH,
-    zebra_stripes,
-)
-from scipy.sparse.csgraph import connected_components
 
 
 def pieces(count, length, longest, seed=0):
@@ -30,20 +18,6 @@ def pieces(count, length, longest, seed=0):
     along, across = random.uniform(0.0, longest, count) * random.random(count), random.uniform(0.1, 0.8, count)
     return {"s0": s0, "s1": s0 + along, "d0": d0, "d1": d0 + across, "offset": d0 + across / 2, "length": along, "width": across,
             "elongation": along / across, "direction": random.normal(0.0, 0.1, count), "along": random.random(count) < 0.8}
-
-
-def crossings(count, seed=0):
-    """dict of columns of `count` zebra crossings of one to five stripes, some askew, and of strewn pieces."""
-    random, column = np.random.default_rng(seed), pieces(200, 40.0 * count, 6.0, seed)
-    for k in range(count):
-        stripes, pitch, lean = random.integers(1, 6), random.uniform(0.4, 1.8), random.uniform(-0.7, 0.7)
-        d = -3.0 + pitch * np.arange(stripes)
-        s = 40.0 * k + pitch * np.tan(lean) * np.arange(stripes)
-        more = {"s0": s, "s1": s + 4.0, "d0": d, "d1": d + 0.5, "offset": d + 0.25, "length": np.full(stripes, 4.0),
-                "width": np.full(stripes, 0.5), "elongation": np.full(stripes, 8.0), "direction": np.full(stripes, lean),
-                "along": np.ones(stripes, bool)}
-        column = {name: np.r_[values, more[name]] for name, values in column.items()}
-    return column
 
 
 @pytest.fixture(params=[7, 1 << 18])
@@ -82,35 +56,6 @@ def test_lines_of_a_double_line_are_those_among_all_pairs(at_a_time, count):
     found = classes._has_partner(column, line)
     np.testing.assert_array_equal(found, partners_among_all(column, line))
     assert count < 400 or 0.1 < found[line].mean() < 0.9
-
-
-def stripes_among_all(column):
-    heading, length, width = (column[name] for name in ("direction", "length", "width"))
-    rows = np.flatnonzero((width >= STRIPE_WIDTH[0]) & (width <= STRIPE_WIDTH[1])
-                          & (length >= STRIPE_LENGTH[0]) & (length <= STRIPE_LENGTH[1]))
-    s, d = ((column[low][rows] + column[high][rows]) / 2 for low, high in (("s0", "s1"), ("d0", "d1")))
-    ds, dd, heading, length, width = s - s[:, None], d - d[:, None], heading[rows], length[rows], width[rows]
-    turn = (heading - heading[:, None] + np.pi / 2) % np.pi - np.pi / 2
-    middle = (heading[:, None] + turn / 2 + np.pi / 2) % np.pi - np.pi / 2
-    ahead, pitch = np.abs(ds * np.cos(middle) + dd * np.sin(middle)), np.abs(dd * np.cos(middle) - ds * np.sin(middle))
-    shared = (length + length[:, None]) / 2 - ahead > 0.5 * np.minimum(length, length[:, None])
-    along = (np.maximum(np.abs(heading), np.abs(heading[:, None])) <= MAX_STRIPE_SKEW) \
-        & ((np.abs(dd) > np.abs(ds)) | (np.abs(middle) <= MAX_ANGLE_ALONG))
-    square = (ahead <= np.tan(MAX_ROW_SKEW) * pitch) \
-        & (np.maximum(width, width[:, None]) <= MAX_STRIPE_WIDTH_RATIO * np.minimum(width, width[:, None]))
-    linked = shared & (along | square) & (np.abs(turn) <= MAX_STRIPE_TURN) & (pitch >= STRIPE_PITCH[0]) & (pitch <= STRIPE_PITCH[1])
-    group = connected_components(linked, directed=False)[1]
-    result = np.zeros(len(column["width"]), bool)
-    result[rows] = np.bincount(group, minlength=1)[group] >= MIN_STRIPES
-    return result
-
-
-@pytest.mark.parametrize("seed", range(3))
-def test_stripes_of_crossings_are_those_among_all_pairs(at_a_time, seed):
-    column = crossings(60, seed)
-    found = zebra_stripes(column)
-    np.testing.assert_array_equal(found, stripes_among_all(column))
-    assert 50 < found[200:].sum() < len(found[200:]) - 20
 
 
 def strips_beyond_lines_among_all(column, line, room):

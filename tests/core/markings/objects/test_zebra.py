@@ -1,9 +1,9 @@
-"""Zebra crossings far from the vehicle, of which the scan shows a few tracks and wear leaves half."""
+"""Zebra crossings by the pitch of their stripes: near the vehicle, and far from it, where the scan shows a few tracks and wear leaves half."""
 
 import numpy as np
 import pytest
 from clustered_marks import FRAME, classes, layer_of
-from lanewright.core.markings.objects.sparse_zebra import sparse_crossings
+from lanewright.core.markings.objects.zebra import zebra_stripes
 from painted_streets import paint, road_points, strip
 
 STRIPES = [strip(-2.0, 2.0, d, d + 0.5) for d in np.arange(-3.0, 3.0, 1.0)]   # 4 m long, a metre apart
@@ -11,7 +11,7 @@ STRIPES = [strip(-2.0, 2.0, d, d + 0.5) for d in np.arange(-3.0, 3.0, 1.0)]   # 
 
 def spots(marks, turned=0.0, tracks=0.35, kept=0.6, seed=4):
     """(N, 2) spots of paint on tracks of the scan across the stripes, turned about the middle by some degrees."""
-    u, v = np.meshgrid(np.arange(-6.0, 6.0, tracks), np.arange(-6.0, 6.0, 0.06), indexing="ij")
+    u, v = np.meshgrid(np.arange(-6.0, 6.0, tracks), np.arange(-6.5, 6.5, 0.06), indexing="ij")
     rng = np.random.default_rng(seed)
     u, v = u.ravel() + rng.normal(0, 0.01, u.size), v.ravel()
     shown = np.any([mark(u, v) for mark in marks], axis=0) & (rng.random(u.size) < kept)
@@ -20,7 +20,7 @@ def spots(marks, turned=0.0, tracks=0.35, kept=0.6, seed=4):
 
 
 def crossings_in(places):
-    return sparse_crossings(places, np.ones(len(places), bool))
+    return zebra_stripes(places, np.zeros(len(places)))
 
 
 @pytest.mark.parametrize("turned", [0, 17, 45, 90, 128])
@@ -71,3 +71,35 @@ def test_the_crossing_of_a_side_street_seen_on_few_tracks_is_a_crossing():
     assert classes(markings) == ["zebra"] * 6
     assert markings.column("length_m") == pytest.approx([4.0] * 6, abs=0.5)
     assert (clustered.all_points().cluster > 0).mean() > 0.95
+
+
+def test_all_stripes_end_on_one_line_however_few_tracks_met_their_ends():
+    """Each ends where a track last met it, up to 0.35 m before its end: the line that most of them reach is drawn."""
+    askew = [lambda s, d, k=k: (np.abs(d - k) < 0.25) & (np.abs(s - 0.1 * k) < 2.0) for k in range(-4, 5)]
+    places, _ = spots(askew, tracks=0.35, kept=0.5)
+    rng = np.random.default_rng(1)
+    places[:, 0] += rng.normal(0, 0.02, len(places))
+    for stripe in crossings_in(places):
+        middle = stripe.corners[:, 1].mean()
+        assert stripe.corners[:, 0].max() - 0.1 * middle == pytest.approx(2.0, abs=0.2)
+
+
+def test_a_crossing_seen_densely_on_one_side_and_on_few_tracks_on_the_other_is_one():
+    places, _ = spots([strip(-2.0, 2.0, d, d + 0.5) for d in np.arange(-6.0, 6.0, 1.0)], tracks=0.05, kept=1.0)
+    rng = np.random.default_rng(2)
+    far = (places[:, 1] > 0) & (np.abs(places[:, 0] / 0.4 - np.rint(places[:, 0] / 0.4)) > 0.1)
+    found = crossings_in(places[~far | (rng.random(len(places)) < 0.05)])
+    assert len(found) == 12
+    assert [np.ptp(stripe.corners[:, 0]) for stripe in found] == pytest.approx([4.0] * 12, abs=0.2)
+
+
+@pytest.mark.parametrize("pitch", [0.97, 1.02])
+def test_the_pitch_of_a_broad_crossing_is_that_of_all_its_stripes(pitch):
+    middles = pitch * np.arange(12)
+    places, _ = spots([strip(-2.0, 2.0, d - 6.25, d - 5.75) for d in middles], tracks=0.05)
+    found = np.sort([stripe.corners[:, 1].mean() for stripe in crossings_in(places)])
+    np.testing.assert_allclose(found, middles - 6.0, atol=0.04)
+
+
+def test_two_stripes_are_no_crossing():
+    assert not crossings_in(spots(STRIPES[:2], tracks=0.05)[0])
