@@ -21,7 +21,9 @@ MIXED_BIN_SPREAD = 1.5  # times the spread of its neighbours: a bin of paint and
 MIXED_BIN_NEIGHBOURS = 4    # bins either side that a bin is compared with
 PAINT_SIGMAS = 3.0      # lower spreads above the median of asphalt: what is brighter is taken for paint
 LOWER_QUANTILE = 0.5 - 0.3413  # one standard deviation below the median of a normal distribution
-CLEANING_ROUNDS = 4     # of taking the median and leaving out paint
+DARK_SIGMAS = 4.0       # standard deviations below the median of asphalt: what is darker is something else
+INNER_QUANTILE, INNER_SIGMAS = 0.30, 0.5244    # of a normal distribution: so many standard deviations below the median
+CLEANING_ROUNDS = 4     # of taking the median and leaving out paint and what is dark
 POINTS_AT_ONCE = 1 << 15    # points corrected or counted at a time: what fits the processor's cache
 # corrections are looked up in steps of 2**4 units of 0.1 mm, 52 m to either side; beyond MAX_DISTANCE they are all alike
 LOOKUP_SHIFT, LOOKUP_STEPS = 4, 2**16
@@ -32,9 +34,10 @@ LEVEL_OF_COUNT = np.clip(np.rint(np.log2(np.arange(2**16) + 1.0) * LEVELS_PER_DO
 def asphalt_statistics(values: np.ndarray) -> tuple[float, float]:
     """Median and lower spread of asphalt, among values of asphalt and paint.
 
-    Paint is at the bright end only, so values brighter than three spreads above the median
-    are left out. The lower half of the distribution does not depend on where
-    it is cut; three rounds are enough.
+    Paint is at the bright end, so values brighter than three spreads above the median
+    are left out; so are those four standard deviations below it, of dark repairs and
+    water. How much that is, the 30 % quantile tells, which they move less than the
+    lower spread. Three rounds are enough.
 
     Parameters
     ----------
@@ -45,14 +48,16 @@ def asphalt_statistics(values: np.ndarray) -> tuple[float, float]:
     median, spread : the spread is the distance from the median to the 15.9 % quantile
     """
     values = ascending(values)
-    count = len(values)
     for _ in range(CLEANING_ROUNDS):
-        low, median = quantile_in_order(values, count, LOWER_QUANTILE), quantile_in_order(values, count, 0.5)
-        spread = max(median - low, 1e-6 * max(abs(median), 1.0))
-        remaining = int(np.searchsorted(values, median + PAINT_SIGMAS * spread, side="right"))
-        if remaining == count:
+        count = len(values)
+        low, inner, median = (quantile_in_order(values, count, q) for q in (LOWER_QUANTILE, INNER_QUANTILE, 0.5))
+        least = 1e-6 * max(abs(median), 1.0)
+        spread = max(median - low, least)
+        first = int(np.searchsorted(values, median - DARK_SIGMAS * max((median - inner) / INNER_SIGMAS, least)))
+        last = int(np.searchsorted(values, median + PAINT_SIGMAS * spread, side="right"))
+        if last - first == count:
             break
-        count = remaining
+        values = values[first:last]
     return median, spread
 
 

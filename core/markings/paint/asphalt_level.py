@@ -26,6 +26,8 @@ BACKGROUND_SQUARES = 11     # squares of 20 cm: the background is the mean of 2.
 PATCH_SIDE = 25             # cells of 4 cm: 1 m, the smallest patch
 PATCH_NEIGHBOURHOOD = 7     # cells: a spot is bright where most of the 28 cm around it are
 PATCH_RIM = 3               # cells: the irregular rim of a patch
+DARK_SHARE = 0.5            # of the usual brightness: what is darker is water or tar, and no asphalt to compare paint with
+DARK_RIM = 2                # cells about it whose brightness is interpolated between both
 PATCH_TAIL = 3.0            # of its own spreads: how far the brightest cells of a patch lie above its median
 
 
@@ -49,6 +51,23 @@ def flatten(brightness: np.ndarray, median: np.ndarray, spread: np.ndarray, rims
         even = (z < BACKGROUND_LIMIT) & (z > -2 * BACKGROUND_LIMIT) & ~gutter
     z = z - background(z, even)
     return z - patch_level(z, BACKGROUND_LIMIT), gutter
+
+
+def dark_cells(brightness: np.ndarray, usual: float) -> np.ndarray:
+    """Cells of water, tar and other dark ground, with their rim.
+
+    Parameters
+    ----------
+    brightness : (rows, columns) NaN where nothing was scanned
+    usual : brightness of asphalt about there
+
+    Returns
+    -------
+    (rows, columns) bool
+    """
+    with np.errstate(invalid="ignore"):
+        dark = (brightness < np.float32(DARK_SHARE * usual)).astype(np.uint8)
+    return cv2.dilate(dark, np.ones((2 * DARK_RIM + 1, 2 * DARK_RIM + 1), np.uint8)).astype(bool)
 
 
 def asphalt_profile(bins: list[AsphaltBin], offsets: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -18,6 +18,7 @@ from ...common.errors import RoadExtractionError
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ...common.setting import check_limits, setting
+from ...curves.robust import median
 from ...intensity.saturation import saturation_of
 from ...intensity.tiled_image import IntensityRaster
 from ...survey.frame.road_frame import RoadFrame
@@ -26,7 +27,7 @@ from ...survey.store.records import COORDINATE_SCALE, Points, join_columns, take
 from ...survey.store.road_points import RoadPoints
 from ...survey.store.section_store import SectionStore
 from ..objects.road_grid import CELL_UNITS, PieceOfRoad, RoadCells, RoadGrid, cell_numbers, cells_of_road
-from .asphalt_level import AsphaltLevels, asphalt_profile, flatten
+from .asphalt_level import AsphaltLevels, asphalt_profile, dark_cells, flatten
 from .fading import without_fading_rims
 from .faint_lines import faint_lines
 from .gutters import RimBands, edge_distance, rim_distance
@@ -283,6 +284,9 @@ class WindowExtractor:
             interior = scanned[rows]
         if not interior.any():
             return []
+        dark = dark_cells(brightness, float(median(brightness[rows][interior])))
+        if np.count_nonzero(interior & ~dark[rows]) >= MIN_BIN_CELLS:
+            scanned, interior = scanned & ~dark, interior & ~dark[rows]
         columns = np.flatnonzero(interior.any(axis=0))
         edges = bin_edges(np.concatenate([piece.offsets for piece in self._in_cells(window)]), offsets[columns[0]], offsets[columns[-1]])
         bins = asphalt_bins(brightness[rows], interior, offsets, edges)

@@ -30,6 +30,14 @@ def test_paint_does_not_change_what_asphalt_is(share):
     assert spread == pytest.approx(80, rel=0.15)
 
 
+@pytest.mark.parametrize("dark", [100, 300, 500])
+def test_dark_repairs_and_water_do_not_change_what_asphalt_is(dark):
+    values = np.r_[RNG.normal(1000, 60, 16_000), RNG.normal(dark, 20, 3_000), RNG.normal(4000, 400, 1_000)]
+    median, spread = asphalt_statistics(values)
+    assert median == pytest.approx(1000, rel=0.02)
+    assert spread == pytest.approx(60, rel=0.15)
+
+
 def test_bins_are_as_wide_as_the_points_are_dense_within_limits():
     for sigma, width in ((0.3, 0.75), (1.5, 1.5), (8.0, 3.0)):
         edges = bin_edges(to_units(RNG.normal(0.0, sigma, 50_000)), -5.0, 5.0)

@@ -61,6 +61,14 @@ def test_patches_seams_and_worn_tracks_are_not_paint(tmp_path):
     assert len(found_on(street(FRAME, level=level), tmp_path)) < 40
 
 
+def test_an_edge_line_behind_a_band_of_water_is_paint_and_no_gutter(tmp_path):
+    """The strip beyond the water is as bright as the rest of the road, and its line is the brightest of it."""
+    line = strip(10, 70, 3.55, 3.67)
+    paint = found_on(street(FRAME, [line], density=2500, level=lambda s, d: np.where((d > 2.0) & (d < 3.3), 0.25, 1.0)), tmp_path)
+    on = line(paint.s, paint.d)
+    assert on.sum() > 0.9 * 2500 * 60 * 0.12 and on.mean() > 0.95
+
+
 def test_what_wear_has_left_between_two_runs_of_paint_is_paint_and_a_speck_on_its_own_is_not(tmp_path):
     ends = [strip(10, 30, 1.0, 1.15), strip(33, 60, 1.0, 1.15)]
     specks = [strip(s, s + 0.04, 1.05, 1.10) for s in (30.6, 31.2, 31.8, 32.4)]
