@@ -107,12 +107,13 @@ def length_of(edges, side, status):
     return sum(shapely.length(g) for g, r in edges if r["side"] == side and r["status"] == status)
 
 
-def ringed_street(curb=0.08, half=4.5, ramp=0.0, length=36.0, noise=0.025, beam_error=0.008, drift=0.006, seed=4):
+def ringed_street(curb=0.08, half=4.5, ramp=0.0, length=36.0, noise=0.025, beam_error=0.008, drift=0.006, seed=4, bed=0.0):
     """(x, y, z, time) of a straight street as a spinning scanner of 40 beams sees it: rings, noise, drifting positions.
 
     half : m from the driven line to either curb; ramp : m across over which the curb rises
     noise : m along the ray; beam_error : m of height that each beam has of its own
     drift : m across per metre ahead by which positions disagree
+    bed : rise over run of plants on the left, 10 cm behind the curb
     """
     rng = np.random.default_rng(seed)
     height = 1.73
@@ -124,6 +125,7 @@ def ringed_street(curb=0.08, half=4.5, ramp=0.0, length=36.0, noise=0.025, beam_
     reach = reach + rng.normal(0.0, noise, len(reach)) * np.cos(down)
     x, y = v + reach * np.cos(turn), reach * np.sin(turn)
     up = np.clip((np.abs(y) - half) / max(ramp, 1e-6), 0.0, 1.0) * curb
+    up += bed * np.clip(y - half - 0.1, 0.0, 0.5) * rng.uniform(0.7, 1.3, len(y))
     z = up + rng.normal(0.0, noise, len(up)) * np.sin(down) + np.repeat(rng.normal(0, beam_error, 40), 480)[np.arange(len(up)) % (40 * 480)]
     y = y + drift * (x - v)
     seen = (np.abs(y) < 9.0) & (x > 0.0) & (x < length)

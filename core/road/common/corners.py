@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...common.rows import Rows
+from .curb_limits import LEAST_SLOPE
 from .pseudo_scanlines import TOP_QUANTILE_SIGMAS, PseudoScanLines, expand_ranges
 
 ROAD_SIDE_LENGTH = 0.40     # m of road before the face to which the road's line is fitted
@@ -21,6 +22,9 @@ SLOPE_PER_NOISE = 6.0       # per m: heights that scatter tilt the short line be
 MAX_LOW_SHARE = 0.15        # share of the points behind that may lie below half the height; a verge has more
 FACE_SEARCH_HALF_WIDTH = 0.15   # m on either side of the rising cell within which the face lies
 MAX_ROAD_SLOPE = 0.15       # rise over run of the road side; ditches are steeper
+MIN_BED_SLOPE = np.tan(np.radians(LEAST_SLOPE))  # rise over run of plants or a wall right behind a curb; flatter ground is a ramp,
+MAX_BED_SLOPE = 1.5         # and what is steeper is a face itself
+MIN_BED_POINTS = 8          # points that give this slope
 MAX_FACE_WIDTH = 0.10       # m across
 FACE_NOISE_SIGMAS = 4.0     # sigmas by which noise widens a face
 CANDIDATE_HEIGHT_SHARE = 0.8    # share of the least height below which a rise is no step in any direction
@@ -245,13 +249,14 @@ class StepPatches:
                     noise=noise, support=n_road + n_face, behind=n_behind, good=good)
 
     def _raised_ground(self, rise):
-        """Height of the ground behind the face, how many points lie there, and whether it stays up and level."""
+        """Height of the ground behind the face, how many points lie there, and whether it stays up and is level or a bed of plants."""
         count = self.count
         beyond = np.flatnonzero((self.u > 0.03) & (self.u < BEHIND_LENGTH))
         owner, u, rise_there = self.owner.take(beyond), self.u.take(beyond), rise.take(beyond)
         raised = np.flatnonzero((rise_there > 0.4 * self.min_height) & (rise_there < self.max_height + 0.1))
         up, out, to = owner.take(raised), u.take(raised), rise_there.take(raised)
         first = _mean(np.bincount(up, to, count), np.bincount(up, minlength=count))
+        foot, bank, _, n_raised = _line_per_owner(up, out, to, count)
         alike = np.flatnonzero(np.abs(to - first.take(up)) < 0.05)
         up, out, to = up.take(alike), out.take(alike), to.take(alike)
         # a ramp continues to rise, while the ground behind a curb is as level as a road
@@ -263,6 +268,9 @@ class StepPatches:
             np.maximum.at(peak, self.owner.take(near), rise.take(near))
         height = np.where(n_behind >= 2, _mean(np.bincount(up, to, count), n_behind),
                           np.maximum(peak - TOP_QUANTILE_SIGMAS * self.scanner_noise, 0.0))
+        # plants, or a wall, right behind a curb rise from its top: what their slope does not explain is the curb
+        bed = ~level & (n_raised >= MIN_BED_POINTS) & (bank > MIN_BED_SLOPE) & (bank <= MAX_BED_SLOPE) & (foot > 0.0)
+        height, level = np.where(bed, foot, height), level | bed
         far = np.flatnonzero(u > 0.10)
         low = np.flatnonzero(rise_there < 0.5 * height.take(owner))
         low = low[u.take(low) > 0.10]

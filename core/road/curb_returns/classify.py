@@ -11,7 +11,6 @@ from scipy.spatial import cKDTree
 
 from ...common.runs import mask_runs
 from ..common.curb_limits import MIN_FAINT_LENGTH
-from ..common.sides import SIDE_SIGNS
 from ..common.tracking import MAX_CHAIN_SCATTER, MAX_JOINED_GAP, MAX_ROAD_ROUGHNESS
 from .free_corners import is_free_corner
 from .steps import PlanSteps
@@ -133,7 +132,7 @@ def classify_curbs(chains: Sequence[PlanStepChain], steps: PlanSteps, falls: np.
         if not chain.closed and number in sides:
             found += _classify_continuation(own, s, d, sides[number], line, limits[sides[number]], places[:len(runs)])
             continue
-        behind = np.any([sign * d > limits[side](s, 0.0, 0.0) for side, sign in SIDE_SIGNS.items()], axis=0)
+        behind = np.any([limit.behind(s, d) for limit in limits.values()], axis=0)
         side = "left" if np.nanmedian(d - np.mean([p.at_station(s)[0] for p in passes], axis=0)) > 0 else "right"
         if np.mean(np.isfinite(falls[chain.steps]) & ~behind) >= MIN_ISLAND_SHARE:
             islands.append((CurbReturn(own, s, d, side, "island", chain.closed), falls[chain.steps]))

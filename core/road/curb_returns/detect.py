@@ -177,6 +177,17 @@ class SearchLimit:
             bounded |= (s > a + at_opening) & (s < b - at_opening)
         return np.where(bounded, np.interp(s, self.s, self.u) + behind, CORRIDOR)
 
+    def behind(self, s: np.ndarray, d: np.ndarray) -> np.ndarray:
+        """(N,) bool, do places at (N,) stations and offsets lie behind the main curb? Those of a side street lie beyond its end.
+
+        A side street leaves at 45° or more: what lies as far out from the curb as its end is away may belong to one.
+        """
+        out = self.sign * d - self(s, 0.0, 0.0)
+        end = np.zeros(len(s))
+        for a, b in self.runs:
+            end = np.maximum(end, np.minimum(s - a, b - s))
+        return (out > 0.0) & (out < end)
+
     def between(self, start: float, end: float) -> bool:
         """Was a point of main curb measured between two stations?"""
         return bool(((self.seen > start) & (self.seen < end)).any())
@@ -312,7 +323,8 @@ def plan_steps_of_section(decimation: PointDecimation, section: tuple[int, int],
     # its near side is the far side of a far side
     # an island ends where its top does, not where the ground comes out of its shadow
     falls = np.r_[np.where(np.isfinite(behind.edge), behind.edge, behind.falls), np.full(len(hidden), MIN_ISLAND_WIDTH)]
-    return PlanSteps.join([steps, hidden]), falls, np.full(len(falls), views[0].noise)
+    # averaging leaves the errors of single beams and the drift of positions
+    return PlanSteps.join([steps, hidden]), falls, np.full(len(falls), raster.noise)
 
 
 def _behind(raster, slopes, steps):

@@ -7,6 +7,9 @@ does not. So profiles are averaged over AVERAGING_LENGTH metres in every directi
 a curb may have. The level of the road and of the ground behind are fitted separately.
 The step between the two must be higher than the uncertainty of both levels, and must
 rise within the width of a blurred face, so that ramps and banks are not taken for curbs.
+
+Where plants or a wall stand right behind a curb there is no level ground. What rises
+behind is then no part of the step: the step is as high as its line is at the face.
 """
 
 from __future__ import annotations
@@ -15,7 +18,7 @@ from functools import partial
 
 import numpy as np
 
-from ..common.corners import MAX_ROAD_SLOPE, MIN_STEP_SIGMAS, CurbSteps
+from ..common.corners import MAX_BED_SLOPE, MAX_ROAD_SLOPE, MIN_BED_SLOPE, MIN_STEP_SIGMAS, CurbSteps
 from ..common.pseudo_scanlines import PseudoScanLines, seen_from
 
 AVERAGING_LENGTH = 1.25       # m of road that are averaged
@@ -28,6 +31,7 @@ BEHIND_FIT_LENGTH = 0.25      # m of ground behind: a hedge may stand close
 BLURRED_FACE_HALF_WIDTH = 0.09    # m on either side of a step left out of both levels: the blurred face
 STEEP_HALF_WIDTH = 0.07       # m on either side of a step within which most of the rise must lie
 MIN_STEEP_SHARE = 0.65        # share of the height; an even rise from level to level has less
+STAYS_UP_SIGMAS = 2.0         # of the heights behind such a curb: that far below their mean they are still above half of its height
 MIN_FILLED_SHARE = 0.6        # share of the cells of a level that must hold ground
 MIN_STEP_SPACING = 0.12       # m across within which one step is reported
 ALL_VIEWS_SIGMAS = 2.0        # sigmas of single heights that a step must rise in all views together, and
@@ -55,12 +59,14 @@ def find_averaged_steps(lines: PseudoScanLines, min_height: float, max_height: f
     CurbSteps, sorted by profile, then outward. The offset is that of half the height, since a
     blurred face does not separate its bottom from its top.
     """
-    found = _steps_in(lines, np.maximum(min_height, ALL_VIEWS_SIGMAS * lines.spread)[:, None], max_height)
+    found, overgrown = _steps_in(lines, np.maximum(min_height, ALL_VIEWS_SIGMAS * lines.spread)[:, None], max_height)
     for nearest, farthest in ((0.0, np.inf), (-np.inf, 0.0)):
         # a single view averages few rings of a multi-beam scanner, each with an error of its own
-        single = _steps_in(seen_from(lines, nearest, farthest, layer_jump),
-                           np.maximum(min_height, SINGLE_VIEW_SIGMAS * lines.spread)[:, None], max_height)
+        single, _ = _steps_in(seen_from(lines, nearest, farthest, layer_jump),
+                              np.maximum(min_height, SINGLE_VIEW_SIGMAS * lines.spread)[:, None], max_height)
         found = CurbSteps.join([found, single[~_beside(single, found)]])
+    # level ground behind is the surer sign
+    found = CurbSteps.join([found, overgrown[~_beside(overgrown, found)]])
     return found[np.lexsort((found.u, found.profile))]
 
 
@@ -77,16 +83,22 @@ def _beside(steps, others):
 
 
 def _steps_in(lines, min_height, max_height):
-    """Steps of averaged profiles; `min_height` is (P, 1)."""
-    best = {name: np.zeros(lines.shape) for name in ("height", "doubt", "scatter", "before", "behind", "shift", "bottom", "skew")}
-    best["rise"] = np.full(lines.shape, -np.inf)
+    """Steps of averaged profiles before level ground, and those before plants or a wall; `min_height` is (P, 1)."""
+    names = "height", "doubt", "scatter", "before", "behind", "shift", "bottom", "skew"
+    kinds = [{name: np.zeros(lines.shape) for name in names} | {"rise": np.full(lines.shape, -np.inf)} for _ in range(2)]
     sums = _RunningSums(lines.shape, lines.spacing)
     for skew in sorted(np.arange(-SKEW_STEPS, SKEW_STEPS + 1) * SKEW_STEP, key=abs):
         sums.add(_averaged(lines, skew))
-        cells, seen = _rises(sums, OBLIQUE_FACTOR * best["rise"])
-        for name, values in seen.items():
-            best[name].flat[cells] = values
-        best["skew"].flat[cells] = skew
+        for best, is_level in zip(kinds, (True, False)):
+            cells, seen = _rises(sums, OBLIQUE_FACTOR * best["rise"], is_level)
+            for name, values in seen.items():
+                best[name].flat[cells] = values
+            best["skew"].flat[cells] = skew
+    return [_steps_of(lines, best, min_height, max_height) for best in kinds]
+
+
+def _steps_of(lines, best, min_height, max_height):
+    """The steps among the largest rises of cells, which rise more than those next to them."""
     good = ((best["height"] >= min_height) & (best["height"] <= max_height) & (best["height"] >= MIN_STEP_SIGMAS * best["doubt"])
             & (best["rise"] >= MIN_STEEP_SHARE * best["height"]) & (best["scatter"] <= MAX_AVERAGED_SCATTER)
             & (np.abs(best["before"]) <= MAX_ROAD_SLOPE) & (np.abs(best["behind"]) <= MAX_ROAD_SLOPE))
@@ -114,27 +126,36 @@ def _averaged(lines, skew):
     return _median(stack, count, max(MIN_PROFILE_SHARE * len(stack), 2))
 
 
-def _rises(sums, min_rise):
-    """(M,) indices of cells at which the ground rises by more than `min_rise`, (P, C) m, and a dict of (M,) measures of each rise."""
+def _rises(sums, min_rise, is_level):
+    """(M,) indices of cells at which the ground rises by more than `min_rise`, (P, C) m, and a dict of (M,) measures of each rise.
+
+    is_level : is the ground behind level, or do plants or a wall rise there?
+    """
     spacing = sums.spacing
     gap, fit, short = (int(round(v / spacing)) for v in (BLURRED_FACE_HALF_WIDTH, ROAD_FIT_LENGTH, BEHIND_FIT_LENGTH))
     near = int(round(STEEP_HALF_WIDTH / spacing))
     before, behind = sums.line(-gap - fit, -gap), sums.line(gap, gap + short)
     smooth = sums.mean(-1, 1)
     with np.errstate(invalid="ignore", divide="ignore"):
+        slope = behind.slope if is_level else before.slope
         height = behind.level - before.level
-        rise = _moved(smooth, near) - _moved(smooth, -near) - near * spacing * (before.slope + behind.slope)
+        rise = _moved(smooth, near) - _moved(smooth, -near) - near * spacing * (before.slope + slope)
         cells = np.flatnonzero((rise > min_rise) & (before.n >= MIN_FILLED_SHARE * (fit + 1)) & (behind.n >= MIN_FILLED_SHARE * (short + 1))
                                & (sums.mean(gap, gap + fit) - before.level > 0.5 * height) & np.isfinite(rise))
+        if not is_level:
+            lowest = behind.mz.take(cells) - STAYS_UP_SIGMAS * behind.deviation(cells)
+            bed = behind.slope.take(cells)
+            cells = cells[(lowest > before.level.take(cells) + 0.5 * height.take(cells)) & (bed > MIN_BED_SLOPE) & (bed <= MAX_BED_SLOPE)]
         height = height.take(cells)
-        rough, uneven = before.scatter(cells), behind.scatter(cells)
+        rough = before.scatter(cells)
+        uneven = behind.scatter(cells) if is_level else rough
         doubt = 2.0 * np.sqrt(rough**2 / before.n.take(cells) + uneven**2 / behind.n.take(cells))
         bottom = before.level.take(cells)
         # where the profile crosses half the height: the mean height of the face gives the distance from this cell
         shift = (0.5 - (sums.mean(-gap, gap).take(cells) - bottom) / height) * (2 * gap + 1) * spacing
         shift = np.nan_to_num(np.clip(shift, -BLURRED_FACE_HALF_WIDTH, BLURRED_FACE_HALF_WIDTH))
     return cells, dict(rise=rise.take(cells), height=height, doubt=doubt, scatter=np.maximum(rough, uneven), shift=shift, bottom=bottom,
-                       before=before.slope.take(cells), behind=behind.slope.take(cells))
+                       before=before.slope.take(cells), behind=slope.take(cells))
 
 
 class _RunningSums:
@@ -187,6 +208,10 @@ class _SideLines:
             self.slope = np.where(vuu > 1e-4, self.vuz / vuu, 0.0)
             self.level = self.mz + self.slope * (sums.u - mu)
         self._squares = partial(sums.window_at, 2, first, last)
+
+    def deviation(self, cells):
+        """(M,) standard deviation of heights at some cells."""
+        return np.sqrt(np.maximum(self._squares(cells) / self.n.take(cells) - self.mz.take(cells)**2, 0.0))
 
     def scatter(self, cells):
         """(M,) scatter of heights about the line at some cells."""

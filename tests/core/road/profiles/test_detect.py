@@ -107,7 +107,18 @@ def test_a_low_curb_among_the_rings_of_a_spinning_scanner_is_found_and_nothing_e
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("ground", [dict(curb=0.0), dict(curb=0.02), dict(curb=0.10, ramp=0.8)], ids=["level", "seam", "ramp"])
+@pytest.mark.parametrize("bed", [0.6, 0.9])
+def test_a_curb_with_plants_right_behind_it_is_found_by_a_spinning_scanner(bed):
+    curbs = found(ringed_street(curb=0.10, bed=bed), drive=driven(36.0))
+    points = measured(curbs, "left")
+    points = points[(points[:, 3] > 2) & (points[:, 3] < 34)]
+    assert len(np.unique(np.floor(points[:, 3] / 2))) >= 14
+    np.testing.assert_allclose(points[:, 1], 4.5, atol=0.08)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("ground", [dict(curb=0.0), dict(curb=0.02), dict(curb=0.10, ramp=0.8), dict(curb=0.0, bed=0.35)],
+                         ids=["level", "seam", "ramp", "bank"])
 def test_rings_of_a_spinning_scanner_are_no_curbs(ground):
     assert len(found(ringed_street(**ground), drive=driven(36.0))) == 0
 
