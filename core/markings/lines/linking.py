@@ -132,13 +132,17 @@ def lateral_mismatch(before: _End, after: _End) -> float:
 def _miss(before: _End, after: _End, trend: CommonTrend, edges: EdgesBeside, ends: LinkedLine, begins: LinkedLine) -> float:
     """The same, or less where both run along one edge of the road and keep their distance from it.
 
-    That is measured where they are painted: along a taper a line bends, and where its tip would lie is not known well from a straight end.
+    The better of two views counts again: the distance of their tips, where they lead straight, or where they are painted, as along a taper
+    on which they bend; that view is of gaps, and says nothing of pieces that touch.
     """
     miss = lateral_mismatch(before, after)
     s = np.array([before.s, after.s])
     d = np.array([before.d, after.d]) + trend.at(s)
     edge = edges.between((s[0], d[0]), (s[1], d[1]))
     if edge is None:
+        return miss
+    miss = min(miss, float(np.ptp(d - edge(s))))
+    if after.s - before.s <= MAX_STRAND_OVERLAP:
         return miss
     beside = [median(own_d - edge(own_s)) for own_s, own_d in (ends.end_places(False), begins.end_places(True))]
     return min(miss, abs(beside[1] - beside[0]))
