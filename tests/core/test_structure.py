@@ -1,6 +1,7 @@
 """The order of the folders of `core`, and the words in it, read from the code itself."""
 
 import ast
+import functools
 import importlib
 from collections import defaultdict
 from pathlib import Path
@@ -16,15 +17,25 @@ ORDER = ("common", "execution", "countries", "io", "curves", "survey", "road", "
 MOST_FILES = 15   # of a folder: more cannot be taken in at a glance
 
 
+@functools.cache
+def tree_of(path):
+    return ast.parse(path.read_text(encoding="utf-8"))
+
+
 def name_of(path):
     """`core/road/edges/fit.py` -> ("road", "edges", "fit")."""
     return path.relative_to(CORE).with_suffix("").parts
 
 
+@functools.cache
 def imported(path):
     """(module imported, line) of every import from within core, also those inside functions; not those for type checkers alone."""
+    return list(_imported(path))
+
+
+def _imported(path):
     package = list(name_of(path))[:-1]
-    tree = ast.parse(path.read_text(encoding="utf-8"))
+    tree = tree_of(path)
     for_types = {inner for node in ast.walk(tree) if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING"
                  for inner in ast.walk(node)}
     for node in ast.walk(tree):
@@ -37,13 +48,11 @@ def imported(path):
             yield (inner if is_module else tuple(base)), node.lineno
 
 
-@pytest.mark.parametrize("path", MODULES, ids=lambda path: "/".join(name_of(path)))
-def test_imports_run_one_way_between_folders(path):
-    here = name_of(path)
-    for target, line in imported(path):
-        if len(here) == 1 or not target or len(target) == 1:
-            continue
-        assert ORDER.index(target[0]) <= ORDER.index(here[0]), f"{'/'.join(here)}.py, line {line}: {here[0]} imports {'/'.join(target)}"
+def test_imports_run_one_way_between_folders():
+    wrong = [f"{'/'.join(here)}.py, line {line}: {here[0]} imports {'/'.join(target)}"
+             for path in MODULES for here in [name_of(path)] if len(here) > 1
+             for target, line in imported(path) if len(target) > 1 and ORDER.index(target[0]) > ORDER.index(here[0])]
+    assert not wrong
 
 
 def test_no_two_folders_import_each_other():
@@ -81,7 +90,7 @@ def test_a_folder_can_be_taken_in_at_a_glance(folder):
 
 def test_the_core_never_imports_qgis():
     for path in FILES:
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        for node in ast.walk(tree_of(path)):
             names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else \
                 [node.module or ""] if isinstance(node, ast.ImportFrom) and not node.level else []
             assert not any(name.split(".")[0] == "qgis" for name in names), path
@@ -91,7 +100,7 @@ def test_a_constant_has_one_value():
     """The same name for two numbers sends a reader to the wrong one."""
     values = defaultdict(lambda: defaultdict(list))
     for path in MODULES:
-        for node in ast.parse(path.read_text(encoding="utf-8")).body:
+        for node in tree_of(path).body:
             if not isinstance(node, ast.Assign):
                 continue
             for target in node.targets:
@@ -106,7 +115,7 @@ def test_a_constant_has_one_value():
 
 def public(path):
     """(qualified name, node) of public functions and methods."""
-    for node in ast.parse(path.read_text(encoding="utf-8")).body:
+    for node in tree_of(path).body:
         if isinstance(node, ast.FunctionDef) and not node.name.startswith("_"):
             yield node.name, node
         if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
@@ -115,22 +124,22 @@ def public(path):
                     yield f"{node.name}.{inner.name}", inner
 
 
-@pytest.mark.parametrize("path", MODULES, ids=lambda path: "/".join(name_of(path)))
-def test_public_functions_say_what_types_they_take_and_give(path):
+def test_public_functions_say_what_types_they_take_and_give():
     bare = []
-    for name, node in public(path):
-        arguments = [*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs]
-        if arguments and arguments[0].arg in ("self", "cls"):
-            arguments = arguments[1:]
-        if node.returns is None or any(argument.annotation is None for argument in arguments):
-            bare.append(name)
+    for path in MODULES:
+        for name, node in public(path):
+            arguments = [*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs]
+            if arguments and arguments[0].arg in ("self", "cls"):
+                arguments = arguments[1:]
+            if node.returns is None or any(argument.annotation is None for argument in arguments):
+                bare.append(f"{'/'.join(name_of(path))}.py: {name}")
     assert not bare
 
 
 def test_a_public_class_or_function_has_a_name_of_its_own():
     places = defaultdict(list)
     for path in MODULES:
-        for node in ast.parse(path.read_text(encoding="utf-8")).body:
+        for node in tree_of(path).body:
             if isinstance(node, (ast.ClassDef, ast.FunctionDef)) and not node.name.startswith("_"):
                 places[node.name].append("/".join(name_of(path)))
     assert not {name: found for name, found in places.items() if len(found) > 1}

@@ -9,7 +9,7 @@ from lanewright.core.survey.store.section_store import SectionStore
 from lanewright.core.survey.trajectory.trajectory import Trajectory
 
 EAST, NORTH, GROUND, SENSOR = 500_000.0, 5_400_000.0, 100.0, 2.5
-LENGTH = 60.0
+LENGTH = 48.0
 
 
 def street(curb=0.12, left=3.5, right=3.5, length=LENGTH, radius=None, noise=0.003, face=0.0, behind=3.0, seed=3,

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from curbed_streets import parked_car, street, survey_of
+from curbed_streets import LENGTH, driven, parked_car, street, survey_of
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.road.agreement import measure_agreement, select_curb_points
 from lanewright.core.road.common.curb_points import curb_points_at
@@ -26,7 +26,7 @@ def curb_points(frame, offset, stations=np.arange(1.0, 59.0), side="left", scatt
 
 @pytest.fixture(scope="module")
 def frame():
-    return survey_of(street()).frame
+    return survey_of(street(length=60.0), driven(60.0)).frame
 
 
 @pytest.mark.parametrize("method", ["profiles", "scanlines", "both"])
@@ -34,7 +34,7 @@ def test_every_method_draws_both_edges_of_a_street(method):
     found = boundaries(street(), method)
     for side, offset in (("left", 3.5), ("right", -3.5)):
         lines = found.edges.take(np.flatnonzero(found.edges.side == side))
-        assert sum(np.ptp(lines.course.s[lines.course.line(k)]) for k in range(len(lines))) > 58
+        assert sum(np.ptp(lines.course.s[lines.course.line(k)]) for k in range(len(lines))) > LENGTH - 2
         np.testing.assert_allclose(lines.course.d, offset, atol=0.01)
     assert (found.differences is not None) == (method == "both")
 
@@ -43,7 +43,7 @@ def test_where_both_see_the_curb_they_agree_to_a_centimetre_and_say_so():
     found = boundaries(parked_car(street(), start=25.0), "both")
     assert (found.edges.agree[found.edges.status == "measured"] < 1.0).all()
     assert len(found.differences) == 0
-    assert min(found.length_by_method.values()) > 100
+    assert min(found.length_by_method.values()) > 2 * LENGTH - 20
 
 
 def test_one_method_alone_says_nothing_of_agreement():
@@ -54,7 +54,7 @@ def test_a_curb_that_only_one_method_finds_is_drawn_without_agreement():
     survey, settings = survey_of(street(curb=0.04, noise=0.002)), BoundarySettings("both", CurbSettings(min_height=0.05))
     found = draw_boundaries(find_curb_points(survey, settings), survey.frame)
     assert found.length_by_method["profiles"] == 0
-    assert found.edges.length.sum() > 110
+    assert found.edges.length.sum() > 2 * LENGTH - 10
     assert np.isnan(found.edges.agree).all()
 
 

@@ -14,7 +14,7 @@ from lanewright.core.survey.store.records import ROAD_POINT, to_units
 from lanewright.core.survey.store.road_points import RoadPoints
 from lanewright.core.survey.store.section_store import SectionStore
 from lanewright.core.survey.trajectory.trajectory import Trajectory
-from painted_streets import ASPHALT, assert_same_points, drive, records_at, road_points, shuffled, street, strewn, strip
+from painted_streets import ASPHALT, DENSITY, assert_same_points, drive, records_at, road_points, shuffled, street, strewn, strip
 
 gdal = pytest.importorskip("osgeo.gdal")
 
@@ -105,7 +105,7 @@ def test_a_concrete_gutter_is_left_out_and_the_edge_line_beside_it_kept(tmp_path
     line = strip(5, 75, 3.2, 3.35)
     paint = found_on(street(FRAME, [line, strip(0, 80, 3.6, 4.0), strip(0, 80, -4.0, -3.6)]), tmp_path)
     assert line(paint.s, paint.d).mean() > 0.97
-    assert np.count_nonzero(line(paint.s, paint.d)) > 0.9 * 70 * 0.15 * 1500
+    assert np.count_nonzero(line(paint.s, paint.d)) > 0.9 * 70 * 0.15 * DENSITY
 
 
 @pytest.mark.parametrize("side", [1, -1], ids=["left", "right"])
@@ -117,7 +117,7 @@ def test_what_parked_cars_leave_to_be_seen_of_a_gutter_is_no_paint(tmp_path, sid
     paint = found_on(records[~((d > -1.0) & ((s - d) % 6.0 < 4.0))], tmp_path)
     on_line = line(paint.s, paint.d)
     assert on_line.mean() > 0.97
-    assert np.count_nonzero(on_line) > 0.85 * 70 * 0.15 * 1500 / 3
+    assert np.count_nonzero(on_line) > 0.85 * 70 * 0.15 * DENSITY / 3
 
 
 def test_an_edge_line_painted_right_beside_a_gutter_is_found_and_the_gutter_is_not(tmp_path):
@@ -125,7 +125,7 @@ def test_an_edge_line_painted_right_beside_a_gutter_is_found_and_the_gutter_is_n
     street_ = street(FRAME, [line], level=lambda s, d: np.where(np.abs(d) > 3.7, 2.0, 1.0))
     paint = found_on(street_, tmp_path)
     assert line(paint.s, paint.d).mean() > 0.97
-    assert np.count_nonzero(line(paint.s, paint.d)) > 0.9 * 70 * 0.15 * 1500
+    assert np.count_nonzero(line(paint.s, paint.d)) > 0.9 * 70 * 0.15 * DENSITY
 
 
 @pytest.mark.parametrize("factor", [1.4, 1.7, 2.2])
@@ -138,7 +138,7 @@ def test_a_pale_repair_in_a_lane_without_paint_is_road_and_a_line_across_it_is_p
     paint = found_on(street(FRAME, lines, level=repair), tmp_path)
     on_line = np.any([line(paint.s, paint.d) for line in lines], axis=0)
     assert on_line.mean() > 0.97
-    assert np.count_nonzero(strip(27, 32, 0.1, 0.25)(paint.s, paint.d)) > 0.9 * 5 * 0.15 * 1500
+    assert np.count_nonzero(strip(27, 32, 0.1, 0.25)(paint.s, paint.d)) > 0.9 * 5 * 0.15 * DENSITY
 
 
 @pytest.mark.slow

@@ -11,7 +11,7 @@ from lanewright.core.markings.paint import point_segments
 from lanewright.core.markings.paint.extract import MarkingSettings, extract_markings
 from lanewright.core.markings.paint.peaks import PeakSettings, in_chains, profile_peaks
 from lanewright.core.markings.paint.point_segments import SegmentSettings, dense_enough, segment_thresholds
-from painted_streets import ASPHALT, PAINT, assert_same_points, drive, records_at, road_points, shuffled, street, strip
+from painted_streets import ASPHALT, DENSITY, PAINT, assert_same_points, drive, records_at, road_points, shuffled, street, strip
 
 FRAME = drive()
 METHODS = ("intensity-peaks", "point-segments")
@@ -72,7 +72,7 @@ def test_lines_are_found_with_their_width_to_4_cm(method, radius):
     assert (high - low) / 0.95 == pytest.approx(0.15, abs=0.04)
     assert (low + high) / 2 == pytest.approx(1.275, abs=0.01)
     assert paint.s.min() == pytest.approx(10, abs=0.25) and paint.s.max() == pytest.approx(70, abs=0.25)
-    assert len(paint) > 0.85 * 60 * 0.15 * 1500
+    assert len(paint) > 0.85 * 60 * 0.15 * DENSITY
 
 
 @pytest.mark.parametrize("method", METHODS)

@@ -59,7 +59,7 @@ def test_where_nothing_but_paint_was_scanned_nothing_is_raised():
 
 def test_a_bright_island_on_the_road_is_no_paint():
     stripes, island = [strip(20, 23, d, d + 0.5) for d in (-2.0, -1.0, 0.0, 1.0)], strip(23.3, 24.1, -0.6, 0.0)
-    records = street(FRAME, [*stripes, island])
+    records = street(FRAME, [*stripes, island], density=1500)
     on_island = island(records["s"] * 1e-4, records["d"] * 1e-4)
     for height, share in ((0.0, 1.0), (0.035, 0.0)):
         heights = records.copy()

@@ -89,7 +89,7 @@ def test_ghosts_below_the_road_do_not_matter():
 
 @pytest.mark.slow
 def test_a_scanner_with_two_centimetres_of_noise_finds_the_curb_and_nothing_else():
-    curbs = found(street(curb=0.12, noise=0.02, lines=0.03))
+    curbs = found(street(length=60.0, curb=0.12, noise=0.02, lines=0.03), drive=driven(60.0))
     for side, offset in (("left", 3.5), ("right", -3.5)):
         points = measured(curbs, side)
         assert len(points) > 20

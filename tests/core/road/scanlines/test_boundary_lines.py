@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import shapely
-from curbed_streets import NORTH, SENSOR, parked_car, street, survey_of
+from curbed_streets import LENGTH, NORTH, SENSOR, parked_car, street, survey_of
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.features import Features
 from lanewright.core.common.schemas import CURB_POINTS
@@ -46,7 +46,7 @@ def test_bottom_and_top_lines_run_along_both_curbs(surveyed):
         heights = {}
         for part in ("bottom", "top"):
             own = [np.array(line.coords) for line, row in lines if row["side"] == side and row["part"] == part]
-            assert sum(np.ptp(line[:, 0]) for line in own) > 58
+            assert sum(np.ptp(line[:, 0]) for line in own) > LENGTH - 2
             for line in own:
                 np.testing.assert_allclose(line[:, 1] - NORTH, offset, atol=0.004)
             heights[part] = np.median(own[0][:, 2])
