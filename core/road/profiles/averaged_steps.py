@@ -41,7 +41,8 @@ MAX_NETWORK_ROWS = 9          # profiles that are sorted element by element; for
 MAX_AVERAGED_SCATTER = 0.008  # m, scatter of averaged heights about their level: verges and banks have more
 
 
-def find_averaged_steps(lines: PseudoScanLines, min_height: float, max_height: float, layer_jump: float) -> CurbSteps:
+def find_averaged_steps(lines: PseudoScanLines, min_height: float, max_height: float, layer_jump: float,
+                        overgrown: bool = True) -> CurbSteps:
     """Steps on the averaged profiles of one side.
 
     They are looked for in all points together, and where those show none, in the points seen
@@ -53,20 +54,22 @@ def find_averaged_steps(lines: PseudoScanLines, min_height: float, max_height: f
     lines : PseudoScanLines; the first and last AVERAGING_LENGTH / 2 metres serve the averages of the others
     min_height, max_height : m, of a step
     layer_jump : m of height between two layers
+    overgrown : whether steps before plants or a wall are looked for, too
 
     Returns
     -------
     CurbSteps, sorted by profile, then outward. The offset is that of half the height, since a
     blurred face does not separate its bottom from its top.
     """
-    found, overgrown = _steps_in(lines, np.maximum(min_height, ALL_VIEWS_SIGMAS * lines.spread)[:, None], max_height)
+    found, before_plants = _steps_in(lines, np.maximum(min_height, ALL_VIEWS_SIGMAS * lines.spread)[:, None], max_height)
     for nearest, farthest in ((0.0, np.inf), (-np.inf, 0.0)):
         # a single view averages few rings of a multi-beam scanner, each with an error of its own
         single, _ = _steps_in(seen_from(lines, nearest, farthest, layer_jump),
                               np.maximum(min_height, SINGLE_VIEW_SIGMAS * lines.spread)[:, None], max_height)
         found = CurbSteps.join([found, single[~_beside(single, found)]])
-    # level ground behind is the surer sign
-    found = CurbSteps.join([found, overgrown[~_beside(overgrown, found)]])
+    if overgrown:
+        # level ground behind is the surer sign
+        found = CurbSteps.join([found, before_plants[~_beside(before_plants, found)]])
     return found[np.lexsort((found.u, found.profile))]
 
 

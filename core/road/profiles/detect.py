@@ -168,20 +168,23 @@ def steps_of_section(decimation: PointDecimation, section: tuple[int, int], road
         seen = side_profiles(decimation, road, wide, tracks, settings, points_per_cell=None)
     for side, _, (u, s, h), lines in seen:
         occlusion[side].add_points(u, s, h, section, lines.part(*section))
-        steps = _steps_by_noise(lines, section, settings)
+        steps = _steps_by_noise(lines, section, settings, overgrown=limit is None)
         found[side].append(steps[steps.u > tracks[side](steps.s) + MIN_TRACK_DISTANCE])
     return {side: _merge_passes(steps) for side, steps in found.items() if steps}, occlusion
 
 
-def _steps_by_noise(lines, section, settings):
-    """Steps of a section's profiles: on each profile alone, or averaged with its neighbours where noise would hide a curb."""
+def _steps_by_noise(lines, section, settings, overgrown):
+    """Steps of a section's profiles: on each profile alone, or averaged with its neighbours where noise would hide a curb.
+
+    overgrown : is it the scanner that is noisy, so that curbs before plants are looked for, and not a meadow that is rough?
+    """
     own = lines.part(*section)
     limits = settings.limits
     noisy = own.spread > NOISY_SHARE * limits.clear_height
     single = find_steps(own, LOW_CURB_SHARE * limits.least_height, settings.max_height)
     if not noisy.any():
         return single
-    averaged = find_averaged_steps(lines, LOW_CURB_SHARE * limits.clear_height, settings.max_height, settings.layer_jump)
+    averaged = find_averaged_steps(lines, LOW_CURB_SHARE * limits.clear_height, settings.max_height, settings.layer_jump, overgrown)
     averaged = averaged[(averaged.profile >= section[0]) & (averaged.profile < section[1])]
     return CurbSteps.join([single[~noisy[single.profile - own.first]], averaged[noisy[averaged.profile - own.first]]])
 
