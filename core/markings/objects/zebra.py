@@ -34,7 +34,7 @@ COMB_STEP_ALONG = 0.4           # m along the stripes that is taken together
 LEAST_PHASE = 0.3          # mean cosine of the phase where there are stripes: a stop line beside them has 0
 MIN_WIDTH_OF_PITCH, MAX_WIDTH_OF_PITCH = 0.3, 0.7   # of the pitch that a stripe is broad: lines with an arrow between them are narrower
 MIN_OF_WIDTH = 0.5         # of the width of all stripes that one of them has at least
-MIN_OF_USUAL = 0.2         # of the spots that a stripe usually has
+MIN_OF_USUAL = 0.2         # of the spots that a stripe usually has, and a step along all of them
 MIN_OF_NEIGHBOUR = 0.4     # of the spots of the next stripe that the last one has at least: it may be a curb
 SAME_HEADING, SAME_PITCH = np.radians(8.0), 0.08   # of neighbouring windows on one crossing
 REACH_OF_CROSSING = 2.5    # m about these windows that the crossing may go on: their other halves show fewer than three stripes
@@ -233,7 +233,7 @@ def _stripes(places, rows, comb, way):
     if best.coherence < MIN_COMB_COHERENCE:
         return []
     number, off, along = _numbered(own, best)
-    striped = _striped(off / best.pitch, along)
+    striped = _striped(number, off / best.pitch, along)
     rows, own, number, off, along = (values[striped] for values in (rows, own, number, off, along))
     if len(rows) < LEAST_SPOTS:
         return []
@@ -277,13 +277,14 @@ def _stripes(places, rows, comb, way):
     return found
 
 
-def _striped(phase, along):
-    """(N,) bool, the spots of the stretch along the stripes over which they are stripes."""
+def _striped(number, phase, along):
+    """(N,) bool, the spots of the stretch along the stripes over which they are stripes: side by side, not one with a line that leads on."""
     step = np.floor((along - along.min()) / COMB_STEP_ALONG).astype(np.int64)
     count = np.bincount(step)
     mean = np.bincount(step, np.cos(2 * np.pi * phase)) / np.maximum(count, 1)
-    # one worn step parts no stripes
-    full = (mean >= LEAST_PHASE) & (count > 0)
+    stripes = np.bincount(np.unique(np.column_stack([step, number]), axis=0)[:, 0])
+    # a line that leads on from the outermost stripe has their phase, too; one worn step parts no stripes
+    full = (mean >= LEAST_PHASE) & (stripes > 1) & (count >= MIN_OF_USUAL * np.median(count[step]))
     full = full | (np.r_[False, full[:-1]] & np.r_[full[1:], False] & (mean >= 0))
     runs = np.cumsum(np.diff(np.r_[False, full].astype(int)) == 1) * full
     spots = np.bincount(runs, count * full)

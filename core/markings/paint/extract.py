@@ -284,9 +284,11 @@ class WindowExtractor:
             interior = scanned[rows]
         if not interior.any():
             return []
-        dark = dark_cells(brightness, float(median(brightness[rows][interior])))
-        if np.count_nonzero(interior & ~dark[rows]) >= MIN_BIN_CELLS:
-            scanned, interior = scanned & ~dark, interior & ~dark[rows]
+        # without a correction asphalt itself is darker far from the vehicle
+        if self.road_points.has_corrected:
+            dark = dark_cells(brightness, float(median(brightness[rows][interior])))
+            if np.count_nonzero(interior & ~dark[rows]) >= MIN_BIN_CELLS:
+                scanned, interior = scanned & ~dark, interior & ~dark[rows]
         columns = np.flatnonzero(interior.any(axis=0))
         edges = bin_edges(np.concatenate([piece.offsets for piece in self._in_cells(window)]), offsets[columns[0]], offsets[columns[-1]])
         bins = asphalt_bins(brightness[rows], interior, offsets, edges)

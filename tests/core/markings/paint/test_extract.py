@@ -1,5 +1,7 @@
 """Which points of a street are paint."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from lanewright.core.common import parallel
@@ -64,7 +66,10 @@ def test_patches_seams_and_worn_tracks_are_not_paint(tmp_path):
 def test_an_edge_line_behind_a_band_of_water_is_paint_and_no_gutter(tmp_path):
     """The strip beyond the water is as bright as the rest of the road, and its line is the brightest of it."""
     line = strip(10, 70, 3.55, 3.67)
-    paint = found_on(street(FRAME, [line], density=2500, level=lambda s, d: np.where((d > 2.0) & (d < 3.3), 0.25, 1.0)), tmp_path)
+    records = street(FRAME, [line], density=2500, level=lambda s, d: np.where((d > 2.0) & (d < 3.3), 0.25, 1.0))
+    records["corrected"] = records["intensity"]
+    points = replace(road_points(records, FRAME), has_corrected=True)
+    paint = extract_markings(points, make_intensity_image(points, memory_limit=10**7), FRAME).all_points()
     on = line(paint.s, paint.d)
     assert on.sum() > 0.9 * 2500 * 60 * 0.12 and on.mean() > 0.95
 
