@@ -177,12 +177,16 @@ class SearchLimit:
             bounded |= (s > a + at_opening) & (s < b - at_opening)
         return np.where(bounded, np.interp(s, self.s, self.u) + behind, CORRIDOR)
 
+    def outward(self, s: np.ndarray, d: np.ndarray) -> np.ndarray:
+        """(N,) m from the main curb outward to places at (N,) stations and offsets; at openings from the end of what is searched."""
+        return self.sign * d - self(s, 0.0, 0.0)
+
     def behind(self, s: np.ndarray, d: np.ndarray) -> np.ndarray:
         """(N,) bool, do places at (N,) stations and offsets lie behind the main curb? Those of a side street lie beyond its end.
 
         A side street leaves at 45° or more: what lies as far out from the curb as its end is away may belong to one.
         """
-        out = self.sign * d - self(s, 0.0, 0.0)
+        out = self.outward(s, d)
         end = np.zeros(len(s))
         for a, b in self.runs:
             end = np.maximum(end, np.minimum(s - a, b - s))
@@ -296,7 +300,7 @@ def plan_steps_of_section(decimation: PointDecimation, section: tuple[int, int],
         own, d = line.locate(x, y)
         fresh = (own >= start) & (own < end)
         if before_curbs:
-            fresh &= ~np.any([sign * d > limits[side](own, 0.0, 0.0) for side, sign in SIDE_SIGNS.items()], axis=0)
+            fresh &= np.all([limit.outward(own, d) <= 0.0 for limit in limits.values()], axis=0)
         which = np.flatnonzero(fresh)
         fresh[which] = ~known.within(x.take(which), y.take(which), MAIN_CURB_DISTANCE)
         return fresh

@@ -41,8 +41,7 @@ MAX_NETWORK_ROWS = 9          # profiles that are sorted element by element; for
 MAX_AVERAGED_SCATTER = 0.008  # m, scatter of averaged heights about their level: verges and banks have more
 
 
-def find_averaged_steps(lines: PseudoScanLines, min_height: float, max_height: float, layer_jump: float,
-                        overgrown: bool = True) -> CurbSteps:
+def find_averaged_steps(lines: PseudoScanLines, min_height: float, max_height: float, layer_jump: float, overgrown: bool) -> CurbSteps:
     """Steps on the averaged profiles of one side.
 
     They are looked for in all points together, and where those show none, in the points seen
@@ -61,15 +60,16 @@ def find_averaged_steps(lines: PseudoScanLines, min_height: float, max_height: f
     CurbSteps, sorted by profile, then outward. The offset is that of half the height, since a
     blurred face does not separate its bottom from its top.
     """
-    found, before_plants = _steps_in(lines, np.maximum(min_height, ALL_VIEWS_SIGMAS * lines.spread)[:, None], max_height)
+    least = np.maximum(min_height, ALL_VIEWS_SIGMAS * lines.spread)[:, None]
+    found, *before_plants = _steps_in(lines, least, max_height, (True, False) if overgrown else (True,))
     for nearest, farthest in ((0.0, np.inf), (-np.inf, 0.0)):
         # a single view averages few rings of a multi-beam scanner, each with an error of its own
-        single, _ = _steps_in(seen_from(lines, nearest, farthest, layer_jump),
-                              np.maximum(min_height, SINGLE_VIEW_SIGMAS * lines.spread)[:, None], max_height)
+        single, = _steps_in(seen_from(lines, nearest, farthest, layer_jump),
+                            np.maximum(min_height, SINGLE_VIEW_SIGMAS * lines.spread)[:, None], max_height)
         found = CurbSteps.join([found, single[~_beside(single, found)]])
-    if overgrown:
+    for steps in before_plants:
         # level ground behind is the surer sign
-        found = CurbSteps.join([found, before_plants[~_beside(before_plants, found)]])
+        found = CurbSteps.join([found, steps[~_beside(steps, found)]])
     return found[np.lexsort((found.u, found.profile))]
 
 
@@ -85,14 +85,14 @@ def _beside(steps, others):
                       np.abs(key[np.clip(right - 1, 0, len(key) - 1)] - wanted)) < SAME_STEP_DISTANCE
 
 
-def _steps_in(lines, min_height, max_height):
-    """Steps of averaged profiles before level ground, and those before plants or a wall; `min_height` is (P, 1)."""
+def _steps_in(lines, min_height, max_height, behind=(True,)):
+    """Steps of averaged profiles, a CurbSteps for each of `behind`: before level ground (True), before plants or a wall; `min_height` is (P, 1)."""
     names = "height", "doubt", "scatter", "before", "behind", "shift", "bottom", "skew"
-    kinds = [{name: np.zeros(lines.shape) for name in names} | {"rise": np.full(lines.shape, -np.inf)} for _ in range(2)]
+    kinds = [{name: np.zeros(lines.shape) for name in names} | {"rise": np.full(lines.shape, -np.inf)} for _ in behind]
     sums = _RunningSums(lines.shape, lines.spacing)
     for skew in sorted(np.arange(-SKEW_STEPS, SKEW_STEPS + 1) * SKEW_STEP, key=abs):
         sums.add(_averaged(lines, skew))
-        for best, is_level in zip(kinds, (True, False)):
+        for best, is_level in zip(kinds, behind):
             cells, seen = _rises(sums, OBLIQUE_FACTOR * best["rise"], is_level)
             for name, values in seen.items():
                 best[name].flat[cells] = values

@@ -42,6 +42,14 @@ def test_a_stop_line_beside_a_crossing_is_none_of_it():
     assert max(stripe.corners[:, 0].max() for stripe in found) < 2.5
 
 
+def test_an_edge_line_that_leads_on_from_the_outermost_stripe_is_none_of_it():
+    edge = strip(2.2, 6.0, 1.19, 1.31)
+    places, _ = spots([*STRIPES[1:5], edge], tracks=0.06, kept=0.9)
+    found = crossings_in(places)
+    assert len(found) == 4
+    assert max(stripe.corners[:, 0].max() for stripe in found) < 2.5
+
+
 def bars(turn):
     """Bars of hatching half a metre broad in a strip along the first axis, askew to it."""
     c, n = np.cos(np.radians(turn)), np.sin(np.radians(turn))
