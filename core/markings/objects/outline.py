@@ -49,7 +49,9 @@ def band(s: np.ndarray, d: np.ndarray, shape: Shape) -> shapely.Polygon:
     c, n = (1.0, 0.0) if shape.along else (np.cos(shape.direction), np.sin(shape.direction))
     u, v = (s, d) if shape.along else (np.rint(s * c + d * n).astype(np.int64), np.rint(d * c - s * n).astype(np.int64))
     nodes, offsets = middle_line(u, v, shape.spacing)
-    all_nodes = np.concatenate([[u.min()], nodes, [u.max()]])
+    # the last node lies in the middle of a step that the strip may fill to a small part
+    first, last = u.min(), u.max()
+    all_nodes = np.concatenate([[first], nodes[nodes < last], [last]])
     offsets, nodes = np.interp(all_nodes, nodes, offsets) * COORDINATE_SCALE, all_nodes * COORDINATE_SCALE
     keep = np.append(True, np.diff(nodes) > 1e-6)
     nodes, offsets = nodes[keep], offsets[keep]

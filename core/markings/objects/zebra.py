@@ -237,27 +237,16 @@ def _stripes(places, rows, comb, way):
     rows, own, number, off, along = (values[striped] for values in (rows, own, number, off, along))
     if len(rows) < LEAST_SPOTS:
         return []
-    on = np.abs(off) < MAX_WIDTH_OF_PITCH / 2 * best.pitch
-    # half of what is spread evenly over a stripe lies within a quarter of its width
-    width = 4 * float(np.median(np.abs(off[on])))
-    if width < max(STRIPE_WIDTH[0], MIN_WIDTH_OF_PITCH * best.pitch):
+    # spots of lines that end at the crossing turned the comb: its stripes alone tell their direction and pitch
+    row = _row_of_stripes(number, off, along, best)
+    if row is None:
         return []
-    width = min(width, STRIPE_WIDTH[1], MAX_WIDTH_OF_PITCH * best.pitch)
-    on = np.abs(off) <= width / 2
-    kept, ends = [], []
-    numbers, counts = _without_strays(*np.unique(number[on], return_counts=True))
-    usual = np.median(counts)
-    for k, count in zip(numbers, counts):
-        span = _span(along[on & (number == k)])
-        own_width, aside = _width(along[on & (number == k)], off[on & (number == k)])
-        # a curb or a line that happens to lie there is narrower, or on one side
-        full = aside <= MAX_ASIDE * width and own_width >= MIN_OF_WIDTH * width
-        if full and count >= MIN_OF_USUAL * usual and span[1] - span[0] >= MIN_STRIPE_SPAN / 2:
-            kept.append(int(k))
-            ends.append(span)
-    if max(map(len, np.split(kept, np.flatnonzero(np.diff(kept) != 1) + 1))) < MIN_STRIPES:
+    best = _fitted(own, best, row)
+    number, off, along = _numbered(own, best)
+    row = _row_of_stripes(number, off, along, best)
+    if row is None:
         return []
-    ends = np.array(ends)
+    kept, width, ends = row.numbers, row.width, row.ends
     if (lengths := np.median(ends[:, 1] - ends[:, 0])) > STRIPE_LENGTH[1] or lengths < MIN_STRIPE_SPAN:
         return []
     # the ends of all stripes lie on a line
@@ -275,6 +264,51 @@ def _stripes(places, rows, comb, way):
         inside = (np.abs(off) <= width / 2 + FRAYED) & (number == k) & (along >= first - MAX_STRAY_END) & (along <= last + MAX_STRAY_END)
         found.append(Stripe(rows[inside], corners))
     return found
+
+
+class _Row(NamedTuple):
+    """Stripes side by side: their (K,) numbers, the width of all, and (K, 2) where each begins and ends along them, m."""
+
+    numbers: list[int]
+    width: float
+    ends: np.ndarray
+
+
+def _row_of_stripes(number, off, along, comb):
+    """The stripes that are broad and long enough, from spots by the stripe nearest to each; None where they are no crossing's."""
+    on = np.abs(off) < MAX_WIDTH_OF_PITCH / 2 * comb.pitch
+    # half of what is spread evenly over a stripe lies within a quarter of its width
+    width = 4 * float(np.median(np.abs(off[on])))
+    if width < max(STRIPE_WIDTH[0], MIN_WIDTH_OF_PITCH * comb.pitch):
+        return None
+    width = min(width, STRIPE_WIDTH[1], MAX_WIDTH_OF_PITCH * comb.pitch)
+    on = np.abs(off) <= width / 2
+    kept, ends = [], []
+    numbers, counts = _without_strays(*np.unique(number[on], return_counts=True))
+    usual = np.median(counts)
+    for k, count in zip(numbers, counts):
+        span = _span(along[on & (number == k)])
+        own_width, aside = _width(along[on & (number == k)], off[on & (number == k)])
+        # a curb or a line that happens to lie there is narrower, or on one side
+        full = aside <= MAX_ASIDE * width and own_width >= MIN_OF_WIDTH * width
+        if full and count >= MIN_OF_USUAL * usual and span[1] - span[0] >= MIN_STRIPE_SPAN / 2:
+            kept.append(int(k))
+            ends.append(span)
+    if max(map(len, np.split(kept, np.flatnonzero(np.diff(kept) != 1) + 1))) < MIN_STRIPES:
+        return None
+    return _Row(kept, width, np.array(ends))
+
+
+def _fitted(own, comb, row):
+    """The comb turned, shifted and stretched onto the spots of a row of its stripes, by least squares."""
+    number, off, along = _numbered(own, comb)
+    on = np.isin(number, row.numbers) & (np.abs(off) <= row.width / 2 + FRAYED)
+    # a spot lies across at phase + number * pitch + turn * along, and anywhere over the width of its stripe
+    design = np.column_stack([np.ones(on.sum()), number[on], along[on]])
+    shift, stretch, turn = np.linalg.lstsq(design, off[on], rcond=None)[0].tolist()
+    # across the turned stripes the distances shorten by the cosine of the turn
+    heading, c = comb.heading + np.arctan(turn), np.cos(np.arctan(turn))
+    return comb._replace(heading=float(heading), pitch=(comb.pitch + stretch) * c, phase=(comb.phase + shift) * c)
 
 
 def _striped(number, phase, along):

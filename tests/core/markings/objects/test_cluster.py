@@ -38,6 +38,15 @@ def test_the_outline_covers_the_paint_and_little_else():
     assert mark(s, d)[covered].mean() > 0.95
 
 
+@pytest.mark.parametrize("length", [4.0, 4.1, 4.3, 4.45])
+def test_outlines_of_dashes_and_stop_lines_end_where_their_paint_ends_whatever_their_length(length):
+    beyond = length + np.array([-0.08, 0.08])
+    dash = markings_of([strip(15, 15 + length, 1.0, 1.15)]).geometries[0]
+    np.testing.assert_array_equal(shapely.contains_xy(dash, *FRAME.to_map(0, 15 + beyond, np.full(2, 1.075))), [True, False])
+    stop = markings_of([strip(20, 20.4, -2, -2 + length)]).geometries[0]
+    np.testing.assert_array_equal(shapely.contains_xy(stop, *FRAME.to_map(0, np.full(2, 20.2), -2 + beyond)), [True, False])
+
+
 def test_the_two_lines_of_a_double_line_are_two_markings_and_centre_lines():
     markings = markings_of([strip(10, 50, 0.0, 0.12), strip(10, 50, 0.24, 0.36)])
     assert classes(markings) == ["centre", "centre"]

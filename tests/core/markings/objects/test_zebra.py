@@ -50,6 +50,16 @@ def test_an_edge_line_that_leads_on_from_the_outermost_stripe_is_none_of_it():
     assert max(stripe.corners[:, 0].max() for stripe in found) < 2.5
 
 
+def test_lines_that_end_at_a_crossing_do_not_turn_its_stripes():
+    left = [strip(2.2, 6.0, 2.02, 2.14), strip(2.2, 6.0, 0.2, 0.35), strip(2.2, 6.0, 0.55, 0.70)]
+    right = [strip(-6.0, -2.2, -2.95, -2.83), strip(-3.0, -2.5, -3.0, 0.3)]
+    places, _ = spots([*STRIPES, *left, *right], tracks=0.06, kept=0.9)
+    corners = np.stack([stripe.corners for stripe in crossings_in(places)])
+    assert len(corners) == 6
+    np.testing.assert_allclose(np.sort(corners[:, :, 1].min(axis=1)), np.arange(-3.0, 3.0, 1.0), atol=0.025)
+    np.testing.assert_allclose(np.sort(corners[:, :, 1].max(axis=1)), np.arange(-2.5, 3.5, 1.0), atol=0.025)
+
+
 def bars(turn):
     """Bars of hatching half a metre broad in a strip along the first axis, askew to it."""
     c, n = np.cos(np.radians(turn)), np.sin(np.radians(turn))
