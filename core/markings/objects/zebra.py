@@ -52,7 +52,9 @@ COMB_BIN = 0.10                 # m across the stripes
 COMB_HEADINGS = np.arange(-np.pi / 2, np.pi / 2, COMB_HEADING_STEP)
 COMB_PITCHES = COMB_PITCH[0] * (1 + COMB_PITCH_STEP) ** np.arange(int(np.log(COMB_PITCH[1] / COMB_PITCH[0]) / np.log(1 + COMB_PITCH_STEP)) + 1)
 COMB_ACROSS = np.stack([-np.sin(COMB_HEADINGS), np.cos(COMB_HEADINGS)])
+PHASE_TOLERANCE = 1e-3     # of a mean phase: its error in single precision is a tenth of that
 MOST_PEAKS = 2             # of them, the clearest, that are looked at closely: a line beside a crossing may repeat more clearly than its stripes
+COMB_SHARES = np.linspace(-0.5, 0.5, 11)   # of a step of both, when it is looked at closely
 COMB_REACH = int(1.5 * COMB_WINDOW / COMB_BIN)   # bins, either way
 COMB_PHASES = np.exp(2j * np.pi * COMB_BIN * np.arange(-COMB_REACH, COMB_REACH + 1)[:, None] / COMB_PITCHES)
 
@@ -90,7 +92,8 @@ def zebra_stripes(places: np.ndarray, way: np.ndarray) -> list[Stripe]:
     for own in _windows(places):
         check_cancelled()
         # most windows hold one line
-        comb = find_comb(places[own]) if np.sqrt(max(np.linalg.eigvalsh(np.cov(places[own].T))[0], 0.0)) >= LEAST_SPREAD else None
+        spots = places[own]
+        comb = find_comb(spots) if _least_spread(spots) >= LEAST_SPREAD else None
         if comb is not None:
             combs.append(comb)
             rows.append(own)
@@ -129,6 +132,13 @@ def _windows(places):
     return [spots[a:a + n] for a, n in zip(starts[enough].tolist(), counts[enough].tolist())]
 
 
+def _least_spread(places):
+    """Standard deviation of places in the direction where it is least, m."""
+    x, y = (places - places.mean(axis=0)).T
+    xx, xy, yy = (float(product.sum()) / (len(places) - 1) for product in (x * x, x * y, y * y))
+    return np.sqrt(max((xx + yy) / 2 - np.hypot((xx - yy) / 2, xy), 0.0))
+
+
 def _across(places, heading):
     return places @ np.array([-np.sin(heading), np.cos(heading)])
 
@@ -137,7 +147,7 @@ def _mean_phase(places, headings, pitches):
     """(H, P) complex, the mean phase of spots for every direction and pitch."""
     across = places @ np.stack([-np.sin(headings), np.cos(headings)])
     turn = (2 * np.pi / pitches)[:, None, None] * across
-    return (np.cos(turn).mean(axis=1) + 1j * np.sin(turn).mean(axis=1)).T
+    return (np.cos(turn).sum(axis=1) / len(places) + 1j * (np.sin(turn).sum(axis=1) / len(places))).T
 
 
 def find_comb(places: np.ndarray) -> Comb | None:
@@ -170,17 +180,26 @@ def _phases(own):
     number = np.clip(number, 0, len(COMB_PHASES) - 1) + np.arange(len(COMB_HEADINGS)) * len(COMB_PHASES)
     counts = np.bincount(number.ravel(), minlength=len(COMB_HEADINGS) * len(COMB_PHASES)).reshape(len(COMB_HEADINGS), -1)
     # small: shared out to threads it takes longer
-    return np.einsum("hb,bp->hp", counts.astype(float), COMB_PHASES) / len(own)
+    return np.einsum("hb,bp->hp", counts.astype(float), COMB_PHASES.view(float)).view(complex) / len(own)
 
 
 def _refined(own, middle, heading, pitch, steps=1.0):
     """The clearest comb within some of the steps that are tried of a direction and a pitch."""
-    headings = heading + COMB_HEADING_STEP * steps * np.linspace(-0.5, 0.5, 11)
-    pitches = pitch * (1 + COMB_PITCH_STEP * steps * np.linspace(-0.5, 0.5, 11))
+    headings = heading + COMB_HEADING_STEP * steps * COMB_SHARES
+    pitches = pitch * (1 + COMB_PITCH_STEP * steps * COMB_SHARES)
+    pitches = pitches[_clear_pitches(own, headings, pitches)]
     phase = _mean_phase(own, headings, pitches)
     a, b = np.unravel_index(np.abs(phase).argmax(), phase.shape)
     return Comb(float(headings[a]), float(pitches[b]), float(np.angle(phase[a, b]) / (2 * np.pi) * pitches[b]), middle,
                 float(np.abs(phase[a, b])))
+
+
+def _clear_pitches(own, headings, pitches):
+    """(P,) bool: pitches whose mean phase is the longest in one of some directions, as far as single precision tells."""
+    across = np.stack([-np.sin(headings), np.cos(headings)], axis=1) @ own.T
+    turn = (2 * np.pi / pitches).astype(np.float32)[:, None, None] * across.astype(np.float32)
+    length = np.hypot(np.cos(turn).sum(axis=2), np.sin(turn, out=turn).sum(axis=2)).max(axis=1) / len(own)
+    return length >= length.max() - PHASE_TOLERANCE
 
 
 def _numbered(own, comb):
@@ -193,11 +212,13 @@ def _numbered(own, comb):
 def _has_stripes(own, comb):
     """Whether at least three stripes side by side are long enough, and as long as each other at the same place."""
     number, _, along = _numbered(own, comb)
+    number -= number.min()
+    enough = np.bincount(number) >= MIN_SHARE_OF_STRIPE * len(own)
     spans = {}
-    for k, count in zip(*np.unique(number, return_counts=True)):
+    for k in np.flatnonzero(enough).tolist():
         first, last = percentiles(along[number == k], (END_PERCENT, 100 - END_PERCENT))
-        if count >= MIN_SHARE_OF_STRIPE * len(own) and last - first >= MIN_STRIPE_SPAN:
-            spans[int(k)] = first, last
+        if last - first >= MIN_STRIPE_SPAN:
+            spans[k] = first, last
     run = best = 0
     for k, (first, last) in spans.items():
         before = spans.get(k - 1)
