@@ -10,7 +10,7 @@ import numpy as np
 
 from ..common.progress import Progress
 from ..countries.catalogue import country
-from ..markings.cross_section.confidence import calibrated
+from ..markings.cross_section.confidence import confidence_of
 from ..markings.cross_section.roads import EstimatedRoad, estimate_roads
 from ..markings.cross_section.sections import STATION_STEP, CrossSections, sections_of_edges, sections_of_lines, sections_of_pavement
 from ..markings.lines.painted_lines import PaintedLines
@@ -108,7 +108,7 @@ def road_lanes(road: EstimatedRoad, settings: DrivingSettings, lane_width: float
     tracks = estimated_lanes(road.boundaries, road.estimate, lane_width, settings.line_distance)
     tracks = connect(tracks, road.lines, settings.max_bridge, settings.max_inferred, road.boundaries.seen[road.boundaries.painted].any(0))
     known = [track.without_doubtful_ends() for track in laid_out(tracks)]
-    tracks = [replace(track, confidence=calibrated(track.confidence)) for track in known
+    tracks = [replace(track, confidence=confidence_of(track.confidence, track.directed)) for track in known
               if track is not None and len(track) * STATION_STEP >= settings.shortest]
     return sorted(tracks, key=lambda track: (track.first, float(track.d[0])))
 

@@ -35,7 +35,7 @@ class LaneTrack:
     d, width : (N,) metres; status : (N,) of MEASURED, INFERRED, BRIDGED; offset : (N,) True
     where the place comes from one line only; left, right : (N,) rows of Boundaries that it lies between, -1 where nothing is painted
     left_use, right_use : (N,) what these separate, LANE_LINE ... OTHER_LINE, -1 where unknown
-    probability, confidence : (N,) 0 to 1, as of LaneSpan; direction : 1 along the road's reference line, -1 against it
+    probability, confidence, directed : (N,) 0 to 1, as of LaneSpan; direction : 1 along the road's reference line, -1 against it
     """
 
     first: int
@@ -49,6 +49,7 @@ class LaneTrack:
     right_use: np.ndarray
     probability: np.ndarray
     confidence: np.ndarray
+    directed: np.ndarray
     direction: int
 
     @property
@@ -136,7 +137,8 @@ def _between(a, b, d, width):
     nothing = np.full(len(d), -1)
     ends = (a.probability, b.probability), (a.confidence, b.confidence)
     sure = (np.full(len(d), BRIDGED_TRUST * min(before[-1], after[0])) for before, after in ends)
-    return LaneTrack(a.last + 1, d, width, np.full(len(d), BRIDGED), np.ones(len(d), bool), *[nothing] * 4, *sure, a.direction)
+    directed = np.full(len(d), min(a.directed[-1], b.directed[0]))
+    return LaneTrack(a.last + 1, d, width, np.full(len(d), BRIDGED), np.ones(len(d), bool), *[nothing] * 4, *sure, directed, a.direction)
 
 
 def connect(tracks: list[LaneTrack], lines: CrossSections, most_bridged: float, most_inferred: float, shown: np.ndarray) -> list[LaneTrack]:

@@ -138,7 +138,7 @@ def _part(boundaries, span, first, last, lane_width, line_distance):
     status = np.choose(shown, [BRIDGED, INFERRED, MEASURED if span.count == 1 else INFERRED])
     left_use = span.left if span.place == span.count - 1 else -1
     right_use = span.right if span.place == 0 else -1
-    about = (beside_one, left_use, right_use, span.left_border, span.right_border, span.probability, span.confidence)
+    about = (beside_one, left_use, right_use, span.left_border, span.right_border, span.probability, span.confidence, span.directed)
     return LaneTrack(first, d, width, status, *(np.full(len(d), value) for value in about), span.direction)
 
 

@@ -9,8 +9,25 @@ from .weights import EstimateWeights
 SUREST = 1e-4    # what is left to say against the surest
 
 
+def confidence_of(there: np.ndarray, directed: np.ndarray, weights: EstimateWeights = EstimateWeights()) -> np.ndarray:
+    """The share of such lanes that run the right way and within 15 cm of the true driving line: of those that lie there, those that lead this way.
+
+    Of two directions that are equally probable neither is right more often, so the curve of the direction goes through one half.
+
+    Parameters
+    ----------
+    there, directed : (N,) 0 to 1, confidence and directed of LaneSpan
+    weights : EstimateWeights
+
+    Returns
+    -------
+    (N,) 0 to 1
+    """
+    return calibrated(there, weights) * _on_curve(directed, weights.calibration_of_direction, 0.0)
+
+
 def calibrated(probability: np.ndarray, weights: EstimateWeights = EstimateWeights()) -> np.ndarray:
-    """The share of such lanes that run the right way and within 15 cm of the true driving line.
+    """The share of such lanes that lie within 15 cm of the true driving line.
 
     The estimate takes its candidates for all there are, and evidence of different kinds for independent, so what it holds for improbable is right
     more often, and what it holds for certain less often; one logistic curve over the log odds tells how often (Platt, Probabilistic outputs for
@@ -25,6 +42,9 @@ def calibrated(probability: np.ndarray, weights: EstimateWeights = EstimateWeigh
     -------
     (N,) 0 to 1
     """
-    slope, offset = weights.calibration
+    return _on_curve(probability, *weights.calibration)
+
+
+def _on_curve(probability, slope, offset):
     p = np.clip(probability, SUREST, 1 - SUREST)
     return 1 / (1 + np.exp(-(slope * np.log(p / (1 - p)) + offset)))

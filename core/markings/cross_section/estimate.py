@@ -104,7 +104,8 @@ class LaneSpan:
     """One lane over one interval.
 
     interval : number; left, right : rows of Boundaries, place : from the right, of `count` lanes between them; direction : 1 or -1
-    probability, confidence : 0 to 1, with the posterior and with the sureness of RoadEstimate
+    probability : 0 to 1, of a lane of this direction there, with the posterior of RoadEstimate
+    confidence, directed : 0 to 1, of a lane of either direction there, and of those of this direction among them, with the sureness of RoadEstimate
     left_border, right_border : what the two separate, LANE_LINE ... OTHER_LINE
     """
 
@@ -116,6 +117,7 @@ class LaneSpan:
     direction: int
     probability: float
     confidence: float
+    directed: float
     left_border: int
     right_border: int
 
@@ -132,16 +134,16 @@ def lane_spans(estimate: RoadEstimate) -> list[LaneSpan]:
         uses = [int(borders[i, m]), *(CENTRE_LINE if inner == first else LANE_LINE for inner in range(1, number)), int(borders[i, end])]
         for place in range(number):
             direction = estimate.first_direction if place < first else -estimate.first_direction
-            probability, confidence = shares[place]
+            probability, confidence, directed = shares[place]
             found.append(LaneSpan(i, int(c.rows[i, m, 1]), int(c.rows[i, end, 0]), number - 1 - place, number, direction, probability, confidence,
-                                  uses[place], uses[place + 1]))
+                                  directed, uses[place], uses[place + 1]))
     return found
 
 
 def _place_shares(estimate, strips, chosen):
-    """Lists of two values for each lane of the chosen strips, from left to right: posterior and sureness of a lane of its direction there.
+    """Lists of three values for each lane of the chosen strips, from left to right: probability, confidence and directed of LaneSpan.
 
-    That is of all cross-sections that have a lane of that direction within SAME_LANE, whatever bounds it and whatever lies beside it.
+    That is of all cross-sections that have a lane within SAME_LANE, whatever bounds it and whatever lies beside it.
     """
     c, at = estimate.candidates, strips.interval
     d_left, each = lane_places(c.right[at, strips.left], c.left[at, strips.right], c.made_of[at, strips.left], c.made_of[at, strips.right],
@@ -157,8 +159,10 @@ def _place_shares(estimate, strips, chosen):
     size = (last - first)[at[of[lanes]]]
     one = np.repeat(lanes, size)
     other = np.arange(len(one)) - np.repeat(np.cumsum(size) - size, size) + first[at[of[one]]]
-    alike = (np.abs(d[other] - d[one]) < SAME_LANE) & (ahead[other] == ahead[one])
-    total = np.stack([np.bincount(one[alike], share[other[alike]], minlength=len(of)) for share in shares], axis=1)
+    there = np.abs(d[other] - d[one]) < SAME_LANE
+    probability, sure, either = (np.bincount(one[alike], share[other[alike]], minlength=len(of)) for share, alike in (
+        (shares[0], there & (ahead[other] == ahead[one])), (shares[1], there & (ahead[other] == ahead[one])), (shares[1], there)))
+    total = np.stack([probability, either, sure / np.where(either > 0, either, 1.0)], axis=1)
     return [total[begin[k]:begin[k] + strips.number[k]].tolist() for k in chosen]
 
 

@@ -58,6 +58,8 @@ class EstimateWeights:
     left_hand : of traffic on the left, against traffic on the right
     calibration : slope and offset of the curve by which probable lanes are right, over the log odds; fitted to 13 km of lanes of 32 simulated
         streets of two simulators, and checked on others (docs/accuracy.md)
+    calibration_of_direction : slope of the same curve for the direction of a lane; fitted to 7 km of lanes of 20 simulated streets, on some of
+        which the lines leave open which way a lane leads
     """
 
     correlation: float = 20.0
@@ -111,6 +113,7 @@ class EstimateWeights:
     dashed_between_many: float = 1.5
     left_hand: float = 0.7
     calibration: tuple[float, float] = (0.38, 1.85)
+    calibration_of_direction: float = 1.7
 
     @property
     def boundary(self) -> np.ndarray:

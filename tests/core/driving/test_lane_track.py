@@ -47,7 +47,7 @@ def track(first, d, width=3.0):
     """A lane at constant places across, from a grid station on."""
     nothing = np.full(len(d), -1)
     inferred, sure = np.full(len(d), INFERRED), np.ones(len(d))
-    return LaneTrack(first, np.array(d), np.full(len(d), width), inferred, sure > 0, *[nothing] * 4, sure, sure, 1)
+    return LaneTrack(first, np.array(d), np.full(len(d), width), inferred, sure > 0, *[nothing] * 4, sure, sure, sure, 1)
 
 
 def test_a_lane_whose_end_was_moved_to_meet_what_lies_before_goes_on_where_it_was_seen():
@@ -63,5 +63,5 @@ def test_a_lane_beside_one_line_ends_where_it_is_less_probable_than_four_in_five
     count = len(S)
     unsure = np.arange(count) >= 80
     track = LaneTrack(0, np.zeros(count), np.full(count, 3.5), np.full(count, INFERRED), unsure & beside_one, np.full(count, 1), np.full(count, 2),
-                      np.full(count, -1), np.full(count, -1), np.where(unsure, 0.7, 0.99), np.full(count, 0.5), 1)
+                      np.full(count, -1), np.full(count, -1), np.where(unsure, 0.7, 0.99), np.full(count, 0.5), np.ones(count), 1)
     assert len(track.without_doubtful_ends()) == left

@@ -223,7 +223,7 @@ def test_lanes_are_no_surer_for_what_their_lines_were_named_since_the_same_evide
         street = Street(vehicle=-1.75).paint(3.5).paint(0.0, kind=kind, pattern="dashed").paint(-3.5)
         return [row["confidence"] for row in street.lanes()[0].rows]
 
-    assert confidences("centre") == pytest.approx(confidences("lane"), abs=0.005)
+    assert confidences("centre") == pytest.approx(confidences("lane"), abs=0.02)
 
 
 def test_beyond_the_edge_line_nobody_drives():

@@ -160,3 +160,15 @@ def test_the_curbs_of_an_island_bound_the_lanes_beside_it(edge):
 def test_painted_lanes_are_sure():
     street = Street(vehicle=-1.75).paint(3.5, kind="edge").paint(0.0, pattern="double-solid", kind="centre").paint(-3.5, kind="edge")
     assert min(row["confidence"] for row in street.lanes()[0].rows) > 0.9
+
+
+def test_a_middle_lane_that_may_lead_either_way_is_said_to_do_so_with_a_confidence_of_one_half():
+    """Dashes on both of its sides, and the lanes beside it driven one way each: where it lies is sure, where it leads is not."""
+    street = Street(vehicle=-3.5, again=(3.5,)).paint(5.25, kind="edge").paint(-5.25, kind="edge")
+    for border in (1.75, -1.75):
+        street.paint(border, pattern="dashed")
+    outer, middle = [], []
+    for line, row in street.lanes()[0]:
+        (middle if abs(np.median(street.offsets(line))) < 1.0 else outer).append(row["confidence"])
+    assert len(outer) == 2 and min(outer) > 0.9
+    assert middle and 0.3 < min(middle) and max(middle) < 0.6

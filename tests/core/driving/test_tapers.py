@@ -15,7 +15,7 @@ LENGTH = 200.0
 def track(first, d, width):
     """A measured lane along the road."""
     count = len(d)
-    return LaneTrack(first, d, width, np.full(count, MEASURED), np.zeros(count, bool), *[np.full(count, -1)] * 4, *[np.ones(count)] * 2, 1)
+    return LaneTrack(first, d, width, np.full(count, MEASURED), np.zeros(count, bool), *[np.full(count, -1)] * 4, *[np.ones(count)] * 3, 1)
 
 
 def exit_street(opens):
