@@ -19,10 +19,11 @@ from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ..store.records import COORDINATE_SCALE, to_units
 from ..store.section_store import SectionStore
+from .carrying import continued_corrections
 from .corrections import CORRECTION_STEP, PassCorrections
 from .pass_sigma import sigma_of_passes
 from .register import AXES, PassOffsets, pass_offsets
-from .remaining import remaining_places, said_of_places
+from .remaining import places_of_one_drive, remaining_places, said_of_one_drive, said_of_places
 
 MOVED_COLUMNS = "x", "y", "z", "s", "d"
 AGREEMENT_PLAN, AGREEMENT_HEIGHT = 0.020, 0.007    # m: a road stays as measured if nine tenths of its offsets are less
@@ -36,7 +37,8 @@ DRIFT_SIGMA = 0.20                # m, sigma of the drift itself
 def adjust_passes(survey: Any, progress: Progress = Progress(), folder: Path | None = None) -> None:
     """Adjust the passes over every road to each other where they measurably disagree.
 
-    Points and tracks are moved in plan and height; the reference lines of the roads stay.
+    Points and tracks are moved in plan and height; the reference lines of the roads stay. Where a drive goes on alone, it is moved on as
+    where it left the others, so that it has no step there.
 
     Parameters
     ----------
@@ -45,7 +47,8 @@ def adjust_passes(survey: Any, progress: Progress = Progress(), folder: Path | N
     folder : of the moved points that are not kept in memory; None for a temporary file
     """
     roads = [road for road in survey.store.roads() if len(survey.frame.passes_of(road)) > 1]
-    moves = {}
+    moves: dict[int, tuple[np.ndarray, np.ndarray]] = {}
+    compared: list[PassOffsets] = []
     for k, road in enumerate(roads):
         offsets = pass_offsets(survey, road, progress.part(0.5 * k / len(roads), 0.5 * (k + 1) / len(roads)))
         apart = _disagree(offsets)
@@ -53,9 +56,14 @@ def adjust_passes(survey: Any, progress: Progress = Progress(), folder: Path | N
             survey.frame.pass_sigma[road] = sigma
         found = solve_corrections(offsets) if apart else {}
         moves.update(found)
+        compared += offsets
         _report_offsets(road, offsets, found, progress)
     if moves:
-        _replace_points(survey, _map_corrections(survey.frame, moves), progress.part(0.5, 1.0), folder)
+        corrections = continued_corrections(survey.frame, _map_corrections(survey.frame, moves), compared)
+        for road in survey.store.roads():
+            if warning := said_of_one_drive(road, places_of_one_drive(survey.frame.passes_of(road), compared, corrections)):
+                progress.warn(warning)
+        _replace_points(survey, corrections, progress.part(0.5, 1.0), folder)
 
 
 def solve_corrections(offsets: list[PassOffsets]) -> dict[int, tuple[np.ndarray, np.ndarray]]:
