@@ -45,7 +45,7 @@ from ..road.scanlines.section_planes import ScanlineSettings
 from ..road.surface.extract import SurfaceSettings, extract_road_surface
 from ..road.surface.road_surface import SurfaceOutlines, surface_to_features
 from ..survey.open_survey import SurveySettings, open_survey
-from ..survey.point_density import CubeDensity, cube_density_of
+from ..survey.point_density import CubeDensity, cube_densities
 from ..survey.store.records import Points, join_columns
 from .stages import INTENSITY_STAGES, Extent, Stages
 
@@ -193,7 +193,7 @@ def _map_of(survey, image_path, settings, stages, corrections):
     facts = dict(files=len(survey.files), scanners=len(survey.scanners), passes=len(survey.frame.passes),
                  roads=len(survey.frame.roads), sensor_height=survey.sensor_height, **survey.counts)
     waiting = stages.progress.part(stages.done, stages.done)   # the bar stands meanwhile
-    density = tuple(cube_density_of(points, road_points.executor, waiting) for points in (survey, road_points))
+    density = cube_densities(road_points, waiting)
     survey.store.clear_cache()
     result = RoadMap(survey.frame, survey.crs, boundaries.curb_points, edges, surface, road_points,
                      boundaries.differences, boundaries.length_by_method, seconds=stages.seconds, survey_facts=facts,

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..common.parallel import ordered_map
 from ..common.progress import Progress
-from ..execution.phase import Executor, Phase
+from ..execution.phase import Phase
 from ..io.gdal_errors import gdal_exceptions
 from .store.section_store import STRETCH_POINTS, Stretch
 
@@ -53,29 +53,35 @@ def cube_density(sections: Iterable[Any], points_of: Callable[[Any], Points] = l
     -------
     CubeDensity
     """
-    return _density(ordered_map(lambda section: _counted(points_of(section)), sections, progress))
+    return _density(ordered_map(lambda section: _counted(points_of(section))[0], sections, progress))
 
 
-def cube_density_of(points: Survey | RoadPoints, executor: Executor, progress: Progress = Progress()) -> CubeDensity:
-    """`cube_density` of all points of a survey or of its road, counted by an executor.
+def cube_densities(road_points: RoadPoints, progress: Progress = Progress()) -> tuple[CubeDensity, CubeDensity]:
+    """`cube_density` of all points of a survey and of those on its road, counted together by the executor of the road points.
 
     Parameters
     ----------
-    points : Survey or RoadPoints
-    executor : Executor
+    road_points : RoadPoints of a survey, `RoadPoints.subset_of`
     progress : Progress
     """
-    store: Any = points.store
-    length: float = store.section_length
-    survey: Any = getattr(points, "survey", points)
-    phase = Phase(cubes_of_stretch, points, (), lambda item: survey.stretch(item[0], item[1] * length, item[2] * length))
-    parts = executor.run(phase, store.stretches(STRETCH_POINTS if executor.folder else 0), progress)
-    return _density(found for part in parts for found in part)
+    survey: Survey = road_points.survey
+    length: float = survey.store.section_length
+    phase = Phase(cubes_of_stretch, road_points, (), lambda item: survey.stretch(item[0], item[1] * length, item[2] * length))
+    stretches = survey.store.stretches(STRETCH_POINTS if road_points.executor.folder else 0)
+    parts = list(road_points.executor.run(phase, stretches, progress))
+    of_survey, of_road = (_density(found[k] for part in parts for found in part) for k in (0, 1))
+    return of_survey, of_road
 
 
-def cubes_of_stretch(points: Survey | RoadPoints, stretch: Stretch) -> list[tuple[np.ndarray, np.ndarray] | None]:
-    """The phase that counts points in cubes: keys of the occupied cubes and their counts, section by section; None without points."""
-    return [_counted(points.section(*key)) for key in points.store.in_stretch(stretch)]
+def cubes_of_stretch(road_points: RoadPoints, stretch: Stretch) -> list[list[tuple[np.ndarray, np.ndarray] | None]]:
+    """The phase that counts points in cubes, section by section.
+
+    Returns
+    -------
+    for each section of the survey [(keys of the occupied cubes, their counts)] of all points and of those on the road; None without points
+    """
+    store: Any = road_points.store
+    return [_counted(road_points.survey.section(*key), store.rows(*key)) for key in road_points.survey.store.in_stretch(stretch)]
 
 
 def _density(parts):
@@ -90,24 +96,33 @@ def _density(parts):
     return CubeDensity(total, float(number.mean()), float((number**2).sum() / number.sum()))
 
 
-def _counted(points):
-    """Keys of the occupied cubes and their counts; None without points."""
+def _counted(points, *subsets):
+    """[(keys of the occupied cubes, their counts)] of points and of some of them, rows in ascending order; None without points."""
     if not len(points):
-        return None
+        return [None] * (1 + len(subsets))
     low, size = [], []
     for axis in (points.records[name] for name in "xyz"):
         low.append(int(axis.min()) // CUBE_SIDE)
         size.append(int(axis.max()) // CUBE_SIDE - low[-1] + 1)
-    count = np.zeros(size[0] * size[1] * size[2], np.int64)
+    counts = np.zeros((1 + len(subsets), size[0] * size[1] * size[2]), np.int64)
     for first in range(0, len(points), POINTS_PER_CHUNK):
         x, y, z = (points.records[name][first:first + POINTS_PER_CHUNK] // np.int32(CUBE_SIDE) - np.int32(least) for name, least in zip("xyz", low))
         z *= np.int32(size[1])
         z += y
         z *= np.int32(size[0])
         z += x
-        some = np.bincount(z)
-        count[:len(some)] += some
+        for count, rows in zip(counts, (None, *subsets)):
+            own = z if rows is None else z.take(rows[slice(*np.searchsorted(rows, (first, first + len(z))))] - first)
+            some = np.bincount(own)
+            count[:len(some)] += some
+    return [_occupied(count, low, size) for count in counts]
+
+
+def _occupied(count, low, size):
+    """Keys of the cubes that hold points, and how many these are; None where none does."""
     held = np.flatnonzero(count)
+    if not len(held):
+        return None
     x, y, z = held % size[0] + low[0], held // size[0] % size[1] + low[1], held // (size[0] * size[1]) + low[2]
     half = 2**22   # 4,000 km either side, and 32 km up or down
     return ((z + 2**15) << 46) | ((y + half) << 23) | (x + half), count[held]

@@ -87,11 +87,16 @@ class PointSubset(SectionStore):
     def sections(self, road: int) -> list[int]:
         return self._own.sections(road)
 
+    def rows(self, road: int, section: int) -> np.ndarray:
+        """(M,) indices into a section of the store, ascending."""
+        bits = self._masks.section(road, section)
+        return np.flatnonzero(np.unpackbits(bits["bits"]).view(bool)) if len(bits) else np.empty(0, np.intp)
+
     def _read(self, road, section):
         own = self._own.section(road, section)
         if not len(own):
             return Columns.concatenate([], self.dtype), False
-        rows = np.flatnonzero(np.unpackbits(self._masks.section(road, section)["bits"]).view(bool))
+        rows = self.rows(road, section)
 
         def load(name):
             if name in self._constants:

@@ -18,7 +18,7 @@ from lanewright.core.road.surface import extract
 from lanewright.core.road.surface.extract import extract_road_surface
 from lanewright.core.survey import open_survey as opening
 from lanewright.core.survey import point_density
-from lanewright.core.survey.point_density import cube_density_of
+from lanewright.core.survey.point_density import cube_densities
 
 pytestmark = pytest.mark.slow
 PHASES = ["cubes_of_stretch", "surface_points", "levels_of_stretch", "corrected_of_stretch", "window_of_image", "sums_of_pieces"]
@@ -70,7 +70,7 @@ def found_by(sample, executor=None, work=None):
     try:
         edges = draw_boundaries(find_curb_points(survey, BoundarySettings("profiles")), survey.frame).edges
         road_points, surface = extract_road_surface(survey, edges)
-        density = [cube_density_of(points, road_points.executor) for points in (survey, road_points)]
+        density = cube_densities(road_points)
         selected = [np.array(road_points.section(*key).records).tobytes() for key in road_points.all_sections()]
         road_points, report = correct_intensity(road_points, survey.frame)
         image = make_intensity_image(road_points)

@@ -16,6 +16,7 @@ from lanewright.core.execution.processes import WorkerProcesses
 from lanewright.core.execution.threads import Threads
 from lanewright.core.survey.point_density import cubes_of_stretch
 from lanewright.core.survey.reading.sensor_height import sensor_height_of
+from lanewright.core.survey.store.road_points import RoadPoints
 
 
 @pytest.fixture(scope="module")
@@ -63,13 +64,13 @@ def test_a_worker_that_is_killed_is_replaced_and_nothing_is_lost(by_threads, pyt
 
 
 def test_workers_that_forget_what_they_read_go_on_with_the_next_phase(python):
-    survey = survey_of(street())
-    stretches = survey.store.stretches()[:4]
+    points = RoadPoints.subset_of(survey_of(street()))
+    stretches = points.survey.store.stretches()[:4]
     with closing(WorkerProcesses(python, 1)) as executor:
         found, workers = [], []
         for _ in range(2):
-            counted = executor.run(Phase(cubes_of_stretch, survey), stretches)
-            found.append([[part.tolist() for part in section] for stretch in counted for section in stretch])
+            counted = executor.run(Phase(cubes_of_stretch, points), stretches)
+            found.append([[part.tolist() for part in section] for stretch in counted for section, _ in stretch])
             workers.append([worker._process.pid for worker in executor._all])
             executor.forget()
     assert found[0] == found[1] and found[0]
