@@ -285,7 +285,7 @@ def test_a_trajectory_file_that_is_not_there_is_named(survey, called, tmp_path):
 def street(sample_survey, tmp_path_factory):
     """A sample survey dense enough for the whole chain, its cloud in two files too."""
     folder = tmp_path_factory.mktemp("street")
-    shutil.copytree(sample_survey(LENGTH=40, PULSE_RATE=120000), folder, dirs_exist_ok=True)
+    shutil.copytree(sample_survey(LENGTH=40, PULSE_RATE=60000, ROTATION_RATE=100), folder, dirs_exist_ok=True)
     for name, first in (("odd.laz", 1), ("even.laz", 0)):
         cloud = laspy.read(folder / "s.laz")
         cloud.points = cloud.points[np.arange(first, len(cloud.points), 2)]

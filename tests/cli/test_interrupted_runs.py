@@ -29,7 +29,7 @@ def run(*arguments, folder, **environment):
 
 @pytest.fixture(scope="module")
 def survey(sample_survey):
-    return sample_survey(LENGTH=40, PULSE_RATE=120000)
+    return sample_survey(LENGTH=30, PULSE_RATE=60000, ROTATION_RATE=100)
 
 
 def road_map(survey):

@@ -9,7 +9,7 @@ pytestmark = pytest.mark.slow
 def test_corrections_in_degrees_hold_in_a_road_map_and_their_lines_say_what_they_are(provider, sample_survey, tmp_path):
     import processing
 
-    survey = sample_survey(LENGTH=40, PULSE_RATE=120000)
+    survey = sample_survey(LENGTH=40, PULSE_RATE=60000, ROTATION_RATE=100)
     given = {"POINT_CLOUDS": [survey["POINT_CLOUD"]], "TRAJECTORY": survey["TRAJECTORY"], "BOUNDARY_METHOD": "profiles"}
     edges = QgsVectorLayer(processing.run("lanewright:roadmap", {**given, "ROAD_EDGES": str(tmp_path / "edges.gpkg")})["ROAD_EDGES"])
     longest = max(edges.getFeatures(), key=lambda feature: feature["length_m"])

@@ -10,7 +10,7 @@ ogr.UseExceptions()
 
 @pytest.fixture(scope="module")
 def street(sample_survey):
-    return sample_survey(LENGTH=40, PULSE_RATE=120000)
+    return sample_survey(LENGTH=40, PULSE_RATE=60000, ROTATION_RATE=100)
 
 
 def rows_of(path):

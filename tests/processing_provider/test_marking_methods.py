@@ -17,7 +17,7 @@ def road(sample_survey, tmp_path_factory):
     import processing
 
     folder = tmp_path_factory.mktemp("road")
-    survey = sample_survey(LENGTH=40, PULSE_RATE=120000)
+    survey = sample_survey(LENGTH=40, PULSE_RATE=60000, ROTATION_RATE=100)
     given = {"ROAD_POINTS": str(folder / "road.laz"), "INTENSITY_IMAGE": str(folder / "image.tif"), "TRAJECTORY": survey["TRAJECTORY"]}
     processing.run("lanewright:roadmap", {
         "POINT_CLOUDS": [survey["POINT_CLOUD"]], "TRAJECTORY": survey["TRAJECTORY"],
