@@ -69,7 +69,7 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
     paint = marking_lines.scatter()
     curbs, pavement = (sections_of_edges(edges), sections_of_pavement(edges)) if edges is not None else (None, {})
     estimates = estimate_roads(sections_of_lines(marking_lines), frame, settings.lane_width or country(settings.country).usual_lane,
-                               settings.traffic_side, curbs, markings, road_points, width_asked=bool(settings.lane_width))
+                               settings.traffic_side, curbs, markings, road_points, width_asked=bool(settings.lane_width), pavement=pavement)
     progress.report(0.4)
     if estimates.roads and not estimates.sure:
         progress.warn(f"The survey hardly shows on which side traffic drives; the {estimates.side} was taken. Set Side of traffic if that is wrong.")

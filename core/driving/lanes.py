@@ -122,8 +122,8 @@ def _part(boundaries, span, first, last, lane_width, line_distance):
     if left is None or right is None:
         return None
     painted = [bool(boundaries.bounding[row]) for row in sides]
-    begin, width = lane_places(left, right, *(boundaries.made_of[row] for row in sides), span.count, lane_width, boundaries.bend[rows])
-    made_of = boundaries.made_of[list(sides)]
+    made_of = [int(np.bincount(boundaries.patterns[row, rows]).argmax()) for row in sides]
+    begin, width = lane_places(left, right, *made_of, span.count, lane_width, boundaries.bend[rows])
     # a lane that has all the room between a line and the curb of an island is placed by both
     seen = [boundaries.seen[row, rows] for row in sides]
     left_over = float(np.median(np.abs(left - right - span.count * width)))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .sections import STATION_STEP, CrossSections
-from .weights import CENTRE_LINE, CURB, DASHED, DOUBLE, EDGE_LINE, HATCHING, ISLAND, OPEN, OUTSIDE, SOLID, SURFACE, EstimateWeights
+from .weights import CENTRE_LINE, CURB, DASHED, DOUBLE, EDGE_LINE, HATCHING, ISLAND, OPEN, OUTSIDE, PAVEMENT, SOLID, SURFACE, EstimateWeights
 
 NAMES = {"edge": EDGE_LINE, "centre": CENTRE_LINE}   # a line called lane line may have been called nothing better
 STATIONS_OF_CELL = 5           # stations of the grid that are always in one interval: 2.5 m
@@ -18,6 +18,7 @@ FRAYED_LENGTH = 6.0            # m of paint at most of such an edge
 MAX_BOUNDARIES = 16            # at one place
 FAR = 30.0                     # m: beyond any road
 SURFACE_MERGE = 0.8            # m: the surface, or a hatched area, ends at the line or curb that lies this near
+ENDS = SURFACE, PAVEMENT       # ends of the surface
 
 
 @dataclass
@@ -25,7 +26,8 @@ class Boundaries:
     """All rows that may bound lanes on one grid of stations: lines, then curbs, then ends of the surface.
 
     s : (K,) stations; d : (R, K) offsets, NaN where a row is not; seen : (R, K); made_of : (R,) of SOLID ... ISLAND
-    patterns : (R, K) what paint is made of at each place; paint : (R,) m of paint of each row
+    patterns : (R, K) what a row is made of at each place: lines are solid here and dashed there, and where the surface ends an edge of the
+        pavement is seen (PAVEMENT) or not; paint : (R,) m of paint of each row
     named : (R,) what a row separates by its layer, -1 where that is not said
     bend : (K,) whether the road bends so much that lanes are widened
     """
@@ -51,8 +53,12 @@ class Boundaries:
 
 
 def gather_boundaries(lines: CrossSections, curbs: CrossSections | None = None, surface: np.ndarray | None = None,
-                      open_ends: np.ndarray | None = None, bend: np.ndarray | None = None, hatching: np.ndarray | None = None) -> Boundaries:
-    """Lines, curbs and the two ends of the surface or, where that is unknown, open ends, (2, K) offsets each or None, on the grid of the lines."""
+                      open_ends: np.ndarray | None = None, bend: np.ndarray | None = None, hatching: np.ndarray | None = None,
+                      pavement: CrossSections | None = None) -> Boundaries:
+    """Lines, curbs and the two ends of the surface or, where that is unknown, open ends, (2, K) offsets each or None, on the grid of the lines.
+
+    Where an edge of the pavement was seen beside an end of the surface, the surface ends at it.
+    """
     rows, count = len(lines.d), len(lines.s)
     of_name = np.array([_made_of(name) for name in lines.names] + [SOLID], int)
     usual = np.array([_made_of(name) for name in lines.patterns], int)
@@ -60,12 +66,13 @@ def gather_boundaries(lines: CrossSections, curbs: CrossSections | None = None, 
     d, seen = [lines.d], [lines.seen & np.isfinite(lines.d)]
     made_of = [np.full(rows, SOLID)]
     if curbs is not None:
-        at = np.rint((lines.s - curbs.s[0]) / STATION_STEP).astype(int)
-        inside = (at >= 0) & (at < len(curbs.s))
-        at = np.clip(at, 0, len(curbs.s) - 1)
-        d.append(np.where(inside, curbs.d[:, at], np.nan))
-        seen.append(curbs.seen[:, at] & inside & np.isfinite(curbs.d[:, at]))
+        found = _on_stations(curbs, lines.s)
+        d.append(found[0])
+        seen.append(found[1])
         made_of.append(np.where(np.array(curbs.kinds, object) == "island", ISLAND, CURB))
+    at_edge = np.zeros((0, count), bool)
+    if surface is not None:
+        surface, at_edge = _at_edges(surface, pavement, lines.s)
     for ends, made in ((surface, SURFACE), (open_ends, OPEN), (hatching, HATCHING)):
         if ends is not None:
             d.append(ends)
@@ -73,9 +80,33 @@ def gather_boundaries(lines: CrossSections, curbs: CrossSections | None = None, 
             made_of.append(np.full(len(ends), made))
     found_d, found_seen, found_made = np.concatenate(d), np.concatenate(seen), np.concatenate(made_of)
     other = np.repeat(found_made[rows:, None], count, axis=1)
+    other[found_made[rows:] == SURFACE] = np.where(at_edge, PAVEMENT, SURFACE)
     return Boundaries(lines.s, found_d, found_seen, found_made, np.concatenate([patterns, other]), STATION_STEP * found_seen.sum(1),
                       np.r_[[NAMES.get(kind, -1) for kind in lines.kinds], np.full(len(other), -1)].astype(int),
                       np.zeros(count, bool) if bend is None else bend)
+
+
+def _on_stations(sections, s):
+    """Offsets of CrossSections at (K,) stations, NaN where they are not, and where they were seen."""
+    at = np.rint((s - sections.s[0]) / STATION_STEP).astype(int)
+    inside = (at >= 0) & (at < len(sections.s))
+    at = np.clip(at, 0, len(sections.s) - 1)
+    d = np.where(inside, sections.d[:, at], np.nan)
+    return d, sections.seen[:, at] & np.isfinite(d)
+
+
+def _at_edges(surface, pavement, s):
+    """The ends of the surface moved to the edges of the pavement that were seen there, and where that is, (2, K) bool."""
+    at_edge = np.zeros(surface.shape, bool)
+    if pavement is None or not len(pavement.d):
+        return surface, at_edge
+    d, seen = _on_stations(pavement, s)
+    away = np.where(seen, d, np.inf)[None] - surface[:, None]
+    nearest = np.argmin(np.where(np.isfinite(away), np.abs(away), np.inf), axis=1)
+    away = np.take_along_axis(away, nearest[:, None], axis=1)[:, 0]
+    with np.errstate(invalid="ignore"):
+        at_edge = np.abs(away) < SURFACE_MERGE
+    return np.where(at_edge, surface + np.where(at_edge, away, 0.0), surface), at_edge
 
 
 def _made_of(pattern):
@@ -142,10 +173,10 @@ def boundary_candidates(boundaries: Boundaries, weights: EstimateWeights) -> Can
     stations = np.maximum(np.add.reduceat(present, first, axis=1), 1)
     d = np.add.reduceat(np.where(present, boundaries.d, 0.0), first, axis=1) / stations
     seen = np.add.reduceat(boundaries.seen, first, axis=1) / (last - first + 1)
-    dashed, double = (np.add.reduceat((boundaries.patterns == kind) & present, first, axis=1) / stations for kind in (DASHED, DOUBLE))
+    dashed, double, edge = (np.add.reduceat((boundaries.patterns == kind) & present, first, axis=1) / stations for kind in (DASHED, DOUBLE, PAVEMENT))
     row, interval = np.nonzero(in_interval)
     made = np.where(boundaries.painted[row], np.select([double[row, interval] > 0.5, dashed[row, interval] > 0.5], [DOUBLE, DASHED], SOLID),
-                    boundaries.made_of[row])
+                    np.where(edge[row, interval] > 0.5, PAVEMENT, boundaries.made_of[row]))
     trust = np.clip((boundaries.paint[row] - weights.stroke) / (weights.long_line - weights.stroke), 0.02, 1.0)
     entries = dict(interval=interval, row=row, d=d[row, interval], made=made, seen=np.minimum(seen[row, interval], 1.0),
                    trust=np.where(made <= DOUBLE, trust, 1.0))
@@ -172,7 +203,7 @@ def _superfluous(entries, boundaries):
         beside, twin = np.roll(made, -step), np.roll(twins, -1) if step > 0 else twins
         found |= twin & (np.roll(paint, -step) * WEAK_TWIN > paint) & (paint < FRAYED_LENGTH)
         near = (np.roll(interval, -step) == interval) & (np.abs(np.roll(d, -step) - d) < SURFACE_MERGE)
-        found |= near & ((made == HATCHING) & (beside <= DOUBLE) | (made == SURFACE) & (beside != SURFACE))
+        found |= near & ((made == HATCHING) & (beside <= DOUBLE) | np.isin(made, ENDS) & ~np.isin(beside, ENDS))
     return found
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .weights import CURB, ISLAND, OPEN, SURFACE
+from .weights import CURB, ISLAND, OPEN, PAVEMENT, SURFACE
 
 LIKELY_SHARE = 0.8, 1.5    # of the usual width of a lane: lanes in bends
 
@@ -13,9 +13,10 @@ def lane_places(left: np.ndarray, right: np.ndarray, made_left: np.ndarray, made
                 bend: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Where lanes lie in strips.
 
-    Between two lines they share the strip. Beside a curb they are no wider than usual; beside an island, where nothing else has room, they share
-    the strip too, but are as wide as usual where it reaches somewhat into them. The surface may end at what hides it, and reach into side
-    streets: beside its end they are as wide as usual, and in bends, where lanes are widened, as there is room.
+    Between two lines they share the strip. Beside a curb, or an edge of the pavement that was seen, they are no wider than usual; beside an island,
+    where nothing else has room, they share the strip too, but are as wide as usual where it reaches somewhat into them. Elsewhere the surface may
+    end at what hides it, and reach into side streets: beside its end they are as wide as usual. In bends, where lanes are widened, lanes beside the
+    end of the surface are as wide as there is room.
 
     Parameters
     ----------
@@ -30,13 +31,14 @@ def lane_places(left: np.ndarray, right: np.ndarray, made_left: np.ndarray, made
     begin : metres, offset of the left border of the leftmost lane
     each : metres, width of each lane
     """
-    open_left, open_right = (np.isin(made, (CURB, ISLAND, SURFACE, OPEN)) for made in (made_left, made_right))
+    open_left, open_right = (np.isin(made, (CURB, ISLAND, PAVEMENT, SURFACE, OPEN)) for made in (made_left, made_right))
     loose = open_left ^ open_right
     each = (left - right) / number
     widened = bend & (each > LIKELY_SHARE[0] * usual) & (each < LIKELY_SHARE[1] * usual)
     hidden = loose & beside_surface_end(made_left, made_right)
+    least = np.where(widened & ((made_left == PAVEMENT) | (made_right == PAVEMENT)), each, np.minimum(each, usual))
     likely = beside_island(made_left, made_right) & (each > LIKELY_SHARE[0] * usual) & (each < LIKELY_SHARE[1] * usual)
-    each = np.where(hidden, np.where(widened, each, usual), np.where(loose, np.where(likely, np.maximum(each, usual), np.minimum(each, usual)), each))
+    each = np.where(hidden, np.where(widened, each, usual), np.where(loose, np.where(likely, np.maximum(each, usual), least), each))
     return np.where(loose & open_left, right + number * each, left), each
 
 
@@ -46,5 +48,5 @@ def beside_island(made_left: np.ndarray, made_right: np.ndarray) -> np.ndarray:
 
 
 def beside_surface_end(made_left: np.ndarray, made_right: np.ndarray) -> np.ndarray:
-    """Bool, whether a strip reaches to where the surface ends, or to where nothing is known of it."""
+    """Bool, whether a strip reaches to where the surface ends without an edge, or to where nothing is known of it."""
     return np.isin(made_left, (SURFACE, OPEN)) | np.isin(made_right, (SURFACE, OPEN))

@@ -15,7 +15,7 @@ from .estimate import RoadEstimate, estimate_road, lane_spans
 from .evidence import between_ends, driven_offsets, evidence_of, other_carriageway, surface_coverage
 from .hatching import borders_of_hatching, hatched_places
 from .sections import STATION_STEP, CrossSections
-from .weights import EstimateWeights
+from .weights import PAVEMENT, EstimateWeights
 
 if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame
@@ -54,7 +54,7 @@ class RoadEstimates:
 def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_width: float, side: str = "automatic",
                    curbs: dict[int, CrossSections] | None = None, markings: MarkingObjects | None = None,
                    road_points: RoadPoints | None = None, paint: RoadPoints | None = None, width_asked: bool = False,
-                   weights: EstimateWeights = EstimateWeights()) -> RoadEstimates:
+                   weights: EstimateWeights = EstimateWeights(), pavement: dict[int, CrossSections] | None = None) -> RoadEstimates:
     """Estimate lines and lanes.
 
     Parameters
@@ -63,7 +63,7 @@ def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_widt
     frame : RoadFrame
     usual_width : metres, of lanes where the lines do not tell
     side : "right", "left" or "automatic"
-    curbs : {number: CrossSections of road edges} or None
+    curbs, pavement : {number: CrossSections of road edges} with and without a curb, or None
     markings : MarkingObjects or None
     road_points : RoadPoints or None; paint : points of markings, which serve where there are no road points, or None
     width_asked : whether `usual_width` is the user's own
@@ -82,7 +82,8 @@ def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_widt
         hatched = hatched_places(markings, frame, number, of_road.s) if markings is not None else None
         boundaries = gather_boundaries(of_road, (curbs or {}).get(number), ends, open_ends,
                                        np.abs(frame.road(number).curvature(of_road.s)) > 1 / WIDENED_RADIUS,
-                                       borders_of_hatching(markings, frame, number, of_road.s) if markings is not None else None)
+                                       borders_of_hatching(markings, frame, number, of_road.s) if markings is not None else None,
+                                       (pavement or {}).get(number))
         candidates = boundary_candidates(boundaries, weights)
         known[number] = boundaries, candidates, evidence_of(
             candidates, of_road.s, *driven, covered, hatched, arrows_of(markings, frame, number) if markings is not None else None, markings,
@@ -121,14 +122,18 @@ def _estimates(known, first_direction, width, weights):
 
 
 def _usual_width(known, estimates, usual):
-    """Median width, metres, of lanes between painted lines."""
+    """Median width, metres, of lanes between painted lines, or between one and the edge of the pavement."""
     widths, lengths = [], []
     for number, estimate in estimates.items():
         boundaries, candidates, _ = known[number]
         for span in lane_spans(estimate):
-            if span.place == 0 and boundaries.painted[span.left] and boundaries.painted[span.right]:
-                rows = slice(candidates.first[span.interval], candidates.last[span.interval] + 1)
-                widths.append(float(np.nanmedian(boundaries.d[span.left, rows] - boundaries.d[span.right, rows])) / span.count)
+            rows = slice(candidates.first[span.interval], candidates.last[span.interval] + 1)
+            painted = boundaries.painted[[span.left, span.right]]
+            edge = [np.mean(boundaries.patterns[row, rows] == PAVEMENT) > 0.5 for row in (span.left, span.right)]
+            if span.place == 0 and (painted | edge).all():
+                width = float(np.nanmedian(boundaries.d[span.left, rows] - boundaries.d[span.right, rows])) / span.count
+                # beside the edge of the pavement a lane may be narrower than the strip
+                widths.append(width if painted.all() else min(width, usual))
                 lengths.append(STATION_STEP * (rows.stop - rows.start))
     if not lengths:
         return usual

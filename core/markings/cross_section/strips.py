@@ -10,7 +10,7 @@ from ...countries.neutral import NEUTRAL
 from .candidates import FAR, Candidates
 from .evidence import BIN, Evidence
 from .lane_width import beside_surface_end, lane_places
-from .weights import CURB, HATCHING, ISLAND, OUTSIDE, SURFACE, EstimateWeights
+from .weights import CURB, HATCHING, ISLAND, OUTSIDE, PAVEMENT, SURFACE, EstimateWeights
 
 # Strips from left to right: what nobody drives on, lanes of the direction that is met first, lanes of both directions without
 # paint between them, most of them of the first direction, as many of either, or most of the other, lanes of the other direction,
@@ -115,7 +115,7 @@ def _passed_over(c, w):
     there = c.valid & (c.made_of != OUTSIDE)
     shown = 0.5 + 0.5 * c.seen
     lane = np.where(paint, w.lane_through_paint * c.trust * shown,
-                    np.select([np.isin(c.made_of, (CURB, ISLAND)), c.made_of == SURFACE, c.made_of == HATCHING],
+                    np.select([np.isin(c.made_of, (CURB, ISLAND)), np.isin(c.made_of, (SURFACE, PAVEMENT)), c.made_of == HATCHING],
                               [w.lane_through_curb * c.seen, w.lane_through_surface, w.lane_through_hatching], 0.0)) * there
     rest = np.where(paint, w.paint_in_rest * c.trust * shown, 0.0) * there
     found = []

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 # What a boundary is made of
-SOLID, DASHED, DOUBLE, CURB, SURFACE, OPEN, OUTSIDE, HATCHING, ISLAND = range(9)
+SOLID, DASHED, DOUBLE, CURB, SURFACE, OPEN, OUTSIDE, HATCHING, ISLAND, PAVEMENT = range(10)
 # What a boundary separates
 LANE_LINE, CENTRE_LINE, EDGE_LINE, OTHER_LINE = range(4)
 
@@ -26,7 +26,7 @@ class EstimateWeights:
     correlation : metres of road that count as one observation: what neighbouring metres show is not independent
     laid_out : metres of road that are laid out alike: of how sure lanes are they say no more than `correlation` does; chosen with `calibration`
     solid, dashed, double : share of lane lines, centre lines, edge lines and other lines that are drawn like that
-    curb, surface : the same of boundaries that are a curb, also of an island, or where the road surface ends without one
+    curb, surface : the same of boundaries that are a curb, also of an island, or where the road surface ends without one, seen as an edge or not
     open_end : the same where nothing is known beyond the outermost line
     hatching : the same of boundaries that are the border of a hatched area
     named : of a line that separates something else than its layer says
@@ -117,6 +117,7 @@ class EstimateWeights:
 
     @property
     def boundary(self) -> np.ndarray:
-        """(9, 4) costs by what a boundary is made of and what it separates."""
+        """(10, 4) costs by what a boundary is made of and what it separates."""
         impossible = (np.inf,) * 4
-        return np.array([self.solid, self.dashed, self.double, self.curb, self.surface, self.open_end, impossible, self.hatching, self.curb])
+        return np.array([self.solid, self.dashed, self.double, self.curb, self.surface, self.open_end, impossible, self.hatching, self.curb,
+                         self.surface])

@@ -10,7 +10,7 @@ import shapely
 
 from ..cross_section.named_lines import line_kinds
 from ..cross_section.roads import estimate_roads
-from ..cross_section.sections import sections_of_edges, sections_of_lines
+from ..cross_section.sections import sections_of_edges, sections_of_lines, sections_of_pavement
 from ..objects.classify import LINE_KINDS
 from ..objects.marking_objects import MarkingObjects
 from .painted_lines import PaintedLines
@@ -41,9 +41,9 @@ def named_by_estimate(lines: PaintedLines, frame: RoadFrame, usual_width: float,
     """
     if not len(lines):
         return lines
-    curbs = sections_of_edges(edges) if edges is not None else None
+    curbs, pavement = (sections_of_edges(edges), sections_of_pavement(edges)) if edges is not None else (None, None)
     found = line_kinds(estimate_roads(sections_of_lines(lines), frame, usual_width, curbs=curbs, markings=markings, road_points=road_points,
-                                      paint=paint))
+                                      paint=paint, pavement=pavement))
     drawn = np.where([pattern.startswith("double") for pattern in lines.pattern], "centre",
                      np.where(lines.pattern == "dashed", "lane", "edge")).astype(object)
     kind = np.array([found.get(number, own) for number, own in zip(lines.line.tolist(), drawn)], object)

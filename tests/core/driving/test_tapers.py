@@ -102,20 +102,26 @@ def test_a_lane_in_a_bend_is_even_where_its_edge_line_and_curb_stop_at_the_mouth
 
 def _scanned(street):
     """Points of a road whose right end is the curb, and in the mouth of the side street wherever something stood."""
+    s = np.random.default_rng(3).uniform(0, 110, 60_000)
+    return _points(street, np.where((s > 48.0) & (s < 67.0), np.where(np.sin(s) > 0, -7.5, -4.7), -4.0), 4.0, s)
+
+
+def _points(street, right, left, s=None):
+    """Points of a road between a left end and the right ends at (N,) stations, m."""
     from lanewright.core.survey.store.records import ROAD_POINT, to_units
     from lanewright.core.survey.store.road_points import RoadPoints
     from lanewright.core.survey.store.section_store import SectionStore
 
-    rng = np.random.default_rng(3)
-    s, d = rng.uniform(0, 110, 60_000), rng.uniform(-8.0, 4.0, 60_000)
-    ragged = np.where((s > 48.0) & (s < 67.0), np.where(np.sin(s) > 0, -7.5, -4.7), -4.0)
-    s, d, ragged = (values[d > ragged] for values in (s, d, ragged))
+    rng = np.random.default_rng(4)
+    s = rng.uniform(0, 110, len(right)) if s is None else s
+    d = rng.uniform(-8.0, left, len(right))
+    s, d, right = (values[d > right] for values in (s, d, right))
     x, y = street.frame.to_local(*street.places(s, d).T)
     station, offset = street.frame.roads[0].locate(x, y)
     records = np.zeros(len(s), ROAD_POINT)
     for name, values in zip("xyzsd", (x, y, np.full(len(s), HEIGHT - street.frame.origin[2]), station, offset)):
         records[name] = to_units(values)
-    records["half_width"] = np.rint(1000 * np.where(offset < 0, np.abs(ragged - d + offset), 4.0 + np.abs(offset - d)))
+    records["half_width"] = np.rint(1000 * np.where(offset < 0, np.abs(offset + right - d), np.abs(offset + left - d)))
     points = RoadPoints(SectionStore(ROAD_POINT), street.frame.origin)
     points.store.append(0, records)
     return points
@@ -126,3 +132,19 @@ def test_lanes_of_unequal_width_go_on_as_they_are_where_the_line_between_them_is
     street.paint(0.0, 60.0, 195.0, kind="centre")
     for line, row in street.lanes()[0]:
         np.testing.assert_allclose(street.offsets(line), -1.95 if row["direction"] > 0 else 1.65, atol=0.03)
+
+
+@pytest.mark.parametrize("room", [2.75, 4.4])
+def test_beside_a_centre_line_alone_lanes_reach_as_far_as_the_edge_of_the_pavement_but_are_no_wider_than_usual(room):
+    """A country road without edge lines: its asphalt ends at a verge, and the edge was seen but for a stretch."""
+    street = Street(length=110.0, vehicle=-room / 2).paint(0.0, kind="centre", pattern="dashed")
+    edges = Features("LineStringZ", list(ROAD_EDGES))
+    for chain, (side, first, last) in enumerate((("left", 5.0, 105.0), ("right", 5.0, 45.0), ("right", 60.0, 105.0))):
+        along = np.arange(first, last, 0.5)
+        course = street.places(along, room if side == "left" else -room)
+        edges.add(LineString(np.c_[course, np.full(len(along), HEIGHT)]), road=0, kind="main", edge="pavement", status="measured", part="bottom",
+                  chain=chain, side=side)
+    lines = street.lanes(edges=edges, road_points=_points(street, np.full(60_000, -room), room))[0]
+    assert sorted({row["direction"] for row in lines.rows}) == [-1, 1]
+    for line, row in lines:
+        np.testing.assert_allclose(street.offsets(line), -row["direction"] * min(room, 3.5) / 2, atol=0.05)
