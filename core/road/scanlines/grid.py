@@ -10,6 +10,7 @@ from .scanlines import Scanlines
 
 SCANLINE_RESOLUTION = 0.02  # m across between cells, and along a scanline between resampled vertices
 MAX_GROUND_DEPTH = 1.0  # m below the expected road, down to which points are ground
+CELLS_AT_ONCE = 1 << 15   # that heights are computed for: they fit the processor's cache
 LINE_SEPARATION = 1e3   # m between the offsets of consecutive lines in one sorted array
 
 
@@ -109,36 +110,60 @@ def height_grid(lines: Scanlines, heights: np.ndarray, rows: tuple[int, int], in
         return found
     column = lines.d * (1.0 / SCANLINE_RESOLUTION)
     column += half - 0.5
-    cell = np.clip(np.floor(column), -1, 2 * half - 1).astype(np.int32)
+    floor = np.floor(column)
+    np.minimum(np.maximum(floor, -1.0, out=floor), 2.0 * half - 1.0, out=floor)
+    cell = floor.astype(np.int32)
     number = np.diff(cell)
     number[lines.first[1:-1] - 1] = 0
     number[np.minimum(heights[1:], heights[:-1]) > clipping_height] = 0
-    number *= np.repeat((row >= 0) & (row < len(low)), np.diff(lines.first))[:-1]
+    counts = np.diff(lines.first)
+    number *= np.repeat((row >= 0) & (row < len(low)), counts)[:-1]
     segment = np.flatnonzero(number)
-    number = number[segment]
-    slope = (heights[segment + 1] - heights[segment]) / (column[segment + 1] - column[segment])
-    start = np.cumsum(number) - number
-    line = np.searchsorted(lines.first, segment, side="right") - 1
-    # index in the grid of the first height of a segment, less the index of that height
-    ahead = row[line] * (2 * half) + cell[segment] + 1 - start
-    which = np.repeat(np.arange(len(segment), dtype=np.int32), number)
+    number = number.take(segment)
+    slope = np.diff(heights).take(segment)
+    slope /= np.diff(column).take(segment)
+    end = np.cumsum(number)
+    begin = np.repeat(row * (2 * half), counts).take(segment)   # index in the grid at which the row begins
+    # of the first height of a segment, less the index of that height
+    ahead = begin + cell.take(segment)
+    ahead += 1 + number
+    ahead -= end
+    base = column.take(segment)
+    base += begin
+    base *= slope
+    np.subtract(heights.take(segment), base, out=base)
+    flat = low.reshape(-1)
+    cuts = np.searchsorted(end, np.arange(CELLS_AT_ONCE, end[-1:].sum() + CELLS_AT_ONCE, CELLS_AT_ONCE)) + 1
+    cuts = np.unique(np.r_[0, np.minimum(cuts, len(end))]).tolist()
+    for first, last in zip(cuts[:-1], cuts[1:]):
+        part = slice(first, last)
+        _lower_to(flat, *_heights_of_segments(end[part], int(end[first] - number[first]), ahead[part], slope[part], base[part]))
+    with np.errstate(invalid="ignore"):
+        flat[(flat > clipping_height) | (flat <= -MAX_GROUND_DEPTH)] = np.nan
+    return found
+
+
+def _heights_of_segments(end, before, ahead, slope, base):
+    """Indices in the grid, and heights, of the cells that some segments cross; those of a segment end before cell `end`, of `before` at first."""
+    which = np.zeros(end[-1] - before, np.int32)
+    which[end[:-1] - before] = 1
+    np.cumsum(which, out=which)
     place = ahead.take(which)
-    place += np.arange(len(which))
-    base = heights[segment] - slope * (column[segment] + row[line] * (2 * half))
+    place += np.arange(before, end[-1])
     height = slope.take(which)
     height *= place
     height += base.take(which)
-    height = height.astype(np.float32)
-    flat = low.reshape(-1)
+    return place, height.astype(np.float32)
+
+
+def _lower_to(flat, place, height):
+    """Put heights into cells, the lowest of several into one; NaN where there is none yet."""
+    height = np.fmin(height, flat.take(place))
     flat[place] = height
-    # the lowest of several heights in one cell
     if (np.diff(place) <= 0).any():
         while len(lower := np.flatnonzero(height < flat[place])):
             place, height = place[lower], height[lower]
             flat[place] = height
-    with np.errstate(invalid="ignore"):
-        flat[(flat > clipping_height) | (flat <= -MAX_GROUND_DEPTH)] = np.nan
-    return found
 
 
 def row_of_lines(lines: Scanlines, rows: tuple[int, int], interval: float) -> np.ndarray:
