@@ -1,11 +1,12 @@
 """How uncertain the place of a driving line is: one sigma across it.
 
-What adds up as squares: how well the painted lines of a lane are placed, a share of the scatter of their paint about their curves, since its
-errors go on over metres and do not average out; more where a border was not seen, where the lane lies beside one line only, or is bridged; the
-distance of the smooth line from the lane's places; the distance to where the lane was last measured (a lane that was measured nowhere is not
-led on from anywhere: its borders hold it all along); and what passes differ by that were laid on each other. A piece of a line says the mean
-along it. The shares were found on simulated streets with truth (docs/accuracy.md). What the trajectory is off as a whole is not in it, since
-one pass does not show it.
+What adds up as squares: how well the painted borders of a lane are placed, a share of the scatter of their paint about their curves, since its
+errors go on over metres and do not average out; how far along a border its next paint is, where it is bridged; more where the lane lies beside
+one line only; and what passes differ by that were laid on each other. Between two painted borders the middle takes half of the error of each;
+where two lanes lie between them with nothing painted in the middle of the road, it takes three quarters of one and one quarter of the other.
+The distance of the smooth line from the lane's places counts as far as it is more than the error of the borders, which makes the places scatter
+and is counted already. A piece of a line says the mean along it. The shares were found on simulated streets with truth (docs/accuracy.md). What
+the trajectory is off as a whole is not in it, since one pass does not show it.
 """
 
 from __future__ import annotations
@@ -13,10 +14,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.ndimage import uniform_filter1d
+from scipy.ndimage import distance_transform_edt, uniform_filter1d
 
 from ..markings.cross_section.sections import STATION_STEP
-from .lane_track import BRIDGED, MEASURED
+from .lane_track import MEASURED
 
 if TYPE_CHECKING:
     from ..markings.cross_section.sections import CrossSections
@@ -24,13 +25,14 @@ if TYPE_CHECKING:
     from .centreline import Course
     from .lane_track import LaneTrack
 
-SEEN_SHARE, UNSEEN_SHARE = 0.3, 0.45   # of the RMS distance of the paint of both borders from their curves, where both are seen and where not
+PAINT_SHARE = 0.5              # of the RMS distance of a border's paint from its curve, that the border is off by
 USUAL_SCATTER = 0.010          # m, of paint about its curve, where neither border says it
-BESIDE_SIGMA, BRIDGED_SIGMA = 0.015, 0.015     # m; beside: placed from one line only
-SCATTER_SHARE = 0.7            # of the RMS distance of the line from the lane's places
-DISTANCE_SHARE = 0.0001        # m per m to the nearest measured place, where the lane is not measured but is elsewhere
-MAX_MEASURED_DISTANCE = 50.0   # m, beyond which a measured place says nothing
-SCATTER_WINDOW = 20.0          # m along the lane, of the RMS
+GAP_SHARE = 0.004              # m per m to the next place where a border is painted, or, without borders, where the lane is measured
+BESIDE_SIGMA = 0.012           # m; beside: placed from one line only
+BETWEEN_BORDERS, NO_MIDDLE_LINE = 0.5, 0.625   # of the mean square error of its borders, that the middle of a lane is off by
+MAX_GAP_DISTANCE = 50.0        # m, beyond which a painted place says nothing
+SCATTER_SHARE = 0.3            # of the RMS distance of the line from the lane's places, beyond the error of the borders
+SCATTER_WINDOW = 20.0          # m along the lane, of that RMS
 
 
 def lane_sigma(track: LaneTrack, course: Course, road: Road, lines: CrossSections, paint: dict[int, float], passes: float = 0.0) -> np.ndarray:
@@ -49,30 +51,43 @@ def lane_sigma(track: LaneTrack, course: Course, road: Road, lines: CrossSection
     -------
     (N,) m
     """
+    measured = track.status == MEASURED
+    painted, square, away = (np.stack(both) for both in zip(*(_border(track, lines, paint, rows) for rows in (track.left, track.right))))
+    count = painted.sum(axis=0)
+    known = np.isfinite(square)
+    mean = np.where(known, square, 0.0).sum(axis=0) / np.maximum(known.sum(axis=0), 1)
+    usual = np.median(mean[known.any(axis=0)]) if known.any() else USUAL_SCATTER**2
+    scatter = np.where(known.any(axis=0), mean, usual)
+    gap = np.where(count > 0, (away**2).sum(axis=0) / 4.0, _distance_to(measured) ** 2)
+    beside = np.where(~measured & track.offset, BESIDE_SIGMA, 0.0)
+    borders = np.where(count == 2, BETWEEN_BORDERS, NO_MIDDLE_LINE) * PAINT_SHARE**2 * scatter
+    wander = np.maximum(_mean_square_distance(track, course, road, lines) - borders, 0.0)
+    return np.sqrt(borders + GAP_SHARE**2 * gap + beside**2 + SCATTER_SHARE**2 * wander + passes**2)
+
+
+def _mean_square_distance(track, course, road, lines):
+    """(N,) m², of the smooth line from the lane's places, over SCATTER_WINDOW."""
     s = lines.s[track.first:track.last + 1]
     drawn = road.locate(np.interp(s, course.s, course.x), np.interp(s, course.s, course.y), s)[1]
-    scatter = uniform_filter1d(np.nan_to_num(drawn - track.d) ** 2, int(SCATTER_WINDOW / STATION_STEP) + 1, mode="nearest")
-    measured = track.status == MEASURED
-    known, places = np.flatnonzero(measured), np.arange(len(track))
-    after = np.searchsorted(known, places)
-    around = np.r_[-np.inf, known, np.inf]
-    away = np.minimum(np.minimum(places - around[after], around[after + 1] - places) * STATION_STEP, MAX_MEASURED_DISTANCE)
-    away = away if len(known) else np.zeros(len(track))
-    placed = np.select([track.status == BRIDGED, ~measured & track.offset], [BRIDGED_SIGMA, BESIDE_SIGMA], 0.0)
-    share = np.where(measured, SEEN_SHARE, UNSEEN_SHARE)
-    return np.sqrt(share**2 * _paint_scatter(track, lines, paint) + placed**2 + SCATTER_SHARE**2 * scatter + (DISTANCE_SHARE * away) ** 2 + passes**2)
+    return uniform_filter1d(np.nan_to_num(drawn - track.d) ** 2, int(SCATTER_WINDOW / STATION_STEP) + 1, mode="nearest")
 
 
-def _paint_scatter(track, lines, paint):
-    """(N,) m², mean square scatter of the paint of the borders of a lane; that of the lane elsewhere, or the usual one, where they have none."""
+def _border(track, lines, paint, rows):
+    """Of one side of a lane, (N,) each: is its border painted; m², mean square scatter of its paint, NaN where unknown; m to its next paint."""
     columns = np.arange(track.first, track.last + 1)
-    squares = np.full((2, len(track)), np.nan)
-    for square, rows in zip(squares, (track.left, track.right)):
-        painted = (rows >= 0) & (rows < len(lines.d))
-        number = np.where(painted, lines.number[np.where(painted, rows, 0), columns], -1)
-        for one in np.unique(number[number >= 0]).tolist():
-            square[number == one] = paint.get(one, np.nan) ** 2
-    known = np.isfinite(squares)
-    count = known.sum(axis=0)
-    mean = np.where(known, squares, 0.0).sum(axis=0) / np.maximum(count, 1)
-    return np.where(count > 0, mean, np.median(mean[count > 0]) if count.any() else USUAL_SCATTER**2)
+    painted = (rows >= 0) & (rows < len(lines.d))
+    number = np.where(painted, lines.number[np.where(painted, rows, 0), columns], -1)
+    square, away = np.full(len(track), np.nan), np.zeros(len(track))
+    for one in np.unique(number[number >= 0]).tolist():
+        square[number == one] = paint.get(one, np.nan) ** 2
+    for row in np.unique(rows[painted]).tolist():
+        own = painted & (rows == row)
+        away[own] = _distance_to(lines.seen[row] & np.isfinite(lines.d[row]))[columns[own]]
+    return painted, square, away
+
+
+def _distance_to(known):
+    """(N,) m to the nearest of the grid stations that are known, MAX_GAP_DISTANCE at most; 0 where none is."""
+    if not known.any():
+        return np.zeros(len(known))
+    return np.minimum(distance_transform_edt(~known) * STATION_STEP, MAX_GAP_DISTANCE)
