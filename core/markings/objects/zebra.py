@@ -243,10 +243,10 @@ def _alike(combs):
 
 def _stripes(places, rows, comb, way):
     """[Stripe] of one crossing."""
+    if len(rows) < LEAST_SPOTS:
+        return []
     middle = places[rows].mean(axis=0)
     own = places[rows] - middle
-    if len(own) < LEAST_SPOTS:
-        return []
     best, some = comb, own[::max(len(own) // (8 * MOST_SPOTS), 1)]
     # a window tells the pitch of three stripes less well than all of them do
     for steps in STEPS_OF_CROSSING:

@@ -28,7 +28,7 @@ from ...survey.store.road_points import RoadPoints
 from ...survey.store.section_store import SectionStore
 from ..objects.road_grid import CELL_UNITS, PieceOfRoad, RoadCells, RoadGrid, cell_numbers, cells_of_road
 from .asphalt_level import AsphaltLevels, asphalt_profile, dark_cells, flatten
-from .fading import without_fading_rims
+from .fading import without_fading_areas, without_fading_rims
 from .faint_lines import faint_lines
 from .gutters import RimBands, edge_distance, rim_distance
 from .mask import Burn, burn_points, marking_mask, painted_pixels
@@ -285,13 +285,14 @@ class WindowExtractor:
         if not interior.any():
             return []
         # without a correction asphalt itself is darker far from the vehicle
-        if self.road_points.has_corrected:
-            dark = dark_cells(brightness, float(median(brightness[rows][interior])))
+        usual = float(median(brightness[rows][interior])) if self.road_points.has_corrected else np.inf
+        if usual < np.inf:
+            dark = dark_cells(brightness, usual)
             if np.count_nonzero(interior & ~dark[rows]) >= MIN_BIN_CELLS:
                 scanned, interior = scanned & ~dark, interior & ~dark[rows]
         columns = np.flatnonzero(interior.any(axis=0))
         edges = bin_edges(np.concatenate([piece.offsets for piece in self._in_cells(window)]), offsets[columns[0]], offsets[columns[-1]])
-        bins = asphalt_bins(brightness[rows], interior, offsets, edges)
+        bins = asphalt_bins(brightness[rows], interior, offsets, edges, usual)
         z, gutter = flatten(brightness, *asphalt_profile(bins, offsets), view.rims)
         return list(zip(bins, split_bins(z[rows], (scanned & ~gutter)[rows], offsets, bins, self.settings.separation)))
 
@@ -323,7 +324,7 @@ class WindowExtractor:
         z, gutter = flatten(brightness, median, spread, view.rims)
         with np.errstate(invalid="ignore"):
             bright = morphology((z > threshold * scale) & ~gutter, self.settings)
-        mask = without_fading_rims(z, bright, view.occupied & ~gutter)
+        mask = without_fading_areas(z, without_fading_rims(z, bright, view.occupied & ~gutter), view.occupied, gutter, grid.offsets())
         # the background that was subtracted from the cell is subtracted from the point as well
         least = (brightness - z * spread) + (threshold - 0.5) * (spread * scale)
         lines, halfway = faint_lines(brightness, view.occupied, view.rims[0].distance, mask, bright & ~mask)

@@ -1,7 +1,8 @@
 """Rims of granite and concrete that lie flush with the road: bright like paint, but they fade out on one side.
 
 Paint ends sharply: a decimetre beside it nothing of its contrast is left. The stones at the rim of a road are bright at
-the joint with the asphalt and fade into the ground behind them.
+the joint with the asphalt and fade into the ground behind them. So does the sidewalk, where it was scanned between two parked
+cars, at a driveway or where it lies as high as the road.
 """
 
 from __future__ import annotations
@@ -9,6 +10,8 @@ from __future__ import annotations
 import numpy as np
 
 from ...lazy import cv2
+from ..objects.road_grid import CELL_SIZE
+from .gutters import PAINT_TO_GUTTER
 
 FADING_BESIDE = 2, 4   # cells from a run of paint across the road: where its fading is measured
 TOP_REACH = 6          # cells in which the brightest of a run stands for it
@@ -16,6 +19,8 @@ RUN_ALONG = 62         # cells, either way: 5 m of road that fading is averaged 
 RUN_ACROSS = 3         # cells, either way, that the rim may waver
 MIN_CELLS_BESIDE = 60  # that were measured there
 SLIGHT_FADING, CLEAR_FADING = 0.10, 0.22   # of the contrast of a run that is left beside a rim everywhere, and in places
+AREA_WIDTH = 0.35      # m across the road: broader pieces are no lines, and they are judged one by one
+AREA_CELLS_BESIDE = 15  # that were measured beside them
 
 
 def side_fading(z: np.ndarray, mask: np.ndarray, seen: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -72,3 +77,44 @@ def without_fading_rims(z: np.ndarray, mask: np.ndarray, seen: np.ndarray) -> np
     count, label = cv2.connectedComponents((fading > SLIGHT_FADING).astype(np.uint8), connectivity=8, ltype=cv2.CV_32S)
     clear = np.bincount(label[fading > CLEAR_FADING], minlength=count) > 0
     return mask & ~clear[label]
+
+
+def without_fading_areas(z: np.ndarray, mask: np.ndarray, seen: np.ndarray, gutter: np.ndarray, offsets: np.ndarray) -> np.ndarray:
+    """The bright cells without the broad pieces that fade out, or lead on into a gutter, on the side away from the road's middle.
+
+    Parameters
+    ----------
+    z, mask, seen : of `side_fading`
+    gutter : (rows, columns) bool, cells of gutters
+    offsets : (columns,) m from the reference line of the road
+    """
+    count, label, stats, _ = cv2.connectedComponentsWithStats(mask.astype(np.uint8), connectivity=8)
+    broad = stats[:, cv2.CC_STAT_WIDTH] > AREA_WIDTH / CELL_SIZE
+    broad[0] = False
+    if not broad.any():
+        return mask
+    refused = np.zeros(count, bool)
+    rows = np.flatnonzero(mask.any(axis=1))
+    for outward in (-1, 1):
+        # the outermost cell of each row
+        columns = (mask if outward < 0 else mask[:, ::-1])[rows].argmax(axis=1)
+        columns = columns if outward < 0 else mask.shape[1] - 1 - columns
+        number = label[rows, columns]
+        own = broad[number] & (offsets[columns] * outward > 0)
+        row, column, number = rows[own], columns[own], number[own]
+        reach = np.clip(column[:, None] - outward * np.arange(TOP_REACH + 1), 0, mask.shape[1] - 1)
+        inside = mask[row[:, None], reach] & np.isfinite(z[row[:, None], reach])
+        top = np.where(inside, z[row[:, None], reach], 0.0).max(axis=1, initial=0.0)
+        # on asphalt or a sidewalk beside it, and in a gutter too
+        rest, whole, cells = np.zeros((2, count)), np.zeros((2, count)), np.zeros((2, count))
+        for away in range(FADING_BESIDE[0], FADING_BESIDE[1] + 1):
+            beside = column + outward * away
+            known = np.flatnonzero((beside >= 0) & (beside < mask.shape[1]))
+            known = known[seen[row[known], beside[known]] & np.isfinite(z[row[known], beside[known]])]
+            for k, counted in enumerate((known[~gutter[row[known], beside[known]]], known)):
+                rest[k] += np.bincount(number[counted], z[row[counted], beside[counted]], count)
+                whole[k] += np.bincount(number[counted], top[counted], count)
+                cells[k] += np.bincount(number[counted], minlength=count)
+        share = rest / np.maximum(whole, 1e-6)
+        refused |= ((share > [[CLEAR_FADING], [1 / PAINT_TO_GUTTER]]) & (cells >= AREA_CELLS_BESIDE)).any(axis=0)
+    return mask & ~refused[label] if refused.any() else mask

@@ -17,6 +17,7 @@ from ...survey.store.records import COORDINATE_SCALE
 
 MIN_BIN_WIDTH, MAX_BIN_WIDTH = 0.75, 3.0  # m
 MIN_BIN_CELLS = 500     # below which a bin joins its neighbour
+PAINT_LEVEL = 2.0       # times the usual brightness of asphalt: a bin whose median is beyond that is one of paint
 OTSU_LEVELS = 256       # of the histogram
 HISTOGRAM_LIMITS = -6.0, 60.0   # z: the range of Otsu's histogram; a few specular reflections must not stretch it
 
@@ -116,8 +117,11 @@ def otsu(values: np.ndarray) -> tuple[float, float, float, float]:
     return float(edges[k + 1]), float(below), float(above), float(1 - weight[k])
 
 
-def asphalt_bins(values: np.ndarray, counted: np.ndarray, offsets: np.ndarray, edges: np.ndarray) -> list[AsphaltBin]:
+def asphalt_bins(values: np.ndarray, counted: np.ndarray, offsets: np.ndarray, edges: np.ndarray, usual: float = np.inf) -> list[AsphaltBin]:
     """Asphalt in the bins of one window.
+
+    Half of a zebra crossing is stripes, and of the cells of a bin that lie on one most may be. Where the median of a bin
+    tells that, what is so bright is left out of all of them.
 
     Parameters
     ----------
@@ -125,11 +129,22 @@ def asphalt_bins(values: np.ndarray, counted: np.ndarray, offsets: np.ndarray, e
     counted : (rows, columns) bool, cells away from the road's rim, where `values` has no NaN
     offsets : (columns,) m, ascending
     edges : (B + 1,) of `bin_edges`
+    usual : brightness of asphalt in the window, where that is the same at all distances from the vehicle
 
     Returns
     -------
     list of AsphaltBin from right to left; a bin with fewer than 500 cells is joined to its neighbour
     """
+    bins = _bins(values, counted, offsets, edges)
+    if max((b.median for b in bins), default=0.0) > PAINT_LEVEL * usual:
+        dim = counted & (values < np.float32(PAINT_LEVEL * usual))
+        if np.count_nonzero(dim) >= MIN_BIN_CELLS:
+            return _bins(values, dim, offsets, edges)
+    return bins
+
+
+def _bins(values, counted, offsets, edges):
+    """[AsphaltBin] of the cells that are counted."""
     number = np.clip(np.searchsorted(edges, offsets, side="right") - 1, 0, len(edges) - 2)
     bounds = np.searchsorted(number, np.arange(len(edges)))
     cells = np.count_nonzero(counted, axis=0)

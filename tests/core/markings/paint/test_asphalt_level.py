@@ -74,6 +74,18 @@ def test_bins_with_few_cells_join_their_neighbour():
     assert [b.count for b in bins] == [600, 720]
 
 
+@pytest.mark.parametrize("striped", [0.3, 0.49, 0.51, 0.7])
+def test_asphalt_is_the_same_whether_stripes_cover_less_than_half_of_a_bin_or_more(striped):
+    rng = np.random.default_rng(4)
+    values = rng.normal(5000.0, 300.0, (100, 40))
+    far = np.zeros(values.shape, bool)
+    far[:, 20:] = rng.random((100, 20)) < striped
+    values[far] = rng.normal(25_000.0, 4000.0, far.sum())
+    bins = asphalt_bins(values, np.ones(values.shape, bool), np.arange(40) + 0.5, np.array([0.0, 20.0, 40.0]), usual=5000.0)
+    assert [b.median for b in bins] == pytest.approx([5000.0, 5000.0], rel=0.05)
+    assert [b.spread for b in bins] == pytest.approx([300.0, 300.0], rel=0.25)
+
+
 def test_the_background_follows_a_patch_and_not_the_paint_on_it():
     z = np.zeros((300, 200))
     z[100:] = 2.0

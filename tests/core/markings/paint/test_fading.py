@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.markings.paint.fading import side_fading, without_fading_rims
+from lanewright.core.markings.paint.fading import side_fading, without_fading_areas, without_fading_rims
 
 SHAPE = 500, 200     # cells of 4 cm: 20 m along the road, 8 m across it
 EVERYWHERE = np.ones(SHAPE, bool)
@@ -63,3 +63,37 @@ def test_beside_what_was_not_scanned_nothing_is_known():
     mask = np.zeros(SHAPE, bool)
     mask[:, 100:104] = True
     assert np.isnan(side_fading(np.where(mask, 10.0, 0.0), mask, mask)[0]).all()
+
+
+OFFSETS = (np.arange(SHAPE[1]) + 0.5) * 0.04 - 4.0   # m: the reference line is the middle
+NOWHERE = np.zeros(SHAPE, bool)
+
+
+def in_a_gap(z):
+    """The same, seen for 1.5 m of road between two parked cars, ragged towards the vehicle as a slanting view leaves it."""
+    ragged = np.arange(SHAPE[1]) > 160 + np.random.default_rng(2).integers(-2, 8, SHAPE[0])[:, None]
+    return np.where((np.abs(np.arange(SHAPE[0]) - 250) < 19)[:, None] & (ragged | (np.arange(SHAPE[1]) < 160)), z, 0.0)
+
+
+@pytest.mark.parametrize("side", [1, -1], ids=["left", "right"])
+def test_the_sidewalk_that_was_seen_between_two_parked_cars_is_no_paint(side):
+    z = in_a_gap(road(rim(160, height=9.0, fade=35.0)))[:, ::side]
+    mask = z > 4.0
+    assert mask.sum() > 400
+    assert without_fading_areas(z, mask, EVERYWHERE, NOWHERE, OFFSETS).sum() < 0.05 * mask.sum()
+
+
+def test_a_bar_an_arrow_or_a_line_as_short_stays():
+    for width in (4, 15, 80):
+        z = in_a_gap(road(line(165 - width, 165)))
+        mask = z > 4.0
+        assert (without_fading_areas(z, mask, EVERYWHERE, NOWHERE, OFFSETS) == mask).all()
+
+
+def test_what_leads_on_into_a_gutter_is_of_it_and_paint_beside_a_gutter_is_not():
+    gutter = np.broadcast_to(np.arange(SHAPE[1]) >= 170, SHAPE)
+    for height, stays in ((8.0, False), (20.0, True)):
+        z = in_a_gap(road(line(158, 170, height), line(170, 178, 8.0)))
+        mask = (z > 4.0) & ~gutter
+        left = without_fading_areas(z, mask, EVERYWHERE, gutter, OFFSETS)
+        assert left.sum() > 0.95 * mask.sum() if stays else left.sum() < 0.05 * mask.sum()
