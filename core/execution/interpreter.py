@@ -67,15 +67,25 @@ def candidates() -> Iterator[str]:
 def find_interpreter() -> str:
     """The first candidate that can do the work of this process; "" where there is none.
 
-    It must import the packages NEEDED from the folders that this process imports from, in the same versions, and IMPORTED.
+    It must import the packages NEEDED from the folders that this process imports from, in the same versions, and IMPORTED; these,
+    half a second's work, are tried where it is another program than the one that runs.
     """
     return next((path for path in candidates() if _can_work(path)), "")
 
 
+def _runs_this(path: str) -> bool:
+    """Whether this process runs that very program, as far as the system tells: what is imported here, it can import, too."""
+    try:
+        return os.path.samefile("/proc/self/exe", path)
+    except OSError:
+        return False
+
+
 def _can_work(path: str) -> bool:
+    imported = () if _runs_this(path) else IMPORTED
     try:
         done = subprocess.run(  # nosec B603
-            command_of(path, "--try"), input=json.dumps(import_folders()), env=environment(), capture_output=True, text=True,
+            command_of(path, "--try", *imported), input=json.dumps(import_folders()), env=environment(), capture_output=True, text=True,
             timeout=TRIAL_TIME, creationflags=no_window(), check=False)
         return done.returncode == 0 and json.loads(done.stdout) == versions()
     except (OSError, ValueError, subprocess.SubprocessError):

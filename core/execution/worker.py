@@ -2,7 +2,7 @@
 
 Run as a file by an interpreter that knows nothing of Lanewright:
 
-    python -I worker.py --try          prints the versions that it can import
+    python -I worker.py --try NAME …   prints the versions that it can import, if it can import these packages, too
     python -I worker.py FOLDER         works until its input ends
 
 The first line of the input lists the folders to import from. A task names a phase, a file with one item and the file for its
@@ -40,9 +40,9 @@ def main() -> None:
     os.dup2(2, 1)
     import_package(json.loads(sys.stdin.readline()))
     if sys.argv[1] == "--try":
-        from lanewright.core.execution.interpreter import IMPORTED, NEEDED, versions
+        from lanewright.core.execution.interpreter import NEEDED, versions
 
-        for name in (*NEEDED, *IMPORTED):
+        for name in (*NEEDED, *sys.argv[2:]):
             importlib.import_module(name)
         answers.write(json.dumps(versions()))
         answers.close()

@@ -132,6 +132,13 @@ def test_threads_do_small_surveys_and_worker_processes_those_that_ask_for_them(p
     executor.close()
 
 
+def test_an_interpreter_that_cannot_import_a_package_is_not_taken_for_another_program(python, monkeypatch):
+    assert interpreter._can_work(python)
+    monkeypatch.setattr(interpreter, "IMPORTED", ("no_such_package",))
+    monkeypatch.setattr(interpreter, "_runs_this", lambda path: False)
+    assert not interpreter._can_work(python)
+
+
 def test_where_no_interpreter_can_do_the_work_one_line_says_so_and_threads_do_it(monkeypatch):
     monkeypatch.setattr(interpreter, "candidates", lambda: iter(["/bin/false", "/no/such/python"]))
     interpreter.find_interpreter.cache_clear()
