@@ -130,7 +130,7 @@ def classify_curbs(chains: Sequence[PlanStepChain], steps: PlanSteps, falls: np.
         own = steps[chain.steps]
         s, d = line.locate(own.x, own.y)
         if not chain.closed and number in sides:
-            found += _classify_continuation(own, s, d, sides[number], line, limits[sides[number]], places[:len(runs)])
+            found += classify_continuation(own, s, d, sides[number], line, limits[sides[number]], places[:len(runs)])
             continue
         behind = np.any([limit.behind(s, d) for limit in limits.values()], axis=0)
         side = "left" if np.nanmedian(d - np.mean([p.at_station(s)[0] for p in passes], axis=0)) > 0 else "right"
@@ -160,8 +160,19 @@ def _straight_part(own):
     return slice(*max(runs, key=lambda run: run[1] - run[0])) if runs else slice(0, len(own))
 
 
-def _classify_continuation(own, s, d, side, line, limit, runs):
-    """A line that continues a main curb: a piece of that curb, or a corner with the straight curb of a side street behind it."""
+def classify_continuation(own: PlanSteps, s: np.ndarray, d: np.ndarray, side: str, line: Road, limit: SearchLimit,
+                          runs: Sequence[tuple[np.ndarray, np.ndarray, np.ndarray]]) -> list[CurbReturn]:
+    """A line that continues a main curb: a piece of that curb, or a corner with the straight curb of a side street behind it.
+
+    Parameters
+    ----------
+    own : N PlanSteps in order, uphill on the right
+    s, d : (N,) m, their stations and offsets
+    side : of the main curb
+    line : Road
+    limit : SearchLimit of that side
+    runs : main curbs in plan, (x, y, h), local m
+    """
     along = _road_cosine(own, s, line)
     if np.median(along) > MIN_ROAD_COSINE and not limit.between(np.nanmin(s) + MAIN_CURB_OVERLAP, np.nanmax(s) - MAIN_CURB_OVERLAP):
         return [CurbReturn(own, s, d, side, "main")]

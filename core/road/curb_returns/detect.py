@@ -26,6 +26,7 @@ from ..common.tracking import MAX_JOINED_GAP
 from .classify import CurbReturn, classify_curbs, is_curb_like
 from .far_sides import MIN_ISLAND_WIDTH, far_sides
 from .following import FollowedEnds, followed_steps
+from .leading import with_led_on
 from .raster import PLAN_CELL, averaged, driven_ground, ground_behind, ground_raster, ground_slopes, step_places
 from .steps import PlanSteps, measure_plan_steps
 from .tracking import join_chains, link_plan_steps
@@ -45,6 +46,7 @@ NOISY_RASTER_SHARE = 0.12     # share of the least curb height that heights with
 MIN_AVERAGING_POINTS = 6      # points in a cell, on average, that averaging needs
 MAIN_CURB_DISTANCE = 0.25     # m from a main curb within which a step belongs to it
 MAX_RUN_JUMP = 0.5            # m across between points of one run of main curb
+LED_PROGRESS = 0.9            # share of the work after which faint curbs are looked for
 MAX_ISLAND_WIDTH = 8.0        # m within which the ground behind an island's curb comes down again
 
 
@@ -136,12 +138,23 @@ def find_curb_returns(decimation: PointDecimation, road: int, main: Mapping[str,
                   lambda section: survey.stretch(road, *(k * settings.profile_width for k in section)),
                   lambda section: survey.store.points_between(road, *(k * settings.profile_width for k in section)), _join_parts)
     sections = work_sections(survey, road, settings.profile_width)
-    found = _join_parts(decimation.executor.run(phase, sections, progress))
+    found = _join_parts(decimation.executor.run(phase, sections, progress.part(0.0, LED_PROGRESS)))
     if found is None:
         return []
     steps, falls, scanner_noise = found
     chains = [c for c in join_chains(link_plan_steps(steps), steps) if is_curb_like(c, steps, scanner_noise, settings)]
-    return classify_curbs(chains, steps, falls, runs, line, limits, survey.frame.passes_of(road), elsewhere)
+    curbs = classify_curbs(chains, steps, falls, runs, line, limits, survey.frame.passes_of(road), elsewhere)
+    noisy = _noisy_sections(sections, line, steps, scanner_noise, settings)
+    return with_led_on(curbs, runs, decimation, road, noisy, known, limits, settings, progress.part(LED_PROGRESS, 1.0))
+
+
+def _noisy_sections(sections, line, steps, scanner_noise, settings):
+    """Sections with steps of which the scanner's noise hides faint ones in any single view."""
+    noisy = scanner_noise > NOISY_RASTER_SHARE * settings.limits.clear_height
+    if not settings.limits.automatic_height or not noisy.any():
+        return []
+    number = np.floor(line.locate(steps.x[noisy], steps.y[noisy])[0] / settings.profile_width)
+    return [section for section in sections if ((number >= section[0]) & (number < section[1])).any()]
 
 
 def _join_parts(parts):

@@ -8,7 +8,7 @@ no other sign. A line ends where no such step was found for the length that a li
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -58,11 +58,17 @@ class FollowedEnds(Rows):
         lines : list of K (x, y, h), each (N,) m
         heights : (K,) m, of the steps
         """
-        long = np.array([np.hypot(x[-1] - x[0], y[-1] - y[0]) >= LINE_DIRECTION_LENGTH for x, y, _ in lines], bool)
-        ends = LineEnds.of([line for line, good in zip(lines, long) if good], LINE_DIRECTION_LENGTH)
+        ends, owner = cls.with_lines(lines)
+        return replace(ends, height=np.asarray(heights, float)[owner])
+
+    @classmethod
+    def with_lines(cls, lines: Sequence[tuple[np.ndarray, np.ndarray, np.ndarray]]) -> tuple[FollowedEnds, np.ndarray]:
+        """The same ends, of unknown height, and (2 K,) number of the line to which each belongs."""
+        long = np.flatnonzero([np.hypot(x[-1] - x[0], y[-1] - y[0]) >= LINE_DIRECTION_LENGTH for x, y, _ in lines])
+        ends = LineEnds.of([lines[k] for k in long], LINE_DIRECTION_LENGTH)
         both = np.concatenate([ends.tails, ends.heads])
         uphill = np.repeat([1.0, -1.0], len(ends.tails))
-        return cls(both[:, 0], both[:, 1], both[:, 2], both[:, 3], both[:, 4], uphill, np.tile(np.asarray(heights, float)[long], 2))
+        return cls(both[:, 0], both[:, 1], both[:, 2], both[:, 3], both[:, 4], uphill, np.full(len(both), np.nan)), np.tile(long, 2)
 
     @classmethod
     def of_chains(cls, chains: Sequence[PlanStepChain], steps: PlanSteps) -> FollowedEnds:

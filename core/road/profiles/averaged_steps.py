@@ -14,11 +14,19 @@ behind is then no part of the step: the step is as high as its line is at the fa
 
 from __future__ import annotations
 
-from functools import partial
-
 import numpy as np
 
 from ..common.corners import MAX_BED_SLOPE, MAX_ROAD_SLOPE, MIN_BED_SLOPE, MIN_STEP_SIGMAS, CurbSteps
+from ..common.levels import (
+    BEHIND_FIT_LENGTH,
+    BLURRED_FACE_HALF_WIDTH,
+    MAX_AVERAGED_SCATTER,
+    MIN_FILLED_SHARE,
+    MIN_STEEP_SHARE,
+    ROAD_FIT_LENGTH,
+    STEEP_HALF_WIDTH,
+    RunningSums,
+)
 from ..common.pseudo_scanlines import PseudoScanLines, seen_from
 
 AVERAGING_LENGTH = 1.25       # m of road that are averaged
@@ -26,19 +34,12 @@ SKEW_STEP = 0.125             # m outward per m along between the directions tri
 SKEW_STEPS = 8                # such steps on either side of the road's direction
 OBLIQUE_FACTOR = 1.15         # how much higher a rise must be in a direction farther from the road's own
 MIN_PROFILE_SHARE = 0.5       # share of the averaged profiles that must have ground in a cell
-ROAD_FIT_LENGTH = 0.35        # m of road to which a level is fitted
-BEHIND_FIT_LENGTH = 0.25      # m of ground behind: a hedge may stand close
-BLURRED_FACE_HALF_WIDTH = 0.09    # m on either side of a step left out of both levels: the blurred face
-STEEP_HALF_WIDTH = 0.07       # m on either side of a step within which most of the rise must lie
-MIN_STEEP_SHARE = 0.65        # share of the height; an even rise from level to level has less
 STAYS_UP_SIGMAS = 2.0         # of the heights behind such a curb: that far below their mean they are still above half of its height
-MIN_FILLED_SHARE = 0.6        # share of the cells of a level that must hold ground
 MIN_STEP_SPACING = 0.12       # m across within which one step is reported
 ALL_VIEWS_SIGMAS = 2.0        # sigmas of single heights that a step must rise in all views together, and
 SINGLE_VIEW_SIGMAS = 2.5      # in a single view
 SAME_STEP_DISTANCE = 0.25     # m across within which a step seen from one side only is the one already found
 MAX_NETWORK_ROWS = 9          # profiles that are sorted element by element; for more, numpy's sort is faster
-MAX_AVERAGED_SCATTER = 0.008  # m, scatter of averaged heights about their level: verges and banks have more
 
 
 def find_averaged_steps(lines: PseudoScanLines, min_height: float, max_height: float, layer_jump: float, overgrown: bool) -> CurbSteps:
@@ -89,7 +90,7 @@ def _steps_in(lines, min_height, max_height, behind=(True,)):
     """Steps of averaged profiles, a CurbSteps for each of `behind`: before level ground (True), before plants or a wall; `min_height` is (P, 1)."""
     names = "height", "doubt", "scatter", "before", "behind", "shift", "bottom", "skew"
     kinds = [{name: np.zeros(lines.shape) for name in names} | {"rise": np.full(lines.shape, -np.inf)} for _ in behind]
-    sums = _RunningSums(lines.shape, lines.spacing)
+    sums = RunningSums(lines.shape, lines.spacing)
     for skew in sorted(np.arange(-SKEW_STEPS, SKEW_STEPS + 1) * SKEW_STEP, key=abs):
         sums.add(_averaged(lines, skew))
         for best, is_level in zip(kinds, behind):
@@ -159,68 +160,6 @@ def _rises(sums, min_rise, is_level):
         shift = np.nan_to_num(np.clip(shift, -BLURRED_FACE_HALF_WIDTH, BLURRED_FACE_HALF_WIDTH))
     return cells, dict(rise=rise.take(cells), height=height, doubt=doubt, scatter=np.maximum(rough, uneven), shift=shift, bottom=bottom,
                        before=before.slope.take(cells), behind=slope.take(cells))
-
-
-class _RunningSums:
-    """Running sums over the cells of every profile; differences of them give the line through any range of cells."""
-
-    def __init__(self, shape, spacing):
-        self.cells, self.spacing, self.u = shape[1], spacing, np.arange(shape[1]) * spacing
-        # a window may reach beyond the first and the last cell
-        self.pad = int(round((BLURRED_FACE_HALF_WIDTH + ROAD_FIT_LENGTH) / spacing)) + 2
-        self.totals = np.zeros((6, shape[0], self.cells + 2 * self.pad))
-
-    def add(self, value):
-        """Sum the heights of cells, (P, C), NaN where there is none."""
-        there = np.isfinite(value)
-        h, u = np.where(there, value, 0.0), there * self.u
-        own = slice(self.pad, self.pad + self.cells)
-        for total, v in zip(self.totals, (there * 1.0, h, h * h, u, u * u, u * h)):
-            np.cumsum(v, axis=1, out=total[:, own])
-            total[:, own.stop:] = total[:, own.stop - 1:own.stop]
-
-    def window(self, which, first, last):
-        """Sum of the cells from `first` to `last` beside every cell."""
-        total, start, end = self.totals[which], self.pad - 1 + first, self.pad + last
-        return total[:, end:end + self.cells] - total[:, start:start + self.cells]
-
-    def window_at(self, which, first, last, cells):
-        """The same at some cells."""
-        row, cell = np.divmod(cells, self.cells)
-        total = self.totals[which]
-        return total[row, cell + self.pad + last] - total[row, cell + self.pad - 1 + first]
-
-    def mean(self, first, last):
-        """Mean of the occupied cells from `first` to `last` beside every cell."""
-        with np.errstate(invalid="ignore", divide="ignore"):
-            return self.window(1, first, last) / self.window(0, first, last)
-
-    def line(self, first, last):
-        """Line through the cells from `first` to `last` beside every cell."""
-        return _SideLines(self, first, last)
-
-
-class _SideLines:
-    """Lines through the cells beside every cell: height at the cell (`level`), slope, number of cells (`n`), each (P, C)."""
-
-    def __init__(self, sums, first, last):
-        self.n, sz, su, suu, suz = (sums.window(k, first, last) for k in (0, 1, 3, 4, 5))
-        with np.errstate(invalid="ignore", divide="ignore"):
-            mu, self.mz = su / self.n, sz / self.n
-            vuu, self.vuz = suu / self.n - mu * mu, suz / self.n - mu * self.mz
-            self.slope = np.where(vuu > 1e-4, self.vuz / vuu, 0.0)
-            self.level = self.mz + self.slope * (sums.u - mu)
-        self._squares = partial(sums.window_at, 2, first, last)
-
-    def deviation(self, cells):
-        """(M,) standard deviation of heights at some cells."""
-        return np.sqrt(np.maximum(self._squares(cells) / self.n.take(cells) - self.mz.take(cells)**2, 0.0))
-
-    def scatter(self, cells):
-        """(M,) scatter of heights about the line at some cells."""
-        n, mz = self.n.take(cells), self.mz.take(cells)
-        vzz = self._squares(cells) / n - mz * mz
-        return np.sqrt(np.maximum(vzz - self.slope.take(cells) * self.vuz.take(cells), 0.0) * n / np.maximum(n - 2, 1))
 
 
 def _median(rows, count, min_count):
