@@ -109,9 +109,17 @@ def zebra_stripes(places: np.ndarray, way: np.ndarray) -> list[Stripe]:
 
 def _about(places, rows, heading):
     """Rows of the spots in the box about some spots, along a heading and across it, and `REACH_OF_CROSSING` beyond it."""
-    turned = places @ np.array([[np.cos(heading), -np.sin(heading)], [np.sin(heading), np.cos(heading)]])
-    low, high = turned[rows].min(axis=0) - REACH_OF_CROSSING, turned[rows].max(axis=0) + REACH_OF_CROSSING
-    return np.flatnonzero(((turned >= low) & (turned <= high)).all(axis=1))
+    turn = np.array([[np.cos(heading), -np.sin(heading)], [np.sin(heading), np.cos(heading)]])
+    own = places[rows] @ turn
+    low, high = own.min(axis=0) - REACH_OF_CROSSING, own.max(axis=0) + REACH_OF_CROSSING
+    corners = np.array([low, (low[0], high[1]), high, (high[0], low[1])]) @ turn.T
+    # most spots lie far from the box
+    x, y = places.T
+    (left, bottom), (right, top) = corners.min(axis=0) - 1.0, corners.max(axis=0) + 1.0
+    near = np.flatnonzero((x >= left) & (x <= right))
+    near = near[(y[near] >= bottom) & (y[near] <= top)]
+    turned = places[near] @ turn
+    return near[((turned >= low) & (turned <= high)).all(axis=1)]
 
 
 def _windows(places):
@@ -134,20 +142,19 @@ def _windows(places):
 
 def _least_spread(places):
     """Standard deviation of places in the direction where it is least, m."""
-    x, y = (places - places.mean(axis=0)).T
-    xx, xy, yy = (float(product.sum()) / (len(places) - 1) for product in (x * x, x * y, y * y))
-    return np.sqrt(max((xx + yy) / 2 - np.hypot((xx - yy) / 2, xy), 0.0))
+    off = places - places.sum(axis=0) / len(places)
+    (xx, xy), (_, yy) = (off.T @ off / (len(places) - 1)).tolist()
+    return float(np.sqrt(max((xx + yy) / 2 - np.hypot((xx - yy) / 2, xy), 0.0)))
 
 
 def _across(places, heading):
     return places @ np.array([-np.sin(heading), np.cos(heading)])
 
 
-def _mean_phase(places, headings, pitches):
-    """(H, P) complex, the mean phase of spots for every direction and pitch."""
-    across = places @ np.stack([-np.sin(headings), np.cos(headings)])
+def _mean_phase(across, pitches):
+    """(H, P) complex, the mean phase of spots for every pitch; across : (N, H) m, where they lie across each direction."""
     turn = (2 * np.pi / pitches)[:, None, None] * across
-    return (np.cos(turn).sum(axis=1) / len(places) + 1j * (np.sin(turn).sum(axis=1) / len(places))).T
+    return (np.cos(turn).sum(axis=1) / len(across) + 1j * (np.sin(turn).sum(axis=1) / len(across))).T
 
 
 def find_comb(places: np.ndarray) -> Comb | None:
@@ -187,18 +194,18 @@ def _refined(own, middle, heading, pitch, steps=1.0):
     """The clearest comb within some of the steps that are tried of a direction and a pitch."""
     headings = heading + COMB_HEADING_STEP * steps * COMB_SHARES
     pitches = pitch * (1 + COMB_PITCH_STEP * steps * COMB_SHARES)
-    pitches = pitches[_clear_pitches(own, headings, pitches)]
-    phase = _mean_phase(own, headings, pitches)
+    across = own @ np.array([-np.sin(headings), np.cos(headings)])
+    pitches = pitches[_clear_pitches(across, pitches)]
+    phase = _mean_phase(across, pitches)
     a, b = np.unravel_index(np.abs(phase).argmax(), phase.shape)
     return Comb(float(headings[a]), float(pitches[b]), float(np.angle(phase[a, b]) / (2 * np.pi) * pitches[b]), middle,
                 float(np.abs(phase[a, b])))
 
 
-def _clear_pitches(own, headings, pitches):
-    """(P,) bool: pitches whose mean phase is the longest in one of some directions, as far as single precision tells."""
-    across = np.stack([-np.sin(headings), np.cos(headings)], axis=1) @ own.T
-    turn = (2 * np.pi / pitches).astype(np.float32)[:, None, None] * across.astype(np.float32)
-    length = np.hypot(np.cos(turn).sum(axis=2), np.sin(turn, out=turn).sum(axis=2)).max(axis=1) / len(own)
+def _clear_pitches(across, pitches):
+    """(P,) bool: pitches whose mean phase is the longest in one of some directions, as far as single precision tells; across : (N, H) m."""
+    turn = (2 * np.pi / pitches).astype(np.float32)[:, None, None] * np.ascontiguousarray(across.T, np.float32)
+    length = np.hypot(np.cos(turn).sum(axis=2), np.sin(turn, out=turn).sum(axis=2)).max(axis=1) / len(across)
     return length >= length.max() - PHASE_TOLERANCE
 
 
@@ -214,6 +221,9 @@ def _has_stripes(own, comb):
     number, _, along = _numbered(own, comb)
     number -= number.min()
     enough = np.bincount(number) >= MIN_SHARE_OF_STRIPE * len(own)
+    beside = np.convolve(enough, np.ones(MIN_STRIPES, int)) == MIN_STRIPES   # the last of so many side by side
+    if not beside.any():
+        return False
     spans = {}
     for k in np.flatnonzero(enough).tolist():
         first, last = percentiles(along[number == k], (END_PERCENT, 100 - END_PERCENT))
