@@ -11,23 +11,31 @@ if TYPE_CHECKING:
 
 TREND_STEP = 0.5      # m, nodes of the drift
 SLOPE_WINDOW = 5.0    # m that slopes are averaged over
+GENTLE_TAPER = 0.05   # m across for each m along: a line that runs as askew as that to the others counts half (tapers are 1 in 20 and steeper)
 MAX_LINE_SLOPE = np.tan(np.radians(10.0))  # across per along by which two strands may differ
 
 
 class CommonTrend:
-    """How the offset of all lines of a road changes together: d(s) of a line minus this is nearly constant."""
+    """How the offset of all lines of a road changes together: d(s) of a line minus this is nearly constant.
+
+    That is the median of the lines that are seen at a place. A line that leaves the others where more of them are seen, as along a taper, counts
+    little where it is one of two.
+    """
 
     def __init__(self, strands: list[Strand]) -> None:
         self.s, self.value = np.zeros(1), np.zeros(1)
         long = [strand for strand in strands if strand.length >= 1.5]
         if not long:
             return
-        s, slope, weight = _slopes(long)
+        s, slope, weight, strand = _slopes(long)
         bins = np.floor(s / TREND_STEP).astype(np.int64)
         order = np.lexsort((slope, bins))
         starts = np.flatnonzero(np.r_[True, np.diff(bins[order]) != 0])
         first = bins.min()
         nodes = np.arange(first, bins.max() + 1)
+        mean = np.bincount(bins - first, weight * slope) / np.bincount(bins - first, weight).clip(1e-9)
+        askew = np.bincount(strand, weight * np.abs(slope - mean[bins - first])) / np.bincount(strand, weight).clip(1e-9)
+        weight = weight / (1.0 + (askew[strand] / GENTLE_TAPER) ** 2)
         middle = np.full(len(nodes), np.nan)
         middle[bins[order[starts]] - first] = weighted_medians(slope[order], weight[order], starts)
         known = np.isfinite(middle)
@@ -48,7 +56,7 @@ class CommonTrend:
 
 
 def _slopes(strands):
-    """Station, dd/ds and weight every half metre of some strands, each from the places within 2.5 m on the strand."""
+    """Station, dd/ds, weight and strand every half metre of some strands, each from the places within 2.5 m on the strand."""
     counts = np.array([len(strand.s) for strand in strands])
     starts = np.cumsum(counts) - counts
     owner = np.repeat(np.arange(len(strands)), counts)
@@ -69,7 +77,7 @@ def _slopes(strands):
     slope = np.where(good, (n * msd - ms * md) / np.where(good, spread, 1.0), 0.0)
     # a slope beyond any lane change is a false strand's
     good &= np.abs(slope) < MAX_LINE_SLOPE
-    return at[good], slope[good], (spread / np.maximum(n, 1))[good]
+    return at[good], slope[good], (spread / np.maximum(n, 1))[good], of[good]
 
 
 def weighted_medians(values: np.ndarray, weight: np.ndarray, starts: np.ndarray) -> np.ndarray:

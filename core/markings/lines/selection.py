@@ -30,6 +30,7 @@ MAX_BAR_END_OFFSET = 0.35   # m between the end of a bar and the outline
 MAX_BAR_PITCH = 3.0         # m from bar to bar along an outline
 MIN_BARS = 4                # that make an outline
 MIN_BARS_OF_STRAND = 2      # that tell which strands of an outline are its own
+LEAST_TURN_ASIDE = 0.3      # m from the straight way between two strands: farther than links reach across, a strand is another line
 
 
 @dataclass
@@ -196,9 +197,19 @@ def _beyond_the_edge(lines, level):
 
 
 def hatching_borders(lines: list[LinkedLine], hatched: np.ndarray) -> list[Strand]:
-    """Strands that frame hatched areas, of those lines that do so as a whole."""
-    return [strand for line in lines if len(line.strands) > 1 and _frames_hatching(line, hatched)
-            for strand in line.strands if _frames_hatching(LinkedLine([strand]), hatched, MIN_BARS_OF_STRAND)]
+    """Strands that frame hatched areas: of those lines that do so as a whole, and those that leave the straight way from strand to strand."""
+    return [strand for line in lines if len(line.strands) > 1
+            for k, strand in enumerate(line.strands) if _frames_hatching(LinkedLine([strand]), hatched, MIN_BARS_OF_STRAND)
+            and (_frames_hatching(line, hatched) or _turns_aside(line.strands[k - 1:k + 2]))]
+
+
+def _turns_aside(strands):
+    """Whether the second of three strands lies beside the straight way from the end of the first to the beginning of the third."""
+    if len(strands) < 3:
+        return False
+    before, strand, after = strands
+    straight = np.interp(strand.s, [before.last, after.first], [before.d[-1], after.d[0]])
+    return bool(np.median(np.abs(strand.d - straight)) > LEAST_TURN_ASIDE)
 
 
 def _frames_hatching(line, hatched, fewest=MIN_BARS):
