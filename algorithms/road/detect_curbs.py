@@ -37,7 +37,8 @@ CURB_SETTINGS = (
     SettingSpec(
         "MIN_HEIGHT", CURBS, "min_height", tr("Minimum curb height, 0 = as the data allow (m)"),
         tr("As the data allow, curbs of 5 cm count, and lower ones, down to 2 cm, where they stand out from the noise and continue for "
-           "5 m. A number is your own limit: lower finds dropped curbs at driveways, but also tar seams and gutters."),
+           "5 m. With a noisy scanner, curbs dropped to 1 cm are followed from the end of a sure one. A number is your own limit: lower finds "
+           "dropped curbs at driveways, but also tar seams and gutters."),
     ),
     SettingSpec(
         "MAX_HEIGHT", CURBS, "max_height", tr("Maximum curb height (m)"),

@@ -3740,8 +3740,8 @@
         </message>
         <message>
             <location filename="../../algorithms/road/detect_curbs.py" />
-            <source>As the data allow, curbs of 5 cm count, and lower ones, down to 2 cm, where they stand out from the noise and continue for 5 m. A number is your own limit: lower finds dropped curbs at driveways, but also tar seams and gutters.</source>
-            <translation>Wie es die Daten erlauben zählen Borde von 5 cm und, wo sie aus dem Rauschen ragen und sich über 5 m fortsetzen, niedrigere bis 2 cm. Eine Zahl ist die eigene Grenze: kleiner findet abgesenkte Borde an Einfahrten, aber auch Teernähte und Rinnen.</translation>
+            <source>As the data allow, curbs of 5 cm count, and lower ones, down to 2 cm, where they stand out from the noise and continue for 5 m. With a noisy scanner, curbs dropped to 1 cm are followed from the end of a sure one. A number is your own limit: lower finds dropped curbs at driveways, but also tar seams and gutters.</source>
+            <translation>Wie es die Daten erlauben zählen Borde von 5 cm und, wo sie aus dem Rauschen ragen und sich über 5 m fortsetzen, niedrigere bis 2 cm. Bei einem verrauschten Scanner werden auf 1 cm abgesenkte Borde vom Ende eines sicheren aus verfolgt. Eine Zahl ist die eigene Grenze: kleiner findet abgesenkte Borde an Einfahrten, aber auch Teernähte und Rinnen.</translation>
         </message>
         <message>
             <location filename="../../algorithms/road/detect_curbs.py" />
