@@ -23,7 +23,7 @@ class RoadEstimate:
 
     candidates : Candidates
     sections : Sections; choice : (I,) which of them; total : nats of them; posterior : (I, K) how probable each is
-    sureness : (I, K) the same as far as it was seen here, where what is laid out alike along the road counts once
+    sureness : (I, K) the same as far as it was seen here, where what is laid out alike along the road counts once, and so do the same lanes
     first_direction : of the lanes met first from the left
     """
 
@@ -77,7 +77,18 @@ def _seen_once(c, sections, weights):
     Left out is what the lines were named, since what named them was the same evidence.
     """
     alike = np.clip(c.length.sum(), weights.correlation, weights.laid_out) / weights.correlation
-    return (sections.cost - misnamed_costs(c, sections, weights)) / alike
+    cost = (sections.cost - misnamed_costs(c, sections, weights)) / alike
+    return np.where(_told_before(sections, cost), np.inf, cost)
+
+
+def _told_before(sections, cost):
+    """(I, K) bool, whether a cheaper cross-section of the interval has the same lanes: what bounds strips where nobody drives is no other reading."""
+    lane = (sections.strip >= FIRST) & (sections.strip <= SECOND)
+    lanes = np.where(lane, sections.strip * lane.shape[2] + sections.right, -1)
+    same = (lanes[:, :, None] == lanes[:, None]).all(-1)
+    order = np.arange(cost.shape[1])
+    cheaper = (cost[:, None] < cost[:, :, None]) | (cost[:, None] == cost[:, :, None]) & (order < order[:, None])
+    return (same & cheaper & np.isfinite(cost)[:, None]).any(2)
 
 
 def _roads_of_many_lanes(c, costs, sections, divided, weights):

@@ -172,3 +172,15 @@ def test_a_middle_lane_that_may_lead_either_way_is_said_to_do_so_with_a_confiden
         (middle if abs(np.median(street.offsets(line))) < 1.0 else outer).append(row["confidence"])
     assert len(outer) == 2 and min(outer) > 0.9
     assert middle and 0.3 < min(middle) and max(middle) < 0.6
+
+
+def test_a_lane_is_no_less_sure_for_the_ways_to_read_what_lies_beside_the_road():
+    """A centre line between two curbs: with one lane less there is one strip more that nobody drives on, which can be told in two ways."""
+    street = Street(vehicle=-1.75).paint(0.0, pattern="dashed", kind="centre")
+    edges = Features("LineStringZ", list(ROAD_EDGES))
+    along = np.arange(5.0, 115.0, 0.5)
+    for chain, (side, offset) in enumerate((("left", 3.2), ("right", -3.2))):
+        edges.add(LineString(np.c_[street.places(along, offset), np.full(len(along), HEIGHT)]), road=0, kind="main", edge="curb", status="measured",
+                  part="bottom", chain=chain, side=side)
+    said = {row["direction"]: row["confidence"] for row in street.lanes(edges=edges)[0].rows}
+    assert said[1] > 0.93 and said[-1] > 0.7
