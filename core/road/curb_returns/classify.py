@@ -12,6 +12,7 @@ from scipy.spatial import cKDTree
 from ...common.runs import mask_runs
 from ..common.curb_limits import MIN_FAINT_LENGTH
 from ..common.tracking import MAX_CHAIN_SCATTER, MAX_JOINED_GAP, MAX_ROAD_ROUGHNESS
+from .behind_curbs import lies_behind
 from .free_corners import is_free_corner
 from .steps import PlanSteps
 from .tracking import PlanStepChain, group_lines
@@ -142,8 +143,9 @@ def classify_curbs(chains: Sequence[PlanStepChain], steps: PlanSteps, falls: np.
             found.append(CurbReturn(own[straight], s[straight], d[straight], side, "side_street"))
         elif np.mean(behind) <= MAX_BEHIND_SHARE:
             free.append(CurbReturn(own, s, d, side, "corner"))
-    curbs = [(x, y) for _, (x, y, _) in runs] + list(elsewhere) + [(curb.steps.x, curb.steps.y) for curb in found]
-    return found + [curb for curb in free if is_free_corner(curb.steps, curbs)] + _long_islands(island_outlines(islands))
+    own_curbs = [(x, y) for _, (x, y, _) in runs] + [(curb.steps.x, curb.steps.y) for curb in found]
+    islands = [(curb, down) for curb, down in islands if not lies_behind(curb.steps, own_curbs)]
+    return found + [curb for curb in free if is_free_corner(curb.steps, own_curbs + list(elsewhere))] + _long_islands(island_outlines(islands))
 
 
 def _may_be_side_street(own, s, line, behind, lines):
