@@ -354,7 +354,10 @@ def _striped(number, phase, along):
     runs = np.cumsum(np.diff(np.r_[False, full].astype(int)) == 1) * full
     spots = np.bincount(runs, count * full)
     best = int(spots[1:].argmax()) + 1 if len(spots) > 1 else -1
-    return (runs == best)[step]
+    own = runs == best
+    # the stripes may end a little way into the next step
+    ends = (mean >= LEAST_PHASE) & (stripes > 1) & (np.r_[own[1:], False] | np.r_[False, own[:-1]])
+    return (own | ends)[step]
 
 
 def _span(along):

@@ -50,6 +50,12 @@ def test_an_edge_line_that_leads_on_from_the_outermost_stripe_is_none_of_it():
     assert max(stripe.corners[:, 0].max() for stripe in found) < 2.5
 
 
+@pytest.mark.parametrize("length", [4.0, 4.05, 4.2])
+def test_a_stripe_has_all_its_paint_whatever_its_length(length):
+    places, _ = spots([strip(-2.0, length - 2.0, d, d + 0.5) for d in np.arange(-3.0, 3.0, 1.0)], tracks=0.04, kept=0.95)
+    assert len(np.concatenate([stripe.spots for stripe in crossings_in(places)])) > 0.995 * len(places)
+
+
 def test_lines_that_end_at_a_crossing_do_not_turn_its_stripes():
     left = [strip(2.2, 6.0, 2.02, 2.14), strip(2.2, 6.0, 0.2, 0.35), strip(2.2, 6.0, 0.55, 0.70)]
     right = [strip(-6.0, -2.2, -2.95, -2.83), strip(-3.0, -2.5, -3.0, 0.3)]
