@@ -25,6 +25,8 @@ MAX_GAP_PER_DASH = 3.0                      # times the length of the longer das
 MAX_STEP_RATIO = 2.5                        # times: how much one step of a row may be longer than the next, a dash worn away between them
 MIN_STEP_COSINE = np.cos(np.radians(12.0))  # by which a row may turn from dash to dash
 MIN_DASHES_IN_ROW = 4
+MAX_DASH_LENGTH_RATIO = 2.0                 # times: a dash that leads a row on to the usual one of the row, either way
+MIN_NEXT_STEP = 2 / 3                       # of the usual step of a row: the next dash lies no nearer
 
 # Blocks of give-way lines
 MIN_BLOCKS_IN_ROW = 3
@@ -59,6 +61,53 @@ def rows_of_dashes(shapes: Sequence[Shape]) -> list[np.ndarray]:
     links = _narrow(length, width, turn, pairs, ways) & (apart >= MIN_DASH_SPACING) \
         & (apart - length[pairs].mean(axis=1) <= MAX_GAP_PER_DASH * length[pairs].max(axis=1))
     return _chains(pairs[links], apart[links], ways[links])
+
+
+def dashes_beyond(row: Sequence[Shape], others: Sequence[Shape]) -> list[int]:
+    """Pieces that lead a row of dashes on beyond its ends.
+
+    A row that is sure says where its next dash lies: in line with its last dashes, one step ahead, or two where a dash is
+    worn away. The nearest piece there that is about as long as a dash of the row is the next one, and so on. By our own rule.
+
+    Parameters
+    ----------
+    row : Shapes of the dashes of a row, at least two, in any order; metres and radians
+    others : list of N Shape, those of the row may be among them
+
+    Returns
+    -------
+    list of int, numbers of the pieces in `others`, from the row outwards
+    """
+    if not others:
+        return []
+    middle, place = (np.array([((shape.s0 + shape.s1) / 2, (shape.d0 + shape.d1) / 2) for shape in shapes]) for shapes in (row, others))
+    length, width, turn = (np.array([getattr(shape, name) for shape in others]) for name in ("length", "width", "direction"))
+    usual = np.median([shape.length for shape in row])
+    alike = np.maximum(length, usual) <= MAX_DASH_LENGTH_RATIO * np.minimum(length, usual)
+    along = np.argsort((middle - middle.mean(axis=0)) @ _way(middle))
+    pace = float(np.median(np.hypot(*np.diff(middle[along], axis=0).T)))
+    found: list[int] = []
+    for outwards in (along, along[::-1]):
+        known = list(middle[outwards])
+        while True:
+            last = np.array(known[-MIN_DASHES_IN_ROW:])
+            way = _way(last)
+            ahead, off = (place - last[-1]) @ way, np.abs((place - last.mean(axis=0)) @ (-way[1], way[0]))
+            askew = turn - np.arctan2(way[1], way[0])
+            narrow = length * np.abs(np.sin(askew)) + width * np.abs(np.cos(askew)) <= MAX_DASH_BREADTH
+            follows = np.flatnonzero(alike & narrow & (off <= MAX_DASH_OFFSET) & (ahead >= max(MIN_NEXT_STEP * pace, MIN_DASH_SPACING))
+                                     & (ahead <= MAX_STEP_RATIO * pace))
+            if not len(follows):
+                break
+            found.append(int(follows[np.argmin(ahead[follows])]))
+            known.append(place[found[-1]])
+    return found
+
+
+def _way(places):
+    """(2,) unit vector of the straight line through places, from the first to the last."""
+    way = np.linalg.svd(places - places.mean(axis=0))[2][0]
+    return way * np.sign(way @ (places[-1] - places[0]) or 1.0)
 
 
 def rows_of_blocks(sides: np.ndarray, middle: np.ndarray) -> list[np.ndarray]:

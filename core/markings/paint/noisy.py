@@ -3,7 +3,8 @@
 Single points are too noisy to be classified, so paint is searched for in averages over a decimetre. Other bright
 things on a road differ from paint: the face of a curb is steep, a surface beneath a parked car is covered by
 it, the arc of one beam is bright from one place only, a patch fades out where paint has a sharp rim, and spots
-are not elongated. A short dash is recognised by the row of dashes it belongs to. All rules are our own.
+are not elongated. A short dash is recognised by the row of dashes it belongs to, a worn one by the row that leads to it.
+All rules are our own.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from scipy import ndimage
 
 from ...survey.frame.road_frame import RoadFrame
 from ...survey.store.records import COORDINATE_SCALE, Points
-from ..objects.dash_rows import MIN_DASHES_IN_ROW, rows_of_dashes
+from ..objects.dash_rows import MIN_DASHES_IN_ROW, dashes_beyond, rows_of_dashes
 from ..objects.road_grid import CELL_SIZE, CELL_UNITS
 from ..objects.shape import Shape, measure
 
@@ -36,6 +37,7 @@ BRIGHTNESS_STEPS = 64   # brightness is summed in whole 64ths: their sums are ex
 # pieces
 MIN_RIM_DISTANCE = 0.20     # m from the rim of the road: nearer pieces are curbs or plants
 FAINT_DASH = 0.75       # of the threshold: a dash may be so faint where as many of its row reach the threshold
+WORN_DASH = 0.5         # of the threshold: a dash may be so faint where it leads on a row that is sure
 PIECE_BRIGHTNESS = 0.6  # of the threshold: brightness of all cells of a piece that reaches the threshold in places
 TOP_PERCENTILE = 90     # %: of a piece's cells; its brightness must reach the threshold
 USUAL_PERCENTILE = 75   # %: of a piece's cells; its contrast is that of the piece
@@ -241,8 +243,6 @@ def noisy_paint_cells(averages: CellAverages, rim: np.ndarray, samples: ViewSamp
     z, contrast = averages.z, averages.contrast
     with np.errstate(invalid="ignore"):
         bright = z > PIECE_BRIGHTNESS * threshold
-        tops = ndimage.maximum_filter(np.where(bright, contrast, 0.0), 2 * HALF_MAXIMUM_REACH + 1)
-        cut = bright & (contrast > HALF_MAXIMUM * tops)
     mask = np.zeros(rim.shape, bool)
     elongated = [piece for piece in bright_pieces(bright, averages, rim, threshold) if piece.is_elongated
                and np.hypot(*piece.slope) < MAX_SLOPE and (piece.z >= CLEAR_BRIGHTNESS * threshold or piece.shape.length >= CLEAR_LENGTH)]
@@ -253,16 +253,32 @@ def noisy_paint_cells(averages: CellAverages, rim: np.ndarray, samples: ViewSamp
         mask[row[inner], column[inner]] = True
     # holes that noise left in strokes
     mask = ndimage.binary_closing(mask, np.ones((3, 3), bool), iterations=2)
-    # the average joins neighbouring dashes: they are searched for in the mask cut at half maximum
-    dashes = [piece for piece in bright_pieces(cut, averages, rim, FAINT_DASH * threshold)
-              if piece.may_be_dash and np.hypot(*piece.slope) < DASH_SLOPE_FACTOR * MAX_SLOPE]
-    dashes = without_artefacts(dashes, samples, rim.shape)
+    dashes = _dashes(averages, rim, samples, bright, FAINT_DASH * threshold)
+    rows = []
     for row in rows_of_dashes([piece.shape for piece in dashes]):
         clear = sum(dashes[k].z >= threshold for k in row)
         if clear >= max(MIN_DASHES_IN_ROW, len(row) / 2) and np.hypot(*np.mean([dashes[k].slope for k in row], axis=0)) < MAX_SLOPE:
-            for k in row:
-                mask[dashes[k].cells] = True
+            rows.append([dashes[k] for k in row])
+    # fainter ones where these rows lead
+    if rows:
+        with np.errstate(invalid="ignore"):
+            worn = _dashes(averages, rim, samples, z > PIECE_BRIGHTNESS * WORN_DASH * threshold, WORN_DASH * threshold)
+        shapes = [piece.shape for piece in worn]
+        rows = [row + [worn[k] for k in dashes_beyond([piece.shape for piece in row], shapes)] for row in rows]
+    for piece in (piece for row in rows for piece in row):
+        mask[piece.cells] = True
     return mask
+
+
+def _dashes(averages, rim, samples, bright, threshold):
+    """Pieces that may be dashes: the average joins neighbouring ones, so they are searched for in the mask cut at half maximum."""
+    contrast = averages.contrast
+    tops = ndimage.maximum_filter(np.where(bright, contrast, 0.0), 2 * HALF_MAXIMUM_REACH + 1)
+    with np.errstate(invalid="ignore"):
+        cut = bright & (contrast > HALF_MAXIMUM * tops)
+    found = [piece for piece in bright_pieces(cut, averages, rim, threshold)
+             if piece.may_be_dash and np.hypot(*piece.slope) < DASH_SLOPE_FACTOR * MAX_SLOPE]
+    return without_artefacts(found, samples, rim.shape)
 
 
 def bright_pieces(mask: np.ndarray, averages: CellAverages, rim: np.ndarray, threshold: float) -> list[BrightPiece]:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from lanewright.core.intensity.correction import correct_intensity
-from lanewright.core.markings.objects.dash_rows import rows_of_dashes
+from lanewright.core.markings.objects.dash_rows import dashes_beyond, rows_of_dashes
 from lanewright.core.markings.objects.shape import measure
 from lanewright.core.markings.paint.extract import extract_markings
 from lanewright.core.markings.paint.noisy import CellAverages
@@ -34,6 +34,7 @@ LINE, STOP_LINE = strip(8.0, 20.0, -2.5, -2.35), strip(28.0, 28.3, -3.0, 0.0)
 CURB_FACE, BENEATH_A_CAR = strip(30.0, 42.0, 5.0, 5.15), strip(33.0, 39.0, -5.0, -4.7)
 STREAK, PATCH = strip(10.0, 16.0, -6.0, -5.7), strip(35.0, 41.0, 0.5, 2.5)
 PAINTED = (ALONG, ASKEW, ACROSS, LINE, STOP_LINE)
+WORN = 2.4   # of 256 levels that a worn dash is brighter than asphalt: a tenth of fresh paint
 BRIGHT = PAINTED + (SPOT, CURB_FACE, BENEATH_A_CAR)
 
 
@@ -102,6 +103,17 @@ def test_a_patch_of_lighter_asphalt_that_fades_out_is_no_paint(street):
     assert found_of(PATCH, street) == 0
 
 
+def test_worn_dashes_are_found_where_they_lead_on_a_row_that_is_sure_and_nowhere_else():
+    sure, led_on, alone = dashes(6, first=8.0, y=2.0), dashes(4, first=14.0, y=2.0), dashes(4, first=14.0, y=-2.0)
+    points, frame = spun(sure, noisy=True, glare=lambda x, y, turn: np.where(led_on(x, y) | alone(x, y), WORN, 0))
+    points = correct_intensity(points, frame)[0]
+    worn_street = points.all_points(), extract_markings(points, NoImage(), frame).all_points()
+    assert found_of(sure, worn_street) > 0.6 and found_of(led_on, worn_street) > 0.3
+    assert found_of(alone, worn_street) == 0
+    found = worn_street[1]
+    assert (sure(found.x, found.y) | led_on(found.x, found.y)).mean() > 0.7
+
+
 @pytest.mark.slow
 def test_the_length_of_sections_does_not_change_what_is_found(street):
     places = [np.sort(points.x * 1e4 + points.y) for points in (street[1], everything_and_found(7.0)[1])]
@@ -123,6 +135,18 @@ def test_four_dashes_in_line_are_a_row_and_three_are_none():
 def test_a_dash_worn_away_does_not_end_a_row_and_dashes_beside_each_other_are_none():
     assert [len(row) for row in rows_of_dashes([shape_of(s, 0.0) for s in (0.0, 0.9, 2.7, 3.6, 4.5)])] == [5]
     assert rows_of_dashes([shape_of(0.0, d) for d in (0.0, 1.0, 2.0, 3.0)]) == []
+
+
+def test_a_row_leads_on_to_dashes_in_line_one_or_two_steps_ahead_at_either_end():
+    row = [shape_of(s, 0.1 * s) for s in (3.0, 1.0, 2.0, 4.0)]
+    beyond = [shape_of(s, 0.1 * s) for s in (6.0, 7.0, 0.0, 10.0)]
+    assert dashes_beyond(row, beyond) == [0, 1, 2]
+    assert dashes_beyond(row, row) == [] and dashes_beyond(row, []) == []
+
+
+def test_a_row_does_not_lead_on_to_what_lies_beside_its_line_or_is_no_dash_of_its_length():
+    row = [shape_of(s, 0.0) for s in (1.0, 2.0, 3.0, 4.0)]
+    assert dashes_beyond(row, [shape_of(5.0, 0.2), shape_of(5.0, 0.0, length=1.6), shape_of(4.4, 0.0), shape_of(5.0, 0.0, width=0.48)]) == []
 
 
 def test_spots_strewn_about_are_no_row():
