@@ -7,13 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from .across import Sections, best_sections, lane_strips, misnamed_costs, separated_kinds
-from .along import best_sequence, occupancy, probabilities, transition_costs
+from .along import best_sequence, best_through, occupancy, probabilities, transition_costs
 from .candidates import Candidates
 from .evidence import Evidence
 from .lane_width import lane_places
 from .strips import FIRST, SECOND, StripCosts, strip_costs
 from .weights import CENTRE_LINE, DASHED, LANE_LINE, EstimateWeights
 
+FARTHEST_BEHIND = 30.0   # nats at most by which one direction is less probable than the other
 SAME_LANE = 0.15   # m across within which lanes of two cross-sections are the same: as near as a driving line is right
 
 
@@ -25,6 +26,10 @@ class RoadEstimate:
     sections : Sections; choice : (I,) which of them; total : nats of them; posterior : (I, K) how probable each is
     sureness : (I, K) the same as far as it was seen here, where what is laid out alike along the road counts once, and so do the same lanes
     first_direction : of the lanes met first from the left
+    evidence : that it is made from
+    unnamed : (I,) which cross-sections would have been chosen without the names of the lines; -1 where these decide; unnamed_total : nats of them
+    once : (I, K) nats of the most probable sequence through each as far as it was seen here, as `sureness` counts that; inf where nothing is known
+    other, behind : the estimate for the other side of traffic where either may be, else None, and by how many nats it is less probable
     """
 
     candidates: Candidates
@@ -35,6 +40,18 @@ class RoadEstimate:
     sureness: np.ndarray
     total: float
     first_direction: int
+    evidence: Evidence
+    unnamed: np.ndarray
+    unnamed_total: float
+    once: np.ndarray
+    other: RoadEstimate | None = None
+    behind: float = 0.0
+
+    @property
+    def once_total(self) -> float:
+        """Nats of the most probable sequence as far as it was seen here."""
+        known = self.once[np.isfinite(self.once)]
+        return float(known.min()) if len(known) else 0.0
 
 
 def estimate_road(candidates: Candidates, evidence: Evidence, first_direction: int, lane_width: float,
@@ -57,7 +74,10 @@ def estimate_road(candidates: Candidates, evidence: Evidence, first_direction: i
     paint = candidates.painted
     shown = (paint * candidates.seen).sum(1) / np.maximum(paint.sum(1), 1)
     choice, (posterior, sureness) = np.argmin(sections.cost, axis=1), np.zeros((2, *sections.cost.shape))
-    known, total = np.flatnonzero(paint.any(1)), 0.0
+    known, total, unnamed_total = np.flatnonzero(paint.any(1)), 0.0, 0.0
+    # what named the lines is the same evidence
+    cost = sections.cost - misnamed_costs(candidates, sections, weights)
+    unnamed, once = np.argmin(cost, axis=1), np.full(cost.shape, np.inf)
     if len(known):
         between = np.r_[0.0, np.cumsum(candidates.length)]
         gap = between[known[1:]] - between[known[:-1] + 1]
@@ -67,17 +87,15 @@ def estimate_road(candidates: Candidates, evidence: Evidence, first_direction: i
                          for cost, reach in ((lanes, weights.lanes_remembered), (turns, weights.directions_remembered)))
         choice[known], total = best_sequence(sections.cost[known], transition)
         posterior[known] = probabilities(sections.cost[known], transition)
-        sureness[known] = probabilities(_seen_once(candidates, sections, weights)[known], transition)
-    return RoadEstimate(candidates, costs, sections, choice, posterior, sureness, total, first_direction)
+        unnamed[known], unnamed_total = best_sequence(cost[known], transition)
+        seen_once = _seen_once(candidates, sections, cost, weights)[known]
+        sureness[known], once[known] = probabilities(seen_once, transition), best_through(seen_once, transition)
+    return RoadEstimate(candidates, costs, sections, choice, posterior, sureness, total, first_direction, evidence, unnamed, unnamed_total, once)
 
 
-def _seen_once(c, sections, weights):
-    """(I, K) nats that tell how sure a cross-section is: what is laid out alike along the road was seen once.
-
-    Left out is what the lines were named, since what named them was the same evidence.
-    """
-    alike = np.clip(c.length.sum(), weights.correlation, weights.laid_out) / weights.correlation
-    cost = (sections.cost - misnamed_costs(c, sections, weights)) / alike
+def _seen_once(c, sections, cost, weights):
+    """(I, K) nats that tell how sure a cross-section is, from the costs without names: what is laid out alike along the road was seen once."""
+    cost = cost / (np.clip(c.length.sum(), weights.correlation, weights.laid_out) / weights.correlation)
     return np.where(_told_before(sections, cost), np.inf, cost)
 
 
@@ -114,9 +132,12 @@ def _roads_of_many_lanes(c, costs, sections, divided, weights):
 class LaneSpan:
     """One lane over one interval.
 
-    interval : number; left, right : rows of Boundaries, place : from the right, of `count` lanes between them; direction : 1 or -1
-    probability : 0 to 1, of a lane of this direction there, with the posterior of RoadEstimate
-    confidence, directed : 0 to 1, of a lane of either direction there, and of those of this direction among them, with the sureness of RoadEstimate
+    interval : number; left, right : rows of Boundaries, place : from the right, of `count` lanes between them
+    direction : 1 or -1, of the most probable sequence; where that is the less probable one of a lane there, the other, unless names of
+        lines decided that, or the drive
+    probability : 0 to 1, of the lane of the most probable sequence there, with the posterior of RoadEstimate
+    confidence : 0 to 1, of a lane of either direction there, with the sureness of RoadEstimate
+    directed : 0 to 1, of those of this direction among them, on both sides of traffic where the survey leaves that open
     left_border, right_border : what the two separate, LANE_LINE ... OTHER_LINE
     """
 
@@ -145,36 +166,81 @@ def lane_spans(estimate: RoadEstimate) -> list[LaneSpan]:
         uses = [int(borders[i, m]), *(CENTRE_LINE if inner == first else LANE_LINE for inner in range(1, number)), int(borders[i, end])]
         for place in range(number):
             direction = estimate.first_direction if place < first else -estimate.first_direction
-            probability, confidence, directed = shares[place]
-            found.append(LaneSpan(i, int(c.rows[i, m, 1]), int(c.rows[i, end, 0]), number - 1 - place, number, direction, probability, confidence,
-                                  directed, uses[place], uses[place + 1]))
+            probability, confidence, directed, turned = shares[place]
+            found.append(LaneSpan(i, int(c.rows[i, m, 1]), int(c.rows[i, end, 0]), number - 1 - place, number, -direction if turned else direction,
+                                  probability, confidence, 1 - directed if turned else directed, uses[place], uses[place + 1]))
     return found
 
 
-def _place_shares(estimate, strips, chosen):
-    """Lists of three values for each lane of the chosen strips, from left to right: probability, confidence and directed of LaneSpan.
+@dataclass
+class _Lanes:
+    """Every lane of every strip of an estimate, in order of interval: where it is and which way it leads.
 
-    That is of all cross-sections that have a lane within SAME_LANE, whatever bounds it and whatever lies beside it.
+    interval, section, strip : (N,) int, the last the row of LaneStrips; d, width : (N,) m; way : (N,) 1 or -1
     """
+
+    interval: np.ndarray
+    section: np.ndarray
+    strip: np.ndarray
+    d: np.ndarray
+    width: np.ndarray
+    way: np.ndarray
+
+
+def _lanes(estimate, strips):
     c, at = estimate.candidates, strips.interval
     d_left, each = lane_places(c.right[at, strips.left], c.left[at, strips.right], c.made_of[at, strips.left], c.made_of[at, strips.right],
                                strips.number, estimate.costs.lane_width, c.bend[at])
-    # every lane of every strip, in order of interval
+    of = np.repeat(np.arange(len(at)), strips.number)
+    place = np.arange(len(of)) - (np.cumsum(strips.number) - strips.number)[of]
+    way = np.where(place < strips.first[of], estimate.first_direction, -estimate.first_direction)
+    return _Lanes(at[of], strips.section[of], of, d_left[of] - each[of] * (place + 0.5), each[of], way)
+
+
+def _place_shares(estimate, strips, chosen):
+    """Lists of four values for each lane of the chosen strips, from left to right: probability, confidence and directed of LaneSpan, whether turned.
+
+    That is of all cross-sections that have a lane within SAME_LANE, whatever bounds it and whatever lies beside it. Of directions the most probable
+    sequences are weighed against each other where the other side of traffic counts too: a road that is one way is the same reading on both.
+    """
+    lanes, other = _lanes(estimate, strips), estimate.other
+    best = estimate.once_total
+    known = [(lanes.interval, lanes.d, lanes.way, estimate.posterior[lanes.interval, lanes.section], estimate.sureness[lanes.interval, lanes.section],
+              estimate.once[lanes.interval, lanes.section] - best, estimate.unnamed[lanes.interval] == lanes.section)]
+    if other is not None:
+        more = _lanes(other, lane_strips(other.sections, other.costs))
+        nothing = np.zeros(len(more.d))
+        known.append((more.interval, more.d, more.way, nothing, nothing, other.once[more.interval, more.section] - other.once_total + estimate.behind,
+                      nothing > 0))
+    joined = [np.concatenate(values) for values in zip(*known)]
+    order = np.argsort(joined[0], kind="stable")
+    interval, d, way, posterior, sureness, nats, unnamed = (values[order] for values in joined)
+    first, last = (np.searchsorted(interval, np.arange(len(estimate.choice)), side=side) for side in ("left", "right"))
+    own = np.flatnonzero(np.isin(lanes.strip, chosen))
+    size = (last - first)[lanes.interval[own]]
+    one = np.repeat(own, size)
+    beside = np.arange(len(one)) - np.repeat(np.cumsum(size) - size, size) + first[lanes.interval[one]]
+    there = np.abs(d[beside] - lanes.d[one]) < SAME_LANE
+    alike = there & (way[beside] == lanes.way[one])
+    probability, sure, either, as_unnamed = (np.bincount(one[which], values[beside[which]], minlength=len(lanes.d)) for values, which in (
+        (posterior, alike), (sureness, alike), (sureness, there), (unnamed, alike)))
+    directed = sure / np.where(either > 0, either, 1.0)
+    if other is not None:
+        least = np.full((2, len(lanes.d)), FARTHEST_BEHIND)
+        for values, which in zip(least, (alike, there & ~alike)):
+            np.minimum.at(values, one[which], nats[beside[which]])
+        directed = 1 / (1 + np.exp(least[0] - least[1]))
+    turned = (either > 0) & (directed < 0.5) & (as_unnamed > 0) & ~_driven_along(estimate.evidence, lanes)
+    total = np.stack([probability, either, directed, turned], axis=1)
     begin = np.cumsum(strips.number) - strips.number
-    of = np.repeat(np.arange(len(begin)), strips.number)
-    place = np.arange(len(of)) - begin[of]
-    d, ahead = d_left[of] - each[of] * (place + 0.5), place < strips.first[of]
-    shares = [values[at[of], strips.section[of]] for values in (estimate.posterior, estimate.sureness)]
-    first, last = (np.searchsorted(at[of], np.arange(len(c.first)), side=side) for side in ("left", "right"))
-    lanes = np.flatnonzero(np.isin(of, chosen))
-    size = (last - first)[at[of[lanes]]]
-    one = np.repeat(lanes, size)
-    other = np.arange(len(one)) - np.repeat(np.cumsum(size) - size, size) + first[at[of[one]]]
-    there = np.abs(d[other] - d[one]) < SAME_LANE
-    probability, sure, either = (np.bincount(one[alike], share[other[alike]], minlength=len(of)) for share, alike in (
-        (shares[0], there & (ahead[other] == ahead[one])), (shares[1], there & (ahead[other] == ahead[one])), (shares[1], there)))
-    total = np.stack([probability, either, sure / np.where(either > 0, either, 1.0)], axis=1)
     return [total[begin[k]:begin[k] + strips.number[k]].tolist() for k in chosen]
+
+
+def _driven_along(evidence, lanes):
+    """(N,) bool, whether somebody drove in a lane the way it leads."""
+    with np.errstate(invalid="ignore"):
+        inside = np.abs(evidence.driven[:, lanes.interval] - lanes.d) < lanes.width / 2
+    return (inside & (evidence.directions[:, None] == lanes.way)).any(0)
 
 
 def boundary_uses(estimate: RoadEstimate) -> np.ndarray:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 LENGTH_OF_USUAL = 50.0    # m of lanes that weigh as much as what is usual in the country
 WIDENED_RADIUS = 60.0     # m: lanes are widened in tighter bends (most codes widen below 100 to 200 m; less than 0.3 m there)
-SURE_SIDE = 3.0           # nats by which one side of traffic must be more probable than the other to be sure
+SURE_SIDE = 1.4           # nats by which one side of traffic must be more probable than the other to be sure: else it is wrong one time in five
 
 
 @dataclass
@@ -90,15 +90,25 @@ def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_widt
             number, other_carriageway(frame, number, of_road.s))
     sides = {"right": (-1,), "left": (1,)}.get(side, (-1, 1))
     found = dict(zip(sides, ordered_map(lambda first: _estimates(known, first, usual_width, weights), sides)))
-    total = {first: sum(one.total for one in of_roads.values()) + (weights.left_hand if first > 0 else 0.0) for first, of_roads in found.items()}
+    total, unnamed, once = ({first: sum(getattr(one, name) for one in of_roads.values()) + (weights.left_hand if first > 0 else 0.0)
+                             for first, of_roads in found.items()} for name in ("total", "unnamed_total", "once_total"))
     best = min(total, key=lambda first: total[first])
+    # names that decide the side are not made from the same evidence
+    named = min(unnamed, key=lambda first: unnamed[first]) != best
+    behind = np.inf if len(sides) == 1 or named else once[-best] - once[best]
+    used = tuple(first for first in sides if first == best or behind < SURE_SIDE)
     width = usual_width if width_asked else _usual_width(known, found[best], usual_width)
     # the road's own width tells lanes better than that of a country
     if width != usual_width:
-        found[best] = _estimates(known, best, width, weights)
-    roads = {number: EstimatedRoad(lines[number], known[number][0], estimate) for number, estimate in found[best].items()}
-    sure = len(sides) == 1 or abs(total[-1] - total[1]) > SURE_SIDE
-    return RoadEstimates(roads, "right" if best < 0 else "left", sure, width)
+        found = dict(zip(used, ordered_map(lambda first: _estimates(known, first, width, weights), used)))
+    roads = {}
+    for number, estimate in found[best].items():
+        if named:
+            estimate = replace(estimate, unnamed=np.full(len(estimate.choice), -1))
+        elif len(used) > 1:
+            estimate = replace(estimate, other=found[-best][number], behind=behind)
+        roads[number] = EstimatedRoad(lines[number], known[number][0], estimate)
+    return RoadEstimates(roads, "right" if best < 0 else "left", behind >= SURE_SIDE, width)
 
 
 def _surface(road_points, paint, number, s, likely):

@@ -101,3 +101,18 @@ def test_two_lanes_towards_a_junction_and_one_back_reach_as_far_on_either_side_o
     assert {lane: set(way) for lane, way in found.items()} == {0.0: {1}, 3.6: {-1}, 6.8: {-1}}
     assert [max(line.bounds[2] for line, _ in lines if abs(np.median(street.offsets(line)) * mirror - lane) < 0.2) - EAST
             for lane in (0.0, 3.6, 6.8)] == pytest.approx([100.0] * 3, abs=1.0)
+
+
+def beside_a_bus_lane(centre, beyond):
+    """Dashes between the directions and a solid line before a lane of its own, as seen from the lane between; named as given."""
+    street = Street(vehicle=-1.6).paint(3.25, kind="edge").paint(0.0, pattern="dashed", kind=centre)
+    return street.paint(-3.25, kind=beyond).paint(-6.5, kind="edge")
+
+
+def test_where_the_lines_leave_open_on_which_side_traffic_drives_lanes_say_so():
+    """Read as traffic on the left, which the lines bear out hardly better than traffic on the right."""
+    street = beside_a_bus_lane("lane", "centre")
+    said = {row["direction"]: row["confidence"] for line, row in street.lanes()[0] if np.median(street.offsets(line)) < -4.0}
+    assert max(said.values()) < 0.9
+    asked = {row["direction"]: row["confidence"] for line, row in street.lanes(traffic_side="left")[0] if np.median(street.offsets(line)) < -4.0}
+    assert said[-1] < asked[-1] - 0.05
