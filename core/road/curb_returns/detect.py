@@ -26,6 +26,7 @@ from ..common.tracking import MAX_JOINED_GAP
 from .classify import CurbReturn, classify_curbs, is_curb_like
 from .far_sides import MIN_ISLAND_WIDTH, far_sides
 from .following import FollowedEnds, followed_steps
+from .island_tops import on_island_tops
 from .leading import with_led_on
 from .raster import PLAN_CELL, averaged, driven_ground, ground_behind, ground_raster, ground_slopes, step_places
 from .steps import PlanSteps, measure_plan_steps
@@ -334,11 +335,11 @@ def plan_steps_of_section(decimation: PointDecimation, section: tuple[int, int],
         return None
     # inside a tight bend a step may be measured outside the range of stations
     steps = steps[np.isfinite(line.locate(steps.x, steps.y)[0])]
+    steps = steps[~on_island_tops(steps, _behind(raster, slopes, steps))]
     behind = _behind(raster, slopes, steps)
     hidden = far_sides(raster, steps, behind)
     hidden = hidden[wanted(hidden.x, hidden.y)]
-    # its near side is the far side of a far side
-    # an island ends where its top does, not where the ground comes out of its shadow
+    # its near side is the far side of a far side; an island ends where its top does, not where the ground comes out of its shadow
     falls = np.r_[np.where(np.isfinite(behind.edge), behind.edge, behind.falls), np.full(len(hidden), MIN_ISLAND_WIDTH)]
     # averaging leaves the errors of single beams and the drift of positions
     return PlanSteps.join([steps, hidden]), falls, np.full(len(falls), raster.noise)
