@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The tests, in two parts: the core and the library where qgis cannot be imported, then the plugin inside QGIS with calls of
-# the real qgis_process. Each part is spread over the processor's cores and one process more, since tests wait for others, one file of tests at a
+# the real qgis_process. Each part is spread over the processor's cores, one file of tests at a
 # time, those with slow tests first. Arguments go to pytest, for example: tools/test.sh -k curbs, or
 # tools/test.sh -m 'not slow'. LANEWRIGHT_TEST_WORKERS=0 runs everything in one process, for a debugger.
 set -euo pipefail
@@ -8,7 +8,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/env.sh"
 cd "$LANEWRIGHT_ROOT"
 cores="$(env -u OMP_NUM_THREADS nproc)" # nproc believes that variable, and env.sh sets it
 part=("$LANEWRIGHT_BUILD/venv/bin/python" -m pytest -q
-  -n "${LANEWRIGHT_TEST_WORKERS:-$((cores < 8 ? cores + 1 : 8))}" --dist loadfile --no-loadscope-reorder)
+  -n "${LANEWRIGHT_TEST_WORKERS:-$((cores < 8 ? cores : 8))}" --dist loadfile --no-loadscope-reorder)
 # With -k a part may have nothing to run (pytest says 5); without arguments that is a failure.
 run() {
   "$@" && return 0

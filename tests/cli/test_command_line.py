@@ -11,6 +11,7 @@ import laspy
 import numpy as np
 import pytest
 from spoken import complaints
+from words import OPEN_ELSEWHERE
 
 pytestmark = pytest.mark.slow
 
@@ -26,7 +27,7 @@ def qgis_process(*arguments, folder, **options):
 def survey(sample_survey, tmp_path_factory):
     """A folder with a small sample survey: s.laz, drive.gpkg and drive.csv."""
     folder = tmp_path_factory.mktemp("survey")
-    shutil.copytree(sample_survey(LENGTH=30, PULSE_RATE=60000, ROTATION_RATE=100), folder, dirs_exist_ok=True)
+    shutil.copytree(sample_survey(LENGTH=30, PULSE_RATE=60000, ROTATION_RATE=100), folder, dirs_exist_ok=True, ignore=OPEN_ELSEWHERE)
     subprocess.run(
         ["ogr2ogr", "-f", "CSV", "-sql", "SELECT time, ST_X(geom) x, ST_Y(geom) y, ST_Z(geom) z FROM drive", "drive.csv", "drive.gpkg"],
         cwd=folder, check=True, capture_output=True,
@@ -285,7 +286,7 @@ def test_a_trajectory_file_that_is_not_there_is_named(survey, called, tmp_path):
 def street(sample_survey, tmp_path_factory):
     """A sample survey dense enough for the whole chain, its cloud in two files too."""
     folder = tmp_path_factory.mktemp("street")
-    shutil.copytree(sample_survey(LENGTH=40, PULSE_RATE=60000, ROTATION_RATE=100), folder, dirs_exist_ok=True)
+    shutil.copytree(sample_survey(LENGTH=40, PULSE_RATE=60000, ROTATION_RATE=100), folder, dirs_exist_ok=True, ignore=OPEN_ELSEWHERE)
     for name, first in (("odd.laz", 1), ("even.laz", 0)):
         cloud = laspy.read(folder / "s.laz")
         cloud.points = cloud.points[np.arange(first, len(cloud.points), 2)]
