@@ -272,7 +272,7 @@ def _stripes(places, rows, comb, way):
     row = _row_of_stripes(number, off, along, best)
     if row is None:
         return []
-    best = _fitted(own, best, row)
+    best = _fitted(number, off, along, best, row)
     number, off, along = _numbered(own, best)
     row = _row_of_stripes(number, off, along, best)
     if row is None:
@@ -330,9 +330,8 @@ def _row_of_stripes(number, off, along, comb):
     return _Row(kept, width, np.array(ends))
 
 
-def _fitted(own, comb, row):
+def _fitted(number, off, along, comb, row):
     """The comb turned, shifted and stretched onto the spots of a row of its stripes, by least squares."""
-    number, off, along = _numbered(own, comb)
     on = np.isin(number, row.numbers) & (np.abs(off) <= row.width / 2 + FRAYED)
     # a spot lies across at phase + number * pitch + turn * along, and anywhere over the width of its stripe
     design = np.column_stack([np.ones(on.sum()), number[on], along[on]])
