@@ -21,6 +21,10 @@ def edges(path):
         return [(feature.geometry.coordinates, dict(feature.properties)) for feature in layer]
 
 
+def finished_parts(work):
+    return [path for path in work.glob("phase-*/*.npz") if ".part" not in path.name]
+
+
 def test_a_killed_run_that_is_begun_again_gives_what_an_undisturbed_one_gives(tmp_path):
     survey = run("samplesurvey", LENGTH=40, PULSE_RATE=60000, POINT_CLOUD=tmp_path / "s.laz", TRAJECTORY=tmp_path / "drive.gpkg")
     inputs = dict(POINT_CLOUDS=[survey["POINT_CLOUD"]], TRAJECTORY=survey["TRAJECTORY"])
@@ -28,14 +32,14 @@ def test_a_killed_run_that_is_begun_again_gives_what_an_undisturbed_one_gives(tm
     command = [sys.executable, "-W", "ignore", "-c", PROGRAM.format(tests=str(ROOT / "tests")), "detectboundaries", "--POINT_CLOUDS",
                survey["POINT_CLOUD"], "--TRAJECTORY", survey["TRAJECTORY"], "--WORK_FOLDER", str(work), "--WORKERS", "1", "--ROAD_EDGES", str(result)]
     program = subprocess.Popen(command, stderr=subprocess.DEVNULL)
-    while program.poll() is None and not list(work.glob("phase-*/*.npz")):
+    while program.poll() is None and not finished_parts(work):
         time.sleep(0.02)
     assert program.poll() is None, "it was still at work"
     program.kill()
     program.wait()
     assert not result.exists()
 
-    finished = {path: path.stat().st_mtime_ns for path in work.glob("phase-*/*.npz") if ".part" not in path.name}
+    finished = {path: path.stat().st_mtime_ns for path in finished_parts(work)}
     run("detectboundaries", **inputs, WORK_FOLDER=work, WORKERS=1, ROAD_EDGES=result)
     assert finished and all(path.stat().st_mtime_ns == when for path, when in finished.items())
     run("detectboundaries", **inputs, ROAD_EDGES=tmp_path / "undisturbed.gpkg")
