@@ -74,6 +74,9 @@ class Recorder:
         write_plain(path, value)
         return path.stat().st_size
 
+    def forget(self):
+        pass
+
     def release(self):
         pass
 

@@ -62,7 +62,7 @@ def make_intensity_image(road_points: RoadPoints, settings: ImageSettings = Imag
     settings : ImageSettings
     progress : Progress
     path : of the GeoTIFF, the same pixels as `write_intensity_image` writes; None for no file
-    memory_limit : bytes of pixels kept in memory; the others go to a temporary file
+    memory_limit : bytes of pixels kept in memory; the others go to a temporary file, and all where other processes work on the points
 
     Returns
     -------
@@ -74,7 +74,7 @@ def make_intensity_image(road_points: RoadPoints, settings: ImageSettings = Imag
         If there are no points, the image has too many tiles, or the file cannot be written.
     """
     grid, tiles = _interpolate(road_points, settings, progress)
-    image = TiledImage(grid.geotransform, grid.width, grid.height, road_points.crs, memory_limit)
+    image = TiledImage(grid.geotransform, grid.width, grid.height, road_points.crs, memory_limit, road_points.executor.folder)
     with new_geotiff(path, grid.width, grid.height, grid.geotransform, road_points.crs) if path else nullcontext() as file:
         for column, row, values in tiles:
             image.put(column, row, values)

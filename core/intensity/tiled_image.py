@@ -6,12 +6,15 @@ The chain reads the image through this object; the GeoTIFF is written for the us
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple, Protocol, Union
+from pathlib import Path
+from typing import NamedTuple, Protocol, Union, cast
+from uuid import uuid4
 
 import numpy as np
 
+from ..execution.phase import Recipe
 from ..io.geotiff import GEOTIFF_TILE, NODATA, IntensityImage
-from ..survey.store.spill_file import SpillFile, StoredColumn
+from ..survey.store.spill_file import PART_WIDTHS, ColumnFile, Packing, SpillFile, StoredColumn
 
 TILE_MEMORY = 64 * 2**20   # bytes of pixels kept in memory; the tiles that follow go to a temporary file
 
@@ -98,13 +101,25 @@ class TiledImage(IntensityImage):
     width, height : pixels
     crs : WKT, "" where it is unknown
     memory_limit : bytes of pixels kept in memory; the tiles that follow go to a temporary file
+    folder : where all pixels go instead, so that other processes can read them; None for none
     """
 
-    def __init__(self, geotransform: tuple[float, ...], width: int, height: int, crs: str, memory_limit: int = TILE_MEMORY):
+    def __init__(self, geotransform: tuple[float, ...], width: int, height: int, crs: str, memory_limit: int = TILE_MEMORY,
+                 folder: Path | None = None):
         super().__init__("", geotransform, width, height, crs)
         self._tiles: dict[tuple[int, int], _StoredTile] = {}
-        self._free = memory_limit
+        self.folder, self._free = folder, 0 if folder else memory_limit
         self._file: SpillFile | None = None
+
+    def recipe(self, folder: Path) -> Recipe:
+        """How other processes open the image, whose pixels lie in its folder."""
+        rows = []
+        for tile in self._tiles.values():
+            place, packing = cast(StoredColumn, tile.values)[:2]
+            rows.append((tile.column, tile.row, *tile.shape, place, packing.least, sum(packing.widths)))
+        return Recipe("intensity.tiled_image:shared_image", dict(
+            file=str(self._file.path) if self._file else "", tiles=np.array(rows, np.int64).reshape(-1, 7),
+            geotransform=[float(number) for number in self.geotransform], width=int(self.width), height=int(self.height), crs=self.crs))
 
     def put(self, column: int, row: int, values: np.ndarray) -> None:
         """Put a tile.
@@ -125,7 +140,7 @@ class TiledImage(IntensityImage):
             self._free -= pixels.nbytes
         else:
             self._free = 0
-            self._file = self._file or SpillFile()
+            self._file = self._file or SpillFile(self.folder and self.folder / f"image-{uuid4().hex}.bin")
             stored = self._file.put(pixels.ravel())
         first = column + int(columns[0]), row + int(rows[0])
         self._tiles[column // GEOTIFF_TILE, row // GEOTIFF_TILE] = _StoredTile(*first, pixels.shape, stored)
@@ -160,7 +175,7 @@ class TiledImage(IntensityImage):
         c0, c1 = max(tile.column, column), min(tile.column + tile.shape[1], column + width)
         r0, r1 = max(tile.row, row), min(tile.row + tile.shape[0], row + height)
         if c0 < c1 and r0 < r1:
-            pixels = tile.values if self._file is None or isinstance(tile.values, np.ndarray) else self._file.get(tile.values)
+            pixels = tile.values if isinstance(tile.values, np.ndarray) else tile.values.file.get(tile.values)
             pixels = np.asarray(pixels).reshape(tile.shape)
             values[r0 - row:r1 - row, c0 - column:c1 - column] = pixels[r0 - tile.row:r1 - tile.row, c0 - tile.column:c1 - tile.column]
 
@@ -174,3 +189,13 @@ class TiledImage(IntensityImage):
         if self._file is not None:
             self._file.close()
             self._file = None
+
+
+def shared_image(file: str, tiles: np.ndarray, geotransform: list[float], width: int, height: int, crs: str) -> TiledImage:
+    """What `TiledImage.recipe` describes: of each tile first column and row, shape, first byte, least value and bytes of a packed value."""
+    image, pixels = TiledImage(tuple(geotransform), width, height, crs), ColumnFile(Path(file))
+    for column, row, high, wide, place, least, nbytes in tiles.tolist():
+        packing = Packing(np.dtype(np.float32), high * wide, least, PART_WIDTHS.get(nbytes, (nbytes,)))
+        stored = StoredColumn(place, packing, pixels)
+        image._tiles[column // GEOTIFF_TILE, row // GEOTIFF_TILE] = _StoredTile(column, row, (high, wide), stored)
+    return image

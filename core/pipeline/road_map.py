@@ -240,10 +240,11 @@ def _paint(result, image_path, settings, stages, executor):
     executor.forget()
     image = stages.run("image", "Making the intensity image …", make_intensity_image,
                        result.road_points, settings.image, path=image_path)
-    executor.release()
+    executor.forget()
     # the file is a result; markings are extracted from the image in memory
     points = stages.run("markings", "Extracting markings …", extract_markings,
                         result.road_points, image, frame, settings.markings)
+    executor.release()
     image.close()
     result.image = IntensityImage.open(image_path)
     result.counts["marking_points"] = len(points)

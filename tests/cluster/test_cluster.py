@@ -17,6 +17,8 @@ import pytest
 from curbed_streets import street, survey_of
 from executed_boundaries import Heard, numbers_of
 from executed_boundaries import boundaries as boundaries_by
+from executed_stages import PHASES as STAGE_PHASES
+from executed_stages import found_by
 from lanewright.core.common.errors import Cancelled, RoadExtractionError
 from lanewright.core.common.progress import Progress
 from lanewright.core.execution import cluster as executing
@@ -56,6 +58,10 @@ class AtPhase:
             if k == 0 and phase.function.__name__ == self.name:
                 self.act()
             yield result
+
+    def passing(self):
+        """The same of the phases whose results are not kept."""
+        return AtPhase(self.executor.passing(), self.name, self.act)
 
     def __getattr__(self, name):
         return getattr(self.executor, name)
@@ -359,3 +365,37 @@ def test_point_clouds_that_workers_do_not_see_are_read_here(cluster, sample, mon
     monkeypatch.setattr(executing.Cluster, "sees", lambda self, paths: False)
     assert points_read(sample, monkeypatch, heard, scheduler=cluster.address) == points_read(sample, monkeypatch)
     assert heard.says("do not see the point clouds")
+
+
+@pytest.fixture(scope="module")
+def stages_by_threads(sample):
+    return found_by(sample)
+
+
+@pytest.mark.parametrize("phase", STAGE_PHASES)
+def test_a_worker_that_is_killed_in_a_later_stage_costs_nothing(cluster, sample, stages_by_threads, phase):
+    killed = []
+
+    def kill():
+        if not killed:
+            killed.append(phase)
+            cluster.kill_a_worker()
+
+    executor = cluster_of(cluster.address, False, None)
+    assert found_by(sample, AtPhase(executor, phase, kill)) == stages_by_threads
+    assert killed and not executor.folder.exists()
+
+
+@pytest.mark.parametrize("phase", STAGE_PHASES)
+def test_cancel_in_a_later_stage_ends_within_two_seconds(cluster, sample, phase):
+    at = []
+
+    def cancel():
+        at.append(time.monotonic())
+        raise Cancelled
+
+    executor = cluster_of(cluster.address, False, None)
+    with pytest.raises(Cancelled):
+        found_by(sample, AtPhase(executor, phase, cancel))
+    assert time.monotonic() - at[0] < 2.0
+    assert not executor.folder.exists()

@@ -7,22 +7,29 @@ stretch of road depends on the scanners whose points lie there.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...common.order_statistics import order_by
-from ...common.parallel import ordered_map
 from ...common.progress import Progress
+from ...execution.phase import Phase
 from ...intensity.asphalt_model import LOWER_QUANTILE
 from ...survey.store.records import COORDINATE_SCALE, Points
+from .windows import THRESHOLD_WINDOW, place_of, points_of_rows
+
+if TYPE_CHECKING:
+    from ...execution.phase import Executor
+    from ...survey.store.road_points import RoadPoints
 
 NOISY_SCATTER = 0.40      # of asphalt's level: single points that scatter more are averaged (multi-beam scanners)
 SCATTER_SQUARE = 1.0      # m
 MIN_SQUARE_POINTS = 30  # points of one scanner
 MIN_SCANNER_POINTS = 500     # in squares, below which the scatter of a scanner is unknown
 MAX_SCATTER_POINTS = 100_000   # of a window that are examined; of twice as many an evenly spread share
+EXAMINED_WINDOWS = 16    # windows of 20 m that a worker process is given together
 SAMPLED_WINDOW_STEP = 4      # every fourth window of a road is examined; the others only for scanners that are in none of these
 
 WindowKey = tuple[int, int]   # road, number of the window
@@ -41,31 +48,33 @@ class ScannerScatter:
     points: dict[WindowKey, np.ndarray]
 
     @classmethod
-    def of(cls, points_in: Callable[[int, int], Points], windows: Sequence[WindowKey], progress: Progress = Progress()) -> ScannerScatter:
+    def of(cls, road_points: RoadPoints, windows: Sequence[WindowKey], executor: Executor, progress: Progress = Progress()) -> ScannerScatter:
         """ScannerScatter from the windows of a survey.
 
         Parameters
         ----------
-        points_in : function of road and window that returns the Points there
+        road_points : RoadPoints
         windows : (road, window) of all roads
+        executor : Executor that looks at the windows
         progress : Progress
         """
         sampled = {key for key in windows if key[1] % SAMPLED_WINDOW_STEP == 0}
         roads = {road for road, _ in sampled}
         sampled |= {key for key in windows if key[0] not in roads}
-        counts, squares = {}, []
+        together = EXAMINED_WINDOWS if executor.folder else 1
+        phase = Phase(scatter_of_windows, road_points, (), lambda item: place_of(road_points, (item[0][0], item[0][1], item[-1][1] + 1)))
 
-        def examine(key):
-            points = points_in(*key)
-            return np.bincount(points.scanner), scatter_in_squares(points) if key in sampled else None
+        def run(items, part):
+            tasks = [items[k:k + together] for k in range(0, len(items), together)]
+            return [found for some in executor.run(phase, tasks, part) for found in some]
 
-        for key, (count, found) in zip(windows, ordered_map(examine, windows, progress)):
-            counts[key] = count
-            squares += [] if found is None else [found]
+        found = run([(*key, key in sampled) for key in windows], progress)
+        counts = {key: count for key, (count, _) in zip(windows, found)}
+        squares = [some for _, some in found if some is not None]
         shares = _shares(squares)
         missing = {scanner for count in counts.values() for scanner in np.flatnonzero(count).tolist()} - set(shares)
-        rest = [key for key in windows if key not in sampled and any(counts[key][k] for k in missing if k < len(counts[key]))]
-        squares += ordered_map(lambda key: scatter_in_squares(points_in(*key)), rest)
+        rest = [(*key, True) for key in windows if key not in sampled and any(counts[key][k] for k in missing if k < len(counts[key]))]
+        squares += [some for _, some in run(rest, Progress())] if rest else []
         return cls({**{scanner: share for scanner, share in _shares(squares).items() if scanner in missing}, **shares}, counts)
 
     @property
@@ -93,6 +102,27 @@ class ScannerScatter:
                            "found.")
         return text + (f" Along {windows * length:.0f} of {every * length:.0f} m most points are of noisy scanners, and paint is searched for there "
                        "in averages over a decimetre, as elongated pieces and rows of dashes; other markings are not found there.")
+
+
+def scatter_of_windows(road_points: RoadPoints,
+                       windows: Sequence[tuple[int, int, bool]]) -> list[tuple[np.ndarray, tuple[np.ndarray, np.ndarray, np.ndarray] | None]]:
+    """The phase that looks how single points scatter.
+
+    Parameters
+    ----------
+    road_points : RoadPoints
+    windows : road, window, and whether the scatter in it is asked for
+
+    Returns
+    -------
+    count : (scanners,) points of each scanner in a window
+    squares : of `scatter_in_squares`, None where they are not asked for
+    """
+    found = []
+    for road, window, sampled in windows:
+        points = points_of_rows(road_points, road, window * THRESHOLD_WINDOW, (window + 1) * THRESHOLD_WINDOW)
+        found.append((np.bincount(points.scanner), scatter_in_squares(points) if sampled else None))
+    return found
 
 
 def scatter_in_squares(points: Points) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -10,6 +10,7 @@ from lanewright.core.common.progress import Progress
 from lanewright.core.intensity.image import make_intensity_image, write_intensity_image
 from lanewright.core.io.geotiff import IntensityImage
 from lanewright.core.markings.paint import extract as extraction
+from lanewright.core.markings.paint import windows
 from lanewright.core.markings.paint.extract import MarkingSettings, extract_markings
 from lanewright.core.survey.frame.build import build_frame
 from lanewright.core.survey.store.records import ROAD_POINT, to_units
@@ -202,7 +203,7 @@ def test_where_points_are_dense_a_share_of_them_gives_the_bins(tmp_path, monkeyp
     line = strip(5, 75, 1.0, 1.15)
     records = street(FRAME, [line], density=1500)
     usual = found_on(records, tmp_path)
-    monkeypatch.setattr(extraction, "MAX_OFFSET_POINTS", 60_000)
+    monkeypatch.setattr(windows, "MAX_OFFSET_POINTS", 60_000)
     some = found_on(records, tmp_path)
     assert_same_points(some.records, found_on(shuffled(records), tmp_path, section_length=7.3).records)
     assert abs(len(some) - len(usual)) < 0.01 * len(usual)

@@ -1,0 +1,336 @@
+"""Paint in windows of 20 m along a road: the level of asphalt of each, then the cells that are brighter, and the points on these.
+
+Windows are worked on by phases: levels first, as a window needs those of its neighbours, then paint. The image is resampled in the
+road frame, station along and offset across, so that "along the road" is an axis of the array and a bend is straight.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Collection
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...curves.robust import median
+from ...execution.phase import Recipe
+from ...survey.store.records import COORDINATE_SCALE, Points, join_columns, take_rows
+from ..objects.road_grid import CELL_UNITS, PieceOfRoad, RoadCells, RoadGrid, cell_numbers, cells_of_road
+from .asphalt_level import AsphaltLevels, asphalt_profile, dark_cells, flatten
+from .fading import without_fading_areas, without_fading_rims
+from .faint_lines import faint_lines
+from .gutters import RimBands, edge_distance, rim_distance
+from .mask import painted_pixels
+from .morphology import morphology
+from .noisy import CellAverages, ViewSamples, noisy_paint_cells, views
+from .raised import raised_cells
+from .spacing import track_spacing
+from .threshold_bins import MIN_BIN_CELLS, AsphaltBin, OtsuSplit, asphalt_bins, bin_edges, split_bins
+
+if TYPE_CHECKING:
+    from ...survey.frame.road_frame import RoadFrame
+    from ...survey.store.columns import Columns
+    from ...survey.store.road_points import RoadPoints
+    from .extract import MarkingSettings
+
+RIM_WIDTH = 0.60         # m from the rim of the road: gutters; asphalt is taken from the cells inside
+THRESHOLD_WINDOW = 500   # cells: thresholds are taken from 20 m of road
+WINDOW_HALO = 100        # cells: 4 m around a window that are read too, for rims and runs that cross its ends
+MAX_HEIGHTS = 30_000     # points of a piece of 5 m whose heights are compared; of twice as many an evenly spread share
+MAX_OFFSET_POINTS = 300_000  # points of a window whose offsets are kept; of twice as many an evenly spread share
+
+Paint = tuple[dict[str, np.ndarray], np.ndarray, np.ndarray]   # columns of points on paint; local x, y of the mask's pixels, if it is asked for
+Bins = list[tuple[AsphaltBin, OtsuSplit]]   # of one window; none where there are no data
+Windows = tuple[int, int, int]   # number of a road, first and last + 1 number of its windows
+
+
+def windows_of(road_points: RoadPoints, road: int) -> range:
+    """Numbers of the windows of a road."""
+    start, end = road_points.store.span(road)
+    first, last = (int(np.floor(s / COORDINATE_SCALE / CELL_UNITS / THRESHOLD_WINDOW)) for s in (start, end))
+    return range(first, last + 1)
+
+
+def points_of_rows(road_points: RoadPoints, road: int, first: int, last: int) -> Points:
+    """Points of the rows of cells from `first` to before `last`."""
+    return road_points.window(road, first * CELL_UNITS * COORDINATE_SCALE, last * CELL_UNITS * COORDINATE_SCALE)
+
+
+def place_of(road_points: RoadPoints, windows: Windows) -> str:
+    """What messages call windows of a road."""
+    road, *ends = windows
+    return road_points.survey.stretch(road, *(number * THRESHOLD_WINDOW * CELL_UNITS * COORDINATE_SCALE for number in ends))
+
+
+class PaintSource:
+    """What paint is extracted from.
+
+    Parameters
+    ----------
+    road_points : RoadPoints
+    image : IntensityRaster of them, in memory or on disk
+    frame : RoadFrame; by default that of the survey whose points they are
+
+    Attributes
+    ----------
+    kept : {road: WindowExtractor} whose windows share what they compute; where there is none, each stretch of windows is worked on by itself
+    """
+
+    def __init__(self, road_points: RoadPoints, image: Any, frame: RoadFrame | None = None):
+        self.road_points, self.image, self.frame = road_points, image, frame or road_points.survey.frame
+        self.kept: dict[int, WindowExtractor] = {}
+
+    def recipe(self, folder: Path) -> Recipe:
+        """How other processes open points and image."""
+        return Recipe("markings.paint.windows:PaintSource", dict(road_points=self.road_points.recipe(folder), image=self.image.recipe(folder)))
+
+
+def levels_of_windows(source: PaintSource, windows: Windows, settings: MarkingSettings, noisy: dict[int, list[int]]) -> list[Bins]:
+    """The phase that finds the level of asphalt.
+
+    Parameters
+    ----------
+    source : PaintSource
+    windows : Windows of a road
+    settings : MarkingSettings
+    noisy : {road: windows with noisy points}, which have no level
+
+    Returns
+    -------
+    bins of asphalt and Otsu's splits of each window; an empty list where there are no data
+    """
+    extractor = WindowExtractor(source, windows, settings, noisy.get(windows[0], ()))
+    return [extractor.bins(window) for window in range(*windows[1:])]
+
+
+def paint_of_windows(source: PaintSource, item: tuple[Windows, dict[int, Bins]], settings: MarkingSettings, noisy: dict[int, list[int]],
+                     masked: bool) -> list[Paint]:
+    """The phase that extracts paint.
+
+    Parameters
+    ----------
+    source : PaintSource
+    item : Windows of a road, and the bins that are known, by window
+    settings : MarkingSettings
+    noisy : {road: windows with noisy points}
+    masked : whether the mask's pixels are asked for
+    """
+    windows, bins = item
+    road, first, end = windows
+    extractor = source.kept.get(road) or WindowExtractor(source, windows, settings, noisy.get(road, ()), masked, bins)
+    return [extractor.extract(window) for window in range(first, end)]
+
+
+def bins_about(windows: Windows, bins: dict[int, Bins]) -> dict[int, Bins]:
+    """Of the bins of all windows of a road those that the thresholds of some depend on: up to the next ones with data and one more."""
+    _, first, end = windows
+    low = next((w for w in range(first - 1, min(bins) - 1, -1) if bins[w]), min(bins)) - 1
+    high = max(next((w for w in range(end, max(bins) + 1) if bins[w]), max(bins)), end) + 1
+    return {w: bins[w] for w in range(low, high + 1) if w in bins}
+
+
+class WindowExtractor:
+    """Extracts paint from the windows of one road, in two steps: the level of asphalt, then the cells that are brighter.
+
+    A window is extracted when the level of its neighbours is known; its data are kept until then. Several threads
+    may extract windows at once, in the order of the road.
+
+    Parameters
+    ----------
+    source : PaintSource
+    windows : that are asked for
+    settings : MarkingSettings
+    masked : whether the mask's pixels are asked for
+    noisy : windows with noisy points: there paint is searched for in averages, and no other window's threshold depends on them
+    bins : {window: bins} of `bins_about`; none where all windows of the road are asked for
+    """
+
+    def __init__(self, source: PaintSource, windows: Windows, settings: MarkingSettings, noisy: Collection[int] = (), masked: bool = False,
+                 bins: dict[int, Bins] | None = None):
+        road, *between = windows
+        self.road_points, self.image, self.frame, self.road, self.settings = source.road_points, source.image, source.frame, road, settings
+        self.masked, self.noisy = masked, set(noisy)
+        # the windows asked for, and those with levels
+        self.begin, self.end = between
+        self.first, self.last = (min(bins), max(bins)) if bins else (self.begin, self.end - 1)
+        # by window
+        self._pieces: dict[int, list[PieceOfRoad]] = {}
+        self._bins: dict[int, Bins] = dict(bins or {})
+        self._views: dict[int, _WindowView | None] = {}
+        # data that several threads ask for are computed by one
+        self._bin_locks: dict[int, threading.Lock] = {}
+        self._piece_locks: dict[int, threading.Lock] = {}
+
+    def extract(self, window: int) -> Paint:
+        """Paint of one window."""
+        return self._from_averages(window) if window in self.noisy else self._from_thresholds(window)
+
+    def _points(self, first, last):
+        return points_of_rows(self.road_points, self.road, first, last)
+
+    def _in_cells(self, window):
+        """[PieceOfRoad] of a window's own points; kept until the window is extracted, as its neighbours use them too.
+
+        Of a window that is not asked for they are those of the halo alone.
+        """
+        with self._piece_locks.setdefault(window, threading.Lock()):
+            if window not in self._pieces:
+                first, last = window * THRESHOLD_WINDOW, (window + 1) * THRESHOLD_WINDOW
+                first, last = last - WINDOW_HALO if window < self.begin else first, first + WINDOW_HALO if window >= self.end else last
+                step = max(len(self._points(first, last)) // MAX_OFFSET_POINTS, 1)
+                self._pieces[window] = cells_of_road(self.road_points, self.road, first, last, step)
+            return self._pieces[window]
+
+    def _view(self, window):
+        """_WindowView of a window with its halo; None where it has no points of its own."""
+        if not self._in_cells(window):
+            return None
+        parts = [piece for beside in (window - 1, window, window + 1) for piece in self._in_cells(beside)]
+        cells = RoadCells.of(parts, window * THRESHOLD_WINDOW - WINDOW_HALO, (window + 1) * THRESHOLD_WINDOW + WINDOW_HALO)
+        brightness = cells.grid.read(self.image, self.frame, self.road)
+        distances, scanned = (rim_distance(cells.occupied), edge_distance(cells.half_width, cells.grid.offsets())), np.isfinite(brightness)
+        return _WindowView(cells.grid, brightness, [RimBands.of(distance, scanned) for distance in distances], cells.occupied)
+
+    def bins(self, window: int) -> Bins:
+        """Bins of asphalt and Otsu's splits of one window; an empty list where there are no data."""
+        with self._bin_locks.setdefault(window, threading.Lock()):
+            if window not in self._bins:
+                view = None if window in self.noisy else self._view(window)
+                self._bins[window] = [] if view is None else self._bins_of(window, view)
+                self._views[window] = view
+            return self._bins[window]
+
+    def _bins_of(self, window, view):
+        brightness, offsets, rows = view.brightness, view.grid.offsets(), slice(WINDOW_HALO, WINDOW_HALO + THRESHOLD_WINDOW)
+        scanned = np.isfinite(brightness)
+        interior = scanned[rows] & (view.rims[0].distance[rows] > np.float32(RIM_WIDTH))
+        if np.count_nonzero(interior) < MIN_BIN_CELLS:
+            interior = scanned[rows]
+        if not interior.any():
+            return []
+        # without a correction asphalt itself is darker far from the vehicle
+        usual = float(median(brightness[rows][interior])) if self.road_points.has_corrected else np.inf
+        if usual < np.inf:
+            dark = dark_cells(brightness, usual)
+            if np.count_nonzero(interior & ~dark[rows]) >= MIN_BIN_CELLS:
+                scanned, interior = scanned & ~dark, interior & ~dark[rows]
+        columns = np.flatnonzero(interior.any(axis=0))
+        edges = bin_edges(np.concatenate([piece.offsets for piece in self._in_cells(window)]), offsets[columns[0]], offsets[columns[-1]])
+        bins = asphalt_bins(brightness[rows], interior, offsets, edges, usual)
+        z, gutter = flatten(brightness, *asphalt_profile(bins, offsets), view.rims)
+        return list(zip(bins, split_bins(z[rows], (scanned & ~gutter)[rows], offsets, bins, self.settings.separation)))
+
+    def _levels(self, window):
+        """AsphaltLevels of the windows around one; their bins are computed if they were not yet."""
+        self.bins(min(window + 2, self.last))  # a different window for each thread
+        known = {window: self.bins(window)} if self.bins(window) else {}
+        for step, end in ((-1, self.first), (1, self.last)):
+            beside = next((w for w in range(window + step, end + step, step) if self.bins(w)), None)
+            if beside is not None:
+                # the thresholds of a window depend on its neighbours
+                known.update((w, self.bins(w)) for w in (beside, beside + step) if self.first <= w <= self.last and self.bins(w))
+        return AsphaltLevels(known, THRESHOLD_WINDOW * CELL_UNITS * COORDINATE_SCALE, self.settings)
+
+    def _pixels(self, mask, grid):
+        """Local x, y of the centres of the image's pixels that lie in painted cells of the window itself."""
+        own = mask[WINDOW_HALO:WINDOW_HALO + THRESHOLD_WINDOW]
+        return painted_pixels(own, (grid.first + WINDOW_HALO, grid.low), self.image, self.frame.origin, self.frame.road(self.road))
+
+    def _from_thresholds(self, window: int) -> Paint:
+        """Paint by thresholds on the image."""
+        levels = self._levels(window)
+        # the neighbours' data were used for the levels and are not needed again
+        view = self._views.pop(window) if window in self._views else self._view(window)
+        parts = self._pieces.pop(window)
+        if view is None or not len(levels.numbers):
+            return self._nothing()
+        grid, brightness = view.grid, view.brightness
+        median, spread, scale, threshold = levels.at(grid)
+        z, gutter = flatten(brightness, median, spread, view.rims)
+        with np.errstate(invalid="ignore"):
+            bright = morphology((z > threshold * scale) & ~gutter, self.settings)
+        mask = without_fading_areas(z, without_fading_rims(z, bright, view.occupied & ~gutter), view.occupied, gutter, grid.offsets())
+        # the background that was subtracted from the cell is subtracted from the point as well
+        least = (brightness - z * spread) + (threshold - 0.5) * (spread * scale)
+        lines, halfway = faint_lines(brightness, view.occupied, view.rims[0].distance, mask, bright & ~mask)
+        least = np.where(lines & ~mask, halfway, least)
+        mask |= lines
+        mask &= ~raised_cells([self._heights(part, grid) for part in parts], mask)
+        return self._paint_in(parts, grid, view.occupied, mask, least)
+
+    def _heights(self, part: PieceOfRoad, grid: RoadGrid) -> tuple[np.ndarray, np.ndarray]:
+        """Flat numbers in the grid of the cells of an even share of the points of a part, and the heights of these."""
+        step = max(len(part.cell) // MAX_HEIGHTS, 1)
+        row, column = np.divmod(part.cell[::step], np.int32(part.grid.shape[1]))
+        row += np.int32(part.grid.first - grid.first)
+        column += np.int32(part.grid.low - grid.low)
+        return row * np.int32(grid.shape[1]) + column, self._points(part.grid.first, part.grid.last).records["z"][::step]
+
+    def _from_averages(self, window: int) -> Paint:
+        """Paint where single points are noisy: bright pieces must have the shape of paint, too."""
+        first, last = window * THRESHOLD_WINDOW, (window + 1) * THRESHOLD_WINDOW
+        if not len(self._points(first, last)):
+            return self._nothing()
+        parts = cells_of_road(self.road_points, self.road, first - WINDOW_HALO, last + WINDOW_HALO)
+        cells = RoadCells.of(parts, first - WINDOW_HALO, last + WINDOW_HALO)
+        if cells is None:
+            return self._nothing()
+        points = self._points(first - WINDOW_HALO, last + WINDOW_HALO)
+        cell = np.concatenate([cell for _, cell in cell_numbers(points.records, cells.grid)])
+        averages = CellAverages.of(cell, points.value, points.records["z"], cells.grid.shape, self.settings.faint)
+        samples = ViewSamples(cell, points.value, points.covered > 0, views(points, self.frame))
+        mask = noisy_paint_cells(averages, rim_distance(cells.occupied), samples, self.settings.faint)
+        return self._paint_in([part for part in parts if part.grid.first >= first and part.grid.last <= last], cells.grid, cells.occupied, mask)
+
+    def _nothing(self) -> Paint:
+        return _arrays(join_columns([], self.road_points.store.dtype)), np.empty(0), np.empty(0)
+
+    def _paint_in(self, parts: list[PieceOfRoad], grid: RoadGrid, occupied: np.ndarray, mask: np.ndarray,
+                  least: np.ndarray | None = None) -> Paint:
+        """Points of the window's own parts in painted cells, brighter than `least` of their cell, and the mask's pixels.
+
+        occupied, mask, least : (rows, columns) of the grid
+        """
+        found, on = [], np.zeros(grid.shape, bool)
+        spacing = np.rint(track_spacing(occupied) * 1e3).astype(np.uint16)
+        for part in parts:
+            place = part.within(grid)
+            rows, cell = part.points_on(mask[place])
+            records = take_rows(self._points(part.grid.first, part.grid.last).records, rows)
+            if least is not None:
+                bright = np.flatnonzero(Points(records).value > least[place].ravel().take(cell))
+                records, cell = take_rows(records, bright), cell.take(bright)
+            found.append(records.with_columns(spacing=spacing[place].ravel().take(cell)))
+            own = np.zeros(part.grid.shape, bool)
+            own.ravel()[cell] = True
+            on[place] = own
+        records = join_columns(found, self.road_points.store.dtype)
+        if not self.masked:
+            return _arrays(records), np.empty(0), np.empty(0)
+        # the image spreads a point over neighbouring cells: a cell whose own points are dark is no marking
+        for part in parts:
+            place = part.within(grid)
+            mask[place][part.occupied] = on[place][part.occupied]
+        return _arrays(records), *self._pixels(mask, grid)
+
+
+def _arrays(records: Columns) -> dict[str, np.ndarray]:
+    return {name: records[name] for name in records.names}
+
+
+@dataclass(frozen=True)
+class _WindowView:
+    """The image of a window with its halo.
+
+    grid : RoadGrid
+    brightness : (rows, columns) float32, NaN where there is no data
+    rims : RimBands of the rim of the scanned road and of the road's edges
+    occupied : (rows, columns) bool, cells that points lie in
+    """
+
+    grid: RoadGrid
+    brightness: np.ndarray
+    rims: list[RimBands]
+    occupied: np.ndarray

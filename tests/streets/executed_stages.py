@@ -1,0 +1,52 @@
+"""The stages of a road map up to paint, run by any executor on a sample survey in small tasks, and what must be the same to the last bit."""
+
+import numpy as np
+import pytest
+from lanewright.core.common.progress import Progress
+from lanewright.core.execution.choice import ExecutionSettings
+from lanewright.core.execution.work_folder import KeptResults
+from lanewright.core.intensity import correction
+from lanewright.core.intensity import image as imaging
+from lanewright.core.intensity.correction import correct_intensity
+from lanewright.core.intensity.image import make_intensity_image
+from lanewright.core.markings.paint import extract as extraction
+from lanewright.core.markings.paint import scatter
+from lanewright.core.markings.paint.extract import extract_markings
+from lanewright.core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
+from lanewright.core.road.surface import extract
+from lanewright.core.road.surface.extract import extract_road_surface
+from lanewright.core.survey import open_survey as opening
+from lanewright.core.survey import point_density
+from lanewright.core.survey.point_density import cube_densities
+
+PHASES = ["surface_points", "cubes_of_stretch", "levels_of_stretch", "corrected_of_stretch", "window_of_image", "sums_of_pieces",
+          "scatter_of_windows", "levels_of_windows", "paint_of_windows"]
+
+
+def found_by(sample, executor=None, work=None, progress=Progress()):
+    """All numbers of road points, outline, image and paint. The executor is closed."""
+    made, path = sample
+    with pytest.MonkeyPatch.context() as patch:
+        for module in (extract, correction, point_density):
+            patch.setattr(module, "STRETCH_POINTS", 40_000)
+        patch.setattr(imaging, "PIECES_PER_TASK", 3)
+        patch.setattr(extraction, "WINDOWS_PER_TASK", 1)
+        patch.setattr(scatter, "EXAMINED_WINDOWS", 1)
+        if executor is not None:
+            patch.setattr(opening, "executor_for", lambda *_: KeptResults(executor, work) if work else executor)
+        survey = opening.open_survey([path], made.trajectory, execution=ExecutionSettings(work_folder=str(work.path) if work else ""))
+        try:
+            edges = draw_boundaries(find_curb_points(survey, BoundarySettings("profiles")), survey.frame).edges
+            road_points, surface = extract_road_surface(survey, edges)
+            density = cube_densities(road_points)
+            selected = [np.array(road_points.section(*key).records).tobytes() for key in road_points.all_sections()]
+            road_points, report = correct_intensity(road_points, survey.frame)
+            image = make_intensity_image(road_points)
+            pixels = image.read_pixels(0, 0, image.width, image.height).tobytes()
+            paint = extract_markings(road_points, image, survey.frame, progress=progress)
+            image.close()
+            painted = [(key, np.array(paint.section(*key).records).tobytes()) for key in paint.all_sections()]
+            corrected = [road_points.section(*key).corrected.tobytes() for key in road_points.all_sections()]
+            return selected, corrected, surface.area.tobytes(), surface.status.tolist(), density, report, pixels, painted
+        finally:
+            survey.store.close()
