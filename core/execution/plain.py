@@ -74,11 +74,13 @@ def _tree(value, arrays):
     """The value as JSON, in which numbers of arrays stand for these."""
     if value is None or isinstance(value, (bool, str)) or type(value) in (int, float):
         return value
+    if isinstance(value, np.generic) and value.dtype.kind in "biuf" and value.dtype.itemsize <= 8:
+        return {"number": [value.dtype.str, value.item()]}
     if isinstance(value, (np.ndarray, np.generic)):
         if value.dtype.hasobject:
             raise TypeError("An array of objects is no plain value.")
         arrays.append(np.asarray(value))
-        return {"array" if isinstance(value, np.ndarray) else "number": f"a{len(arrays) - 1}"}
+        return {"array" if isinstance(value, np.ndarray) else "scalar": f"a{len(arrays) - 1}"}
     if isinstance(value, dict):
         return {"dict": [[_tree(key, arrays), _tree(one, arrays)] for key, one in value.items()]}
     if type(value) in (list, tuple):
@@ -98,7 +100,10 @@ def _value(tree, arrays):
     if not isinstance(tree, dict):
         return tree
     kind = next(iter(tree))
-    if kind in ("array", "number"):
+    if kind == "number":
+        name, number = tree[kind]
+        return np.dtype(name).type(number)
+    if kind in ("array", "scalar"):
         return arrays[tree[kind]] if kind == "array" else arrays[tree[kind]][()]
     if kind == "dict":
         return {_value(key, arrays): _value(one, arrays) for key, one in tree[kind]}

@@ -244,14 +244,16 @@ def _paint(result, image_path, settings, stages, executor):
     # the file is a result; markings are extracted from the image in memory
     points = stages.run("markings", "Extracting markings …", extract_markings,
                         result.road_points, image, frame, settings.markings)
-    executor.release()
+    executor.forget()
     image.close()
     result.image = IntensityImage.open(image_path)
     result.counts["marking_points"] = len(points)
     if len(points):
         points = stages.run("outliers", "Removing outliers …", remove_outliers, points, settings.outliers)
     result.counts["marking_points_kept"] = len(points)
-    markings, clustered = stages.run("clusters", "Clustering markings …", cluster_markings, points, frame, settings.clusters)
+    markings, clustered = stages.run("clusters", "Clustering markings …", cluster_markings, points, frame, settings.clusters,
+                                     executor=executor.passing())
+    executor.release()
     markings = correct_markings(markings, result.corrections)
     edges = result.edges.densified(frame)
     lines = stages.run("lines", "Fitting marking lines …", fit_marking_lines, clustered, markings, frame, settings.lines,

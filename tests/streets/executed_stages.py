@@ -1,7 +1,8 @@
-"""The stages of a road map up to paint, run by any executor on a sample survey in small tasks, and what must be the same to the last bit."""
+"""The stages of a road map up to markings, run by any executor on a sample survey in small tasks, and what must be the same to the last bit."""
 
 import numpy as np
 import pytest
+import shapely
 from lanewright.core.common.progress import Progress
 from lanewright.core.execution.choice import ExecutionSettings
 from lanewright.core.execution.work_folder import KeptResults
@@ -9,6 +10,9 @@ from lanewright.core.intensity import correction
 from lanewright.core.intensity import image as imaging
 from lanewright.core.intensity.correction import correct_intensity
 from lanewright.core.intensity.image import make_intensity_image
+from lanewright.core.markings.objects import phases
+from lanewright.core.markings.objects.cluster import cluster_markings
+from lanewright.core.markings.objects.marking_objects import markings_to_features
 from lanewright.core.markings.paint import extract as extraction
 from lanewright.core.markings.paint import scatter
 from lanewright.core.markings.paint.extract import extract_markings
@@ -20,11 +24,11 @@ from lanewright.core.survey import point_density
 from lanewright.core.survey.point_density import cube_densities
 
 PHASES = ["surface_points", "cubes_of_stretch", "levels_of_stretch", "corrected_of_stretch", "window_of_image", "sums_of_pieces",
-          "scatter_of_windows", "levels_of_windows", "paint_of_windows"]
+          "scatter_of_windows", "levels_of_windows", "paint_of_windows", "combs_of_windows", "shapes_of_clusters"]
 
 
 def found_by(sample, executor=None, work=None, progress=Progress()):
-    """All numbers of road points, outline, image and paint. The executor is closed."""
+    """All numbers of road points, outline, image, paint and markings; `progress` is that of the last two. The executor is closed."""
     made, path = sample
     with pytest.MonkeyPatch.context() as patch:
         for module in (extract, correction, point_density):
@@ -32,6 +36,7 @@ def found_by(sample, executor=None, work=None, progress=Progress()):
         patch.setattr(imaging, "PIECES_PER_TASK", 3)
         patch.setattr(extraction, "WINDOWS_PER_TASK", 1)
         patch.setattr(scatter, "EXAMINED_WINDOWS", 1)
+        patch.setattr(phases, "TASK_POINTS", 300)
         if executor is not None:
             patch.setattr(opening, "executor_for", lambda *_: KeptResults(executor, work) if work else executor)
         survey = opening.open_survey([path], made.trajectory, execution=ExecutionSettings(work_folder=str(work.path) if work else ""))
@@ -45,8 +50,11 @@ def found_by(sample, executor=None, work=None, progress=Progress()):
             pixels = image.read_pixels(0, 0, image.width, image.height).tobytes()
             paint = extract_markings(road_points, image, survey.frame, progress=progress)
             image.close()
+            markings, clustered = cluster_markings(paint, survey.frame, progress=progress, executor=survey.executor.passing())
+            clusters = [clustered.section(*key).cluster.tobytes() for key in clustered.all_sections()]
+            drawn = [shapely.to_wkb(one) for one in markings_to_features(markings, survey.frame).geometries], markings.kind.tolist()
             painted = [(key, np.array(paint.section(*key).records).tobytes()) for key in paint.all_sections()]
             corrected = [road_points.section(*key).corrected.tobytes() for key in road_points.all_sections()]
-            return selected, corrected, surface.area.tobytes(), surface.status.tolist(), density, report, pixels, painted
+            return selected, corrected, surface.area.tobytes(), surface.status.tolist(), density, report, pixels, painted, clusters, drawn
         finally:
             survey.store.close()

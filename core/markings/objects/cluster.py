@@ -9,6 +9,7 @@ across it, where a decimetre may separate the two lines of a double line.
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -21,11 +22,13 @@ from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ...common.setting import check_limits, setting
 from ...curves.robust import median
+from ...execution.threads import THREADS
 from ...survey.store.records import COORDINATE_SCALE, Points, join_columns
 from .classify import LINE_KINDS, NOT_PAINT, ROAD_EDGE_CLEARANCE, ClassSettings, classify_markings, relative_contrast, too_pale
 from .connected_cells import components, occupied
 from .marking_objects import make_marking_objects
 from .outline import band, cell_outline, lifted, painted_cells, parts, to_local
+from .phases import ApartWork
 from .road_grid import CELL_UNITS
 from .scan_tracks import track_reach
 from .shape import measure
@@ -33,6 +36,7 @@ from .split_merge import join_fragments, split_compounds
 from .zebra import zebra_stripes
 
 if TYPE_CHECKING:
+    from ...execution.phase import Executor
     from ...survey.frame.road_frame import RoadFrame
     from ...survey.store.columns import Columns
     from ...survey.store.road_points import RoadPoints
@@ -64,13 +68,16 @@ class ClusterSettings:
 
 
 def cluster_markings(marking_points: RoadPoints, frame: RoadFrame, settings: ClusterSettings = ClusterSettings(),
-                     progress: Progress = Progress()) -> tuple[MarkingObjects, RoadPoints]:
+                     progress: Progress = Progress(), executor: Executor = THREADS) -> tuple[MarkingObjects, RoadPoints]:
     """Group paint points into markings with class, size and outline.
 
     Parameters
     ----------
     marking_points : RoadPoints on paint
     frame : RoadFrame
+    settings : ClusterSettings
+    progress : Progress
+    executor : who looks for crossings, divides compound clusters and measures clusters
 
     Returns
     -------
@@ -84,21 +91,23 @@ def cluster_markings(marking_points: RoadPoints, frame: RoadFrame, settings: Clu
     roads = marking_points.roads()
     for k, road in enumerate(roads):
         part = progress.part(k / len(roads), (k + 1) / len(roads))
-        records, labels = connected_points(marking_points, road, settings.distance, part.part(0, 0.4))
+        work = ApartWork(executor, road)
+        records, labels = connected_points(marking_points, road, settings.distance, part.part(0.0, 0.1))
         cluster = np.zeros(len(records), np.int32)
-        found, rest = _stripes_of_crossings(records, frame.road(road))
+        found, rest = _stripes_of_crossings(records, frame.road(road), work, part.part(0.1, 0.4))
         records, labels = records.take(rest), labels[rest]
-        order, starts, _ = _by_cluster(split_compounds(records, labels), MIN_FRAGMENT_POINTS)
+        split = split_compounds(records, labels, partial(work.parts, progress=part.part(0.4, 0.5)))
+        order, starts, _ = _by_cluster(split, MIN_FRAGMENT_POINTS)
         records = records.take(order)
-        s, d, spacing = records["s"], records["d"], records["spacing"]
-        pieces = [measure(s[a:b], d[a:b], spacing[a:b]) for a, b in zip(starts[:-1].tolist(), starts[1:].tolist())]
+        pieces = work.shapes(records, starts, part.part(0.5, 0.65))
         joins = join_fragments(pieces, settings.classes.max_width)
         again, starts, labels = _by_cluster(_relabelled(records, starts, joins), settings.min_points)
         records, order = records.take(again), rest[order[again]]
         bounds = list(zip(starts[:-1].tolist(), starts[1:].tolist()))
-        s, d, spacing = records["s"], records["d"], records["spacing"]
         alone = _alone(pieces, joins)
-        shapes = [alone.get(label) or measure(s[a:b], d[a:b], spacing[a:b]) for label, (a, b) in zip(labels.tolist(), bounds)]
+        some, ends = _some_clusters(records, [span for label, span in zip(labels.tolist(), bounds) if label not in alone])
+        joined = iter(work.shapes(some, ends, part.part(0.65, 0.7)))
+        shapes = [alone[label] if label in alone else next(joined) for label in labels.tolist()]
         half_width, hidden = records["half_width"].astype(float), records["covered"]
         half_widths = [median(half_width[a:b]) * 1e-3 for a, b in bounds]
         covered = [float(np.count_nonzero(hidden[a:b])) / (b - a) for a, b in bounds]
@@ -115,7 +124,7 @@ def cluster_markings(marking_points: RoadPoints, frame: RoadFrame, settings: Clu
             for polygon in _outline(marking, frame.road(road)):
                 polygons.append(polygon)
                 rows.append(_row(marking, number, road, frame))
-            part.report(0.4 + 0.6 * number / max(len(bounds), 1))
+            part.report(0.7 + 0.3 * number / max(len(bounds), 1))
         _put(clustered.store, road, cluster, marking_points)
     progress.info(f"Markings: {number} found; {refused} clusters were left out as gutters, seams, covers, specks or the feet of what "
                  "stands on the road.")
@@ -133,12 +142,19 @@ class _Marking(NamedTuple):
     outline: shapely.Polygon | None = None
 
 
-def _stripes_of_crossings(records, road):
+def _some_clusters(records, spans):
+    """The records of some clusters, of which the rows are given, one after the other, and their bounds."""
+    rows = np.concatenate([np.empty(0, np.intp), *(np.arange(a, b) for a, b in spans)])
+    return records.take(rows), np.cumsum([0, *(b - a for a, b in spans)])
+
+
+def _stripes_of_crossings(records, road, work, progress):
     """[_Marking] the stripes of crossings, and the rows of all other records."""
     cells, member = occupied(records["x"] // CELL_UNITS, records["y"] // CELL_UNITS)
     station = np.zeros(len(cells))
     station[member] = records["s"] * COORDINATE_SCALE
-    stripes = zebra_stripes((cells + 0.5) * CELL_UNITS * COORDINATE_SCALE, road.heading(station))
+    places = (cells + 0.5) * CELL_UNITS * COORDINATE_SCALE
+    stripes = zebra_stripes(places, road.heading(station), lambda windows: work.combs(places, windows, progress))
     stripe_of, found = np.full(len(cells), -1), []
     for k, stripe in enumerate(stripes):
         stripe_of[stripe.spots] = k

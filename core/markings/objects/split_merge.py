@@ -12,7 +12,7 @@ lines across it.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,7 +20,6 @@ from scipy.spatial import cKDTree
 
 from ...common.groups import linked_groups
 from ...common.order_statistics import order_by
-from ...common.parallel import check_cancelled, ordered_map
 from ...lazy import cv2
 from ...survey.store.records import COORDINATE_SCALE
 from .classify import columns_of
@@ -56,13 +55,14 @@ MIN_STOP_LINE_PIECE, MAX_STOP_LINE_GAP = 0.8, 0.30  # m across: a row of shorter
 MAX_SIDE_SHIFT = 0.10  # m by which wear has moved an edge that two pieces share
 
 
-def split_compounds(records: Columns, labels: np.ndarray) -> np.ndarray:
+def split_compounds(records: Columns, labels: np.ndarray, parts_of: Callable[..., list[tuple[np.ndarray, int]]] | None = None) -> np.ndarray:
     """Give the parts of compound clusters labels of their own.
 
     Parameters
     ----------
     records : N points of one road
     labels : (N,) int, the cluster of each
+    parts_of : what applies `parts_of_compound` to clusters, given s, d, spacing and [(first, end)] rows of each; by default one after the other
 
     Returns
     -------
@@ -79,21 +79,36 @@ def split_compounds(records: Columns, labels: np.ndarray) -> np.ndarray:
     large = (ranges[0] * COORDINATE_SCALE >= COMPOUND_LENGTH) & (ranges[1] * COORDINATE_SCALE >= COMPOUND_BREADTH) \
         | (ranges[0] * COORDINATE_SCALE >= MIN_LENGTH_BESIDE_BAR) & (ranges[1] * COORDINATE_SCALE >= MIN_RUN_ACROSS)
 
-    def split(bounds):
-        a, b = bounds
-        cells, member = occupied(along[a:b] // CELL_UNITS, across[a:b] // CELL_UNITS)
-        spacing = np.zeros(len(cells))
-        spacing[member] = apart[a:b]
-        parts, count = _parts(cells, spacing)
-        return parts[member], count
-
     bounds = list(zip(starts[large].tolist(), np.r_[starts[1:], len(order)][large].tolist()))
-    for (a, b), (parts, count) in zip(bounds, ordered_map(split, bounds)):
-        check_cancelled()
+    if parts_of is None:
+        found = [parts_of_compound(along[a:b], across[a:b], apart[a:b]) for a, b in bounds]
+    else:
+        found = parts_of(along, across, apart, bounds)
+    for (a, b), (parts, count) in zip(bounds, found):
         if count > 1:
             labels[order[a:b]] = following + parts
             following += count
     return labels
+
+
+def parts_of_compound(s: np.ndarray, d: np.ndarray, spacing: np.ndarray) -> tuple[np.ndarray, int]:
+    """The parts of one cluster.
+
+    Parameters
+    ----------
+    s, d : (N,) int, units of 0.1 mm
+    spacing : (N,) int, mm between the tracks of the scan
+
+    Returns
+    -------
+    parts : (N,) int, the part of every point, numbered from 0
+    count : how many there are
+    """
+    cells, member = occupied(s // CELL_UNITS, d // CELL_UNITS)
+    apart = np.zeros(len(cells))
+    apart[member] = spacing
+    parts, count = _parts(cells, apart)
+    return parts[member], count
 
 
 def _parts(cells, spacing):

@@ -8,12 +8,12 @@ Bars of hatching are parallel, too, but they lie askew to their row; stripes alo
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from ...common.groups import linked_groups
-from ...common.parallel import check_cancelled
 from ...curves.robust import percentiles
 from ...lazy import cv2
 
@@ -80,23 +80,19 @@ class Stripe(NamedTuple):
     corners: np.ndarray
 
 
-def zebra_stripes(places: np.ndarray, way: np.ndarray) -> list[Stripe]:
+def zebra_stripes(places: np.ndarray, way: np.ndarray, combs_of: Callable[[Sequence[np.ndarray]], list[Comb | None]] | None = None) -> list[Stripe]:
     """The stripes of crossings.
 
     Parameters
     ----------
     places : (N, 2) m, spots of paint on the ground, one a cell. Where the road bends, station and offset would bend stripes, too
     way : (N,) radians, the direction of the road at each, in the same axes
+    combs_of : what applies `comb_of_window` to the spots of windows, given their rows; by default one after the other
     """
-    combs, rows = [], []
-    for own in _windows(places):
-        check_cancelled()
-        # most windows hold one line
-        spots = places[own]
-        comb = find_comb(spots) if _least_spread(spots) >= LEAST_SPREAD else None
-        if comb is not None:
-            combs.append(comb)
-            rows.append(own)
+    windows = _windows(places)
+    known = combs_of(windows) if combs_of else [comb_of_window(places[own]) for own in windows]
+    combs = [comb for comb in known if comb is not None]
+    rows = [own for own, comb in zip(windows, known) if comb is not None]
     found, free = [], np.ones(len(places), bool)
     for group in _alike(combs):
         best = max((combs[k] for k in group), key=lambda comb: comb.coherence)
@@ -138,6 +134,11 @@ def _windows(places):
     counts = np.diff(np.r_[starts, len(keys)])
     enough = counts >= LEAST_SPOTS
     return [spots[a:a + n] for a, n in zip(starts[enough].tolist(), counts[enough].tolist())]
+
+
+def comb_of_window(spots: np.ndarray) -> Comb | None:
+    """`find_comb` of the (N, 2) spots of a window that holds more than one line, which most do not."""
+    return find_comb(spots) if _least_spread(spots) >= LEAST_SPREAD else None
 
 
 def _least_spread(places):

@@ -28,6 +28,13 @@ def test_arrays_keep_their_type_and_every_bit(tmp_path, array):
     assert found.dtype == array.dtype and found.tobytes() == array.tobytes() and found.shape == array.shape
 
 
+@pytest.mark.parametrize("number", [np.float64(0.1 + 0.2), np.float32(0.1), np.float64(-np.inf), np.int64(-2**63), np.uint16(7), np.bool_(True)])
+def test_numbers_of_arrays_keep_their_type_and_every_bit(tmp_path, number):
+    found = there_and_back(tmp_path, [number])[0]
+    assert type(found) is type(number) and found.tobytes() == number.tobytes()
+    assert np.isnan(there_and_back(tmp_path, [np.float64("nan")])[0])
+
+
 def test_settings_and_objects_of_core_come_back(tmp_path):
     grid = OcclusionGrid(0.25, 4, 3, 2.0)
     grid.tall[1, 2] = True

@@ -1,4 +1,4 @@
-"""Stages of the road map that worker processes do: road points, image and paint of threads, to the last bit."""
+"""Stages of the road map that worker processes do: road points, image, paint and markings of threads, to the last bit."""
 
 import threading
 import time
@@ -28,7 +28,7 @@ class Noting(WorkerProcesses):
 
     def run(self, phase, items, *others):
         items, name = list(items), phase.function.__name__
-        self.tasks[name] = len(items)
+        self.tasks[name] = max(len(items), self.tasks.get(name, 0))
         if name == self.killed_in:
             threading.Thread(target=self.kill_one, daemon=True).start()
         return super().run(phase, items, *others)
@@ -55,7 +55,8 @@ def test_worker_processes_find_what_threads_find_and_leave_nothing(sample, by_th
     assert all(executor.tasks[name] > 1 for name in PHASES) and not executor.folder.exists()
 
 
-@pytest.mark.parametrize("phase", ["surface_points", "corrected_of_stretch", "sums_of_pieces", "levels_of_windows", "paint_of_windows"])
+@pytest.mark.parametrize("phase", ["surface_points", "corrected_of_stretch", "sums_of_pieces", "levels_of_windows", "paint_of_windows",
+                                   "combs_of_windows", "shapes_of_clusters"])
 def test_a_worker_that_is_killed_is_replaced_and_nothing_is_lost(sample, by_threads, phase):
     executor = Noting(1, phase)
     assert found_by(sample, executor) == by_threads
