@@ -44,13 +44,13 @@ class Street:
         places = self.places(station[::-1] if backwards else station, offset)
         return start + station / 10.0, places[:, 0], places[:, 1]
 
-    def paint(self, offset, first=5.0, last=None, kind="lane", pattern="solid", status="measured", line=None, z=HEIGHT):
+    def paint(self, offset, first=5.0, last=None, kind="lane", pattern="solid", status="measured", line=None, z=HEIGHT, width=None):
         """A line at an offset: a number, or a function of station."""
         last = self.length - 5.0 if last is None else last
         station = np.unique(np.r_[np.arange(first, last, 0.25), last])
         places = self.places(station, offset(station) if callable(offset) else offset)
         self.lines.add(LineString(np.c_[places, np.full(len(places), z)]), road=0, kind=kind, pattern=pattern, status=status,
-                       line=len(self.lines) + 1 if line is None else line)
+                       line=len(self.lines) + 1 if line is None else line, width_m=width)
         return self
 
     def lanes(self, **settings):

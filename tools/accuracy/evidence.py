@@ -33,7 +33,8 @@ EVIDENCE = {
     "asphalt where no lane is (unused), and lanes beside the asphalt": dict(
         unused_asphalt=(0.0, 0.0), unused_wide=0.0, off_asphalt=0.0, lane_through_surface=0.0),
     "no lane over a painted line": dict(lane_through_paint=0.0, paint_in_rest=0.0),
-    "how lines are drawn (solid, dashed, double)": dict(solid=ALIKE, dashed=ALIKE, double=ALIKE, dashed_between_many=0.0),
+    "how lines are drawn (solid, dashed, double)": dict(
+        solid=ALIKE, dashed=ALIKE, double=ALIKE, wide_solid=ALIKE, wide_dashed=ALIKE, short_dashed=ALIKE, dashed_between_many=0.0),
     "no border between lanes without paint": dict(unpainted_divider=0.0, unpainted_lane_line=0.0),
     "widths of lanes": dict(other_width=0.0, odd_width=1.0),
     "hatched areas": dict(hatched_lane=0.0, lane_through_hatching=0.0),

@@ -8,7 +8,7 @@ import numpy as np
 
 from .candidates import Candidates
 from .strips import FIRST, REST_FIRST, REST_SECOND, SECOND, STRIPS, TWO_WAY, StripCosts, stops_across
-from .weights import CENTRE_LINE, EDGE_LINE, LANE_LINE, OTHER_LINE, EstimateWeights
+from .weights import CENTRE_LINE, DASHED, EDGE_LINE, LANE_LINE, OTHER_LINE, SOLID, EstimateWeights
 
 KEPT = 32     # cross-sections of an interval that are kept
 
@@ -121,6 +121,9 @@ def _boundary_costs(c, stops, w):
     scale = c.observations(w)[:, None]
     table = w.boundary[c.made_of]
     stopped = stops_across(stops, (c.left + c.right) / 2)
+    for share, costs in ((c.short, np.array(w.short_dashed)), (c.wide, w.wide_line[c.made_of.clip(SOLID, DASHED)])):
+        share = np.nan_to_num(share)[..., None]
+        table = np.where(share > 0, (1 - share) * table + share * costs, table)
     cost = np.full((*c.left.shape, len(STRIPS), len(STRIPS)), np.inf)
     for left in STRIPS:
         for right in STRIPS:

@@ -17,6 +17,10 @@ WEAK_TWIN = 0.25               # of the paint of the line beside it: less is a f
 FRAYED_LENGTH = 6.0            # m of paint at most of such an edge
 MAX_BOUNDARIES = 16            # at one place
 FAR = 30.0                     # m: beyond any road
+USUAL_LINES = 0.3              # of the painted length of a road: its lines of usual breadth
+USUAL_WIDTH = 0.10, 0.20       # m, of lines of usual breadth in all countries of the catalogue
+WIDE_LINE, WIDE_SOFTNESS = 1.6, 0.1   # times the usual breadth: a wide line has twice of it (RMS, MUTCD 3A.04), measured to some 2 cm
+SHORT_DASH, SHORT_SOFTNESS = 1.5, 0.1  # m: dashes between lanes have 2 m and more in all countries of the catalogue, interrupted edges 1 m and less
 SURFACE_MERGE = 0.8            # m: the surface, or a hatched area, ends at the line or curb that lies this near
 ENDS = SURFACE, PAVEMENT       # ends of the surface
 
@@ -30,6 +34,8 @@ class Boundaries:
         pavement is seen (PAVEMENT) or not; paint : (R,) m of paint of each row
     named : (R,) what a row separates by its layer, -1 where that is not said
     bend : (K,) whether the road bends so much that lanes are widened
+    wide : (R, K) 0 to 1, whether a row is a wide line, which is at least twice as broad as the usual lines of its road; short : (R, K) the same of
+        dashes shorter than those between lanes; NaN where unknown
     """
 
     s: np.ndarray
@@ -40,6 +46,8 @@ class Boundaries:
     paint: np.ndarray
     named: np.ndarray
     bend: np.ndarray
+    wide: np.ndarray
+    short: np.ndarray
 
     @property
     def bounding(self) -> np.ndarray:
@@ -54,10 +62,11 @@ class Boundaries:
 
 def gather_boundaries(lines: CrossSections, curbs: CrossSections | None = None, surface: np.ndarray | None = None,
                       open_ends: np.ndarray | None = None, bend: np.ndarray | None = None, hatching: np.ndarray | None = None,
-                      pavement: CrossSections | None = None) -> Boundaries:
+                      pavement: CrossSections | None = None, dashes: np.ndarray | None = None) -> Boundaries:
     """Lines, curbs and the two ends of the surface or, where that is unknown, open ends, (2, K) offsets each or None, on the grid of the lines.
 
-    Where an edge of the pavement was seen beside an end of the surface, the surface ends at it.
+    Where an edge of the pavement was seen beside an end of the surface, the surface ends at it. `dashes` are the lengths of those of the lines,
+    (L, K) m or None.
     """
     rows, count = len(lines.d), len(lines.s)
     of_name = np.array([_made_of(name) for name in lines.names] + [SOLID], int)
@@ -83,7 +92,8 @@ def gather_boundaries(lines: CrossSections, curbs: CrossSections | None = None, 
     other[found_made[rows:] == SURFACE] = np.where(at_edge, PAVEMENT, SURFACE)
     return Boundaries(lines.s, found_d, found_seen, found_made, np.concatenate([patterns, other]), STATION_STEP * found_seen.sum(1),
                       np.r_[[NAMES.get(kind, -1) for kind in lines.kinds], np.full(len(other), -1)].astype(int),
-                      np.zeros(count, bool) if bend is None else bend)
+                      np.zeros(count, bool) if bend is None else bend,
+                      *(np.concatenate([share, np.full(other.shape, np.nan)]) for share in (_wide_share(lines), _short_share(lines, dashes))))
 
 
 def _on_stations(sections, s):
@@ -109,6 +119,20 @@ def _at_edges(surface, pavement, s):
     return np.where(at_edge, surface + np.where(at_edge, away, 0.0), surface), at_edge
 
 
+def _wide_share(lines):
+    """(L, K) 0 to 1, whether lines are wide against the usual ones of their road, which the narrower of its painted length tells."""
+    known = lines.seen & np.isfinite(lines.d) & (lines.width > 0)
+    if not known.any():
+        return np.full(lines.d.shape, np.nan)
+    usual = np.clip(np.quantile(lines.width[known], USUAL_LINES), *USUAL_WIDTH)
+    return np.where(known, 1 / (1 + np.exp(-(np.where(known, lines.width, usual) / usual - WIDE_LINE) / WIDE_SOFTNESS)), np.nan)
+
+
+def _short_share(lines, dashes):
+    """(L, K) 0 to 1, whether dashes are shorter than any country draws them between lanes."""
+    return np.full(lines.d.shape, np.nan) if dashes is None else 1 / (1 + np.exp((dashes - SHORT_DASH) / SHORT_SOFTNESS))
+
+
 def _made_of(pattern):
     if "double" in pattern:
         return DOUBLE
@@ -125,7 +149,7 @@ class Candidates:
     rows : (I, M, 2) the rows of Boundaries that lie leftmost and rightmost; -1 outside
     valid : (I, M) False where there are fewer boundaries than M
     named : (I, M) what the layer says that a boundary separates, -1 where it does not
-    bend : (I,) as in Boundaries
+    bend : (I,) as in Boundaries; wide, short : (I, M) as there, NaN of double lines
     """
 
     first: np.ndarray
@@ -139,6 +163,8 @@ class Candidates:
     valid: np.ndarray
     named: np.ndarray
     bend: np.ndarray
+    wide: np.ndarray
+    short: np.ndarray
 
     @property
     def painted(self) -> np.ndarray:
@@ -178,10 +204,19 @@ def boundary_candidates(boundaries: Boundaries, weights: EstimateWeights) -> Can
     made = np.where(boundaries.painted[row], np.select([double[row, interval] > 0.5, dashed[row, interval] > 0.5], [DOUBLE, DASHED], SOLID),
                     np.where(edge[row, interval] > 0.5, PAVEMENT, boundaries.made_of[row]))
     trust = np.clip((boundaries.paint[row] - weights.stroke) / (weights.long_line - weights.stroke), 0.02, 1.0)
-    entries = dict(interval=interval, row=row, d=d[row, interval], made=made, seen=np.minimum(seen[row, interval], 1.0),
+    wide, short = (_mean_where_known(share, first) for share in (boundaries.wide, boundaries.short))
+    entries = dict(interval=interval, row=row, d=d[row, interval], made=made, wide=wide[row, interval], short=short[row, interval],
+                   seen=np.minimum(seen[row, interval], 1.0),
                    trust=np.where(made <= DOUBLE, trust, 1.0))
     entries = _rows(entries, np.lexsort((-entries["d"], interval)))
     return _table(_grouped(_rows(entries, ~_superfluous(entries, boundaries))), boundaries, first, last)
+
+
+def _mean_where_known(share, first):
+    """(R, I) means over the intervals that begin at stations `first`."""
+    known = np.isfinite(share)
+    with np.errstate(invalid="ignore"):
+        return np.add.reduceat(np.where(known, share, 0.0), first, axis=1) / np.add.reduceat(known, first, axis=1)
 
 
 def _rows(entries, which):
@@ -214,12 +249,13 @@ def _grouped(entries):
         return {**entries, "right_row": entries["row"], "right": entries["d"]}
     end = np.r_[begin[1:], len(entries["d"])] - 1
     found = _rows(entries, begin)
-    for name in ("trust", "seen"):
+    for name in ("trust", "seen", "wide", "short"):
         found[name] = np.maximum.reduceat(entries[name], begin)
     made, right = np.minimum.reduceat(entries["made"], begin), entries["d"][end]
     # two lines closer than that are the two sides of one broad line
     double = (end > begin) & (found["d"] - right > DOUBLE_SPACING[0]) & (made <= DOUBLE)
     found["made"] = np.where(double, DOUBLE, np.where(made == DOUBLE, SOLID, made))
+    found |= {name: np.where(double, np.nan, found[name]) for name in ("wide", "short")}
     return {**found, "right_row": entries["row"][end], "right": right}
 
 
@@ -245,4 +281,5 @@ def _table(groups, boundaries, first, last):
     valid[:, [0, -1]] = True
     rows = np.stack([column(groups[name], -1) for name in ("row", "right_row")], axis=2)
     return Candidates(first, last, left, right, column(groups["made"], OUTSIDE), column(groups["trust"], 0.0), column(groups["seen"], 0.0), rows,
-                      valid, column(boundaries.named[groups["row"]], -1), boundaries.bend[(first + last) // 2])
+                      valid, column(boundaries.named[groups["row"]], -1), boundaries.bend[(first + last) // 2], column(groups["wide"], np.nan),
+                      column(groups["short"], np.nan))

@@ -115,6 +115,10 @@ def _roads_of_many_lanes(c, costs, sections, divided, weights):
     total, ahead = np.zeros((2, *sections.cost.shape))
     for values, numbers in ((total, strips.number), (ahead, strips.first)):
         np.add.at(values, (strips.interval, strips.section), numbers)
+    # a lane beyond a wide line is one more, for buses, cycles or an exit
+    kinds = separated_kinds(sections)
+    special = np.where(kinds == LANE_LINE, np.nan_to_num(c.wide)[:, None], 0.0) > 0.5
+    total, ahead = total - special.sum(2), ahead - (special & (sections.strip == FIRST)).sum(2)
     one_way = (total > 0) & ((ahead == 0) | (ahead == total))
     cost = np.where(one_way, np.array(weights.one_way)[np.clip(total, 1, len(weights.one_way)).astype(int) - 1], 0.0)
     cost = np.where(~one_way & (np.abs(2 * ahead - total) > 1), weights.uneven, cost)
@@ -135,7 +139,7 @@ class LaneSpan:
     interval : number; left, right : rows of Boundaries, place : from the right, of `count` lanes between them
     direction : 1 or -1, of the most probable sequence; where that is the less probable one of a lane there, the other, unless names of
         lines decided that, or the drive
-    probability : 0 to 1, of the lane of the most probable sequence there, with the posterior of RoadEstimate
+    probability : 0 to 1, of a lane of either direction there, with the posterior of RoadEstimate
     confidence : 0 to 1, of a lane of either direction there, with the sureness of RoadEstimate
     directed : 0 to 1, of those of this direction among them, on both sides of traffic where the survey leaves that open
     left_border, right_border : what the two separate, LANE_LINE ... OTHER_LINE
@@ -223,7 +227,7 @@ def _place_shares(estimate, strips, chosen):
     there = np.abs(d[beside] - lanes.d[one]) < SAME_LANE
     alike = there & (way[beside] == lanes.way[one])
     probability, sure, either, as_unnamed = (np.bincount(one[which], values[beside[which]], minlength=len(lanes.d)) for values, which in (
-        (posterior, alike), (sureness, alike), (sureness, there), (unnamed, alike)))
+        (posterior, there), (sureness, alike), (sureness, there), (unnamed, alike)))
     directed = sure / np.where(either > 0, either, 1.0)
     if other is not None:
         least = np.full((2, len(lanes.d)), FARTHEST_BEHIND)

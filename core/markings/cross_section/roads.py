@@ -11,6 +11,7 @@ import numpy as np
 from ...common.parallel import ordered_map
 from .arrows import arrows_of
 from .candidates import Boundaries, boundary_candidates, gather_boundaries
+from .dashes import dash_lengths
 from .estimate import RoadEstimate, estimate_road, lane_spans
 from .evidence import between_ends, driven_offsets, evidence_of, other_carriageway, surface_coverage
 from .hatching import borders_of_hatching, hatched_places
@@ -83,7 +84,7 @@ def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_widt
         boundaries = gather_boundaries(of_road, (curbs or {}).get(number), ends, open_ends,
                                        np.abs(frame.road(number).curvature(of_road.s)) > 1 / WIDENED_RADIUS,
                                        borders_of_hatching(markings, frame, number, of_road.s) if markings is not None else None,
-                                       (pavement or {}).get(number))
+                                       (pavement or {}).get(number), dash_lengths(of_road, markings, number))
         candidates = boundary_candidates(boundaries, weights)
         known[number] = boundaries, candidates, evidence_of(
             candidates, of_road.s, *driven, covered, hatched, arrows_of(markings, frame, number) if markings is not None else None, markings,

@@ -31,6 +31,7 @@ class CrossSections:
     seen : (L, K) False where the line itself was bridged; kinds, patterns : per line, of its longest piece
     drawn : (L, K) how it is drawn at each place, a row of `names`; -1 where that is not known
     number : (L, K) number of the line in its layer at each place; -1 where that is not known
+    width : (L, K) m of paint across; NaN where that is not known
     """
 
     s: np.ndarray
@@ -42,9 +43,11 @@ class CrossSections:
     drawn: np.ndarray
     names: list
     number: np.ndarray
+    width: np.ndarray
 
 
-def cross_sections(lines: FrameLines, number: np.ndarray, kind: np.ndarray, pattern: np.ndarray, seen: np.ndarray) -> dict[int, CrossSections]:
+def cross_sections(lines: FrameLines, number: np.ndarray, kind: np.ndarray, pattern: np.ndarray, seen: np.ndarray,
+                   width: np.ndarray | None = None) -> dict[int, CrossSections]:
     """Lines of every road as offsets at common stations.
 
     Parameters
@@ -53,6 +56,7 @@ def cross_sections(lines: FrameLines, number: np.ndarray, kind: np.ndarray, patt
     number : (P,) int, the pieces of one line share a number
     kind, pattern : (P,) str objects, "" where unknown
     seen : (P,) bool, False for pieces that are bridged
+    width : (P,) m of paint across, NaN where unknown; or None
 
     Returns
     -------
@@ -61,7 +65,8 @@ def cross_sections(lines: FrameLines, number: np.ndarray, kind: np.ndarray, patt
     pieces: dict[int, dict[int, list[_Piece]]] = {}
     for k in range(len(lines)):
         road, window = int(lines.road[k]), lines.line(k)
-        piece = _piece(lines.s[window], lines.d[window], lines.z[window], kind[k], pattern[k], bool(seen[k]))
+        piece = _piece(lines.s[window], lines.d[window], lines.z[window], kind[k], pattern[k], bool(seen[k]),
+                       np.nan if width is None else float(width[k]))
         if piece is not None:
             pieces.setdefault(road, {}).setdefault(int(number[k]), []).append(piece)
     return {road: _on_grid(found) for road, found in sorted(pieces.items())}
@@ -69,7 +74,7 @@ def cross_sections(lines: FrameLines, number: np.ndarray, kind: np.ndarray, patt
 
 def sections_of_lines(lines: PaintedLines) -> dict[int, CrossSections]:
     """CrossSections of marking lines, by road number."""
-    return cross_sections(lines.course, lines.line, lines.kind, lines.pattern, lines.status != "bridged")
+    return cross_sections(lines.course, lines.line, lines.kind, lines.pattern, lines.status != "bridged", lines.width)
 
 
 def sections_of_edges(edges: RoadEdges) -> dict[int, CrossSections]:
@@ -122,7 +127,7 @@ def _sides_of_islands(course, island):
 
 @dataclass
 class _Piece:
-    """Part of a line with rising stations: s, d, z (N,) metres, and how it is drawn."""
+    """Part of a line with rising stations: s, d, z (N,) metres, how it is drawn, and how broad, metres."""
 
     s: np.ndarray
     d: np.ndarray
@@ -130,9 +135,10 @@ class _Piece:
     kind: str
     pattern: str
     seen: bool
+    width: float
 
 
-def _piece(s, d, z, kind, pattern, seen):
+def _piece(s, d, z, kind, pattern, seen, width):
     """A _Piece of the vertices of a line, None where it bounds no lane."""
     good = np.isfinite(s)
     if not good.all():
@@ -146,7 +152,7 @@ def _piece(s, d, z, kind, pattern, seen):
         s, d, z = s[rising], d[rising], z[rising]
     if len(s) < 2 or median(np.abs(np.diff(d)) / np.diff(s)) > MAX_LINE_OBLIQUITY:
         return None
-    return _Piece(s, d, z, kind, pattern, seen)
+    return _Piece(s, d, z, kind, pattern, seen, width)
 
 
 def _on_grid(lines: dict[int, list[_Piece]]) -> CrossSections:
@@ -155,7 +161,7 @@ def _on_grid(lines: dict[int, list[_Piece]]) -> CrossSections:
     s = STATION_STEP * np.arange(first, last + 1)
     # the order of the layer's rows must not matter
     order = sorted(lines, key=lambda key: (min(p.s[0] for p in lines[key]), np.median(lines[key][0].d), key))
-    d, z = np.full((2, len(order), len(s)), np.nan)
+    d, z, width = np.full((3, len(order), len(s)), np.nan)
     seen, (drawn, number) = np.zeros((len(order), len(s)), bool), np.full((2, len(order), len(s)), -1, np.int32)
     names = sorted({p.pattern for pieces in lines.values() for p in pieces})
     kinds, patterns = [], []
@@ -169,10 +175,11 @@ def _on_grid(lines: dict[int, list[_Piece]]) -> CrossSections:
             seen[k, inside] |= p.seen
             drawn[k, inside] = names.index(p.pattern)
             number[k, inside] = key
+            width[k, inside] = p.width
         longest = max(pieces, key=lambda p: (p.seen, p.s[-1] - p.s[0]))
         kinds.append(longest.kind)
         patterns.append(longest.pattern)
-    found, gaps = _joined(CrossSections(s, d, z, seen, kinds, patterns, drawn, names, number))
+    found, gaps = _joined(CrossSections(s, d, z, seen, kinds, patterns, drawn, names, number, width))
     _even_doubles(found, _lead_over(found, gaps))
     _lengthen_dashed(found)
     return found
@@ -210,12 +217,13 @@ def _joined(lines):
         lines.seen[j, last:] |= lines.seen[k, last:]
         lines.drawn[j, last:] = lines.drawn[k, last:]
         lines.number[j, last:] = lines.number[k, last:]
+        lines.width[j, last:] = lines.width[k, last:]
         # a gap of a dashed line is no gap
         lines.seen[j, gap] = any(lines.patterns[i].startswith("dash") for i in (j, k))
         end[j], at_end[j], at_end[k] = end[k], lines.d[j, end[k]], np.nan
         rows.remove(k)
     found = CrossSections(lines.s, lines.d[rows], lines.z[rows], lines.seen[rows], [lines.kinds[k] for k in rows],
-                          [lines.patterns[k] for k in rows], lines.drawn[rows], lines.names, lines.number[rows])
+                          [lines.patterns[k] for k in rows], lines.drawn[rows], lines.names, lines.number[rows], lines.width[rows])
     return found, [(rows.index(j), *gap) for j, *gap in gaps]
 
 

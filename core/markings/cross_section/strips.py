@@ -60,7 +60,10 @@ def strip_costs(candidates: Candidates, evidence: Evidence, weights: EstimateWei
     cost = np.full((len(STRIPS), count, size, size), np.inf)
     lanes, first_lanes = np.zeros((2, len(STRIPS), count, size, size), int)
     between = np.where(width > NEUTRAL.widest_lane, w.unused_wide, w.unused_asphalt[0])
-    unused = np.where(both_paint, _unused(asphalt, between, ASPHALT_OF_A_LANE[0]), _unused(asphalt, w.unused_asphalt[1]))
+    # beyond short dashes the bay that they open, however it is bounded
+    opened = np.nan_to_num(c.short) > 0.5
+    lined = both_paint & ~(opened[:, :, None] | opened[:, None, :])
+    unused = np.where(lined, _unused(asphalt, between, ASPHALT_OF_A_LANE[0]), _unused(asphalt, w.unused_asphalt[1]))
     inside = _inside(evidence.driven, c)
     idle = scale * (np.where(hatched, 0.0, unused) + rest) + arrows_in * w.arrow_outside + scale * w.driven_rest * inside.sum(0)
     cost[REST_FIRST] = cost[REST_SECOND] = np.where(ordered, idle, np.inf)

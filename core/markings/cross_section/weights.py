@@ -26,6 +26,12 @@ class EstimateWeights:
     correlation : metres of road that count as one observation: what neighbouring metres show is not independent
     laid_out : metres of road that are laid out alike: of how sure lanes are they say no more than `correlation` does; chosen with `calibration`
     solid, dashed, double : share of lane lines, centre lines, edge lines and other lines that are drawn like that
+    wide_solid, wide_dashed : the same of wide lines: in all countries at hand they part special lanes (bus, exit, cycle) from others of the same
+        direction, or mark the edge, and the directions are parted by a usual line or by two (RMS part A; MUTCD 3B.01 and 3B.04; GB 5768.3;
+        Instruction interministerielle, art. 113)
+    short_dashed : the same of dashes of usual breadth shorter than those between lanes: they mark an edge that may be crossed, as before a bus
+        bay, a lay-by, a strip for cycles or a side street, and no country at hand parts lanes by them (RMS part A; MUTCD 3B.08; catalogue of
+        countries)
     curb, surface : the same of boundaries that are a curb, also of an island, or where the road surface ends without one, seen as an edge or not
     open_end : the same where nothing is known beyond the outermost line
     hatching : the same of boundaries that are the border of a hatched area
@@ -37,7 +43,7 @@ class EstimateWeights:
     width_sigma, width_sigma_asked : m, scatter of lane widths on one road, and about the width that the user named
     other_width : share of lanes as wide as lanes are elsewhere; odd_width, odd_width_asked : share of lanes of any other width up to `widest_odd`
     unpainted_divider, unpainted_lane_line : of a border between the two directions, and between two lanes of one, where nothing is painted
-    unused_asphalt : of asphalt as wide as a lane where no lane is: between two lines, and beside a curb or the end of the surface
+    unused_asphalt : of asphalt as wide as a lane where no lane is: between two lines, and beside a curb, the end of the surface or short dashes
     unused_wide : the same of asphalt between two lines that is too wide for a lane
     off_asphalt : of a lane on what is no road surface
     driven_rest : of a vehicle that drives where no lane is
@@ -67,6 +73,9 @@ class EstimateWeights:
     solid: tuple[float, ...] = _costs(0.1, 0.3, 0.9, 0.15)
     dashed: tuple[float, ...] = _costs(0.8, 0.4, 0.1, 0.3)
     double: tuple[float, ...] = _costs(0.05, 0.9, 0.05, 0.05)
+    wide_solid: tuple[float, ...] = _costs(0.1, 0.01, 0.3, 0.1)
+    wide_dashed: tuple[float, ...] = _costs(0.1, 0.01, 0.05, 0.05)
+    short_dashed: tuple[float, ...] = _costs(0.003, 0.002, 0.1, 0.15)
     curb: tuple[float, ...] = _costs(0.001, 0.02, 0.9, 0.7)
     surface: tuple[float, ...] = _costs(0.001, 0.001, 0.6, 0.8)
     open_end: tuple[float, ...] = (np.inf, np.inf, 2.3, np.inf)
@@ -121,3 +130,8 @@ class EstimateWeights:
         impossible = (np.inf,) * 4
         return np.array([self.solid, self.dashed, self.double, self.curb, self.surface, self.open_end, impossible, self.hatching, self.curb,
                          self.surface])
+
+    @property
+    def wide_line(self) -> np.ndarray:
+        """(2, 4) costs of a wide line, SOLID or DASHED, by what it separates."""
+        return np.array([self.wide_solid, self.wide_dashed])

@@ -153,6 +153,6 @@ def _drawn_pieces(one: SelectedLine, shape: LineShape, origin: np.ndarray) -> It
         yield dict(
             kind="", pattern=f"double-{piece.pattern}" if one.double else piece.pattern, status=piece.status,
             curve=shape.fit.curve, arc=shape.u(np.array([piece.first, piece.last])), places=places,
-            station=piece.first, end=piece.last, offset=np.median(d[near]) if near.any() else np.nan, width=one.width,
+            station=piece.first, end=piece.last, offset=np.median(d[near]) if near.any() else np.nan, width=one.width(piece),
             rmse=np.sqrt(np.mean(residuals**2)) if measured else np.nan)
 

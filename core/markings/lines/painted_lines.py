@@ -66,7 +66,7 @@ class PaintedLines:
     course : FrameLines, one per piece
     fitted : FittedPieces, None for lines that were read from a layer
     crs : WKT, "" where unknown
-    rmse : (P,) metres, of the paint from the curve; NaN where unknown; None where nothing is known
+    rmse, width : (P,) metres, of the paint from the curve and of the paint across; NaN where unknown; None where nothing is known
     """
 
     line: np.ndarray
@@ -77,6 +77,7 @@ class PaintedLines:
     fitted: FittedPieces | None = None
     crs: str = ""
     rmse: np.ndarray | None = None
+    width: np.ndarray | None = None
 
     def __len__(self) -> int:
         return len(self.line)
@@ -146,7 +147,7 @@ def lines_from_features(features: Features, frame: RoadFrame) -> PaintedLines:
 
     Parameters
     ----------
-    features : Features with lines in map coordinates; `road`, `line`, `kind`, `pattern` and `status` are used where they are, so
+    features : Features with lines in map coordinates; `road`, `line`, `kind`, `pattern`, `status` and `width_m` are used where they are, so
         that lines drawn by hand serve as well
     frame : RoadFrame
 
@@ -163,8 +164,8 @@ def lines_from_features(features: Features, frame: RoadFrame) -> PaintedLines:
     road = [-1 if row.get("road") is None else int(row["road"]) for row in rows]
     kind, pattern, status = (np.array([str(row.get(name) or missing) for row in rows], object)
                              for name, missing in (("kind", ""), ("pattern", ""), ("status", "measured")))
-    rmse = np.array([np.nan if row.get("rmse_m") is None else float(row["rmse_m"]) for row in rows])
-    return PaintedLines(line, kind, pattern, status, lines_in_frame(parts, road, frame), crs=features.crs, rmse=rmse)
+    rmse, width = (np.array([np.nan if row.get(name) is None else float(row[name]) for row in rows]) for name in ("rmse_m", "width_m"))
+    return PaintedLines(line, kind, pattern, status, lines_in_frame(parts, road, frame), crs=features.crs, rmse=rmse, width=width)
 
 
 def painted_lines_of(rows: list[dict[str, Any]], frame: RoadFrame, crs: str) -> PaintedLines:
@@ -185,7 +186,7 @@ def painted_lines_of(rows: list[dict[str, Any]], frame: RoadFrame, crs: str) -> 
                           *(column(name, float) for name in ("station", "end", "offset", "width", "rmse")))
     course = lines_in_frame(fitted.linestrings(frame), column("road", int), frame)
     return PaintedLines(column("line", int), column("kind", object), column("pattern", object), column("status", object), course, fitted, crs,
-                        fitted.rmse)
+                        fitted.rmse, fitted.width)
 
 
 def pieces_of_lines(lines: PaintedLines) -> list[dict[str, Any]]:

@@ -40,7 +40,12 @@ class SelectedLine:
     line: LinkedLine
     double: bool
     pieces: list
-    width: float
+
+    def width(self, piece: LinePiece) -> float:
+        """Metres of paint across, of its own strands, or of those of the whole line where it has none."""
+        strands = self.line.strands
+        own = [max(min(strand.last, piece.last) - max(strand.first, piece.first), 0.0) for strand in strands]
+        return float(np.average([strand.width for strand in strands], weights=own if sum(own) > 0 else [strand.length for strand in strands]))
 
     @property
     def span(self) -> tuple[float, float]:
@@ -107,8 +112,7 @@ def select_lines(lines: list[LinkedLine], trend: CommonTrend, crossed: np.ndarra
             drawn = [LinePiece(line.first, line.last, "measured", "dashed")]
         neighbours = _painted_beside(k, lines, level)
         drawn = _extended(drawn, parts[k], single, (painted_from, painted_to), crossed, neighbours, line)
-        width = float(np.average([s.width for s in line.strands], weights=[s.length for s in line.strands]))
-        found.append(SelectedLine(line, bool(double[k]), drawn, width))
+        found.append(SelectedLine(line, bool(double[k]), drawn))
     return found
 
 

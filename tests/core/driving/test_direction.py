@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lined_streets import EAST, Street, middle
+from lined_streets import EAST, NORTH, Street, middle
 from shapely.geometry import Point
 
 
@@ -103,10 +103,18 @@ def test_two_lanes_towards_a_junction_and_one_back_reach_as_far_on_either_side_o
             for lane in (0.0, 3.6, 6.8)] == pytest.approx([100.0] * 3, abs=1.0)
 
 
-def beside_a_bus_lane(centre, beyond):
-    """Dashes between the directions and a solid line before a lane of its own, as seen from the lane between; named as given."""
-    street = Street(vehicle=-1.6).paint(3.25, kind="edge").paint(0.0, pattern="dashed", kind=centre)
-    return street.paint(-3.25, kind=beyond).paint(-6.5, kind="edge")
+def beside_a_bus_lane(centre, beyond, pattern="solid", width=0.12, mirror=1, vehicle=-1.6):
+    """Dashes between the directions and a line before a lane of its own, as seen from the lane between; named as given."""
+    street = Street(vehicle=vehicle * mirror).paint(3.25 * mirror, kind="edge", width=0.12).paint(0.0, pattern="dashed", kind=centre, width=0.12)
+    return street.paint(-3.25 * mirror, kind=beyond, pattern=pattern, width=width).paint(-6.5 * mirror, kind="edge", width=0.12)
+
+
+@pytest.mark.parametrize("mirror", (1, -1))
+@pytest.mark.parametrize("vehicle, pattern", ((-1.6, "solid"), (-1.6, "dashed"), (-4.9, "solid")))
+def test_beyond_a_wide_line_a_lane_leads_the_same_way(pattern, vehicle, mirror):
+    lines, _ = beside_a_bus_lane("", "", pattern, 0.25, mirror, vehicle).lanes()
+    assert {round(float(np.median(lines.geometries[k].coords.xy[1])) - NORTH, 1) * mirror: row["direction"] for k, row in enumerate(lines.rows)} \
+        == {1.6: -1, -1.6: 1, -4.9: 1}
 
 
 def test_where_the_lines_leave_open_on_which_side_traffic_drives_lanes_say_so():

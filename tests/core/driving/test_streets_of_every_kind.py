@@ -45,6 +45,16 @@ def painted(street, *areas):
     return layer
 
 
+def curbs(street, *offsets):
+    """The layer of road edges with curbs along the street."""
+    edges = Features("LineStringZ", list(ROAD_EDGES))
+    along = np.arange(5.0, 115.0, 0.5)
+    for chain, offset in enumerate(offsets):
+        edges.add(LineString(np.c_[street.places(along, offset), np.full(len(along), HEIGHT)]), road=0, kind="main", edge="curb", status="measured",
+                  part="bottom", chain=chain, side="left" if offset > 0 else "right")
+    return edges
+
+
 @pytest.mark.parametrize("width", [5.8, 7.0])
 def test_a_broad_lane_driven_in_its_middle_with_arrows_there_is_one_lane(width):
     street = Street(vehicle=0.0).paint(width / 2, kind="edge").paint(-width / 2, kind="edge")
@@ -177,10 +187,23 @@ def test_a_middle_lane_that_may_lead_either_way_is_said_to_do_so_with_a_confiden
 def test_a_lane_is_no_less_sure_for_the_ways_to_read_what_lies_beside_the_road():
     """A centre line between two curbs: with one lane less there is one strip more that nobody drives on, which can be told in two ways."""
     street = Street(vehicle=-1.75).paint(0.0, pattern="dashed", kind="centre")
-    edges = Features("LineStringZ", list(ROAD_EDGES))
-    along = np.arange(5.0, 115.0, 0.5)
-    for chain, (side, offset) in enumerate((("left", 3.2), ("right", -3.2))):
-        edges.add(LineString(np.c_[street.places(along, offset), np.full(len(along), HEIGHT)]), road=0, kind="main", edge="curb", status="measured",
-                  part="bottom", chain=chain, side=side)
-    said = {row["direction"]: row["confidence"] for row in street.lanes(edges=edges)[0].rows}
+    said = {row["direction"]: row["confidence"] for row in street.lanes(edges=curbs(street, 3.2, -3.2))[0].rows}
     assert said[1] > 0.93 and said[-1] > 0.7
+
+
+def beside_a_bay(dash, gap, mirror):
+    """Two lanes, and on the right dashes before a strip as wide as a lane, up to the curb."""
+    street = Street(vehicle=-1.6 * mirror).paint(3.25 * mirror, kind="").paint(0.0, pattern="dashed", kind="")
+    street.paint(-3.25 * mirror, pattern="dashed", kind="")
+    layer = Features("PolygonZ", MARKINGS)
+    for offset, length, period in ((0.0, 3.0, 9.0), (-3.25 * mirror, dash, dash + gap)):
+        for s in np.arange(6.0, 112.0, period):
+            shape, row = area(street, s, s + length, offset - 0.06, offset + 0.06, "lane")
+            layer.add(shape, **{**row, "use": "keep"})
+    return {offset * mirror: way for offset, way in lanes_of(street, markings=layer, edges=curbs(street, 3.7 * mirror, -6.2 * mirror)).items()}
+
+
+@pytest.mark.parametrize("mirror", [1, -1])
+def test_dashes_shorter_than_those_between_lanes_are_the_edge_before_a_bay(mirror):
+    assert beside_a_bay(1.0, 1.0, mirror) == {1.62: -1, -1.62: 1}
+    assert len(beside_a_bay(3.0, 6.0, mirror)) == 3
