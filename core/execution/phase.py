@@ -50,6 +50,14 @@ class Source(Protocol):
         """Put into the folder what another process needs, unless it is there, and say how the source is opened."""
 
 
+class NoSource:
+    """What phases read from whose items hold all that they need, which is little."""
+
+    def recipe(self, folder: Path) -> Recipe:
+        """There is nothing to open."""
+        return Recipe("execution.phase:NoSource", {})
+
+
 def no_place(item: Any) -> str:
     """What messages call an item of which nothing is known."""
     return str(item)

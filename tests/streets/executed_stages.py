@@ -24,7 +24,7 @@ from lanewright.core.survey import point_density
 from lanewright.core.survey.point_density import cube_densities
 
 PHASES = ["surface_points", "cubes_of_stretch", "levels_of_stretch", "corrected_of_stretch", "window_of_image", "sums_of_pieces",
-          "scatter_of_windows", "levels_of_windows", "paint_of_windows", "combs_of_windows", "shapes_of_clusters"]
+          "scatter_of_windows", "levels_of_windows", "paint_of_windows", "combs_of_windows", "shapes_of_clusters", "outlines_of_markings"]
 
 
 def found_by(sample, executor=None, work=None, progress=Progress()):

@@ -27,7 +27,7 @@ from ...survey.store.records import COORDINATE_SCALE, Points, join_columns
 from .classify import LINE_KINDS, NOT_PAINT, ROAD_EDGE_CLEARANCE, ClassSettings, classify_markings, relative_contrast, too_pale
 from .connected_cells import components, occupied
 from .marking_objects import make_marking_objects
-from .outline import band, cell_outline, lifted, painted_cells, parts, to_local
+from .outline import lifted
 from .phases import ApartWork
 from .road_grid import CELL_UNITS
 from .scan_tracks import track_reach
@@ -93,7 +93,7 @@ def cluster_markings(marking_points: RoadPoints, frame: RoadFrame, settings: Clu
         part = progress.part(k / len(roads), (k + 1) / len(roads))
         work = ApartWork(executor, road)
         records, labels = connected_points(marking_points, road, settings.distance, part.part(0.0, 0.1))
-        cluster = np.zeros(len(records), np.int32)
+        everything, cluster = records, np.zeros(len(records), np.int32)
         found, rest = _stripes_of_crossings(records, frame.road(road), work, part.part(0.1, 0.4))
         records, labels = records.take(rest), labels[rest]
         split = split_compounds(records, labels, partial(work.parts, progress=part.part(0.4, 0.5)))
@@ -118,13 +118,12 @@ def cluster_markings(marking_points: RoadPoints, frame: RoadFrame, settings: Clu
         refused += sum(kind == NOT_PAINT for kind, _ in kinds)
         found += [_Marking(records[a:b], order[a:b], shape, *kind)
                   for shape, kind, (a, b) in zip(shapes, kinds, bounds) if kind[0] != NOT_PAINT]
-        for marking in sorted(found, key=lambda marking: (marking.shape.s0, marking.shape.d0, marking.shape.s1)):
+        found.sort(key=lambda marking: (marking.shape.s0, marking.shape.d0, marking.shape.s1))
+        for marking, drawn in zip(found, _outlines(found, everything, frame.road(road), work, part.part(0.7, 1.0))):
             number += 1
             cluster[marking.rows] = number
-            for polygon in _outline(marking, frame.road(road)):
-                polygons.append(polygon)
-                rows.append(_row(marking, number, road, frame))
-            part.report(0.7 + 0.3 * number / max(len(bounds), 1))
+            polygons += drawn
+            rows += [_row(marking, number, road, frame)] * len(drawn)
         _put(clustered.store, road, cluster, marking_points)
     progress.info(f"Markings: {number} found; {refused} clusters were left out as gutters, seams, covers, specks or the feet of what "
                  "stands on the road.")
@@ -299,17 +298,16 @@ def _by_cluster(labels, fewest):
     return order, np.r_[starts, len(labels)], labels[starts]
 
 
-def _outline(marking, road):
-    """The polygons of one marking in local coordinates, from the road's start on."""
-    records, shape, kind = marking.records, marking.shape, marking.kind
-    places = np.stack([records["x"], records["y"], records["z"]], axis=1) * COORDINATE_SCALE
-    if marking.outline is not None:
-        return [lifted(marking.outline, places)]
-    if kind in STRIP_KINDS:
-        drawn = band(records["s"], records["d"], shape)
-    else:
-        drawn = cell_outline(*painted_cells(records["s"] * COORDINATE_SCALE, records["d"] * COORDINATE_SCALE, records["spacing"]))
-    return [to_local(part, road, places) for part in parts(drawn)]
+def _outlines(markings, records, road, work, progress):
+    """[Polygon] in local coordinates of each marking, from the road's start on; records : of the road."""
+    unknown = [marking for marking in markings if marking.outline is None]
+    looks = [(marking.shape, marking.kind in STRIP_KINDS) for marking in unknown]
+    drawn = iter(work.outlines(records, [marking.rows for marking in unknown], looks, road, progress))
+    return [next(drawn) if marking.outline is None else [lifted(marking.outline, _places(marking.records))] for marking in markings]
+
+
+def _places(records):
+    return np.stack([records["x"], records["y"], records["z"]], axis=1) * COORDINATE_SCALE
 
 
 def _row(marking, number, road, frame):

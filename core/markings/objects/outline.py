@@ -7,6 +7,7 @@ along the road, and much less across it, where the next stripe may begin.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -106,6 +107,22 @@ def parts(shape: shapely.Geometry) -> list[shapely.Polygon]:
     """The polygons of an outline that are large enough to be drawn, from the road's start on."""
     pieces = [piece for piece in getattr(shape, "geoms", [shape]) if piece.area >= MIN_PART_AREA]
     return sorted(pieces, key=lambda piece: piece.bounds)
+
+
+def drawn_outline(columns: Sequence[np.ndarray], shape: Shape, strip: bool, road: Road) -> list[shapely.Polygon]:
+    """The polygons of one marking in local coordinates, from the road's start on.
+
+    Parameters
+    ----------
+    columns : s, d, x, y, z, units of 0.1 mm, and spacing, mm between the tracks of the scan: (N,) int each of its points
+    shape : Shape
+    strip : whether it is drawn as an even strip, else cell by cell
+    road : Road
+    """
+    s, d, x, y, z, spacing = columns
+    drawn = band(s, d, shape) if strip else cell_outline(*painted_cells(s * COORDINATE_SCALE, d * COORDINATE_SCALE, spacing))
+    places = np.stack([x, y, z], axis=1) * COORDINATE_SCALE
+    return [to_local(part, road, places) for part in parts(drawn)]
 
 
 def to_local(shape: shapely.Polygon, road: Road, places: np.ndarray) -> shapely.Polygon:

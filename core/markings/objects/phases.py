@@ -4,30 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import shapely
 
 from ...common.parallel import check_cancelled
 from ...common.progress import Progress
-from ...execution.phase import Executor, Phase, Recipe
+from ...execution.phase import Executor, NoSource, Phase
+from .outline import drawn_outline
 from .shape import Shape, measure
 from .split_merge import parts_of_compound
 from .zebra import Comb, comb_of_window
 
 if TYPE_CHECKING:
+    from ...survey.frame.road import Road
     from ...survey.store.columns import Columns
 
 TASK_POINTS = 20_000   # of paint, that a worker process is given together at least: about a tenth of a second of its time
-
-
-class NoSource:
-    """What phases read from whose items hold all that is needed: some columns of paint, which is a small part of the points."""
-
-    def recipe(self, folder: Path) -> Recipe:
-        """There is nothing to open."""
-        return Recipe("markings.objects.phases:NoSource", {})
+PHASE_POINTS = 500_000   # of paint, whose columns are held for tasks at a time
 
 
 def combs_of_windows(source: NoSource, item: tuple[np.ndarray, np.ndarray]) -> list[tuple[Any, ...] | None]:
@@ -51,6 +46,28 @@ def shapes_of_clusters(source: NoSource, item: tuple[np.ndarray, np.ndarray, np.
     return [measure(*columns) for columns in _clusters(item)]
 
 
+def outlines_of_markings(source: NoSource, item: tuple[Any, ...], road: Road) -> tuple[np.ndarray, ...]:
+    """The phase that draws markings.
+
+    Parameters
+    ----------
+    source : NoSource
+    item : s, d, x, y, z (0.1 mm), spacing (mm) of the points, the bounds of the markings, and the Shape and whether it is a strip of each
+    road : Road
+
+    Returns
+    -------
+    vertices : (V, 3) local m
+    ring_start, polygon_start : (R + 1,), (P + 1,) first vertex of each ring and first ring of each polygon
+    count : (M,) polygons of each marking
+    """
+    *columns, looks = item
+    drawn = [drawn_outline(own, shape, strip, road) for own, (shape, strip) in zip(_clusters(columns), looks)]
+    polygons = [polygon for some in drawn for polygon in some]
+    _, vertices, starts = shapely.to_ragged_array(polygons, include_z=True) if polygons else (None, np.empty((0, 3)), (np.zeros(1, int),) * 2)
+    return vertices, *starts, np.array([len(some) for some in drawn])
+
+
 def _clusters(item):
     *columns, bounds = item
     for first, end in zip(bounds[:-1].tolist(), bounds[1:].tolist()):
@@ -72,7 +89,7 @@ class ApartWork:
     def combs(self, places: np.ndarray, windows: Sequence[np.ndarray], progress: Progress) -> list[Comb | None]:
         """The Comb of each window, None where it has no stripes; places : (N, 2) m, windows : rows of the spots of each."""
         bounds = np.cumsum([0, *map(len, windows)])
-        rows = np.concatenate([np.empty(0, np.intp), *windows])
+        rows = np.concatenate([np.empty(0, np.int32), *windows])
         found = self._run(combs_of_windows, (places,), bounds, progress, rows=rows)
         return [None if comb is None else Comb(*comb) for comb in found]
 
@@ -87,19 +104,48 @@ class ApartWork:
         """The Shape of each cluster; bounds : of the clusters in the records."""
         return self._run(shapes_of_clusters, tuple(records[name] for name in ("s", "d", "spacing")), bounds, progress)
 
-    def _run(self, function: Callable[..., list[Any]], columns: Sequence[np.ndarray], bounds: np.ndarray, progress: Progress,
-             rows: np.ndarray | None = None, alone: bool = False) -> list[Any]:
+    def outlines(self, records: Columns, rows: Sequence[np.ndarray], looks: Sequence[tuple[Shape, bool]], road: Road,
+                 progress: Progress) -> list[list[Any]]:
+        """The polygons of each marking, of `drawn_outline`; rows : in the records, of each; looks : the Shape of each and whether it is a strip."""
+        columns = tuple(records[name] for name in ("s", "d", "x", "y", "z", "spacing"))
+        return self._run(outlines_of_markings, columns, np.cumsum([0, *map(len, rows)]), progress,
+                         rows=np.concatenate([np.empty(0, np.intp), *rows]), looks=looks, arguments=(road,), read=_polygons)
+
+    def _run(self, function: Callable[..., Any], columns: Sequence[np.ndarray], bounds: np.ndarray, progress: Progress,
+             rows: np.ndarray | None = None, alone: bool = False, looks: Sequence[Any] | None = None, arguments: tuple[Any, ...] = (),
+             read: Callable[[Any], list[Any]] = list) -> list[Any]:
         """Results of all clusters; threads of this process take one after the other, or each `alone`: for the small ones Python is the cost."""
-        if len(bounds) < 2:
-            return []
-        if self.executor.folder is not None:
-            cuts = np.unique(np.r_[0, np.searchsorted(bounds, np.arange(TASK_POINTS, bounds[-1], TASK_POINTS)), len(bounds) - 1])
-        else:
-            cuts = np.arange(len(bounds)) if alone else np.array([0, len(bounds) - 1])
-        items = []
-        for first, end in zip(cuts[:-1].tolist(), cuts[1:].tolist()):
-            some: Any = slice(bounds[first], bounds[end])
-            some = some if rows is None else rows[some]
-            items.append((*(column[some] for column in columns), bounds[first:end + 1] - bounds[first]))
-        phase = Phase(function, NoSource(), (), lambda item: f"markings of road {self.road}")
-        return [found for some in self.executor.run(phase, items, progress) for found in some]
+        phase = Phase(function, NoSource(), arguments, lambda item: f"markings of road {self.road}")
+        whole, found = _cuts(bounds, PHASE_POINTS), []
+        for begin, end in zip(whole[:-1].tolist(), whole[1:].tolist()):
+            own = bounds[begin:end + 1]
+            if self.executor.folder is not None:
+                cuts = _cuts(own, TASK_POINTS)
+            else:
+                cuts = np.arange(len(own)) if alone else np.array([0, len(own) - 1])
+            items = [_item(columns, rows, own[a:b + 1], None if looks is None else list(looks[begin + a:begin + b]))
+                     for a, b in zip(cuts[:-1].tolist(), cuts[1:].tolist())]
+            part = progress.part(begin / whole[-1], end / whole[-1])
+            found += [one for some in self.executor.run(phase, items, part) for one in read(some)]
+        return found
+
+
+def _cuts(bounds, points):
+    """Ascending numbers of clusters, from the first to the end, with so many points between two of them at least."""
+    total = bounds[-1] - bounds[0]
+    return np.unique(np.r_[0, np.searchsorted(bounds - bounds[0], np.arange(points, total, points)), len(bounds) - 1])
+
+
+def _item(columns, rows, bounds, looks):
+    """What a phase needs of some clusters."""
+    some: Any = slice(bounds[0], bounds[-1])
+    some = some if rows is None else rows[some]
+    return (*(column[some] for column in columns), bounds - bounds[0], *([] if looks is None else [looks]))
+
+
+def _polygons(found):
+    """[[Polygon]] of each marking, from what `outlines_of_markings` gives."""
+    vertices, ring_start, polygon_start, count = found
+    ends = np.cumsum(count).tolist()
+    polygons = shapely.from_ragged_array(shapely.GeometryType.POLYGON, vertices, (ring_start, polygon_start)).tolist()
+    return [polygons[end - some:end] for end, some in zip(ends, count.tolist())]

@@ -127,9 +127,9 @@ def _windows(places):
     columns = int(low[:, 1].max() - first[1]) + 2
     # a spot is in four windows
     keys = np.concatenate([(low[:, 0] - first[0] + 1 - a) * columns + low[:, 1] - first[1] + 1 - b for a in (0, 1) for b in (0, 1)])
-    spots = np.tile(np.arange(len(places)), 4)
     order = np.argsort(keys, kind="stable")
-    keys, spots = keys[order], spots[order]
+    keys, spots = keys[order], (order % len(places)).astype(np.int32)
+    del order
     starts = np.flatnonzero(np.r_[True, np.diff(keys) != 0])
     counts = np.diff(np.r_[starts, len(keys)])
     enough = counts >= LEAST_SPOTS
