@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from ...survey.frame.passes import Pass
     from ...survey.frame.road import Road
     from ..profiles.detect import CurbSettings
-    from .detect import SearchLimit
+    from .main_curbs import SearchLimit
 
 MIN_RETURN_LENGTH = 1.0       # m of a line
 MIN_RETURN_STEPS = 3          # of a line: any two are in one

@@ -12,7 +12,6 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from ...common.progress import Progress
 from ...execution.phase import Phase
@@ -28,6 +27,8 @@ from .far_sides import MIN_ISLAND_WIDTH, far_sides
 from .following import FollowedEnds, followed_steps
 from .island_tops import on_island_tops
 from .leading import with_led_on
+from .main_curbs import MIN_OPENING_LENGTH, SEARCH_BEHIND_CURB, KnownPlaces, SearchLimit, main_curbs_of, main_runs, places_along
+from .main_islands import are_replaced, on_main_islands
 from .raster import PLAN_CELL, averaged, driven_ground, ground_behind, ground_raster, ground_slopes, step_places
 from .steps import PlanSteps, measure_plan_steps
 from .tracking import join_chains, link_plan_steps
@@ -36,9 +37,6 @@ if TYPE_CHECKING:
     from ..profiles.detect import CurbSettings
 
 KIND_TITLES = {"main": "of the road's own", "corner": "of corners", "side_street": "of side streets", "island": "of islands"}
-MIN_OPENING_LENGTH = 6.0      # m without main curb that are an opening and no driveway
-OPENING_MARGIN = 6.0          # m of main curb beside an opening behind which corners are looked for
-SEARCH_BEHIND_CURB = 0.6      # m behind a main curb that are searched elsewhere
 INNER_MARGIN = 0.5            # m from a main curb from which the ground inside is certainly road, if it lies within
 MAX_INNER_HEIGHT = 0.3        # m above or below the expected road
 LIMIT_NODE_SPACING = 0.05     # m along the road between the stations at which this is decided
@@ -46,7 +44,6 @@ SECTION_MARGIN = 2.0          # m of road on either side of a section that its o
 NOISY_RASTER_SHARE = 0.12     # share of the least curb height that heights within a cell scatter, above which they are averaged
 MIN_AVERAGING_POINTS = 6      # points in a cell, on average, that averaging needs
 MAIN_CURB_DISTANCE = 0.25     # m from a main curb within which a step belongs to it
-MAX_RUN_JUMP = 0.5            # m across between points of one run of main curb
 LED_PROGRESS = 0.9            # share of the work after which faint curbs are looked for
 MAX_ISLAND_WIDTH = 8.0        # m within which the ground behind an island's curb comes down again
 
@@ -55,7 +52,8 @@ def with_curb_returns(curb_points: CurbPoints, decimation: PointDecimation, sett
                       progress: Progress = Progress(), beside: Mapping[int, Mapping[str, OcclusionGrid]] | None = None) -> CurbPoints:
     """The points of the main curbs, and behind them those of corners, side streets and islands.
 
-    Where a piece of main curb is found here, hidden places are looked for in the gaps next to it.
+    Where a piece of main curb is found here, hidden places are looked for in the gaps next to it. A main curb that is the side
+    of an island becomes a line about that island where the road's own curb is found behind it.
 
     Parameters
     ----------
@@ -63,19 +61,28 @@ def with_curb_returns(curb_points: CurbPoints, decimation: PointDecimation, sett
     decimation : PointDecimation of the survey
     settings : CurbSettings
     progress : Progress
-    beside : number of the road -> side -> OcclusionGrid, what was seen beside it; without, no hidden place is added
+    beside : number of the road -> side -> OcclusionGrid, what was seen beside it; without, no hidden place is added, and main curbs
+        are not looked at for islands
     """
-    survey, parts = decimation.survey, [curb_points]
+    survey, parts = decimation.survey, []
     length = dict.fromkeys(KIND_TITLES, 0.0)
     roads = survey.store.roads()
-    mains = {road: _main_curbs(curb_points, survey, road) for road in roads}
-    runs = {road: [(x, y) for _, (x, y, _) in _runs(main, survey.frame.road(road))] for road, (main, _) in mains.items()}
+    aside, behind = on_main_islands(curb_points, survey, beside)
+    mains = {road: main_curbs_of(curb_points[~aside], survey, road) for road in roads}
+    runs = {road: [(x, y) for _, (x, y, _) in main_runs(main, survey.frame.road(road))] for road, (main, _) in mains.items()}
     for i, road in enumerate(roads):
         part = progress.part(i / len(roads), (i + 1) / len(roads))
         main, chain = mains[road]
         elsewhere = [run for other in roads if other != road for run in runs[other]]
+        own = curb_points.road == road
+        islands = curb_points[own & aside]
+        curbs = find_curb_returns(decimation, road, main, settings, part.part(0.0, 0.5) if len(islands) else part, elsewhere, behind[road])
+        if not are_replaced(islands, curbs):
+            aside &= ~own
+            main, chain = main_curbs_of(curb_points, survey, road)
+            curbs = find_curb_returns(decimation, road, main, settings, part.part(0.5, 1.0), elsewhere)
         later: list[CurbPoints] = []
-        for number, curb in enumerate(find_curb_returns(decimation, road, main, settings, part, elsewhere), chain):
+        for number, curb in enumerate(curbs, chain):
             points = _points_of(survey, road, curb, number)
             length[curb.kind] += points.along[-1]
             parts.append(points)
@@ -85,20 +92,7 @@ def with_curb_returns(curb_points: CurbPoints, decimation: PointDecimation, sett
             parts.append(hidden_beside(CurbPoints.join(later, curb_points.crs), main, beside[road], survey, road))
     found = ", ".join(f"{length[kind]:.0f} m {title}" for kind, title in KIND_TITLES.items() if length[kind])
     progress.info(f"Curbs away from the road's direction: {found or 'none'}.")
-    return CurbPoints.join(parts, curb_points.crs)
-
-
-def _main_curbs(curb_points, survey, road):
-    """Main curbs of a road, side -> (N, 4) station, offset, height and whether it was seen, and the first free chain number."""
-    main, curbs = {}, curb_points[curb_points.road == road]
-    for side in SIDE_SIGNS:
-        own = curbs[(curbs.side == side) & (curbs.part == "bottom")]
-        rows = np.c_[own.station, own.offset, own.z, own.status == "measured"]
-        rows = rows[np.argsort(rows[:, 0], kind="stable")]
-        if len(rows):
-            rows[:, 2] -= expected_height(survey, road, rows[:, 0])
-        main[side] = rows
-    return main, int(curbs.chain.max(initial=-1)) + 1
+    return CurbPoints.join([curb_points[~aside], *parts], curb_points.crs)
 
 
 def _points_of(survey, road, curb, chain):
@@ -112,7 +106,8 @@ def _points_of(survey, road, curb, chain):
 
 
 def find_curb_returns(decimation: PointDecimation, road: int, main: Mapping[str, np.ndarray], settings: CurbSettings,
-                      progress: Progress = Progress(), elsewhere: Sequence[tuple[np.ndarray, np.ndarray]] = ()) -> list[CurbReturn]:
+                      progress: Progress = Progress(), elsewhere: Sequence[tuple[np.ndarray, np.ndarray]] = (),
+                      behind: np.ndarray = np.empty((2, 0))) -> list[CurbReturn]:
     """Corners, side streets and islands of one road.
 
     Parameters
@@ -124,6 +119,7 @@ def find_curb_returns(decimation: PointDecimation, road: int, main: Mapping[str,
     settings : CurbSettings
     progress : Progress
     elsewhere : (x, y) of the main curbs of other roads, local m
+    behind : (2, K) local m, x and y of places that are road although something stands between them and the track
 
     Returns
     -------
@@ -132,10 +128,10 @@ def find_curb_returns(decimation: PointDecimation, road: int, main: Mapping[str,
     survey = decimation.survey
     limits = {side: SearchLimit(points, SIDE_SIGNS[side]) for side, points in main.items()}
     line = survey.frame.road(road)
-    known, barrier = KnownPlaces(_places_along(line, main, MAX_JOINED_GAP)), _places_along(line, main, MIN_OPENING_LENGTH).T
-    runs = _runs(main, line)
+    known, barrier = KnownPlaces(places_along(line, main, MAX_JOINED_GAP)), places_along(line, main, MIN_OPENING_LENGTH).T
+    runs = main_runs(main, line)
     tips = FollowedEnds.of([place for _, place in runs], np.full(len(runs), np.nan))
-    phase = Phase(plan_steps_of_section, decimation, (road, limits, known, barrier, tips, settings),
+    phase = Phase(plan_steps_of_section, decimation, (road, limits, known, barrier, tips, settings, behind),
                   lambda section: survey.stretch(road, *(k * settings.profile_width for k in section)),
                   lambda section: survey.store.points_between(road, *(k * settings.profile_width for k in section)), _join_parts)
     sections = work_sections(survey, road, settings.profile_width)
@@ -167,106 +163,8 @@ def _join_parts(parts):
     return PlanSteps.join(steps), np.concatenate(falls), np.concatenate(scanner_noise)
 
 
-class SearchLimit:
-    """How far out one side is searched: to a little behind the main curb, and everywhere at openings.
-
-    Parameters
-    ----------
-    points : (N, 4) of the main curb, as of `find_curb_returns`
-    sign : of the side's offsets
-    """
-
-    def __init__(self, points: np.ndarray, sign: int):
-        self.sign = sign
-        self.s, self.u, self.seen = points[:, 0], sign * points[:, 1], points[points[:, 3] > 0, 0]
-        cuts = np.flatnonzero(np.diff(self.s) > MIN_OPENING_LENGTH) + 1
-        self.runs = [(part[0], part[-1]) for part in np.split(self.s, cuts) if len(part)]
-
-    def __call__(self, s: np.ndarray, behind: float = SEARCH_BEHIND_CURB, at_opening: float = OPENING_MARGIN) -> np.ndarray:
-        """(N,) m, largest outward offset at (N,) stations: `behind` metres behind the curb, except for its last metres beside openings."""
-        if not len(self.s):
-            return np.full(len(s), CORRIDOR)
-        bounded = np.zeros(len(s), bool)
-        for a, b in self.runs:
-            bounded |= (s > a + at_opening) & (s < b - at_opening)
-        return np.where(bounded, np.interp(s, self.s, self.u) + behind, CORRIDOR)
-
-    def outward(self, s: np.ndarray, d: np.ndarray) -> np.ndarray:
-        """(N,) m from the main curb outward to places at (N,) stations and offsets; at openings from the end of what is searched."""
-        return self.sign * d - self(s, 0.0, 0.0)
-
-    def behind(self, s: np.ndarray, d: np.ndarray) -> np.ndarray:
-        """(N,) bool, do places at (N,) stations and offsets lie behind the main curb? Those of a side street lie beyond its end.
-
-        A side street leaves at 45° or more: what lies as far out from the curb as its end is away may belong to one.
-        """
-        out = self.outward(s, d)
-        end = np.zeros(len(s))
-        for a, b in self.runs:
-            end = np.maximum(end, np.minimum(s - a, b - s))
-        return (out > 0.0) & (out < end)
-
-    def between(self, start: float, end: float) -> bool:
-        """Was a point of main curb measured between two stations?"""
-        return bool(((self.seen > start) & (self.seen < end)).any())
-
-
-def _places_along(line, main, gap):
-    """(N, 2) local places along the main curbs, with gaps of up to `gap` metres between their points closed."""
-    places = [np.empty((0, 2))]
-    for points in main.values():
-        for run in _split(points, gap):
-            s = np.arange(run[0, 0], run[-1, 0] + PLAN_CELL, PLAN_CELL)
-            places.append(np.c_[line.to_map(s, np.interp(s, run[:, 0], run[:, 1]))])
-    return np.concatenate(places)
-
-
-def _split(points, gap=MAX_JOINED_GAP):
-    if not len(points):
-        return []
-    apart = (np.diff(points[:, 0]) > gap) | (np.abs(np.diff(points[:, 1])) > MAX_RUN_JUMP + np.diff(points[:, 0]))
-    return np.split(points, np.flatnonzero(apart) + 1)
-
-
-def _runs(main, line):
-    """Main curbs as polylines in plan with uphill on the right: list of (side, (x, y, h))."""
-    found = []
-    for side, points in main.items():
-        for run in _split(points):
-            if len(run) > 1:
-                run = run[::-1] if side == "left" else run
-                found.append((side, (*line.to_map(run[:, 0], run[:, 1]), run[:, 2])))
-    return found
-
-
-class KnownPlaces:
-    """Places along main curbs, where no other curb is looked for.
-
-    Parameters
-    ----------
-    places : (N, 2) local metres
-    """
-
-    def __init__(self, places: np.ndarray):
-        self.places = places
-        self._tree = cKDTree(places)
-
-    def __getstate__(self) -> dict:
-        return dict(places=self.places)
-
-    def __setstate__(self, state: dict) -> None:
-        KnownPlaces.__init__(self, **state)
-
-    def within(self, x: np.ndarray, y: np.ndarray, distance: float) -> np.ndarray:
-        """(N,) bool, is one of the places within a distance of (N,) local places?"""
-        if not self._tree.n or not len(x):
-            return np.zeros(len(x), bool)
-        # the tree finds what is nearer than its bound
-        return self._tree.query(np.c_[x, y], distance_upper_bound=np.nextafter(distance, np.inf))[0] <= distance
-
-
 def plan_steps_of_section(decimation: PointDecimation, section: tuple[int, int], road: int, limits: Mapping[str, SearchLimit],
-                          known: KnownPlaces, barrier: np.ndarray, tips: FollowedEnds, settings: CurbSettings,
+                          known: KnownPlaces, barrier: np.ndarray, tips: FollowedEnds, settings: CurbSettings, behind: np.ndarray,
                           points_per_cell: int | None = POINTS_PER_LEVEL_CELL_IN_PLAN) -> tuple[PlanSteps, np.ndarray, np.ndarray] | None:
     """The phase of curb returns: steps in plan in one section of a road.
 
@@ -280,6 +178,7 @@ def plan_steps_of_section(decimation: PointDecimation, section: tuple[int, int],
     barrier : (2, M) local x and y of places that the driven ground does not go beyond
     tips : ends of the main curbs
     settings : CurbSettings
+    behind : (2, K) local x and y of places that are road although something stands between them and the track
     points_per_cell : as in `decimated_points`, where the ground is not uneven nearly everywhere
 
     Returns
@@ -303,12 +202,13 @@ def plan_steps_of_section(decimation: PointDecimation, section: tuple[int, int],
     noisy = dense and raster.noise > NOISY_RASTER_SHARE * settings.limits.clear_height
     if noisy and limit is not None:
         # averages need every point
-        return plan_steps_of_section(decimation, section, road, limits, known, barrier, tips, settings, points_per_cell=None)
+        return plan_steps_of_section(decimation, section, road, limits, known, barrier, tips, settings, behind, points_per_cell=None)
     line = survey.frame.road(road)
     slopes = ground_slopes(raster.low)
     track = _track(survey, road, first, last)
     clear = settings.limits.clear_height
-    driven, stepped = driven_ground(raster, slopes, track[0], track[1], [v[inner] for v in place[:2]], barrier[0], barrier[1], clear)
+    inside = [np.concatenate([v[inner], more]) for v, more in zip(place[:2], behind)]
+    driven, stepped = driven_ground(raster, slopes, track[0], track[1], inside, barrier[0], barrier[1], clear)
 
     def wanted(x, y, before_curbs=False):
         own, d = line.locate(x, y)
@@ -336,11 +236,11 @@ def plan_steps_of_section(decimation: PointDecimation, section: tuple[int, int],
     # inside a tight bend a step may be measured outside the range of stations
     steps = steps[np.isfinite(line.locate(steps.x, steps.y)[0])]
     steps = steps[~on_island_tops(steps, _behind(raster, slopes, steps))]
-    behind = _behind(raster, slopes, steps)
-    hidden = far_sides(raster, steps, behind)
+    ground = _behind(raster, slopes, steps)
+    hidden = far_sides(raster, steps, ground)
     hidden = hidden[wanted(hidden.x, hidden.y)]
     # its near side is the far side of a far side; an island ends where its top does, not where the ground comes out of its shadow
-    falls = np.r_[np.where(np.isfinite(behind.edge), behind.edge, behind.falls), np.full(len(hidden), MIN_ISLAND_WIDTH)]
+    falls = np.r_[np.where(np.isfinite(ground.edge), ground.edge, ground.falls), np.full(len(hidden), MIN_ISLAND_WIDTH)]
     # averaging leaves the errors of single beams and the drift of positions
     return PlanSteps.join([steps, hidden]), falls, np.full(len(falls), raster.noise)
 

@@ -22,7 +22,7 @@ from .steps import PlanSteps
 
 if TYPE_CHECKING:
     from ..profiles.detect import CurbSettings
-    from .detect import KnownPlaces, SearchLimit
+    from .main_curbs import KnownPlaces, SearchLimit
 
 LED_KINDS = "main", "corner", "side_street"   # the other curbs have no ends
 MEETING_CURB_DISTANCE = 0.25  # m within which a curb that leads on has reached another

@@ -1,0 +1,135 @@
+"""The main curbs of a road as the search in plan needs them: where they run, and how far out is searched beside them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from ...survey.frame.road import CORRIDOR
+from ..common.curb_points import CurbPoints
+from ..common.sides import SIDE_SIGNS, expected_height
+from ..common.tracking import MAX_JOINED_GAP
+from .raster import PLAN_CELL
+
+if TYPE_CHECKING:
+    from ...survey.frame.road import Road
+    from ...survey.open_survey import Survey
+
+MIN_OPENING_LENGTH = 6.0      # m without main curb that are an opening and no driveway
+OPENING_MARGIN = 6.0          # m of main curb beside an opening behind which corners are looked for
+SEARCH_BEHIND_CURB = 0.6      # m behind a main curb that are searched elsewhere
+MAX_RUN_JUMP = 0.5            # m across between points of one run of main curb
+
+
+def main_curbs_of(curb_points: CurbPoints, survey: Survey, road: int) -> tuple[dict[str, np.ndarray], int]:
+    """Main curbs of a road, side -> (N, 4) station, offset, height and whether it was seen, and the first free chain number."""
+    main, curbs = {}, curb_points[curb_points.road == road]
+    for side in SIDE_SIGNS:
+        own = curbs[(curbs.side == side) & (curbs.part == "bottom")]
+        rows = np.c_[own.station, own.offset, own.z, own.status == "measured"]
+        rows = rows[np.argsort(rows[:, 0], kind="stable")]
+        if len(rows):
+            rows[:, 2] -= expected_height(survey, road, rows[:, 0])
+        main[side] = rows
+    return main, int(curbs.chain.max(initial=-1)) + 1
+
+
+class SearchLimit:
+    """How far out one side is searched: to a little behind the main curb, and everywhere at openings.
+
+    Parameters
+    ----------
+    points : (N, 4) of the main curb, as of `find_curb_returns`
+    sign : of the side's offsets
+    """
+
+    def __init__(self, points: np.ndarray, sign: int):
+        self.sign = sign
+        self.s, self.u, self.seen = points[:, 0], sign * points[:, 1], points[points[:, 3] > 0, 0]
+        cuts = np.flatnonzero(np.diff(self.s) > MIN_OPENING_LENGTH) + 1
+        self.runs = [(part[0], part[-1]) for part in np.split(self.s, cuts) if len(part)]
+
+    def __call__(self, s: np.ndarray, behind: float = SEARCH_BEHIND_CURB, at_opening: float = OPENING_MARGIN) -> np.ndarray:
+        """(N,) m, largest outward offset at (N,) stations: `behind` metres behind the curb, except for its last metres beside openings."""
+        if not len(self.s):
+            return np.full(len(s), CORRIDOR)
+        bounded = np.zeros(len(s), bool)
+        for a, b in self.runs:
+            bounded |= (s > a + at_opening) & (s < b - at_opening)
+        return np.where(bounded, np.interp(s, self.s, self.u) + behind, CORRIDOR)
+
+    def outward(self, s: np.ndarray, d: np.ndarray) -> np.ndarray:
+        """(N,) m from the main curb outward to places at (N,) stations and offsets; at openings from the end of what is searched."""
+        return self.sign * d - self(s, 0.0, 0.0)
+
+    def behind(self, s: np.ndarray, d: np.ndarray) -> np.ndarray:
+        """(N,) bool, do places at (N,) stations and offsets lie behind the main curb? Those of a side street lie beyond its end.
+
+        A side street leaves at 45° or more: what lies as far out from the curb as its end is away may belong to one.
+        """
+        out = self.outward(s, d)
+        end = np.zeros(len(s))
+        for a, b in self.runs:
+            end = np.maximum(end, np.minimum(s - a, b - s))
+        return (out > 0.0) & (out < end)
+
+    def between(self, start: float, end: float) -> bool:
+        """Was a point of main curb measured between two stations?"""
+        return bool(((self.seen > start) & (self.seen < end)).any())
+
+
+def places_along(line: Road, main: Mapping[str, np.ndarray], gap: float) -> np.ndarray:
+    """(N, 2) local places along the main curbs, with gaps of up to `gap` metres between their points closed."""
+    places = [np.empty((0, 2))]
+    for points in main.values():
+        for run in _split(points, gap):
+            s = np.arange(run[0, 0], run[-1, 0] + PLAN_CELL, PLAN_CELL)
+            places.append(np.c_[line.to_map(s, np.interp(s, run[:, 0], run[:, 1]))])
+    return np.concatenate(places)
+
+
+def _split(points, gap=MAX_JOINED_GAP):
+    if not len(points):
+        return []
+    apart = (np.diff(points[:, 0]) > gap) | (np.abs(np.diff(points[:, 1])) > MAX_RUN_JUMP + np.diff(points[:, 0]))
+    return np.split(points, np.flatnonzero(apart) + 1)
+
+
+def main_runs(main: Mapping[str, np.ndarray], line: Road) -> list[tuple]:
+    """Main curbs as polylines in plan with uphill on the right: list of (side, (x, y, h))."""
+    found = []
+    for side, points in main.items():
+        for run in _split(points):
+            if len(run) > 1:
+                run = run[::-1] if side == "left" else run
+                found.append((side, (*line.to_map(run[:, 0], run[:, 1]), run[:, 2])))
+    return found
+
+
+class KnownPlaces:
+    """Places along main curbs, where no other curb is looked for.
+
+    Parameters
+    ----------
+    places : (N, 2) local metres
+    """
+
+    def __init__(self, places: np.ndarray):
+        self.places = places
+        self._tree = cKDTree(places)
+
+    def __getstate__(self) -> dict:
+        return dict(places=self.places)
+
+    def __setstate__(self, state: dict) -> None:
+        KnownPlaces.__init__(self, **state)
+
+    def within(self, x: np.ndarray, y: np.ndarray, distance: float) -> np.ndarray:
+        """(N,) bool, is one of the places within a distance of (N,) local places?"""
+        if not self._tree.n or not len(x):
+            return np.zeros(len(x), bool)
+        # the tree finds what is nearer than its bound
+        return self._tree.query(np.c_[x, y], distance_upper_bound=np.nextafter(distance, np.inf))[0] <= distance
