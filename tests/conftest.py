@@ -14,6 +14,10 @@ PACKAGE = "lanewright"
 
 sys.path.insert(0, str(ROOT / "tests" / "streets"))  # streets and surveys that several tests build
 
+if workers := int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "0")):
+    own_cores = max(1, (os.cpu_count() or 1) // workers)
+    os.cpu_count = lambda: own_cores  # the threads of each process have its share; tests of threads ask for more
+
 if os.environ.get("LANEWRIGHT_WITHOUT_QGIS"):
     sys.modules["qgis"] = None  # every import of it fails
 

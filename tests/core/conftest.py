@@ -25,5 +25,5 @@ def made_survey(made_once):
     def made(**settings):
         sample = make_sample_survey(SampleSettings(**settings))
         name = hashlib.sha256(repr(sample.settings).encode()).hexdigest()[:16]
-        return sample, made_once(name, lambda folder: sample.write_cloud(folder / "survey.laz")) / "survey.laz"
+        return sample, made_once(name, lambda folder: sample.write_cloud(folder / "survey.las")) / "survey.las"
     return made

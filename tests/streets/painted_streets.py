@@ -9,7 +9,7 @@ from lanewright.core.survey.trajectory.trajectory import Trajectory
 
 ASPHALT, PAINT = 1000.0, 4000.0
 EAST, NORTH = 500_000.0, 5_400_000.0
-DENSITY = 1000  # points per square metre
+DENSITY = 600  # points per square metre
 
 
 def drive(length=90.0, radius=np.inf, east=EAST):

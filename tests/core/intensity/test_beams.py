@@ -18,24 +18,38 @@ def hatching(x, y):
     return inside & (frame | ((x + y) % 1.5 < 0.3))
 
 
+def corrected(**street):
+    """(frame, road points made alike, report)."""
+    points, frame = spun(**street)
+    return frame, *correct_intensity(points, frame)
+
+
+@pytest.fixture(scope="module")
+def plain():
+    return corrected()
+
+
+@pytest.fixture(scope="module")
+def hatched():
+    return corrected(paint=hatching)
+
+
 def scatter(values):
     return np.std(values) / np.mean(values)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("by_turn", [False, True])
-def test_unequal_beams_are_told_apart_and_made_alike(by_turn):
-    points, frame = spun(by_turn=by_turn)
-    corrected, report = correct_intensity(points, frame)
-    found = corrected.all_points()
+def test_unequal_beams_are_told_apart_and_made_alike(plain, by_turn):
+    _, alike, report = corrected(by_turn=True) if by_turn else plain
+    found = alike.all_points()
     assert BEAMS <= report.beams <= BEAMS + 10 and "beams" in report.lines()[0]
     assert scatter(found.value) < 0.45 * scatter(found.intensity.astype(float))
 
 
 @pytest.mark.slow
-def test_paint_stays_brighter_than_asphalt_when_beams_are_made_alike():
-    points, frame = spun(hatching)
-    found = correct_intensity(points, frame)[0].all_points()
+def test_paint_stays_brighter_than_asphalt_when_beams_are_made_alike(hatched):
+    found = hatched[1].all_points()
     painted = hatching(found.x, found.y)
     assert np.median(found.value[painted]) - np.median(found.value[~painted]) == pytest.approx(25 * 256, rel=0.1)
 
@@ -46,25 +60,30 @@ def test_beams_that_are_alike_already_are_left_alone():
 
 
 @pytest.mark.slow
-def test_the_beams_do_not_depend_on_the_length_of_sections():
-    results = [correct_intensity(*spun(section_length=length))[0].all_points() for length in (20.0, 7.0)]
+def test_the_beams_do_not_depend_on_the_length_of_sections(plain):
+    results = [found[1].all_points() for found in (plain, corrected(section_length=7.0))]
     by_place = [np.lexsort((p.y, p.x, p.time)) for p in results]
     np.testing.assert_array_equal(results[0].value[by_place[0]], results[1].value[by_place[1]])
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("paint", [None, hatching])
-def test_a_hatched_island_under_unequal_beams_is_found_and_grey_asphalt_is_not(tmp_path, paint):
+def marked_on(street, folder):
     pytest.importorskip("osgeo.gdal")
-    points, frame = spun(paint)
-    corrected, _ = correct_intensity(points, frame)
-    write_intensity_image(corrected, tmp_path / "image.tif")
-    marked = extract_markings(corrected, IntensityImage.open(tmp_path / "image.tif"), frame)
-    if paint is None:
-        assert len(marked) < 20
-        return
-    found, everything = marked.all_points(), corrected.all_points()
-    assert paint(found.x, found.y).mean() > 0.8
-    assert paint(found.x, found.y).sum() > 0.6 * paint(everything.x, everything.y).sum()
+    frame, alike, _ = street
+    write_intensity_image(alike, folder / "image.tif")
+    return extract_markings(alike, IntensityImage.open(folder / "image.tif"), frame)
+
+
+@pytest.mark.slow
+def test_grey_asphalt_under_unequal_beams_is_no_paint(tmp_path, plain):
+    assert len(marked_on(plain, tmp_path)) < 20
+
+
+@pytest.mark.slow
+def test_a_hatched_island_under_unequal_beams_is_found(tmp_path, hatched):
+    frame, alike, _ = hatched
+    marked = marked_on(hatched, tmp_path)
+    found, everything = marked.all_points(), alike.all_points()
+    assert hatching(found.x, found.y).mean() > 0.8
+    assert hatching(found.x, found.y).sum() > 0.6 * hatching(everything.x, everything.y).sum()
     markings, _ = cluster_markings(marked, frame)
     assert 3.0 < sum(g.area for g in markings.outlines.polygons()) < 8.0

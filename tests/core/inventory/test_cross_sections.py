@@ -33,7 +33,7 @@ def test_the_crossfall_of_both_sides_of_a_crown_is_measured(crossfall):
     np.testing.assert_allclose(column(rows, "crossf_pct")[:, 0], true, atol=0.05)
 
 
-@pytest.mark.parametrize("roll", [0.002, 0.005, -0.005])
+@pytest.mark.parametrize("roll", [0.002, -0.005])
 def test_passes_in_opposite_directions_tell_roll_from_crossfall(roll):
     """The same vehicle with two scanners, all of them tilted, and a centimetre between them: 0.005 are 0.3 degrees."""
     survey = measured_road(drives=(Drive(1, -1.75, roll), Drive(-1, 1.75, roll, 0.008)), scanners=((0.005, 0.003), (-0.005, -0.001)), rut=0.01)
@@ -53,7 +53,7 @@ def test_one_pass_says_that_it_cannot_tell_roll_from_crossfall():
 
 
 @pytest.mark.parametrize("rut", [0.0, 0.005, 0.012, 0.025])
-@pytest.mark.parametrize("density", [150.0, 600.0, 2500.0])
+@pytest.mark.parametrize("density", [150.0, 2500.0])
 def test_rut_depths_are_right_within_three_millimetres(rut, density):
     """A scanner of 5 mm noise, another 8 mm above it and tilted, and a vehicle that rolls."""
     survey = measured_road(drives=(Drive(1, -1.75, 0.003),), scanners=((0.004, 0.002), (-0.004, -0.002)), rut=rut, density=density, noise=0.005)
@@ -67,7 +67,7 @@ def test_a_step_between_two_scanners_is_no_rut():
     assert np.nanmax(column(rows, "rut_l_mm", "rut_r_mm")) < 3.0
 
 
-@pytest.mark.parametrize("crossfall", [0.025, 0.05, 0.08])
+@pytest.mark.parametrize("crossfall", [0.025, 0.08])
 def test_a_crown_is_no_rut_however_steeply_the_road_falls_from_it(crossfall):
     found = column(rows_of(measured_road(drives=BOTH_WAYS, crossfall=crossfall)), "rut_l_mm", "rut_r_mm")
     assert np.sqrt(np.mean(found**2)) < 1.5 and found.max() < 3.0

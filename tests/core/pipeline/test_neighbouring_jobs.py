@@ -4,9 +4,7 @@ import laspy
 import numpy as np
 import pytest
 import shapely
-from lanewright.core.pipeline.road_map import make_road_map
-from lanewright.core.road.detect_boundaries import BoundarySettings, find_curb_points
-from lanewright.core.survey.open_survey import open_survey
+from lanewright.core.pipeline import road_map as chain
 
 LENGTH, SHARED = 280.0, (40.0, 240.0)   # m of road
 FROM_CUT = 20.0                         # m from the end of either's points: what is measured and averaged there lacks the other side
@@ -23,8 +21,8 @@ def jobs(made_survey, tmp_path_factory):
     for name, own in (("first", cloud.gps_time <= last), ("second", cloud.gps_time >= first)):
         part = laspy.LasData(cloud.header)
         part.points = cloud.points[own]
-        part.write(folder / f"{name}.laz")
-    return drive, folder / "first.laz", folder / "second.laz"
+        part.write(folder / f"{name}.las")
+    return drive, folder / "first.las", folder / "second.las"
 
 
 def apart(ours, theirs, drive):
@@ -44,29 +42,41 @@ def lines_of(features):
     return [shapely.LineString(np.asarray(geometry.coords)) for geometry, _ in features]
 
 
-@pytest.mark.slow
-def test_both_offices_find_the_same_curb_points_by_profiles(jobs):
+@pytest.fixture(scope="module")
+def mapped(jobs, tmp_path_factory):
+    """Both road maps, and the curb points of both with the frames they were found in."""
     drive, *clouds = jobs
+    find, found, folder = chain.find_curb_points, [], tmp_path_factory.mktemp("maps")
+
+    def noted(survey, *arguments, **options):
+        found.append((survey.frame, find(survey, *arguments, **options)))
+        return found[-1][1]
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(chain, "find_curb_points", noted)
+        maps = [chain.make_road_map([cloud], drive, folder / f"{k}.tif") for k, cloud in enumerate(clouds)]
+    for made in maps:
+        made.road_points.close()
+    return maps, found
+
+
+@pytest.mark.slow
+def test_both_offices_find_the_same_curb_points_by_profiles(mapped):
     found = []
-    for cloud in clouds:
-        survey = open_survey([cloud], drive)
-        points = find_curb_points(survey, BoundarySettings("profiles"))["profiles"]
+    for frame, by_method in mapped[1]:
+        points = by_method["profiles"]
         middle = (points.station > SHARED[0] + FROM_CUT) & (points.station < SHARED[1] - FROM_CUT) & (points.kind == "main")
         measured = middle & (points.status == "measured")
         # each counts from an origin of its own
-        places = np.c_[points.x[measured] + survey.frame.origin[0], points.y[measured] + survey.frame.origin[1], points.height[measured]]
+        places = np.c_[points.x[measured] + frame.origin[0], points.y[measured] + frame.origin[1], points.height[measured]]
         found.append(places[np.lexsort(places.T)])
-        survey.store.close()
     assert len(found[0]) > 60
     np.testing.assert_allclose(*found, atol=1e-6)
 
 
 @pytest.mark.slow
-def test_most_places_of_both_maps_lie_within_a_centimetre(jobs, tmp_path):
-    drive, *clouds = jobs
-    maps = [make_road_map([cloud], drive, tmp_path / f"{k}.tif") for k, cloud in enumerate(clouds)]
+def test_most_places_of_both_maps_lie_within_a_centimetre(jobs, mapped):
+    maps, drive = mapped[0], jobs[0]
     for layer, share in (("edges", 0.95), ("marking_lines", 0.85)):
         distance = apart(*(lines_of(made.layer(layer)) for made in maps), drive)
         assert len(distance) > 300 and np.median(distance) < 0.003 and np.quantile(distance, share) < 0.010, layer
-    for made in maps:
-        made.road_points.close()

@@ -86,12 +86,12 @@ def test_the_same_street_again_a_thousand_kilometres_on_gives_the_same_map(sampl
     there = laspy.read(cloud)
     there.points.offsets = there.header.offsets = there.header.offsets + [east, 0.0, 0.0]
     there.gps_time = np.asarray(there.gps_time) + later
-    there.write(tmp_path / "there.laz")
+    there.write(tmp_path / "there.las")
     here = sample.trajectory
     off = dict(time=later, x=east)
     both = replace(here, **{name: np.r_[getattr(here, name), getattr(here, name) + off.get(name, 0.0)]
                             for name in ("time", "x", "y", "z", "roll", "pitch", "heading")})
-    found = make_road_map([cloud, tmp_path / "there.laz"], both, tmp_path / "image.tif")
+    found = make_road_map([cloud, tmp_path / "there.las"], both, tmp_path / "image.tif")
     assert found.survey_facts["outside"] == 2 * road_map.survey_facts["outside"]
     # a point right on the edge of the surface may fall on either side: what asphalt looks like is taken from the whole survey
     assert len(found.road_points) == pytest.approx(2 * len(road_map.road_points), abs=5)
@@ -110,14 +110,14 @@ def test_towns_too_far_apart_for_one_image_are_refused_before_anything_is_detect
     there = laspy.read(cloud)
     there.points.offsets = there.header.offsets = there.header.offsets + [3e5, 3e5, 0.0]
     there.gps_time = np.asarray(there.gps_time) + 4000.0
-    there.write(tmp_path / "there.laz")
+    there.write(tmp_path / "there.las")
     here = sample.trajectory
     off = dict(time=4000.0, x=3e5, y=3e5)
     both = replace(here, **{name: np.r_[getattr(here, name), getattr(here, name) + off.get(name, 0.0)]
                             for name in ("time", "x", "y", "z", "roll", "pitch", "heading")})
     monkeypatch.setattr(chain, "find_curb_points", None)
     with pytest.raises(RoadExtractionError, match=r"span 300\.\d by 300\.\d km.*larger cell size"):
-        make_road_map([cloud, tmp_path / "there.laz"], both, tmp_path / "image.tif")
+        make_road_map([cloud, tmp_path / "there.las"], both, tmp_path / "image.tif")
     assert not (tmp_path / "image.tif").exists()
 
 
@@ -128,8 +128,8 @@ def test_tiles_in_any_order_give_the_same_map(sample, cloud, road_map, tmp_path)
     for name, part in (("east", half), ("west", ~half)):
         tile = laspy.LasData(whole.header)
         tile.points = whole.points[part]
-        tile.write(tmp_path / f"{name}.laz")
-        tiles.append(tmp_path / f"{name}.laz")
+        tile.write(tmp_path / f"{name}.las")
+        tiles.append(tmp_path / f"{name}.las")
     for order in (tiles, tiles[::-1]):
         assert_same(road_map, make_road_map(order, sample.trajectory, tmp_path / "intensity.tif"))
 
@@ -139,9 +139,9 @@ def test_section_length_memory_and_block_size_do_not_show(sample, cloud, road_ma
     assert_same(road_map, make_road_map([cloud], sample.trajectory, tmp_path / "intensity.tif", settings))
 
 
-@pytest.mark.parametrize("cores", [1, 4])
-def test_the_number_of_threads_does_not_show(sample, cloud, road_map, tmp_path, monkeypatch, cores):
-    monkeypatch.setattr(os, "cpu_count", lambda: cores)
+def test_the_number_of_threads_does_not_show(sample, cloud, road_map, tmp_path, monkeypatch):
+    others = 4 if os.cpu_count() == 1 else 1
+    monkeypatch.setattr(os, "cpu_count", lambda: others)
     assert_same(road_map, make_road_map([cloud], sample.trajectory, tmp_path / "intensity.tif"))
 
 
@@ -151,16 +151,16 @@ def test_a_survey_moved_500_km_gives_the_same_map_there(sample, cloud, road_map,
     x = np.asarray(moved.x) + east
     moved.change_scaling(offsets=moved.header.offsets + [east, 0, 0])
     moved.x = x
-    moved.write(tmp_path / "moved.laz")
+    moved.write(tmp_path / "moved.las")
     drive = replace(sample.trajectory, x=sample.trajectory.x + east)
-    assert_same(road_map, make_road_map([tmp_path / "moved.laz"], drive, tmp_path / "intensity.tif"), (east, 0.0, 0.0))
+    assert_same(road_map, make_road_map([tmp_path / "moved.las"], drive, tmp_path / "intensity.tif"), (east, 0.0, 0.0))
 
 
 def test_without_intensity_there_are_edges_and_a_reason(sample, cloud, tmp_path):
     dark = laspy.read(cloud)
     dark.intensity = np.zeros(len(dark.points), np.uint16)
-    dark.write(tmp_path / "dark.laz")
-    found = make_road_map([tmp_path / "dark.laz"], sample.trajectory, tmp_path / "intensity.tif")
+    dark.write(tmp_path / "dark.las")
+    found = make_road_map([tmp_path / "dark.las"], sample.trajectory, tmp_path / "intensity.tif")
     assert len(found.edges) and len(found.surface)
     assert "intensity" in found.without_paint and found.markings is None
 

@@ -13,6 +13,9 @@ from lanewright.core.execution.work_folder import WorkFolder
 
 pytestmark = pytest.mark.slow
 
+KILLED_IN = ("surface_points", "corrected_of_stretch", "sums_of_pieces", "levels_of_windows", "paint_of_windows", "combs_of_windows",
+             "shapes_of_clusters")
+
 
 @pytest.fixture(scope="module")
 def sample(made_survey):
@@ -20,18 +23,24 @@ def sample(made_survey):
 
 
 class Noting(WorkerProcesses):
-    """Notes which phases it was given, and kills a worker in one of them."""
+    """Notes which phases it was given, and kills a worker the first time it is given some of them."""
 
-    def __init__(self, workers, killed_in=""):
+    def __init__(self, workers, killed_in=()):
         super().__init__(find_interpreter(), workers)
-        self.tasks, self.killed_in = {}, killed_in
+        self.tasks, self.killed_in = {}, set(killed_in)
 
     def run(self, phase, items, *others):
         items, name = list(items), phase.function.__name__
         self.tasks[name] = max(len(items), self.tasks.get(name, 0))
-        if name == self.killed_in:
-            threading.Thread(target=self.kill_one, daemon=True).start()
-        return super().run(phase, items, *others)
+        killer = threading.Thread(target=self.kill_one, daemon=True)
+        if killed := name in self.killed_in:
+            self.killed_in.remove(name)
+            if any(worker._process.poll() is not None for worker in self._all):
+                self.release()   # it had no task when it was killed; no item may lose two workers
+            killer.start()
+        yield from super().run(phase, items, *others)
+        if killed:
+            killer.join()
 
     def kill_one(self):
         until = time.monotonic() + 20.0
@@ -48,19 +57,16 @@ def by_threads(sample):
     return found_by(sample)
 
 
-@pytest.mark.parametrize("workers", [1, 2])
-def test_worker_processes_find_what_threads_find_and_leave_nothing(sample, by_threads, workers):
-    executor = Noting(workers)
+def test_worker_processes_find_what_threads_find_and_leave_nothing(sample, by_threads):
+    executor = Noting(2)
     assert found_by(sample, executor) == by_threads
     assert all(executor.tasks[name] > 1 for name in PHASES) and not executor.folder.exists()
 
 
-@pytest.mark.parametrize("phase", ["surface_points", "corrected_of_stretch", "sums_of_pieces", "levels_of_windows", "paint_of_windows",
-                                   "combs_of_windows", "shapes_of_clusters"])
-def test_a_worker_that_is_killed_is_replaced_and_nothing_is_lost(sample, by_threads, phase):
-    executor = Noting(1, phase)
+def test_a_worker_that_is_killed_in_one_phase_after_another_is_replaced_and_nothing_is_lost(sample, by_threads):
+    executor = Noting(1, KILLED_IN)
     assert found_by(sample, executor) == by_threads
-    assert not executor.folder.exists()
+    assert not executor.killed_in and not executor.folder.exists()
 
 
 def test_a_work_folder_keeps_nothing_of_these_stages(sample, by_threads, tmp_path):

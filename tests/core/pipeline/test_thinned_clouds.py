@@ -41,8 +41,8 @@ def thinned(street, folder, which):
     """The survey of the points that `which` chooses by their times."""
     points = laspy.read(street.cloud)
     points.points = points.points[which(np.asarray(points.gps_time))]
-    points.write(folder / "thinned.laz")
-    return open_survey([str(folder / "thinned.laz")], street.trajectory)
+    points.write(folder / "thinned.las")
+    return open_survey([str(folder / "thinned.las")], street.trajectory)
 
 
 def one_line_in(kept):

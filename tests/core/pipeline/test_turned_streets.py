@@ -71,7 +71,7 @@ def road_map_of(street, folder, there, backwards):
     cloud.gps_time = (ends - points.gps_time if backwards else np.asarray(points.gps_time))[order]
     for name in ("intensity", "return_number", "number_of_returns", "point_source_id"):
         cloud[name] = np.asarray(points[name])[order]
-    path = folder / f"{there.__name__}{backwards}.laz"
+    path = folder / f"{there.__name__}{backwards}.las"
     cloud.write(path)
     time = ends - drive.time if backwards else drive.time
     trajectory = Trajectory(time[order], track[order, 0], track[order, 1], drive.z[order], crs=drive.crs)

@@ -211,7 +211,7 @@ def test_the_trajectory_rides_at_sensor_height_and_looks_ahead(plan):
 
 @pytest.mark.slow
 def test_the_same_seed_makes_the_same_survey():
-    settings = SampleSettings(scene="roundabout", length=60.0, seed=5, pulse_rate=5_000.0, rotation_rate=25.0)
+    settings = SampleSettings(scene="serpentine", length=60.0, seed=5, pulse_rate=5_000.0, rotation_rate=25.0)
     one, same, other = (make_sample_survey(replace(settings, seed=seed)).points() for seed in (5, 5, 6))
     assert one.tobytes() == same.tobytes()
     assert len(other) != len(one) or not np.array_equal(other["x"], one["x"])
@@ -304,8 +304,7 @@ def test_a_roundabout_is_a_ring_about_an_island_with_two_splitter_islands_in_eac
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("scene, length", [(scene, 90.0) for scene in PLANS] + [
-    ("motorway", 300.0), ("serpentine", 300.0), ("crossing", 180.0), ("roundabout", 180.0)])
+@pytest.mark.parametrize("scene, length", [("motorway", 90.0), ("serpentine", 300.0), ("crossing", 180.0), ("roundabout", 90.0)])
 def test_a_plan_of_another_length_has_truth_too(scene, length):
     """Shorter and longer than usual."""
     sample = make_sample_survey(SampleSettings(scene=scene, length=length))

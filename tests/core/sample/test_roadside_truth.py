@@ -6,10 +6,10 @@ import shapely
 from lanewright.core.inventory.borders import BorderLayers
 from lanewright.core.inventory.roadside.find import find_roadside
 from lanewright.core.inventory.roadside.layers import roadside_to_features
-from lanewright.core.pipeline.road_map import make_road_map
 from lanewright.core.sample.parts.materials import LABEL
 from lanewright.core.sample.survey import SampleSettings, make_sample_survey
 from lanewright.core.survey.open_survey import SurveySettings, open_survey
+from road_layers import drawn_boundaries
 
 LABEL_OF = {"guard_rail": "rail", "wall": "wall", "barrier": "barrier", "fence": "fence", "hedge": "hedge"}
 DEEP = {"barrier": 0.60, "hedge": 1.3, "wall": 0.25}  # m behind its face that points of a thing may lie; others are thin
@@ -76,18 +76,15 @@ def test_what_stands_elsewhere_has_no_truth_and_rails_do():
 
 
 @pytest.mark.slow
-def test_roadside_finds_90_percent_and_95_percent_of_it_are_right(tmp_path):
-    sample = make_sample_survey(SampleSettings(scene="outskirts", pulse_rate=60_000.0))
-    sample.write_cloud(tmp_path / "cloud.laz")
-    made = make_road_map([tmp_path / "cloud.laz"], sample.trajectory, tmp_path / "image.tif")
-    made.road_points.close()
-    found = open_survey([tmp_path / "cloud.laz"], sample.trajectory, SurveySettings(above_road=8.0))
-    lines, _ = roadside_to_features(find_roadside(found, BorderLayers(edges=made.layer("edges"))))
+def test_roadside_finds_90_percent_and_95_percent_of_it_are_right(outskirts, tmp_path):
+    outskirts.write_cloud(tmp_path / "cloud.las")
+    found = open_survey([tmp_path / "cloud.las"], outskirts.trajectory, SurveySettings(above_road=8.0))
+    lines, _ = roadside_to_features(find_roadside(found, BorderLayers(edges=drawn_boundaries(found))))
     found.store.close()
     sums = np.zeros(4)
     for kind in LABEL_OF:
         true, ours = (
-            shapely.union_all([shapely.force_2d(line) for line, row in layer if row["kind"] == kind]) for layer in (sample.truth_roadside, lines)
+            shapely.union_all([shapely.force_2d(line) for line, row in layer if row["kind"] == kind]) for layer in (outskirts.truth_roadside, lines)
         )
         sums += [shapely.intersection(true, ours.buffer(0.3)).length, true.length, shapely.intersection(ours, true.buffer(0.3)).length, ours.length]
     assert sums[0] >= 0.90 * sums[1] and sums[2] >= 0.95 * sums[3]

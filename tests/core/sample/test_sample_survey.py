@@ -48,10 +48,10 @@ def above_ground(sample, points):
 @pytest.mark.slow
 @pytest.mark.parametrize("scene", STREETS)
 def test_without_noise_every_ground_point_lies_on_the_true_surface(scene):
-    sample = survey(scene, length=130.0)
+    sample = survey(scene, length=130.0, pulse_rate=30_000.0)
     points = sample.points(noise=False)
     ground = points[np.isin(points["label"], GROUND)]
-    assert len(ground) > 100_000
+    assert len(ground) > 50_000
     assert np.abs(above_ground(sample, ground)).max() < 1e-3
     x, y, _ = sample.scene.to_map(points["station"], points["offset"])
     x0, y0, _ = sample.settings.origin

@@ -101,7 +101,7 @@ def test_segments_find_a_stop_line_that_peaks_cannot_see():
 
 
 def test_bright_points_strewn_over_asphalt_are_not_dense_enough():
-    records = street(FRAME, [strip(0, 80, 1.2, 1.35)], length=10.0)
+    records = street(FRAME, [strip(0, 80, 1.2, 1.35)], length=10.0, density=1000)
     rng = np.random.default_rng(4)
     records["intensity"][rng.choice(len(records), 300, replace=False)] = PAINT
     bright = records[records["intensity"] > 2 * ASPHALT]

@@ -24,7 +24,7 @@ def half_of(s):
     return np.full_like(s, HALF)
 
 
-def street(half=half_of, verge=True, keep=None, extra=None, backwards=False, shuffled=False, density=300, seed=5, gravel=GRAVEL, gain=None,
+def street(half=half_of, verge=True, keep=None, extra=None, backwards=False, shuffled=False, density=150, seed=5, gravel=GRAVEL, gain=None,
            grey_of=None):
     """A straight street along y = 0 of asphalt up to `half` of the station, then a strip of gravel, then grass; or asphalt throughout.
 
@@ -72,6 +72,13 @@ def found(survey, **settings):
     return with_pavement_edges(survey, no_edges(survey), EdgeSettings(**settings))
 
 
+@pytest.fixture(scope="module")
+def plain():
+    """The usual street and its edges."""
+    survey = street()
+    return survey, found(survey)
+
+
 def on_map(edges, survey):
     """[(status, (V, 2) m along and across the street)] of edges."""
     return [(edges.status[k], np.c_[edges.course.x[edges.course.line(k)] + survey.frame.origin[0] - EAST,
@@ -91,7 +98,7 @@ def covered(edges, survey, side, half=half_of, within=0.2):
     return right.mean()
 
 
-@pytest.mark.parametrize("options", [{}, {"backwards": True}, {"shuffled": True}, {"density": 120}])
+@pytest.mark.parametrize("options", [{}, {"backwards": True}, {"shuffled": True}, {"density": 400}])
 def test_where_asphalt_ends_at_gravel_the_edge_of_the_pavement_is_drawn(options):
     survey = street(**options)
     edges = found(survey)
@@ -212,9 +219,8 @@ def test_a_longer_gap_in_which_the_road_widens_is_not_bridged():
     assert len(lines) == 2 and {status for status, _ in lines} == {"measured"}
 
 
-def test_a_curb_stays_what_it_is_and_the_pavement_ends_on_the_other_side_alone():
-    survey = street()
-    drawn = found(survey)
+def test_a_curb_stays_what_it_is_and_the_pavement_ends_on_the_other_side_alone(plain):
+    survey, drawn = plain
     left = edges_to_features(drawn.take(np.flatnonzero(drawn.side == "left")), survey.frame)
     for row in left.rows:
         row["edge"] = "curb"
@@ -224,17 +230,15 @@ def test_a_curb_stays_what_it_is_and_the_pavement_ends_on_the_other_side_alone()
     assert len(set(both.chain)) == 2
 
 
-def test_the_surface_ends_at_the_edge_of_the_pavement_and_counts_as_measured():
-    survey = street()
-    points, surface = extract_road_surface(survey, found(survey))
+def test_the_surface_ends_at_the_edge_of_the_pavement_and_counts_as_measured(plain):
+    points, surface = extract_road_surface(*plain)
     d = points.all_points().d
     assert (np.percentile(d, 0.1), np.percentile(d, 99.9)) == pytest.approx((-HALF, HALF), abs=0.08)
     assert surface.area[surface.status == "measured"].sum() > 0.8 * surface.area.sum()
 
 
-def test_written_and_read_again_an_edge_of_the_pavement_is_one():
-    survey = street()
-    edges = found(survey)
+def test_written_and_read_again_an_edge_of_the_pavement_is_one(plain):
+    survey, edges = plain
     layer = edges_to_features(edges, survey.frame)
     assert set(layer.column("edge")) == {"pavement"}
     assert edges_from_features(layer, survey.frame).what.tolist() == edges.what.tolist()

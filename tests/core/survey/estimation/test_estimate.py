@@ -39,7 +39,7 @@ CASES = {
 @pytest.mark.parametrize("case", CASES.values(), ids=CASES)
 def test_a_trajectory_left_out_comes_back_within_centimetres(tmp_path, case):
     drive = mirror_drive(**case)
-    found = estimate_trajectory([drive.write(tmp_path / "cloud.laz")])
+    found = estimate_trajectory([drive.write(tmp_path / "cloud.las")])
     assert found.method == "rays" and len(found.scanners) == len(case["mirrors"])
     close(drive, found)
 
@@ -50,14 +50,14 @@ def street():
 
 
 def test_the_mounting_is_found(tmp_path, street):
-    poses = estimate_trajectory([street.write(tmp_path / "cloud.laz")]).adjusted.poses
+    poses = estimate_trajectory([street.write(tmp_path / "cloud.las")]).adjusted.poses
     np.testing.assert_allclose(np.degrees(poses.turn), [-45.0, 45.0], atol=0.3)
     np.testing.assert_allclose(np.degrees(poses.lean), [-20.0, -20.0], atol=0.3)
     np.testing.assert_allclose(poses.lever, [[0.0, 0.32, 0.0], [0.0, -0.32, 0.0]], atol=0.02)
 
 
 def test_attitude_follows_the_springs(tmp_path, street):
-    track = estimate_trajectory([street.write(tmp_path / "cloud.laz")]).trajectory
+    track = estimate_trajectory([street.write(tmp_path / "cloud.las")]).trajectory
     _, _, _, roll, pitch, yaw = street.poses(track.time)
     inner = slice(50, -50)
     for found, true in ((track.roll, np.degrees(roll)), (track.pitch, np.degrees(pitch)), (90.0 - track.heading, np.degrees(yaw))):
@@ -68,7 +68,7 @@ def test_attitude_follows_the_springs(tmp_path, street):
 def test_the_uncertainty_grows_where_few_points_are(tmp_path, street):
     time = street.time - START
     kept = (time < 2.0) | (time > 2.9)
-    found = estimate_trajectory([street.write(tmp_path / "cloud.laz", kept)])
+    found = estimate_trajectory([street.write(tmp_path / "cloud.las", kept)])
     at = found.trajectory.time - START
     gap, rest = (at > 2.3) & (at < 2.6), (at > 0.5) & (at < 1.7)
     assert found.sigma[gap].max() > 3 * found.sigma[rest].max()
@@ -80,13 +80,13 @@ def test_the_uncertainty_grows_where_few_points_are(tmp_path, street):
 @pytest.mark.parametrize("keep", [4, 10], ids=["one in four", "one in ten"])
 def test_a_thinned_cloud_gives_the_same_trajectory(tmp_path, street, keep):
     chosen = np.random.default_rng(1).random(len(street.time)) < 1 / keep
-    close(street, estimate_trajectory([street.write(tmp_path / "thin.laz", chosen)]))
+    close(street, estimate_trajectory([street.write(tmp_path / "thin.las", chosen)]))
 
 
 def test_files_may_come_in_any_order_and_the_points_too(tmp_path, street):
-    whole = estimate_trajectory([street.write(tmp_path / "cloud.laz")]).trajectory
+    whole = estimate_trajectory([street.write(tmp_path / "cloud.las")]).trajectory
     mixed = np.random.default_rng(2).permutation(len(street.time))
-    halves = [street.write(tmp_path / f"{name}.laz", mixed[k::2]) for k, name in enumerate("ba")]
+    halves = [street.write(tmp_path / f"{name}.las", mixed[k::2]) for k, name in enumerate("ba")]
     parts = estimate_trajectory(halves).trajectory
     np.testing.assert_allclose(parts.time, whole.time, atol=1e-6)
     np.testing.assert_allclose(np.c_[parts.x, parts.y, parts.z][25:-25], np.c_[whole.x, whole.y, whole.z][25:-25], atol=0.002)
@@ -96,7 +96,7 @@ def test_points_at_wrong_times_are_no_drive(tmp_path, street):
     """Thousands at one time long before, and at one long after: the drive is as precise as without them."""
     import laspy
 
-    path = street.write(tmp_path / "cloud.laz")
+    path = street.write(tmp_path / "cloud.las")
     las = laspy.read(path)
     time = np.array(las.gps_time)
     assert len(time) > 40_000
@@ -111,7 +111,7 @@ def test_points_at_wrong_times_are_no_drive(tmp_path, street):
 def test_a_gap_in_time_makes_two_drives(tmp_path):
     drive = mirror_drive(BUTTERFLY, seconds=14.0)
     since = drive.time - START
-    found = estimate_trajectory([drive.write(tmp_path / "cloud.laz", (since < 6.0) | (since > 8.0))])
+    found = estimate_trajectory([drive.write(tmp_path / "cloud.las", (since < 6.0) | (since > 8.0))])
     at = found.trajectory.time - START
     assert not ((at > 6.1) & (at < 7.9)).any()
     close(drive, found)
@@ -120,7 +120,7 @@ def test_a_gap_in_time_makes_two_drives(tmp_path):
 
 def test_without_time_the_ridge_of_density_is_followed_and_said_to_be_rough(tmp_path):
     drive = mirror_drive(BUTTERFLY, seconds=8.0)
-    found = estimate_trajectory([drive.write(tmp_path / "cloud.laz", with_time=False)])
+    found = estimate_trajectory([drive.write(tmp_path / "cloud.las", with_time=False)])
     assert found.method == "density" and not found.trajectory.has_time
     assert "rough" in found.notes[0]
     track = found.trajectory
@@ -134,7 +134,7 @@ def test_an_airborne_cloud_is_refused_by_name(tmp_path):
     rng = np.random.default_rng(4)
     time = START + np.arange(0.0, 3.0, 1e-4)
     x, y = 60.0 * (time - START), 300.0 * np.tan(np.radians(25.0) * np.sin(2 * np.pi * 50.0 * time))
-    path = write_cloud(tmp_path / "air.laz", x + EAST, y + NORTH, 100.0 + rng.normal(0, 0.05, len(x)), time)
+    path = write_cloud(tmp_path / "air.las", x + EAST, y + NORTH, 100.0 + rng.normal(0, 0.05, len(x)), time)
     with pytest.raises(RoadExtractionError, match="airborne"):
         estimate_trajectory([path])
 
@@ -147,7 +147,7 @@ def test_a_terrestrial_scan_is_refused_by_name(tmp_path):
 
     drive = mirror_drive([Mirror(0.0, 0.0, rate=50.0)], seconds=9.0, poses=tripod)
     with pytest.raises(RoadExtractionError, match="terrestrial"):
-        estimate_trajectory([drive.write(tmp_path / "tripod.laz")])
+        estimate_trajectory([drive.write(tmp_path / "tripod.las")])
 
 
 def test_a_handheld_cloud_is_refused_by_name(tmp_path):
@@ -156,11 +156,11 @@ def test_a_handheld_cloud_is_refused_by_name(tmp_path):
     around = rng.uniform(0.0, 2 * np.pi, len(time))
     reach = np.abs(rng.standard_cauchy(len(time)).clip(-8, 8)) + 0.5
     x, y = 1.2 * (time - START) + reach * np.cos(around), reach * np.sin(around)
-    path = write_cloud(tmp_path / "walk.laz", x + EAST, y + NORTH, 100.0 + rng.normal(0, 0.02, len(x)), time)
+    path = write_cloud(tmp_path / "walk.las", x + EAST, y + NORTH, 100.0 + rng.normal(0, 0.02, len(x)), time)
     with pytest.raises(RoadExtractionError, match="handheld"):
         estimate_trajectory([path])
 
 
 def test_too_few_points_are_refused(tmp_path, street):
     with pytest.raises(RoadExtractionError, match="whole survey"):
-        estimate_trajectory([street.write(tmp_path / "few.laz", slice(0, 900))])
+        estimate_trajectory([street.write(tmp_path / "few.las", slice(0, 900))])

@@ -26,7 +26,7 @@ def street():
 
 
 def test_their_trajectory_is_that_of_both(tmp_path, street):
-    found = estimate_trajectory([street.write(tmp_path / "cloud.laz", merged=True)])
+    found = estimate_trajectory([street.write(tmp_path / "cloud.las", merged=True)])
     assert len(found.scanners) == 2 and any("no field" in note for note in found.notes)
     _, left, up = street.errors(found.trajectory)
     assert np.sqrt(np.mean(left**2)) < 0.03 and np.sqrt(np.mean(up**2)) < 0.02
@@ -37,7 +37,7 @@ def test_their_trajectory_is_that_of_both(tmp_path, street):
 def test_a_survey_tells_them_apart_and_says_so(tmp_path, street, order):
     which = np.argsort(street.time, kind="stable") if order == "by time" else slice(None)
     said = Said()
-    survey = open_survey([street.write(tmp_path / "cloud.laz", which, merged=True)], street.trajectory(), progress=said)
+    survey = open_survey([street.write(tmp_path / "cloud.las", which, merged=True)], street.trajectory(), progress=said)
     assert survey.scanners == [0, 1] and TOLD_APART in said.lines
     rows = np.random.default_rng(1).choice(len(street.time), 5000, replace=False)
     place = np.stack(survey.frame.to_local(*(street.place[rows] + [500_000.0, 5_400_000.0, 100.0]).T), axis=1)
@@ -49,7 +49,7 @@ def test_a_survey_tells_them_apart_and_says_so(tmp_path, street, order):
 
 def test_one_scanner_stays_one(tmp_path):
     drive = mirror_drive([Mirror(-40.0, -12.0)])
-    survey = open_survey([drive.write(tmp_path / "cloud.laz")], drive.trajectory())
+    survey = open_survey([drive.write(tmp_path / "cloud.las")], drive.trajectory())
     assert survey.splitter is None and len(survey.scanners) == 1
 
 
@@ -57,5 +57,5 @@ def test_points_without_scan_lines_stay_one_scanner(tmp_path, street):
     rng = np.random.default_rng(3)
     x, y = rng.uniform(0, 60, 60_000), rng.uniform(-6, 4, 60_000)
     time = np.sort(rng.uniform(5000.0, 5006.0, 60_000))
-    path = write_cloud(tmp_path / "cloud.laz", x + 500_000, y + 5_400_000, 100.0 + rng.normal(0, 0.01, len(x)), time, crs="EPSG:32632")
+    path = write_cloud(tmp_path / "cloud.las", x + 500_000, y + 5_400_000, 100.0 + rng.normal(0, 0.01, len(x)), time, crs="EPSG:32632")
     assert open_survey([path], street.trajectory()).splitter is None

@@ -20,7 +20,7 @@ def place_at(time, speed=SPEED):
 def spun_cloud(path, by_turn, seconds=6.0, speed=SPEED, clockwise=True, half=HALF):
     """A cloud of a street between walls; `by_turn` sees each turn from the place of its middle, as clouds of frames are."""
     rng = np.random.default_rng(4)
-    step = np.arange(0.0, seconds, TURN / 700)
+    step = np.arange(0.0, seconds, TURN / 400)
     time, beam = (a.ravel() for a in np.meshgrid(step, np.arange(len(ELEVATIONS)), indexing="ij"))
     head, yaw = place_at((np.floor(time / TURN) + 0.5) * TURN if by_turn else time, speed)
     bearing = yaw + (-1 if clockwise else 1) * 2 * np.pi * time / TURN
@@ -37,7 +37,7 @@ def spun_cloud(path, by_turn, seconds=6.0, speed=SPEED, clockwise=True, half=HAL
 
 @pytest.mark.parametrize(("by_turn", "clockwise"), [(True, True), (False, True), (False, False)])
 def test_the_place_of_the_head_comes_back_within_centimetres(tmp_path, by_turn, clockwise):
-    found = estimate_trajectory([spun_cloud(tmp_path / "cloud.laz", by_turn, clockwise=clockwise)])
+    found = estimate_trajectory([spun_cloud(tmp_path / "cloud.las", by_turn, clockwise=clockwise)])
     assert found.method == "turns" and "many-beam head" in found.summary() and any("10.0 times a second" in note for note in found.notes)
     track = found.trajectory
     assert len(track) == pytest.approx(60, abs=2)
@@ -53,9 +53,9 @@ def test_the_place_of_the_head_comes_back_within_centimetres(tmp_path, by_turn, 
 
 def test_one_carried_at_walking_pace_is_refused_by_name(tmp_path):
     with pytest.raises(RoadExtractionError, match="handheld or backpack"):
-        estimate_trajectory([spun_cloud(tmp_path / "cloud.laz", False, seconds=12.0, speed=1.2)])
+        estimate_trajectory([spun_cloud(tmp_path / "cloud.las", False, seconds=12.0, speed=1.2)])
 
 
 def test_where_nothing_stands_up_the_height_is_a_usual_one_and_it_says_so(tmp_path):
-    found = estimate_trajectory([spun_cloud(tmp_path / "cloud.laz", True, half=1000.0)])
+    found = estimate_trajectory([spun_cloud(tmp_path / "cloud.las", True, half=1000.0)])
     assert any("is a usual one" in note for note in found.notes) and (found.sigma_height == 0.5).all()
