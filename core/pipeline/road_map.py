@@ -246,10 +246,13 @@ def _paint(result, image_path, settings, stages, executor):
                         result.road_points, image, frame, settings.markings)
     executor.forget()
     image.close()
+    # road points are not read until lines are fitted
+    result.road_points.store.clear_cache()
     result.image = IntensityImage.open(image_path)
     result.counts["marking_points"] = len(points)
     if len(points):
-        points = stages.run("outliers", "Removing outliers …", remove_outliers, points, settings.outliers)
+        points = stages.run("outliers", "Removing outliers …", remove_outliers, points, settings.outliers,
+                            executor=executor.passing())
     result.counts["marking_points_kept"] = len(points)
     markings, clustered = stages.run("clusters", "Clustering markings …", cluster_markings, points, frame, settings.clusters,
                                      executor=executor.passing())

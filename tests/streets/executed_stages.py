@@ -13,6 +13,8 @@ from lanewright.core.intensity.image import make_intensity_image
 from lanewright.core.markings.objects import phases
 from lanewright.core.markings.objects.cluster import cluster_markings
 from lanewright.core.markings.objects.marking_objects import markings_to_features
+from lanewright.core.markings.outliers import remove
+from lanewright.core.markings.outliers.remove import remove_outliers
 from lanewright.core.markings.paint import extract as extraction
 from lanewright.core.markings.paint import scatter
 from lanewright.core.markings.paint.extract import extract_markings
@@ -24,7 +26,8 @@ from lanewright.core.survey import point_density
 from lanewright.core.survey.point_density import cube_densities
 
 PHASES = ["surface_points", "cubes_of_stretch", "levels_of_stretch", "corrected_of_stretch", "window_of_image", "sums_of_pieces",
-          "scatter_of_windows", "levels_of_windows", "paint_of_windows", "combs_of_windows", "shapes_of_clusters", "outlines_of_markings"]
+          "scatter_of_windows", "levels_of_windows", "paint_of_windows", "kept_of_windows", "combs_of_windows",
+          "shapes_of_clusters", "outlines_of_markings"]
 
 
 def found_by(sample, executor=None, work=None, progress=Progress()):
@@ -37,6 +40,7 @@ def found_by(sample, executor=None, work=None, progress=Progress()):
         patch.setattr(extraction, "WINDOWS_PER_TASK", 1)
         patch.setattr(scatter, "EXAMINED_WINDOWS", 1)
         patch.setattr(phases, "TASK_POINTS", 300)
+        patch.setattr(remove, "TASK_WINDOWS", 1)
         if executor is not None:
             patch.setattr(opening, "executor_for", lambda *_: KeptResults(executor, work) if work else executor)
         survey = opening.open_survey([path], made.trajectory, execution=ExecutionSettings(work_folder=str(work.path) if work else ""))
@@ -50,6 +54,7 @@ def found_by(sample, executor=None, work=None, progress=Progress()):
             pixels = image.read_pixels(0, 0, image.width, image.height).tobytes()
             paint = extract_markings(road_points, image, survey.frame, progress=progress)
             image.close()
+            paint = remove_outliers(paint, progress=progress, executor=survey.executor.passing())
             markings, clustered = cluster_markings(paint, survey.frame, progress=progress, executor=survey.executor.passing())
             clusters = [clustered.section(*key).cluster.tobytes() for key in clustered.all_sections()]
             drawn = [shapely.to_wkb(one) for one in markings_to_features(markings, survey.frame).geometries], markings.kind.tolist()

@@ -7,22 +7,25 @@ the mean distance to the nearest neighbours, and where it is below the limit a p
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...common.errors import RoadExtractionError
-from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ...common.setting import check_limits, setting
+from ...execution.phase import NoSource, Phase
+from ...execution.threads import THREADS
 from ...lazy import cv2
+from ...survey.store.columns import Columns
 from ...survey.store.records import COORDINATE_SCALE, take_rows
 from ...survey.store.road_points import RoadPoints
 from .nearest_neighbours import Neighbours, mean_distances
 
 if TYPE_CHECKING:
-    from ...survey.store.columns import Columns
+    from ...execution.phase import Executor
 
 OUTLIER_SCOPES = ("all", "windows")
 OUTLIER_WINDOW = 20.0     # m of station that one limit is taken from
@@ -35,6 +38,9 @@ SPARSENESS_FACTOR = 3.0   # times the distance that is usual among a point's own
 CELL_SIDE_FACTOR = 1.5     # times the usual distance: cells so large that three by three of them hold three times the neighbours asked for
 NO_DISTANCE = 1e9          # m, where no distance is known
 USUAL_DISTANCE_WINDOW = 9  # cells about a point: where others are looked at to tell what is usual there
+COLUMNS = "s", "d", "x", "y", "z"   # that outliers are told by
+TASK_WINDOWS = 5       # windows of 20 m that a worker process is given together
+WINDOWS_AT_ONCE = 100      # windows whose columns are held at a time
 MAX_CELLS_PER_POINT = 8    # for every point at most about so many, however near to each other rounded or repeated points lie
 
 
@@ -66,12 +72,16 @@ def within_spread(distances: np.ndarray, std_ratio: float) -> np.ndarray:
     return ~(distances > distances.mean() + std_ratio * distances.std(ddof=1))
 
 
-def remove_outliers(points: RoadPoints, settings: OutlierSettings = OutlierSettings(), progress: Progress = Progress()) -> RoadPoints:
+def remove_outliers(points: RoadPoints, settings: OutlierSettings = OutlierSettings(), progress: Progress = Progress(),
+                    executor: Executor = THREADS) -> RoadPoints:
     """Leave out points that lie apart from the others.
 
     Parameters
     ----------
     points : RoadPoints
+    settings : OutlierSettings
+    progress : Progress
+    executor : who looks at windows
 
     Returns
     -------
@@ -94,8 +104,15 @@ def remove_outliers(points: RoadPoints, settings: OutlierSettings = OutlierSetti
         _put(kept, points, _kept_of_all(points, settings, progress))
     else:
         windows = [(road, number) for road in points.roads() for number in _windows(*points.store.span(road))]
-        keep = list(ordered_map(lambda window: _kept_of_window(points, *window, settings), windows, progress))
-        _put(kept, points, np.concatenate([np.empty(0, bool), *keep]))
+        together = TASK_WINDOWS if executor.folder is not None else 1
+        phase = Phase(kept_of_windows, NoSource(), (settings,), lambda item: f"markings {item[0][0] * OUTLIER_WINDOW:.0f} m along a road")
+        keep = [np.empty(0, bool)]
+        for first in range(0, len(windows), WINDOWS_AT_ONCE):
+            some = windows[first:first + WINDOWS_AT_ONCE]
+            items = [[_columns_of(points, *window) for window in some[k:k + together]] for k in range(0, len(some), together)]
+            part = progress.part(first / len(windows), min(first + WINDOWS_AT_ONCE, len(windows)) / len(windows))
+            keep += [mask for found in executor.run(phase, items, part) for mask in found]
+        _put(kept, points, np.concatenate(keep))
     progress.info(f"Outliers: {len(points) - len(kept):,} of {len(points):,} points lay apart from the others and were left out.")
     return kept
 
@@ -113,9 +130,31 @@ def _put(kept, points, keep):
         first += len(records)
 
 
-def _kept_of_window(points, road, number, settings):
-    """(N,) bool of the points of a window, without those about it."""
+def _columns_of(points, road, number):
+    """Number of a window, and the columns s, d, x, y, z of its points and those about it."""
     records = points.window(road, number * OUTLIER_WINDOW - NEIGHBOUR_HALO, (number + 1) * OUTLIER_WINDOW + NEIGHBOUR_HALO).records
+    return number, [np.asarray(records[name]) for name in COLUMNS]
+
+
+def kept_of_windows(source: NoSource, windows: Sequence[tuple[int, Sequence[np.ndarray]]], settings: OutlierSettings) -> list[np.ndarray]:
+    """The phase that finds outliers.
+
+    Parameters
+    ----------
+    source : NoSource
+    windows : number of each and the columns s, d, x, y, z (0.1 mm) of its points and those about it
+    settings : OutlierSettings
+
+    Returns
+    -------
+    (N,) bool of each window, its own points that are kept
+    """
+    return [_kept_of_window(number, Columns(dict(zip(COLUMNS, columns)), [(name, one.dtype) for name, one in zip(COLUMNS, columns)]), settings)
+            for number, columns in windows]
+
+
+def _kept_of_window(number, records, settings):
+    """(N,) bool of the points of a window, without those about it."""
     s = records["s"] * COORDINATE_SCALE
     own = np.flatnonzero((s >= number * OUTLIER_WINDOW) & (s < (number + 1) * OUTLIER_WINDOW))
     neighbours = _DistanceCache(Neighbours(_units(records), settings.neighbours))

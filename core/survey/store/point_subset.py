@@ -110,6 +110,10 @@ class PointSubset(SectionStore):
 
         return Columns({}, self.dtype, len(rows), load, load_rows=load_rows), True
 
+    def clear_cache(self) -> None:
+        super().clear_cache()
+        self._points.clear_cache()
+
     def close(self) -> None:
         super().close()
         for store in (self._masks, self._own, self._points):
