@@ -25,10 +25,12 @@ class ClusterMarkings(Algorithm):
     SUMMARY = "Gathers paint into markings, measures them and tells lines from crossings, arrows and the rest."
     HELP = (
         "The field class is edge, lane or centre for lines, and zebra, stop, give_way (a row of equal blocks across a lane), zigzag (a "
-        "line along the road that turns back again and again: no stopping), arrow, hatch or symbol for what is no line. Far from the "
+        "line along the road that turns back again and again: no stopping), arrow, bicycle, bus (the word BUS, its letters one "
+        "marking), hatch or symbol for what is no line. A bicycle or a word that is not clearly seen stays symbol. Far from the "
         "vehicle, points join over the distance between the tracks of the scan."
     )
-    TAGS = ("road marking", "lane marking", "cluster", "give-way line", "zigzag line", "zebra crossing", "stop line", "arrow")
+    TAGS = ("road marking", "lane marking", "cluster", "give-way line", "zigzag line", "zebra crossing", "stop line", "arrow",
+            "bicycle symbol", "bus lane")
 
     def declare(self):
         self.add_cloud("MARKING_POINTS", tr("Marking points"), tr("The file written by Remove outliers or Extract markings."))

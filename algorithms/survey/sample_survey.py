@@ -16,9 +16,10 @@ SAMPLE_SETTINGS = (
            "between them. hatched-island: two directions held apart by a hatched area. motorway: two lanes and a hard shoulder each way, "
            "and an exit. serpentine: a steep road with hairpins. crossing: four arms with turning lanes, one of them not driven. "
            "roundabout: a ring with splitter islands, driven straight on and to the left. outskirts: two lanes with guard rail, concrete "
-           "barrier, walls, fences and a hedge beside them, driven both ways."),
+           "barrier, walls, fences and a hedge beside them, driven both ways. cycle-lanes: two lanes with the word BUS, and cycle lanes "
+           "with bicycles."),
         choices=("street", "rural", "urban", "one-lane", "wide-lane", "no-centre-line", "hatched-island", "motorway", "serpentine",
-                 "crossing", "roundabout", "outskirts"),
+                 "crossing", "roundabout", "outskirts", "cycle-lanes"),
     ),
     SettingSpec(
         "LENGTH", SAMPLE, "length", tr("Length of the road, 0: as usual for the scene (m)"),

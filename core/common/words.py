@@ -37,7 +37,7 @@ def _words():
         **{f"{field}.{value}": text for field in ("class", "kind") for value, text in (
             ("edge", tr("Edge line")), ("lane", tr("Lane line")), ("centre", tr("Centre line")))}, "zebra": tr("Zebra crossing"),
         "stop": tr("Stop line"), "give_way": tr("Give-way line"), "zigzag": tr("Zigzag line"),
-        "arrow": tr("Arrow"), "symbol": tr("Symbol"), "hatch": tr("Hatching"),
+        "arrow": tr("Arrow"), "symbol": tr("Symbol"), "hatch": tr("Hatching"), "class.bicycle": tr("Bicycle symbol"), "bus": tr("Word BUS"),
         "use.keep": tr("marking"), "use.other": tr("other paint"),
         "solid": tr("solid"), "dashed": tr("dashed"), "double-solid": tr("double, solid"), "double-dashed": tr("double, dashed"),
         "solid-dashed": tr("solid and dashed"), "dashed-solid": tr("dashed and solid"),

@@ -11,6 +11,7 @@ from .plan.motorway import motorway
 from .plan.roundabout import roundabout
 from .plan.scene import PlanScene
 from .plan.serpentine import serpentine
+from .streets.cycle_lanes import cycle_lanes
 from .streets.lane_scenes import hatched_island, no_centre_line, one_lane, wide_lane
 from .streets.ordinary import rural, street, urban
 from .streets.outskirts import outskirts
@@ -35,7 +36,7 @@ _SCENES = {
     "street": _Kind(street, *_STREET), "rural": _Kind(rural, *_STREET), "urban": _Kind(urban, *_STREET),
     "one-lane": _Kind(one_lane, *_STREET), "wide-lane": _Kind(wide_lane, *_STREET),
     "no-centre-line": _Kind(no_centre_line, *_STREET), "hatched-island": _Kind(hatched_island, *_STREET),
-    "outskirts": _Kind(outskirts, *_STREET),
+    "outskirts": _Kind(outskirts, *_STREET), "cycle-lanes": _Kind(cycle_lanes, *_STREET),
     # a plan is held as a whole, so its size is limited
     "motorway": _Kind(motorway, 240.0, 600.0), "serpentine": _Kind(serpentine, 200.0, 1000.0),
     "crossing": _Kind(crossing, 110.0, 300.0), "roundabout": _Kind(roundabout, 110.0, 300.0)}

@@ -910,6 +910,11 @@
         </message>
         <message>
             <location filename="../../algorithms/choice_words.py" />
+            <source>cycle-lanes</source>
+            <translation>Radfahrstreifen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
             <source>intensity</source>
             <translation>Intensität</translation>
         </message>
@@ -2490,8 +2495,8 @@
         </message>
         <message>
             <location filename="../../algorithms/markings/cluster_markings.py" />
-            <source>The field class is edge, lane or centre for lines, and zebra, stop, give_way (a row of equal blocks across a lane), zigzag (a line along the road that turns back again and again: no stopping), arrow, hatch or symbol for what is no line. Far from the vehicle, points join over the distance between the tracks of the scan.</source>
-            <translation>Das Feld class ist edge, lane oder centre bei Linien und zebra, stop, give_way (eine Reihe gleicher Blöcke quer über einen Fahrstreifen), zigzag (eine Linie längs der Straße, die immer wieder umkehrt: Halten verboten), arrow, hatch oder symbol bei dem, was keine Linie ist. Fern vom Fahrzeug verbinden sich Punkte über den Abstand der Spuren des Scans.</translation>
+            <source>The field class is edge, lane or centre for lines, and zebra, stop, give_way (a row of equal blocks across a lane), zigzag (a line along the road that turns back again and again: no stopping), arrow, bicycle, bus (the word BUS, its letters one marking), hatch or symbol for what is no line. A bicycle or a word that is not clearly seen stays symbol. Far from the vehicle, points join over the distance between the tracks of the scan.</source>
+            <translation>Das Feld class ist edge, lane oder centre bei Linien und zebra, stop, give_way (eine Reihe gleicher Blöcke quer über einen Fahrstreifen), zigzag (eine Linie längs der Straße, die immer wieder umkehrt: Halten verboten), arrow, bicycle, bus (der Schriftzug BUS, seine Buchstaben eine Markierung), hatch oder symbol bei dem, was keine Linie ist. Ein Fahrrad oder ein Schriftzug, der nicht deutlich zu sehen ist, bleibt symbol. Fern vom Fahrzeug verbinden sich Punkte über den Abstand der Spuren des Scans.</translation>
         </message>
         <message>
             <location filename="../../algorithms/markings/cluster_markings.py" />
@@ -2527,6 +2532,16 @@
             <location filename="../../algorithms/markings/cluster_markings.py" />
             <source>arrow</source>
             <translation>Pfeil</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/cluster_markings.py" />
+            <source>bicycle symbol</source>
+            <translation>Fahrradsymbol</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/cluster_markings.py" />
+            <source>bus lane</source>
+            <translation>Bussonderfahrstreifen</translation>
         </message>
         <message>
             <location filename="../../algorithms/markings/cluster_markings.py" />
@@ -4250,8 +4265,8 @@
         </message>
         <message>
             <location filename="../../algorithms/survey/sample_survey.py" />
-            <source>street: two lanes in bends, with curbs and parked cars. rural: a country road without curbs. urban: four lanes with gutters. one-lane and wide-lane: a single lane of 5.8 or 7 m with arrows in its middle. no-centre-line: two lanes without a line between them. hatched-island: two directions held apart by a hatched area. motorway: two lanes and a hard shoulder each way, and an exit. serpentine: a steep road with hairpins. crossing: four arms with turning lanes, one of them not driven. roundabout: a ring with splitter islands, driven straight on and to the left. outskirts: two lanes with guard rail, concrete barrier, walls, fences and a hedge beside them, driven both ways.</source>
-            <translation>street: zwei Fahrstreifen in Bögen, mit Bordsteinen und parkenden Autos. rural: eine Landstraße ohne Bordsteine. urban: vier Fahrstreifen mit Rinnen. one-lane und wide-lane: ein einziger Fahrstreifen von 5,8 oder 7 m mit Pfeilen in seiner Mitte. no-centre-line: zwei Fahrstreifen ohne Linie dazwischen. hatched-island: zwei Richtungen, von einer Sperrfläche getrennt. motorway: zwei Fahrstreifen und ein Standstreifen je Richtung, mit einer Ausfahrt. serpentine: eine steile Straße mit Kehren. crossing: vier Arme mit Abbiegestreifen, einer davon nicht befahren. roundabout: ein Kreisverkehr mit Fahrbahnteilern, geradeaus und nach links befahren. outskirts: zwei Fahrstreifen mit Leitplanke, Betonschutzwand, Mauern, Zäunen und einer Hecke daneben, in beiden Richtungen befahren.</translation>
+            <source>street: two lanes in bends, with curbs and parked cars. rural: a country road without curbs. urban: four lanes with gutters. one-lane and wide-lane: a single lane of 5.8 or 7 m with arrows in its middle. no-centre-line: two lanes without a line between them. hatched-island: two directions held apart by a hatched area. motorway: two lanes and a hard shoulder each way, and an exit. serpentine: a steep road with hairpins. crossing: four arms with turning lanes, one of them not driven. roundabout: a ring with splitter islands, driven straight on and to the left. outskirts: two lanes with guard rail, concrete barrier, walls, fences and a hedge beside them, driven both ways. cycle-lanes: two lanes with the word BUS, and cycle lanes with bicycles.</source>
+            <translation>street: zwei Fahrstreifen in Bögen, mit Bordsteinen und parkenden Autos. rural: eine Landstraße ohne Bordsteine. urban: vier Fahrstreifen mit Rinnen. one-lane und wide-lane: ein einziger Fahrstreifen von 5,8 oder 7 m mit Pfeilen in seiner Mitte. no-centre-line: zwei Fahrstreifen ohne Linie dazwischen. hatched-island: zwei Richtungen, von einer Sperrfläche getrennt. motorway: zwei Fahrstreifen und ein Standstreifen je Richtung, mit einer Ausfahrt. serpentine: eine steile Straße mit Kehren. crossing: vier Arme mit Abbiegestreifen, einer davon nicht befahren. roundabout: ein Kreisverkehr mit Fahrbahnteilern, geradeaus und nach links befahren. outskirts: zwei Fahrstreifen mit Leitplanke, Betonschutzwand, Mauern, Zäunen und einer Hecke daneben, in beiden Richtungen befahren. cycle-lanes: zwei Fahrstreifen mit dem Schriftzug BUS und Radfahrstreifen mit Fahrrädern.</translation>
         </message>
         <message>
             <location filename="../../algorithms/survey/sample_survey.py" />
@@ -4672,6 +4687,16 @@
             <location filename="../../core/common/words.py" />
             <source>Hatching</source>
             <translation>Schraffur</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>Bicycle symbol</source>
+            <translation>Fahrradsymbol</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>Word BUS</source>
+            <translation>Schriftzug BUS</translation>
         </message>
         <message>
             <location filename="../../core/common/words.py" />

@@ -10,6 +10,8 @@
       <category uuid="{d76d4330-f144-4bea-b0c1-1fdecb91ce37}" value="give_way" symbol="9" render="true" type="string" label="Give-way line"/>
       <category uuid="{9ecd261a-c535-5df8-a0ae-21919c717433}" value="zigzag" symbol="10" render="true" type="string" label="Zigzag line"/>
       <category uuid="{b8453c76-28df-48fb-b2a7-d22b0547278a}" value="arrow" symbol="5" render="true" type="string" label="Arrow"/>
+      <category uuid="{5d27337a-2e46-54cd-baba-9b628a1c2358}" value="bicycle" symbol="11" render="true" type="string" label="Bicycle symbol"/>
+      <category uuid="{34efd284-4312-581b-8354-dc4f56613aec}" value="bus" symbol="12" render="true" type="string" label="Word BUS"/>
       <category uuid="{960d7e53-c4f6-4f74-93b7-363e4f95d0ba}" value="symbol" symbol="6" render="true" type="string" label="Symbol"/>
       <category uuid="{497e8c9d-72b6-44f2-9c7b-a81cc9ec8b1f}" value="hatch" symbol="7" render="true" type="string" label="Hatching"/>
       <category uuid="{47a053d5-3db1-42eb-929f-1709b72ab73e}" value="" symbol="8" render="true" type="string" label="Other paint"/>
@@ -342,6 +344,68 @@
             <Option value="3x:0,0,0,0,0,0" type="QString" name="offset_map_unit_scale"/>
             <Option value="MM" type="QString" name="offset_unit"/>
             <Option value="160,40,84,255,rgb:0.6274510,0.1568627,0.3294118,1" type="QString" name="outline_color"/>
+            <Option value="solid" type="QString" name="outline_style"/>
+            <Option value="0.1" type="QString" name="outline_width"/>
+            <Option value="MM" type="QString" name="outline_width_unit"/>
+            <Option value="solid" type="QString" name="style"/>
+          </Option>
+          <data_defined_properties>
+            <Option type="Map">
+              <Option value="" type="QString" name="name"/>
+              <Option name="properties"/>
+              <Option value="collection" type="QString" name="type"/>
+            </Option>
+          </data_defined_properties>
+        </layer>
+      </symbol>
+      <symbol is_animated="0" type="fill" force_rhr="0" name="11" frame_rate="10" clip_to_extent="1" alpha="1">
+        <data_defined_properties>
+          <Option type="Map">
+            <Option value="" type="QString" name="name"/>
+            <Option name="properties"/>
+            <Option value="collection" type="QString" name="type"/>
+          </Option>
+        </data_defined_properties>
+        <layer class="SimpleFill" id="{cf9f9418-d2fe-595b-8cba-a54a07178c8c}" pass="0" enabled="1" locked="0">
+          <Option type="Map">
+            <Option value="3x:0,0,0,0,0,0" type="QString" name="border_width_map_unit_scale"/>
+            <Option value="38,198,168,190,rgb:0.1490196,0.7764706,0.6588235,0.7450980" type="QString" name="color"/>
+            <Option value="bevel" type="QString" name="joinstyle"/>
+            <Option value="0,0" type="QString" name="offset"/>
+            <Option value="3x:0,0,0,0,0,0" type="QString" name="offset_map_unit_scale"/>
+            <Option value="MM" type="QString" name="offset_unit"/>
+            <Option value="0,121,100,255,rgb:0.0000000,0.4745098,0.3921569,1" type="QString" name="outline_color"/>
+            <Option value="solid" type="QString" name="outline_style"/>
+            <Option value="0.1" type="QString" name="outline_width"/>
+            <Option value="MM" type="QString" name="outline_width_unit"/>
+            <Option value="solid" type="QString" name="style"/>
+          </Option>
+          <data_defined_properties>
+            <Option type="Map">
+              <Option value="" type="QString" name="name"/>
+              <Option name="properties"/>
+              <Option value="collection" type="QString" name="type"/>
+            </Option>
+          </data_defined_properties>
+        </layer>
+      </symbol>
+      <symbol is_animated="0" type="fill" force_rhr="0" name="12" frame_rate="10" clip_to_extent="1" alpha="1">
+        <data_defined_properties>
+          <Option type="Map">
+            <Option value="" type="QString" name="name"/>
+            <Option name="properties"/>
+            <Option value="collection" type="QString" name="type"/>
+          </Option>
+        </data_defined_properties>
+        <layer class="SimpleFill" id="{614424df-3629-5501-9bf9-0d83558316f1}" pass="0" enabled="1" locked="0">
+          <Option type="Map">
+            <Option value="3x:0,0,0,0,0,0" type="QString" name="border_width_map_unit_scale"/>
+            <Option value="255,138,76,190,rgb:1.0000000,0.5411765,0.2980392,0.7450980" type="QString" name="color"/>
+            <Option value="bevel" type="QString" name="joinstyle"/>
+            <Option value="0,0" type="QString" name="offset"/>
+            <Option value="3x:0,0,0,0,0,0" type="QString" name="offset_map_unit_scale"/>
+            <Option value="MM" type="QString" name="offset_unit"/>
+            <Option value="184,78,20,255,rgb:0.7215686,0.3058824,0.0784314,1" type="QString" name="outline_color"/>
             <Option value="solid" type="QString" name="outline_style"/>
             <Option value="0.1" type="QString" name="outline_width"/>
             <Option value="MM" type="QString" name="outline_width_unit"/>

@@ -42,6 +42,7 @@ OTHERS = {
     "crossing": (SampleSettings(scene="crossing"), "four arms with turning lanes, one not driven, two passes"),
     "roundabout": (SampleSettings(scene="roundabout"), "four arms with splitter islands, one not driven, two passes"),
     "outskirts": (SampleSettings(scene="outskirts"), "two lanes between gardens and a pasture, rail, barrier, walls, fences, hedge, two passes"),
+    "cycle lanes": (SampleSettings(scene="cycle-lanes"), "two lanes with the word BUS, two cycle lanes with bicycles, two passes"),
 }
 POORER_SAMPLES = "street", "urban"   # also judged with something lacking
 CELL, SEEN = 0.04, 3   # m; cells about a point of road that count as seen

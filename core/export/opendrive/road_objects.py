@@ -1,4 +1,4 @@
-"""Crossings, stop lines, arrows and hatched areas as objects of the roads that they lie on."""
+"""Crossings, stop lines, arrows, bicycle symbols, the word BUS and hatched areas as objects of the roads that they lie on."""
 
 from __future__ import annotations
 
@@ -17,7 +17,8 @@ FARTHEST = 25.0        # m from a reference line
 SIMPLER = 0.02         # m by which an outline may be straightened
 STOP_LINE_HALF = 0.15  # m, half of the breadth of a stop line whose outline is not known
 THINNEST = 0.01        # m of an object's length and width at the least: the format has none of 0
-NAME_OF_CLASS = {"hatch": ("roadMark", "hatched area"), "arrow": ("roadMark", "arrow")}
+NAME_OF_CLASS = {"hatch": ("roadMark", "hatched area"), "arrow": ("roadMark", "arrow"), "bicycle": ("roadMark", "bicycle symbol"),
+                 "bus": ("roadMark", "word BUS")}
 
 
 def add_objects(whole: OpenDriveMap, markings: Features | None, origin: np.ndarray) -> None:

@@ -24,8 +24,19 @@ from ...common.setting import check_limits, setting
 from ...curves.robust import median
 from ...execution.threads import THREADS
 from ...survey.store.records import COORDINATE_SCALE, Points, join_columns
-from .classify import LINE_KINDS, NOT_PAINT, ROAD_EDGE_CLEARANCE, ClassSettings, classify_markings, relative_contrast, too_pale
+from .classify import (
+    LINE_KINDS,
+    MIN_COVERED_SHARE,
+    NOT_PAINT,
+    RIM_CLEARANCE,
+    ROAD_EDGE_CLEARANCE,
+    ClassSettings,
+    classify_markings,
+    relative_contrast,
+    too_pale,
+)
 from .connected_cells import components, occupied
+from .figures import painted_figures
 from .marking_objects import make_marking_objects
 from .outline import lifted
 from .phases import ApartWork
@@ -112,12 +123,24 @@ def cluster_markings(marking_points: RoadPoints, frame: RoadFrame, settings: Clu
         half_widths = [median(half_width[a:b]) * 1e-3 for a, b in bounds]
         covered = [float(np.count_nonzero(hidden[a:b])) / (b - a) for a, b in bounds]
         kinds = classify_markings(shapes, half_widths, settings.classes, covered)
+        clear = np.array(half_widths) - np.abs([shape.offset for shape in shapes]) > RIM_CLEARANCE
+        possible = clear & (np.array(covered) <= MIN_COVERED_SHARE)
         if marking_points.has_corrected:
             bright = relative_contrast(Points(records).value, records["s"], starts)
-            kinds = [(NOT_PAINT, "other") if too_pale(share, kind) else (kind, use) for share, (kind, use) in zip(bright.tolist(), kinds)]
-        refused += sum(kind == NOT_PAINT for kind, _ in kinds)
-        found += [_Marking(records[a:b], order[a:b], shape, *kind)
-                  for shape, kind, (a, b) in zip(shapes, kinds, bounds) if kind[0] != NOT_PAINT]
+            pale = [too_pale(share, kind) for share, (kind, _) in zip(bright.tolist(), kinds)]
+            possible &= ~np.array(pale, bool)
+            kinds = [(NOT_PAINT, "other") if faint else kind for faint, kind in zip(pale, kinds)]
+        whole: list[tuple[tuple[int, ...], str, str]] = [((k,), *kind) for k, kind in enumerate(kinds)]
+        for members, kind in painted_figures(shapes, [kind for kind, _ in kinds], possible, lambda some: _cells_together(records, bounds, some)):
+            for k in members:
+                whole[k] = ((), NOT_PAINT, "other")
+            whole[members[0]] = (members, kind, "other")
+        refused += sum(kind == NOT_PAINT for members, kind, _ in whole if members)
+        for members, kind, use in whole:
+            if kind != NOT_PAINT:
+                of_it = _rows_of(bounds, members)
+                shape = shapes[members[0]] if len(members) == 1 else measure(*(records[name][of_it] for name in ("s", "d", "spacing")))
+                found.append(_Marking(records[of_it], order[of_it], shape, kind, use))
         found.sort(key=lambda marking: (marking.shape.s0, marking.shape.d0, marking.shape.s1))
         for marking, drawn in zip(found, _outlines(found, everything, frame.road(road), work, part.part(0.7, 1.0))):
             number += 1
@@ -175,6 +198,20 @@ def _put(store, road, cluster, points):
         count = len(points.section(road, section))
         store.put(road, section, cluster[first:first + count])
         first += count
+
+
+def _rows_of(bounds, members):
+    """The rows of some clusters: a slice of one, else their numbers."""
+    return slice(*bounds[members[0]]) if len(members) == 1 else np.concatenate([np.arange(*bounds[k]) for k in members])
+
+
+def _cells_together(records, bounds, members):
+    """(K, 2) different cells of some clusters together, and (K,) m that the tracks of the scan lie apart there."""
+    own = records[_rows_of(bounds, members)]
+    cells, member = occupied(own["s"] // CELL_UNITS, own["d"] // CELL_UNITS)
+    reach = np.zeros(len(cells))
+    reach[member] = track_reach(own["spacing"])
+    return cells, reach
 
 
 def _alone(pieces, joins):

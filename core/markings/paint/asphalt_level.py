@@ -16,7 +16,7 @@ from ...intensity.asphalt_model import asphalt_statistics
 from ...lazy import cv2
 from ..objects.road_grid import RoadGrid
 from .gutters import COARSE_CELLS, RimBands, gutter_cells
-from .threshold_bins import MAX_BIN_WIDTH, AsphaltBin, OtsuSplit
+from .threshold_bins import HISTOGRAM_LIMITS, MAX_BIN_WIDTH, AsphaltBin, OtsuSplit, otsu
 
 if TYPE_CHECKING:
     from .extract import MarkingSettings
@@ -28,6 +28,9 @@ PATCH_NEIGHBOURHOOD = 7     # cells: a spot is bright where most of the 28 cm ar
 PATCH_RIM = 3               # cells: the irregular rim of a patch
 DARK_SHARE = 0.5            # of the usual brightness: what is darker is water or tar, and no asphalt to compare paint with
 DARK_RIM = 2                # cells about it whose brightness is interpolated between both
+LETTERS_SEPARATION = 0.8    # of the variance that lies between paint and asphalt among letters; of even ground it is two thirds to three quarters
+MOST_OF_LETTERS = 0.65      # of a piece that strokes cover at most: a bright slab has a dark rim, too
+LETTERS_ASPHALT = 1 / 3     # of the darker cells among letters that are no brighter than the asphalt of the road
 PATCH_TAIL = 3.0            # of its own spreads: how far the brightest cells of a patch lie above its median
 
 
@@ -165,7 +168,8 @@ def _coarse_sums(values):
 def patch_level(z: np.ndarray, bright: float) -> np.ndarray:
     """How much brighter bright patches are than the asphalt around them, plus their additional scatter. Our own rule.
 
-    Repairs and concrete slabs are larger in either direction than any painted area.
+    Repairs and concrete slabs are larger in either direction than any painted area. Words and symbols may be as large, but
+    are no patches: between their strokes is the asphalt of the road.
 
     Parameters
     ----------
@@ -195,10 +199,18 @@ def patch_level(z: np.ndarray, bright: float) -> np.ndarray:
     for number, box in enumerate(ndimage.find_objects(labels), start=1):
         piece = labels[box] == number
         values = z[box][piece & seen[box]]
-        if len(values):
+        if len(values) and not _letters(values, bright):
             median, spread = asphalt_statistics(values)
             level[box][piece] = median + PATCH_TAIL * max(spread - 1.0, 0.0)
     return level
+
+
+def _letters(z, bright):
+    """Whether the cells of a piece are strokes of paint and the road's own asphalt between them, by the criterion of Otsu (1979)."""
+    z = np.clip(z, *HISTOGRAM_LIMITS)
+    threshold, below, above, share = otsu(z)
+    apart = share * (1.0 - share) * (above - below) ** 2 > LETTERS_SEPARATION * float(z.var())
+    return apart and share <= MOST_OF_LETTERS and np.count_nonzero(z < bright) >= LETTERS_ASPHALT * np.count_nonzero(z < threshold)
 
 
 def _morphed(operation, mask, side):

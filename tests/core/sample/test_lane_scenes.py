@@ -72,7 +72,7 @@ def test_bars_of_a_hatched_area_stay_within_it():
     assert shapely.union_all(bars).area / shapely.Polygon(area).area == pytest.approx(0.5 / 1.5, abs=0.05)
 
 
-@pytest.mark.parametrize("scene", ["one-lane", "wide-lane", "no-centre-line", "hatched-island"])
+@pytest.mark.parametrize("scene", ["one-lane", "wide-lane", "no-centre-line", "hatched-island", "cycle-lanes"])
 @pytest.mark.parametrize("length", [20.0, 45.0, 85.0, 250.0])
 def test_a_street_of_any_length_has_truth_up_to_its_end_and_none_beyond(scene, length):
     sample = survey(scene, length=length)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from lanewright.core.intensity.asphalt_model import asphalt_statistics
-from lanewright.core.markings.paint.asphalt_level import background
+from lanewright.core.markings.paint.asphalt_level import background, patch_level
 from lanewright.core.markings.paint.threshold_bins import asphalt_bins, bin_edges, otsu, split_bins
 from lanewright.core.survey.store.records import to_units
 
@@ -93,3 +93,16 @@ def test_the_background_follows_a_patch_and_not_the_paint_on_it():
     level = background(z, z < 5)
     assert level[50, 97] == pytest.approx(0.0, abs=0.01)
     assert level[250, 97] == pytest.approx(2.0, abs=0.01)
+
+
+def test_a_patch_is_lifted_with_its_paint_and_bold_letters_are_none():
+    z = RNG.normal(0, 1, (200, 200))
+    patch, letters = (slice(20, 80), slice(20, 80)), (slice(120, 180), slice(120, 180))
+    z[patch] += 8.0
+    z[40:44, 20:80] += 20.0
+    strokes = np.zeros((60, 60), bool)
+    strokes[np.arange(60) % 7 < 4] = True
+    z[letters][strokes] += 25.0
+    level = patch_level(z, 2.5)
+    assert np.median(level[patch]) == pytest.approx(8.0, abs=1.0)
+    assert not level[letters].any()

@@ -1,0 +1,216 @@
+"""How well painted cells agree with a drawn figure, in whatever direction it lies and however it is stretched.
+
+The figure and the paint are two images. The paint is turned, moved and scaled so that it covers the figure, and the two are
+compared by their correlation: 1 for the same image, about 0 for images that have nothing to do with each other. Bare road
+within the figure counts as much as paint does. Each third of the figure is compared by itself, too, so that a figure with another
+letter, or with one wheel, is told.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+
+from ...countries.painted_symbols import PaintedSymbol
+from ...lazy import cv2
+
+PAINT_BLUR = 0.8           # cells
+RIM = 4                    # cells about the paint
+FIGURE_HEIGHT = 48         # px of a figure
+FIGURE_MARGIN = 8          # px of bare road about it that is compared, too
+FIGURE_BLUR = 2.0          # px, so that strokes need not lie exactly on each other
+TURNS = np.radians(np.arange(0.0, 360.0, 10.0))   # that are tried
+CLOSEST = 3                # of them are looked at closely
+LEAST_AT_FIRST = 0.45      # correlation of a first pose that is worth a closer look: those of figures reach 0.55 and more
+STEPS = 0.10, 0.05, 0.025  # of the size that it is moved and stretched by, and the same in radians that it is turned by, coarse to fine
+
+
+class PaintImage(NamedTuple):
+    """Paint of one marking or several.
+
+    image : (A, B) float32, painted cells blurred, first axis along the road and second across it
+    corner : (2,) m, station and offset of its corner
+    size : m, of a cell
+    places : (N, 2) m, the middles of the painted cells
+    total_square : sum of the squares of the image
+    """
+
+    image: np.ndarray
+    corner: np.ndarray
+    size: float
+    places: np.ndarray
+    total_square: float
+
+    @classmethod
+    def of(cls, mask: np.ndarray, corner: np.ndarray, size: float) -> PaintImage:
+        """The image of painted cells.
+
+        Parameters
+        ----------
+        mask : (A, B) bool, first axis along the road, second across it
+        corner : (2,) m, station and offset where it begins
+        size : m, of a cell
+        """
+        image = cv2.GaussianBlur(np.pad(mask, RIM).astype(np.float32), (0, 0), PAINT_BLUR)
+        return cls(image, corner - RIM * size, size, (np.argwhere(mask) + 0.5) * size + corner, float((image * image).sum()))
+
+
+class Pose(NamedTuple):
+    """Where a figure lies.
+
+    turn : radians from the first axis of the paint to the way to the right of the figure
+    x, y : m, its middle; width, height : m, of one unit of the figure
+    """
+
+    turn: float
+    x: float
+    y: float
+    width: float
+    height: float
+
+
+class Agreement(NamedTuple):
+    """How well paint agrees with a figure: the correlation of the whole, -1 to 1, that of the third that agrees least, and the pose."""
+
+    whole: float
+    worst_third: float
+    pose: Pose
+
+
+class Figure(NamedTuple):
+    """A figure as an image.
+
+    image : (rows, columns) float32, blurred, of mean 0 and length 1; the first row is its top
+    spread : (2,) standard deviation of its paint, right and up, units of its height
+    middle : (2,) mean place of its paint, right and up
+    size : (2,) width and height, units of its height
+    """
+
+    image: np.ndarray
+    spread: np.ndarray
+    middle: np.ndarray
+    size: np.ndarray
+
+
+@cache
+def figures_of(symbol: PaintedSymbol) -> tuple[Figure, ...]:
+    """The figure and its mirror image: a bicycle may look either way."""
+    return _drawn(symbol, 1.0), _drawn(symbol, -1.0)
+
+
+def _drawn(symbol, hand):
+    strokes = [np.array(stroke) * [hand, 1.0] for stroke in symbol.strokes]
+    low = np.min([stroke.min(axis=0) for stroke in strokes], axis=0) - symbol.stroke_width / 2
+    high = np.max([stroke.max(axis=0) for stroke in strokes], axis=0) + symbol.stroke_width / 2
+    size = high - low
+    scale = FIGURE_HEIGHT / size[1]
+    columns, rows = (np.ceil(size * scale).astype(int) + 2 * FIGURE_MARGIN).tolist()
+    image = np.zeros((rows, columns), np.uint8)
+    for stroke in strokes:
+        places = (stroke - low) * scale
+        places = np.column_stack([places[:, 0] + FIGURE_MARGIN, FIGURE_HEIGHT + FIGURE_MARGIN - places[:, 1]])
+        # OpenCV has the middle of the first pixel at 0, and takes places in sixteenths
+        thickness = max(int(round(symbol.stroke_width * scale)), 1)
+        cv2.polylines(image, [np.rint(16 * (places - 0.5)).astype(np.int32)], False, 1, thickness, cv2.LINE_8, 4)
+    row, column = np.nonzero(image)
+    paint = np.stack([column + 0.5 - FIGURE_MARGIN, FIGURE_HEIGHT + FIGURE_MARGIN - row - 0.5]) / scale
+    return Figure(_normed(cv2.GaussianBlur(image.astype(np.float32), (0, 0), FIGURE_BLUR)), paint.std(axis=1), paint.mean(axis=1), size)
+
+
+def _normed(image):
+    image = image - image.mean()
+    return image / max(float(np.linalg.norm(image)), 1e-6)
+
+
+def agreement(cells: PaintImage, symbol: PaintedSymbol) -> Agreement | None:
+    """The best agreement of paint with a figure; None where it has not the figure's size in any direction, or is nothing like it.
+
+    Parameters
+    ----------
+    cells : PaintImage
+    symbol : PaintedSymbol
+    """
+    best = None
+    for figure in figures_of(symbol):
+        tried = sorted(((_correlation(cells, figure, pose), pose) for pose in _poses(cells, figure, symbol)), reverse=True)[:CLOSEST]
+        for correlation, pose in tried:
+            if correlation < LEAST_AT_FIRST:
+                break
+            found = _closer(cells, figure, symbol, correlation, pose)
+            if best is None or found[0] > best[0]:
+                best = (*found, figure)
+    if best is None:
+        return None
+    whole, pose, figure = best
+    seen = _seen(cells, figure, pose)
+    columns = np.array_split(np.arange(figure.image.shape[1]), 3)
+    return Agreement(whole, min(float((_normed(figure.image[:, some]) * _normed(seen[:, some])).sum()) for some in columns), pose)
+
+
+def _poses(cells: PaintImage, figure: Figure, symbol: PaintedSymbol) -> Iterator[Pose]:
+    """Poses in every direction, in which the paint is spread as the figure's is."""
+    for turn in TURNS.tolist():
+        right, up = _axes(turn)
+        width, height = cells.places @ right, cells.places @ up
+        scale = np.array([width.std(), height.std()]) / figure.spread
+        off = (figure.middle - figure.size / 2) * scale
+        middle = cells.places.mean(axis=0) - off[0] * right - off[1] * up
+        pose = Pose(turn, *middle.tolist(), *scale.tolist())
+        if _allowed(pose, figure, symbol):
+            yield pose
+
+
+def _axes(turn):
+    return np.array([np.cos(turn), np.sin(turn)]), np.array([-np.sin(turn), np.cos(turn)])
+
+
+def _allowed(pose, figure, symbol):
+    width, height = pose.width * figure.size[0], pose.height * figure.size[1]
+    return symbol.width[0] <= width <= symbol.width[1] and symbol.height[0] <= height <= symbol.height[1] \
+        and symbol.stretch[0] <= pose.height / pose.width <= symbol.stretch[1]
+
+
+def _seen(cells, figure, pose):
+    """The paint as it lies on the pixels of the figure."""
+    right, up = _axes(pose.turn)
+    unit = figure.size[1] / FIGURE_HEIGHT
+    across, down = right * pose.width * unit, -up * pose.height * unit
+    rows, columns = figure.image.shape
+    corner = np.array([pose.x, pose.y]) - across * (columns - 1) / 2 - down * (rows - 1) / 2
+    to_cells = np.column_stack([across, down, corner - cells.corner]) / cells.size - np.array([[0, 0, 0.5], [0, 0, 0.5]])
+    return cv2.warpAffine(cells.image, to_cells[::-1], (columns, rows), flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP)
+
+
+def _correlation(cells, figure, pose):
+    seen, unit = _seen(cells, figure, pose), figure.size[1] / FIGURE_HEIGHT
+    square = float((seen * seen).sum())
+    # paint beyond the figure is none of it: it counts as well
+    beyond = max(cells.total_square * cells.size**2 / (pose.width * pose.height * unit * unit) - square, 0.0)
+    spread = max(square - float(seen.sum()) ** 2 / seen.size + beyond, 1e-12)
+    return float((figure.image * seen).sum()) / np.sqrt(spread)
+
+
+def _closer(cells, figure, symbol, correlation, pose):
+    """The best correlation near a pose, and the pose there."""
+    for step in STEPS:
+        better = True
+        while better:
+            better = False
+            for beside in _beside(pose, figure, step):
+                if _allowed(beside, figure, symbol) and (other := _correlation(cells, figure, beside)) > correlation + 1e-4:
+                    correlation, pose, better = other, beside, True
+    return correlation, pose
+
+
+def _beside(pose, figure, step):
+    right, up = _axes(pose.turn)
+    for sign in (step, -step):
+        yield pose._replace(turn=pose.turn + sign)
+        yield pose._replace(width=pose.width * (1 + sign))
+        yield pose._replace(height=pose.height * (1 + sign))
+        for way, size in ((right, pose.width * figure.size[0]), (up, pose.height * figure.size[1])):
+            x, y = np.array([pose.x, pose.y]) + way * size * sign / 2
+            yield pose._replace(x=float(x), y=float(y))
