@@ -11,6 +11,7 @@ from .strips import FIRST, SECOND, StripCosts
 from .weights import EstimateWeights
 
 PLACE = 0.5      # m across at which cross-sections are compared
+INTERVALS_AT_ONCE = 32   # of which cross-sections are compared with each other
 SAME_DIVIDER = 1 # places by which the same border between lanes may lie elsewhere
 
 
@@ -58,7 +59,14 @@ def transition_costs(area: np.ndarray, divider: np.ndarray, weights: EstimateWei
     -------
     lanes : (I - 1, K, K) of lanes that begin, end or divide; turns : (I - 1, K, K) of lanes whose direction changes
     """
-    count, kept, bins = divider.shape
+    # what is compared is larger than the costs
+    parts = [slice(first, first + INTERVALS_AT_ONCE + 1) for first in range(0, max(len(divider) - 1, 1), INTERVALS_AT_ONCE)]
+    lanes, turns = zip(*(_transition_costs(area[:, some], divider[some], weights) for some in parts))
+    return np.concatenate(lanes), np.concatenate(turns)
+
+
+def _transition_costs(area, divider, weights):
+    """The same of some intervals."""
     first, second = area.astype(np.float32)
     wide = np.zeros(divider.shape, np.float32)
     for shift in range(-SAME_DIVIDER, SAME_DIVIDER + 1):

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .across import Sections, best_sections, lane_strips, misnamed_costs, separated_kinds
-from .along import best_sequence, best_through, occupancy, probabilities, transition_costs
+from .along import INTERVALS_AT_ONCE, best_sequence, best_through, occupancy, probabilities, transition_costs
 from .candidates import Candidates
 from .evidence import Evidence
 from .lane_width import lane_places
@@ -103,10 +103,16 @@ def _told_before(sections, cost):
     """(I, K) bool, whether a cheaper cross-section of the interval has the same lanes: what bounds strips where nobody drives is no other reading."""
     lane = (sections.strip >= FIRST) & (sections.strip <= SECOND)
     lanes = np.where(lane, sections.strip * lane.shape[2] + sections.right, -1)
-    same = (lanes[:, :, None] == lanes[:, None]).all(-1)
     order = np.arange(cost.shape[1])
-    cheaper = (cost[:, None] < cost[:, :, None]) | (cost[:, None] == cost[:, :, None]) & (order < order[:, None])
-    return (same & cheaper & np.isfinite(cost)[:, None]).any(2)
+    before, told = order < order[:, None], np.empty(cost.shape, bool)
+    # every cross-section is compared with every other one
+    for first in range(0, len(cost), INTERVALS_AT_ONCE):
+        some = slice(first, first + INTERVALS_AT_ONCE)
+        own, strips = cost[some], lanes[some]
+        same = (strips[:, :, None] == strips[:, None]).all(-1)
+        cheaper = (own[:, None] < own[:, :, None]) | (own[:, None] == own[:, :, None]) & before
+        told[some] = (same & cheaper & np.isfinite(own)[:, None]).any(2)
+    return told
 
 
 def _roads_of_many_lanes(c, costs, sections, divided, weights):
