@@ -1,7 +1,7 @@
 """Edges of the pavement as lines: where a road without a curb was seen to end, smoothed along the road.
 
 A line is drawn where road inside and other ground outside were measured; where something hides both, it is bridged as curbs are.
-Where nothing tells the pavement from what lies beside it, there is no line.
+Where nothing tells the pavement from what lies beside it, there is no line, nor where it would run across a curb.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+import shapely
 from scipy.interpolate import splev, splrep
 from scipy.ndimage import uniform_filter1d
 
@@ -30,6 +31,7 @@ MIN_PAVEMENT_LENGTH = 10.0  # m of a line: rows are averages of 7 m, so a shorte
 MAX_ROW_JUMP = 0.5          # m across from one row to the next at which a line ends: a street joins
 MAX_BRIDGED_SKEW = 0.15     # m across per m along of a gap, beside MAX_EDGE_JUMP: tapers widen by 1 in 10 and less
 MAX_LINE_MISS = 0.2         # m, of single rows from one even bend through both sides of a gap that is longer than `max_gap`
+MEETING_LENGTH = 0.5        # m at the end of a line in which it may meet a curb
 MIN_LIKELY_SHARE = 0.5      # of a gap in which the edge is rather there than not, for the line to go on as measured
 
 
@@ -82,13 +84,34 @@ def pavement_pieces(frame: RoadFrame, road: int, carriageway: Carriageway, edges
     stations = carriageway.cells.stations
     there = np.isfinite(carriageway.left) & np.isfinite(carriageway.right)
     curbs = edge_offsets(edges, road, stations)
+    barrier = shapely.union_all(edges.map_lines(frame)[edges.of_curb & (edges.status == "measured")])
     for side, grown in carriageway.grown.items():
         free = there & np.isnan(curbs[side][0])
-        agreeing = uniform_filter1d((grown.shown & free).astype(float), int(AGREEING_LENGTH / ROW_LENGTH) | 1, mode="constant")
-        places, likely = np.array(frame.to_map(road, stations, grown.offset)), free & grown.likely
-        for runs in _lines(free & (agreeing > 0.5), likely, likely | free & grown.hidden, grown.offset, places, max_gap):
-            found += _drawn(frame, road, side, carriageway, grown, runs, chain + len(found))
+        agreeing = uniform_filter1d((grown.shown & free).astype(float), int(AGREEING_LENGTH / ROW_LENGTH) | 1, mode="constant") > 0.5
+        places, crossed = np.array(frame.to_map(road, stations, grown.offset)), np.empty(0)
+        while True:
+            # whatever was taken for an edge that crosses a curb, it is seen in averages of that length
+            rows = free & (np.abs(stations[:, None] - crossed) > AGREEING_LENGTH).all(axis=1)
+            likely = rows & grown.likely
+            drawn: list[EdgePiece] = []
+            for runs in _lines(rows & agreeing, likely, likely | rows & grown.hidden, grown.offset, places, max_gap):
+                drawn += _drawn(frame, road, side, carriageway, grown, runs, chain + len(found) + len(drawn))
+            more = np.concatenate([_crossings(piece, barrier) for piece in drawn] or [np.empty(0)])
+            if not len(more):
+                break
+            crossed = np.append(crossed, more)
+        found += drawn
     return found
+
+
+def _crossings(piece, barrier):
+    """(K,) stations at which a measured piece crosses lines, not those at which it ends at one."""
+    line = shapely.linestrings(piece.vertices[:, :2])
+    points = shapely.points(shapely.get_coordinates(shapely.intersection(line, shapely.force_2d(barrier))))
+    along = shapely.line_locate_point(line, points)
+    inside = (along > MEETING_LENGTH) & (along < line.length - MEETING_LENGTH) & (piece.status == "measured")
+    away = np.r_[0.0, np.cumsum(np.hypot(*np.diff(piece.vertices[:, :2], axis=0).T))]
+    return np.interp(along[inside], away, np.linspace(piece.station, piece.end, len(away)))
 
 
 def _lines(shown, likely, possible, offset, places, max_gap):
