@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 CLOSE_ALONG = 0.40            # m of station over which a gap is closed
 CLOSE_ACROSS = 0.04           # m of offset likewise
 MIN_HOLE_AREA = 0.02          # m2: smaller holes are wear, not shape
+END_STRETCH, MAX_END_GAP = 20000, 5000   # 0.1 mm: 2 m at an end, whose gaps tell how far it goes on, and half a metre: what is longer is worn
 STRIP_TOLERANCE = 0.004       # m by which the outline of a strip may leave its middle line's curve
 MIN_PART_AREA = 0.005         # m2: three cells
 OUTLINE_TOLERANCE = 0.025     # m by which a simplified outline may leave the cells
@@ -51,7 +52,8 @@ def band(s: np.ndarray, d: np.ndarray, shape: Shape) -> shapely.Polygon:
     u, v = (s, d) if shape.along else (np.rint(s * c + d * n).astype(np.int64), np.rint(d * c - s * n).astype(np.int64))
     nodes, offsets = middle_line(u, v, shape.spacing)
     # the last node lies in the middle of a step that the strip may fill to a small part
-    first, last = u.min(), u.max()
+    along = np.sort(u)
+    first, last = along[0] - _beyond_the_last(along), along[-1] + _beyond_the_last(-along[::-1])
     all_nodes = np.concatenate([[first], nodes[nodes < last], [last]])
     offsets, nodes = np.interp(all_nodes, nodes, offsets) * COORDINATE_SCALE, all_nodes * COORDINATE_SCALE
     keep = np.append(True, np.diff(nodes) > 1e-6)
@@ -59,6 +61,16 @@ def band(s: np.ndarray, d: np.ndarray, shape: Shape) -> shapely.Polygon:
     ring = np.stack([np.concatenate([nodes, nodes[::-1]]),
                      np.concatenate([offsets - shape.width / 2, offsets[::-1] + shape.width / 2])], axis=1)
     return shapely.simplify(shapely.Polygon(ring @ np.array([[c, n], [-n, c]])), STRIP_TOLERANCE)
+
+
+def _beyond_the_last(along):
+    """How far a strip goes on beyond its first point on average: half the gap that any place of it falls into.
+
+    along : (N,) int, ascending; a gap of length g is met by a share of places that grows with g, and half of it lies beyond
+    """
+    gaps = np.diff(along[:np.searchsorted(along, along[0] + END_STRETCH)])
+    gaps = gaps[gaps <= MAX_END_GAP].astype(float)
+    return int(round((gaps * gaps).sum() / (2.0 * gaps.sum()))) if gaps.any() else 0
 
 
 def painted_cells(s: np.ndarray, d: np.ndarray, spacing: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
