@@ -23,7 +23,7 @@ def bars(count, turn=1.0):
 
 
 def test_hatching_far_off_keeps_its_bars():
-    records = sparse(paint(FRAME, [bars(6)], density=20000))
+    records = sparse(paint(FRAME, [bars(6)], density=20000, length=40.0))
     markings, _ = layer_of(road_points(records, FRAME), FRAME)
     assert classes(markings) == ["hatch"] * 6
     assert sum(markings.column("area_m2")) == pytest.approx(6 * 3.0, rel=0.3)
@@ -42,7 +42,7 @@ def test_a_broad_line_far_off_is_one_line_as_wide_as_it_is():
 
 
 def test_points_as_far_apart_that_were_scanned_densely_are_not_joined():
-    records = sparse(paint(FRAME, [bars(6)], density=20000))
+    records = sparse(paint(FRAME, [bars(6)], density=20000, length=40.0))
     records["spacing"] = 0
     markings, _ = layer_of(road_points(records, FRAME), FRAME)
     assert "hatch" not in classes(markings)
@@ -103,7 +103,7 @@ def test_a_line_goes_on_where_the_track_left_it_sideways(slope, period, pieces):
 
 def test_an_edge_line_one_track_from_a_bright_curb_is_not_joined_to_it():
     line, curb = strip(10, 50, 5.6, 5.72), strip(10, 50, 5.95, 6.0)
-    records = paint(FRAME, [line, curb], density=20000)
+    records = paint(FRAME, [line, curb], density=20000, length=55.0)
     records["spacing"] = 300
     markings, _ = layer_of(road_points(records, FRAME), FRAME)
     assert classes(markings) == ["edge"]
