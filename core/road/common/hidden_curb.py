@@ -9,6 +9,7 @@ import numpy as np
 
 from .curb_points import CurbPoints, curb_points_at
 from .occlusion import HIDDEN_POINT_SPACING, OcclusionGrid
+from .pseudo_scanlines import expand_ranges
 from .sides import SIDE_SIGNS, OutermostTrack, expected_height
 
 if TYPE_CHECKING:
@@ -34,12 +35,12 @@ def hidden_points(measured: np.ndarray, occlusion: OcclusionGrid, track: Outermo
     if len(measured) < 2:
         return []
     measured = measured[np.argsort(measured[:, 0], kind="stable")]
-    s = np.arange(np.ceil(measured[0, 0] / HIDDEN_POINT_SPACING), np.floor(measured[-1, 0] / HIDDEN_POINT_SPACING) + 1) * HIDDEN_POINT_SPACING
-    after = np.clip(np.searchsorted(measured[:, 0], s, side="right"), 1, len(measured) - 1)
-    before_s, after_s = measured[after - 1, 0], measured[after, 0]
-    wide = (after_s - before_s <= MAX_HIDDEN_GAP) & (after_s - before_s > MIN_HIDDEN_GAP) \
-        & (s - before_s > 0.5 * HIDDEN_POINT_SPACING) & (after_s - s > 0.5 * HIDDEN_POINT_SPACING)
-    s = s[wide]
+    start, end = measured[:-1, 0], measured[1:, 0]
+    wide = (end - start <= MAX_HIDDEN_GAP) & (end - start > MIN_HIDDEN_GAP)
+    # counted from the gap's own ends: where station 0 lies does not matter
+    parts = np.where(wide, np.rint((end - start) / HIDDEN_POINT_SPACING), 0).astype(np.int64)
+    gap, number = expand_ranges(np.zeros(len(parts), np.int64), parts)
+    s = start[gap] + (number + 0.5) * ((end - start) / np.maximum(parts, 1))[gap]
     u, h = (np.interp(s, measured[:, 0], measured[:, k]) for k in (1, 2))
     hidden = occlusion.hidden(s, u, h, track(s))
     return [dict(s=float(a), u=float(b), h=float(c), fields=dict(status="occluded"))

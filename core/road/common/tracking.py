@@ -24,6 +24,7 @@ LINK_DRIFT = 0.20           # m across per m along that a link may differ from t
 LINK_TOLERANCE = 0.05       # m across that two steps of one line may differ in any case
 HEIGHT_TOLERANCE = 0.03     # m that bottom heights of neighbours may differ
 MIN_CHAIN_LENGTH = 0.75     # m of a chain that is used
+WEAK_SCATTER_FACTOR = 2.0   # times the scatter at which a faint step is still a curb where it continues one
 LOW_CURB_SHARE = 0.5        # share of the least curb height from which a lower curb that continues a full one is used
 MIN_SLOPED_LENGTH = 10.0    # m of a sloped curb: the edge of worn cobbles or of a track is straight over a few metres
 MAX_WANDER = 0.008          # m of a sloped curb about its own straight line
@@ -147,7 +148,8 @@ def curb_chains(steps: CurbSteps, label: np.ndarray, profile_width: float, limit
         return []
     order = np.lexsort((steps.profile, label))
     cuts = np.flatnonzero(np.diff(label[order])) + 1
-    chains = []
+    chains: list[StepChain] = []
+    weak: list[StepChain] = []
     for members in np.split(order, cuts):
         s = steps.s[members]
         length = (steps.profile[members[-1]] - steps.profile[members[0]] + 1) * profile_width
@@ -160,14 +162,28 @@ def curb_chains(steps: CurbSteps, label: np.ndarray, profile_width: float, limit
         least = limits.clear_height
         allowance = min(scanner_noise, MAX_NOISE_ALLOWANCE * least) if scanner_noise > NOISY_SHARE * least else 0.0
         low, sloped = height < least - allowance, slope < limits.clear_slope
-        if (low or sloped) and not (limits.automatic and limits.faint(height, slope, noise, len(members), scatter)) \
-                or sloped and (length < MIN_SLOPED_LENGTH or _wander(steps, members) > MAX_WANDER):
+        if sloped and (length < MIN_SLOPED_LENGTH or _wander(steps, members) > MAX_WANDER) or noise > max(MAX_ROAD_ROUGHNESS, 2 * scanner_noise) \
+                or np.mean(steps.behind[members] >= 2) < 0.5 or scatter > MAX_CHAIN_SCATTER + scanner_noise:
             continue
-        if noise > max(MAX_ROAD_ROUGHNESS, 2 * scanner_noise) or np.mean(steps.behind[members] >= 2) < 0.5 \
-                or scatter > MAX_CHAIN_SCATTER + scanner_noise:
-            continue
-        chains.append(StepChain(members, float(s[0]), float(s[-1]), bool(low), bool(sloped)))
-    return sorted(chains, key=lambda c: (c.start, c.end))
+        found = StepChain(members, float(s[0]), float(s[-1]), bool(low), bool(sloped))
+        if not (low or sloped) or limits.automatic and limits.faint(height, slope, noise, len(members), scatter):
+            chains.append(found)
+        elif limits.automatic and limits.faint(height, slope, noise, len(members), scatter / WEAK_SCATTER_FACTOR):
+            weak.append(found)
+    return sorted([*chains, *_continuing(chains, weak, steps)], key=lambda c: (c.start, c.end))
+
+
+def _continuing(chains, weak, steps):
+    """Those of the weak chains that continue a chain, or another such one: how much a short chain scatters depends on where profiles are cut."""
+    known, found = list(chains), []
+    for onward in (True, False):
+        for own in sorted(weak, key=lambda c: c.start if onward else -c.end):
+            beside = [one for one in known if 0 < (own.start - one.end if onward else one.start - own.end) <= MAX_CHAIN_GAP]
+            if any(_in_line(steps, *((one.steps, own.steps) if onward else (own.steps, one.steps)))[0] for one in beside):
+                known.append(own)
+                found.append(own)
+        weak = [own for own in weak if not any(own is one for one in found)]
+    return found
 
 
 def _wander(steps, members):

@@ -25,7 +25,8 @@ from .uncertainty import edge_sigma
 MEDIAN_WINDOW = 5.0           # m of running median
 OUTLIER_MADS = 3.0            # median absolute deviations, as sigmas, and
 OUTLIER_FLOOR = 0.05          # m, the least distance from it at which a point is an outlier
-MIN_HIDDEN_SHARE = 0.5        # share of a gap that must be hidden for a bridge
+MIN_HIDDEN_SHARE = 0.5        # share of a gap that must be hidden for a bridge of a pavement edge or of a boundary line
+HIDDEN_CURB_SHARE = 0.33      # the same of a curb: where one goes on unseen, two fifths and more are hidden, at an opening next to nothing
 GAP_END_ALLOWANCE = 1.0       # m of a gap, half at each end, that need not be hidden
 IN_LINE_GAP_FACTOR = 2.0      # times the longest bridged gap that a curb may be hidden whose two parts lie in one line
 MAX_EDGE_SKEW = 1.0           # m across per m along of a joined edge
@@ -118,7 +119,7 @@ def _pieces(rows, max_gap):
     joined = (gap <= MAX_JOINED_GAP) & (across <= MAX_EDGE_JUMP + MAX_EDGE_SKEW * gap)
     start, end = points["s"][:-1], points["s"][1:]
     covered = HIDDEN_POINT_SPACING * (np.searchsorted(hidden, end) - np.searchsorted(hidden, start, side="right"))
-    bridged = (gap > MAX_JOINED_GAP) & (gap <= IN_LINE_GAP_FACTOR * max_gap) & (covered >= MIN_HIDDEN_SHARE * (gap - GAP_END_ALLOWANCE)) \
+    bridged = (gap > MAX_JOINED_GAP) & (gap <= IN_LINE_GAP_FACTOR * max_gap) & (covered >= HIDDEN_CURB_SHARE * (gap - GAP_END_ALLOWANCE)) \
         & (across <= MAX_EDGE_JUMP + 0.1 * gap)
     bridged[[k for k in np.flatnonzero(bridged & (gap > max_gap)) if not _goes_on_in_line(points, k)]] = False
     breaks = np.flatnonzero(~(joined | bridged)) + 1

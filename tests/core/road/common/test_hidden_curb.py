@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from lanewright.core.road.common.curb_points import curb_points_at
-from lanewright.core.road.common.hidden_curb import hidden_beside
+from lanewright.core.road.common.hidden_curb import hidden_beside, hidden_points
 from lanewright.core.road.common.occlusion import OcclusionGrid
 from lanewright.core.road.common.sides import expected_height
 from street_plans import scan, sidewalks, survey_along
@@ -41,7 +41,7 @@ def test_the_gap_before_a_piece_that_was_found_later_is_hidden_where_something_s
     main = {"left": known(*KNOWN), "right": np.empty((0, 4))}
     hidden = hidden_beside(piece(survey, *LATER), main, beside(), survey, 0)
     assert set(hidden.status) == {"occluded"} and set(hidden.side) == {"left"} and set(hidden.kind) == {"main"}
-    np.testing.assert_allclose(hidden.station, np.arange(12.5, 21.75, 0.5))
+    np.testing.assert_allclose(hidden.station, np.arange(12.25, 22.0, 0.5))
     np.testing.assert_allclose(hidden.offset, OUT, atol=1e-6)
     np.testing.assert_allclose(hidden.z, expected_height(survey, 0, hidden.station), atol=1e-3)
 
@@ -56,3 +56,17 @@ def test_what_is_known_to_be_hidden_is_not_said_again_and_other_gaps_are_left_al
     assert not len(hidden_beside(piece(survey, *LATER), {"left": again, "right": np.empty((0, 4))}, beside(), survey, 0))
     other = np.concatenate([known(2.0, 4.0), known(10.0, 21.5)])
     assert not len(hidden_beside(piece(survey, *LATER), {"left": other, "right": np.empty((0, 4))}, beside(), survey, 0))
+
+
+@pytest.mark.parametrize("moved", [0.1, 0.2, 0.3, 0.45])
+def test_the_share_of_a_gap_that_is_hidden_does_not_depend_on_where_the_stations_begin(moved):
+    measured = np.array([[5.0, OUT, 0.0], [13.7, OUT, 0.0]])
+
+    def places(by):
+        grid = OcclusionGrid(0.25, 0, 160, 20.0)
+        grid.tall[:, 16] = True
+        found = hidden_points(measured + (by, 0.0, 0.0), grid, lambda s: np.zeros(len(s)))
+        return np.array([row["s"] for row in found]) - by
+
+    np.testing.assert_allclose(places(moved), places(0.0))
+    assert len(places(0.0)) == 17, "half a metre each, over the whole gap"

@@ -81,6 +81,13 @@ def test_a_hidden_gap_is_bridged_and_says_so():
     np.testing.assert_allclose(places(edges)[:, 1], 3.5, atol=0.01)
 
 
+@pytest.mark.parametrize(("length", "bridged"), [(4.0, 1), (1.0, 0)], ids=["two fifths", "a tenth"])
+def test_a_gap_of_which_two_fifths_are_hidden_is_bridged(length, bridged):
+    stations = np.r_[np.arange(0, 20, 1.0), np.arange(29, 60, 1.0)]
+    edges = fit_road_edges(curb_points(stations, hidden=20.25 + np.arange(0, length, 0.5)), straight_frame())
+    assert sum(r["status"] == "bridged" for r in edges.rows) == bridged
+
+
 @pytest.mark.parametrize("hidden, gap", [(False, 10.0), (True, 31.0)], ids=["open", "too long"])
 def test_an_opening_and_a_gap_that_is_too_long_break_the_edge(hidden, gap):
     stations = np.r_[np.arange(0, 20, 1.0), np.arange(19 + gap, 60, 1.0)]
