@@ -86,8 +86,11 @@ def pavement_pieces(frame: RoadFrame, road: int, carriageway: Carriageway, edges
     curbs = edge_offsets(edges, road, stations)
     barrier = shapely.union_all(edges.map_lines(frame)[edges.of_curb & (edges.status == "measured")])
     for side, grown in carriageway.grown.items():
-        free = there & np.isnan(curbs[side][0])
-        agreeing = uniform_filter1d((grown.shown & free).astype(float), int(AGREEING_LENGTH / ROW_LENGTH) | 1, mode="constant") > 0.5
+        curb = curbs[side][0]
+        free = there & np.isnan(curb)
+        # beside a curb that goes on from it the edge is shown, too
+        shown = grown.shown & (free | there & (np.abs(np.nan_to_num(curb, nan=np.inf) - grown.offset) <= MAX_ROW_JUMP))
+        agreeing = uniform_filter1d(shown.astype(float), int(AGREEING_LENGTH / ROW_LENGTH) | 1, mode="constant") > 0.5
         places, crossed = np.array(frame.to_map(road, stations, grown.offset)), np.empty(0)
         while True:
             # whatever was taken for an edge that crosses a curb, it is seen in averages of that length

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import shapely
 from lanewright.core.common.features import Features
 from lanewright.core.common.schemas import ROAD_EDGES
 from lanewright.core.road.edges.fit import EdgeSettings
@@ -195,6 +196,19 @@ def test_behind_a_vehicle_the_edge_is_bridged_and_says_so():
     assert (bridged[0][:, 0].min(), bridged[0][:, 0].max()) == pytest.approx(hidden, abs=1.0)
     assert np.abs(bridged[0][:, 1] - HALF).max() <= 0.2
     assert "bridged" not in found(survey, max_gap=3.0).status
+
+
+def test_behind_a_vehicle_it_is_bridged_too_where_a_curb_begins_soon_after():
+    hidden, curb_from = (25.0, 35.0), 42.0
+    survey = street(keep=lambda s, d: ~((s > hidden[0]) & (s < hidden[1]) & (d > 2.6)))
+    whole = found(street())
+    curb = edges_to_features(whole.take(np.flatnonzero(whole.side == "left")), survey.frame)
+    for row in curb.rows:
+        row["edge"] = "curb"
+    curb.geometries = [shapely.LineString([place for place in line.coords if place[0] - EAST >= curb_from]) for line in curb.geometries]
+    edges = with_pavement_edges(survey, edges_from_features(curb, survey.frame))
+    drawn = [places for (_, places), what in zip(on_map(edges, survey), edges.what) if what == "pavement" and places[0, 1] > 0]
+    assert max(places[:, 0].max() for places in drawn) == pytest.approx(curb_from - 5.0, abs=0.5), "as far as the curb is led on"
 
 
 def behind_a_lorry(half=half_of, **settings):
