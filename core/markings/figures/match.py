@@ -24,7 +24,7 @@ FIGURE_MARGIN = 8          # px of bare road about it that is compared, too
 FIGURE_BLUR = 2.0          # px, so that strokes need not lie exactly on each other
 TURNS = np.radians(np.arange(0.0, 360.0, 10.0))   # that are tried
 CLOSEST = 3                # of them are looked at closely
-LEAST_AT_FIRST = 0.45      # correlation of a first pose that is worth a closer look: those of figures reach 0.55 and more
+LEAST_AT_FIRST = 0.20      # correlation of a first pose that is worth a closer look: a figure with a part missing may begin so low
 STEPS = 0.10, 0.05, 0.025  # of the size that it is moved and stretched by, and the same in radians that it is turned by, coarse to fine
 
 
