@@ -14,6 +14,7 @@ from ...curves.curve_fit import CurveFit
 from ...curves.model_selection import fit_curve, fit_curves
 from ...curves.robust import median
 from ...survey.frame.frame_lines import LINE_VERTEX_SPACING
+from .common_trend import weighted_medians
 from .edges_beside import LEVEL_REACH
 
 if TYPE_CHECKING:
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 MIN_POINTS_PER_PLACE = 3     # points that a place must have to count, where there are enough such places
 MIN_GUIDED_GAP = 4.0         # m: in a longer gap the curve is guided parallel to the other lines
 GUIDE_SPACING = 2.0          # m between guiding places
+KEPT_DISTANCE = 0.1          # m within which a line keeps its distance from what it runs along, as MAX_STRAY_OFFSET of its own pieces
 LINE_HEIGHT_SMOOTHING = 3.0  # m
 
 
@@ -150,7 +152,7 @@ def _fitted(places, settings):
 
 
 def _guides(s, d, trend, edges, span):
-    """Places in long gaps and beyond the ends, where nothing is painted: parallel to the other lines, or to the edge of the road."""
+    """Places in long gaps and beyond the ends, where nothing is painted: parallel to the other lines, an edge of the road and the road."""
     wide = np.flatnonzero(np.diff(s) > MIN_GUIDED_GAP)
     stations, offsets = [], []
     for k in wide.tolist():
@@ -158,12 +160,11 @@ def _guides(s, d, trend, edges, span):
         at = np.linspace(a, b, int(np.ceil((b - a) / GUIDE_SPACING)) + 1)[1:-1]
         near = [slice(np.searchsorted(s, a - LEVEL_REACH), k + 1), slice(k + 1, np.searchsorted(s, b + LEVEL_REACH, "right"))]
         edge = edges.between((a, d[k]), (b, d[k + 1]))
-        courses = [trend.at] + ([] if edge is None else [edge])
-        # parallel to what the line keeps its distance from
-        levels = [[median(d[side] - course(s[side])) for side in near] for course in courses]
-        course, ends = min(zip(courses, levels), key=lambda one: abs(one[1][1] - one[1][0]))
+        courses = [trend.at] if edge is None else [trend.at, edge, np.zeros_like]
+        levels = np.array([[median(d[side] - course(s[side])) for side in near] for course in courses])
         stations.append(at)
-        offsets.append(np.interp(at, [a, b], ends) + course(at))
+        offsets.append(_common_course(np.array([np.interp(at, [a, b], ends) + course(at) for ends, course in zip(levels, courses)]),
+                                      levels[:, 1] - levels[:, 0]))
     for tip, end in ((s[0], span[0]), (s[-1], span[1])):
         if abs(end - tip) > GUIDE_SPACING / 4:
             at = np.linspace(tip, end, int(np.ceil(abs(end - tip) / GUIDE_SPACING)) + 1)[1:]
@@ -173,6 +174,20 @@ def _guides(s, d, trend, edges, span):
     if not stations:
         return np.empty(0), np.empty(0)
     return np.concatenate(stations), np.concatenate(offsets)
+
+
+def _common_course(found, missed):
+    """(N,) offsets in a gap of what others have in common: the other lines, an edge of the road and the road itself.
+
+    Each course counts by how well the line keeps its distance from it from one end of the gap to the other. Which of them it runs along is not told
+    by the ends alone: an edge that gives way to a bay in the gap comes back to where it was.
+
+    found : (C, N) metres, offsets that lead parallel to each course; missed : (C,) metres by which the line's distance from it differs at the ends
+    """
+    weight = 1.0 / (KEPT_DISTANCE**2 + missed**2)
+    order = np.argsort(found, axis=0, kind="stable")
+    values = np.take_along_axis(found, order, axis=0)
+    return weighted_medians(values.T.ravel(), weight[order].T.ravel(), len(found) * np.arange(found.shape[1]))
 
 
 def _along(road, s, d):

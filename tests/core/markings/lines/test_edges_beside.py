@@ -46,6 +46,23 @@ def test_a_line_that_bends_away_along_a_taper_goes_on_where_it_is_seen_next_at_t
     assert len({row["line"] for row in found.rows}) == 2
 
 
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_gap_of_a_line_is_not_led_into_a_bay_of_the_edge_that_lies_beside_it_only_there(side):
+    """Line and edge are 2 cm farther out behind the gap, so its ends alone say that it runs along the edge."""
+    street = ClusteredStreet(radius=None).paint(0, 120, -3.0 * side, kind="edge")
+    street.paint(0, 40, 1.5 * side, kind="lane").paint(64, 120, 1.52 * side, kind="lane")
+
+    def edge(s):
+        return side * (4.5 + 0.02 * (s > 52.0) + np.clip(np.minimum(s - 46.0, 58.0 - s) / 2.0, 0.0, 1.0))
+
+    found = street.lines(edges=street.pavement(edge))
+    assert len({row["line"] for row in found.rows}) == 2
+    x, y = np.concatenate([shapely.get_coordinates(line) for line, _ in found]).T
+    off = side * (y - 5_400_000.0)
+    gap = (off > 0) & (x > 500_041.0) & (x < 500_063.0)
+    assert gap.sum() > 20 and np.abs(off[gap] - 1.51).max() < 0.05
+
+
 def test_without_an_edge_the_two_ends_of_it_are_lines_of_their_own():
     assert len({row["line"] for row in worn_street().lines().rows}) > 2
 
