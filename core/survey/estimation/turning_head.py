@@ -132,10 +132,11 @@ def head_track(time: np.ndarray, place: np.ndarray, track: FirstTrack, rate: flo
         weight = (square > (NEAREST_AT_FIRST if number < FIRST_HEAD_ROUNDS else NEAREST_RETURN) ** 2) / (1.0 + (off / noise) ** 2)
         by_x, by_y, by_time = away[:, 1] / square, -away[:, 0] / square, since * RATE_SCALE
         slopes = [by_x, by_y, -np.ones(len(off)), -by_time, by_x * by_time, by_y * by_time]
-        normal = np.array([[np.bincount(turn, weight * a * b, count) for b in slopes] for a in slopes]).transpose(2, 0, 1)
+        weighted = [weight * a for a in slopes]
+        normal = np.array([[np.bincount(turn, a * b, count) for b in slopes] for a in weighted]).transpose(2, 0, 1)
         # a weak prior keeps turns solvable that saw one side alone, and their speed small
         normal += np.diag([1e-3, 1e-3, 1e-3, 1e-3, 1.0, 1.0])
-        right = np.array([np.bincount(turn, weight * a * off, count) for a in slopes]).T
+        right = np.array([np.bincount(turn, a * off, count) for a in weighted]).T
         step = -np.linalg.solve(normal, right[..., None])[..., 0]
         head += np.clip(step[:, :2], -MAX_HEAD_STEP, MAX_HEAD_STEP)
         phi, omega = phi + step[:, 2], omega + step[:, 3] * RATE_SCALE
