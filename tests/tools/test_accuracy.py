@@ -107,8 +107,10 @@ def test_what_an_ablation_switches_off_is_there_to_be_switched_off(ablation):
         original = getattr(import_module(f"lanewright.core.{module}"), name)
         if isinstance(original, type):
             original, stand_in = original.of, stand_in.of
-        # it can be called as the original is
-        signature(stand_in).bind(*(p.name for p in signature(original).parameters.values() if p.default is p.empty))
+        # it can be called as the original is, with what may be left out and without
+        parameters = signature(original).parameters.values()
+        signature(stand_in).bind(*(p.name for p in parameters if p.default is p.empty))
+        signature(stand_in).bind(*(p.name for p in parameters if p.kind is not p.KEYWORD_ONLY))
 
 
 def test_a_step_is_back_in_its_place_after_an_error():

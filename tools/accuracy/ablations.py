@@ -77,7 +77,7 @@ ABLATIONS = (
     Ablation("Outliers: one limit for the whole survey (PCL), not one per window", "outliers", set_in(DEFAULT, "outliers", scope="all")),
     Ablation("Outliers: none removed", "outliers", stages=dict(outliers=_keep_all)),
     Ablation("Clusters: markings that touch are not taken apart", "clusters", swaps=(
-        ("markings.objects.cluster", "split_compounds", lambda records, labels: labels),)),
+        ("markings.objects.cluster", "split_compounds", lambda records, labels, *_: labels),)),
     Ablation("Clusters: pieces of worn lines are not joined", "clusters", swaps=(
         ("markings.objects.cluster", "join_fragments", lambda shapes, width: np.arange(len(shapes))),)),
     Ablation("Lines: gaps longer than 13 m are not bridged", "lines", set_in(DEFAULT, "lines", max_bridge=DEFAULT.lines.max_gap)),
