@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from ...road.edges.road_edges import RoadEdges
     from ...survey.frame.road_frame import RoadFrame
     from ...survey.store.road_points import RoadPoints
+    from .strands import Strand
 
 PAINT_BESIDE_PIECE = 2.0   # m of station before and after a piece whose paint counts for its offset
 
@@ -104,7 +105,9 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
         hatched = hatching_bars(markings, road)
         lines, trend = _linked(strands, beside[road], settings)
         # a line that leads up to a hatched area may be taken for its border: linked anew without that, it goes on behind the area
-        while borders := hatching_borders(lines, hatched):
+        framing: list[Strand] = []
+        while borders := hatching_borders(lines, hatched, framing):
+            framing += borders
             strands = [strand for strand in strands if not any(strand is border for border in borders)]
             lines, trend = _linked(strands, beside[road], settings)
         part.report(0.5)

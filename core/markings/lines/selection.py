@@ -11,7 +11,7 @@ from ...countries.neutral import NEUTRAL
 from ...curves.robust import median
 from ..objects.classify import LANE_CLEARANCE
 from .dash_pattern import LinePiece, line_pieces, merged_pieces, stretches
-from .linking import DOUBLE_LINE_SPACING, LinkedLine
+from .linking import DOUBLE_LINE_SPACING, MAX_STRAY_OFFSET, LinkedLine
 
 if TYPE_CHECKING:
     from ..objects.marking_objects import MarkingObjects
@@ -28,6 +28,7 @@ MAX_NEIGHBOUR_OFFSET = 8.0  # m across: a line this near starts and ends where t
 MAX_BAR_LENGTH = 4.0        # m along the road: what is called hatching and is longer is no single bar of it
 MAX_BAR_END_OFFSET = 0.35   # m between the end of a bar and the outline
 MAX_BAR_PITCH = 3.0         # m from bar to bar along an outline
+MAX_BORDER_GAP = 2.0        # m along the road between pieces of one outline that bend off each other
 MIN_BARS = 4                # that make an outline
 MIN_BARS_OF_STRAND = 2      # that tell which strands of an outline are its own
 LEAST_TURN_ASIDE = 0.3      # m from the straight way between two strands: farther than links reach across, a strand is another line
@@ -200,20 +201,37 @@ def _beyond_the_edge(lines, level):
     return result
 
 
-def hatching_borders(lines: list[LinkedLine], hatched: np.ndarray) -> list[Strand]:
-    """Strands that frame hatched areas: of those lines that do so as a whole, and those that leave the straight way from strand to strand."""
-    return [strand for line in lines if len(line.strands) > 1
-            for k, strand in enumerate(line.strands) if _frames_hatching(LinkedLine([strand]), hatched, MIN_BARS_OF_STRAND)
-            and (_frames_hatching(line, hatched) or _turns_aside(line.strands[k - 1:k + 2]))]
+def hatching_borders(lines: list[LinkedLine], hatched: np.ndarray, known: list[Strand]) -> list[Strand]:
+    """Strands that frame hatched areas: of those lines that do so as a whole, and those that leave the straight way from strand to strand.
+
+    `known` are those found before. What leads from the straight way to one of them is its end, however short.
+    """
+    whole = [strand for line in lines if _frames_hatching(line, hatched) for strand in line.strands]
+    borders = known + whole
+    found = [strand for line in lines if len(line.strands) > 1
+             for k, strand in enumerate(line.strands) if _frames_hatching(LinkedLine([strand]), hatched, MIN_BARS_OF_STRAND)
+             and (_frames_hatching(line, hatched) or _aside(line.strands[k - 1:k + 2]) > LEAST_TURN_ASIDE)]
+    if found:
+        return found
+    aside = [strand for line in lines for k, strand in enumerate(line.strands) if _aside(line.strands[k - 1:k + 2]) > MAX_STRAY_OFFSET]
+    return [strand for strand in aside if any(_meet(strand, border) for border in borders if border is not strand)]
 
 
-def _turns_aside(strands):
-    """Whether the second of three strands lies beside the straight way from the end of the first to the beginning of the third."""
+def _aside(strands):
+    """Metres by which the second of three strands lies beside the straight way from the end of the first to the beginning of the third."""
     if len(strands) < 3:
-        return False
+        return 0.0
     before, strand, after = strands
     straight = np.interp(strand.s, [before.last, after.first], [before.d[-1], after.d[0]])
-    return bool(np.median(np.abs(strand.d - straight)) > LEAST_TURN_ASIDE)
+    return float(np.median(np.abs(strand.d - straight)))
+
+
+def _meet(one, other):
+    """Whether one strand begins where the other ends."""
+    for a, b in ((one, other), (other, one)):
+        if abs(b.first - a.last) <= MAX_BORDER_GAP and abs(b.d[0] - a.d[-1]) <= MAX_BAR_END_OFFSET:
+            return True
+    return False
 
 
 def _frames_hatching(line, hatched, fewest=MIN_BARS):
