@@ -48,7 +48,7 @@ def folder(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def street(made_survey):
-    return made_survey(length=24.0, pulse_rate=90_000.0, rotation_rate=90.0)
+    return made_survey(length=45.0, pulse_rate=100_000.0, rotation_rate=100.0)
 
 
 @pytest.fixture(scope="module")
