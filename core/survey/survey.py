@@ -20,7 +20,7 @@ from .las.reader import POINTS_PER_BLOCK, CloudHeader
 from .reading.blocks import KEPT_ABOVE_ROAD
 from .reading.finishing import Finishing
 from .reading.ordering import UnorderedPoints
-from .store.records import Points
+from .store.records import Points, road_of
 from .store.section_store import MEMORY_LIMIT, SectionStore
 
 if TYPE_CHECKING:
@@ -131,10 +131,10 @@ class Survey:
     def stretch(self, road: int, start: float, end: float) -> str:
         """What messages call the road between two stations (m), with the files whose points may lie there."""
         s = np.linspace(start, end, 5)
-        x, y = self.frame.to_map(road, s, 0.0)
+        x, y = self.frame.to_map(road_of(road), s, 0.0)
         near = [Path(file.path).name for file in self.files if file.count and file.minimum[0] - CORRIDOR <= x.max() and x.min() <= file.maximum[0]
                 + CORRIDOR and file.minimum[1] - CORRIDOR <= y.max() and y.min() <= file.maximum[1] + CORRIDOR]
-        return f"road {road}, {start:.0f} to {end:.0f} m" + (f" ({', '.join(near)})" if near else "")
+        return f"road {road_of(road)}, {start:.0f} to {end:.0f} m" + (f" ({', '.join(near)})" if near else "")
 
     def window(self, road: int, start: float, end: float) -> Points:
         """Points of a road with start <= station < end (m) near its height, scanners numbered from 0."""

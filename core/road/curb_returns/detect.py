@@ -22,6 +22,7 @@ from ..common.hidden_curb import hidden_beside
 from ..common.occlusion import OcclusionGrid
 from ..common.sides import MAX_LOOK_ALONG, SIDE_SIGNS, ahead_of_vehicle, expected_height, work_sections
 from ..common.tracking import MAX_JOINED_GAP
+from .beyond_corridor import with_curbs_beyond
 from .classify import CurbReturn, classify_curbs, is_curb_like
 from .far_sides import MIN_ISLAND_WIDTH, far_sides
 from .following import FollowedEnds, followed_steps
@@ -142,7 +143,8 @@ def find_curb_returns(decimation: PointDecimation, road: int, main: Mapping[str,
     chains = [c for c in join_chains(link_plan_steps(steps), steps) if is_curb_like(c, steps, scanner_noise, settings)]
     curbs = classify_curbs(chains, steps, falls, runs, line, limits, survey.frame.passes_of(road), elsewhere)
     noisy = _noisy_sections(sections, line, steps, scanner_noise, settings)
-    return with_led_on(curbs, runs, decimation, road, noisy, known, limits, settings, progress.part(LED_PROGRESS, 1.0))
+    curbs = with_led_on(curbs, runs, decimation, road, noisy, known, limits, settings, progress.part(LED_PROGRESS, 1.0))
+    return with_curbs_beyond(curbs, decimation, road, known)
 
 
 def _noisy_sections(sections, line, steps, scanner_noise, settings):

@@ -181,7 +181,7 @@ def _replace_points(survey, moves, progress, folder):
         return store.partition(key[0], records) if len(records) else None
 
     try:
-        for points in ordered_map(part, [(road, number) for road in before.roads() for number in before.sections(road)], progress):
+        for points in ordered_map(part, [(road, number) for road in before.numbers() for number in before.sections(road)], progress):
             if points is not None:
                 store.add(points)
     except BaseException:

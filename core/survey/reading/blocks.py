@@ -15,7 +15,7 @@ from ..las.scale import LasAxis
 from ..las.scanners import EVER, times_by_value
 from ..las.time_slots import TimeSlots
 from ..store.columns import Columns
-from ..store.records import COORDINATE_SCALE, SURVEY_POINT, fill_units, point_dtype, to_units
+from ..store.records import COORDINATE_SCALE, SURVEY_POINT, beside_road, fill_units, point_dtype, road_of, to_units
 from ..trajectory.time_systems import SECONDS_PER_WEEK
 from .sensor_height import HeightHistogram, VehicleTracks
 
@@ -32,6 +32,8 @@ KEPT_ABOVE_ROAD, KEPT_BELOW_ROAD = 3.5, 4.0  # m: vehicles that hide a curb abov
 INGEST_HEIGHT_MARGIN = 1.5
 HEIGHT_CELL_BITS = 12      # of a station in units of 0.1 mm: the height of the road is looked up every 0.41 m
 SCANNER_FIELDS = ("point_source_id", "scanner_channel")
+LEVEL_HEIGHT = 1.0         # m above or below the road beside the vehicle, and
+LEVEL_DISTANCE = 50.0      # m from the vehicle within which ground beyond the corridor is kept: that of side streets
 
 
 @dataclass
@@ -116,6 +118,12 @@ class HeightFilter:
         # a negative difference becomes a large unsigned number
         return above.view(np.uint32) < self._depth
 
+    def level(self, road: int, s: np.ndarray, z: np.ndarray) -> np.ndarray:
+        """(N,) bool: which points, seen from stations s, lie about as high as the road there; units of 0.1 mm."""
+        first, lowest = self._roads[road]
+        height = lowest.take((s >> HEIGHT_CELL_BITS) - first, mode="clip") + int((KEPT_BELOW_ROAD + INGEST_HEIGHT_MARGIN) / COORDINATE_SCALE)
+        return np.abs(z - height) < (LEVEL_HEIGHT + INGEST_HEIGHT_MARGIN) / COORDINATE_SCALE
+
 
 @dataclass(frozen=True)
 class PointChoice:
@@ -169,7 +177,8 @@ class BlockProjector:
 
         Yields
         ------
-        road number, Columns of a piece, and (N,) bool of the points to use, None for all
+        road number, Columns of a piece, and (N,) bool of the points to use, None for all; for ground beyond the corridor the number is that
+        of `beside_road`, and stations are the vehicle's
         """
         names = set(block.point_format.dimension_names)
         axes = [LasAxis(*axis, self.dtype[axis[0].lower()]) for axis in zip("XYZ", block.scales, block.offsets, self.frame.origin)]
@@ -190,17 +199,39 @@ class BlockProjector:
         columns["pass_number"], inside, lost = self._placed(columns, usable)
         found.without_time += lost
         if inside is not None:
+            # points outside get a valid station of this piece
+            columns["s"][~inside] = columns["s"][inside.argmax()] if inside.any() else 0
+        points = Columns(columns, self.dtype, len(piece))
+        if inside is not None and self.has_time:
+            yield from self._beyond(columns, points, inside, ground)
             if not inside.any():
                 return
-            # points outside get a valid station of this piece
-            columns["s"][~inside] = columns["s"][inside.argmax()]
-        points = Columns(columns, self.dtype, len(piece))
         for number, own in self._by_road(columns["pass_number"], inside):
             if ground is not None:
                 near = ground.near(number, columns["s"], columns["z"], buffers)
                 own = _both(own, None if near.all() else near)
             if own is None or own.any():
                 yield number, points, own
+
+    def _beyond(self, columns, points, inside, ground):
+        """As `read`, the ground beyond the corridor that the vehicle saw about as high as its road."""
+        passes = columns["pass_number"].view(np.int16)
+        outside = np.flatnonzero(~inside & (passes >= 0))
+        for number in np.unique(passes.take(outside)).tolist():
+            driven = self.frame.passes[number]
+            rows = outside[passes.take(outside) == number]
+            station, x, y = driven.at(columns["time"].take(rows), "s", "x", "y")
+            x -= columns["x"].take(rows) * COORDINATE_SCALE
+            y -= columns["y"].take(rows) * COORDINATE_SCALE
+            near = np.flatnonzero(x * x + y * y < LEVEL_DISTANCE**2)
+            rows, station = rows.take(near), to_units(station.take(near))
+            if ground is not None:
+                level = np.flatnonzero(ground.level(driven.road, station, columns["z"].take(rows)))
+                rows, station = rows.take(level), station.take(level)
+            if len(rows):
+                arrays = {name: column.take(rows) for name, column in columns.items()}
+                arrays.update(s=station, d=np.zeros(len(rows), np.int32))
+                yield beside_road(driven.road), Columns(arrays, self.dtype, len(rows)), None
 
     def _by_road(self, pass_number, inside):
         """(road number, (N,) bool of its points or None for all) of every road with points."""
@@ -338,11 +369,16 @@ class BlockReader:
                  store: SectionStore) -> Iterator[PartitionedPoints]:
         """Yield those of `unfiltered` that lie near the road, as `read` would have given them."""
         for road, points in parts:
-            near = ground.near(road, points["s"], points["z"], ScratchBuffers().of(len(points)))
+            if road < 0:
+                near = ground.level(road_of(road), points["s"], points["z"])
+            else:
+                near = ground.near(road, points["s"], points["z"], ScratchBuffers().of(len(points)))
             if near.any():
                 yield self._partition(road, points, near, chosen, store)
 
     def _partition(self, road, points, own, chosen, store):
+        if road < 0:
+            return store.partition(road, points, own)
         for number, drops in self.tracks.drops(road, points, own):
             chosen.histogram.add(number, drops)
         if self.choice.has_time:

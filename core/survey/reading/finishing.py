@@ -9,8 +9,8 @@ import numpy as np
 
 from ..las.scanners import numbers_by_value
 from ..store.columns import Columns
-from ..store.records import COORDINATE_SCALE
-from .blocks import KEPT_BELOW_ROAD
+from ..store.records import COORDINATE_SCALE, road_of
+from .blocks import KEPT_BELOW_ROAD, LEVEL_HEIGHT
 
 if TYPE_CHECKING:
     from ..estimation.interleaved import ScannerSplitter
@@ -43,7 +43,7 @@ class Finishing:
 
         Parameters
         ----------
-        road : number
+        road : number, or that of what lies beside it
         records : (N,) Columns, in no order, N > 0
 
         Returns
@@ -59,14 +59,15 @@ class Finishing:
             records["scanner"] = numbers_by_value(self.scanners, int(numbers.max()) + 1).take(numbers)
         # only records near the limits are compared with the height at their own station
         z = records["z"]
-        first, nodes = self._heights(road, records["s"].min() * COORDINATE_SCALE, records["s"].max() * COORDINATE_SCALE)
-        doubtful = np.flatnonzero((z < (nodes.max() - KEPT_BELOW_ROAD) / COORDINATE_SCALE + 1)
-                                  | (z > (nodes.min() + self.above_road) / COORDINATE_SCALE - 1))
+        below, above = (KEPT_BELOW_ROAD, self.above_road) if road >= 0 else (LEVEL_HEIGHT, LEVEL_HEIGHT)
+        first, nodes = self._heights(road_of(road), records["s"].min() * COORDINATE_SCALE, records["s"].max() * COORDINATE_SCALE)
+        doubtful = np.flatnonzero((z < (nodes.max() - below) / COORDINATE_SCALE + 1)
+                                  | (z > (nodes.min() + above) / COORDINATE_SCALE - 1))
         at = records["s"][doubtful] * COORDINATE_SCALE / ROAD_HEIGHT_STEP - first
         k = at.astype(np.int64)
         h = z[doubtful] * COORDINATE_SCALE - (nodes[k] + (at - k) * (nodes[k + 1] - nodes[k]))
         near = np.ones(len(records), bool)
-        near[doubtful] = (h > -KEPT_BELOW_ROAD) & (h < self.above_road)
+        near[doubtful] = (h > -below) & (h < above)
         return None if near[doubtful].all() else near
 
     def _heights(self, road, start, end):

@@ -47,7 +47,7 @@ class UnorderedPoints:
             return self.store.points_between(item[0], item[1] * length, item[2] * length)
 
         phase = Phase(order_sections, self, (), lambda item: place(item[0], item[1] * length, item[2] * length), points)
-        found = list(executor.run(phase, self.store.stretches(STRETCH_POINTS), progress))
+        found = list(executor.run(phase, self.store.stretches(STRETCH_POINTS, self.store.numbers()), progress))
         self.store.take_over(StoreIndex.join(found), self.folder)
 
 

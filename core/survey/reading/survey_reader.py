@@ -143,7 +143,7 @@ class SurveyReader:
             self._choose(parts)
         else:
             self._waiting += parts
-            self._samples += [drops[::7] for road, points in parts for _, drops in self._blocks.tracks.drops(road, points)]
+            self._samples += [drops[::7] for road, points in parts if road >= 0 for _, drops in self._blocks.tracks.drops(road, points)]
             if sum(map(len, self._samples)) > HEIGHT_SAMPLES or sum(len(points) for _, points in self._waiting) > MAX_WAITING_POINTS:
                 self._settle()
         return count

@@ -55,6 +55,16 @@ def fill_units(metres: np.ndarray, units: np.ndarray) -> np.ndarray:
     return units
 
 
+def beside_road(road: int) -> int:
+    """The number under which a store keeps ground beyond the corridor of a road, by the station of the vehicle that saw it."""
+    return -1 - road
+
+
+def road_of(number: int) -> int:
+    """The road of such a number, or of its own."""
+    return number if number >= 0 else -1 - number
+
+
 class Points:
     """A metric view of the records of points; metres are computed on access.
 

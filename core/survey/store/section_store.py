@@ -90,7 +90,7 @@ class SectionStore:
 
     @property
     def count(self) -> int:
-        """Points added."""
+        """Points added that have a station."""
         return self._count
 
     def append(self, road: int, records: np.ndarray | Columns) -> None:
@@ -135,7 +135,7 @@ class SectionStore:
         section.in_order = in_order and not section.parts
         section.parts.append(records)
         self._drop_from_cache(key)
-        self._count += len(records)
+        self._count += len(records) if key[0] >= 0 else 0
         self._waiting_bytes += records.nbytes
 
     def _spill_beyond_limit(self):
@@ -159,6 +159,10 @@ class SectionStore:
 
     def roads(self) -> list[int]:
         """Numbers of the roads that have points, ascending."""
+        return [road for road in self.numbers() if road >= 0]
+
+    def numbers(self) -> list[int]:
+        """The same, and of what lies beside roads, see `beside_road`."""
         return sorted({road for road, _ in self._sections})
 
     def sections(self, road: int) -> list[int]:
@@ -169,14 +173,14 @@ class SectionStore:
         """Points of a section, before `finish` removes any."""
         return self._sections[road, section].size
 
-    def stretches(self, points: int = 0) -> list[Stretch]:
-        """All sections, as stretches of road with about so many points each; every section by itself for 0."""
+    def stretches(self, points: int = 0, numbers: Sequence[int] | None = None) -> list[Stretch]:
+        """All sections, as stretches of road with about so many points each; every section by itself for 0. Of all roads, or of some `numbers`."""
         found: list[Stretch] = []
-        for road in self.roads():
-            numbers = np.array(self.sections(road))
-            ends = np.cumsum([self.size(road, number) for number in numbers.tolist()])
-            cuts = numbers[np.searchsorted(ends, np.arange(points, ends[-1], points))] + 1 if points else numbers
-            bounds = np.unique(np.r_[numbers[0], cuts, numbers[-1] + 1]).tolist()
+        for road in self.roads() if numbers is None else numbers:
+            sections = np.array(self.sections(road))
+            ends = np.cumsum([self.size(road, number) for number in sections.tolist()])
+            cuts = sections[np.searchsorted(ends, np.arange(points, ends[-1], points))] + 1 if points else sections
+            bounds = np.unique(np.r_[sections[0], cuts, sections[-1] + 1]).tolist()
             found += [(road, first, end) for first, end in zip(bounds[:-1], bounds[1:])]
         return found
 

@@ -62,8 +62,8 @@ class StoreIndex:
 
     @property
     def count(self) -> int:
-        """Points."""
-        return int(self.parts[:, 3].sum())
+        """Points that have a station."""
+        return int(self.parts[self.parts[:, 0] >= 0, 3].sum())
 
     def stored(self, folder: Path, dtype: np.dtype) -> Iterator[tuple[Key, bool, dict[str, StoredColumn]]]:
         """Yield (key, whether in order, {name of a column: StoredColumn}) of every part.
