@@ -99,8 +99,7 @@ def test_a_worker_that_is_killed_costs_nothing_that_was_finished(cluster, by_thr
     assert not list(work.path.glob("run-*")) and not list(work.path.rglob("*.part*"))
 
 
-@pytest.mark.parametrize("phase", PHASES)
-def test_cancel_ends_within_two_seconds_and_leaves_the_workers_idle(cluster, phase):
+def ends_soon_when_cancelled(cluster, phase, work):
     at = []
 
     def cancel():
@@ -109,9 +108,14 @@ def test_cancel_ends_within_two_seconds_and_leaves_the_workers_idle(cluster, pha
 
     executor = cluster_of(cluster.address, False, None)
     with pytest.raises(Cancelled):
-        boundaries(AtPhase(executor, phase, cancel))
+        work(AtPhase(executor, phase, cancel))
     assert time.monotonic() - at[0] < 2.0
     assert not executor.folder.exists()
+
+
+@pytest.mark.parametrize("phase", PHASES)
+def test_cancel_ends_within_two_seconds_and_leaves_the_workers_idle(cluster, phase):
+    ends_soon_when_cancelled(cluster, phase, boundaries)
     with contextlib.closing(connecting.client_of(cluster.address)) as client:
         until = time.monotonic() + 10.0
         while any(client.processing().values()) and time.monotonic() < until:
@@ -388,14 +392,4 @@ def test_a_worker_that_is_killed_in_a_later_stage_costs_nothing(cluster, sample,
 
 @pytest.mark.parametrize("phase", STAGE_PHASES)
 def test_cancel_in_a_later_stage_ends_within_two_seconds(cluster, sample, phase):
-    at = []
-
-    def cancel():
-        at.append(time.monotonic())
-        raise Cancelled
-
-    executor = cluster_of(cluster.address, False, None)
-    with pytest.raises(Cancelled):
-        found_by(sample, AtPhase(executor, phase, cancel))
-    assert time.monotonic() - at[0] < 2.0
-    assert not executor.folder.exists()
+    ends_soon_when_cancelled(cluster, phase, partial(found_by, sample))

@@ -11,40 +11,38 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...survey.frame.reference_line import NODE_SPACING
 from ...survey.store.records import road_of
 from ..common.curb_limits import SIGNIFICANT_SIGMAS
 from ..common.decimation import POINTS_PER_LEVEL_CELL_IN_PLAN, PointDecimation
 from ..common.sides import expected_height
 from .classify import CurbReturn
 from .faint import LED_LENGTH, MAX_LAYER_HEIGHT
+from .main_curbs import KnownPlaces
 from .steps import PlanSteps
 from .tracking import LINE_DIRECTION_LENGTH
-
-if TYPE_CHECKING:
-    from .main_curbs import KnownPlaces
 
 BEYOND_KINDS = "corner", "side_street"
 MAX_CORRIDOR_DISTANCE = 15.0  # m straight on from its end within which such a curb leaves the corridor
 MAX_BEYOND_LENGTH = 40.0      # m that it is led on: the ground of the survey reaches no farther
 MAX_DROPPED_LENGTH = 6.0      # m from its end that it may be dropped: a pedestrian crossing
 TRAIL_LENGTH = 6.0            # m of known curb whose direction it keeps
-BEYOND_BESIDE = 0.8                  # m on either side of the points that show the levels
-BEYOND_FACE_HALF_WIDTH = 0.03        # m about the curb in which a point is on neither level
+GROUND_HALF_WIDTH = 0.8       # m on either side of the points that show the levels
+CURB_HALF_WIDTH = 0.03        # m about the curb in which a point is on neither level
 MIN_SIDE_POINTS = 3           # along LED_LENGTH on either side
 MIN_HEIGHT_SHARE, MAX_HEIGHT_SHARE = 0.5, 1.5   # of the height that the curb is known to have
 MIN_LEVEL_SHARE = 0.75        # of the points on either side that are nearer to their own level than to the other
 GROWTH = 1.0                  # m by which the fitted length grows
-BEYOND_MEETING_DISTANCE = 0.25       # m within which a curb is one that is known already
+KNOWN_CURB_DISTANCE = 0.25    # m within which a curb is one that is known already
 STEP_SPACING = 0.5            # m between the places that are returned
 CELL_ALONG, CELL_ACROSS = 0.5, 0.1    # m, cells in which dense points are averaged: their errors are alike
-BEYOND_HEIGHT_SIGMA, PLACE_SIGMA = 0.015, 0.03   # m, of a point about its level, and of a step of the known curb about its course
+POINT_HEIGHT_SIGMA, PLACE_SIGMA = 0.015, 0.03   # m, of a point about its level, and of a step of the known curb about its course
 MAX_RESIDUAL = 3.0            # sigmas beyond which a point counts no more: objects, plants
 # What is known beforehand: sigmas of the bottom's height at the end (m), of grade (m per m), height (m), crossfall (m per m) and bend (1/m)
-BOTTOM_SIGMA, GRADE_SIGMA, RISE_SIGMA, CROSSFALL_SIGMA, BEYOND_BEND_SIGMA = 0.02, 0.03, 0.03, 0.04, 0.005
+BOTTOM_SIGMA, GRADE_SIGMA, RISE_SIGMA, CROSSFALL_SIGMA, ARC_BEND_SIGMA = 0.02, 0.03, 0.03, 0.04, 0.005
 LEAST_STEPS = 8               # of the known curb, which are independent
 # Shifts (m), turns (radians) and bends (1/m) of the arcs that are tried: first straight ones, then some about the best, and farther out about
 # the arc so far.
@@ -108,7 +106,7 @@ def with_curbs_beyond(curbs: Sequence[CurbReturn], decimation: PointDecimation, 
     if not any(number < 0 for number in survey.store.numbers()):
         return list(curbs)
     line, more = survey.frame.road(road), []
-    met = type(known)(np.concatenate([known.places] + [np.c_[curb.steps.x, curb.steps.y] for curb in curbs]))
+    met = KnownPlaces(np.concatenate([known.places] + [np.c_[curb.steps.x, curb.steps.y] for curb in curbs]))
     for curb in curbs:
         if curb.closed or curb.kind not in BEYOND_KINDS:
             continue
@@ -138,7 +136,7 @@ def _end_of(curb, at_tail, survey, road):
     out = np.sign(tx * (x[-1] - x[0]) + ty * (y[-1] - y[0]))
     z = steps.h[order][near] + expected_height(survey, road, curb.s[order][near])
     end = CurbEnd(float(x[-1]), float(y[-1]), float(np.median(z[-3:])), float(out * tx), float(out * ty), 1.0 if at_tail else -1.0,
-               float(np.median(steps.height)), np.empty((3, 0)))
+                  float(np.median(steps.height)), np.empty((3, 0)))
     end.trail = np.stack([*end.beside(x, y), z])
     return end
 
@@ -160,7 +158,7 @@ def _ground(decimation, end):
         line = survey.frame.road(road)
         s, _ = line.locate(x, y)
         if np.isfinite(s).any():
-            profiles = int(np.floor((np.nanmin(s) - BEYOND_BESIDE) / width)), int(np.ceil((np.nanmax(s) + BEYOND_BESIDE) / width)) + 1
+            profiles = int(np.floor((np.nanmin(s) - GROUND_HALF_WIDTH) / width)), int(np.ceil((np.nanmax(s) + GROUND_HALF_WIDTH) / width)) + 1
             found += [_beside(part, end) for part in decimation.decimated_points(road, profiles, POINTS_PER_LEVEL_CELL_IN_PLAN)]
     reach = MAX_BEYOND_LENGTH + 2 * MAX_CORRIDOR_DISTANCE
     for number in numbers:
@@ -169,9 +167,9 @@ def _ground(decimation, end):
         line = survey.frame.road(road_of(number))
         near = np.flatnonzero(np.hypot(line.x - end.x, line.y - end.y) < reach)
         if len(near):
-            low, high = (line.start + 0.1 * k for k in (near[0], near[-1]))
+            low, high = (line.start + NODE_SPACING * k for k in (near[0], near[-1]))
             for section in survey.store.sections(number):
-                if low - 5.0 <= section * survey.store.section_length <= high:
+                if low - survey.store.section_length <= section * survey.store.section_length <= high:
                     found.append(_beside(survey.section(number, section), end))
     t, u, z = (np.concatenate(column) for column in zip(*found)) if found else np.empty((3, 0))
     return _cell_means(t, u, z)
@@ -180,7 +178,7 @@ def _ground(decimation, end):
 def _beside(points, end):
     x, y, z = points.x, points.y, points.z
     t, u = end.beside(x, y)
-    own = np.flatnonzero((t > -0.5) & (t < MAX_BEYOND_LENGTH) & (np.abs(u) < BEYOND_BESIDE + 0.1 * np.maximum(t, 0.0) + 0.1)
+    own = np.flatnonzero((t > -0.5) & (t < MAX_BEYOND_LENGTH) & (np.abs(u) < GROUND_HALF_WIDTH + 0.1 * np.maximum(t, 0.0) + 0.1)
                          & (np.abs(z - end.z) < MAX_LAYER_HEIGHT + 0.05 * np.maximum(t, 0.0)))
     return t[own], u[own], z[own]
 
@@ -233,13 +231,13 @@ def _best_levels(t, u, z, end, start, stop, about, arcs):
         return None
     shift, turn, bend = (v.ravel() + middle for v, middle in zip(np.meshgrid(*arcs, indexing="ij"), about))
     v = u - (shift[:, None] + turn[:, None] * t + 0.5 * bend[:, None] * t * t)
-    near = (np.abs(v) < BEYOND_BESIDE) & (np.abs(v) > BEYOND_FACE_HALF_WIDTH)
+    near = (np.abs(v) < GROUND_HALF_WIDTH) & (np.abs(v) > CURB_HALF_WIDTH)
     design = np.stack([np.ones_like(v), np.broadcast_to(t, v.shape), (v > 0).astype(float), v], axis=2)
     prior = np.array([BOTTOM_SIGMA + 0.01 * start, GRADE_SIGMA, RISE_SIGMA, CROSSFALL_SIGMA])**-2.0
     levels, cost = _robust_fit(design, z, near, prior, np.array([0.0, 0.0, end.height, 0.0]))
     at, aside, _ = end.trail
     off = (aside - (shift[:, None] + turn[:, None] * at + 0.5 * bend[:, None] * at * at)) / PLACE_SIGMA
-    cost = cost + (off**2).mean(axis=1) * min(len(at), LEAST_STEPS) + (bend / BEYOND_BEND_SIGMA)**2
+    cost = cost + (off**2).mean(axis=1) * min(len(at), LEAST_STEPS) + (bend / ARC_BEND_SIGMA)**2
     k = int(np.argmin(cost))
     return (float(shift[k]), float(turn[k]), float(bend[k])), levels[k], prior, t, z, design[k], v[k], near[k]
 
@@ -274,10 +272,10 @@ def _robust_fit(design, z, used, prior, expected):
     """(C, P) parameters of each of C designs (C, N, P), and (C,) sums of squares of what (N,) heights differ from them, in sigmas, cut off."""
     weight = used.astype(float)
     for _ in range(3):
-        normal = np.einsum("ck,cki,ckj->cij", weight, design, design, optimize=True) / BEYOND_HEIGHT_SIGMA**2 + np.diag(prior)
-        right = np.einsum("ck,cki,k->ci", weight, design, z, optimize=True) / BEYOND_HEIGHT_SIGMA**2 + prior * expected
+        normal = np.einsum("ck,cki,ckj->cij", weight, design, design, optimize=True) / POINT_HEIGHT_SIGMA**2 + np.diag(prior)
+        right = np.einsum("ck,cki,k->ci", weight, design, z, optimize=True) / POINT_HEIGHT_SIGMA**2 + prior * expected
         found = np.linalg.solve(normal, right[:, :, None])[:, :, 0]
-        residual = (z - np.einsum("cki,ci->ck", design, found)) / BEYOND_HEIGHT_SIGMA
+        residual = (z - np.einsum("cki,ci->ck", design, found)) / POINT_HEIGHT_SIGMA
         weight = used / (1.0 + (residual / MAX_RESIDUAL)**2)
     # a point that counts must pay: else the arc with the fewest points would be the best
     return found, np.where(used, np.minimum(residual**2, MAX_RESIDUAL**2) - 0.5 * MAX_RESIDUAL**2, 0.0).sum(axis=1)
@@ -311,8 +309,8 @@ def _distinct(found, met):
     chosen: list[CurbReturn] = []
     for curb in sorted(found, key=lambda c: -len(c.steps)):
         x, y = curb.steps.x, curb.steps.y
-        if np.mean(met.within(x, y, BEYOND_MEETING_DISTANCE)) > 0.5:
+        if np.mean(met.within(x, y, KNOWN_CURB_DISTANCE)) > 0.5:
             continue
         chosen.append(curb)
-        met = type(met)(np.concatenate([met.places, np.c_[x, y]]))
+        met = KnownPlaces(np.concatenate([met.places, np.c_[x, y]]))
     return chosen
