@@ -100,7 +100,7 @@ def pavement_pieces(frame: RoadFrame, road: int, carriageway: Carriageway, edges
             for runs in _lines(rows & agreeing, likely, likely | rows & grown.hidden, grown.offset, places, max_gap):
                 drawn += _drawn(frame, road, side, carriageway, grown, runs, chain + len(found) + len(drawn))
             more = np.concatenate([_crossings(piece, barrier) for piece in drawn] or [np.empty(0)])
-            if not len(more):
+            if not (rows & (np.abs(stations[:, None] - more) <= AGREEING_LENGTH).any(axis=1)).any():
                 break
             crossed = np.append(crossed, more)
         found += drawn
