@@ -1,4 +1,4 @@
-"""Hatched areas: where nobody drives, and the borders that bound the lanes beside."""
+"""Hatched areas and parking bays: where nobody drives, and the borders that bound the lanes beside."""
 
 from __future__ import annotations
 
@@ -83,6 +83,31 @@ def borders_of_hatching(markings: MarkingObjects, frame: RoadFrame, road: int, s
                 _follow(borders, _reach([line], frame, road, s).mean(axis=0))
         found.append(borders)
     return np.concatenate(found)
+
+
+def places_of_bays(rows: list[np.ndarray], s: np.ndarray, driven: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Where parking bays lie, and their ends towards the lanes.
+
+    Parameters
+    ----------
+    rows : as `rows_of_bays` gives them
+    s : (K,) metres, stations
+    driven : (P, K) metres, offset of every pass, NaN where it did not drive
+
+    Returns
+    -------
+    places : (K, BINS) bool, cells of station and offset that lie in bays
+    ends : (G, K) metres, offset at which the lines of each row end towards the vehicle, NaN beyond the row
+    """
+    places, ends = np.zeros((len(s), BINS), bool), np.full((len(rows), len(s)), np.nan)
+    offsets = (np.arange(BINS) + 0.5) * BIN - FAR
+    for end, row in zip(ends, rows):
+        within = slice(*np.searchsorted(s, [row[0, 0], row[-1, 0]]))
+        low, high = (np.interp(s[within], row[:, 0], row[:, k]) for k in (1, 2))
+        places[within] |= (offsets > low[:, None]) & (offsets < high[:, None])
+        track = driven[:, within][np.isfinite(driven[:, within])]
+        end[within] = high if np.median(row[:, 1:].sum(axis=1)) < 2 * (track.mean() if len(track) else 0.0) else low
+    return places, ends
 
 
 def _reach(shapes, frame, road, s):

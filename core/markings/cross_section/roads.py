@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...common.parallel import ordered_map
+from ..figures.parking_bays import rows_of_bays
 from .arrows import arrows_of
 from .candidates import Boundaries, boundary_candidates, gather_boundaries
 from .dashes import dash_lengths
 from .estimate import RoadEstimate, estimate_road, lane_spans
 from .evidence import between_ends, driven_offsets, evidence_of, other_carriageway, surface_coverage
-from .hatching import borders_of_hatching, hatched_places
+from .hatching import borders_of_hatching, hatched_places, places_of_bays
 from .sections import STATION_STEP, CrossSections
 from .weights import PAVEMENT, EstimateWeights
 
@@ -80,10 +81,10 @@ def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_widt
         likely = _likely_ends(of_road, usual_width)
         covered, ends = _surface(road_points, paint, number, of_road.s, likely)
         open_ends = likely if ends is None else np.where(np.isnan(ends).all(1, keepdims=True), likely, np.nan)
-        hatched = hatched_places(markings, frame, number, of_road.s) if markings is not None else None
+        hatched, borders = _closed_areas(markings, frame, number, of_road.s, driven[0])
         boundaries = gather_boundaries(of_road, (curbs or {}).get(number), ends, open_ends,
                                        np.abs(frame.road(number).curvature(of_road.s)) > 1 / WIDENED_RADIUS,
-                                       borders_of_hatching(markings, frame, number, of_road.s) if markings is not None else None,
+                                       borders,
                                        (pavement or {}).get(number), dash_lengths(of_road, markings, number))
         candidates = boundary_candidates(boundaries, weights)
         known[number] = boundaries, candidates, evidence_of(
@@ -110,6 +111,18 @@ def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_widt
             estimate = replace(estimate, other=found[-best][number], behind=behind)
         roads[number] = EstimatedRoad(lines[number], known[number][0], estimate)
     return RoadEstimates(roads, "right" if best < 0 else "left", behind >= SURE_SIDE, width)
+
+
+def _closed_areas(markings, frame, number, s, driven):
+    """Where paint says that nobody drives, hatched areas and parking bays, and the borders of these; None and None without markings."""
+    if markings is None:
+        return None, None
+    hatched, borders = hatched_places(markings, frame, number, s), borders_of_hatching(markings, frame, number, s)
+    rows = rows_of_bays(markings, number, s, driven)
+    if not rows:
+        return hatched, borders
+    bays, ends = places_of_bays(rows, s, driven)
+    return bays if hatched is None else hatched | bays, np.concatenate([borders, ends])
 
 
 def _surface(road_points, paint, number, s, likely):

@@ -1,10 +1,11 @@
-"""Paint compared with drawn figures, such as bicycles and words.
+"""Paint compared with drawn figures, such as bicycles and words, and lines that together are a figure: parking bays.
 
-In: painted cells, and a figure of the country catalogue. Out: how well they agree, and where the figure lies.
+In: painted cells and a figure of the country catalogue, or markings. Out: how well they agree and where the figure lies, or rows of lines.
 """
 
 from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
     "match": ("Agreement", "PaintImage", "agreement"),
+    "parking_bays": ("rows_of_bays",),
 })

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -31,6 +31,7 @@ MAX_BAR_PITCH = 3.0         # m from bar to bar along an outline
 MAX_BORDER_GAP = 2.0        # m along the road between pieces of one outline that bend off each other
 MIN_BARS = 4                # that make an outline
 MIN_BARS_OF_STRAND = 2      # that tell which strands of an outline are its own
+AT_CROSSING = 0.5           # m across beyond a crossing where a line still leads to it
 LEAST_TURN_ASIDE = 0.3      # m from the straight way between two strands: farther than links reach across, a strand is another line
 
 
@@ -94,7 +95,7 @@ def select_lines(lines: list[LinkedLine], trend: CommonTrend, crossed: np.ndarra
     """
     if not lines:
         return []
-    parts = [stretches(line, longest_dash) for line in lines]
+    parts = [_without_pairs_at_crossings(stretches(line, longest_dash), line, crossed) for line in lines]
     level = [_level(line, trend) for line in lines]
     patterns = [_dash_patterns(stretch) for stretch in parts]
     painted_to = max(line.last for line in lines)
@@ -114,6 +115,20 @@ def select_lines(lines: list[LinkedLine], trend: CommonTrend, crossed: np.ndarra
         neighbours = _painted_beside(k, lines, level)
         drawn = _extended(drawn, parts[k], single, (painted_from, painted_to), crossed, neighbours, line)
         found.append(SelectedLine(line, bool(double[k]), drawn))
+    return found
+
+
+def _without_pairs_at_crossings(parts, line, crossed):
+    """Stretches, of which two pieces alone are no dashes where a crossing lies between them: that is why there is a gap."""
+    found = []
+    for part in parts:
+        if part.dashes and len(part.intervals) == 2:
+            (_, before), (after, _) = part.intervals
+            s, d, *_ = line.places()
+            at = median(d[(s >= part.first) & (s <= part.last)])
+            between = (crossed[:, 0] < after) & (crossed[:, 1] > before) & (crossed[:, 2] <= at + AT_CROSSING) & (crossed[:, 3] >= at - AT_CROSSING)
+            part = replace(part, dashes=None) if between.any() else part
+        found.append(part)
     return found
 
 
@@ -265,7 +280,7 @@ def _extended(drawn, parts, single, painted, crossed, neighbours, line):
     drawn = list(drawn)
     before, after = single or parts[0].dashes, single or parts[-1].dashes
     d = median(line.places()[1])
-    beside = crossed[(crossed[:, 2] <= d + 0.5) & (crossed[:, 3] >= d - 0.5)]
+    beside = crossed[(crossed[:, 2] <= d + AT_CROSSING) & (crossed[:, 3] >= d - AT_CROSSING)]
     if before:
         limit = line.first - before.gap
         begun = neighbours[(neighbours[:, 0] > limit) & (neighbours[:, 0] <= line.first), 0]

@@ -1,8 +1,9 @@
 """Where the curb is occluded: the ground and the tall things that the scanner saw beside the road.
 
 A missing curb counts as occluded only where no ground was measured at its place and
-something tall stands between it and the vehicle. Where ground was seen there, the
-road is open: a driveway, a junction.
+something tall stands between it and the vehicle, or where the road before it returned
+nothing, as water does, and the ground behind it is raised. Where ground was seen there,
+the road is open: a driveway, a junction.
 """
 
 from __future__ import annotations
@@ -17,6 +18,8 @@ OCCLUSION_CELL = 0.25         # m across
 MIN_OCCLUDER_HEIGHT = 0.45    # m above the expected road, from which a thing can hide a curb
 MAX_BOTTOM_DIFFERENCE = 0.30  # m above or below the curb's bottom within which ground counts as seen
 HIDDEN_POINT_SPACING = 0.5    # m along the road between two points of hidden curb, and the length that each stands for
+WATER_CELLS = 4               # before a curb whose foot lies in water, and as many behind its foot: 1 m
+LEAST_WATER_STEP = 0.05       # m above the foot, from which the ground behind it is raised: dropped curbs of driveways are lower
 SHADOW_REACH = 3.0            # m along the road: the scan planes are oblique, so the shadows are, too
 
 
@@ -116,4 +119,14 @@ class OcclusionGrid:
         c0 = np.clip(np.floor(near / OCCLUSION_CELL).astype(np.int64) + 3, 0, self.cells)
         c1 = np.maximum(np.clip(cell + 1, 0, self.cells), c0)
         tall = sums[r1, c1] - sums[r0, c1] - sums[r1, c0] + sums[r0, c0]
-        return (seen.sum(1) < 2) & (tall > 0)
+        return (seen.sum(1) < 2) & (tall > 0) | self._in_water(row, cell, h)
+
+    def _in_water(self, row, cell, h):
+        """(N,) bool, whether the road before a place returned nothing and the ground behind it is raised like the top of a curb."""
+        offsets = cell[:, None] + np.arange(-WATER_CELLS, WATER_CELLS)
+        rise = self.ground[row[:, None], np.clip(offsets, 0, self.cells - 1)] - h[:, None]
+        with np.errstate(invalid="ignore"):
+            seen = np.abs(rise) < MAX_BOTTOM_DIFFERENCE
+            raised = seen & (rise > LEAST_WATER_STEP)
+        return ((offsets[:, 0] > 0) & ~seen[:, :WATER_CELLS].any(1) & raised[:, WATER_CELLS:].any(1)
+                & ~(seen & ~raised)[:, WATER_CELLS:].any(1))

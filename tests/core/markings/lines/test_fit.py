@@ -108,6 +108,14 @@ def test_a_zebra_crossing_neither_cuts_a_line_nor_makes_one():
     assert street.distance(shapely.union_all(lines.geometries), 0.0).max() < 0.015
 
 
+def test_two_pieces_on_either_side_of_a_zebra_crossing_are_no_dashes():
+    """The borders of a traffic island end before the crossing and go on behind it: nothing says that they go on by a gap."""
+    street = zebra(ClusteredStreet().paint(0, 120, 4.0, kind="edge").paint(45, 51.5, 0.0).paint(64.0, 70.5, 0.0), 56.0)
+    inner = [(row["pattern"], row["status"], row["length_m"]) for row in street.lines().rows if row["length_m"] < 100.0]
+    assert [piece[:2] for piece in inner] == [("solid", "measured"), ("solid", "bridged"), ("solid", "measured")]
+    assert [piece[2] for piece in inner] == pytest.approx([6.5, 12.5, 6.5], abs=0.6)
+
+
 def test_the_frame_of_a_hatched_area_is_no_line_and_an_edge_line_beside_one_is():
     street = ClusteredStreet().paint(0, 120, -4.0, kind="edge")
     street.paint(40, 62, 1.0).paint(40, 62, 2.6, kind="centre")

@@ -70,3 +70,26 @@ def test_the_share_of_a_gap_that_is_hidden_does_not_depend_on_where_the_stations
 
     np.testing.assert_allclose(places(moved), places(0.0))
     assert len(places(0.0)) == 17, "half a metre each, over the whole gap"
+
+
+def wet(road, behind):
+    """A grid of which the metre before the curb and what lies behind its foot are as given (m above the road), and nothing stands there."""
+    grid = OcclusionGrid(0.25, 0, 160, 20.0)
+    place = np.arange(grid.cells) * 0.25
+    grid.ground[:, place < OUT - 2.0] = 0.0
+    grid.ground[:, (place >= OUT - 2.0) & (place < OUT)] = road
+    grid.ground[:, (place >= OUT) & (place < OUT + 3.0)] = behind
+    return {"left": grid, "right": grid}
+
+
+def test_a_curb_in_water_goes_on_where_the_ground_behind_it_is_raised(survey):
+    main = {"left": known(*KNOWN), "right": np.empty((0, 4))}
+    hidden = hidden_beside(piece(survey, *LATER), main, wet(np.nan, 0.12), survey, 0)
+    np.testing.assert_allclose(hidden.station, np.arange(12.25, 22.0, 0.5))
+
+
+@pytest.mark.parametrize("road, behind", [(0.0, 0.12), (np.nan, 0.02), (np.nan, np.nan)],
+                         ids=["the road is dry", "a driveway behind the water", "nothing behind the water"])
+def test_without_water_or_without_raised_ground_behind_it_the_road_is_open(survey, road, behind):
+    main = {"left": known(*KNOWN), "right": np.empty((0, 4))}
+    assert not len(hidden_beside(piece(survey, *LATER), main, wet(road, behind), survey, 0))
