@@ -15,6 +15,7 @@ from ..markings.cross_section.sections import STATION_STEP
 from .lane_track import END_WIDTH_LENGTH, INFERRED, LaneTrack
 
 LONGEST_TAPER = 100.0     # m
+SHOWN_TAPER = 8.0         # m of a taper that show its course where the survey ends before it does
 FULL_SHARE = 0.9          # of a lane's width: from there on it is taken to have its full width
 LEAST_WIDENING = 0.05     # m: less is how lines are painted
 BORDER_BEFORE_LANE = 30.0  # m by which the line between the two may begin before the lane is broad enough to be one: 2 m at one in ten, and a gap
@@ -63,14 +64,23 @@ def _kept_width(track, opens, at, head):
     begin = int(np.argmax(wider))
     as_wide = np.flatnonzero(~wider[begin:])
     # a lane that is as wide all along divides into two, and has no taper
-    if not wider[:int(BORDER_BEFORE_LANE / STATION_STEP)].any() or not len(as_wide):
+    if not wider[:int(BORDER_BEFORE_LANE / STATION_STEP)].any() or not (len(as_wide) or _narrows(track.width[ahead[begin:]] - width)):
         return track
-    ahead = ahead[begin:begin + int(as_wide[0])]
+    ahead = ahead[begin:begin + int(as_wide[0])] if len(as_wide) else ahead[begin:]
     d, widths, status = track.d.copy(), track.width.copy(), track.status.copy()
     d[ahead] -= side * (widths[ahead] - width) / 2
     widths[ahead] = width
     status[ahead] = np.maximum(status[ahead], INFERRED)
     return replace(track, d=d, width=widths, status=status)
+
+
+def _narrows(excess):
+    """Whether a lane that is wider by (N,) m as far as it is known becomes narrower all along, as beside a taper that ends farther on."""
+    along = STATION_STEP * np.arange(len(excess))
+    if len(excess) < 2 or along[-1] < SHOWN_TAPER:
+        return False
+    slope = np.polyfit(along, excess, 1)[0]
+    return slope < 0.0 and along[-1] + excess[-1] / -slope <= LONGEST_TAPER
 
 
 def _from_full_width(track, head):
