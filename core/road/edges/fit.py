@@ -131,13 +131,17 @@ def _pieces(rows, max_gap):
 
 
 def _goes_on_in_line(points, k):
-    """Do the points after a gap, which begins at point k, lie on one even bend with those before it?"""
+    """Do the points after a gap, which begins at point k, lie on one even bend with those before it, on the map or as seen from the road?
+
+    Where a bend begins or ends behind a row of parked cars no even bend leads through both sides; the road itself bends there alike.
+    """
     s = points["s"]
     before = points[(s >= s[k] - LINE_FIT_LENGTH) & (s <= s[k])]
     after = points[(s >= s[k + 1]) & (s <= s[k + 1] + LINE_FIT_LENGTH)]
     if max(np.ptp(before["s"]), np.ptp(after["s"])) < MIN_BEND_LENGTH:
         return False
-    return GapLine(*(np.array([part["x"], part["y"]]) for part in (before, after)), max_degree=2).miss <= IN_LINE_ACROSS
+    return any(GapLine(*(np.array([part[axis] for axis in axes]) for part in (before, after)), max_degree=2).miss <= IN_LINE_ACROSS
+               for axes in ("xy", "sd"))
 
 
 def without_outliers(points: np.ndarray) -> np.ndarray:

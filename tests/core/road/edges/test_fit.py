@@ -104,6 +104,28 @@ def test_a_gap_longer_than_usual_is_bridged_where_both_parts_lie_in_one_line(asi
     assert sum(r["status"] == "bridged" for r in edges.rows) == bridged
 
 
+@pytest.mark.parametrize(("aside", "bridged"), [(0.0, 1), (0.6, 0)], ids=["with the road", "aside"])
+def test_a_long_gap_in_which_a_bend_begins_is_bridged_where_the_curb_goes_on_beside_the_road(aside, bridged):
+    s = np.arange(0.0, 90.0, 0.25)
+    heading = np.clip(s - 40.0, 0.0, None) / 60.0
+    x, y = (np.cumsum(0.25 * f(heading)) for f in (np.cos, np.sin))
+    frame = build_frame(Trajectory(s / 10.0, x + EAST, y + NORTH, np.full(len(s), 102.5)))
+    rng, points = np.random.default_rng(2), Features("PointZ", list(CURB_POINTS))
+    for status, stations in (("measured", np.r_[np.arange(10, 30, 1.0), np.arange(51, 70, 1.0)]), ("occluded", np.arange(30.0, 50.5, 0.5))):
+        for at in stations:
+            k, d = int(4 * at), 3.5 + rng.normal(0.0, 0.003) + aside * (at > 40)
+            place = np.array([x[k] - d * np.sin(heading[k]), y[k] + d * np.cos(heading[k])])
+            station, offset = frame.road(0).locate(*(place + [EAST, NORTH] - frame.origin[:2])[:, None])
+            points.add(shapely.Point(*(place + [EAST, NORTH]), 100.0), road=0, side="left", status=status, part="bottom",
+                       station_m=float(station[0]), offset_m=float(offset[0]), height_m=0.12, chain=0)
+    edges = fit_road_edges(points, frame)
+    assert sum(row["status"] == "bridged" for row in edges.rows) == bridged
+    if bridged:
+        found = shapely.linestrings(places(edges)[:, :2])
+        true = np.column_stack([x - 3.5 * np.sin(heading), y + 3.5 * np.cos(heading)])[60:260]
+        assert shapely.distance(shapely.points(true), found).max() < 0.12
+
+
 def test_a_short_piece_of_curb_does_not_bend_the_line_across_a_long_gap():
     # its three points lie askew by centimetres, which would be decimetres within the gap
     stations = np.r_[np.arange(0, 20, 1.0), 23.0, 23.3, 23.6, np.arange(40, 60, 1.0)]
