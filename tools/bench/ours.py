@@ -137,7 +137,8 @@ def sor_ours(size):
 
 def clusters_ours(size):
     """Which of a million points on paint belong together."""
-    from lanewright.core.markings.objects.cluster import ClusterSettings, connected_points
+    from lanewright.core.markings.cells.clusters import connected_points
+    from lanewright.core.markings.objects.cluster import ClusterSettings
 
     points = _paint(size)
     (records, labels), seconds = timed(lambda: connected_points(points, points.roads()[0], ClusterSettings.distance))

@@ -11,7 +11,8 @@ import numpy as np
 from ...common.errors import RoadExtractionError
 from ...curves.robust import percentiles
 from ...survey.store.records import COORDINATE_SCALE
-from .dash_rows import rows_of_blocks, rows_of_dashes
+from ..cells.clusters import ROAD_EDGE_CLEARANCE
+from .dash_rows import give_way_blocks, rows_of_dashes
 from .near_pairs import overlapping_pairs
 
 if TYPE_CHECKING:
@@ -57,7 +58,6 @@ CURB_CORNER_CLEARANCE = 0.30         # m from the road edge: a single bar so nea
 MAX_CURB_CORNER_LENGTH = 2.0         # m: and so short, is the curb or gutter of a corner
 RIM_CLEARANCE = 0.60                 # m from the road edge where verge, gutter and curb may look like paint
 STRIP_REACH_BEYOND_EDGE_LINE = 0.80  # m outside an edge line where strips are taken for verge
-ROAD_EDGE_CLEARANCE = 0.10           # m: strips so near to the road edge are taken for verge
 STRIP_REACH_AT_ROAD_EDGE = 3.0       # m: as far outside an edge line as this, since no lane fits there
 MIN_STRIP_WIDTH_AT_RIM = 0.10        # m: at the road edge a narrower strip is the top or the face of a curb
 MIN_STRIP_WIDTH_ON_EDGE = 0.14       # m: likewise where it reaches the edge itself
@@ -117,7 +117,7 @@ def relative_contrast(value: np.ndarray, s: np.ndarray, starts: np.ndarray) -> n
 
 
 def classify_markings(shapes: list[Shape], half_widths: Sequence[float], settings: ClassSettings = ClassSettings(),
-                      covered: float | Sequence[float] = 0.0) -> list[tuple[str, str]]:
+                      covered: float | Sequence[float] = 0.0, blocks: np.ndarray | None = None) -> list[tuple[str, str]]:
     """Class of every cluster of one road.
 
     Parameters
@@ -125,6 +125,7 @@ def classify_markings(shapes: list[Shape], half_widths: Sequence[float], setting
     shapes : list of Shape
     half_widths : (N,) m from the reference line to the road edge on each cluster's side
     covered : (N,) share of each cluster's points that lie beneath or right beside something standing on the road
+    blocks : (N,) bool of `give_way_blocks`; None where the road is the only one
 
     Returns
     -------
@@ -142,7 +143,9 @@ def classify_markings(shapes: list[Shape], half_widths: Sequence[float], setting
     outside = _beyond_the_edge_line(column, line, clearance)
     found = []
     doubles = _has_partner(column, line)
-    blocks = _give_way_blocks(shapes, column)
+    if blocks is None:
+        middles = np.column_stack([column["s0"] + column["s1"], column["d0"] + column["d1"]]) / 2
+        blocks = give_way_blocks(filled(shapes), np.array([shape.sides for shape in shapes]), middles)
     covered_feet = (np.broadcast_to(covered, len(shapes)) > MIN_COVERED_SHARE) & ~(line & (column["length"] > MAX_CAR_LENGTH))
     for k, shape in enumerate(shapes):
         no_paint = _speck(shape) and not (line[k] and shape.length >= MIN_ROW_OF_POINTS) or outside[k] or covered_feet[k] \
@@ -263,15 +266,9 @@ def _round_cover(shape):
         and shape.elongation < MAX_COVER_ELONGATION
 
 
-def _give_way_blocks(shapes, column):
-    """Filled squares in rows."""
-    sides = np.column_stack([column["s1"] - column["s0"], column["d1"] - column["d0"]])
-    filled = np.flatnonzero(np.array([shape.closed_area for shape in shapes]) > MIN_COVER_FILL * sides.prod(axis=1))
-    result = np.zeros(len(shapes), bool)
-    middle = np.column_stack([column["s0"] + column["s1"], column["d0"] + column["d1"]]) / 2
-    for row in rows_of_blocks(sides[filled], middle[filled]):
-        result[filled[row]] = True
-    return result
+def filled(shapes: Sequence[Shape]) -> np.ndarray:
+    """(N,) bool, whether most of the smallest rectangle about each is painted."""
+    return np.array([shape.closed_area > MIN_COVER_FILL * shape.sides[0] * shape.sides[1] for shape in shapes], bool)
 
 
 def _curb(shape, clearance):

@@ -14,35 +14,35 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import shapely
-from scipy.spatial import cKDTree
 
-from ...common.groups import linked_groups
 from ...common.order_statistics import order_by
-from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ...common.setting import check_limits, setting
 from ...curves.robust import median
 from ...execution.threads import THREADS
-from ...survey.store.records import COORDINATE_SCALE, Points, join_columns
+from ...survey.store.records import COORDINATE_SCALE, Points
+from ..cells.clusters import connected_points
+from ..cells.components import occupied
+from ..cells.road_grid import CELL_UNITS
+from ..cells.scan_tracks import track_reach
+from ..cells.seams import told_by_one_road
 from .classify import (
     LINE_KINDS,
     MIN_COVERED_SHARE,
     NOT_PAINT,
     RIM_CLEARANCE,
-    ROAD_EDGE_CLEARANCE,
     ClassSettings,
     classify_markings,
+    filled,
     relative_contrast,
     too_pale,
 )
-from .connected_cells import components, occupied
+from .dash_rows import BLOCK_SIZE, blocks_of_strip, give_way_blocks
 from .figures import painted_figures
 from .marking_objects import make_marking_objects
 from .outline import lifted
 from .phases import ApartWork
-from .road_grid import CELL_UNITS
-from .scan_tracks import track_reach
-from .shape import measure
+from .shape import SMALL_MARKING_SIZE, measure, smallest_rectangle
 from .split_merge import join_fragments, split_compounds
 from .zebra import zebra_stripes
 
@@ -51,14 +51,14 @@ if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame
     from ...survey.store.columns import Columns
     from ...survey.store.road_points import RoadPoints
+    from ..cells.seams import RoadPaint
     from .marking_objects import MarkingObjects
     from .shape import Shape
 
-LINKING_WINDOW_CELLS = 1250                   # cells of 4 cm: 50 m of station are linked at a time
 MIN_FRAGMENT_POINTS = 1                       # points: the smallest worn rest that a line may be joined from
+ROW_OF_BLOCKS = 0.8, 20.0   # m along the road, where the inside of a bend is shorter than the line itself
+MAX_ROW_SLOPE = 0.5   # to the road: of a row more askew the blocks do not touch
 STRIP_KINDS = LINE_KINDS + ("stop",)  # drawn as even strips, the others cell by cell
-REACH_ALONG_FACTOR = 2.5                      # neighbours may be this times the distance apart along the road,
-REACH_ACROSS_DIVISOR = 2.0                    # and across it the distance over this, or the reach between tracks of the scan
 
 
 @dataclass(frozen=True)
@@ -96,65 +96,145 @@ def cluster_markings(marking_points: RoadPoints, frame: RoadFrame, settings: Clu
         several, with one `cluster` number
     clustered : RoadPoints with `cluster`, the number of the marking; 0 on what is no marking
     """
-    rows, polygons = [], []
     clustered = replace(marking_points, store=marking_points.store.with_column("cluster"), has_cluster=True)
-    number, refused = 0, 0
     roads = marking_points.roads()
-    for k, road in enumerate(roads):
-        part = progress.part(k / len(roads), (k + 1) / len(roads))
-        work = ApartWork(executor, road)
-        records, labels = connected_points(marking_points, road, settings.distance, part.part(0.0, 0.1))
-        everything, cluster = records, np.zeros(len(records), np.int32)
-        found, rest = _stripes_of_crossings(records, frame.road(road), work, part.part(0.1, 0.4))
-        records, labels = records.take(rest), labels[rest]
-        split = split_compounds(records, labels, partial(work.parts, progress=part.part(0.4, 0.5)))
-        order, starts, _ = _by_cluster(split, MIN_FRAGMENT_POINTS)
-        records = records.take(order)
-        pieces = work.shapes(records, starts, part.part(0.5, 0.65))
-        joins = join_fragments(pieces, settings.classes.max_width)
-        again, starts, labels = _by_cluster(_relabelled(records, starts, joins), settings.min_points)
-        records, order = records.take(again), rest[order[again]]
-        bounds = list(zip(starts[:-1].tolist(), starts[1:].tolist()))
-        alone = _alone(pieces, joins)
-        some, ends = _some_clusters(records, [span for label, span in zip(labels.tolist(), bounds) if label not in alone])
-        joined = iter(work.shapes(some, ends, part.part(0.65, 0.7)))
-        shapes = [alone[label] if label in alone else next(joined) for label in labels.tolist()]
-        half_width, hidden = records["half_width"].astype(float), records["covered"]
-        half_widths = [median(half_width[a:b]) * 1e-3 for a, b in bounds]
-        covered = [float(np.count_nonzero(hidden[a:b])) / (b - a) for a, b in bounds]
-        kinds = classify_markings(shapes, half_widths, settings.classes, covered)
-        clear = np.array(half_widths) - np.abs([shape.offset for shape in shapes]) > RIM_CLEARANCE
-        possible = clear & (np.array(covered) <= MIN_COVERED_SHARE)
-        if marking_points.has_corrected:
-            bright = relative_contrast(Points(records).value, records["s"], starts)
-            pale = [too_pale(share, kind) for share, (kind, _) in zip(bright.tolist(), kinds)]
-            possible &= ~np.array(pale, bool)
-            kinds = [(NOT_PAINT, "other") if faint else kind for faint, kind in zip(pale, kinds)]
-        whole: list[tuple[tuple[int, ...], str, str]] = [((k,), *kind) for k, kind in enumerate(kinds)]
-        for members, kind in painted_figures(shapes, [kind for kind, _ in kinds], possible, lambda some: _cells_together(records, bounds, some)):
-            for k in members:
-                whole[k] = ((), NOT_PAINT, "other")
-            whole[members[0]] = (members, kind, "other")
-        refused += sum(kind == NOT_PAINT for members, kind, _ in whole if members)
-        for members, kind, use in whole:
-            if kind != NOT_PAINT:
-                of_it = _rows_of(bounds, members)
-                shape = shapes[members[0]] if len(members) == 1 else measure(*(records[name][of_it] for name in ("s", "d", "spacing")))
-                found.append(_Marking(records[of_it], order[of_it], shape, kind, use))
-        found.sort(key=lambda marking: (marking.shape.s0, marking.shape.d0, marking.shape.s1))
-        for marking, drawn in zip(found, _outlines(found, everything, frame.road(road), work, part.part(0.7, 1.0))):
+    lines = [frame.road(road) for road in roads]
+    first, second, last = ([progress.part(begin + share * k / len(roads), begin + share * (k + 1) / len(roads)) for k in range(len(roads))]
+                           for begin, share in ((0.0, 0.1), (0.1, 0.6), (0.7, 0.3)))
+    connected = [connected_points(marking_points, road, settings.distance, part) for road, part in zip(roads, first)]
+    works = [ApartWork(executor, line.number) for line in lines]
+    known = [_stripes_of_crossings(records, line, work, part.part(0.0, 0.5))
+             for (records, _), line, work, part in zip(connected, lines, works, second)]
+    others = [(records.take(rest), labels[rest]) for (records, labels), (_, rest) in zip(connected, known)]
+    found = [_pieces(paint, work, settings, part.part(0.5, 1.0))
+             for paint, work, part in zip(told_by_one_road(others, lines, settings.distance), works, second)]
+    blocks = _blocks_of_all(found)
+    rows, polygons, refused = [], [], 0
+    cluster = [np.zeros(len(records), np.int32) for records, _ in connected]
+    number = 0
+    for k, ((stripes, _), pieces, line, block, part) in enumerate(zip(known, found, lines, blocks, last)):
+        painted, without = _markings(pieces, block, settings, marking_points.has_corrected)
+        refused += without
+        markings = sorted([*stripes, *painted], key=lambda marking: (marking.shape.s0, marking.shape.d0, marking.shape.s1))
+        for marking, drawn in zip(markings, _outlines(markings, pieces.paint.records, line, pieces.work, part)):
             number += 1
-            cluster[marking.rows] = number
+            owner, row = (np.full(len(marking.rows), k), marking.rows) if marking.outline is not None else pieces.paint.home[marking.rows].T
+            for one in np.unique(owner).tolist():
+                of_road = row[owner == one]
+                cluster[one][of_road if marking.outline is not None else known[one][1][of_road]] = number
             polygons += drawn
-            rows += [_row(marking, number, road, frame)] * len(drawn)
-        _put(clustered.store, road, cluster, marking_points)
+            rows += [_row(marking, number, line, frame)] * len(drawn)
+    for road, numbers in zip(roads, cluster):
+        _put(clustered.store, road, numbers, marking_points)
     progress.info(f"Markings: {number} found; {refused} clusters were left out as gutters, seams, covers, specks or the feet of what "
                  "stands on the road.")
     return make_marking_objects(rows, polygons, frame, marking_points.crs), clustered
 
 
+class _Pieces(NamedTuple):
+    """Clusters of one road, before it is known what they are.
+
+    paint : the points of the road but for stripes of crossings
+    records, order : the points of the clusters, one cluster after the other, and their rows in the paint
+    bounds, shapes : first and end row of each cluster in the records, and its Shape
+    work : ApartWork of the road
+    """
+
+    paint: RoadPaint
+    records: Columns
+    order: np.ndarray
+    bounds: list[tuple[int, int]]
+    shapes: list[Shape]
+    work: ApartWork
+
+
+def _pieces(paint, work, settings, progress):
+    """_Pieces of one road: compound clusters divided, what wear has parted joined."""
+    records = paint.records
+    split = split_compounds(records, _with_rows_divided(records, paint.labels), partial(work.parts, progress=progress.part(0.0, 0.3)))
+    order, starts, _ = _by_cluster(split, MIN_FRAGMENT_POINTS)
+    records = records.take(order)
+    pieces = work.shapes(records, starts, progress.part(0.3, 0.9))
+    joins = join_fragments(pieces, settings.classes.max_width)
+    again, starts, labels = _by_cluster(_relabelled(records, starts, joins), settings.min_points)
+    records, order = records.take(again), order[again]
+    bounds = list(zip(starts[:-1].tolist(), starts[1:].tolist()))
+    alone = _alone(pieces, joins)
+    some, ends = _some_clusters(records, [span for label, span in zip(labels.tolist(), bounds) if label not in alone])
+    joined = iter(work.shapes(some, ends, progress.part(0.9, 1.0)))
+    return _Pieces(paint, records, order, bounds, [alone[label] if label in alone else next(joined) for label in labels.tolist()], work)
+
+
+def _blocks_of_all(found):
+    """Of each road (N,) bool, which clusters are blocks of give-way lines: a row of them may lie on several roads, and askew to them."""
+    shapes = [shape for pieces in found for shape in pieces.shapes]
+    rectangles = [_rectangle(pieces.records, bounds) if max(shape.sides) <= SMALL_MARKING_SIZE else (0.0, 0.0, 0.0, 0.0)
+                  for pieces in found for bounds, shape in zip(pieces.bounds, pieces.shapes)]
+    sides, middles = np.split(np.array(rectangles).reshape(-1, 4), 2, axis=1)
+    blocks = give_way_blocks(filled(shapes), sides, middles)
+    return np.split(blocks, np.cumsum([len(pieces.shapes) for pieces in found])[:-1]) if found else []
+
+
+def _rectangle(records, bounds):
+    """Sides of the smallest rectangle about a cluster in local coordinates, and the middle of its extent there, m."""
+    x, y = (records[name][slice(*bounds)] for name in "xy")
+    cells, _ = occupied(x // CELL_UNITS, y // CELL_UNITS)
+    middle = [(int(places.min()) + int(places.max())) / 2 * COORDINATE_SCALE for places in (x, y)]
+    return *smallest_rectangle(cells), *middle
+
+
+def _with_rows_divided(records, labels):
+    """Labels of clusters, rows of the blocks of give-way lines divided into these."""
+    order = order_by(labels)
+    starts = np.flatnonzero(np.r_[True, np.diff(labels[order]) != 0]) if len(labels) else np.empty(0, np.int64)
+    along, across = (_ranges(records[name].take(order), starts) for name in "sd")
+    labels, following = labels.copy(), int(labels.max(initial=-1)) + 1
+    for k in np.flatnonzero((along >= ROW_OF_BLOCKS[0]) & (along <= ROW_OF_BLOCKS[1]) & (across >= BLOCK_SIZE[0])
+                            & (across <= BLOCK_SIZE[1] + MAX_ROW_SLOPE * along)).tolist():
+        own = order[starts[k]:starts[k + 1] if k + 1 < len(starts) else None]
+        cells, member = occupied(*(records[name].take(own) // CELL_UNITS for name in "xy"))
+        if (blocks := blocks_of_strip(cells)) is not None:
+            labels[own] = following + blocks[member]
+            following += int(blocks.max()) + 1
+    return labels
+
+
+def _ranges(values, starts):
+    return (np.maximum.reduceat(values, starts).astype(np.int64) - np.minimum.reduceat(values, starts)) * COORDINATE_SCALE \
+        if len(starts) else np.empty(0)
+
+
+def _markings(pieces, blocks, settings, has_corrected):
+    """[_Marking] of one road but for stripes of crossings, and how many clusters are none; blocks : (N,) bool."""
+    records, bounds, shapes = pieces.records, pieces.bounds, pieces.shapes
+    half_width, hidden = records["half_width"].astype(float), records["covered"]
+    half_widths = [median(half_width[a:b]) * 1e-3 for a, b in bounds]
+    covered = [float(np.count_nonzero(hidden[a:b])) / (b - a) for a, b in bounds]
+    kinds = classify_markings(shapes, half_widths, settings.classes, covered, blocks)
+    clear = np.array(half_widths) - np.abs([shape.offset for shape in shapes]) > RIM_CLEARANCE
+    possible = clear & (np.array(covered) <= MIN_COVERED_SHARE)
+    if has_corrected:
+        bright = relative_contrast(Points(records).value, records["s"], np.array([0, *(b for _, b in bounds)]))
+        pale = [too_pale(share, kind) for share, (kind, _) in zip(bright.tolist(), kinds)]
+        possible &= ~np.array(pale, bool)
+        kinds = [(NOT_PAINT, "other") if faint else kind for faint, kind in zip(pale, kinds)]
+    whole: list[tuple[tuple[int, ...], str, str]] = [((k,), *kind) for k, kind in enumerate(kinds)]
+    for members, kind in painted_figures(shapes, [kind for kind, _ in kinds], possible, lambda some: _cells_together(records, bounds, some)):
+        for k in members:
+            whole[k] = ((), NOT_PAINT, "other")
+        whole[members[0]] = (members, kind, "other")
+    found = []
+    for members, kind, use in whole:
+        if kind != NOT_PAINT:
+            of_it = _rows_of(bounds, members)
+            shape = shapes[members[0]] if len(members) == 1 else measure(*(records[name][of_it] for name in ("s", "d", "spacing")))
+            found.append(_Marking(records[of_it], pieces.order[of_it], shape, kind, use))
+    return found, sum(kind == NOT_PAINT for members, kind, _ in whole if members)
+
+
 class _Marking(NamedTuple):
-    """Records of a marking and their rows in those of the road; its outline in local coordinates where that is known already."""
+    """Records of a marking and their rows in the paint of its road; of a stripe of a crossing, whose outline in local coordinates is known
+    already, in all points of the road."""
 
     records: Columns
     rows: np.ndarray
@@ -227,99 +307,6 @@ def _relabelled(records, starts, number):
     return np.r_[labels, len(number) + np.arange(rest)]
 
 
-def connected_points(marking_points: RoadPoints, road: int, distance: float, progress: Progress = Progress()) -> tuple[Columns, np.ndarray]:
-    """Connected components of the points of one road.
-
-    Returns
-    -------
-    records : Columns of the N points of the road
-    labels : (N,) int component of each; its numbering follows station
-
-    Notes
-    -----
-    Points of one 4 cm cell are one member, at their mean place: points of dense
-    paint would otherwise have hundreds of neighbours each. Cells are fixed
-    in station, and windows are joined through the cells they share, so neither
-    window nor section length shows in the result.
-    """
-    start, end = marking_points.store.span(road)
-    reach = int(np.ceil(distance * REACH_ALONG_FACTOR / (CELL_UNITS * COORDINATE_SCALE))) + 1
-    records, labels, links = [], [], []
-    shared_cells, shared_labels, count = np.empty((0, 2), np.int64), np.empty(0, np.int64), 0
-    first_window, last_window = (int(np.floor(s / COORDINATE_SCALE / CELL_UNITS / LINKING_WINDOW_CELLS)) for s in (start, end))
-
-    def linked(window):
-        first, last = window * LINKING_WINDOW_CELLS, (window + 1) * LINKING_WINDOW_CELLS
-        bounds = (row * CELL_UNITS * COORDINATE_SCALE for row in (first - 1, last + reach + 1))
-        found = marking_points.window(road, *bounds).records
-        column = found["s"] // CELL_UNITS
-        found = found[(column >= first) & (column < last + reach)]
-        cells, member, component = _components(found, distance)
-        own = found["s"] // CELL_UNITS < last
-        return cells, component, cells[:, 0] >= last, found[own], member[own]
-
-    for cells, component, beyond, found, member in ordered_map(linked, range(first_window, last_window + 1), progress):
-        component = component + count
-        count = component.max(initial=count - 1) + 1
-        links.append(_shared(shared_cells, shared_labels, cells, component))
-        shared_cells, shared_labels = cells[beyond], component[beyond]
-        records.append(found)
-        labels.append(component[member])
-    if not records:
-        return join_columns([], marking_points.store.dtype), np.empty(0, np.int64)
-    pairs = np.concatenate(links)
-    merged = linked_groups(pairs[:, 0], pairs[:, 1], count)
-    labels = np.concatenate(labels)
-    return join_columns(records, marking_points.store.dtype), merged[labels] if len(labels) else labels
-
-
-def _components(records, distance):
-    """Occupied cells, the cell of each point, and the component of each cell."""
-    cells, member = occupied(records["s"] // CELL_UNITS, records["d"] // CELL_UNITS)
-    size = np.bincount(member, minlength=len(cells))
-    # sums of integers are the same in any order
-    s, d = (np.bincount(member, records[name], len(cells)) for name in ("s", "d"))
-    places = np.stack([s / size / REACH_ALONG_FACTOR, d / size * REACH_ACROSS_DIVISOR], axis=1) * COORDINATE_SCALE
-    size_of_cell = CELL_UNITS * COORDINATE_SCALE / REACH_ALONG_FACTOR, CELL_UNITS * COORDINATE_SCALE * REACH_ACROSS_DIVISOR
-    found = components(cells, places, size_of_cell, distance)
-    reach = np.zeros(len(cells))
-    reach[member] = track_reach(records["spacing"])
-    at_rim = np.zeros(len(cells), bool)
-    at_rim[member[records["half_width"] * 1e-3 - np.abs(records["d"]) * COORDINATE_SCALE < ROAD_EDGE_CLEARANCE]] = True
-    pairs = _across_tracks(places / [distance, REACH_ACROSS_DIVISOR], reach, at_rim)
-    if len(pairs):
-        found = linked_groups(*found[pairs].T, int(found.max()) + 1)[found]
-    return cells, member, found
-
-
-def _across_tracks(places, reach, at_rim):
-    """(P, 2) cells on neighbouring tracks of the scan, where these lie farther apart than points that join anyway.
-
-    places : (K, 2) along the road in units of the reach there, across it in metres
-    reach : (K,) m across the road
-    at_rim : (K,) bool, at the very edge of the road, where it is the curb that is bright: the next track may show an edge line
-    """
-    rows = np.flatnonzero(reach)
-    if not len(rows):
-        return np.empty((0, 2), np.int64)
-    widest = reach[rows].max()
-    pairs = rows[cKDTree(places[rows] / [1.0, widest]).query_pairs(1.0, output_type="ndarray").reshape(-1, 2)]
-    along, across = (places[pairs[:, 0]] - places[pairs[:, 1]]).T
-    near = along**2 + (across / reach[pairs].min(axis=1)) ** 2 <= 1.0
-    return pairs[near & (at_rim[pairs[:, 0]] == at_rim[pairs[:, 1]])]
-
-
-def _shared(cells, labels, others, other_labels):
-    """(K, 2) labels that two windows gave to the same cells."""
-    if not len(cells) or not len(others):
-        return np.empty((0, 2), np.int64)
-    low = min(cells[:, 1].min(), others[:, 1].min())
-    width = max(cells[:, 1].max(), others[:, 1].max()) - low + 1
-    keys, other_keys = (c[:, 0] * width + c[:, 1] - low for c in (cells, others))
-    _, a, b = np.intersect1d(keys, other_keys, assume_unique=True, return_indices=True)
-    return np.c_[labels[a], other_labels[b]]
-
-
 def _by_cluster(labels, fewest):
     """Points of clusters large enough, one cluster after the other; those of the rest at the end.
 
@@ -347,20 +334,23 @@ def _places(records):
     return np.stack([records["x"], records["y"], records["z"]], axis=1) * COORDINATE_SCALE
 
 
-def _row(marking, number, road, frame):
+def _row(marking, number, line, frame):
     """The fields of one marking."""
     shape = marking.shape
-    return dict(road=int(road), cluster=number, use=marking.use, station_m=shape.s0, offset_m=shape.offset, length_m=shape.length,
-                width_m=shape.width, elongation=shape.elongation, scan_m=_scanning_distance(marking.records, frame),
+    return dict(road=int(line.number), cluster=number, use=marking.use, station_m=shape.s0, offset_m=shape.offset, length_m=shape.length,
+                width_m=shape.width, elongation=shape.elongation, scan_m=_scanning_distance(marking.records, line, frame),
                 points=shape.points, **{"class": marking.kind})
 
 
-def _scanning_distance(records, frame):
+def _scanning_distance(records, line, frame):
     """Median distance across the road from the track that scanned the marking."""
     numbers, along, across = (records[name] for name in ("pass_number", "s", "d"))
     away = np.empty(len(records))
     for number in numbers[:1] if (numbers == numbers[0]).all() else np.unique(numbers):
-        rows = np.flatnonzero(numbers == number)
-        track = frame.passes[number].at_station(along[rows] * COORDINATE_SCALE)[0]
-        away[rows] = np.abs(across[rows] * COORDINATE_SCALE - track)
+        rows, driven = np.flatnonzero(numbers == number), frame.passes[number]
+        s, d = along[rows] * COORDINATE_SCALE, across[rows] * COORDINATE_SCALE
+        if driven.road != line.number:
+            # what another road's pass scanned lies in the frame of that road, too
+            s, d = frame.road(driven.road).locate(*(records[name][rows] * COORDINATE_SCALE for name in "xy"))
+        away[rows] = np.abs(d - driven.at_station(s)[0])
     return median(away)

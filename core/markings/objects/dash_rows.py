@@ -13,6 +13,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ...common.groups import linked_groups
+from ..cells.road_grid import CELL_SIZE
 
 if TYPE_CHECKING:
     from .shape import Shape
@@ -35,6 +36,13 @@ MAX_BLOCK_RATIO = 1.35         # times: the longer side of a block to the shorte
 BLOCK_SPACING = 1.4, 3.2       # block sizes from middle to middle
 MAX_BLOCK_STEP_RATIO = 1.25    # times: one step of a row to the next
 MAX_BLOCK_OFFSET = 0.15        # m off the line through its neighbours
+MIN_BLOCK_FILL = 0.5           # of the rectangle about a block that is painted
+MAX_PACE_ERROR = 0.10          # of the step of a row: two squares so far apart are two blocks of another such row
+MAX_END_RATIO = 1.5            # times: the longer side of a piece that goes on with a row to the usual one of its blocks, either way
+MAX_END_OFFSET = 0.2           # of the step that its middle lies off the place of the next block at most
+LEAST_STRIP = 1.2              # m: three of the smallest blocks
+LEAST_GAP = 2                  # cells between the blocks of a strip
+PAINTED_SHARE = 0.25           # of a strip's usual breadth: with less paint across it there is a gap
 
 
 def rows_of_dashes(shapes: Sequence[Shape]) -> list[np.ndarray]:
@@ -110,6 +118,95 @@ def _way(places):
     return way * np.sign(way @ (places[-1] - places[0]) or 1.0)
 
 
+def give_way_blocks(filled: np.ndarray, sides: np.ndarray, middle: np.ndarray) -> np.ndarray:
+    """Which pieces are blocks of give-way lines: filled squares in rows.
+
+    Where no more of a row was seen than two squares, they count if they lie at the pace of a sure row. A row goes on where a piece lies at its pace
+    and in line with it, though wear or stray points leave it no square.
+
+    Parameters
+    ----------
+    filled : (N,) bool, whether most of the smallest rectangle about a piece is painted
+    sides : (N, 2) m, of that rectangle; 0 for what is larger than any block
+    middle : (N, 2) m, in one frame
+
+    Returns
+    -------
+    (N,) bool
+    """
+    squares = np.flatnonzero(filled)
+    rows = [squares[row] for row in rows_of_blocks(sides[squares], middle[squares])]
+    result = np.zeros(len(filled), bool)
+    if not rows:
+        return result
+    sure = np.unique(np.concatenate(rows))
+    rest = np.setdiff1d(squares, sure)
+    pairs, size, apart = _pairs_of_squares(sides[rest], middle[rest])
+    for row in list(rows):
+        usual, pace = sides[row].mean(), _pace(middle[row])
+        alike = (np.maximum(size.max(axis=1), usual) <= MAX_BLOCK_RATIO * np.minimum(size.min(axis=1), usual)) \
+            & (np.abs(apart - pace) <= MAX_PACE_ERROR * pace)
+        rows += list(rest[pairs[alike]])
+    for row in rows:
+        result[row] = True
+        usual = sides[row].mean()
+        likely = (sides.max(axis=1) >= usual / MAX_END_RATIO) & (sides.max(axis=1) <= MAX_END_RATIO * usual)
+        result[_led_on(middle[row], middle, np.flatnonzero(likely))] = True
+    return result
+
+
+def _led_on(row, middle, likely):
+    """Pieces, of those that are likely, at the pace of a row of (K, 2) places beyond its ends."""
+    way, pace, found = _way(row), _pace(row), []
+    along = (row - row.mean(axis=0)) @ way
+    for sign, place in ((1.0, row[np.argmax(along)]), (-1.0, row[np.argmin(along)])):
+        while len(likely):
+            off = np.hypot(*(middle[likely] - (place + sign * pace * way)).T)
+            if off.min() > MAX_END_OFFSET * pace:
+                break
+            found.append(int(likely[np.argmin(off)]))
+            place = place + sign * pace * way
+    return found
+
+
+def _pace(middle):
+    """Median distance from one place of a row to the next."""
+    return float(np.median(np.hypot(*np.diff(middle[np.argsort((middle - middle.mean(axis=0)) @ _way(middle))], axis=0).T)))
+
+
+def blocks_of_strip(cells: np.ndarray) -> np.ndarray | None:
+    """The blocks of a give-way line that was taken for one piece: along the road scan lines join what lies so near.
+
+    Parameters
+    ----------
+    cells : (K, 2) int, different ones, of a frame in which the line is straight
+
+    Returns
+    -------
+    (K,) the number of each cell's block along the line; None where the cells are no row of blocks
+    """
+    direction = np.linalg.eigh(np.cov(cells.T))[1][:, 1]
+    places = cells @ np.array([[direction[0], -direction[1]], [direction[1], direction[0]]])
+    if np.ptp(places[:, 0]) * CELL_SIZE < LEAST_STRIP or not BLOCK_SIZE[0] <= np.ptp(places[:, 1]) * CELL_SIZE <= BLOCK_SIZE[1]:
+        return None
+    step = np.floor(places[:, 0] - places[:, 0].min()).astype(np.int64)
+    count = np.bincount(step)
+    painted = np.flatnonzero(count >= PAINTED_SHARE * np.percentile(count[count > 0], 75))
+    gaps = np.diff(painted)
+    apart = np.flatnonzero(gaps > max(gaps.max(initial=0) / 2, LEAST_GAP))
+    if len(apart) < MIN_BLOCKS_IN_ROW - 1:
+        return None
+    number = np.searchsorted((painted[apart] + painted[apart + 1]) / 2, step)
+    low, high = np.full((2, len(apart) + 1), np.inf), np.full((2, len(apart) + 1), -np.inf)
+    rows = np.flatnonzero(np.isin(step, painted))
+    for k in range(2):
+        np.minimum.at(low[k], number[rows], places[rows, k])
+        np.maximum.at(high[k], number[rows], places[rows, k])
+    found = rows_of_blocks((high - low + 1).T * CELL_SIZE, (low + high).T / 2 * CELL_SIZE)
+    # those at the ends may be cut off
+    return number if sum(map(len, found)) >= max(len(apart) - 1, MIN_BLOCKS_IN_ROW) else None
+
+
 def rows_of_blocks(sides: np.ndarray, middle: np.ndarray) -> list[np.ndarray]:
     """Filled squares that stand in rows: the blocks of give-way lines.
 
@@ -124,20 +221,23 @@ def rows_of_blocks(sides: np.ndarray, middle: np.ndarray) -> list[np.ndarray]:
     -------
     list of ascending int arrays, the pieces of each row
     """
-    size = sides.mean(axis=1)
-    square = np.flatnonzero((sides.min(axis=1) >= BLOCK_SIZE[0]) & (sides.max(axis=1) <= BLOCK_SIZE[1])
-                            & (sides.max(axis=1) <= MAX_BLOCK_RATIO * np.maximum(sides.min(axis=1), 1e-3)))
-    if len(square) < MIN_BLOCKS_IN_ROW:
-        return []
+    pairs, of_pair, apart = _pairs_of_squares(sides, middle)
+    links = (of_pair.max(axis=1) <= MAX_BLOCK_RATIO * of_pair.min(axis=1)) \
+        & (apart >= BLOCK_SPACING[0] * of_pair.mean(axis=1)) & (apart <= BLOCK_SPACING[1] * of_pair.mean(axis=1))
+    ways = (middle[pairs[:, 1]] - middle[pairs[:, 0]]) / np.maximum(apart, 1e-9)[:, None]
+    return _chains(pairs[links], apart[links], ways[links], MIN_BLOCKS_IN_ROW, MAX_BLOCK_STEP_RATIO, MAX_BLOCK_OFFSET)
+
+
+def _pairs_of_squares(sides, middle):
+    """(P, 2) squares near each other, either way, (P, 2) m their sizes, and (P,) m between their middles."""
+    square = np.flatnonzero((sides.min(axis=1, initial=np.inf) >= BLOCK_SIZE[0]) & (sides.max(axis=1, initial=0.0) <= BLOCK_SIZE[1])
+                            & (sides.max(axis=1, initial=0.0) <= MAX_BLOCK_RATIO * np.maximum(sides.min(axis=1, initial=np.inf), 1e-3)))
+    if len(square) < 2:
+        return np.empty((0, 2), np.int64), np.empty((0, 2)), np.empty(0)
     pairs = square[cKDTree(middle[square]).query_pairs(BLOCK_SPACING[1] * BLOCK_SIZE[1], output_type="ndarray")].reshape(-1, 2)
     pairs = np.concatenate([pairs, pairs[:, ::-1]])
     pairs = pairs[np.lexsort(pairs.T[::-1])]
-    step = middle[pairs[:, 1]] - middle[pairs[:, 0]]
-    apart, of_pair = np.hypot(*step.T), size[pairs]
-    links = (of_pair.max(axis=1) <= MAX_BLOCK_RATIO * of_pair.min(axis=1)) \
-        & (apart >= BLOCK_SPACING[0] * of_pair.mean(axis=1)) & (apart <= BLOCK_SPACING[1] * of_pair.mean(axis=1))
-    ways = step / np.maximum(apart, 1e-9)[:, None]
-    return _chains(pairs[links], apart[links], ways[links], MIN_BLOCKS_IN_ROW, MAX_BLOCK_STEP_RATIO, MAX_BLOCK_OFFSET)
+    return pairs, sides.mean(axis=1)[pairs], np.hypot(*(middle[pairs[:, 1]] - middle[pairs[:, 0]]).T)
 
 
 def _narrow(length, width, turn, pairs, ways):

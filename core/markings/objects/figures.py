@@ -15,11 +15,11 @@ import numpy as np
 from ...common.groups import linked_groups
 from ...countries.painted_symbols import SYMBOLS
 from ...lazy import cv2
+from ..cells.road_grid import CELL_SIZE
+from ..cells.scan_tracks import fill_gaps, filled_between_tracks
 from ..figures.match import PaintImage, agreement
 from .classify import NOT_PAINT
 from .near_pairs import overlapping_pairs
-from .road_grid import CELL_SIZE
-from .scan_tracks import fill_gaps, filled_between_tracks
 
 if TYPE_CHECKING:
     from .shape import Shape

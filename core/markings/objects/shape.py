@@ -8,10 +8,11 @@ import numpy as np
 
 from ...common.order_statistics import order_by
 from ...curves.robust import median, percentiles
+from ...lazy import cv2
 from ...survey.store.records import COORDINATE_SCALE
-from .connected_cells import occupied
-from .road_grid import CELL_UNITS
-from .scan_tracks import fill_gaps, filled_between_tracks, track_reach
+from ..cells.components import occupied
+from ..cells.road_grid import CELL_SIZE, CELL_UNITS
+from ..cells.scan_tracks import fill_gaps, filled_between_tracks, track_reach
 from .zigzag import zigzag_legs
 
 MIDDLE_LINE_STEP_UNITS = 5000                         # units: 0.5 m of station that the run of a line is followed in
@@ -36,6 +37,7 @@ class Shape:
     `stems` are the shares of its length, from s0 on and from s1 back, over which it is a single stroke.
     `spacing` is the distance between the tracks of the scan that it was seen on, where these are farther apart than cells, else 0;
     `legs` are those of a zigzag line, 0 of anything else.
+    `sides` are those of the smallest rectangle about what is small, however it lies, else length and width;
     `askew` is then how fast the tracks cross it at s0 and at s1, metres across per metre along, 0 where it is not known.
     """
 
@@ -56,6 +58,7 @@ class Shape:
     spacing: float = 0.0
     askew: tuple[float, float] = (0.0, 0.0)
     legs: int = 0
+    sides: tuple[float, float] = (0.0, 0.0)
 
     @property
     def elongation(self) -> float:
@@ -109,14 +112,23 @@ def measure(s: np.ndarray, d: np.ndarray, spacing: np.ndarray | None = None) -> 
         length = np.ptp(along) * COORDINATE_SCALE
         across = d * c - s * n
         begin = finish = median(d) * COORDINATE_SCALE
+    width = full_width(across) * COORDINATE_SCALE
+    sides = float(length), width
     if max(s1 - s0, d1 - d0) * COORDINATE_SCALE <= SMALL_MARKING_SIZE:
+        sides = smallest_rectangle(cells)
         closed = _closed(cells, SCAN_GAPS_OF_SMALL)
     else:
         closed = _closed(cells, SCAN_GAPS_OF_BARS) if abs(direction) > MIN_ANGLE_ACROSS else len(cells)
     area, closed_area = (count * (CELL_UNITS * COORDINATE_SCALE) ** 2 for count in (len(cells), closed))
     return Shape(s0 * COORDINATE_SCALE, s1 * COORDINATE_SCALE, d0 * COORDINATE_SCALE, d1 * COORDINATE_SCALE, median(d) * COORDINATE_SCALE,
-                 float(length), full_width(across) * COORDINATE_SCALE, direction, area, len(s), float(begin), float(finish), closed_area,
-                 _stems(cells), apart, _askew(s, d) if apart else (0.0, 0.0), 0 if apart else zigzag_legs(cells))
+                 float(length), width, direction, area, len(s), float(begin), float(finish), closed_area,
+                 _stems(cells), apart, _askew(s, d) if apart else (0.0, 0.0), 0 if apart else zigzag_legs(cells), sides)
+
+
+def smallest_rectangle(cells: np.ndarray) -> tuple[float, float]:
+    """Sides of the smallest rectangle about (K, 2) cells, m."""
+    sides = cv2.minAreaRect(cells.astype(np.float32))[1]
+    return float((sides[0] + 1.0) * CELL_SIZE), float((sides[1] + 1.0) * CELL_SIZE)
 
 
 def _closed(cells, gaps):

@@ -22,11 +22,11 @@ from ...common.groups import linked_groups
 from ...common.order_statistics import order_by
 from ...lazy import cv2
 from ...survey.store.records import COORDINATE_SCALE
+from ..cells.components import occupied
+from ..cells.road_grid import CELL_UNITS
+from ..cells.scan_tracks import filled_between_tracks, track_reach
 from .classify import columns_of
-from .connected_cells import occupied
 from .near_pairs import overlapping_pairs
-from .road_grid import CELL_UNITS
-from .scan_tracks import filled_between_tracks, track_reach
 
 if TYPE_CHECKING:
     from ...survey.store.columns import Columns

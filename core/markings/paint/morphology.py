@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...lazy import cv2
-from ..objects.road_grid import CELL_SIZE
-from ..objects.scan_tracks import fill_gaps
+from ..cells.road_grid import CELL_SIZE
+from ..cells.scan_tracks import fill_gaps
 
 if TYPE_CHECKING:
     from .extract import MarkingSettings

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...lazy import cv2
-from ..objects.road_grid import CELL_SIZE
+from ..cells.road_grid import CELL_SIZE
 
 ALONG_REACH = 6       # cells of 4 cm along the road, either way: points so near are on the same track
 ACROSS_REACH = 2      # cells across it, either way: a track wavers by so much

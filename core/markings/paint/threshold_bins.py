@@ -17,6 +17,7 @@ from ...survey.store.records import COORDINATE_SCALE
 
 MIN_BIN_WIDTH, MAX_BIN_WIDTH = 0.75, 3.0  # m
 MIN_BIN_CELLS = 500     # below which a bin joins its neighbour
+MIN_ASPHALT_SHARE = 0.25   # of a bin that asphalt covers at least, among letters too: with less it is brighter ground that fills it
 PAINT_LEVEL = 2.0       # times the usual brightness of asphalt: a bin whose median is beyond that is one of paint
 OTSU_LEVELS = 256       # of the histogram
 HISTOGRAM_LIMITS = -6.0, 60.0   # z: the range of Otsu's histogram; a few specular reflections must not stretch it
@@ -171,7 +172,8 @@ def _joined(counts):
     return runs
 
 
-def split_bins(z: np.ndarray, counted: np.ndarray, offsets: np.ndarray, bins: list[AsphaltBin], separation: float) -> list[OtsuSplit]:
+def split_bins(z: np.ndarray, counted: np.ndarray, offsets: np.ndarray, bins: list[AsphaltBin], separation: float,
+               highest: float = np.inf) -> list[OtsuSplit]:
     """Otsu's split of every bin of one window.
 
     Parameters
@@ -181,6 +183,7 @@ def split_bins(z: np.ndarray, counted: np.ndarray, offsets: np.ndarray, bins: li
     offsets : (columns,) m, ascending
     bins : list of AsphaltBin of the same window
     separation : how many spreads the bright class must lie above the dark one
+    highest : spreads, what is brighter is paint wherever the threshold lies: on a zebra crossing that may be half of a bin
 
     Returns
     -------
@@ -188,13 +191,15 @@ def split_bins(z: np.ndarray, counted: np.ndarray, offsets: np.ndarray, bins: li
     """
     middles = np.array([b.middle for b in bins])
     bounds = [0, *np.searchsorted(offsets, (middles[:-1] + middles[1:]) / 2, side="right").tolist(), len(offsets)]
-    return [_split(z[:, first:last][counted[:, first:last]], b.middle, separation) for b, first, last in zip(bins, bounds[:-1], bounds[1:])]
+    return [_split(z[:, first:last][counted[:, first:last]], b.middle, separation, highest)
+            for b, first, last in zip(bins, bounds[:-1], bounds[1:])]
 
 
-def _split(z, middle, separation):
+def _split(z, middle, separation, highest):
     if len(z) < MIN_BIN_CELLS:
         return OtsuSplit(middle, 1.0, 0.0, 0.0, 0.0, 0.0, False)
-    median, spread = asphalt_statistics(z)
+    dim = z[z <= highest]
+    median, spread = asphalt_statistics(dim if len(dim) >= MIN_ASPHALT_SHARE * len(z) else z)
     z = np.clip((z - median) / spread, *HISTOGRAM_LIMITS)
     threshold, below, above, share = otsu(z)
     accepted = above - below > separation and threshold > 1.0 and share <= 0.5

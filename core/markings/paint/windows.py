@@ -17,7 +17,7 @@ import numpy as np
 from ...curves.robust import median
 from ...execution.phase import Recipe
 from ...survey.store.records import COORDINATE_SCALE, Points, join_columns, take_rows
-from ..objects.road_grid import CELL_UNITS, PieceOfRoad, RoadCells, RoadGrid, cell_numbers, cells_of_road
+from ..cells.road_grid import CELL_UNITS, PieceOfRoad, RoadCells, RoadGrid, cell_numbers, cells_of_road
 from .asphalt_level import AsphaltLevels, asphalt_profile, dark_cells, flatten
 from .fading import without_fading_areas, without_fading_rims
 from .faint_lines import faint_lines
@@ -220,7 +220,7 @@ class WindowExtractor:
         edges = bin_edges(np.concatenate([piece.offsets for piece in self._in_cells(window)]), offsets[columns[0]], offsets[columns[-1]])
         bins = asphalt_bins(brightness[rows], interior, offsets, edges, usual)
         z, gutter = flatten(brightness, *asphalt_profile(bins, offsets), view.rims)
-        return list(zip(bins, split_bins(z[rows], (scanned & ~gutter)[rows], offsets, bins, self.settings.separation)))
+        return list(zip(bins, split_bins(z[rows], (scanned & ~gutter)[rows], offsets, bins, self.settings.separation, self.settings.highest)))
 
     def _levels(self, window):
         """AsphaltLevels of the windows around one; their bins are computed if they were not yet."""

@@ -153,6 +153,16 @@ def test_a_row_of_equal_squares_across_the_road_is_a_give_way_line(count):
     assert classes(markings_of(blocks(count), density=2500)) == ["give_way"] * count
 
 
+@pytest.mark.parametrize("askew", [20, 35, -60], ids=lambda way: f"{way} degrees")
+def test_a_give_way_line_may_lie_askew_to_the_road(askew):
+    c, n = np.cos(np.radians(askew)), np.sin(np.radians(askew))
+
+    def block(k):
+        return lambda s, d: (np.abs((s - 30) * c + d * n) < 0.25) & (np.abs(d * c - (s - 30) * n - k) < 0.25)
+
+    assert classes(markings_of([block(k) for k in (-1.7, -0.85, 0, 0.85, 1.7)], density=2500)) == ["give_way"] * 5
+
+
 @pytest.mark.parametrize("marks", [
     blocks(1), blocks(2), [*blocks(2), *blocks(1, d0=1.5)], [*blocks(1), *blocks(1, side=0.8, d0=-2.0), *blocks(1, side=0.35, d0=-1.0)],
 ], ids=["one", "two", "uneven pitch", "uneven size"])

@@ -45,10 +45,10 @@ def test_bins_are_as_wide_as_the_points_are_dense_within_limits():
         assert edges[0] <= -5.0 and edges[-1] >= 5.0
 
 
-def split_of(z, separation=4.0):
+def split_of(z, separation=4.0, highest=np.inf):
     window = z.reshape(-1, 10), np.ones((len(z) // 10, 10), bool), np.linspace(-0.9, 0.9, 10)
     bins = asphalt_bins(*window, np.array([-1.0, 1.0]))
-    (split,) = split_bins(*window, bins, separation)
+    (split,) = split_bins(*window, bins, separation, highest)
     return split
 
 
@@ -65,6 +65,16 @@ def test_paint_is_parted_also_where_it_covers_much_of_the_road(share):
     count = int(20_000 * share)
     split = split_of(np.r_[RNG.normal(0, 1, 20_000 - count), RNG.normal(15, 3, count)])
     assert split.accepted
+    assert 2 < split.threshold < 12
+
+
+@pytest.mark.parametrize("share", [0.40, 0.48])
+def test_a_zebra_crossing_over_half_of_a_bin_leaves_its_threshold_where_asphalt_ends(share):
+    count = int(20_000 * share)
+    asphalt = np.r_[RNG.normal(0, 1, 18_000 - count), RNG.normal(2, 1, 2_000)]
+    split = split_of(np.r_[asphalt, RNG.normal(15, 3, count)], highest=8.0)
+    assert split.accepted
+    assert split.spread == pytest.approx(1.2, abs=0.4)
     assert 2 < split.threshold < 12
 
 

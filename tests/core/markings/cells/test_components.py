@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.markings.objects.connected_cells import components
+from lanewright.core.markings.cells.components import components
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial.distance import cdist
 

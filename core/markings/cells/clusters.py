@@ -1,0 +1,128 @@
+"""Which points of paint belong together, in the road's own way: farther apart along it than across it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from ...common.groups import linked_groups
+from ...common.parallel import ordered_map
+from ...common.progress import Progress
+from ...survey.store.records import COORDINATE_SCALE, join_columns
+from .components import components, occupied
+from .road_grid import CELL_UNITS
+from .scan_tracks import track_reach
+
+if TYPE_CHECKING:
+    from ...survey.store.columns import Columns
+    from ...survey.store.road_points import RoadPoints
+
+LINKING_WINDOW_CELLS = 1250                   # cells of 4 cm: 50 m of station are linked at a time
+ROAD_EDGE_CLEARANCE = 0.10                    # m: strips so near to the road edge are taken for verge
+REACH_ALONG_FACTOR = 2.5                      # neighbours may be this times the distance apart along the road,
+REACH_ACROSS_DIVISOR = 2.0                    # and across it the distance over this, or the reach between tracks of the scan
+
+
+def connected_points(marking_points: RoadPoints, road: int, distance: float, progress: Progress = Progress()) -> tuple[Columns, np.ndarray]:
+    """Connected components of the points of one road.
+
+    Returns
+    -------
+    records : Columns of the N points of the road
+    labels : (N,) int component of each; its numbering follows station
+
+    Notes
+    -----
+    Points of one 4 cm cell are one member, at their mean place: points of dense
+    paint would otherwise have hundreds of neighbours each. Cells are fixed
+    in station, and windows are joined through the cells they share, so neither
+    window nor section length shows in the result.
+    """
+    start, end = marking_points.store.span(road)
+    reach = int(np.ceil(distance * REACH_ALONG_FACTOR / (CELL_UNITS * COORDINATE_SCALE))) + 1
+    records, labels, links = [], [], []
+    shared_cells, shared_labels, count = np.empty((0, 2), np.int64), np.empty(0, np.int64), 0
+    first_window, last_window = (int(np.floor(s / COORDINATE_SCALE / CELL_UNITS / LINKING_WINDOW_CELLS)) for s in (start, end))
+
+    def linked(window):
+        first, last = window * LINKING_WINDOW_CELLS, (window + 1) * LINKING_WINDOW_CELLS
+        bounds = (row * CELL_UNITS * COORDINATE_SCALE for row in (first - 1, last + reach + 1))
+        found = marking_points.window(road, *bounds).records
+        column = found["s"] // CELL_UNITS
+        found = found[(column >= first) & (column < last + reach)]
+        cells, member, component = components_of_points(found, distance)
+        own = found["s"] // CELL_UNITS < last
+        return cells, component, cells[:, 0] >= last, found[own], member[own]
+
+    for cells, component, beyond, found, member in ordered_map(linked, range(first_window, last_window + 1), progress):
+        component = component + count
+        count = component.max(initial=count - 1) + 1
+        links.append(_shared(shared_cells, shared_labels, cells, component))
+        shared_cells, shared_labels = cells[beyond], component[beyond]
+        records.append(found)
+        labels.append(component[member])
+    if not records:
+        return join_columns([], marking_points.store.dtype), np.empty(0, np.int64)
+    pairs = np.concatenate(links)
+    merged = linked_groups(pairs[:, 0], pairs[:, 1], count)
+    labels = np.concatenate(labels)
+    return join_columns(records, marking_points.store.dtype), merged[labels] if len(labels) else labels
+
+
+def components_of_points(records: Columns, distance: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Connected components of some points.
+
+    Parameters
+    ----------
+    records : N points of one road
+    distance : m, by which points of one marking are joined
+
+    Returns
+    -------
+    (K, 2) int occupied cells, (N,) int the cell of each point, (K,) int the component of each cell
+    """
+    cells, member = occupied(records["s"] // CELL_UNITS, records["d"] // CELL_UNITS)
+    size = np.bincount(member, minlength=len(cells))
+    # sums of integers are the same in any order
+    s, d = (np.bincount(member, records[name], len(cells)) for name in ("s", "d"))
+    places = np.stack([s / size / REACH_ALONG_FACTOR, d / size * REACH_ACROSS_DIVISOR], axis=1) * COORDINATE_SCALE
+    size_of_cell = CELL_UNITS * COORDINATE_SCALE / REACH_ALONG_FACTOR, CELL_UNITS * COORDINATE_SCALE * REACH_ACROSS_DIVISOR
+    found = components(cells, places, size_of_cell, distance)
+    reach = np.zeros(len(cells))
+    reach[member] = track_reach(records["spacing"])
+    at_rim = np.zeros(len(cells), bool)
+    at_rim[member[records["half_width"] * 1e-3 - np.abs(records["d"]) * COORDINATE_SCALE < ROAD_EDGE_CLEARANCE]] = True
+    pairs = _across_tracks(places / [distance, REACH_ACROSS_DIVISOR], reach, at_rim)
+    if len(pairs):
+        found = linked_groups(found[pairs[:, 0]], found[pairs[:, 1]], int(found.max()) + 1)[found]
+    return cells, member, found
+
+
+def _across_tracks(places, reach, at_rim):
+    """(P, 2) cells on neighbouring tracks of the scan, where these lie farther apart than points that join anyway.
+
+    places : (K, 2) along the road in units of the reach there, across it in metres
+    reach : (K,) m across the road
+    at_rim : (K,) bool, at the very edge of the road, where it is the curb that is bright: the next track may show an edge line
+    """
+    rows = np.flatnonzero(reach)
+    if not len(rows):
+        return np.empty((0, 2), np.int64)
+    widest = reach[rows].max()
+    pairs = rows[cKDTree(places[rows] / [1.0, widest]).query_pairs(1.0, output_type="ndarray").reshape(-1, 2)]
+    along, across = (places[pairs[:, 0]] - places[pairs[:, 1]]).T
+    near = along**2 + (across / reach[pairs].min(axis=1)) ** 2 <= 1.0
+    return pairs[near & (at_rim[pairs[:, 0]] == at_rim[pairs[:, 1]])]
+
+
+def _shared(cells, labels, others, other_labels):
+    """(K, 2) labels that two windows gave to the same cells."""
+    if not len(cells) or not len(others):
+        return np.empty((0, 2), np.int64)
+    low = min(cells[:, 1].min(), others[:, 1].min())
+    width = max(cells[:, 1].max(), others[:, 1].max()) - low + 1
+    keys, other_keys = (c[:, 0] * width + c[:, 1] - low for c in (cells, others))
+    _, a, b = np.intersect1d(keys, other_keys, assume_unique=True, return_indices=True)
+    return np.c_[labels[a], other_labels[b]]
