@@ -196,17 +196,18 @@ def _refined(own, middle, heading, pitch, steps=1.0):
     headings = heading + COMB_HEADING_STEP * steps * COMB_SHARES
     pitches = pitch * (1 + COMB_PITCH_STEP * steps * COMB_SHARES)
     across = own @ np.array([-np.sin(headings), np.cos(headings)])
-    pitches = pitches[_clear_pitches(across, pitches)]
-    phase = _mean_phase(across, pitches)
+    clear = _clear(across, pitches)
+    headings, pitches = headings[clear.any(axis=1)], pitches[clear.any(axis=0)]
+    phase = _mean_phase(across[:, clear.any(axis=1)], pitches)
     a, b = np.unravel_index(np.abs(phase).argmax(), phase.shape)
     return Comb(float(headings[a]), float(pitches[b]), float(np.angle(phase[a, b]) / (2 * np.pi) * pitches[b]), middle,
                 float(np.abs(phase[a, b])))
 
 
-def _clear_pitches(across, pitches):
-    """(P,) bool: pitches whose mean phase is the longest in one of some directions, as far as single precision tells; across : (N, H) m."""
+def _clear(across, pitches):
+    """(H, P) bool: directions and pitches whose mean phase may be the longest, as far as single precision tells; across : (N, H) m."""
     turn = (2 * np.pi / pitches).astype(np.float32)[:, None, None] * np.ascontiguousarray(across.T, np.float32)
-    length = np.hypot(np.cos(turn).sum(axis=2), np.sin(turn, out=turn).sum(axis=2)).max(axis=1) / len(across)
+    length = np.hypot(np.cos(turn).sum(axis=2), np.sin(turn, out=turn).sum(axis=2)).T / len(across)
     return length >= length.max() - PHASE_TOLERANCE
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import threading
-from bisect import bisect_left
 from collections import OrderedDict
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -29,6 +28,7 @@ MEMORY_LIMIT = 64 * 2**20  # bytes of records in memory before they are spilled
 CACHE_LIMIT = 64 * 2**20   # bytes of spilled sections cached as last read: neighbouring windows ask for them again
 STRIPS_PER_SECTION = 16    # points wait strip by strip until a section is sorted, so that points sorted together lie together in memory
 SECTION_LOCKS = 16         # locks that the sections share while they are read
+LEAST_UNIT, MOST_UNIT = -2**31, 2**31 - 1   # of 0.1 mm, in which stations are kept
 STRETCH_POINTS = 1_200_000   # points of a stretch that a worker process works on, about: a second of its time
 
 Stretch = tuple[int, int, int]   # number of a road, first and last + 1 number of its sections
@@ -270,8 +270,7 @@ class SectionStore:
             # The stations of a section that lies inside the window need not be searched.
             low, high = self.first_unit(number) * COORDINATE_SCALE, (self.first_unit(number + 1) - 1) * COORDINATE_SCALE
             if len(records) and (low < start or high >= end):
-                stations: Any = _MetresOfUnits(records["s"])
-                a, b = bisect_left(stations, start), bisect_left(stations, end)
+                a, b = np.searchsorted(records["s"], np.array([_unit_at(start), _unit_at(end)], records["s"].dtype)).tolist()
                 records = records if b - a == len(records) else records.row_range(a, b)
             parts.append(records)
         return Points(Columns.concatenate(parts, self.dtype))
@@ -386,14 +385,11 @@ def _from_file(stored, rows=None):
     return stored.file.get(stored, rows=rows)
 
 
-class _MetresOfUnits:
-    """A column of units of 0.1 mm as metres, converted one at a time in a binary search."""
-
-    def __init__(self, column):
-        self.column = column
-
-    def __len__(self):
-        return len(self.column)
-
-    def __getitem__(self, k):
-        return self.column[k] * COORDINATE_SCALE
+def _unit_at(station):
+    """The least whole number of units of 0.1 mm whose station is not less than some metres."""
+    unit = int(np.ceil(station / COORDINATE_SCALE))
+    while (unit - 1) * COORDINATE_SCALE >= station:
+        unit -= 1
+    while unit * COORDINATE_SCALE < station:
+        unit += 1
+    return min(max(unit, LEAST_UNIT), MOST_UNIT)

@@ -24,6 +24,7 @@ from ...common.memory import column_buffers, freed_on_demand
 
 PACKING_CHUNK = 1 << 15  # values packed at a time: they fit the processor's cache
 PART_WIDTHS = {0: (), 1: (1,), 2: (2,), 3: (2, 1), 4: (4,), 5: (4, 1), 6: (4, 2)}  # bytes of a value -> bytes of its parts, lowest first
+PART_DTYPES = {width: np.dtype(f"u{width}") for width in (1, 2, 4, 8)}
 OPEN_PARTS = 64          # files of parts that are held open: a system lets a program open some hundred (macOS 256)
 MAX_FREE_RANGES = 64     # free ranges of the file that are remembered; of more, the smallest is forgotten
 
@@ -115,8 +116,12 @@ def pack(column: np.ndarray) -> tuple[Packing, np.ndarray]:
 
 def _part_views(data, packing):
     """Views of the packed bytes, one for each part of the values."""
-    ends = np.cumsum([0, *packing.widths]) * packing.size
-    return [data[first:end].view(f"u{width}") for first, end, width in zip(ends[:-1].tolist(), ends[1:].tolist(), packing.widths)]
+    views, first = [], 0
+    for width in packing.widths:
+        end = first + width * packing.size
+        views.append(data[first:end].view(PART_DTYPES[width]))
+        first = end
+    return views
 
 
 def _values_at(part, rows):
