@@ -1,23 +1,9 @@
 #!/usr/bin/env bash
-# Phases on a real Dask cluster on this computer, a scheduler and two workers of its own making, in an environment of its own under
-# build/cluster: dask.distributed from PyPI beside the packages of build/venv, and this checkout installed as its workers would have it.
-# Arguments go to pytest.
+# Phases on a real Dask cluster on this computer, a scheduler and two workers of its own making, in the environment of
+# cluster_environment.sh. Arguments go to pytest.
 set -euo pipefail
-source "$(dirname "${BASH_SOURCE[0]}")/env.sh"
+tools="$(dirname "${BASH_SOURCE[0]}")"
+"$tools/cluster_environment.sh"
+source "$tools/env.sh"
 cd "$LANEWRIGHT_ROOT"
-here="$LANEWRIGHT_BUILD/cluster"
-mkdir -p "$here"
-DISTRIBUTED="${DISTRIBUTED:-2026.8.0}"
-
-stamp="$here/.packages"
-if [ ! -f "$stamp" ] || [ "$(cat "$stamp")" != "$DISTRIBUTED" ]; then
-  rm -rf "$here/venv"
-  "$PY" -m venv --system-site-packages "$here/venv"
-  libraries="$("$here/venv/bin/python" -c 'import sysconfig; print(sysconfig.get_path("purelib"))')"
-  echo "$LANEWRIGHT_LIBS" >"$libraries/lanewright_build.pth"
-  "$here/venv/bin/pip" install -q --disable-pip-version-check --cache-dir "$LANEWRIGHT_BUILD/pip" "distributed==$DISTRIBUTED"
-  echo "$DISTRIBUTED" >"$stamp"
-fi
-"$here/venv/bin/pip" install -q --disable-pip-version-check --no-deps --no-build-isolation --force-reinstall .
-
-LANEWRIGHT_WITHOUT_QGIS=1 "$here/venv/bin/python" -m pytest -q -p no:pytest_qgis -o addopts='--import-mode=importlib -p no:cacheprovider' tests/cluster "$@"
+LANEWRIGHT_WITHOUT_QGIS=1 "$LANEWRIGHT_BUILD/cluster/venv/bin/python" -m pytest -q -p no:pytest_qgis -o addopts='--import-mode=importlib -p no:cacheprovider' tests/cluster "$@"

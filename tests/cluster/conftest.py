@@ -36,8 +36,8 @@ class RunningCluster:
         self.programs, self.security, self.before = [], list(security), None
         self.scheduler = self.start("dask_scheduler", "--host", f"{scheme}://127.0.0.1", "--port", "0", "--no-dashboard",
                                     "--scheduler-file", str(folder / "scheduler.json"))
-        self.wait_for(lambda: (folder / "scheduler.json").exists())
-        self.address = json.loads((folder / "scheduler.json").read_text())["address"]
+        self.wait_for(lambda: address_in(folder / "scheduler.json"))
+        self.address = address_in(folder / "scheduler.json")
         self.before = before
         for k in range(workers):
             self.start("dask_worker", self.address, "--nthreads", "1", "--nworkers", "1", "--memory-limit", memory, "--no-dashboard",
@@ -78,6 +78,14 @@ class RunningCluster:
             except subprocess.TimeoutExpired:
                 os.killpg(program.pid, signal.SIGKILL)
                 program.wait()
+
+
+def address_in(path):
+    """The address in a scheduler's file; "" before it is there and whole."""
+    try:
+        return json.loads(path.read_text())["address"]
+    except (OSError, ValueError):
+        return ""
 
 
 @pytest.fixture(scope="session")

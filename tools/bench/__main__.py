@@ -5,7 +5,7 @@ import json
 import os
 import time
 
-from . import BUILD, ROOT, meaning, theirs
+from . import BUILD, ROOT, meaning, on_cluster, theirs
 from .machine import machine
 from .measures import LATER, MEASURES, PARTS, in_this_process, measure
 from .page import page
@@ -52,12 +52,14 @@ def _run(arguments):
     size, began = arguments.size, time.time()
     make_surveys(size)
     names = list(dict.fromkeys(name for part in arguments.parts for name in PARTS[part]))
-    if any("_" in name for name in names):
+    if any(name.endswith(("_ours", "_gdal", "_pcl", "_open3d")) for name in names):
         print("Looking for the programs to compare with …", flush=True)
         theirs.install()
         if not prepared("paint.npy", size).exists():
             print("Preparing the points that they are given …", flush=True)
             measure("prepare", size, arguments.cores)
+    if any(name.startswith("dask_") for name in names):
+        on_cluster.install()
     names = [name for name in names if name != "read"]
     rounds, same = [], {}
     for number in range(arguments.rounds or (1 if size == "quick" else 3)):

@@ -44,12 +44,12 @@ class Watch(Progress):
         return dict(bar_off=off, silence=max(gaps))
 
 
-def run(survey, size, method="profiles", suffix="laz", workers=0):
+def run(survey, size, method="profiles", suffix="laz", workers=0, scheduler=""):
     """Figures of the chain on a survey; `seconds` of every stage. With workers, memory is that of all processes at one moment."""
     target = prepared(f"chain_{survey}.tif", size)
     target.parent.mkdir(parents=True, exist_ok=True)
     watch = Watch()
-    settings = RoadMapSettings(boundary_method=method, execution=ExecutionSettings(workers=workers))
+    settings = RoadMapSettings(boundary_method=method, execution=ExecutionSettings(workers=workers, scheduler=scheduler))
     clouds = clouds_of(survey, size, suffix)
     with cancellation_scope(watch), memory_together() as together:
         road_map, seconds = timed(lambda: make_road_map(clouds, read_trajectory(trajectory_of(survey, size)), target, settings, watch))

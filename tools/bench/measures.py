@@ -8,7 +8,7 @@ import sys
 import time
 from pathlib import Path
 
-from . import cancel, chain, ours, theirs
+from . import cancel, chain, on_cluster, ours, theirs
 from .prepare import prepare
 
 MEASURES = {
@@ -23,6 +23,8 @@ MEASURES = {
     "workers": lambda size: chain.run("dense", size, "both", workers=len(os.sched_getaffinity(0))),
     "alone_workers": lambda size: chain.run("dense", size, "both", workers=1),
     "tiles_workers": lambda size: chain.run("long", size, workers=len(os.sched_getaffinity(0))),
+    "dask_one": lambda size: on_cluster.run("long", size, 1),
+    "dask_all": lambda size: on_cluster.run("long", size, len(os.sched_getaffinity(0))),
     "short": lambda size: chain.run("short", size),
     "tiles": lambda size: chain.run("long", size),
     "image_ours": ours.image_ours, "image_gdal": theirs.image_gdal,
@@ -31,7 +33,7 @@ MEASURES = {
 }
 ONE_CORE = ("sor_", "clusters_", "alone_")   # PCL has no more, so nobody gets more; and what one core takes for the whole
 PARTS = dict(stages=("read", "placing", "storing", "profiles", "las", "both", "scanlines"), memory=("profiles", "short", "tiles", "read_long"),
-             cores=("both", "alone_both", "workers", "alone_workers", "tiles_workers"),
+             cores=("both", "alone_both", "workers", "alone_workers", "tiles_workers"), cluster=("read_long", "dask_one", "dask_all"),
              image=("image_ours", "image_gdal"), outliers=("sor_ours", "sor_pcl", "sor_open3d"),
              clusters=("clusters_ours", "clusters_pcl", "clusters_open3d"), cancel=("cancel",))
 LATER = ("cancel",)  # takes longer than all the others together, so it runs where it is asked for
@@ -44,7 +46,9 @@ def measure(name, size, cores):
     # our own arrays are worked on by threads of ours, so numpy's stay at the one that the plugin gives them
     environment["OMP_NUM_THREADS"] = str(threads if name.endswith("open3d") else 1)
     load, began, before = os.getloadavg()[0], time.perf_counter(), _busy_seconds()
-    child = subprocess.run([sys.executable, "-m", "bench", "--child", name, "--size", size, "--cores", str(threads)],
+    # what runs on a cluster needs dask.distributed, which has an environment of its own
+    python = str(on_cluster.PYTHON) if name.startswith("dask_") and on_cluster.PYTHON.exists() else sys.executable
+    child = subprocess.run([python, "-m", "bench", "--child", name, "--size", size, "--cores", str(threads)],
                            env=environment, stdout=subprocess.PIPE, text=True)
     if child.returncode:
         raise SystemExit(f"{name} could not be measured; the lines above say why.")

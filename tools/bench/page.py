@@ -174,4 +174,5 @@ def _how(results):
     return ("## To run it\n\n`make bench` for everything (the surveys take some minutes the first time, about 1.5 GB in `build/bench`); "
             "`tools/bench.sh --quick` for a short form; `tools/bench.sh --parts outliers clusters --rounds 5` for some of it; "
             "`tools/bench.sh --help` names the rest. Open3D comes from PyPI into a virtual environment of its own, PCL from Debian's packages, "
-            "unpacked and not installed; what cannot be had is left out and said so.")
+            "unpacked and not installed, dask.distributed from PyPI into the environment of `make test-cluster`; what cannot be had is left out and "
+            "said so.")
