@@ -28,6 +28,13 @@ REACH_ACROSS_DIVISOR = 2.0                    # and across it the distance over 
 def connected_points(marking_points: RoadPoints, road: int, distance: float, progress: Progress = Progress()) -> tuple[Columns, np.ndarray]:
     """Connected components of the points of one road.
 
+    Parameters
+    ----------
+    marking_points : RoadPoints on paint
+    road : number of the road
+    distance : m, by which points of one marking are joined
+    progress : Progress
+
     Returns
     -------
     records : Columns of the N points of the road

@@ -1,7 +1,8 @@
 """Figures of which two roads have points: where roads meet or overlap, each pass gives its points to its own road.
 
-A block of a give-way line, an arrow or a stripe of a crossing is one figure, whichever road its points were given to. All of them are told in
-the frame of the road that has most of them. Lines along a road stay with each of the roads, which links and fits them in its own frame.
+A block of a give-way line or an arrow is one figure, whichever road its points were given to. All of them are told in the frame of the road that
+has most of them. Lines along a road stay with each of the roads, which links and fits them in its own frame. Stripes of crossings were found
+before, by road.
 """
 
 from __future__ import annotations

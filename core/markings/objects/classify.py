@@ -12,7 +12,7 @@ from ...common.errors import RoadExtractionError
 from ...curves.robust import percentiles
 from ...survey.store.records import COORDINATE_SCALE
 from ..cells.clusters import ROAD_EDGE_CLEARANCE
-from .dash_rows import give_way_blocks, rows_of_dashes
+from .dash_rows import rows_of_dashes
 from .near_pairs import overlapping_pairs
 
 if TYPE_CHECKING:
@@ -117,7 +117,7 @@ def relative_contrast(value: np.ndarray, s: np.ndarray, starts: np.ndarray) -> n
 
 
 def classify_markings(shapes: list[Shape], half_widths: Sequence[float], settings: ClassSettings = ClassSettings(),
-                      covered: float | Sequence[float] = 0.0, blocks: np.ndarray | None = None) -> list[tuple[str, str]]:
+                      covered: float | Sequence[float] = 0.0, blocks: bool | np.ndarray = False) -> list[tuple[str, str]]:
     """Class of every cluster of one road.
 
     Parameters
@@ -125,7 +125,7 @@ def classify_markings(shapes: list[Shape], half_widths: Sequence[float], setting
     shapes : list of Shape
     half_widths : (N,) m from the reference line to the road edge on each cluster's side
     covered : (N,) share of each cluster's points that lie beneath or right beside something standing on the road
-    blocks : (N,) bool of `give_way_blocks`; None where the road is the only one
+    blocks : (N,) bool of `give_way_blocks`, which looks at all roads at once
 
     Returns
     -------
@@ -143,9 +143,7 @@ def classify_markings(shapes: list[Shape], half_widths: Sequence[float], setting
     outside = _beyond_the_edge_line(column, line, clearance)
     found = []
     doubles = _has_partner(column, line)
-    if blocks is None:
-        middles = np.column_stack([column["s0"] + column["s1"], column["d0"] + column["d1"]]) / 2
-        blocks = give_way_blocks(filled(shapes), np.array([shape.sides for shape in shapes]), middles)
+    blocks = np.broadcast_to(blocks, len(shapes))
     covered_feet = (np.broadcast_to(covered, len(shapes)) > MIN_COVERED_SHARE) & ~(line & (column["length"] > MAX_CAR_LENGTH))
     for k, shape in enumerate(shapes):
         no_paint = _speck(shape) and not (line[k] and shape.length >= MIN_ROW_OF_POINTS) or outside[k] or covered_feet[k] \

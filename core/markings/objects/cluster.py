@@ -118,10 +118,13 @@ def cluster_markings(marking_points: RoadPoints, frame: RoadFrame, settings: Clu
         markings = sorted([*stripes, *painted], key=lambda marking: (marking.shape.s0, marking.shape.d0, marking.shape.s1))
         for marking, drawn in zip(markings, _outlines(markings, pieces.paint.records, line, pieces.work, part)):
             number += 1
-            owner, row = (np.full(len(marking.rows), k), marking.rows) if marking.outline is not None else pieces.paint.home[marking.rows].T
-            for one in np.unique(owner).tolist():
-                of_road = row[owner == one]
-                cluster[one][of_road if marking.outline is not None else known[one][1][of_road]] = number
+            if marking.outline is not None:
+                cluster[k][marking.rows] = number
+            else:
+                owner, row = pieces.paint.home[marking.rows].T
+                for one in np.unique(owner).tolist():
+                    rest = known[one][1]
+                    cluster[one][rest[row[owner == one]]] = number
             polygons += drawn
             rows += [_row(marking, number, line, frame)] * len(drawn)
     for road, numbers in zip(roads, cluster):

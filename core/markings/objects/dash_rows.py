@@ -36,7 +36,6 @@ MAX_BLOCK_RATIO = 1.35         # times: the longer side of a block to the shorte
 BLOCK_SPACING = 1.4, 3.2       # block sizes from middle to middle
 MAX_BLOCK_STEP_RATIO = 1.25    # times: one step of a row to the next
 MAX_BLOCK_OFFSET = 0.15        # m off the line through its neighbours
-MIN_BLOCK_FILL = 0.5           # of the rectangle about a block that is painted
 MAX_PACE_ERROR = 0.10          # of the step of a row: two squares so far apart are two blocks of another such row
 MAX_END_RATIO = 1.5            # times: the longer side of a piece that goes on with a row to the usual one of its blocks, either way
 MAX_END_OFFSET = 0.2           # of the step that its middle lies off the place of the next block at most

@@ -36,9 +36,9 @@ class Shape:
     `begin` and `finish` are the offsets of its middle line at s0 and s1 (the median for what is not along the road).
     `stems` are the shares of its length, from s0 on and from s1 back, over which it is a single stroke.
     `spacing` is the distance between the tracks of the scan that it was seen on, where these are farther apart than cells, else 0;
-    `legs` are those of a zigzag line, 0 of anything else.
-    `sides` are those of the smallest rectangle about what is small, however it lies, else length and width;
     `askew` is then how fast the tracks cross it at s0 and at s1, metres across per metre along, 0 where it is not known.
+    `legs` are those of a zigzag line, 0 of anything else.
+    `sides` are those of the smallest rectangle about what is small, however it lies, else length and width.
     """
 
     s0: float

@@ -7,6 +7,7 @@ import pytest
 from lanewright.core.markings.objects import classify as classes
 from lanewright.core.markings.objects import near_pairs
 from lanewright.core.markings.objects.classify import MAX_DOUBLE_LINE_SPACING, classify_markings
+from lanewright.core.markings.objects.dash_rows import give_way_blocks
 from lanewright.core.markings.objects.shape import Shape
 from lanewright.core.markings.objects.split_merge import join_fragments
 
@@ -107,7 +108,9 @@ def test_memory_grows_with_the_number_of_dashes_and_not_with_its_square(width):
     shapes = [dash(12.0 * k, d, width) for k in range(5000) for d in (-3.5, -1.5, 1.5, 3.5)]
     tracemalloc.start()
     try:
-        found = classify_markings(shapes, np.full(len(shapes), 6.0))
+        blocks = give_way_blocks(classes.filled(shapes), np.array([shape.sides for shape in shapes]),
+                                 np.array([((shape.s0 + shape.s1) / 2, shape.offset) for shape in shapes]))
+        found = classify_markings(shapes, np.full(len(shapes), 6.0), blocks=blocks)
         joined = join_fragments(shapes, 0.35)
         peak = tracemalloc.get_traced_memory()[1]
     finally:
