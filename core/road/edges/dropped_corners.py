@@ -1,8 +1,9 @@
 """Corners where the curb is dropped for a crossing: arcs between the ends of edges that bend towards each other.
 
 At a crossing the curb is lowered to a centimetre or two, which no scan shows as a step. The edge of the road goes on there all the
-same: around a corner it leaves the one curb along its tangent, bends evenly, and meets the other along its tangent. A gap between
-two ends that point straight at each other may as well be the mouth of a street, and stays open.
+same: around a corner it leaves the one curb along its tangent, bends evenly, and meets the other along its tangent. Where it has to
+go farther on the one tangent than on the other it goes straight there first: a corner is an arc that two lines touch. A gap between two
+ends that point straight at each other may as well be the mouth of a street, and stays open.
 """
 
 from __future__ import annotations
@@ -19,11 +20,9 @@ from .road_edges import EdgePiece
 MAX_DROPPED_GAP = 8.0         # m of dropped curb around a corner
 MIN_DROPPED_GAP = 0.3         # m
 MIN_ARC_TURN, MAX_ARC_TURN = np.radians(12.0), np.radians(100.0)   # from end to end
-MIN_TURN_SHARE = 0.15         # of that turn at either end of the chord; half of it on a circle, less where one end is straight
-END_TURN_TOLERANCE = np.radians(2.0)
 BEND_LENGTH = 3.0             # m at the end of an edge that tell how it bends
 MIN_BEND_TURN = np.radians(8.0)   # within this length: the end belongs to a corner
-MAX_RADIUS_RATIO = 2.5        # of the arc across the gap over the bend at its end, and the other way
+MAX_RADIUS_RATIO = 2.5        # of the arc in the gap over the bend at its end, and the other way
 DIRECTION_LENGTH = 1.0        # m at the end of an edge that give its direction
 MAX_END_STEP, MAX_END_GRADE = 0.03, 0.08   # m, and m per m, that both ends may differ in height
 MEETING_DISTANCE = 0.05             # m within which two ends meet
@@ -107,11 +106,10 @@ def _is_corner(tail, head):
     gap = float(np.hypot(*chord[:2]))
     if not MIN_DROPPED_GAP <= gap <= MAX_DROPPED_GAP or abs(chord[2]) > MAX_END_STEP + MAX_END_GRADE * gap:
         return False
-    first, last = -_angle(tail.out, chord[:2]), -_angle(chord[:2], -head.out)
-    turn = first + last
-    if not MIN_ARC_TURN <= turn <= MAX_ARC_TURN or min(first, last) < MIN_TURN_SHARE * turn - END_TURN_TOLERANCE:
+    first, last = _turns(tail, head)
+    if min(first, last) <= 0.0 or not MIN_ARC_TURN <= first + last <= MAX_ARC_TURN:
         return False
-    radius = 0.5 * gap / np.sin(0.5 * turn)
+    radius = _radius(gap, first, last)
     # seen from its own piece a head bends the other way
     for bend, length in ((-tail.turn, tail.length), (head.turn, head.length)):
         if bend >= MIN_BEND_TURN and 1 / MAX_RADIUS_RATIO <= radius * bend / length <= MAX_RADIUS_RATIO:
@@ -119,16 +117,40 @@ def _is_corner(tail, head):
     return False
 
 
+def _turns(tail, head):
+    """Radians to the right, from the direction of a tail to the chord of the gap, and from the chord to the direction of the head."""
+    chord = (head.place - tail.place)[:2]
+    return -_angle(tail.out, chord), -_angle(chord, -head.out)
+
+
+def _tangents(gap, first, last):
+    """m from both ends of a gap to the place where their directions meet, which are off its chord by these angles, radians."""
+    turn = np.sin(first + last)
+    return gap * np.sin(last) / turn, gap * np.sin(first) / turn
+
+
+def _radius(gap, first, last):
+    """m, of the largest arc in a gap that touches the directions of both ends, which are off its chord by these angles, radians."""
+    return min(_tangents(gap, first, last)) / np.tan(0.5 * (first + last))
+
+
 def _arc(tail, head, frame, number):
-    """The piece of edge from a tail to a head: a cubic with the tangents of both, as long as those of a circle."""
+    """The piece of edge from a tail to a head: straight on as far as the one tangent is longer than the other, and the arc that both touch."""
     chord = head.place - tail.place
     gap = float(np.hypot(*chord[:2]))
-    turn = -_angle(tail.out, chord[:2]) - _angle(chord[:2], -head.out)
-    handle = 4.0 / 3.0 * np.tan(0.25 * turn) * 0.5 * gap / np.sin(0.5 * turn)
-    t = np.linspace(0.0, 1.0, int(np.ceil(gap / ARC_VERTEX_SPACING)) + 1)[:, None]
-    a, b = tail.place[:2], head.place[:2]
-    plan = (1 - t) ** 3 * a + 3 * (1 - t) ** 2 * t * (a + handle * tail.out) + 3 * (1 - t) * t**2 * (b + handle * head.out) + t**3 * b
-    vertices = np.round(np.c_[plan, tail.place[2] + t * chord[2]], COORDINATE_DECIMALS)
+    first, last = _turns(tail, head)
+    before, behind = _tangents(gap, first, last)
+    radius, turn = _radius(gap, first, last), first + last
+    straight, bend = max(before - behind, 0.0), radius * turn
+    length = straight + bend + max(behind - before, 0.0)
+    along = np.linspace(0.0, length, int(np.ceil(length / ARC_VERTEX_SPACING)) + 1)
+    angle = np.clip(along - straight, 0.0, bend) / radius
+    ahead = np.minimum(along, straight) + radius * np.sin(angle)
+    aside = radius * (1.0 - np.cos(angle))
+    rest = np.maximum(along - straight - bend, 0.0)
+    ahead, aside = ahead + rest * np.cos(turn), aside + rest * np.sin(turn)
+    plan = tail.place[:2] + ahead[:, None] * tail.out + aside[:, None] * np.array([tail.out[1], -tail.out[0]])
+    vertices = np.round(np.c_[plan, tail.place[2] + along / length * chord[2]], COORDINATE_DECIMALS)
     vertices[0], vertices[-1] = tail.place, head.place
     piece = tail.piece
     s, _ = frame.road(piece.road).locate(*(vertices[:, :2] - frame.origin[:2]).T)

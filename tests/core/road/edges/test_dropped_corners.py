@@ -54,6 +54,14 @@ def test_the_edge_goes_on_around_a_corner_across_two_dropped_crossings():
     assert {tuple(np.round(piece.vertices[0, :2] - [EAST, NORTH], 2)) for piece in found} >= {(17.0, -3.5)}
 
 
+@pytest.mark.parametrize("first", [14.0, 18.0, 22.0])
+@pytest.mark.parametrize("end", [16.5, 17.5])
+def test_a_crossing_that_begins_well_before_the_corner_is_a_line_and_an_arc(first, end):
+    arc, = arcs(edge(along(2, end)), edge(corner(np.linspace(first, 90, 20)), "corner", 1))
+    truth = np.concatenate([along(15, 20, count=100), corner(np.linspace(0, 90, 400))])
+    assert np.hypot(*(arc.vertices[:, None, :2] - [EAST, NORTH] - truth).transpose(2, 0, 1)).min(1).max() < 0.05
+
+
 @pytest.mark.parametrize("pieces", [
     (edge(along(2, 17)), edge(along(23, 40), number=1)),
     (edge(along(2, 17)), edge(into_side_street(), "side_street", 1)),
