@@ -7,13 +7,16 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+import shapely
 from scipy.spatial import cKDTree
 
 from ...common.runs import mask_runs
 from ..common.curb_limits import MIN_FAINT_LENGTH
-from ..common.tracking import MAX_CHAIN_SCATTER, MAX_JOINED_GAP, MAX_ROAD_ROUGHNESS
+from ..common.sides import SIDE_SIGNS
+from ..common.tracking import MAX_CHAIN_SCATTER, MAX_JOINED_GAP, MAX_ROAD_ROUGHNESS, MIN_CURB_LENGTH
 from .behind_curbs import lies_behind
 from .free_corners import is_free_corner
+from .main_curbs import OPENING_MARGIN
 from .steps import PlanSteps
 from .tracking import PlanStepChain, group_lines
 
@@ -28,6 +31,7 @@ MIN_RETURN_STEPS = 3          # of a line: any two are in one
 MAX_STEP_SPACING = 0.6        # m between the steps of a line, on average: scan lines lie apart
 MIN_ROAD_COSINE = np.cos(np.radians(45.0))  # of the angle between a line and the road, above which it is the road's own curb
 MAIN_CURB_OVERLAP = 0.5       # m along the road that a piece of main curb may lie beside another
+MIN_PARALLEL_COSINE = np.cos(np.radians(20.0))  # of the angle between a line and the road, above which it runs along the road
 MAX_STRAIGHT_DEVIATION = 0.05     # m off its chord within which a curb that left the road is straight
 MIN_STRAIGHT_LENGTH = 2.0     # m of straight curb that make a side street
 MIN_ISLAND_SHARE = 0.6        # share of an island's steps behind which the ground comes down again
@@ -119,14 +123,17 @@ def classify_curbs(chains: Sequence[PlanStepChain], steps: PlanSteps, falls: np.
     -------
     list of CurbReturn
     """
-    places = [place for _, place in runs] + [(steps.x[c.steps], steps.y[c.steps], steps.h[c.steps]) for c in chains]
     if not chains:
         return []
+    alone = {k: curb for k, chain in enumerate(chains) if (curb := _own_curb(chain, steps, falls, line, limits, passes, elsewhere)) is not None}
+    runs = [*runs, *((curb.side, (curb.steps.x, curb.steps.y, curb.steps.h)) for curb in alone.values())]
+    chains = [chain for k, chain in enumerate(chains) if k not in alone]
+    places = [place for _, place in runs] + [(steps.x[c.steps], steps.y[c.steps], steps.h[c.steps]) for c in chains]
     group = group_lines(places)
     sides: dict[int, str] = {}
     for number, (side, _) in zip(group, runs):
         sides.setdefault(number, side)
-    found, islands, free = [], [], []
+    found, islands, free = list(alone.values()), [], []
     for number, chain in zip(group[len(runs):], chains):
         own = steps[chain.steps]
         s, d = line.locate(own.x, own.y)
@@ -134,7 +141,7 @@ def classify_curbs(chains: Sequence[PlanStepChain], steps: PlanSteps, falls: np.
             found += classify_continuation(own, s, d, sides[number], line, limits[sides[number]], places[:len(runs)])
             continue
         behind = np.any([limit.behind(s, d) for limit in limits.values()], axis=0)
-        side = "left" if np.nanmedian(d - np.mean([p.at_station(s)[0] for p in passes], axis=0)) > 0 else "right"
+        side = _side(s, d, passes)
         if np.mean(np.isfinite(falls[chain.steps]) & ~behind) >= MIN_ISLAND_SHARE:
             islands.append((CurbReturn(own, s, d, side, "island", chain.closed), falls[chain.steps]))
         elif _may_be_side_street(own, s, line, behind, [steps[c.steps] for c in chains]):
@@ -146,6 +153,31 @@ def classify_curbs(chains: Sequence[PlanStepChain], steps: PlanSteps, falls: np.
     own_curbs = [(x, y) for _, (x, y, _) in runs] + [(curb.steps.x, curb.steps.y) for curb in found]
     islands = [(curb, down) for curb, down in islands if not lies_behind(curb.steps, own_curbs)]
     return found + [curb for curb in free if is_free_corner(curb.steps, own_curbs + list(elsewhere))] + _long_islands(island_outlines(islands))
+
+
+def _own_curb(chain, steps, falls, line, limits, passes, elsewhere):
+    """A line along the road, uphill outward, where far and wide no main curb is known: its points lie too sparse for profiles. Else None."""
+    own = steps[chain.steps]
+    s, d = line.locate(own.x, own.y)
+    side = _side(s, d, passes)
+    free = limits[side].far_from(s, OPENING_MARGIN)
+    out = SIDE_SIGNS[side] * (own.ny * np.cos(line.heading(s)) - own.nx * np.sin(line.heading(s)))
+    if chain.closed or not free.any() or np.ptp(s[free]) < MIN_CURB_LENGTH or np.median(out) < MIN_PARALLEL_COSINE \
+            or np.mean(np.isfinite(falls[chain.steps])) >= MIN_ISLAND_SHARE \
+            or elsewhere and _follows(own, elsewhere):
+        return None
+    return CurbReturn(own, s, d, side, "main")
+
+
+def _follows(own, lines):
+    """Does a line run along others?"""
+    others = shapely.multilinestrings([shapely.linestrings(x, y) for x, y in lines if len(x) > 1])
+    return bool(np.median(shapely.distance(shapely.points(own.x, own.y), others)) <= OUTLINE_MARGIN)
+
+
+def _side(s, d, passes):
+    """The side of the driven tracks on which a line mostly lies."""
+    return "left" if np.nanmedian(d - np.mean([p.at_station(s)[0] for p in passes], axis=0)) > 0 else "right"
 
 
 def _may_be_side_street(own, s, line, behind, lines):

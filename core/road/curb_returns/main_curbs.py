@@ -76,6 +76,10 @@ class SearchLimit:
             end = np.maximum(end, np.minimum(s - a, b - s))
         return (out > 0.0) & (out < end)
 
+    def far_from(self, s: np.ndarray, distance: float) -> np.ndarray:
+        """(N,) bool, is no main curb known within a distance along the road of (N,) stations?"""
+        return np.all([(s < a - distance) | (s > b + distance) for a, b in self.runs] or [np.ones(len(s), bool)], axis=0)
+
     def between(self, start: float, end: float) -> bool:
         """Was a point of main curb measured between two stations?"""
         return bool(((self.seen > start) & (self.seen < end)).any())

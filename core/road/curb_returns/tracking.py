@@ -10,7 +10,7 @@ from scipy.spatial import cKDTree
 
 from ...common.groups import linked_groups
 from ..common.tracking import HEIGHT_TOLERANCE, MAX_JOINED_GAP
-from .steps import PlanSteps
+from .steps import LONG_HALF_LENGTH, PlanSteps
 
 DUPLICATE_ALONG = 0.12        # m along, and
 DUPLICATE_ACROSS = 0.06       # m across within which the better supported of two steps stands for both
@@ -33,7 +33,8 @@ MAX_STRAIGHT_TURN = np.radians(8.0)   # between its two parts
 STRAIGHT_DRIFT = 0.03         # m across per m that they may miss each other, and
 STRAIGHT_TOLERANCE = 0.10     # m in any case
 STRAIGHT_GRADE = 0.01         # m per m that their bottoms may differ besides HEIGHT_TOLERANCE
-MAX_JOIN_OVERLAP = 0.3        # m that two such chains may overlap
+MAX_JOIN_OVERLAP = 0.3        # m that two such chains may overlap, and
+MAX_LINE_OVERLAP = LONG_HALF_LENGTH   # m that two lines of one curb may: a step of sparse points is known along the curb no better than that
 
 
 @dataclass
@@ -164,7 +165,7 @@ def group_lines(places: Sequence[tuple[np.ndarray, np.ndarray, np.ndarray]]) -> 
     ends = LineEnds.of(places)
     long = np.array([np.hypot(np.diff(x), np.diff(y)).sum() >= LINE_DIRECTION_LENGTH for x, y, _ in places])
     far = LineEnds.of(places, LINE_DIRECTION_LENGTH).straight_successors(long)
-    following = np.r_[ends.successors(), far]
+    following = np.r_[ends.successors(overlap=MAX_LINE_OVERLAP), far]
     linked = np.flatnonzero(following >= 0)
     return linked_groups(linked % len(places), following[linked], len(places))
 
@@ -206,12 +207,13 @@ class LineEnds:
             & (miss <= STRAIGHT_TOLERANCE + STRAIGHT_DRIFT * gap) & (np.abs(head[:, 2] - tail[:, 2]) <= HEIGHT_TOLERANCE + STRAIGHT_GRADE * gap)
         return _mutual(a[good], b[good], (gap + 10 * miss)[good], count)
 
-    def successors(self, nose: float = 0.0) -> np.ndarray:
+    def successors(self, nose: float = 0.0, overlap: float = MAX_JOIN_OVERLAP) -> np.ndarray:
         """The line whose head continues the tail of each line.
 
         Parameters
         ----------
         nose : m of gap within which a line may bend about its uphill side as sharply as the nose of an island
+        overlap : m that two lines may overlap
 
         Returns
         -------
@@ -234,7 +236,7 @@ class LineEnds:
         most = MAX_JOIN_TURN + np.where(about & (gap <= nose), gap / NOSE_RADIUS, 0.0)
         along, across = (dx * tx + dy * ty) / size, np.abs(dx * ty - dy * tx) / size
         up = np.abs(head[:, 2] - tail[:, 2])
-        good = (a != b) & (along > -MAX_JOIN_OVERLAP) & (across <= JOIN_TOLERANCE + JOIN_DRIFT * np.abs(along)) & (turn <= most) \
+        good = (a != b) & (along > -overlap) & (across <= JOIN_TOLERANCE + JOIN_DRIFT * np.abs(along)) & (turn <= most) \
             & (up <= HEIGHT_TOLERANCE + MAX_HEIGHT_GRADE * gap)
         return _mutual(a[good], b[good], (gap + 2 * across + turn)[good], count)
 

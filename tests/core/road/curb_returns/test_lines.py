@@ -18,6 +18,10 @@ def test_a_curb_that_goes_on_straight_behind_a_crossing_is_the_same_line():
     assert len(set(group_lines([straight(0, 20), straight(30, 40)]))) == 1
 
 
+def test_a_line_that_begins_beside_the_end_of_a_curb_is_the_same_line():
+    assert len(set(group_lines([straight(0, 20), straight(19.3, 30)]))) == 1
+
+
 @pytest.mark.parametrize("other", [straight(30, 40, y=1.0), straight(40, 50), straight(30, 31), straight(30, 40, h=0.3)],
                          ids=["aside", "too far", "too short for a direction", "higher"])
 def test_a_line_elsewhere_is_another(other):
