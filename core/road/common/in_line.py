@@ -2,7 +2,7 @@
 
 A short piece of curb may be anything where it stands alone. Between two stretches of curb that were chosen already, a piece
 of their height that lies on the smooth line through both is the same curb, seen between what hides the rest of it, such as a
-row of parked cars.
+row of parked cars. It may scatter more than a curb that nothing else speaks for.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ def _between(steps, members, start, end):
 
 
 def _pieces_between(before, after, chains, steps, to_plan):
-    """Pieces of chains on the line between two runs of steps; of pieces side by side the one nearest to it."""
+    """Pieces of chains on the line between two runs of steps; of pieces side by side one that is not weak, and the one nearest to the line."""
     a, b = steps.s[before].max(), steps.s[after].min()
     line = GapLine(*(np.array(to_plan(steps.s[end], steps.u[end])) for end in (before, after)))
     (s0, h0, height0), (s1, h1, height1) = ([np.median(v[end]) for v in (steps.s, steps.h, steps.height)] for end in (before, after))
@@ -71,9 +71,9 @@ def _pieces_between(before, after, chains, steps, to_plan):
         up = np.abs(steps.h[members] - h0 - share * (h1 - h0)) - IN_LINE_GRADE * np.minimum(s - a, b - s)
         ratio = np.median(steps.height[members] / (height0 + share * (height1 - height0)))
         if off <= IN_LINE_ACROSS and up.max() <= HEIGHT_TOLERANCE and 1 / MAX_HEIGHT_RATIO <= ratio <= MAX_HEIGHT_RATIO:
-            pieces.append((off, number, float(s[0]), float(s[-1])))
+            pieces.append((chain.weak, off, number, float(s[0]), float(s[-1])))
     chosen: list[tuple[int, float, float]] = []
-    for _, number, c, d in sorted(pieces):
+    for _, _, number, c, d in sorted(pieces):
         if all(d < other[1] or c > other[2] for other in chosen):
             chosen.append((number, c, d))
     return chosen

@@ -57,6 +57,7 @@ class StepChain:
     steps : (K,) indices into the CurbSteps, sorted by station
     start, end : m, first and last station
     low, sloped : is it lower, or less steep, than what is taken for a curb wherever it is seen?
+    weak : does it scatter too much for a curb by itself, but not for a piece of one in line with others?
     """
 
     steps: np.ndarray
@@ -64,6 +65,7 @@ class StepChain:
     end: float
     low: bool = False
     sloped: bool = False
+    weak: bool = False
 
 
 def link_steps(steps: CurbSteps, profile_width: float) -> np.ndarray:
@@ -142,7 +144,7 @@ def curb_chains(steps: CurbSteps, label: np.ndarray, profile_width: float, limit
 
     Returns
     -------
-    list of StepChain, sorted by start
+    list of StepChain, sorted by start; weak ones are no curb unless something else says so
     """
     if not len(steps):
         return []
@@ -169,8 +171,11 @@ def curb_chains(steps: CurbSteps, label: np.ndarray, profile_width: float, limit
         if not (low or sloped) or limits.automatic and limits.faint(height, slope, noise, len(members), scatter):
             chains.append(found)
         elif limits.automatic and limits.faint(height, slope, noise, len(members), scatter / WEAK_SCATTER_FACTOR):
+            found.weak = True
             weak.append(found)
-    return sorted([*chains, *_continuing(chains, weak, steps)], key=lambda c: (c.start, c.end))
+    for chain in _continuing(chains, weak, steps):
+        chain.weak = False
+    return sorted([*chains, *weak], key=lambda c: (c.start, c.end))
 
 
 def _continuing(chains, weak, steps):
@@ -202,7 +207,7 @@ def select_along_road(chains: Sequence[StepChain], steps: CurbSteps,
 
     Parameters
     ----------
-    chains : list of StepChain of one side
+    chains : list of StepChain of one side, of which weak ones are left out
     steps : CurbSteps to which they refer
     near : function, station in m -> outward offset of the outermost track on that side, m
 
@@ -212,7 +217,8 @@ def select_along_road(chains: Sequence[StepChain], steps: CurbSteps,
     """
     places = [(steps.s[c.steps], steps.u[c.steps], steps.h[c.steps]) for c in chains]
     starts, ends = np.array([c.start for c in chains]), np.array([c.end for c in chains])
-    cuts = np.unique(np.r_[starts, ends])
+    strong = np.array([not c.weak for c in chains], bool)
+    cuts = np.unique(np.r_[starts[strong], ends[strong]])
     tips = np.array([_end_directions(steps, c.steps) for c in chains]).reshape(-1, 2)
     value = np.full(len(chains), -np.inf)  # of the best path that ends, or last was, on this chain
     path: list = [None] * len(chains)      # that path: (chain, first, last station, path before)
@@ -222,7 +228,7 @@ def select_along_road(chains: Sequence[StepChain], steps: CurbSteps,
             if value[c] > old_value:
                 old_value, old_path = value[c], path[c]
             value[c] = -np.inf
-        active = np.flatnonzero((starts <= a) & (ends >= b))
+        active = np.flatnonzero(strong & (starts <= a) & (ends >= b))
         known = np.flatnonzero(np.isfinite(value))
         there = np.array([[np.interp(a, places[k][0], v) for v in places[k][1:]] for k in known]).reshape(-1, 2)
         middle, found = 0.5 * (a + b), []
@@ -257,7 +263,8 @@ def _continued(selected, chains, steps):
 
     To the selection a long gap allows a larger jump: that a curb goes on before the jump must not speak against the curb.
     """
-    free = [number for number in sorted(range(len(chains)), key=lambda k: chains[k].start) if number not in {chain for chain, _, _ in selected}]
+    chosen = {chain for chain, _, _ in selected}
+    free = [number for number in sorted(range(len(chains)), key=lambda k: chains[k].start) if number not in chosen and not chains[number].weak]
     for onward in (True, False):
         for number in free if onward else free[::-1]:
             own = chains[number]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from lanewright.core.road.common.corners import CurbSteps
 from lanewright.core.road.common.in_line import with_pieces_in_line
-from lanewright.core.road.common.tracking import StepChain
+from lanewright.core.road.common.tracking import StepChain, select_along_road
 
 RADIUS = 120.0   # m, of the bend of the street
 
@@ -38,6 +38,13 @@ def test_a_piece_between_parked_cars_in_line_with_the_curb_is_the_curb():
                          ids=["the foot of a wheel", "a bumper", "a high step", "two profiles"])
 def test_what_is_not_in_line_with_the_curb_is_something_else(other):
     assert [part[0] for part in chosen(*street_with_a_piece(**other))] == [0, 2]
+
+
+def test_a_piece_that_scatters_too_much_by_itself_is_the_curb_where_it_lies_in_line():
+    steps, chains = street_with_a_piece()
+    chains[1].weak = True
+    assert [part[0] for part in chosen(steps, chains)] == [0, 1, 2]
+    assert 1 not in [part[0] for part in select_along_road(chains, steps, lambda s: 0 * s)]
 
 
 def test_nothing_is_added_before_the_first_or_behind_the_last_stretch():
