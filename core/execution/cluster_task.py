@@ -16,7 +16,7 @@ from typing import Any
 from uuid import uuid4
 
 from ..common.errors import Cancelled
-from ..common.memory import trim_heap
+from ..common.memory import reuse_freed_memory, trim_heap
 from ..common.parallel import cancellation_scope
 from ..common.progress import Progress
 from .interpreter import IMPORTED
@@ -83,6 +83,7 @@ def do(phase: str, item: str, result: str, code: str) -> dict[str, str]:
     if code_digest() != code:
         return {"code": code_digest()}
     _watch(str(Path(phase).parent))
+    reuse_freed_memory()
     with cancellation_scope(_WhileWanted(Path(phase))):
         answer = _tasks.answer(Path(phase), Path(item), Path(result))
     # a worker whose memory seems full pauses
