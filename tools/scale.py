@@ -70,7 +70,7 @@ class Recorder:
 
     def size(self, value):
         """Bytes of a value in a file."""
-        path = self.folder / "value.npz"
+        path = self.folder / "value.plain"
         write_plain(path, value)
         return path.stat().st_size
 

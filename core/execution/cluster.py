@@ -109,7 +109,7 @@ class Cluster:
         RoadExtractionError
             Of the phase; or if workers ended at half an item, the scheduler is lost, or a folder cannot be used.
         """
-        shipped = self.folder / f"phase{next(self._numbers)}.npz"
+        shipped = self.folder / f"phase{next(self._numbers)}.plain"
         work = _Work(self, phase, shipped)
         try:
             write_plain(shipped, ShippedPhase(name_of(phase.function), phase.source.recipe(self.folder), tuple(phase.arguments)))
@@ -146,7 +146,7 @@ class Cluster:
 
     def new_file(self) -> Path:
         """A new name in the folder."""
-        return self.folder / f"file{next(self._numbers)}.npz"
+        return self.folder / f"file{next(self._numbers)}.plain"
 
     def forget(self) -> None:
         """Memory of workers is not ours."""

@@ -8,16 +8,20 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import struct
 from dataclasses import fields, is_dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 from uuid import uuid4
 
 import numpy as np
 
 from .phase import name_of, named
 
-TREE = "tree"   # the entry of the file that says how the arrays belong together
+# A file: FORMAT, the length of a JSON text, that text (how the arrays belong together; kind, shape and order of each), the bytes of the arrays.
+# An .npz, whose arrays have headers and checksums of their own, takes nine times as long to write and read
+FORMAT = b"LWplain1"
+LENGTH = struct.Struct("<q")
 
 
 def write_plain(path: Path, value: Any, unfinished_in: Path | None = None) -> None:
@@ -25,7 +29,7 @@ def write_plain(path: Path, value: Any, unfinished_in: Path | None = None) -> No
 
     Parameters
     ----------
-    path : of the file, ending in .npz
+    path : of the file
     value : None, bool, int, float, str, numpy arrays and numbers, lists, tuples and dicts of these, and objects of classes of
         core whose attributes are such values. A class may leave attributes out by `__getstate__`
     unfinished_in : folder on the same disk that has the unfinished file; by default that of the file
@@ -36,21 +40,52 @@ def write_plain(path: Path, value: Any, unfinished_in: Path | None = None) -> No
         If it holds anything else.
     """
     arrays: list[np.ndarray] = []
-    text = json.dumps(_tree(value, arrays))
+    tree = _tree(value, arrays)
+    # as they lie in memory, so that whoever reads them computes with the same order of numbers
+    turned = [array.ndim > 1 and array.flags.f_contiguous and not array.flags.c_contiguous for array in arrays]
+    text = json.dumps([tree, [[np.lib.format.dtype_to_descr(array.dtype), array.shape, last] for array, last in zip(arrays, turned)]]).encode()
     # processes of several machines may write the same file
-    unfinished = (unfinished_in or path.parent) / f"{path.stem}.{uuid4().hex}.part.npz"
+    unfinished = (unfinished_in or path.parent) / f"{path.stem}.{uuid4().hex}.part{path.suffix}"
     try:
-        np.savez(unfinished, **{TREE: np.frombuffer(text.encode(), np.uint8), **{f"a{k}": array for k, array in enumerate(arrays)}})
+        with open(unfinished, "wb") as file:
+            file.write(FORMAT + LENGTH.pack(len(text)) + text)
+            for array, last in zip(arrays, turned):
+                file.write(_bytes_of(np.ascontiguousarray(array.T if last else array)))
         os.replace(unfinished, path)
     finally:
         unfinished.unlink(missing_ok=True)
 
 
 def read_plain(path: Path) -> Any:
-    """The value that `write_plain` wrote."""
-    with np.load(path, allow_pickle=False) as entries:
-        arrays = {name: entries[name] for name in entries.files}
-    return _value(json.loads(arrays.pop(TREE).tobytes().decode()), arrays)
+    """The value that `write_plain` wrote.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be read, is none of these, or ends early.
+    """
+    with open(path, "rb") as file:
+        if file.read(len(FORMAT)) != FORMAT:
+            raise OSError(f"{path} is no file of ours")
+        tree, layouts = json.loads(file.read(*LENGTH.unpack(file.read(LENGTH.size))))
+        arrays = {f"a{k}": _read_array(file, *layout) for k, layout in enumerate(layouts)}
+    return _value(tree, arrays)
+
+
+def _bytes_of(array):
+    """(B,) uint8, a view of a contiguous array."""
+    return array.reshape(-1).view(np.uint8)
+
+
+def _read_array(file: BinaryIO, kind: Any, shape: list[int], last: bool) -> np.ndarray:
+    """The next array; `last` tells that its last index runs slowest."""
+    dtype = np.lib.format.descr_to_dtype(kind if isinstance(kind, str) else [tuple(column) for column in kind])
+    if dtype.hasobject:
+        raise TypeError("An array of objects is no plain value.")
+    array = np.empty(shape[::-1] if last else shape, dtype)
+    if array.nbytes and file.readinto(_bytes_of(array)) != array.nbytes:   # type: ignore[attr-defined]
+        raise OSError(f"{file.name} ends early")
+    return array.T if last else array
 
 
 def digest(value: Any, without: str = "") -> str:

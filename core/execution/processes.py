@@ -58,7 +58,7 @@ class WorkerProcesses:
             Of the phase; or if a worker process ended TRIALS times at one item, ran out of memory, or the folder is full.
         """
         items = list(items)
-        shipped = f"phase{next(self._numbers)}.npz"
+        shipped = f"phase{next(self._numbers)}.plain"
         try:
             write_plain(self.folder / shipped, ShippedPhase(name_of(phase.function), phase.source.recipe(self.folder), tuple(phase.arguments)))
         except OSError as error:
@@ -69,7 +69,7 @@ class WorkerProcesses:
     def _result(self, phase, shipped, item):
         """The result of one item, from whichever worker is free."""
         number = next(self._numbers)
-        task = dict(phase=shipped, item=f"item{number}.npz", result=f"result{number}.npz")
+        task = dict(phase=shipped, item=f"item{number}.plain", result=f"result{number}.plain")
         try:
             write_plain(self.folder / task["item"], item)
             self._ask(phase, item, task)

@@ -141,7 +141,7 @@ class KeptResults:
         # a recipe names the folder, which may be moved
         key = digest((code_digest(), name_of(phase.function), phase.source.recipe(self.work.path), phase.arguments), str(self.work.path))
         folder = self.work.path / f"phase-{key}"
-        files = [folder / f"{digest(item)}.npz" for item in items]
+        files = [folder / f"{digest(item)}.plain" for item in items]
         missing = [k for k, file in enumerate(files) if not file.exists()]
         if len(missing) < len(items):
             progress.info(f"{len(items) - len(missing)} of {len(items)} parts of the work were finished by an earlier run.")

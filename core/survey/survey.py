@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from .estimation.interleaved import ScannerSplitter
     from .frame.road_frame import RoadFrame
 
-SURVEY_FOLDER, SURVEY_FILE = "survey", "survey.npz"   # of a survey that other processes open
+SURVEY_FOLDER, SURVEY_FILE = "survey", "survey.plain"   # of a survey that other processes open
 SHIPPED = ("frame", "crs", "sensor_height", "scanner_field", "scanners", "has_intensity", "has_time", "counts", "moves", "above_road")
 
 

@@ -90,7 +90,7 @@ def test_a_worker_that_is_killed_costs_nothing_that_was_finished(cluster, by_thr
     work, finished = WorkFolder(str(tmp_path / "work")), {}
 
     def kill():
-        finished.update({path: path.stat().st_mtime_ns for path in work.path.glob("phase-*/*.npz")})
+        finished.update({path: path.stat().st_mtime_ns for path in work.path.glob("phase-*/*.plain")})
         cluster.kill_a_worker()
 
     executor = AtPhase(KeptResults(cluster_of(cluster.address, False, work), work), phase, kill)
@@ -129,7 +129,7 @@ def test_where_the_scheduler_is_killed_one_sentence_says_so_and_the_next_run_goe
     with pytest.raises(RoadExtractionError, match="connection to the Dask scheduler was lost.*same WORK_FOLDER"):
         boundaries(executor)
     assert not list(work.path.glob("run-*"))
-    done = len(list(work.path.glob("phase-*/*.npz")))
+    done = len(list(work.path.glob("phase-*/*.plain")))
     heard = Heard()
     work = WorkFolder(str(tmp_path / "work"))
     assert numbers_of(boundaries(KeptResults(Threads(1), moved(work)), progress=heard)) == by_threads
@@ -300,7 +300,7 @@ def test_a_caller_that_is_killed_leaves_nothing_and_its_work_is_gone_on_with(clu
                survey["POINT_CLOUD"], "--TRAJECTORY", survey["TRAJECTORY"], "--SCHEDULER", cluster.address, "--ROAD_EDGES", str(result)]
     program = subprocess.Popen(command + (["--WORK_FOLDER", str(work)] if work_folder else []), stderr=subprocess.DEVNULL,
                                env={**os.environ, "TMPDIR": str(temporary)})
-    begun = (lambda: list(work.glob("phase-*/*.npz"))) if work_folder else (lambda: list(temporary.glob("lanewright-*/phase*.npz")))
+    begun = (lambda: list(work.glob("phase-*/*.plain"))) if work_folder else (lambda: list(temporary.glob("lanewright-*/phase*.plain")))
     while program.poll() is None and not begun():
         time.sleep(0.02)
     assert program.poll() is None, "it was still at work"
@@ -314,7 +314,7 @@ def test_a_caller_that_is_killed_leaves_nothing_and_its_work_is_gone_on_with(clu
     assert not list(work.glob("run-*")) and not list(temporary.glob("lanewright-*/*"))
     if not work_folder:
         return
-    finished = {path: path.stat().st_mtime_ns for path in work.glob("phase-*/*.npz")}
+    finished = {path: path.stat().st_mtime_ns for path in work.glob("phase-*/*.plain")}
     run("detectboundaries", **inputs, WORK_FOLDER=work, SCHEDULER=cluster.address, ROAD_EDGES=result)
     assert finished and all(path.stat().st_mtime_ns == when for path, when in finished.items())
     run("detectboundaries", **inputs, ROAD_EDGES=tmp_path / "undisturbed.gpkg")
@@ -354,7 +354,7 @@ def test_a_worker_that_is_killed_while_it_reads_costs_no_part_that_was_read(clus
 
     class Kill(Progress):
         def report(self, fraction):
-            found = {path: path.stat().st_mtime_ns for path in work.glob("survey-*.parts/phase-*/*.npz")}
+            found = {path: path.stat().st_mtime_ns for path in work.glob("survey-*.parts/phase-*/*.plain")}
             if found and not finished:
                 finished.update(found)
                 cluster.kill_a_worker()

@@ -149,7 +149,7 @@ def test_cancel_leaves_no_folder():
 
 def test_a_task_stops_when_its_phase_is_no_longer_wanted(tmp_path, monkeypatch):
     monkeypatch.setattr(cluster_task, "LOOK_TIME", 0.0)
-    phase = tmp_path / "phase.npz"
+    phase = tmp_path / "phase.plain"
     phase.touch()
     wanted = cluster_task._WhileWanted(phase)
     wanted.check_cancelled()
@@ -160,9 +160,9 @@ def test_a_task_stops_when_its_phase_is_no_longer_wanted(tmp_path, monkeypatch):
 
 
 def test_a_result_that_is_there_is_not_computed_again(tmp_path):
-    write_plain(tmp_path / "result.npz", 7)
-    assert cluster_task.do(str(tmp_path / "no phase"), str(tmp_path / "no item"), str(tmp_path / "result.npz"), code_digest()) == {}
-    assert read_plain(tmp_path / "result.npz") == 7
+    write_plain(tmp_path / "result.plain", 7)
+    assert cluster_task.do(str(tmp_path / "no phase"), str(tmp_path / "no item"), str(tmp_path / "result.plain"), code_digest()) == {}
+    assert read_plain(tmp_path / "result.plain") == 7
 
 
 def test_a_worker_with_other_code_computes_nothing(tmp_path):
@@ -185,7 +185,7 @@ def test_results_go_straight_to_the_work_folder(by_threads, tmp_path):
     work = WorkFolder(str(tmp_path / "work"))
     executor = KeptResults(Cluster(StandIn(), work.path), work)
     assert numbers_of(boundaries(executor)) == by_threads
-    assert list(work.path.glob("phase-*/*.npz")) and not list(work.path.glob("run-*")) and not list(work.path.rglob("*.part*"))
+    assert list(work.path.glob("phase-*/*.plain")) and not list(work.path.glob("run-*")) and not list(work.path.rglob("*.part*"))
 
 
 @pytest.mark.parametrize("address, own", [

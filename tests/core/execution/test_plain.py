@@ -4,7 +4,7 @@ import json
 
 import numpy as np
 import pytest
-from lanewright.core.execution.plain import read_plain, write_plain
+from lanewright.core.execution.plain import FORMAT, LENGTH, read_plain, write_plain
 from lanewright.core.road.common.occlusion import OcclusionGrid
 from lanewright.core.road.profiles.detect import CurbSettings
 from lanewright.core.survey.frame.passes import Pass
@@ -12,8 +12,8 @@ from lanewright.core.survey.frame.road import Road
 
 
 def there_and_back(tmp_path, value):
-    write_plain(tmp_path / "value.npz", value)
-    return read_plain(tmp_path / "value.npz")
+    write_plain(tmp_path / "value.plain", value)
+    return read_plain(tmp_path / "value.plain")
 
 
 @pytest.mark.parametrize("value", [None, True, 3, 0.1 + 0.2, float("inf"), "Straße", [], (1, ("a", None)), {(0, 1): [2.5], "k": {}}])
@@ -26,6 +26,24 @@ def test_numbers_texts_and_what_holds_them_come_back_as_they_were(tmp_path, valu
 def test_arrays_keep_their_type_and_every_bit(tmp_path, array):
     found = there_and_back(tmp_path, [array])[0]
     assert found.dtype == array.dtype and found.tobytes() == array.tobytes() and found.shape == array.shape
+
+
+def test_arrays_keep_their_order_in_memory(tmp_path):
+    rows, columns, part = there_and_back(tmp_path, [np.ones((3, 4)), np.ones((4, 3)).T, np.arange(24.0).reshape(4, 6)[::2, 1:]])
+    assert rows.flags.c_contiguous and columns.flags.f_contiguous and not columns.flags.c_contiguous
+    assert part.tolist() == [[1, 2, 3, 4, 5], [13, 14, 15, 16, 17]]
+    assert all(array.flags.writeable for array in (rows, columns, part))
+
+
+def test_a_file_that_ends_early_and_one_of_others_are_refused(tmp_path):
+    path = tmp_path / "value.plain"
+    write_plain(path, [np.arange(9)])
+    path.write_bytes(path.read_bytes()[:-8])
+    with pytest.raises(OSError, match="ends early"):
+        read_plain(path)
+    path.write_bytes(b"PK\x03\x04 another program's")
+    with pytest.raises(OSError, match="no file of ours"):
+        read_plain(path)
 
 
 @pytest.mark.parametrize("number", [np.float64(0.1 + 0.2), np.float32(0.1), np.float64(-np.inf), np.int64(-2**63), np.uint16(7), np.bool_(True)])
@@ -52,18 +70,18 @@ def test_a_road_comes_back_to_the_last_bit_and_a_pass_without_its_tables(tmp_pat
     s = np.linspace(-5, 25, 50)
     assert [v.tobytes() for v in found.to_map(s, 1.0)] == [v.tobytes() for v in road.to_map(s, 1.0)]
     np.testing.assert_array_equal(again.position(line), driven.position(line))
-    assert (tmp_path / "value.npz").stat().st_size < 20_000
+    assert (tmp_path / "value.plain").stat().st_size < 20_000
 
 
 @pytest.mark.parametrize("value", [object(), np.array([None]), {1, 2}, json.JSONDecoder()], ids=["object", "array of objects", "set", "other class"])
 def test_what_is_not_plain_is_refused_and_leaves_no_file(tmp_path, value):
     with pytest.raises(TypeError):
-        write_plain(tmp_path / "value.npz", [value])
+        write_plain(tmp_path / "value.plain", [value])
     assert not list(tmp_path.iterdir())
 
 
 def test_a_file_that_names_a_class_outside_core_makes_nothing_of_it(tmp_path):
-    text = json.dumps({"object": "os:system", "state": []})
-    np.savez(tmp_path / "value.npz", tree=np.frombuffer(text.encode(), np.uint8))
+    text = json.dumps([{"object": "os:system", "state": []}, []]).encode()
+    (tmp_path / "value.plain").write_bytes(FORMAT + LENGTH.pack(len(text)) + text)
     with pytest.raises(ImportError):
-        read_plain(tmp_path / "value.npz")
+        read_plain(tmp_path / "value.plain")

@@ -73,12 +73,12 @@ def test_the_folder_may_be_moved(sample, work, without, monkeypatch, tmp_path):
 def test_a_cancelled_run_goes_on_where_it_was(sample, tmp_path, without):
     class Stop(Heard):
         def report(self, fraction):
-            if list(tmp_path.glob("work/phase-*/*.npz")):
+            if list(tmp_path.glob("work/phase-*/*.plain")):
                 raise Cancelled
 
     with pytest.raises(Cancelled):
         boundaries(sample, tmp_path / "work", progress=Stop())
-    done = len(list(tmp_path.glob("work/phase-*/*.npz")))
+    done = len(list(tmp_path.glob("work/phase-*/*.plain")))
     heard = Heard()
     assert numbers_of(boundaries(sample, tmp_path / "work", progress=heard)) == without
     assert done >= 1 and heard.says(f"{done} of ")

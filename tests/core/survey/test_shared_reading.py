@@ -166,7 +166,7 @@ class StopsReading(Heard):
 
 def read_parts(work):
     """{result of a part that was read: time of its last change}."""
-    return {path: path.stat().st_mtime_ns for path in work.glob("survey-*.parts/phase-*/*.npz")}
+    return {path: path.stat().st_mtime_ns for path in work.glob("survey-*.parts/phase-*/*.plain")}
 
 
 @pytest.mark.parametrize("workers", [0, 2])
