@@ -21,7 +21,7 @@ from .phase import name_of, named
 # A file: FORMAT, the length of a JSON text, that text (how the arrays belong together; kind, shape and order of each), the bytes of the arrays.
 # An .npz, whose arrays have headers and checksums of their own, takes nine times as long to write and read
 FORMAT = b"LWplain1"
-LENGTH = struct.Struct("<q")
+TEXT_LENGTH = struct.Struct("<q")
 
 
 def write_plain(path: Path, value: Any, unfinished_in: Path | None = None) -> None:
@@ -48,7 +48,7 @@ def write_plain(path: Path, value: Any, unfinished_in: Path | None = None) -> No
     unfinished = (unfinished_in or path.parent) / f"{path.stem}.{uuid4().hex}.part{path.suffix}"
     try:
         with open(unfinished, "wb") as file:
-            file.write(FORMAT + LENGTH.pack(len(text)) + text)
+            file.write(FORMAT + TEXT_LENGTH.pack(len(text)) + text)
             for array, last in zip(arrays, turned):
                 file.write(_bytes_of(np.ascontiguousarray(array.T if last else array)))
         os.replace(unfinished, path)
@@ -67,7 +67,7 @@ def read_plain(path: Path) -> Any:
     with open(path, "rb") as file:
         if file.read(len(FORMAT)) != FORMAT:
             raise OSError(f"{path} is no file of ours")
-        tree, layouts = json.loads(file.read(*LENGTH.unpack(file.read(LENGTH.size))))
+        tree, layouts = json.loads(file.read(*TEXT_LENGTH.unpack(file.read(TEXT_LENGTH.size))))
         arrays = {f"a{k}": _read_array(file, *layout) for k, layout in enumerate(layouts)}
     return _value(tree, arrays)
 

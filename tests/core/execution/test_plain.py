@@ -4,7 +4,7 @@ import json
 
 import numpy as np
 import pytest
-from lanewright.core.execution.plain import FORMAT, LENGTH, read_plain, write_plain
+from lanewright.core.execution.plain import FORMAT, TEXT_LENGTH, read_plain, write_plain
 from lanewright.core.road.common.occlusion import OcclusionGrid
 from lanewright.core.road.profiles.detect import CurbSettings
 from lanewright.core.survey.frame.passes import Pass
@@ -82,6 +82,6 @@ def test_what_is_not_plain_is_refused_and_leaves_no_file(tmp_path, value):
 
 def test_a_file_that_names_a_class_outside_core_makes_nothing_of_it(tmp_path):
     text = json.dumps([{"object": "os:system", "state": []}, []]).encode()
-    (tmp_path / "value.plain").write_bytes(FORMAT + LENGTH.pack(len(text)) + text)
+    (tmp_path / "value.plain").write_bytes(FORMAT + TEXT_LENGTH.pack(len(text)) + text)
     with pytest.raises(ImportError):
         read_plain(tmp_path / "value.plain")
