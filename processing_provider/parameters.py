@@ -1,5 +1,6 @@
 """The parameters of an algorithm's declaration as QGIS's own."""
 
+import os
 from functools import singledispatch
 
 from qgis.core import (
@@ -43,10 +44,16 @@ PAINTED = [SourceType.TypeVectorPolygon, SourceType.TypeVectorLine, SourceType.T
 
 
 class PointCloudFiles(QgsProcessingParameterMultipleLayers):
-    """Several files; the dialogs of a batch list point clouds, where QGIS would list everything."""
+    """Several point clouds, as files."""
 
     def createFileFilter(self):
+        """What the dialogs of a batch list, where QGIS would list everything."""
         return CLOUD_FILTER
+
+    def valueAsJsonObject(self, value, context):
+        """The value for the table of runs. A file is its own name; QGIS would open it as a layer of every kind and report an error."""
+        files = value if isinstance(value, list) else [value]
+        return value if all(isinstance(file, str) and os.path.isfile(file) for file in files) else super().valueAsJsonObject(value, context)
 
 
 def qgis_parameter(spec):

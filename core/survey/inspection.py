@@ -14,6 +14,7 @@ from ..common.progress import Progress
 from ..common.setting import check_limits, setting
 from ..io.crs import check_metric, horizontal_part, parse_crs
 from .frame.build import build_frame
+from .las.copies import without_copies
 from .las.luminance import INTENSITY_SOURCES, without_intensity
 from .las.reader import POINTS_PER_BLOCK, read_blocks, read_headers
 from .las.scanners import ScannerCensus
@@ -98,7 +99,8 @@ def inspect_survey(paths: Sequence[str | Path], trajectory: Trajectory | None = 
     RoadExtractionError
         If a file is missing, damaged, or all are empty.
     """
-    files = read_headers(paths)
+    copies: list[str] = []
+    files = without_copies(read_headers(paths), copies.append)
     wkt = next((file.crs for file in files if file.crs), "") or crs
     counter = _Counter(files, settings, _usable(trajectory, wkt))
     total, done = sum(file.count for file in files), 0
@@ -107,7 +109,9 @@ def inspect_survey(paths: Sequence[str | Path], trajectory: Trajectory | None = 
             counter.take(block)
             done += len(block)
             progress.report(done / total)
-    return counter.inspection(files, wkt, trajectory, progress)
+    found = counter.inspection(files, wkt, trajectory, progress)
+    found.notes[:0] = copies
+    return found
 
 
 def _usable(trajectory, wkt):

@@ -15,6 +15,7 @@ from ..execution.phase import Executor
 from ..execution.plain import digest
 from ..execution.threads import THREADS
 from ..execution.work_folder import Heard, KeptResults, WorkFolder, code_digest
+from .las.copies import without_copies
 from .las.reader import read_headers
 from .read_survey import SharedReading, read_survey
 from .survey import SURVEY_FOLDER, Survey, SurveySettings, survey_in_folder
@@ -45,7 +46,7 @@ def open_survey(paths: Sequence[str | Path], trajectory: Trajectory, settings: S
     work, cluster = execution.work, cluster_for(execution, progress)
     executor: Executor = cluster or THREADS
     try:
-        files = read_headers(paths)
+        files = without_copies(read_headers(paths), progress.warn)
         executor = executor_for(sum(file.count for file in files), execution, progress, cluster)
         read = files, trajectory, settings
         survey = _kept_survey(work, executor, read, progress) if work else _survey_of_run(executor, read, progress)

@@ -26,6 +26,7 @@ from .store.section_store import SECTION_LENGTH, SectionStore
 from .survey import Survey, SurveySettings
 from .trajectory.reprojection import reproject_trajectory
 from .trajectory.time_systems import align_time, wrapped_week
+from .trajectory.trajectory import refuse_standstill
 
 if TYPE_CHECKING:
     from .frame.road_frame import RoadFrame
@@ -37,6 +38,7 @@ SECTION_LENGTHS = SECTION_LENGTH, 10.0, 25.0   # m that it may be long
 PARTS_PROGRESS = 0.85        # of reading, where the points are put in order afterwards
 LOWEST_SENSOR = 0.5          # m above the road: no scanner rides lower, but lines and places drawn on the road lie within
 TOLD_APART = "The points are of two scanners that no field tells apart; they were told apart by where their scan lines lead."
+FEET = 0.3048, 1200 / 3937   # m, of the international foot and of that of surveys in the United States
 SUSPICIOUS_SENSOR_HEIGHT = 5.0, 15.0  # m: higher than any survey vehicle; 1.5 to 4.5 m expressed in feet
 
 
@@ -85,6 +87,7 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     if note := crs_note(files, settings.crs, crs):
         progress.warn(note)
     trajectory = reproject_trajectory(trajectory, crs)
+    refuse_standstill(trajectory)
     trajectory, time_note, has_time, week_ends = match_clocks(files, trajectory, settings, progress)
     if time_note:
         progress.info(time_note)
@@ -253,17 +256,26 @@ def _check_extent(files, frame, crs, trajectory_crs):
     x = np.concatenate([p.x for p in frame.passes]) + frame.origin[0]
     y = np.concatenate([p.y for p in frame.passes]) + frame.origin[1]
     reach = CORRIDOR
-    if not ((x > low[0] - reach) & (x < high[0] + reach) & (y > low[1] - reach) & (y < high[1] + reach)).any():
+    if not _runs_through(low, high, x, y, reach):
         raise RoadExtractionError(
             f"The trajectory does not run through the point cloud. The cloud covers x {low[0]:.1f} to {high[0]:.1f}, "
             f"y {low[1]:.1f} to {high[1]:.1f}; the trajectory runs over x {x.min():.1f} to {x.max():.1f}, "
             f"y {y.min():.1f} to {y.max():.1f}. {_what_to_try(low, high, x, y, crs, trajectory_crs, reach)}")
 
 
+def _runs_through(low, high, x, y, reach):
+    """Does a drive come within `reach` m of a box?"""
+    return bool(((x > low[0] - reach) & (x < high[0] + reach) & (y > low[1] - reach) & (y < high[1] + reach)).any())
+
+
 def _what_to_try(low, high, x, y, crs, trajectory_crs, reach):
     """The advice of the error message, where cloud and trajectory do not overlap."""
-    if ((y > low[0] - reach) & (y < high[0] + reach) & (x > low[1] - reach) & (x < high[1] + reach)).any():
+    if _runs_through(low, high, y, x, reach):
         return "The trajectory's x and y are exchanged: name its columns the other way round, or swap them."
+    if any(_runs_through(low * foot, high * foot, x, y, reach) for foot in FEET):
+        return "The cloud's coordinates are the trajectory's in feet: convert the cloud to metres, in a metric CRS, and run again."
+    if any(_runs_through(low, high, x * foot, y * foot, reach) for foot in FEET):
+        return "The trajectory's coordinates are the cloud's in feet: convert the trajectory to metres, in a metric CRS, and run again."
     if (np.abs(high[:2]) <= 180).all() and (np.abs(low[:2]) <= 180).all() and (high - low)[:2].max() < 1.0:
         return "The cloud's coordinates look like degrees: reproject it to a projected CRS, such as the UTM zone of the survey."
     if trajectory_crs:

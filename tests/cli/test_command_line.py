@@ -113,6 +113,7 @@ def test_a_survey_is_inspected_with_numbers_and_a_report(survey, tmp_path):
         "--REPORT=report.html", "--DENSITY=density.tif", "--json", folder=tmp_path,
     )
     assert run.returncode == 0, run.stderr
+    assert not complaints(run.stderr), "QGIS tries no cloud as a layer of its own"
     results = json.loads(run.stdout)["results"]
     assert results["SCANNERS"] == 2 and results["TIME_COVERED"] == 100 and results["NEAR_TRAJECTORY"] > 99
     assert "Survey: " in json.dumps(json.loads(run.stdout)["log"]) and "of the points lie within 25 m of it" in run.stdout

@@ -11,6 +11,7 @@ import numpy as np
 from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
 from ...io.crs import check_projected, crs_note
+from ..las.copies import without_copies
 from ..las.reader import read_headers
 from ..trajectory.trajectory import Trajectory
 from .adjustment import PER_INTERVAL, Adjusted, Returns
@@ -89,7 +90,7 @@ def estimate_trajectory(paths: Sequence[str | Path], crs: str = "", scanner_fiel
     RoadExtractionError
         If a file cannot be read, the CRS is geographic or not in metres, or the cloud was not measured from a vehicle on a road.
     """
-    files = read_headers(paths)
+    files = without_copies(read_headers(paths), progress.warn)
     wkt = check_projected(files, crs)
     if note := crs_note(files, crs, wkt):
         progress.warn(note)

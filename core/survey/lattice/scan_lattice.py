@@ -73,7 +73,7 @@ def find_lattice(survey: Any, rotation_frequency: float = 0.0, progress: Progres
     """
     lattice = ScanLattice()
     if not survey.has_time:
-        lattice.notes.append("The points have no gps_time, so scan lines cannot be distinguished; "
+        lattice.notes.append("Without gps_time in the cloud and time in the trajectory scan lines cannot be distinguished; "
                              "scanlines are made of the points near each section plane.")
         progress.warn(lattice.notes[0])
         return lattice

@@ -105,12 +105,19 @@ def clean_trajectory(trajectory: Trajectory) -> Trajectory:
     if jumps.any():
         notes.append(f"{np.count_nonzero(jumps)} trajectory rows lay farther from the drive than a vehicle can get, and were dropped.")
         trajectory = trajectory.rows(~jumps)
-    length = float(np.hypot(np.diff(trajectory.x), np.diff(trajectory.y)).sum()) if len(trajectory) > 1 else 0.0
-    if len(trajectory) < 2 or length < 1.0:
-        raise RoadExtractionError(
-            f"The trajectory has {len(trajectory)} usable positions over {length:.1f} m. At least two positions and "
-            "1 m of driving are needed; check the time and coordinate columns of the file.")
+    refuse_standstill(trajectory)
     return replace(trajectory, notes=tuple(notes))
+
+
+def refuse_standstill(trajectory: Trajectory) -> None:
+    """Raise RoadExtractionError where fewer than two positions are given, or they are less than a metre of driving."""
+    there = np.isfinite(trajectory.x) & np.isfinite(trajectory.y)
+    x, y = trajectory.x[there], trajectory.y[there]
+    length = float(np.hypot(np.diff(x), np.diff(y)).sum())
+    if len(x) < 2 or length < 1.0:
+        raise RoadExtractionError(
+            f"The trajectory has {len(x)} usable positions over {length:.1f} m. At least two positions and "
+            "1 m of driving are needed; check the time and coordinate columns of the file.")
 
 
 def _zero_rows(trajectory, good):

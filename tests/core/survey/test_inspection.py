@@ -43,6 +43,11 @@ def test_the_density_of_an_even_carpet_is_what_it_was_made_with(tmp_path):
     assert found.per_volume["mean"] == 100.0
 
 
+def test_a_copy_is_noted_and_not_counted(tmp_path):
+    found = inspect_survey([a_carpet(tmp_path / "a.laz"), a_carpet(tmp_path / "copy.laz")])
+    assert found.count == 12000 and "copy.laz holds the same points as" in found.notes[0]
+
+
 def test_layers_above_each_other_add_up_in_the_plane_and_not_in_space(tmp_path):
     found = inspect_survey([a_carpet(tmp_path / "a.laz", layers=3)])
     assert found.per_area["mean"] == 300.0 and found.per_volume["mean"] == 100.0

@@ -347,6 +347,32 @@ def test_exchanged_coordinates_are_recognised(street):
         open_survey([path], Trajectory(trajectory.time, trajectory.y, trajectory.x, trajectory.z))
 
 
+@pytest.mark.parametrize("foot", [0.3048, 1200 / 3937])
+def test_one_in_feet_and_the_other_in_metres_is_recognised(street, tmp_path, foot):
+    trajectory, (x, y, z, time), _ = street
+    in_feet = write_cloud(tmp_path / "feet.laz", x / foot, y / foot, z / foot, time)
+    with pytest.raises(RoadExtractionError, match="The cloud's coordinates are the trajectory's in feet"):
+        open_survey([in_feet], trajectory)
+    in_metres = write_cloud(tmp_path / "metres.laz", x, y, z, time)
+    with pytest.raises(RoadExtractionError, match="The trajectory's coordinates are the cloud's in feet"):
+        open_survey([in_metres], Trajectory(trajectory.time, trajectory.x / foot, trajectory.y / foot, trajectory.z / foot))
+
+
+@pytest.mark.parametrize("rows", [slice(5, 6), slice(0, 0)])
+def test_a_trajectory_of_one_position_is_told_as_that(street, rows):
+    trajectory, _, path = street
+    with pytest.raises(RoadExtractionError, match=r"has \d usable positions over 0.0 m"):
+        open_survey([path], trajectory.rows(rows))
+
+
+def test_a_copy_among_the_files_counts_once(street, tmp_path):
+    trajectory, points, path = street
+    heard = Heard()
+    survey = open_survey([path, write_cloud(tmp_path / "copy.laz", *points, crs=CRS)], trajectory, progress=heard)
+    np.testing.assert_array_equal(contents(survey), contents(open_survey([path], trajectory)))
+    assert ["copy.laz holds the same points as" in text for text in heard.warnings] == [True]
+
+
 def test_points_without_a_time_are_counted_aloud(street, tmp_path):
     trajectory, (x, y, z, time), _ = street
     heard, time = Heard(), np.where(np.arange(len(time)) % 4 == 0, np.nan, time)

@@ -1,0 +1,69 @@
+"""Copies of a file among the files of a survey: their points would count twice."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from .reader import CloudHeader, read_blocks
+
+PER_METRE = 1000.0   # places are compared in millimetres: a copy may store them with other scales and offsets
+
+
+def without_copies(files: list[CloudHeader], warn: Callable[[str], None]) -> list[CloudHeader]:
+    """The files without those that hold the same points as an earlier one, such as a COPC beside the LAZ it was made from.
+
+    Only files with the same number of points and the same bounds are read.
+
+    Parameters
+    ----------
+    files : headers
+    warn : is told of every copy
+
+    Returns
+    -------
+    headers, in the order given
+
+    Raises
+    ------
+    RoadExtractionError
+        If a file that must be read is damaged.
+    """
+    first: dict[tuple, CloudHeader] = {}
+    contents: dict[str, tuple[int, ...]] = {}
+
+    def content(file):
+        if file.path not in contents:
+            contents[file.path] = _content(file)
+        return contents[file.path]
+
+    kept = []
+    for file in files:
+        alike = (file.count, _whole(file.minimum), _whole(file.maximum))
+        other = first.setdefault(alike, file)
+        if other is not file and file.count and content(other) == content(file):
+            warn(f"{file.path} holds the same points as {other.path} and is left out, so that none counts twice.")
+        else:
+            kept.append(file)
+    return kept
+
+
+def _whole(places):
+    return tuple(np.rint(np.asarray(places, float) * PER_METRE).astype(np.int64).tolist())
+
+
+def _content(file):
+    """Sums over a file's places, intensities and times, whatever the order of its points."""
+    names = ["x", "y", "z", "intensity"] + ["gps_time"] * file.has_time
+    sums = np.zeros(len(names), np.uint64)
+    for block in read_blocks(file.path, layers=names[2:]):
+        for k, name in enumerate(names):
+            values = np.asarray(block[name])
+            if name == "gps_time":
+                values = np.ascontiguousarray(values, np.float64).view(np.uint64)
+            elif name != "intensity":
+                values = np.rint(values * PER_METRE).astype(np.int64).view(np.uint64)
+            # sums beyond 64 bits start again from 0, in any order the same
+            sums[k] += values.sum(dtype=np.uint64)
+    return tuple(sums.tolist())
