@@ -13,6 +13,8 @@ if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame
     from ..objects.marking_objects import MarkingObjects
 
+SHORTEST_ARROW = 2.0  # m along the road, of a lane of a road (Convention on Road Signs and Signals, Vienna 1968, annex 2, 39)
+WORN_ENDS = 0.1       # m that an arrow may look shorter than it was painted
 SLICES = 50           # of an arrow from end to end, whose breadth is taken
 SHAFT_BREADTH = 0.36  # m, of a single stroke at most: shafts are 0.10 to 0.20 m broad, and a cell more on either side; heads begin at 0.5 m
 POINTED = 0.03         # of the length: the tip gets broad in a longer way than the end of a letter, which is as broad as the letter
@@ -31,6 +33,8 @@ def arrows_of(markings: MarkingObjects, frame: RoadFrame, road: int) -> np.ndarr
     frame : RoadFrame
     road : number of the road
 
+    Shorter arrows than a lane of a road has belong to cycle paths or are none.
+
     Returns
     -------
     (A, 3) station and offset of the middle, m, and which way it points: 1 along the road, -1 against it, nearer 0 the less that shows
@@ -48,6 +52,7 @@ def arrows_of(markings: MarkingObjects, frame: RoadFrame, road: int) -> np.ndarr
     known = np.bincount(owner, ~np.isfinite(places).all(axis=1), minlength=len(rows)) == 0
     arrows = np.array([shapely.union_all(shapely.make_valid(parts[known & (of == k)])) for k in np.unique(of[known])], object)
     first, low, last, high = shapely.bounds(arrows).T
+    arrows, first, low, last, high = (values[last - first >= SHORTEST_ARROW - WORN_ENDS] for values in (arrows, first, low, last, high))
     begin, finish = stems(arrows)
     way = np.clip((begin - finish) / SURE_LEAN, -1, 1) * (np.minimum(begin, finish) > POINTED)
     return np.c_[(first + last) / 2, (low + high) / 2, way]

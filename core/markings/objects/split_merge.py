@@ -25,6 +25,17 @@ from ...survey.store.records import COORDINATE_SCALE
 from ..cells.components import occupied
 from ..cells.road_grid import CELL_UNITS
 from ..cells.scan_tracks import filled_between_tracks, track_reach
+from .bars import (
+    MAX_PAINT_GAP,
+    MAX_SCAN_GAP,
+    MAX_WIDTH_ALONE,
+    MIN_LENGTH_BESIDE_BAR,
+    MIN_STOP_LINE_PIECE,
+    STOP_LINE_PIECE_THICKNESS,
+    bar_with_lines,
+    complete_bar,
+    even_strip,
+)
 from .classify import columns_of
 from .near_pairs import overlapping_pairs
 
@@ -37,12 +48,7 @@ LINE_SHARE = 0.85                             # of the window that is painted, g
 MAX_BORDER_SLOPE = 0.20                       # to the road: the borders of hatched areas lie askew by one in five at most
 MAX_BORDER_DRIFT = 0.16                       # m that a line may leave the nearest slope that is tried, over the window
 COMPOUND_LENGTH, COMPOUND_BREADTH = 9.0, 0.5  # m: no arrow or letter is so long; a line that is broader somewhere has something beside it
-WIDTH_STEP, WIDTH_TOLERANCE = 12, 2           # cells along a line whose width is taken together, and across by which it may be uneven
-MAX_WIDTH_ALONE = 0.34                        # m of an even strip with nothing beside it; a double line is broader
 MIN_RUN_ACROSS = 2.0                          # m across the road that a bar does not break off; no arrow or letter is as broad
-MIN_LENGTH_BESIDE_BAR = 1.0                   # m along the road: what is shorter is nothing but a bar
-MAX_PAINT_GAP = 0.24                          # m across the road, closed; the stripes of a zebra crossing leave more
-MAX_SCAN_GAP = 0.40                           # m between scan lines, closed
 MORPHOLOGY_CHUNK = 100.0                      # m of road looked at together
 MIN_LEFTOVER_AREA = 0.05                      # m2: smaller left-overs are the frayed rim of the strip
 # Pieces of one marking
@@ -50,8 +56,7 @@ MAX_WORN_GAP, MAX_FRAGMENT_OVERLAP, MAX_FRAGMENT_OFFSET = 0.9, 0.2, 0.08  # m al
 TRACKS_PER_GAP, MAX_GAP_BETWEEN_TRACKS = 10.0, 2.0  # times the distance between the tracks of the scan, and m, along: gaps of dashes are longer
 MIN_ASKEW, MAX_UNSEEN_GAP = 0.05, 3.5   # m across per m along, and m along: a track that crosses a line so leaves it sideways; gaps of dashes
 MAX_UNSEEN_OFFSET = 0.08                # that are seen so far off are longer; m between the middles of two pieces with such a gap between them
-STOP_LINE_PIECE_THICKNESS = 0.18, 0.90  # m along the road of a stop line's pieces
-MIN_STOP_LINE_PIECE, MAX_STOP_LINE_GAP = 0.8, 0.30  # m across: a row of shorter blocks is a give-way line, and its gaps are painted
+MAX_STOP_LINE_GAP = 0.30  # m across: the gaps of give-way lines are painted
 MAX_SIDE_SHIFT = 0.10  # m by which wear has moved an edge that two pieces share
 
 
@@ -76,8 +81,8 @@ def split_compounds(records: Columns, labels: np.ndarray, parts_of: Callable[...
     following = int(labels.max()) + 1
     along, across, apart = (records[name].take(order) for name in ("s", "d", "spacing"))
     ranges = [np.maximum.reduceat(values, starts).astype(np.int64) - np.minimum.reduceat(values, starts) for values in (along, across)]
-    large = (ranges[0] * COORDINATE_SCALE >= COMPOUND_LENGTH) & (ranges[1] * COORDINATE_SCALE >= COMPOUND_BREADTH) \
-        | (ranges[0] * COORDINATE_SCALE >= MIN_LENGTH_BESIDE_BAR) & (ranges[1] * COORDINATE_SCALE >= MIN_RUN_ACROSS)
+    length, breadth = (extent * COORDINATE_SCALE for extent in ranges)
+    large = _of_several(length, breadth) | (length >= MIN_LENGTH_BESIDE_BAR) & (breadth >= MIN_STOP_LINE_PIECE)
 
     bounds = list(zip(starts[large].tolist(), np.r_[starts[1:], len(order)][large].tolist()))
     if parts_of is None:
@@ -89,6 +94,11 @@ def split_compounds(records: Columns, labels: np.ndarray, parts_of: Callable[...
             labels[order[a:b]] = following + parts
             following += count
     return labels
+
+
+def _of_several(length, breadth):
+    """Whether what is so long and so broad, m, is no arrow or letter, and more than a line or a bar."""
+    return (length >= COMPOUND_LENGTH) & (breadth >= COMPOUND_BREADTH) | (length >= MIN_LENGTH_BESIDE_BAR) & (breadth >= MIN_RUN_ACROSS)
 
 
 def parts_of_compound(s: np.ndarray, d: np.ndarray, spacing: np.ndarray) -> tuple[np.ndarray, int]:
@@ -127,9 +137,11 @@ def _parts(cells, spacing):
 
 def _parts_of_filled(cells):
     size = CELL_UNITS * COORDINATE_SCALE
-    even, width = _even_strip(cells)
+    even, width = even_strip(cells)
     if even.all() and width * size <= MAX_WIDTH_ALONE:
         return np.zeros(len(cells), np.int64), 1
+    if not _of_several(*(np.ptp(cells, axis=0) * size).tolist()):
+        return bar_with_lines(cells)
     parts, count = np.full(len(cells), -1), 0
     for window, least in STRIP_WINDOWS:
         rest = np.flatnonzero(parts < 0)
@@ -137,15 +149,21 @@ def _parts_of_filled(cells):
         before, count = count, _number_strips(parts, count, cells, strip, MAX_SCAN_GAP, size, least)
         for number in range(before, count):
             inside = np.flatnonzero(parts == number)
-            parts[inside[~_even_strip(cells[inside])[0]]] = -1
+            parts[inside[~even_strip(cells[inside])[0]]] = -1
     rest, turned = np.flatnonzero(parts < 0), cells[:, ::-1]
     # scan lines lie apart within a bar
     bars = rest[_in_runs(turned[rest], MAX_PAINT_GAP, MIN_RUN_ACROSS)]
-    count = _number_strips(parts, count, turned, bars, MAX_PAINT_GAP, MAX_SCAN_GAP, MIN_RUN_ACROSS)
+    before, count = count, _number_strips(parts, count, turned, bars, MAX_PAINT_GAP, MAX_SCAN_GAP, MIN_RUN_ACROSS)
+    for number in range(before, count):
+        complete_bar(parts, number, turned)
     if not count:
-        return np.zeros(len(cells), np.int64), 1
+        return bar_with_lines(cells)
     rest = np.flatnonzero(parts < 0)
     pieces = _linked(cells[rest], MAX_SCAN_GAP / size, 3.0)
+    for piece in range(pieces.max(initial=-1) + 1):
+        own = np.flatnonzero(pieces == piece)
+        inner, _ = bar_with_lines(cells[rest[own]])
+        pieces[own[inner > 0]] = pieces.max() + inner[inner > 0]
     areas = np.bincount(pieces) * size**2 if len(pieces) else np.empty(0)
     kept = areas >= MIN_LEFTOVER_AREA
     later = np.where(kept, count + np.cumsum(kept) - 1, -1)
@@ -192,20 +210,6 @@ def _within(values, others, reach):
     others = np.unique(others)
     after = np.searchsorted(others, values)
     return (others[np.maximum(after - 1, 0)] + reach >= values) & (after > 0) | (others[np.minimum(after, len(others) - 1)] - reach <= values)
-
-
-def _even_strip(cells):
-    """(K,) whether the cells of a strip lie within its usual width about its middle, as what touches it does not; and that width in cells."""
-    step = (cells[:, 0] - cells[:, 0].min()) // WIDTH_STEP
-    count = int(step.max()) + 1
-    low, high = np.full(count, np.inf), np.full(count, -np.inf)
-    np.minimum.at(low, step, cells[:, 1])
-    np.maximum.at(high, step, cells[:, 1])
-    seen = np.isfinite(low)
-    usual = np.median((high - low)[seen])
-    even = np.flatnonzero(seen & (high - low <= usual + WIDTH_TOLERANCE))
-    middle = np.interp(step, even, (low[even] + high[even]) / 2)
-    return np.abs(cells[:, 1] - middle) <= (usual + WIDTH_TOLERANCE) / 2, usual
 
 
 def _painted_along(column, across, slope, gap, length):

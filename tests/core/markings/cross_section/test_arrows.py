@@ -56,6 +56,12 @@ def test_a_letter_taken_for_an_arrow_points_nowhere():
 def test_the_parts_that_wear_left_of_an_arrow_are_one_arrow():
     street, whole = Street(), straight_arrow(50.0, 1.5, 1)
     shaft, head = whole[[0, 1, 5, 6]] - (0.1, 0.0), whole[2:5] + (0.1, 0.0)
-    assert len(ways(street, shaft, head)) == 2
+    assert len(ways(street, shaft[[0, 1, 2, 3]] * (0.5, 1.0) + (25.0, 0.0), head)) == 0
     found = ways(street, shaft, head, cluster=7)
     assert len(found) == 1 and found[0, 2] == 1.0
+
+
+def test_an_arrow_shorter_than_a_lane_of_a_road_has_counts_for_no_lane():
+    small = (straight_arrow(50.0, 1.5, 1) - (50.0, 1.5)) * (1.5 / 4.5, 0.5) + (50.0, 1.5)
+    assert np.ptp(small[:, 0]) < 2.0 and not len(ways(Street(), small))
+    assert len(ways(Street(), small, straight_arrow(70.0, 1.5, 1))) == 1

@@ -60,6 +60,31 @@ def test_a_stop_line_of_scan_lines_far_apart_is_cut_from_its_dash():
     assert share_together(labels, owner, 0) > 0.85 and share_together(labels, owner, 1) > 0.9
 
 
+@pytest.mark.parametrize("breadth", [0.9, 1.4])
+def test_what_wear_left_of_a_stop_line_is_cut_from_the_dash_before_it(breadth):
+    records, owner = paint((0, 0.4, 0.0, breadth), (-4.0, 0.0, -0.075, 0.075))
+    labels = split(records)
+    assert len(np.unique(labels)) == 2
+    assert share_together(labels, owner, 0) > 0.98 and share_together(labels, owner, 1) > 0.98
+
+
+def test_a_stop_line_takes_what_wear_left_between_its_front_and_its_rear():
+    """Its rear is worn through beside a piece that is no run of its own."""
+    records, owner = paint((0, 0.5, 0.15, 3.6), (0.5, 4.5, -0.075, 0.15))
+    left = (owner == 1) | (np.abs(records["d"] - 11000) > 2000) | (records["s"] < 1500)
+    records, owner = records[left], owner[left]
+    labels = split(records)
+    assert len(np.unique(labels)) == 2
+    assert share_together(labels, owner, 0) > 0.95 and share_together(labels, owner, 1) > 0.95
+
+
+def test_a_stop_line_that_a_line_crosses_is_cut_from_both_its_ends():
+    records, owner = paint((0, 0.5, -0.6, 0.6), (0.5, 3.5, -0.06, 0.06), (-3.0, 0.0, -0.06, 0.06))
+    labels = split(records)
+    assert len(np.unique(labels)) == 3
+    assert min(share_together(labels, owner, number) for number in range(3)) > 0.98
+
+
 @pytest.mark.parametrize("gap", [0.0, 0.08])
 def test_a_line_that_touches_a_zebra_stripe_stays_a_line(gap):
     records, owner = paint((0, 33, 0.0, 0.15), (30, 34, 0.15 + gap, 0.65 + gap))
@@ -96,7 +121,9 @@ def test_a_long_line_that_drifts_across_the_road_stays_one():
 @pytest.mark.parametrize("figure", [
     ((0, 3.2, -0.08, 0.08), (3.2, 4.5, -0.5, 0.5)),                      # an arrow
     ((0, 4, 0.0, 0.2), (0, 4, 0.9, 1.1), (1.9, 2.1, 0.2, 0.9)),          # a letter
-], ids=["arrow", "letter"])
+    ((0, 1.8, -0.08, 0.08), *((1.8 + k * 0.03, 1.83 + k * 0.03, -0.45 + k * 0.018, 0.45 - k * 0.018) for k in range(25))),  # a small arrow with a tip
+    ((0, 3.6, -0.1, 0.1), (3.6, 4.0, -0.375, 0.375)),                    # a T
+], ids=["arrow", "letter", "small arrow", "T"])
 def test_figures_stay_whole(figure):
     assert len(np.unique(split(paint(*figure)[0]))) == 1
 
