@@ -19,14 +19,14 @@ from lanewright.core.markings.paint import extract as extraction
 from lanewright.core.markings.paint import scatter
 from lanewright.core.markings.paint.extract import extract_markings
 from lanewright.core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
-from lanewright.core.road.surface import extract
+from lanewright.core.road.surface import extract, measured_ground
 from lanewright.core.road.surface.extract import extract_road_surface
 from lanewright.core.survey import open_survey as opening
 from lanewright.core.survey import point_density
 from lanewright.core.survey.point_density import cube_densities
 
-PHASES = ["surface_points", "cubes_of_stretch", "levels_of_stretch", "corrected_of_stretch", "window_of_image", "sums_of_pieces",
-          "scatter_of_windows", "levels_of_windows", "paint_of_windows", "kept_of_windows", "combs_of_windows",
+PHASES = ["ground_of_windows", "surface_points", "cubes_of_stretch", "levels_of_stretch", "corrected_of_stretch", "windows_of_image",
+          "sums_of_pieces", "scatter_of_windows", "levels_of_windows", "paint_of_windows", "kept_of_windows", "combs_of_windows",
           "shapes_of_clusters", "outlines_of_markings"]
 
 
@@ -36,6 +36,8 @@ def found_by(sample, executor=None, work=None, progress=Progress()):
     with pytest.MonkeyPatch.context() as patch:
         for module in (extract, correction, point_density):
             patch.setattr(module, "STRETCH_POINTS", 40_000)
+        patch.setattr(measured_ground, "MEASURED_WINDOWS", 2)
+        patch.setattr(imaging, "LOOKED_WINDOWS", 1)
         patch.setattr(imaging, "PIECES_PER_TASK", 3)
         patch.setattr(extraction, "WINDOWS_PER_TASK", 1)
         patch.setattr(scatter, "EXAMINED_WINDOWS", 1)
