@@ -1,5 +1,6 @@
 """An algorithm's declaration as QGIS's Processing takes it: dialog, checks, run and failure."""
 
+import os
 from datetime import datetime
 from pathlib import Path
 
@@ -83,7 +84,8 @@ class LanewrightAlgorithm(QgsProcessingAlgorithm):
 
     def checkParameterValues(self, parameters, context):
         fine, said = super().checkParameterValues(accept_trajectory_file(self.declaration, parameters, context), context)
-        return fine, said if fine else out_of_range(self.parameterDefinitions(), parameters) or said
+        return fine, said if fine else \
+            out_of_range(self.parameterDefinitions(), parameters) or no_trajectory(self.declaration, parameters) or said
 
     def processAlgorithm(self, parameters, context, feedback):
         # canExecute is asked by the desktop only
@@ -99,14 +101,19 @@ class LanewrightAlgorithm(QgsProcessingAlgorithm):
     def _attempt(self, parameters, context, feedback):
         """(results, "") of a run, or (None, why there are none); either is noted in the table of runs."""
         began, call = datetime.now(), QgisCall(self, parameters, context, feedback)
+        to_load, whole = context.layersToLoadOnCompletion(), False
         try:
             results = run(call, FeedbackProgress(feedback))
             note_run(self.declaration, call.survey, began, results)
+            whole = True
             return results, ""
         except RoadExtractionError as error:
             failure = told(str(error))
         except Cancelled:
             failure = tr("Cancelled")
+        finally:
+            if not whole:  # below the reason QGIS would list the layers that it could not load
+                context.setLayersToLoadOnCompletion(to_load)
         note_run(self.declaration, call.survey, began, failure=failure)
         return None, failure
 
@@ -121,6 +128,17 @@ def out_of_range(definitions, parameters):
             return number_refused(parameter.description(), parameter.name(), value, parameter.minimum(), parameter.maximum())
         if parameter.type() == "enum":
             return choice_refused(parameter.description(), parameter.name(), value, parameter.options())
+    return ""
+
+
+def no_trajectory(declaration, parameters):
+    """What may be given where a file is there and no trajectory; QGIS itself says that it is not found."""
+    for spec in declaration.inputs():
+        value = parameters.get(spec.name)
+        if isinstance(spec, TrajectorySpec) and isinstance(value, str) and os.path.isfile(value) and trajectory_path(value) is None \
+                and not QgsVectorLayer(value).isValid():
+            return tr("{label}: {file} holds neither a layer nor a table of positions. Choose the layer or the CSV, TXT or SBET file of the "
+                      "drive.").format(label=spec.label, file=value)
     return ""
 
 

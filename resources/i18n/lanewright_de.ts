@@ -7439,6 +7439,11 @@
             <translation>Warnung: {text}</translation>
         </message>
         <message>
+            <location filename="../../processing_provider/algorithm.py" />
+            <source>{label}: {file} holds neither a layer nor a table of positions. Choose the layer or the CSV, TXT or SBET file of the drive.</source>
+            <translation>{label}: {file} enthält weder einen Layer noch eine Tabelle von Positionen. Den Layer oder die CSV-, TXT- oder SBET-Datei der Befahrung wählen.</translation>
+        </message>
+        <message>
             <location filename="../../processing_provider/call.py" />
             <source>{label}: the CRS {given} is not known. Give it as EPSG:number.</source>
             <translation>{label}: das KBS {given} ist nicht bekannt. Als EPSG:Nummer angeben.</translation>

@@ -157,3 +157,10 @@ def test_a_file_can_be_given_as_trajectory(provider, tmp_path):
     dialog = dialog_of()
     dialog.setParameters({"TRAJECTORY": str(tmp_path / "drive.csv")})
     assert shown(dialog) == str(tmp_path / "drive.csv")
+
+
+def test_a_cloud_as_trajectory_is_refused_as_what_it_is(provider, folder):
+    algorithm = provider.algorithm("roadmap").create()
+    fine, said = algorithm.checkParameterValues({"POINT_CLOUDS": [str(folder / "tile_1.laz")], "TRAJECTORY": str(folder / "tile_1.laz")},
+                                                QgsProcessingContext())
+    assert not fine and "tile_1.laz holds neither a layer nor a table of positions" in said

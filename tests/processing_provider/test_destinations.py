@@ -3,11 +3,14 @@
 import os
 from pathlib import Path
 
+import numpy as np
 import pytest
+from drives import write_cloud
 from lanewright.algorithms.destinations import ReplacedFiles, UnfinishedFiles, check_suffix, check_writable, destination_path
 from lanewright.algorithms.driving.road_map import RoadMap
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.processing_provider.call import QgisCall
+from qgis.core import QgsProcessingContext, QgsProcessingFeedback, QgsProcessingOutputLayerDefinition, QgsProject
 
 
 def test_yesterdays_result_stands_until_todays_is_complete(tmp_path):
@@ -132,3 +135,16 @@ def test_a_new_layer_of_a_geopackage_leaves_the_others_alone(tmp_path):
     replaced.set_aside(f"ogr:dbname='{tmp_path}/map.gpkg' table=\"road_edges\" (geom)")
     replaced.put_back()
     assert (tmp_path / "map.gpkg").read_text() == "the others"
+
+
+def test_a_run_that_fails_asks_for_no_layer_to_be_loaded(provider, tmp_path):
+    """QGIS lists what it could not load in red, below the one sentence that matters."""
+    context = QgsProcessingContext()
+    context.setProject(QgsProject.instance())
+    write_cloud(tmp_path / "points.laz", *np.random.default_rng(1).uniform(0.0, 0.001, (3, 100)), crs="EPSG:4326")
+    (tmp_path / "drive.csv").write_text("x,y,z\n0,0,0\n1,1,0\n")
+    wanted = QgsProcessingOutputLayerDefinition(str(tmp_path / "intensity.tif"), QgsProject.instance())
+    algorithm = provider.algorithm("roadmap").create()
+    given = {"POINT_CLOUDS": [str(tmp_path / "points.laz")], "TRAJECTORY": str(tmp_path / "drive.csv"), "INTENSITY_IMAGE": wanted}
+    _, done = algorithm.run(given, context, QgsProcessingFeedback())
+    assert not done and not context.layersToLoadOnCompletion()
