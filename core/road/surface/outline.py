@@ -33,7 +33,7 @@ def outlines(frame: RoadFrame, road: int, carriageway: Carriageway, points_per_r
     """
     found = []
     cells = carriageway.cells
-    there = np.isfinite(carriageway.left) & np.isfinite(carriageway.right)
+    there = _as_far_as_measured(np.isfinite(carriageway.left) & np.isfinite(carriageway.right), points_per_row)
     measured = _without_short_runs(carriageway.left_bounded & carriageway.right_bounded, int(MIN_SURFACE_STATUS_LENGTH / ROW_LENGTH))
     kind = np.where(there, np.where(measured, 2, 1), 0)
     cuts = np.r_[0, np.flatnonzero(np.diff(kind)) + 1, len(kind)]
@@ -61,6 +61,19 @@ def outlines(frame: RoadFrame, road: int, carriageway: Carriageway, points_per_r
         found.append((road, "measured" if kind[a] == 2 else "grown", round(float(stations[0]), 3), round(float(stations[-1]), 3),
                       round(float(polygon.area), 3), int(points_per_row[a:b].sum()), local))
     return found
+
+
+def _as_far_as_measured(there, points):
+    """The rows of road from the first to the last one with points: the limits of a few rows before and behind them are known as well."""
+    seen = there.copy()
+    cuts = np.r_[0, np.flatnonzero(np.diff(there.astype(int))) + 1, len(there)]
+    for a, b in zip(cuts[:-1], cuts[1:]):
+        held = np.flatnonzero(points[a:b])
+        if there[a]:
+            seen[a:b] = False
+            if len(held):
+                seen[a + held[0]:a + held[-1] + 1] = True
+    return seen
 
 
 def _without_short_runs(mask, shortest):

@@ -101,6 +101,15 @@ def test_the_outline_lies_on_the_edges_at_the_height_of_the_road():
     assert row["points"] > 170 * row["area_m2"] and abs(row["area_m2"] - polygon.area) < 0.01
 
 
+@pytest.mark.parametrize("edges", [None, road_edges()], ids=["grown", "between edges"])
+def test_the_outline_ends_where_the_points_do_and_goes_on_across_a_short_gap(edges):
+    surveyed = survey(curbs(), keep=lambda s, d: (s > 8.0) & (s < 47.0) & ~((s > 20.0) & (s < 23.0)))
+    _, surface = extract_road_surface(surveyed, edges)
+    x = np.concatenate([shapely.get_coordinates(polygon)[:, 0] for polygon in surface.geometries]) - surface.geometries[0].bounds[0]
+    assert abs(np.ptp(x) - 39.0) < 1.0
+    assert sum(row["area_m2"] for row in surface.rows) == pytest.approx(39.0 * 8.0, rel=0.04)
+
+
 @pytest.mark.parametrize("crown", [0.02, 0.04])
 def test_a_crowned_road_is_taken_to_both_edges(crown):
     surveyed = survey(lambda s, d: curbs()(s, d) - crown * np.abs(d))
