@@ -8,7 +8,6 @@ letter, or with one wheel, is told.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from functools import cache
 from typing import NamedTuple
 
@@ -35,6 +34,7 @@ class PaintImage(NamedTuple):
     corner : (2,) m, station and offset of its corner
     size : m, of a cell
     places : (N, 2) m, the middles of the painted cells
+    spread_right, spread_up : (T,) m, standard deviation of these along the axes of a figure turned by each of TURNS
     total_square : sum of the squares of the image
     """
 
@@ -42,6 +42,8 @@ class PaintImage(NamedTuple):
     corner: np.ndarray
     size: float
     places: np.ndarray
+    spread_right: np.ndarray
+    spread_up: np.ndarray
     total_square: float
 
     @classmethod
@@ -55,7 +57,9 @@ class PaintImage(NamedTuple):
         size : m, of a cell
         """
         image = cv2.GaussianBlur(np.pad(mask, RIM).astype(np.float32), (0, 0), PAINT_BLUR)
-        return cls(image, corner - RIM * size, size, (np.argwhere(mask) + 0.5) * size + corner, float((image * image).sum()))
+        places = (np.argwhere(mask) + 0.5) * size + corner
+        right, up = ((places @ way).std(axis=0) for way in _axes(TURNS))
+        return cls(image, corner - RIM * size, size, places, right, up, float((image * image).sum()))
 
 
 class Pose(NamedTuple):
@@ -135,62 +139,72 @@ def agreement(cells: PaintImage, symbol: PaintedSymbol) -> Agreement | None:
     """
     best = None
     for figure in figures_of(symbol):
-        tried = sorted(((_correlation(cells, figure, pose), pose) for pose in _poses(cells, figure, symbol)), reverse=True)[:CLOSEST]
-        for correlation, pose in tried:
-            if correlation < LEAST_AT_FIRST:
+        poses = _allowed(_poses(cells, figure), figure, symbol)
+        correlations = _correlations(cells, figure, poses)
+        # of equal ones the last
+        for k in np.lexsort((np.arange(len(poses)), correlations))[::-1][:CLOSEST].tolist():
+            if correlations[k] < LEAST_AT_FIRST:
                 break
-            found = _closer(cells, figure, symbol, correlation, pose)
+            found = _closer(cells, figure, symbol, correlations[k], poses[k])
             if best is None or found[0] > best[0]:
                 best = (*found, figure)
     if best is None:
         return None
     whole, pose, figure = best
-    seen = _seen(cells, figure, pose)
+    seen = _seen(cells, figure, pose[None])[0]
     columns = np.array_split(np.arange(figure.image.shape[1]), 3)
-    return Agreement(whole, min(float((_normed(figure.image[:, some]) * _normed(seen[:, some])).sum()) for some in columns), pose)
+    return Agreement(float(whole), min(float((_normed(figure.image[:, some]) * _normed(seen[:, some])).sum()) for some in columns),
+                     Pose(*pose.tolist()))
 
 
-def _poses(cells: PaintImage, figure: Figure, symbol: PaintedSymbol) -> Iterator[Pose]:
-    """Poses in every direction, in which the paint is spread as the figure's is."""
-    for turn in TURNS.tolist():
-        right, up = _axes(turn)
-        width, height = cells.places @ right, cells.places @ up
-        scale = np.array([width.std(), height.std()]) / figure.spread
-        off = (figure.middle - figure.size / 2) * scale
-        middle = cells.places.mean(axis=0) - off[0] * right - off[1] * up
-        pose = Pose(turn, *middle.tolist(), *scale.tolist())
-        if _allowed(pose, figure, symbol):
-            yield pose
+def _poses(cells: PaintImage, figure: Figure) -> np.ndarray:
+    """(P, 5) as Pose, in every direction, in which the paint is spread as the figure's is."""
+    right, up = _axes(TURNS)
+    scale = np.stack([cells.spread_right, cells.spread_up]) / figure.spread[:, None]
+    off = (figure.middle - figure.size / 2)[:, None] * scale
+    middle = cells.places.mean(axis=0)[:, None] - off[0] * right - off[1] * up
+    return np.column_stack([TURNS, *middle, *scale])
 
 
 def _axes(turn):
-    return np.array([np.cos(turn), np.sin(turn)]), np.array([-np.sin(turn), np.cos(turn)])
+    """(2, P) the ways to the right of figures and up."""
+    along, across = np.cos(turn), np.sin(turn)
+    return np.stack([along, across]), np.stack([-across, along])
 
 
-def _allowed(pose, figure, symbol):
-    width, height = pose.width * figure.size[0], pose.height * figure.size[1]
-    return symbol.width[0] <= width <= symbol.width[1] and symbol.height[0] <= height <= symbol.height[1] \
-        and symbol.stretch[0] <= pose.height / pose.width <= symbol.stretch[1]
+def _allowed(poses, figure, symbol):
+    """Those poses in which the figure has a size and a shape that it may have."""
+    width, height = poses[:, 3] * figure.size[0], poses[:, 4] * figure.size[1]
+    stretch = poses[:, 4] / poses[:, 3]
+    return poses[(symbol.width[0] <= width) & (width <= symbol.width[1]) & (symbol.height[0] <= height) & (height <= symbol.height[1])
+                 & (symbol.stretch[0] <= stretch) & (stretch <= symbol.stretch[1])]
 
 
-def _seen(cells, figure, pose):
-    """The paint as it lies on the pixels of the figure."""
-    right, up = _axes(pose.turn)
+def _seen(cells, figure, poses):
+    """(P, rows, columns) float32, the paint as it lies on the pixels of the figure."""
+    turn, x, y, width, height = poses.T
+    right, up = _axes(turn)
     unit = figure.size[1] / FIGURE_HEIGHT
-    across, down = right * pose.width * unit, -up * pose.height * unit
+    across, down = right * width * unit, -up * height * unit
     rows, columns = figure.image.shape
-    corner = np.array([pose.x, pose.y]) - across * (columns - 1) / 2 - down * (rows - 1) / 2
-    to_cells = np.column_stack([across, down, corner - cells.corner]) / cells.size - np.array([[0, 0, 0.5], [0, 0, 0.5]])
-    return cv2.warpAffine(cells.image, to_cells[::-1], (columns, rows), flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP)
+    corner = np.stack([x, y]) - across * (columns - 1) / 2 - down * (rows - 1) / 2
+    to_cells = np.stack([across, down, corner - cells.corner[:, None]], axis=1) / cells.size
+    to_cells[:, 2] -= 0.5
+    found = np.empty((len(poses), rows, columns), np.float32)
+    # OpenCV has the second axis first
+    for one, seen in zip(np.ascontiguousarray(to_cells.transpose(2, 0, 1)[:, ::-1]), found):
+        cv2.warpAffine(cells.image, one, (columns, rows), seen, cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP)
+    return found
 
 
-def _correlation(cells, figure, pose):
-    seen, unit = _seen(cells, figure, pose), figure.size[1] / FIGURE_HEIGHT
-    square = float((seen * seen).sum())
+def _correlations(cells, figure, poses):
+    """(P,) correlation of the figure with the paint in each pose."""
+    unit = figure.size[1] / FIGURE_HEIGHT
+    seen = _seen(cells, figure, poses).reshape(len(poses), figure.image.size)
+    total, square, both = (values.sum(axis=1).astype(float) for values in (seen, seen * seen, figure.image.ravel() * seen))
     # paint beyond the figure is none of it: it counts as well
-    beyond = max(cells.total_square * cells.size**2 / (pose.width * pose.height * unit * unit) - square, 0.0)
-    spread = max(square - float(seen.sum()) ** 2 / seen.size + beyond, 1e-12)
-    return float((figure.image * seen).sum()) / np.sqrt(spread)
+    beyond = np.maximum(cells.total_square * cells.size**2 / (poses[:, 3] * poses[:, 4] * unit * unit) - square, 0.0)
+    return both / np.sqrt(np.maximum(square - total**2 / seen.shape[1] + beyond, 1e-12))
 
 
 def _closer(cells, figure, symbol, correlation, pose):
@@ -199,18 +213,21 @@ def _closer(cells, figure, symbol, correlation, pose):
         better = True
         while better:
             better = False
-            for beside in _beside(pose, figure, step):
-                if _allowed(beside, figure, symbol) and (other := _correlation(cells, figure, beside)) > correlation + 1e-4:
-                    correlation, pose, better = other, beside, True
+            beside = _allowed(_beside(pose, figure, step), figure, symbol)
+            for other, one in zip(_correlations(cells, figure, beside).tolist(), beside):
+                if other > correlation + 1e-4:
+                    correlation, pose, better = other, one, True
     return correlation, pose
 
 
 def _beside(pose, figure, step):
-    right, up = _axes(pose.turn)
-    for sign in (step, -step):
-        yield pose._replace(turn=pose.turn + sign)
-        yield pose._replace(width=pose.width * (1 + sign))
-        yield pose._replace(height=pose.height * (1 + sign))
-        for way, size in ((right, pose.width * figure.size[0]), (up, pose.height * figure.size[1])):
-            x, y = np.array([pose.x, pose.y]) + way * size * sign / 2
-            yield pose._replace(x=float(x), y=float(y))
+    """(10, 5) poses that are turned, stretched and moved by a step either way."""
+    right, up = _axes(pose[0])
+    found = np.repeat(pose[None], 10, axis=0)
+    for k, sign in ((0, step), (5, -step)):
+        found[k, 0] += sign
+        found[k + 1, 3] *= 1 + sign
+        found[k + 2, 4] *= 1 + sign
+        found[k + 3, 1:3] += right * (pose[3] * figure.size[0]) * sign / 2
+        found[k + 4, 1:3] += up * (pose[4] * figure.size[1]) * sign / 2
+    return found

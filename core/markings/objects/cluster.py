@@ -113,10 +113,10 @@ def cluster_markings(marking_points: RoadPoints, frame: RoadFrame, settings: Clu
     cluster = [np.zeros(len(records), np.int32) for records, _ in connected]
     number = 0
     for k, ((stripes, _), pieces, line, block, part) in enumerate(zip(known, found, lines, blocks, last)):
-        painted, without = _markings(pieces, block, settings, marking_points.has_corrected)
+        painted, without = _markings(pieces, block, settings, marking_points.has_corrected, part.part(0.0, 0.5))
         refused += without
         markings = sorted([*stripes, *painted], key=lambda marking: (marking.shape.s0, marking.shape.d0, marking.shape.s1))
-        for marking, drawn in zip(markings, _outlines(markings, pieces.paint.records, line, pieces.work, part)):
+        for marking, drawn in zip(markings, _outlines(markings, pieces.paint.records, line, pieces.work, part.part(0.5, 1.0))):
             number += 1
             if marking.outline is not None:
                 cluster[k][marking.rows] = number
@@ -207,7 +207,7 @@ def _ranges(values, starts):
         if len(starts) else np.empty(0)
 
 
-def _markings(pieces, blocks, settings, has_corrected):
+def _markings(pieces, blocks, settings, has_corrected, progress):
     """[_Marking] of one road but for stripes of crossings, and how many clusters are none; blocks : (N,) bool."""
     records, bounds, shapes = pieces.records, pieces.bounds, pieces.shapes
     half_width, hidden = records["half_width"].astype(float), records["covered"]
@@ -222,7 +222,8 @@ def _markings(pieces, blocks, settings, has_corrected):
         possible &= ~np.array(pale, bool)
         kinds = [(NOT_PAINT, "other") if faint else kind for faint, kind in zip(pale, kinds)]
     whole: list[tuple[tuple[int, ...], str, str]] = [((k,), *kind) for k, kind in enumerate(kinds)]
-    for members, kind in painted_figures(shapes, [kind for kind, _ in kinds], possible, lambda some: _cells_together(records, bounds, some)):
+    for members, kind in painted_figures(shapes, [kind for kind, _ in kinds], possible, lambda some: _cells_together(records, bounds, some),
+                                         partial(pieces.work.figures, progress=progress)):
         for k in members:
             whole[k] = ((), NOT_PAINT, "other")
         whole[members[0]] = (members, kind, "other")

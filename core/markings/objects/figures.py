@@ -7,12 +7,13 @@ and BUS reach 0.61 to 0.89 as a whole; most other words, numbers, arrows and fil
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from ...common.groups import linked_groups
+from ...common.parallel import check_cancelled
 from ...countries.painted_symbols import SYMBOLS
 from ...lazy import cv2
 from ..cells.road_grid import CELL_SIZE
@@ -22,6 +23,7 @@ from .classify import NOT_PAINT
 from .near_pairs import overlapping_pairs
 
 if TYPE_CHECKING:
+    from ...execution.phase import NoSource
     from .shape import Shape
 
 FIGURE_PARTS = NOT_PAINT, "symbol", "arrow", "hatch"   # classes that pieces of a figure may have; a small wheel looks like a cover
@@ -29,6 +31,7 @@ FIGURE_SIZE = 0.6, 5.0      # m along and across of a figure
 SCAN_GAP = 4                # cells along the road between scan lines that are closed; the strokes of a figure lie farther apart
 LETTER_GAP = 0.45           # m between parts of one figure at most
 MOST_PARTS = 12             # of a figure
+GROUPS_AT_ONCE = 200        # groups of markings whose cells are in memory together
 THICK_CELLS = 9            # cells: strokes of figures are thinner than this, 0.36 m, in one direction at least
 MOST_THICK = 0.4            # of the paint may be thicker: bars of words that are 4 m long
 LEAST_AGREEMENT = {"bicycle": (0.68, 0.64), "bus": (0.72, 0.66)}   # of the whole figure, and of the third that agrees least
@@ -41,8 +44,12 @@ class RecognisedFigure(NamedTuple):
     kind: str
 
 
+Candidate = tuple[tuple[int, ...], np.ndarray, np.ndarray]   # markings that may be a figure together; their cells, and m of `track_reach` there
+
+
 def painted_figures(shapes: Sequence[Shape], kinds: Sequence[str], possible: np.ndarray,
-                    cells_of: Callable[[tuple[int, ...]], tuple[np.ndarray, np.ndarray]]) -> list[RecognisedFigure]:
+                    cells_of: Callable[[tuple[int, ...]], tuple[np.ndarray, np.ndarray]],
+                    look: Callable[[list[list[Candidate]], float, float], Iterable[list[tuple[int, str]]]]) -> list[RecognisedFigure]:
     """Bicycles and words among the markings of one road.
 
     Parameters
@@ -51,6 +58,7 @@ def painted_figures(shapes: Sequence[Shape], kinds: Sequence[str], possible: np.
     kinds : N classes, "" for what was taken for no paint
     possible : (N,) bool, whether a marking lies where paint can be
     cells_of : gives the (K, 2) int cells of some markings together, different ones, and the (K,) m of `track_reach` there
+    look : gives what `figures_of_group` finds in each of some groups, which are all groups from one fraction to another
 
     Returns
     -------
@@ -58,16 +66,28 @@ def painted_figures(shapes: Sequence[Shape], kinds: Sequence[str], possible: np.
     """
     parts = np.flatnonzero(possible & np.isin(np.array(kinds, object), FIGURE_PARTS))
     found: list[RecognisedFigure] = []
+    groups = list(_candidates(shapes, kinds, parts))
+    for first in range(0, len(groups), GROUPS_AT_ONCE):
+        some = [[(members, *cells_of(members)) for members in group] for group in groups[first:first + GROUPS_AT_ONCE]]
+        for group, figures in zip(some, look(some, first / len(groups), (first + len(some)) / len(groups))):
+            found += [RecognisedFigure(group[k][0], kind) for k, kind in figures]
+    return found
+
+
+def figures_of_group(source: NoSource, group: list[Candidate]) -> list[tuple[int, str]]:
+    """The phase that compares markings that lie together with figures: which candidates are one, and its class; no marking is in two."""
+    found: list[tuple[int, str]] = []
     taken: set[int] = set()
-    for members in _candidates(shapes, kinds, parts):
-        if taken.isdisjoint(members) and (kind := _figure(*cells_of(members))):
-            found.append(RecognisedFigure(members, kind))
+    for k, (members, cells, reach) in enumerate(group):
+        check_cancelled()
+        if taken.isdisjoint(members) and (kind := _figure(cells, reach)):
+            found.append((k, kind))
             taken.update(members)
     return found
 
 
-def _candidates(shapes: Sequence[Shape], kinds: Sequence[str], parts: np.ndarray) -> Iterator[tuple[int, ...]]:
-    """Markings that may be a figure: all that lie together, those of them that were taken for paint, and each alone."""
+def _candidates(shapes: Sequence[Shape], kinds: Sequence[str], parts: np.ndarray) -> Iterator[list[tuple[int, ...]]]:
+    """Of each group of markings that lie together those that may be a figure: all, those of them that were taken for paint, and each alone."""
     box = np.array([(shape.s0, shape.s1, shape.d0, shape.d1) for shape in shapes]).reshape(-1, 4)[parts]
     links = [np.empty((0, 2), np.int64)]
     for a, b in overlapping_pairs(box[:, 0], box[:, 1], box[:, 0], box[:, 1], LETTER_GAP):
@@ -78,7 +98,7 @@ def _candidates(shapes: Sequence[Shape], kinds: Sequence[str], parts: np.ndarray
     for number in np.unique(group).tolist():
         together = np.flatnonzero(group == number)
         painted = together[[kinds[k] != NOT_PAINT for k in parts[together]]]
-        tried = set()
+        tried, large = set(), []
         for some in (together, painted, *(one[None] for one in together)):
             members = tuple(parts[some].tolist())
             if members in tried or not 0 < len(some) <= MOST_PARTS:
@@ -86,7 +106,9 @@ def _candidates(shapes: Sequence[Shape], kinds: Sequence[str], parts: np.ndarray
             tried.add(members)
             size = box[some][:, [1, 3]].max(axis=0) - box[some][:, [0, 2]].min(axis=0)
             if size.min() >= FIGURE_SIZE[0] and size.max() <= FIGURE_SIZE[1]:
-                yield members
+                large.append(members)
+        if large:
+            yield large
 
 
 def _figure(cells, reach):

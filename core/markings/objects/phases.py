@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +12,7 @@ import shapely
 from ...common.parallel import check_cancelled
 from ...common.progress import Progress
 from ...execution.phase import Executor, NoSource, Phase
+from .figures import Candidate, figures_of_group
 from .outline import drawn_outline
 from .shape import Shape, measure
 from .split_merge import parts_of_compound
@@ -110,6 +111,11 @@ class ApartWork:
         columns = tuple(records[name] for name in ("s", "d", "x", "y", "z", "spacing"))
         return self._run(outlines_of_markings, columns, np.cumsum([0, *map(len, rows)]), progress,
                          rows=np.concatenate([np.empty(0, np.intp), *rows]), looks=looks, arguments=(road,), read=_polygons)
+
+    def figures(self, groups: list[list[Candidate]], begin: float, end: float, progress: Progress) -> Iterator[list[tuple[int, str]]]:
+        """What `figures_of_group` finds in each group; they are the work from a fraction `begin` of the progress to `end`."""
+        phase = Phase(figures_of_group, NoSource(), (), lambda item: f"markings of road {self.road}")
+        return self.executor.run(phase, groups, progress.part(begin, end))
 
     def _run(self, function: Callable[..., Any], columns: Sequence[np.ndarray], bounds: np.ndarray, progress: Progress,
              rows: np.ndarray | None = None, alone: bool = False, looks: Sequence[Any] | None = None, arguments: tuple[Any, ...] = (),

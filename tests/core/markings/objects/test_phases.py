@@ -1,13 +1,16 @@
-"""Crossings, compound clusters and shapes of clusters: worker processes find in small tasks what threads find together, to the last bit."""
+"""Crossings, compound clusters, shapes of clusters and figures: worker processes find in small tasks what threads find together, to the last bit."""
 
 from contextlib import closing
 
 import numpy as np
 import pytest
 from lanewright.core.common.progress import Progress
+from lanewright.core.countries.painted_symbols import SYMBOLS
 from lanewright.core.execution.interpreter import find_interpreter
 from lanewright.core.execution.processes import WorkerProcesses
 from lanewright.core.execution.threads import Threads
+from lanewright.core.markings.cells.road_grid import CELL_SIZE
+from lanewright.core.markings.figures.match import figures_of
 from lanewright.core.markings.objects import phases
 from lanewright.core.markings.objects.phases import ApartWork
 from lanewright.core.survey.store.columns import Columns
@@ -26,6 +29,14 @@ STRIPES = [patch_of_paint(20, 24, d, d + 0.5) for d in range(-4, 4)]
 DASHES = [patch_of_paint(s, s + 3, 0.0, 0.12) for s in range(30, 80, 9)]
 
 
+def figure(symbol):
+    """Cells of 4 cm of a figure that is drawn as large as most of its kind."""
+    image = figures_of(symbol)[0].image
+    width, height = (round(sum(limits) / 2 / CELL_SIZE) for limits in (symbol.width, symbol.height))
+    column, row = np.meshgrid(np.arange(width) * image.shape[1] // width, np.arange(height) * image.shape[0] // height)
+    return np.argwhere((image > 0.3 * image.max())[row, column])
+
+
 def found_by(executor):
     """The results of all phases."""
     with closing(executor):
@@ -40,13 +51,17 @@ def found_by(executor):
         parts = work.parts(s, d, spacing, list(zip(bounds[:4].tolist(), bounds[1:5].tolist())), Progress())
         records = Columns(dict(s=s, d=d, spacing=spacing), [("s", "i4"), ("d", "i4"), ("spacing", "u2")])
         shapes = work.shapes(records, bounds, Progress())
+        candidates = [((k,), cells, np.zeros(len(cells))) for k, cells in enumerate([*map(figure, SYMBOLS), np.argwhere(np.ones((9, 30)))])]
+        figures = list(work.figures([[one] for one in candidates] + [[candidates[0], candidates[0]]], 0.0, 1.0, Progress()))
         return ([comb and (comb.middle.tobytes(), *comb._replace(middle=None)) for comb in combs],
-                [(part.tobytes(), count) for part, count in parts], shapes, [type(value) for shape in shapes for value in vars(shape).values()])
+                [(part.tobytes(), count) for part, count in parts], shapes, [type(value) for shape in shapes for value in vars(shape).values()],
+                figures)
 
 
 @pytest.mark.slow
 def test_worker_processes_find_what_threads_find(monkeypatch):
-    combs, parts, shapes, _ = known = found_by(Threads(1))
+    combs, parts, shapes, _, figures = known = found_by(Threads(1))
+    assert {kind for some in figures for _, kind in some} == {"bicycle", "bus"} and figures[-2] == [] and figures[-1] == figures[0]
     assert sum(comb is not None for comb in combs) >= 2 and None in combs
     assert parts[0][1] >= 2 and len(shapes) == len(STRIPES) + len(DASHES) + 1
     assert found_by(Threads(3)) == known
