@@ -26,11 +26,14 @@ from .beyond_corridor import with_curbs_beyond
 from .classify import CurbReturn, classify_curbs, is_curb_like
 from .far_sides import MIN_ISLAND_WIDTH, far_sides
 from .following import FollowedEnds, followed_steps
+from .ground.behind import ground_behind
+from .ground.level_ground import driven_ground, ground_slopes
+from .ground.raster import PLAN_CELL, averaged, ground_raster
+from .ground.steps_up import step_places
 from .island_tops import on_island_tops
 from .leading import with_led_on
 from .main_curbs import MIN_OPENING_LENGTH, SEARCH_BEHIND_CURB, KnownPlaces, SearchLimit, main_curbs_of, main_runs, places_along
 from .main_islands import are_replaced, on_main_islands
-from .raster import PLAN_CELL, averaged, driven_ground, ground_behind, ground_raster, ground_slopes, step_places
 from .steps import PlanSteps, measure_plan_steps
 from .tracking import join_chains, link_plan_steps
 

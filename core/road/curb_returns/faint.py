@@ -31,7 +31,7 @@ from ..common.levels import (
 )
 from ..common.tracking import HEIGHT_TOLERANCE
 from .following import FollowedEnds
-from .raster import GroundRaster
+from .ground.raster import GroundRaster
 from .steps import PlanSteps
 from .tracking import LINE_DIRECTION_LENGTH, MAX_HEIGHT_GRADE
 

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ..common.tracking import HEIGHT_TOLERANCE
-from .raster import GroundBehind
+from .ground.behind import GroundBehind
 from .steps import PlanSteps
 
 RAY_SPACING = 0.2             # m between places along a ray

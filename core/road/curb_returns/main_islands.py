@@ -18,7 +18,9 @@ from ..common.hidden_curb import MAX_HIDDEN_GAP
 from ..common.occlusion import OCCLUSION_CELL, OcclusionGrid
 from ..common.sides import SIDE_SIGNS, expected_height
 from .classify import MIN_ISLAND_SHARE, CurbReturn
-from .raster import ISLAND_DROP_SHARE, MAX_GROUND_SLOPE, MIN_EDGE_SHARE, PLAN_CELL
+from .ground.behind import ISLAND_DROP_SHARE, MIN_EDGE_SHARE
+from .ground.level_ground import MAX_GROUND_SLOPE
+from .ground.raster import PLAN_CELL
 
 if TYPE_CHECKING:
     from ...survey.open_survey import Survey
