@@ -17,6 +17,7 @@ DISTANCE_BINS = int(2 * MAX_DISTANCE / DISTANCE_BIN)   # both sides of the vehic
 INTENSITY_LEVELS = 1024     # logarithmic, 64 to a doubling: 1.1 % each
 LEVELS_PER_DOUBLING = 64
 MIN_ASPHALT_POINTS = 200    # points of a bin, below which its asphalt is unknown
+MAX_JOINED_BINS = 10    # 5 m of neighbouring bins with fewer points are taken together
 MIXED_BIN_SPREAD = 1.5  # times the spread of its neighbours: a bin of paint and asphalt, left out
 MIXED_BIN_NEIGHBOURS = 4    # bins either side that a bin is compared with
 PAINT_SIGMAS = 3.0      # lower spreads above the median of asphalt: what is brighter is taken for paint
@@ -233,8 +234,10 @@ class AsphaltTable:
         median, sigma, weight = median[rows], sigma[rows], weight[rows]
         known = np.isfinite(median) & ~_mixed(sigma / np.maximum(median, 1e-9))
         reference = weighted_median(median[known], weight[known])
-        median = np.where(known, median, np.nan)
-        asphalt = np.stack([_smoothed(row, count) for row, count in zip(median, weight)])
+        # beyond the last level nothing tells how asphalt goes on: how far that is must not turn on the density of the points
+        joined = _sparse_bins_joined(histograms[rows])
+        levels = np.where(known, median, asphalt_of_histograms(joined)[0])
+        asphalt = np.stack([_smoothed(row, count) for row, count in zip(levels, np.where(known, weight, joined.sum(axis=-1)))])
         return cls(asphalt, known, kind, reference, is_logarithmic(median, sigma, weight))
 
     def lookup(self) -> np.ndarray:
@@ -315,6 +318,22 @@ def _mixed(spread):
     found = np.zeros(spread.shape, bool)
     found[known] = spread[known] > MIXED_BIN_SPREAD * np.nanmedian(around[:, known], axis=0)
     return found
+
+
+def _sparse_bins_joined(histograms):
+    """(scanners, DISTANCE_BINS, INTENSITY_LEVELS) counts of neighbouring bins that have too few points each, as soon as they have enough
+    together, in the bin at their middle; from the vehicle outwards on either side."""
+    joined, counts = np.zeros_like(histograms), histograms.sum(axis=-1)
+    for scanner in np.flatnonzero(counts.any(axis=-1)).tolist():
+        for side in (range(DISTANCE_BINS // 2, DISTANCE_BINS), range(DISTANCE_BINS // 2 - 1, -1, -1)):
+            group: list[int] = []
+            for k in side:
+                group = [*group[1 - MAX_JOINED_BINS:], k] if 0 < counts[scanner, k] < MIN_ASPHALT_POINTS else []
+                own = counts[scanner, group]
+                if own.sum() >= MIN_ASPHALT_POINTS:
+                    joined[scanner, int(np.rint((own * group).sum() / own.sum()))] = histograms[scanner, group].sum(axis=0)
+                    group = []
+    return joined
 
 
 def _smoothed(values, weight, sigma=0.7):

@@ -322,8 +322,8 @@ def _row_of_stripes(number, off, along, comb):
     for k, count in zip(numbers, counts):
         span = _span(along[on & (number == k)])
         own_width, aside = _width(along[on & (number == k)], off[on & (number == k)])
-        # a curb or a line that happens to lie there is narrower, or on one side
-        full = aside <= MAX_ASIDE * width and own_width >= MIN_OF_WIDTH * width
+        # a curb or a line that happens to lie there is narrower, or on one side; few spots tell their middle to two standard errors
+        full = aside <= max(MAX_ASIDE, 1 / np.sqrt(count)) * width and own_width >= MIN_OF_WIDTH * width
         if full and count >= MIN_OF_USUAL * usual and span[1] - span[0] >= MIN_STRIPE_SPAN / 2:
             kept.append(int(k))
             ends.append(span)

@@ -8,7 +8,8 @@ import numpy as np
 
 from ...lazy import cv2
 from ..cells.road_grid import CELL_SIZE
-from ..cells.scan_tracks import fill_gaps
+from ..cells.scan_tracks import MAX_GAP_ON_TRACK, fill_gaps
+from .spacing import MAX_TRACK_GAP
 
 if TYPE_CHECKING:
     from .extract import MarkingSettings
@@ -16,16 +17,17 @@ if TYPE_CHECKING:
 WORN_GAP = 0.80  # m along the road: no painted gap is shorter, so bright specks in it belong to one worn line
 
 
-def morphology(mask: np.ndarray, settings: MarkingSettings) -> np.ndarray:
+def morphology(mask: np.ndarray, seen: np.ndarray, settings: MarkingSettings) -> np.ndarray:
     """Close gaps along the road, then remove runs that are short both along and across it.
 
     A stop line is short along the road and a lane line across it: a cell stays
     where either run through it is long enough. The remains of a worn line between
-    two such runs stay, too.
+    two such runs stay, too. Where points lie far apart, cells between two bright ones that no point was near are no gap.
 
     Parameters
     ----------
     mask : (rows, columns) bool, bright cells
+    seen : (rows, columns) bool, cells whose brightness is known
     settings : MarkingSettings, of which `close` and `shortest` are used
 
     Returns
@@ -34,8 +36,19 @@ def morphology(mask: np.ndarray, settings: MarkingSettings) -> np.ndarray:
     """
     length = int(round(settings.shortest / CELL_SIZE))
     closed = fill_gaps(mask, int(round(settings.close / CELL_SIZE)), 0)
-    long = mask & (long_runs(closed, length, 0) | long_runs(closed, length, 1))
+    along, across = (closed | _unseen_gaps(mask, seen, limit, axis) for axis, limit in enumerate((MAX_GAP_ON_TRACK, MAX_TRACK_GAP)))
+    long = mask & (long_runs(along, length, 0) | long_runs(across, length, 1))
     return mask & (long | _between(long, mask)) if long.any() else long
+
+
+def _unseen_gaps(mask, seen, limit, axis):
+    """Cells between two bright ones, at most `limit` metres apart along an axis, if none of them was seen."""
+    gaps = fill_gaps(mask, int(round(limit / CELL_SIZE)), axis) & ~mask
+    if not (gaps & ~seen).any():
+        return np.zeros(mask.shape, bool)
+    ends, dark, gaps = (cells if axis == 0 else cells.T for cells in (mask, seen & ~mask, gaps))
+    gaps = gaps & _met_since(ends, dark) & _met_since(ends[::-1], dark[::-1])[::-1]
+    return gaps if axis == 0 else gaps.T
 
 
 def _between(ends, specks):

@@ -250,7 +250,7 @@ class WindowExtractor:
         median, spread, scale, threshold = levels.at(grid)
         z, gutter = flatten(brightness, median, spread, view.rims)
         with np.errstate(invalid="ignore"):
-            bright = morphology((z > threshold * scale) & ~gutter, self.settings)
+            bright = morphology((z > threshold * scale) & ~gutter, np.isfinite(brightness), self.settings)
         mask = without_fading_areas(z, without_fading_rims(z, bright, view.occupied & ~gutter), view.occupied, gutter, grid.offsets())
         # the background that was subtracted from the cell is subtracted from the point as well
         least = (brightness - z * spread) + (threshold - 0.5) * (spread * scale)

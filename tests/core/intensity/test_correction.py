@@ -141,6 +141,16 @@ def test_the_correction_does_not_depend_on_the_length_of_sections(section_length
     np.testing.assert_array_equal(np.sort(a.corrected), np.sort(b.corrected))
 
 
+def test_far_asphalt_with_few_points_is_as_bright_as_near_asphalt():
+    records, across, _ = street(paint=1.0)
+    few = (np.abs(across) < 3) | (np.arange(len(across)) % 30 == 0)
+    points, _ = corrected(records[few])
+    far = np.array([np.median(points.corrected[(points.d >= 3) & (points.d < 8) & (points.scanner == scanner)]) for scanner in (0, 1)])
+    near = np.median(points.corrected[np.abs(points.d) < 3])
+    np.testing.assert_allclose(far, near, rtol=0.1)
+    assert np.median(points.corrected[points.d >= 6.5]) == pytest.approx(near, rel=0.15)
+
+
 def test_where_points_are_dense_stripes_of_road_give_the_same_asphalt(monkeypatch):
     """Of 2000 points a metre each ninth centimetre is sampled, whatever the length of sections."""
     usual, _ = corrected(street()[0])

@@ -56,6 +56,15 @@ def test_a_stripe_has_all_its_paint_whatever_its_length(length):
     assert len(np.concatenate([stripe.spots for stripe in crossings_in(places)])) > 0.995 * len(places)
 
 
+def test_most_stripes_of_a_few_spots_each_are_found():
+    found = []
+    for seed in range(40):
+        rng = np.random.default_rng(seed)
+        places = np.concatenate([np.column_stack([rng.uniform(0, 4, 15), k + rng.uniform(-0.25, 0.25, 15)]) for k in range(6)])
+        found.append(len(crossings_in(places)))
+    assert np.mean(found) > 4.8
+
+
 def test_lines_that_end_at_a_crossing_do_not_turn_its_stripes():
     left = [strip(2.2, 6.0, 2.02, 2.14), strip(2.2, 6.0, 0.2, 0.35), strip(2.2, 6.0, 0.55, 0.70)]
     right = [strip(-6.0, -2.2, -2.95, -2.83), strip(-3.0, -2.5, -3.0, 0.3)]
