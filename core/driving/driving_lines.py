@@ -83,7 +83,7 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
             heights = [frame.track_height(number, s[t.first:t.last + 1]) for t in tracks]
         courses = lane_courses(tracks, s, frame.roads[number], alignment)
         for lane, (track, course, elements, z) in enumerate(zip(tracks, courses, alignment, heights), start=1):
-            sigma = lane_sigma(track, course, frame.roads[number], one.lines, paint, frame.pass_sigma.get(number, 0.0))
+            sigma = lane_sigma(track, course, frame.roads[number], one, paint, frame.pass_sigma.get(number, 0.0))
             rows += [dict(row, road=number, lane=lane) for row in _lane_pieces(track, track.direction, course, elements, one.lines, z, sigma)]
             arcs += [dict(row, road=number, lane=lane) for row in _lane_curves(track.direction, elements)]
         tracks = [track.without_jumps(s) for track in tracks]

@@ -1,13 +1,18 @@
 """How uncertain the place of a driving line is: one sigma across it.
 
-What adds up as squares: how well the painted borders of a lane are placed, a share of the scatter of their paint about their curves, since its
-errors go on over metres and do not average out; how far along a border its next paint is, where it is bridged; more where the lane lies beside
-one line only; and what passes differ by that were laid on each other. Between two painted borders the middle takes half of the error of each;
-where two lanes lie between them with nothing painted in the middle of the road, it takes three quarters of one and one quarter of the other.
-The distance of the smooth line from the lane's places counts as far as it is more than the error of the borders, which makes the places scatter
-and is counted already. Where the curvature changes, as from a straight into a hairpin bend, a line that is as good as an arc over some metres
-lies beside the lane. A piece of a line says the mean along it. The shares were found on simulated streets with truth (docs/accuracy.md). What the
-trajectory is off as a whole is not in it, since one pass does not show it.
+What adds up as squares: how well the borders of the lane are placed, and how well the line follows the lane.
+
+A painted border is off by a share of the scatter of its paint about its curve: most of that averages out along the curve, and how much is left
+was found on simulated streets with truth (docs/accuracy.md). More is added with the distance to its next paint, where it is bridged. The border of
+a hatched area is known as well as the outline of its bars. Between two borders the middle takes half of the error of each; where two lanes lie
+between them with nothing painted in the middle of the road, it takes three quarters of one and one quarter of the other. Beside one border alone
+it takes all of it, and what the width of lanes is off by.
+
+The line is off by as much as the places of its lane lie beside it on average over some metres: the borders show the lane there and the line passes
+it. Where the curvature changes, as from a straight into a hairpin bend, places and line are as good as an arc over some metres, which lies beside
+the lane. What passes differ by that were laid on each other comes last.
+
+A piece of a line says the mean along it. What the trajectory is off as a whole is not in it, since one pass does not show it.
 """
 
 from __future__ import annotations
@@ -18,28 +23,29 @@ import numpy as np
 from scipy.ndimage import distance_transform_edt, gaussian_filter1d, uniform_filter1d
 
 from ..markings.cross_section.sections import STATION_STEP
+from ..markings.cross_section.weights import HATCHING, OUTSIDE
 from .lane_track import MEASURED
 
 if TYPE_CHECKING:
-    from ..markings.cross_section.sections import CrossSections
+    from ..markings.cross_section.roads import EstimatedRoad
     from ..survey.frame.road_frame import Road
     from .centreline import Course
     from .lane_track import LaneTrack
 
-BORDER_SHARE = 0.45            # of the RMS distance of a border's paint from its curve, that the border is off by
-USUAL_SCATTER = 0.010          # m, of paint about its curve, where neither border says it
-GAP_SHARE = 0.004              # m per m to the next place where a border is painted, or, without borders, where the lane is measured
-BESIDE_SIGMA = 0.012           # m; beside: placed from one line only
-BETWEEN_BORDERS, NO_MIDDLE_LINE = 0.5, 0.625   # of the mean square error of its borders, that the middle of a lane is off by
+BORDER_SHARE = 0.13            # of the RMS distance of a border's paint from its curve, that the border is off by
+USUAL_SCATTER = 0.010          # m, of paint about its curve, where no border says it
+GAP_SHARE = 0.002              # m per m to the next place where a border is painted, or, without borders, where the lane is measured
+HATCHING_SIGMA = 0.03          # m, of a hatched area's border: outlines are of image cells, and its line's breadth is not known
+WIDTH_SIGMA = 0.007            # m, of the middle of a lane beside one border alone: half of what its width is off by
+BETWEEN_BORDERS, OWN_BORDER, FAR_BORDER = 0.5, 0.75, 0.25   # of the error of a border, that the middle of a lane is off by
 MAX_GAP_DISTANCE = 50.0        # m, beyond which a painted place says nothing
-SCATTER_SHARE = 0.3            # of the RMS distance of the line from the lane's places, beyond the error of the borders
-SCATTER_WINDOW = 20.0          # m along the lane, of that RMS
+MISFIT_WINDOW = 2.5            # m along the lane, over which its places are averaged
 ARC_REACH = 3.7                # m, either way, over which the line is as good as an arc
 CURVATURE_SIGMA = 1.0          # m, of the Gaussian that smooths heading and curvature
 CURVATURE_WINDOW = 10.0        # m along the lane, of the RMS of the change of curvature
 
 
-def lane_sigma(track: LaneTrack, course: Course, road: Road, lines: CrossSections, paint: dict[int, float], passes: float = 0.0) -> np.ndarray:
+def lane_sigma(track: LaneTrack, course: Course, road: Road, known: EstimatedRoad, paint: dict[int, float], passes: float = 0.0) -> np.ndarray:
     """One sigma across a driving line at each place of its lane.
 
     Parameters
@@ -47,7 +53,7 @@ def lane_sigma(track: LaneTrack, course: Course, road: Road, lines: CrossSection
     track : LaneTrack of N places
     course : Course of the lane
     road : Road
-    lines : CrossSections of the road's painted lines, on whose stations the track runs
+    known : EstimatedRoad of the road's lines, on whose stations the track runs, and of its boundaries, between which it lies
     paint : {number of a line: m, RMS distance of its paint from its curve}
     passes : m, one sigma of the middle of the passes, see `RoadFrame.pass_sigma`
 
@@ -55,25 +61,35 @@ def lane_sigma(track: LaneTrack, course: Course, road: Road, lines: CrossSection
     -------
     (N,) m
     """
-    measured = track.status == MEASURED
+    lines = known.lines
+    return np.sqrt(_mean_square_of_borders(track, known, paint) + _mean_square_misfit(track, course, road, lines)
+                   + _mean_square_bias(track, course, lines) + passes**2)
+
+
+def _mean_square_of_borders(track, known, paint):
+    """(N,) m², of the middle of a lane from what its borders are off by."""
+    lines, made_of = known.lines, np.append(known.boundaries.made_of, OUTSIDE)
     painted, square, away = (np.stack(both) for both in zip(*(_border(track, lines, paint, rows) for rows in (track.left, track.right))))
-    count = painted.sum(axis=0)
-    known = np.isfinite(square)
-    mean = np.where(known, square, 0.0).sum(axis=0) / np.maximum(known.sum(axis=0), 1)
-    usual = np.median(mean[known.any(axis=0)]) if known.any() else USUAL_SCATTER**2
-    scatter = np.where(known.any(axis=0), mean, usual)
-    gap = np.where(count > 0, (away**2).sum(axis=0) / 4.0, _distance_to(measured) ** 2)
-    beside = np.where(~measured & track.offset, BESIDE_SIGMA, 0.0)
-    borders = np.where(count == 2, BETWEEN_BORDERS, NO_MIDDLE_LINE) * BORDER_SHARE**2 * scatter
-    wander = np.maximum(_mean_square_distance(track, course, road, lines) - borders, 0.0)
-    return np.sqrt(borders + GAP_SHARE**2 * gap + beside**2 + SCATTER_SHARE**2 * wander + _mean_square_bias(track, course, lines) + passes**2)
+    hatched = np.stack([made_of[rows] == HATCHING for rows in (track.left, track.right)])
+    bounding = painted | hatched
+    told = np.isfinite(square)
+    mean = np.where(told, square, 0.0).sum(axis=0) / np.maximum(told.sum(axis=0), 1)
+    usual = np.median(mean[told.any(axis=0)]) if told.any() else USUAL_SCATTER**2
+    scatter = np.where(told, square, np.where(told.any(axis=0), mean, usual))
+    off = np.where(hatched, HATCHING_SIGMA**2, BORDER_SHARE**2 * scatter + (GAP_SHARE * away) ** 2)
+    share = np.where(bounding.sum(axis=0) == 1, np.where(bounding, OWN_BORDER, FAR_BORDER), BETWEEN_BORDERS)
+    share = np.where(track.offset & bounding.any(axis=0), bounding / np.maximum(bounding.sum(axis=0), 1), share)
+    measured = track.status == MEASURED
+    unbounded = np.where(bounding.any(axis=0), 0.0, GAP_SHARE * _distance_to(measured))
+    beside = np.where(~measured & track.offset, WIDTH_SIGMA, 0.0)
+    return (share**2 * off).sum(axis=0) + unbounded**2 + beside**2
 
 
-def _mean_square_distance(track, course, road, lines):
-    """(N,) m², of the smooth line from the lane's places, over SCATTER_WINDOW."""
+def _mean_square_misfit(track, course, road, lines):
+    """(N,) m², of the smooth line from the mean of the lane's places over MISFIT_WINDOW."""
     s = lines.s[track.first:track.last + 1]
     drawn = road.locate(np.interp(s, course.s, course.x), np.interp(s, course.s, course.y), s)[1]
-    return uniform_filter1d(np.nan_to_num(drawn - track.d) ** 2, int(SCATTER_WINDOW / STATION_STEP) + 1, mode="nearest")
+    return uniform_filter1d(np.nan_to_num(drawn - track.d), int(MISFIT_WINDOW / STATION_STEP), mode="nearest") ** 2
 
 
 def _mean_square_bias(track, course, lines):
