@@ -41,7 +41,17 @@ SURVEY_SETTINGS = (
            "adjusted to control points already; what the passes differ by then blurs curbs and doubles lines."),
         advanced=True,
     ),
+    SettingSpec(
+        "TRAJECTORY_SIGMA", SURVEY, "trajectory_sigma", tr("Accuracy of the trajectory across, one sigma, 0 = unknown (m)"),
+        tr("How far the survey as a whole may lie beside its true place, as the processing of GNSS and INS reports it or check points show; "
+           "0.02 is usual. It goes into sigma_m of road edges and driving lines, which then tells how far they may lie beside their true place. "
+           "With 0 it tells how well they fit the survey's own points, and what passes differ by; what the survey is off as a whole, which "
+           "one drive does not show, comes on top."),
+        advanced=True,
+    ),
 )
+# of those who draw no lines
+READING_SETTINGS = tuple(spec for spec in SURVEY_SETTINGS if spec.name != "TRAJECTORY_SIGMA")
 
 EXECUTION_SETTINGS = (
     SettingSpec(

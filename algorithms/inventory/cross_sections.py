@@ -4,7 +4,7 @@ from ...core.common.schemas import CROSS_SECTIONS
 from ...core.countries.catalogue import COUNTRIES
 from ..algorithm import Algorithm
 from ..parameters import SettingSpec
-from ..survey_input import SURVEY_SETTINGS
+from ..survey_input import READING_SETTINGS
 from ..texts import tr
 from .survey_with_borders import add_borders, survey_with_borders
 
@@ -60,7 +60,7 @@ class CrossSections(Algorithm):
                     tr("With it lanes have their numbers and directions; not needed beside Lanes."),
                     tr("With it every lane, shoulder and parking strip of the road map is measured."))
         self.add_settings(SECTION_SETTINGS)
-        self.add_settings(SURVEY_SETTINGS)
+        self.add_settings(READING_SETTINGS)
         self.add_sink("OUTPUT", tr("Cross-sections"), tr("A line across every lane and carriageway at every section."), fields=CROSS_SECTIONS,
                       geometry="LineStringZ")
         self.add_sink("TABLE", tr("Table of the cross-sections"), tr("The same rows without lines, for spreadsheets."), fields=CROSS_SECTIONS,

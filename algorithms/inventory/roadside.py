@@ -4,7 +4,7 @@ from ...core.common.schemas import ROADSIDE, ROADSIDE_OBJECTS
 from ...core.countries.catalogue import COUNTRIES
 from ..algorithm import Algorithm
 from ..parameters import SettingSpec
-from ..survey_input import SURVEY_SETTINGS
+from ..survey_input import READING_SETTINGS
 from ..texts import tr
 from .survey_with_borders import add_borders, survey_with_borders
 
@@ -49,7 +49,7 @@ class Roadside(Algorithm):
                     tr("With it the carriageway without edges holds every lane."),
                     tr("The same, with shoulders and parking strips."))
         self.add_settings(ROADSIDE_SETTINGS)
-        self.add_settings(SURVEY_SETTINGS)
+        self.add_settings(READING_SETTINGS)
         self.add_sink("OUTPUT", tr("Roadside"), tr("Lines along the foot, on the ground."), fields=ROADSIDE, geometry="LineStringZ")
         self.add_sink("OBJECTS", tr("Poles, signs and trunks"), fields=ROADSIDE_OBJECTS, geometry="PointZ", optional=True)
         self.add_report()

@@ -54,7 +54,7 @@ class NormalizedScanlines(Algorithm):
         self.add_settings(SCANLINE_SETTINGS)
         self.add_settings(LAYER_SETTINGS)
         self.add_settings(POINT_SETTINGS)
-        self.add_settings(SURVEY_SETTINGS, only=("SCANNER_FIELD", "TIME", "INTENSITY_FROM", "FIT_PASSES"))
+        self.add_settings(SURVEY_SETTINGS, only=("SCANNER_FIELD", "TIME", "INTENSITY_FROM", "FIT_PASSES", "TRAJECTORY_SIGMA"))
         add_execution(self)
         self.add_sink("SCANLINES", tr("Normalized scanlines"),
                       tr("Lines with height (Z) and intensity (M)."), fields=SCANLINES, geometry="LineStringZM", optional=True)

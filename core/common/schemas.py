@@ -22,7 +22,8 @@ RADIUS = Field("radius_m", float, "Radius (m)")
 CURB_KIND = Field("kind", str, "Kind (main/corner/side_street/island)")
 RMSE = Field("rmse_m", float, "RMSE of the fit (m)")
 SIGMA = Field("sigma_m", float, "Uncertainty across, one sigma (m)", needed=False)
-PASS_SIGMA = Field("pass_sig_m", float, "Part of the uncertainty across that all lines of the road share, as passes differ (m)", needed=False)
+PASS_SIGMA = Field("pass_sig_m", float, "Part of the uncertainty across that all lines of the road share, from trajectory and passes (m)",
+                   needed=False)
 
 # curb: a step; dropped: a low one where one drives over; pavement: where asphalt ends without a curb
 EDGE = Field("edge", str, "Edge (curb/dropped/pavement)", needed=False)

@@ -157,6 +157,10 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
             for file in shared.ordered.iterdir():
                 file.unlink()
             survey.put_in_order(shared.ordered, shared.ordering, progress.part(1.0, 1.0))
+    if settings.trajectory_sigma:
+        # what passes differ by is part of the same error
+        differ = survey.frame.pass_sigma
+        survey.frame.pass_sigma = {road: max(differ.get(road, 0.0), settings.trajectory_sigma) for road in range(len(frame.roads))}
     if shared is not None:
         survey.keep(shared.ordered)
     return survey

@@ -42,6 +42,7 @@ class SurveySettings:
     crs : WKT for clouds that carry none
     intensity_from : "intensity", or "rgb" for the luminance of the colours
     fit_passes : whether passes over one road are adjusted to each other
+    trajectory_sigma : m, one sigma across of the trajectory, and so of all points, as its processing or check points tell; 0 where unknown
     above_road : m above the road up to which points are kept; the map needs what hides a curb, an inventory what hangs over the road
     section_length : m of station in a section of the store; None for as many as hold some hundred thousand points
     memory_limit : bytes of points in memory; more go to a temporary file
@@ -54,6 +55,7 @@ class SurveySettings:
     crs: str = ""
     intensity_from: str = INTENSITY_SOURCES[0]
     fit_passes: bool = True
+    trajectory_sigma: float = setting(0.0, 0.0, 10.0, "The accuracy of the trajectory", "m")
     above_road: float = setting(KEPT_ABOVE_ROAD, 1.0, 100.0, "The height above the road", "m")
     section_length: float | None = None
     memory_limit: int = MEMORY_LIMIT

@@ -4475,6 +4475,16 @@
         </message>
         <message>
             <location filename="../../algorithms/survey_input.py" />
+            <source>Accuracy of the trajectory across, one sigma, 0 = unknown (m)</source>
+            <translation>Genauigkeit der Trajektorie quer, ein Sigma, 0 = unbekannt (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey_input.py" />
+            <source>How far the survey as a whole may lie beside its true place, as the processing of GNSS and INS reports it or check points show; 0.02 is usual. It goes into sigma_m of road edges and driving lines, which then tells how far they may lie beside their true place. With 0 it tells how well they fit the survey's own points, and what passes differ by; what the survey is off as a whole, which one drive does not show, comes on top.</source>
+            <translation>Wie weit die Vermessung als Ganzes neben ihrer wahren Lage liegen kann, wie es die Auswertung von GNSS und INS angibt oder Kontrollpunkte zeigen; 0,02 ist üblich. Es geht in sigma_m der Straßenränder und Fahrlinien ein, das dann sagt, wie weit sie neben ihrer wahren Lage liegen können. Bei 0 sagt es, wie gut sie zu den Punkten der Vermessung passen und worin sich Befahrungen unterscheiden; was die Vermessung als Ganzes abweicht und eine einzelne Befahrung nicht zeigt, kommt hinzu.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey_input.py" />
             <source>Worker processes, 0 = automatic (whole number)</source>
             <translation>Arbeitsprozesse, 0 = automatisch (ganze Zahl)</translation>
         </message>
@@ -7640,8 +7650,8 @@
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />
-            <source>Part of the uncertainty across that all lines of the road share, as passes differ (m)</source>
-            <translation>Anteil der Querunsicherheit, den alle Linien der Straße teilen, weil Fahrten sich unterscheiden (m)</translation>
+            <source>Part of the uncertainty across that all lines of the road share, from trajectory and passes (m)</source>
+            <translation>Anteil der Querunsicherheit, den alle Linien der Straße teilen, aus Trajektorie und Befahrungen (m)</translation>
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />

@@ -37,8 +37,8 @@ def sigma_section(figures):
     return ("## Uncertainty\n\nRoad edges and driving lines say in `sigma_m` how uncertain they are across, as one sigma, which should hold at 68 % "
             "of the places. Counted are the places within 10 cm of a true curb and 15 cm of a true driving line; what is farther off is an "
             "error and counted above. The shares were chosen on half of the simulated streets, of this simulator and of another, and held on "
-            "the other half and with a quarter of the points. A trajectory that is off as a whole, as it may be by some millimetres, is not "
-            "in it, since one pass does not show it: where it is, fewer places lie within.\n\n"
+            "the other half and with a quarter of the points. It holds against the points of the survey. Where these are off as a whole, as one "
+            "pass does not show, fewer places lie within, unless *Accuracy of the trajectory* tells how far off they may be.\n\n"
             + table(["survey", "road edges", "driving lines"], rows))
 
 

@@ -9,6 +9,7 @@ import shapely
 from scipy.ndimage import grey_closing
 
 from ...survey.frame.placement import located
+from ..cells.road_grid import CELL_SIZE
 from ..objects.classify import LINE_KINDS
 from .candidates import FAR
 from .evidence import BIN, BINS
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 BAR_REACH = 1.6        # m: bars of one hatched area are at most twice as far apart
 OUTLINE_SPACING = 0.25 # m between places of an outline
 HALF_BORDER = 0.06     # m from the outside of its border line to the middle: half of a narrow line
+OUTSIDE_PAINT = CELL_SIZE / 2   # m: outlines are of whole cells, of which paint reaches into the outermost ones by half on average
 SHORTEST_AREA = 5.0    # m
 BORDER_LINE_REACH = 0.5  # m between the ends of bars and the middle of the border line that they lead to: gap, and half of a broad line
 
@@ -77,7 +79,7 @@ def borders_of_hatching(markings: MarkingObjects, frame: RoadFrame, road: int, s
             # bars touch the border only at their ends
             outer = grey_closing(np.where(np.isfinite(reach[side]), sign * reach[side], -FAR)[window],
                                  size=int(2 * BAR_REACH / STATION_STEP) + 1, mode="nearest")
-            borders[side, window] = sign * (outer - HALF_BORDER)
+            borders[side, window] = sign * (outer - OUTSIDE_PAINT - HALF_BORDER)
         for line in lines:
             if area.intersects(line):
                 _follow(borders, _reach([line], frame, road, s).mean(axis=0))

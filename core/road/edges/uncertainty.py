@@ -3,7 +3,8 @@
 Five things add up as squares: how well the foot of a curb is found at all, and how much better with more points on it; curb points scatter
 about the line, and their errors go on over metres; towards its ends a line is held from one side only; and passes that were driven apart
 and laid on each other agree on a middle of which nobody knows how far off it is. The shares were found on simulated streets with truth
-(docs/accuracy.md). What the trajectory is off as a whole is not in it, since one pass does not show it.
+(docs/accuracy.md). It holds against the points of the survey: what they are off as a whole, with their trajectory, is in it only where the
+accuracy of the trajectory was told, since one pass does not show it.
 """
 
 from __future__ import annotations

@@ -26,7 +26,8 @@ class RoadFrame:
     crs : WKT, "" where unknown
     has_time : whether points are assigned to passes by their time
     notes : remarks on the trajectory, for the log
-    pass_sigma : {road number: m}, one sigma across of the middle of its passes, by what they differ; without entry where it is unknown
+    pass_sigma : {road number: m}, one sigma across of the middle of its passes, by what they differ or
+        by the accuracy of the trajectory where it was told, whichever is more; without entry where both are unknown
     """
 
     origin: np.ndarray

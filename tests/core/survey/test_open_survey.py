@@ -43,6 +43,14 @@ def test_the_sensor_stands_as_high_above_the_road_as_it_was_mounted(street):
     np.testing.assert_allclose(survey.road_height(0, np.arange(0.0, 190.0)) + survey.frame.origin[2], 100.0, atol=0.01)
 
 
+def test_the_accuracy_that_the_trajectory_is_told_to_have_is_that_of_every_road(street):
+    trajectory, _, path = street
+    assert open_survey([path], trajectory).frame.pass_sigma == {}
+    assert open_survey([path], trajectory, SurveySettings(trajectory_sigma=0.02)).frame.pass_sigma == {0: 0.02}
+    with pytest.raises(RoadExtractionError, match="The accuracy of the trajectory"):
+        SurveySettings(trajectory_sigma=-0.02)
+
+
 @pytest.mark.parametrize("settings", [
     SurveySettings(block=997), SurveySettings(section_length=7.0), SurveySettings(memory_limit=20_000),
     SurveySettings(block=3001, section_length=50.0, memory_limit=0),
