@@ -13,7 +13,7 @@ from ..markings.cross_section.lane_width import beside_island, beside_surface_en
 from ..markings.cross_section.sections import STATION_STEP
 from .lane_track import BRIDGED, INFERRED, MAX_LANE_JUMP_SHARE, MEASURED, LaneTrack
 
-BESIDE_ONE, BETWEEN_LINES = 1, 4   # ranks of lanes beside one line, and between two lines that are seen: these are not moved
+BESIDE_ONE, BETWEEN_WORN, DIVIDED, BETWEEN_LINES = 1, 2, 3, 4   # ranks of lanes by how sure their place is; those between two lines are not moved
 FULL_ROOM = 0.05        # m: less of a strip than that is not left over
 STEP_LENGTH = 10.0      # m along which a step between two stretches of a lane is evened out
 
@@ -72,9 +72,9 @@ def _within_its_borders(track, boundaries):
 
 
 def _rank(track):
-    """(N,) how sure the place of a lane is: 1 beside one line, 2 between worn lines, 3 divided, 4 between two lines that are seen."""
+    """(N,) how sure the place of a lane is: beside one line, between worn ones, in a strip of several lanes, or between two lines that are seen."""
     between = (track.left >= 0) & (track.right >= 0)
-    return np.select([track.status == MEASURED, track.offset, between], [BETWEEN_LINES, BESIDE_ONE, 2], 3)
+    return np.select([track.status == MEASURED, track.offset, between], [BETWEEN_LINES, BESIDE_ONE, BETWEEN_WORN], DIVIDED)
 
 
 def _appended(found, part):
@@ -87,6 +87,7 @@ def _appended(found, part):
     track, moved = found
     step = np.array([track.d[-1] - part.d[0], track.width[-1] - part.width[0]])
     before, after = _rank(track), _rank(part)
+    before, after = _with_lines_up_to(before[::-1], after)[::-1], _with_lines_up_to(after, before[::-1])
     if after[0] > before[-1]:
         return _shifted(track, -step, _held(before[::-1])[::-1]).followed_by(part), np.zeros(2)
     held = _held(after)
@@ -97,6 +98,17 @@ def _appended(found, part):
     own = (step - moved) / 2
     track = _shifted(track, -own, _evened(before[::-1])[::-1])
     return track.followed_by(_shifted(_shifted(part, moved, held), own, _evened(after))), moved * held[-1]
+
+
+def _with_lines_up_to(rank, other):
+    """(N,) ranks from a joint on, with the lane as sure as between its lines up to where these end, if the `other` (M,) beyond the joint is divided.
+
+    Intervals are coarser than stations: that the lines end within one is no gap between two stretches of them, but why the strip beyond is divided.
+    """
+    lines = np.flatnonzero(rank == BETWEEN_LINES)
+    if other[0] != DIVIDED or not len(lines) or lines[0] >= STATIONS_OF_CELL or (rank[:lines[0]] != BETWEEN_WORN).any():
+        return rank
+    return np.r_[np.full(lines[0], BETWEEN_LINES), rank[lines[0]:]]
 
 
 def _shifted(track, step, share):

@@ -335,3 +335,15 @@ def test_a_lane_ends_where_its_edge_line_ends_though_the_centre_line_goes_on_a_l
     street = Street(vehicle=-1.75).paint(3.5, 5.0, 43.6, kind="edge").paint(0.0, 5.0, 44.7).paint(-3.5, 5.0, 43.6, kind="edge")
     lines, _ = street.lanes()
     assert max(row["end_m"] for row in lines.rows) == pytest.approx(43.6, abs=0.6)
+
+
+@pytest.mark.parametrize("backwards", [False, True])
+@pytest.mark.parametrize("last", [91.0, 91.5, 92.0, 92.5, 93.0])
+def test_lanes_of_different_widths_keep_them_where_the_lines_between_them_end(last, backwards):
+    street = Street(vehicle=0.0, backwards=backwards).paint(-2.0, last=100.0, kind="edge").paint(8.5, last=100.0, kind="edge")
+    street.paint(2.0, first=30.0, last=last, kind="centre").paint(5.25, first=30.0, last=last)
+    lines, _ = street.lanes()
+    for lane in (0.0, 3.625, 6.875):
+        offsets = np.concatenate([street.offsets(line)[np.asarray(line.coords)[:, 0] > EAST + 80.0] for line, _ in lines
+                                  if abs(np.median(street.offsets(line)) - lane) < 0.5])
+        assert np.abs(offsets - lane).max() < 0.05
