@@ -4490,8 +4490,8 @@
         </message>
         <message>
             <location filename="../../algorithms/survey_input.py" />
-            <source>So many further processes of Python read the points, find curbs and do most of what is done point by point, with the same results. More are faster as long as there are processor cores for them, and each takes some hundred MB of memory. Automatic takes one per core for surveys of more than 100 million points, and none for smaller ones. Where no Python can be started, this program does their work, and the log says so.</source>
-            <translation>So viele weitere Python-Prozesse lesen die Punkte, suchen Bordsteine und erledigen das meiste, was Punkt für Punkt getan wird, mit denselben Ergebnissen. Mehr sind schneller, solange es Prozessorkerne für sie gibt; jeder braucht einige hundert MB Speicher. Automatisch ist einer je Kern bei Vermessungen mit mehr als 100 Millionen Punkten, keiner bei kleineren. Wo sich kein Python starten lässt, übernimmt dieses Programm ihre Arbeit, und das Protokoll sagt es.</translation>
+            <source>So many further processes of Python read the points, find curbs and do most of what is done point by point, with the same results. More are faster as long as there are processor cores for them, and each takes some hundred MB of memory. Automatic takes one for every 8 million points, eight or one per core at most, and none for less than 16 million points. Where no Python can be started, this program does their work, and the log says so.</source>
+            <translation>So viele weitere Python-Prozesse lesen die Punkte, suchen Bordsteine und erledigen das meiste, was Punkt für Punkt getan wird, mit denselben Ergebnissen. Mehr sind schneller, solange es Prozessorkerne für sie gibt; jeder braucht einige hundert MB Speicher. Automatisch ist einer je 8 Millionen Punkte, höchstens einer je Kern und höchstens acht, keiner bei weniger als 16 Millionen Punkten. Wo sich kein Python starten lässt, übernimmt dieses Programm ihre Arbeit, und das Protokoll sagt es.</translation>
         </message>
         <message>
             <location filename="../../algorithms/survey_input.py" />

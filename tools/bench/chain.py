@@ -9,6 +9,7 @@ from pathlib import Path
 
 from lanewright.core.common.parallel import cancellation_scope
 from lanewright.core.common.progress import Progress
+from lanewright.core.execution import choice
 from lanewright.core.execution.choice import ExecutionSettings
 from lanewright.core.pipeline.road_map import RoadMapSettings, make_road_map
 from lanewright.core.survey.trajectory.reader import read_trajectory
@@ -44,8 +45,13 @@ class Watch(Progress):
         return dict(bar_off=off, silence=max(gaps))
 
 
-def run(survey, size, method="profiles", suffix="laz", workers=0, scheduler=""):
-    """Figures of the chain on a survey; `seconds` of every stage. With workers, memory is that of all processes at one moment."""
+def run(survey, size, method="profiles", suffix="laz", workers=0, scheduler="", threads=False):
+    """Figures of the chain on a survey; `seconds` of every stage. Memory is that of all processes at one moment.
+
+    As users have it, large surveys are worked on by worker processes; `threads` has threads do it.
+    """
+    if threads:
+        choice.WORKER_POINTS = float("inf")
     target = prepared(f"chain_{survey}.tif", size)
     target.parent.mkdir(parents=True, exist_ok=True)
     watch = Watch()
@@ -57,7 +63,7 @@ def run(survey, size, method="profiles", suffix="laz", workers=0, scheduler=""):
     found = {name: len(getattr(road_map, name) or ()) for name in ("edges", "markings", "marking_lines", "driving_lines")}
     ended = resource.getrusage(resource.RUSAGE_CHILDREN)
     seconds["cpu"] += ended.ru_utime + ended.ru_stime
-    peak = max(together) if workers else peak_mib()
+    peak = max(*together, peak_mib())
     return dict(seconds, seconds=road_map.seconds, points=road_map.survey_facts["read"], road_points=len(road_map.road_points),
                 length=sum(road.length for road in road_map.frame.roads), peak=peak, found=found, **watch.figures())
 

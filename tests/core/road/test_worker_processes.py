@@ -9,7 +9,7 @@ from curbed_streets import street, survey_of
 from executed_boundaries import boundaries, numbers_of
 from lanewright.core.common.errors import Cancelled, RoadExtractionError
 from lanewright.core.common.progress import Progress
-from lanewright.core.execution import interpreter, processes
+from lanewright.core.execution import choice, interpreter, processes
 from lanewright.core.execution.choice import ExecutionSettings, executor_for
 from lanewright.core.execution.phase import Phase
 from lanewright.core.execution.processes import WorkerProcesses
@@ -130,6 +130,13 @@ def test_threads_do_small_surveys_and_worker_processes_those_that_ask_for_them(p
     executor = executor_for(1_000_000, ExecutionSettings(workers=2), heard)
     assert isinstance(executor, WorkerProcesses) and executor.workers == 2 and "2 worker process" in heard.lines[0]
     executor.close()
+
+
+@pytest.mark.parametrize(("points", "cores", "workers"), [(15_000_000, 4, 0), (17_000_000, 1, 0), (17_000_000, 2, 2), (17_000_000, 16, 2),
+                                                          (50_000_000, 4, 4), (50_000_000, 16, 6), (10**9, 16, 8)])
+def test_a_large_survey_has_as_many_worker_processes_as_it_and_the_computer_can_use(monkeypatch, points, cores, workers):
+    monkeypatch.setattr(choice.os, "sched_getaffinity", lambda _: set(range(cores)), raising=False)
+    assert choice.automatic_workers(points) == workers
 
 
 def test_an_interpreter_that_cannot_import_a_package_is_not_taken_for_another_program(python, monkeypatch):
