@@ -11,14 +11,14 @@ from ..processing_provider.reports import last_report
 from ..processing_provider.results.layer_tree import replaces_last_run, road_maps, set_replaces_last_run
 from ..processing_provider.results.run_table import run_table
 from ..processing_provider.texts import tr
-from .doubt_dock import DoubtDock
-from .layout_dialog import LayoutDialog, road_map_groups, shown_layers
+from .layout.layout_dialog import LayoutDialog, road_map_groups, shown_layers
+from .layout.map_layout import road_map_layout
 from .manual import ManualWindow
-from .map_layout import road_map_layout
 from .overlay.pairs_dialog import PairsDialog
+from .review.doubt_dock import DoubtDock
+from .review.section import inputs_of
+from .review.section_dock import SectionDock
 from .sample_run import SampleRun
-from .section import inputs_of
-from .section_dock import SectionDock
 
 PROVIDER = "lanewright"
 LAYOUT_WINDOW = (1300, 850)  # px

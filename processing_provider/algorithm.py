@@ -52,7 +52,7 @@ class LanewrightAlgorithm(QgsProcessingAlgorithm):
         return QIcon(str(path)) if path.exists() else super().icon()
 
     def createCustomParametersWidget(self, parent=None):
-        from ..desktop.algorithm_dialog import LanewrightDialog
+        from ..desktop.dialogs.algorithm_dialog import LanewrightDialog
 
         return LanewrightDialog(self, self.declaration.title(), parent)
 

@@ -22,7 +22,7 @@ class LanewrightModel(QgsProcessingModelAlgorithm):
         return tr(super().name())
 
     def createCustomParametersWidget(self, parent=None):
-        from ..desktop.algorithm_dialog import LanewrightDialog
+        from ..desktop.dialogs.algorithm_dialog import LanewrightDialog
 
         return LanewrightDialog(self, self.displayName(), parent)
 

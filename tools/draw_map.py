@@ -45,7 +45,7 @@ def clear_map(layout):
 
 def draw(layers, picture, title, dpi=DPI, bare=False):
     """Lay the map out and save it; `bare` keeps the scale bar off the map."""
-    from lanewright.desktop.map_layout import road_map_layout
+    from lanewright.desktop.layout.map_layout import road_map_layout
     from osgeo import gdal
     from qgis.core import QgsLayoutExporter, QgsProject
     from qgis.PyQt.QtCore import QCoreApplication

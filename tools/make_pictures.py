@@ -168,7 +168,7 @@ def cloud_layer(path):
 
 def draw(layers, path, surface, detail, ground):
     """Render the layers along the road of the surface layer."""
-    from lanewright.desktop.map_layout import lie_of_the_road
+    from lanewright.desktop.layout.map_layout import lie_of_the_road
     from qgis.core import QgsMapRendererParallelJob, QgsMapSettings, QgsRectangle
     from qgis.PyQt.QtCore import QSize
     from qgis.PyQt.QtGui import QColor, QImage

@@ -6559,96 +6559,6 @@
             <translation>Fuß (m)</translation>
         </message>
         <message>
-            <location filename="../../desktop/algorithm_dialog.py" />
-            <source>Presets</source>
-            <translation>Voreinstellungen</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/algorithm_dialog.py" />
-            <source>Settings that you keep under a name; data and destinations are no part of them</source>
-            <translation>Einstellungen, die Sie unter einem Namen behalten; Daten und Ziele gehören nicht dazu</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/algorithm_dialog.py" />
-            <source>Folder for all results</source>
-            <translation>Ordner für alle Ergebnisse</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/algorithm_dialog.py" />
-            <source>Save as…</source>
-            <translation>Speichern als…</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/algorithm_dialog.py" />
-            <source>Default values</source>
-            <translation>Vorgabewerte</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/algorithm_dialog.py" />
-            <source>Name of the preset</source>
-            <translation>Name der Voreinstellung</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/algorithm_dialog.py" />
-            <source>Save everything to…</source>
-            <translation>Alles speichern unter…</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/algorithm_dialog.py" />
-            <source>One place for all results: a folder with the layers as tables of one GeoPackage, images and reports beside it; or a database</source>
-            <translation>Ein Ort für alle Ergebnisse: ein Ordner mit den Layern als Tabellen eines GeoPackage, Bildern und Berichten daneben; oder eine Datenbank</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/algorithm_dialog.py" />
-            <source>Folder…</source>
-            <translation>Ordner…</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/algorithm_dialog.py" />
-            <source>Remove</source>
-            <translation>Entfernen</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/algorithm_dialog.py" />
-            <source>Database (PostGIS)…</source>
-            <translation>Datenbank (PostGIS)…</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/algorithm_dialog.py" />
-            <source>{count} layers go to the schema {schema} of {connection}.</source>
-            <translation>{count} Layer gehen in das Schema {schema} von {connection}.</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/algorithm_dialog.py" />
-            <source>Preset {name}: {count} settings.</source>
-            <translation>Voreinstellung {name}: {count} Einstellungen.</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/algorithm_dialog.py" />
-            <source>The {count} results go to {folder}.</source>
-            <translation>Die {count} Ergebnisse gehen nach {folder}.</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/algorithm_dialog.py" />
-            <source>Those of the earlier run in {file} will be replaced.</source>
-            <translation>Die des früheren Laufs in {file} werden ersetzt.</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/batch_dialog.py" />
-            <source>One folder for all surveys: of each the layers in one GeoPackage called like the survey, images and reports beside it</source>
-            <translation>Ein Ordner für alle Vermessungen: von jeder die Layer in einem GeoPackage, das wie die Vermessung heißt, Bilder und Berichte daneben</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/batch_dialog.py" />
-            <source>Batch: {title}</source>
-            <translation>Batch: {title}</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/batch_dialog.py" />
-            <source>The results of {count} rows go to {folder}: {names}.</source>
-            <translation>Die Ergebnisse von {count} Zeilen gehen nach {folder}: {names}.</translation>
-        </message>
-        <message>
             <location filename="../../desktop/cloud_widget.py" />
             <source>Files, a folder, or wildcards such as /data/B12/*.laz; or drop them here</source>
             <translation>Dateien, ein Ordner oder Platzhalter wie /data/B12/*.laz; oder hierher ziehen</translation>
@@ -6784,244 +6694,189 @@
             <translation>Spalte {number}</translation>
         </message>
         <message>
-            <location filename="../../desktop/corrections_layer.py" />
-            <source>{path} holds no layer of corrections. Choose a new name.</source>
-            <translation>{path} enthält keinen Layer mit Korrekturen. Einen neuen Namen wählen.</translation>
+            <location filename="../../desktop/dialogs/algorithm_dialog.py" />
+            <source>Presets</source>
+            <translation>Voreinstellungen</translation>
         </message>
         <message>
-            <location filename="../../desktop/corrections_layer.py" />
-            <source>The corrections cannot be kept in {path}: {problem}. Choose another place.</source>
-            <translation>Die Korrekturen können nicht in {path} abgelegt werden: {problem}. Einen anderen Ort wählen.</translation>
+            <location filename="../../desktop/dialogs/algorithm_dialog.py" />
+            <source>Settings that you keep under a name; data and destinations are no part of them</source>
+            <translation>Einstellungen, die Sie unter einem Namen behalten; Daten und Ziele gehören nicht dazu</translation>
         </message>
         <message>
-            <location filename="../../desktop/database_dialog.py" />
+            <location filename="../../desktop/dialogs/algorithm_dialog.py" />
+            <source>Folder for all results</source>
+            <translation>Ordner für alle Ergebnisse</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/dialogs/algorithm_dialog.py" />
+            <source>Save as…</source>
+            <translation>Speichern als…</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/dialogs/algorithm_dialog.py" />
+            <source>Default values</source>
+            <translation>Vorgabewerte</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/dialogs/algorithm_dialog.py" />
+            <source>Name of the preset</source>
+            <translation>Name der Voreinstellung</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/dialogs/algorithm_dialog.py" />
+            <source>Save everything to…</source>
+            <translation>Alles speichern unter…</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/dialogs/algorithm_dialog.py" />
+            <source>One place for all results: a folder with the layers as tables of one GeoPackage, images and reports beside it; or a database</source>
+            <translation>Ein Ort für alle Ergebnisse: ein Ordner mit den Layern als Tabellen eines GeoPackage, Bildern und Berichten daneben; oder eine Datenbank</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/dialogs/algorithm_dialog.py" />
+            <source>Folder…</source>
+            <translation>Ordner…</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/dialogs/algorithm_dialog.py" />
+            <source>Remove</source>
+            <translation>Entfernen</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/dialogs/algorithm_dialog.py" />
+            <source>Database (PostGIS)…</source>
+            <translation>Datenbank (PostGIS)…</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/dialogs/algorithm_dialog.py" />
+            <source>{count} layers go to the schema {schema} of {connection}.</source>
+            <translation>{count} Layer gehen in das Schema {schema} von {connection}.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/dialogs/algorithm_dialog.py" />
+            <source>Preset {name}: {count} settings.</source>
+            <translation>Voreinstellung {name}: {count} Einstellungen.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/dialogs/algorithm_dialog.py" />
+            <source>The {count} results go to {folder}.</source>
+            <translation>Die {count} Ergebnisse gehen nach {folder}.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/dialogs/algorithm_dialog.py" />
+            <source>Those of the earlier run in {file} will be replaced.</source>
+            <translation>Die des früheren Laufs in {file} werden ersetzt.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/dialogs/batch_dialog.py" />
+            <source>One folder for all surveys: of each the layers in one GeoPackage called like the survey, images and reports beside it</source>
+            <translation>Ein Ordner für alle Vermessungen: von jeder die Layer in einem GeoPackage, das wie die Vermessung heißt, Bilder und Berichte daneben</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/dialogs/batch_dialog.py" />
+            <source>Batch: {title}</source>
+            <translation>Batch: {title}</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/dialogs/batch_dialog.py" />
+            <source>The results of {count} rows go to {folder}: {names}.</source>
+            <translation>Die Ergebnisse von {count} Zeilen gehen nach {folder}: {names}.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/dialogs/database_dialog.py" />
             <source>Save the layers to a database</source>
             <translation>Layer in einer Datenbank speichern</translation>
         </message>
         <message>
-            <location filename="../../desktop/database_dialog.py" />
+            <location filename="../../desktop/dialogs/database_dialog.py" />
             <source>such as b12_, where one schema holds several surveys</source>
             <translation>etwa b12_, wenn ein Schema mehrere Vermessungen enthält</translation>
         </message>
         <message>
-            <location filename="../../desktop/database_dialog.py" />
+            <location filename="../../desktop/dialogs/database_dialog.py" />
             <source>New connection…</source>
             <translation>Neue Verbindung…</translation>
         </message>
         <message>
-            <location filename="../../desktop/database_dialog.py" />
+            <location filename="../../desktop/dialogs/database_dialog.py" />
             <source>Connection</source>
             <translation>Verbindung</translation>
         </message>
         <message>
-            <location filename="../../desktop/database_dialog.py" />
+            <location filename="../../desktop/dialogs/database_dialog.py" />
             <source>Schema</source>
             <translation>Schema</translation>
         </message>
         <message>
-            <location filename="../../desktop/database_dialog.py" />
+            <location filename="../../desktop/dialogs/database_dialog.py" />
             <source>Names of the tables begin with</source>
             <translation>Namen der Tabellen beginnen mit</translation>
         </message>
         <message>
-            <location filename="../../desktop/database_dialog.py" />
+            <location filename="../../desktop/dialogs/database_dialog.py" />
             <source>One table for each layer; a table of the same name is replaced. The intensity image and the report are files: choose a folder for them too.</source>
             <translation>Eine Tabelle je Layer; eine Tabelle desselben Namens wird ersetzt. Intensitätsbild und Bericht sind Dateien: wählen Sie für sie auch einen Ordner.</translation>
         </message>
         <message>
-            <location filename="../../desktop/database_dialog.py" />
+            <location filename="../../desktop/dialogs/database_dialog.py" />
             <source>QGIS knows no connection to a PostgreSQL database yet. &lt;i&gt;New connection…&lt;/i&gt; opens the window where one is made.</source>
             <translation>QGIS kennt noch keine Verbindung zu einer PostgreSQL-Datenbank. &lt;i&gt;Neue Verbindung…&lt;/i&gt; öffnet das Fenster, in dem man eine anlegt.</translation>
         </message>
         <message>
-            <location filename="../../desktop/database_dialog.py" />
+            <location filename="../../desktop/dialogs/database_dialog.py" />
             <source>The database {name} has no schema.</source>
             <translation>Die Datenbank {name} hat kein Schema.</translation>
         </message>
         <message>
-            <location filename="../../desktop/doubt_dock.py" />
-            <source>Doubtful places</source>
-            <translation>Zweifelhafte Stellen</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/doubt_dock.py" />
-            <source>What is doubtful here. The buttons are about what is selected.</source>
-            <translation>Was hier zweifelhaft ist. Die Knöpfe gelten dem, was ausgewählt ist.</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/doubt_dock.py" />
-            <source>Note, kept with the correction</source>
-            <translation>Notiz, wird mit der Korrektur aufbewahrt</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/doubt_dock.py" />
-            <source>Accept</source>
-            <translation>Bestätigen</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/doubt_dock.py" />
-            <source>It is right as it is</source>
-            <translation>Es ist richtig, wie es ist</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/doubt_dock.py" />
-            <source>Delete</source>
-            <translation>Löschen</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/doubt_dock.py" />
-            <source>There is nothing of that kind here</source>
-            <translation>Hier gibt es nichts dergleichen</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/doubt_dock.py" />
-            <source>Move…</source>
-            <translation>Verschieben…</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/doubt_dock.py" />
-            <source>Draw where it belongs, within 2 m of where it is</source>
-            <translation>Zeichnen, wo es hingehört, höchstens 2 m von seinem jetzigen Ort</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/doubt_dock.py" />
-            <source>Draw</source>
-            <translation>Zeichnen</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/doubt_dock.py" />
-            <source>Draw what is missing</source>
-            <translation>Zeichnen, was fehlt</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/doubt_dock.py" />
-            <source>Take back the last</source>
-            <translation>Letzte zurücknehmen</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/doubt_dock.py" />
-            <source>Removes the correction that was made last</source>
-            <translation>Entfernt die zuletzt gemachte Korrektur</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/doubt_dock.py" />
-            <source>Make the map again…</source>
-            <translation>Karte neu erstellen…</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/doubt_dock.py" />
-            <source>Opens Road map with these corrections</source>
-            <translation>Öffnet die Straßenkarte mit diesen Korrekturen</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/doubt_dock.py" />
-            <source>File for the corrections</source>
-            <translation>Datei für die Korrekturen</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/doubt_dock.py" />
-            <source>Click along the line where it belongs. The right button ends it, Backspace takes a click back, Esc stops.</source>
-            <translation>Entlang der Linie klicken, wo sie hingehört. Die rechte Taste beendet sie, die Rücktaste nimmt einen Klick zurück, Esc bricht ab.</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/doubt_dock.py" />
-            <source>The place before</source>
-            <translation>Die vorige Stelle</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/doubt_dock.py" />
-            <source>The next place</source>
-            <translation>Die nächste Stelle</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/doubt_dock.py" />
-            <source>Road edge…</source>
-            <translation>Straßenrand…</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/doubt_dock.py" />
-            <source>Marking line…</source>
-            <translation>Markierungslinie…</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/doubt_dock.py" />
-            <source>Lane, in the direction of travel…</source>
-            <translation>Fahrstreifen, in Fahrtrichtung…</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/doubt_dock.py" />
-            <source>Nothing in this road map is doubtful: all of it was measured.</source>
-            <translation>Nichts an dieser Straßenkarte ist zweifelhaft: Alles wurde gemessen.</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/doubt_dock.py" />
-            <source>No corrections yet.</source>
-            <translation>Noch keine Korrekturen.</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/doubt_dock.py" />
-            <source>&lt;b&gt;Place {at} of {count}&lt;/b&gt;, road {road}, station {station:.0f} m</source>
-            <translation>&lt;b&gt;Stelle {at} von {count}&lt;/b&gt;, Straße {road}, Station {station:.0f} m</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/doubt_dock.py" />
-            <source>{count} corrections in {file}. They come into the map when it is made again.</source>
-            <translation>{count} Korrekturen in {file}. Sie kommen in die Karte, wenn sie neu erstellt wird.</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/doubtful.py" />
-            <source>not measured</source>
-            <translation>nicht gemessen</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/doubtful.py" />
-            <source>the two boundary methods lie {apart:.0f} cm apart</source>
-            <translation>die beiden Verfahren für die Ränder liegen {apart:.0f} cm auseinander</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/doubtful.py" />
-            <source>confidence {sure:.2f}</source>
-            <translation>Vertrauen {sure:.2f}</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/layout_dialog.py" />
+            <location filename="../../desktop/layout/layout_dialog.py" />
             <source>Print layout of the road map</source>
             <translation>Drucklayout der Straßenkarte</translation>
         </message>
         <message>
-            <location filename="../../desktop/layout_dialog.py" />
+            <location filename="../../desktop/layout/layout_dialog.py" />
             <source>The largest at which the road fits; long roads on several pages</source>
             <translation>Der größte, bei dem die Straße auf das Blatt passt; lange Straßen auf mehreren Seiten</translation>
         </message>
         <message>
-            <location filename="../../desktop/layout_dialog.py" />
+            <location filename="../../desktop/layout/layout_dialog.py" />
             <source>Nothing</source>
             <translation>Nichts</translation>
         </message>
         <message>
-            <location filename="../../desktop/layout_dialog.py" />
+            <location filename="../../desktop/layout/layout_dialog.py" />
             <source>Whose data lie below, as their licence wants it said; stands in the lower left corner of the map</source>
             <translation>Wessen Daten darunterliegen, wie es deren Lizenz verlangt; steht in der linken unteren Ecke der Karte</translation>
         </message>
         <message>
-            <location filename="../../desktop/layout_dialog.py" />
+            <location filename="../../desktop/layout/layout_dialog.py" />
             <source>Paper</source>
             <translation>Papier</translation>
         </message>
         <message>
-            <location filename="../../desktop/layout_dialog.py" />
+            <location filename="../../desktop/layout/layout_dialog.py" />
             <source>Scale</source>
             <translation>Maßstab</translation>
         </message>
         <message>
-            <location filename="../../desktop/layout_dialog.py" />
+            <location filename="../../desktop/layout/layout_dialog.py" />
             <source>Layer below (orthoimage, web map)</source>
             <translation>Layer darunter (Orthobild, Web-Karte)</translation>
         </message>
         <message>
-            <location filename="../../desktop/layout_dialog.py" />
+            <location filename="../../desktop/layout/layout_dialog.py" />
             <source>Credit on the map</source>
             <translation>Quellenangabe auf der Karte</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/layout/map_layout.py" />
+            <source>page</source>
+            <translation>Seite</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/layout/map_layout.py" />
+            <source>Pages of {title}</source>
+            <translation>Seiten von {title}</translation>
         </message>
         <message>
             <location filename="../../desktop/manual.py" />
@@ -7037,16 +6892,6 @@
             <location filename="../../desktop/manual.py" />
             <source>Forward</source>
             <translation>Vorwärts</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/map_layout.py" />
-            <source>page</source>
-            <translation>Seite</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/map_layout.py" />
-            <source>Pages of {title}</source>
-            <translation>Seiten von {title}</translation>
         </message>
         <message>
             <location filename="../../desktop/menu.py" />
@@ -7314,6 +7159,226 @@
             <translation>Zwei weit auseinander liegende Stellen im Bild links anklicken und dieselben zwei in derselben Reihenfolge im Intensitätsbild rechts. Das Rad geht näher heran. Im Bild: {seen}, im Intensitätsbild: {known}.</translation>
         </message>
         <message>
+            <location filename="../../desktop/review/corrections_layer.py" />
+            <source>{path} holds no layer of corrections. Choose a new name.</source>
+            <translation>{path} enthält keinen Layer mit Korrekturen. Einen neuen Namen wählen.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/corrections_layer.py" />
+            <source>The corrections cannot be kept in {path}: {problem}. Choose another place.</source>
+            <translation>Die Korrekturen können nicht in {path} abgelegt werden: {problem}. Einen anderen Ort wählen.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/doubt_dock.py" />
+            <source>Doubtful places</source>
+            <translation>Zweifelhafte Stellen</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/doubt_dock.py" />
+            <source>What is doubtful here. The buttons are about what is selected.</source>
+            <translation>Was hier zweifelhaft ist. Die Knöpfe gelten dem, was ausgewählt ist.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/doubt_dock.py" />
+            <source>Note, kept with the correction</source>
+            <translation>Notiz, wird mit der Korrektur aufbewahrt</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/doubt_dock.py" />
+            <source>Accept</source>
+            <translation>Bestätigen</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/doubt_dock.py" />
+            <source>It is right as it is</source>
+            <translation>Es ist richtig, wie es ist</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/doubt_dock.py" />
+            <source>Delete</source>
+            <translation>Löschen</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/doubt_dock.py" />
+            <source>There is nothing of that kind here</source>
+            <translation>Hier gibt es nichts dergleichen</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/doubt_dock.py" />
+            <source>Move…</source>
+            <translation>Verschieben…</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/doubt_dock.py" />
+            <source>Draw where it belongs, within 2 m of where it is</source>
+            <translation>Zeichnen, wo es hingehört, höchstens 2 m von seinem jetzigen Ort</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/doubt_dock.py" />
+            <source>Draw</source>
+            <translation>Zeichnen</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/doubt_dock.py" />
+            <source>Draw what is missing</source>
+            <translation>Zeichnen, was fehlt</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/doubt_dock.py" />
+            <source>Take back the last</source>
+            <translation>Letzte zurücknehmen</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/doubt_dock.py" />
+            <source>Removes the correction that was made last</source>
+            <translation>Entfernt die zuletzt gemachte Korrektur</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/doubt_dock.py" />
+            <source>Make the map again…</source>
+            <translation>Karte neu erstellen…</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/doubt_dock.py" />
+            <source>Opens Road map with these corrections</source>
+            <translation>Öffnet die Straßenkarte mit diesen Korrekturen</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/doubt_dock.py" />
+            <source>File for the corrections</source>
+            <translation>Datei für die Korrekturen</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/doubt_dock.py" />
+            <source>Click along the line where it belongs. The right button ends it, Backspace takes a click back, Esc stops.</source>
+            <translation>Entlang der Linie klicken, wo sie hingehört. Die rechte Taste beendet sie, die Rücktaste nimmt einen Klick zurück, Esc bricht ab.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/doubt_dock.py" />
+            <source>The place before</source>
+            <translation>Die vorige Stelle</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/doubt_dock.py" />
+            <source>The next place</source>
+            <translation>Die nächste Stelle</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/doubt_dock.py" />
+            <source>Road edge…</source>
+            <translation>Straßenrand…</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/doubt_dock.py" />
+            <source>Marking line…</source>
+            <translation>Markierungslinie…</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/doubt_dock.py" />
+            <source>Lane, in the direction of travel…</source>
+            <translation>Fahrstreifen, in Fahrtrichtung…</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/doubt_dock.py" />
+            <source>Nothing in this road map is doubtful: all of it was measured.</source>
+            <translation>Nichts an dieser Straßenkarte ist zweifelhaft: Alles wurde gemessen.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/doubt_dock.py" />
+            <source>No corrections yet.</source>
+            <translation>Noch keine Korrekturen.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/doubt_dock.py" />
+            <source>&lt;b&gt;Place {at} of {count}&lt;/b&gt;, road {road}, station {station:.0f} m</source>
+            <translation>&lt;b&gt;Stelle {at} von {count}&lt;/b&gt;, Straße {road}, Station {station:.0f} m</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/doubt_dock.py" />
+            <source>{count} corrections in {file}. They come into the map when it is made again.</source>
+            <translation>{count} Korrekturen in {file}. Sie kommen in die Karte, wenn sie neu erstellt wird.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/doubtful.py" />
+            <source>not measured</source>
+            <translation>nicht gemessen</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/doubtful.py" />
+            <source>the two boundary methods lie {apart:.0f} cm apart</source>
+            <translation>die beiden Verfahren für die Ränder liegen {apart:.0f} cm auseinander</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/doubtful.py" />
+            <source>confidence {sure:.2f}</source>
+            <translation>Vertrauen {sure:.2f}</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/section_dock.py" />
+            <source>Click in the map</source>
+            <translation>In die Karte klicken</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/section_dock.py" />
+            <source>Length of road from which points are shown</source>
+            <translation>Länge der Straße, von der Punkte gezeigt werden</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/section_dock.py" />
+            <source>No line of a road map lies near: click on a road that Lanewright mapped.</source>
+            <translation>Keine Linie einer Straßenkarte liegt in der Nähe: Klicken Sie auf eine Straße, die Lanewright kartiert hat.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/section_dock.py" />
+            <source>Reading points…</source>
+            <translation>Punkte werden gelesen…</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/section_dock.py" />
+            <source>Points of a cross-section</source>
+            <translation>Punkte eines Querschnitts</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/section_dock.py" />
+            <source>A metre back along the road</source>
+            <translation>Einen Meter zurück entlang der Straße</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/section_dock.py" />
+            <source>A metre ahead along the road</source>
+            <translation>Einen Meter weiter entlang der Straße</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/section_dock.py" />
+            <source>Thickness</source>
+            <translation>Dicke</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/section_dock.py" />
+            <source>The point clouds of this road map are not known: it was not made by Road map in this project.</source>
+            <translation>Die Punktwolken dieser Straßenkarte sind nicht bekannt: Sie wurde nicht in diesem Projekt mit Straßenkarte gemacht.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/section_dock.py" />
+            <source>No points lie here.</source>
+            <translation>Hier liegen keine Punkte.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/section_dock.py" />
+            <source>No points were read.</source>
+            <translation>Es wurden keine Punkte gelesen.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/section_view.py" />
+            <source>Click on the road in the map.</source>
+            <translation>Klicken Sie in der Karte auf die Straße.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/section_view.py" />
+            <source>left ← offset from the place that was clicked (m) → right; heights in m; orange: scanline; ○ bottom, △ top of a curb</source>
+            <translation>links ← Abstand von der angeklickten Stelle (m) → rechts; Höhen in m; orange: Scanlinie; ○ Unter-, △ Oberkante eines Bordsteins</translation>
+        </message>
+        <message>
             <location filename="../../desktop/sample_run.py" />
             <source>The sample survey is being made and mapped; its layers appear when they are ready.</source>
             <translation>Die Beispielvermessung wird erzeugt und kartiert; ihre Layer erscheinen, sobald sie fertig sind.</translation>
@@ -7332,71 +7397,6 @@
             <location filename="../../desktop/sample_run.py" />
             <source>The sample survey was not mapped: {reason}</source>
             <translation>Die Beispielvermessung wurde nicht kartiert: {reason}</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/section_dock.py" />
-            <source>Click in the map</source>
-            <translation>In die Karte klicken</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/section_dock.py" />
-            <source>Length of road from which points are shown</source>
-            <translation>Länge der Straße, von der Punkte gezeigt werden</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/section_dock.py" />
-            <source>No line of a road map lies near: click on a road that Lanewright mapped.</source>
-            <translation>Keine Linie einer Straßenkarte liegt in der Nähe: Klicken Sie auf eine Straße, die Lanewright kartiert hat.</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/section_dock.py" />
-            <source>Reading points…</source>
-            <translation>Punkte werden gelesen…</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/section_dock.py" />
-            <source>Points of a cross-section</source>
-            <translation>Punkte eines Querschnitts</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/section_dock.py" />
-            <source>A metre back along the road</source>
-            <translation>Einen Meter zurück entlang der Straße</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/section_dock.py" />
-            <source>A metre ahead along the road</source>
-            <translation>Einen Meter weiter entlang der Straße</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/section_dock.py" />
-            <source>Thickness</source>
-            <translation>Dicke</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/section_dock.py" />
-            <source>The point clouds of this road map are not known: it was not made by Road map in this project.</source>
-            <translation>Die Punktwolken dieser Straßenkarte sind nicht bekannt: Sie wurde nicht in diesem Projekt mit Straßenkarte gemacht.</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/section_dock.py" />
-            <source>No points lie here.</source>
-            <translation>Hier liegen keine Punkte.</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/section_dock.py" />
-            <source>No points were read.</source>
-            <translation>Es wurden keine Punkte gelesen.</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/section_view.py" />
-            <source>Click on the road in the map.</source>
-            <translation>Klicken Sie in der Karte auf die Straße.</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/section_view.py" />
-            <source>left ← offset from the place that was clicked (m) → right; heights in m; orange: scanline; ○ bottom, △ top of a curb</source>
-            <translation>links ← Abstand von der angeklickten Stelle (m) → rechts; Höhen in m; orange: Scanlinie; ○ Unter-, △ Oberkante eines Bordsteins</translation>
         </message>
         <message>
             <location filename="../../library/command_line.py" />

@@ -2,7 +2,7 @@
 
 import pytest
 from lanewright.algorithms.catalogue import ALGORITHMS
-from lanewright.desktop.algorithm_dialog import LanewrightDialog, destinations, presets_of
+from lanewright.desktop.dialogs.algorithm_dialog import LanewrightDialog, destinations, presets_of
 from qgis.core import QgsApplication, QgsSettings, QgsVectorLayer
 from qgis.PyQt.QtWidgets import QDialogButtonBox, QTextBrowser
 

@@ -3,7 +3,7 @@
 import shutil
 
 import pytest
-from lanewright.desktop.batch_dialog import BatchAlgorithmDialog
+from lanewright.desktop.dialogs.batch_dialog import BatchAlgorithmDialog
 from lanewright.processing_provider.results.layer_tree import road_maps
 from lanewright.processing_provider.results.run_table import run_table
 from qgis.core import QgsApplication, QgsProject

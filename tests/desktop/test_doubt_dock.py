@@ -5,8 +5,8 @@ from types import SimpleNamespace
 import pytest
 from lanewright.algorithms.corrections import read_corrections
 from lanewright.core.common.schemas import DRIVING_LINES, LANES, ROAD_EDGES
-from lanewright.desktop.corrections_layer import corrections_layers
-from lanewright.desktop.doubt_dock import DoubtDock
+from lanewright.desktop.review.corrections_layer import corrections_layers
+from lanewright.desktop.review.doubt_dock import DoubtDock
 from lanewright.processing_provider.layers import QgisSource
 from qgis.core import QgsGeometry, QgsPointXY, QgsProject, QgsRectangle
 from qgis.gui import QgsMapCanvas, QgsMessageBar
@@ -131,7 +131,7 @@ def test_of_a_lane_the_middle_between_its_borders_is_kept(window):
     ring = "POLYGON Z ((0 2 1, 10 2 1, 20 2 1, 20 -2 1, 10 -2 1, 0 -2 1, 0 2 1))"
     layer = added(QgsProject.instance(), "LANES", LANES, (ring, dict(road=0, station_m=0.0, length_m=20.0, status="inferred", lane_id="0.1.1")),
                   kind="PolygonZ")
-    from lanewright.desktop.doubtful import course_of
+    from lanewright.desktop.review.doubtful import course_of
 
     line = course_of(next(layer.getFeatures()).geometry())
     assert line.length() == pytest.approx(20.0) and line.boundingBox().height() == pytest.approx(0.0, abs=1e-6)

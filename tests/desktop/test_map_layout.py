@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 import pytest
-from lanewright.desktop.layout_dialog import LayoutDialog, credit_of, road_map_groups, shown_layers
-from lanewright.desktop.map_layout import MARGIN, SCALES, road_map_layout
+from lanewright.desktop.layout.layout_dialog import LayoutDialog, credit_of, road_map_groups, shown_layers
+from lanewright.desktop.layout.map_layout import MARGIN, SCALES, road_map_layout
 from lanewright.desktop.menu import unused_name
 from qgis.core import (
     QgsCategorizedSymbolRenderer,

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from lanewright.core.common.schemas import CURB_POINTS, DRIVING_LINES, ROAD_EDGES
 from lanewright.core.road.scanlines.from_points import slice_lines
-from lanewright.desktop.doubtful import doubts_of, reason
-from lanewright.desktop.section import Crossing, Section, clouds_of, corners, crossings, inputs_of, middle_of, section_at
-from lanewright.desktop.section_view import SectionView
+from lanewright.desktop.review.doubtful import doubts_of, reason
+from lanewright.desktop.review.section import Crossing, Section, clouds_of, corners, crossings, inputs_of, middle_of, section_at
+from lanewright.desktop.review.section_view import SectionView
 from lanewright.processing_provider.results.layer_tree import place_layer
 from lanewright.processing_provider.results.runs import run_of
 from qgis.core import NULL, QgsProcessingContext

@@ -16,12 +16,12 @@ from qgis.core import (
     QgsVectorLayer,
 )
 
-from ..core.common.errors import RoadExtractionError
-from ..core.common.schemas import CORRECTIONS
-from ..processing_provider.layers import qgis_fields
-from ..processing_provider.results.layer_tree import OUTPUT
-from ..processing_provider.styling import STYLES, apply_style
-from ..processing_provider.texts import tr
+from ...core.common.errors import RoadExtractionError
+from ...core.common.schemas import CORRECTIONS
+from ...processing_provider.layers import qgis_fields
+from ...processing_provider.results.layer_tree import OUTPUT
+from ...processing_provider.styling import STYLES, apply_style
+from ...processing_provider.texts import tr
 
 NAME = "CORRECTIONS"
 TABLE = "corrections"

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from qgis.core import Qgis, QgsGeometry, QgsLayerTreeGroup, QgsLineString, QgsPointXY, QgsRectangle
 
-from ..processing_provider.results.layer_tree import OUTPUT
-from ..processing_provider.texts import tr
+from ...processing_provider.results.layer_tree import OUTPUT
+from ...processing_provider.texts import tr
 from .section import layers_of, title_of
 
 OUTPUTS = ("ROAD_EDGES", "MARKING_LINES", "DRIVING_LINES", "LANES")

@@ -23,7 +23,7 @@ from qgis.core import (
     QgsVectorLayer,
 )
 
-from ..processing_provider.results.layer_tree import CLOUDS, INPUTS, OUTPUT
+from ...processing_provider.results.layer_tree import CLOUDS, INPUTS, OUTPUT
 
 HALF_WIDTH = 20.0     # m of the section either side
 REACH = 60.0          # m about a place within which the road's direction is sought

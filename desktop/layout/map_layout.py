@@ -30,7 +30,7 @@ from qgis.core import (
 from qgis.PyQt.QtCore import QRectF, Qt
 from qgis.PyQt.QtGui import QColor, QFont
 
-from ..processing_provider.texts import tr
+from ...processing_provider.texts import tr
 from .layout_legend import add_legend, legend_height
 from .page_series import MapPage, pages_along
 

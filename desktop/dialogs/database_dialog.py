@@ -6,7 +6,7 @@ from qgis.core import Qgis, QgsDataSourceUri, QgsProcessingAlgorithm, QgsProvide
 from qgis.gui import QgsProviderConnectionComboBox
 from qgis.PyQt.QtWidgets import QComboBox, QDialog, QDialogButtonBox, QFormLayout, QLabel, QLineEdit, QPushButton, QWidget
 
-from ..processing_provider.texts import tr
+from ...processing_provider.texts import tr
 from .destinations import outputs_by_default, table_name
 
 PROVIDER = "postgres"

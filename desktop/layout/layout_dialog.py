@@ -5,9 +5,9 @@ from __future__ import annotations
 from qgis.core import Qgis, QgsLayerTreeGroup, QgsMapLayer, QgsProject
 from qgis.PyQt.QtWidgets import QComboBox, QDialog, QDialogButtonBox, QFormLayout, QLineEdit, QWidget
 
-from ..processing_provider.results.layer_tree import ALGORITHM
-from ..processing_provider.results.runs import GROUP
-from ..processing_provider.texts import tr
+from ...processing_provider.results.layer_tree import ALGORITHM
+from ...processing_provider.results.runs import GROUP
+from ...processing_provider.texts import tr
 from .map_layout import PAPERS, SCALES
 
 # tables of a GeoPackage, or file names, by which a group is known to hold a road map

@@ -9,9 +9,9 @@ from processing.gui.AlgorithmDialog import AlgorithmDialog
 from qgis.core import Qgis, QgsProcessingAlgorithm, QgsProject, QgsSettings
 from qgis.PyQt.QtWidgets import QDialogButtonBox, QFileDialog, QInputDialog, QMenu, QPushButton, QTextBrowser, QWidget
 
-from ..processing_provider.texts import tr
+from ...processing_provider.texts import tr
+from ..review.corrections_layer import corrections_layers
 from .batch_dialog import BatchAlgorithmDialog
-from .corrections_layer import corrections_layers
 from .database_dialog import DatabaseDialog, database_destinations
 from .destinations import LAST_OUTPUT, destinations, outputs_by_default
 

@@ -10,7 +10,7 @@ from qgis.PyQt.QtCore import QPointF, QRectF, Qt
 from qgis.PyQt.QtGui import QColor, QCursor, QFont, QFontMetricsF, QImage, QMouseEvent, QPainter, QPen, QPolygonF, QWheelEvent
 from qgis.PyQt.QtWidgets import QToolTip, QWidget
 
-from ..processing_provider.texts import tr
+from ...processing_provider.texts import tr
 from .section import HALF_WIDTH, Crossing
 
 LEFT, RIGHT, TOP, BOTTOM = 46, 10, 16, 34  # pixels about the picture

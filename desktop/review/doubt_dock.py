@@ -31,9 +31,9 @@ from qgis.PyQt.QtWidgets import (
     QWidget,
 )
 
-from ..core.common.errors import RoadExtractionError
-from ..processing_provider.results.attributes import WORDS
-from ..processing_provider.texts import tr
+from ...core.common.errors import RoadExtractionError
+from ...processing_provider.results.attributes import WORDS
+from ...processing_provider.texts import tr
 from .corrections_layer import add_correction, correction_at, corrections_layers, new_corrections_layer, take_back
 from .doubtful import Doubt, DoubtfulPiece, doubts_of
 from .line_tool import LineTool

@@ -19,13 +19,13 @@ from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtGui import QColor
 from qgis.PyQt.QtWidgets import QDockWidget, QDoubleSpinBox, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 
-from ..core.common.errors import Cancelled, RoadExtractionError
-from ..core.common.parallel import cancellation_scope
-from ..core.common.progress import Progress
-from ..core.road.scanlines.from_points import slice_lines
-from ..core.survey.las.near import points_near
-from ..processing_provider.results.layer_tree import road_maps
-from ..processing_provider.texts import told, tr
+from ...core.common.errors import Cancelled, RoadExtractionError
+from ...core.common.parallel import cancellation_scope
+from ...core.common.progress import Progress
+from ...core.road.scanlines.from_points import slice_lines
+from ...core.survey.las.near import points_near
+from ...processing_provider.results.layer_tree import road_maps
+from ...processing_provider.texts import told, tr
 from .section import HALF_WIDTH, Section, clouds_of, corners, crossings, layers_of, middle_of, section_at
 from .section_view import SectionView
 
