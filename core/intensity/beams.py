@@ -196,6 +196,7 @@ class Beams:
         road_points : RoadPoints
         frame : RoadFrame with times
         scanners : their numbers are below this
+        progress : Progress
         """
         samples = _samples(road_points, frame, scanners)
         if not samples:

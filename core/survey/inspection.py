@@ -88,6 +88,7 @@ def inspect_survey(paths: Sequence[str | Path], trajectory: Trajectory | None = 
     trajectory : Trajectory in any known CRS and time system, or None
     settings : InspectionSettings
     crs : WKT for clouds that carry none
+    progress : Progress
 
     Returns
     -------

@@ -69,7 +69,7 @@ def add_correction(layer: QgsVectorLayer, line: QgsGeometry, crs: QgsCoordinateR
     Parameters
     ----------
     layer : of corrections
-    line : its course, in `crs`
+    line, crs : its course, and the CRS of its coordinates
     values : of the fields; those that are None stay empty
 
     Returns

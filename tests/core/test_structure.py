@@ -3,6 +3,7 @@
 import ast
 import functools
 import importlib
+import re
 from collections import defaultdict
 from pathlib import Path
 
@@ -15,6 +16,7 @@ MODULES = [path for path in FILES if path.name != "__init__.py"]
 ORDER = ("common", "execution", "countries", "io", "curves", "survey", "road", "intensity", "markings", "driving", "corrections", "inventory",
          "export", "assess", "overlay", "sample", "report", "pipeline")
 MOST_FILES = 15   # of a folder: more cannot be taken in at a glance
+MOST_LINES = 400  # of a file: what is longer holds two ideas
 
 
 @functools.cache
@@ -80,6 +82,13 @@ def test_no_two_folders_import_each_other():
         seen = set()
         circle = reach(folder, folder, [])
         assert not circle, "these imports run in a circle: " + " -> ".join(circle)
+
+
+def test_no_file_is_too_long_to_be_read_at_once():
+    code = [path for folder in ("core", "algorithms", "library", "processing_provider", "desktop", "tools", "tests")
+            for path in (CORE.parent / folder).rglob("*.py")]
+    assert len(code) > 500
+    assert not {path.relative_to(CORE.parent).as_posix() for path in code if len(path.read_text(encoding="utf-8").splitlines()) > MOST_LINES}
 
 
 @pytest.mark.parametrize("folder", sorted({path.parent for path in FILES}), ids=lambda folder: folder.relative_to(CORE).as_posix())
@@ -153,3 +162,23 @@ def test_a_folder_offers_its_public_names(folder):
     for name in names:
         offered = getattr(package, name)
         assert type(offered) is not type(ast), f"{name} is a file of the folder and no public name"
+
+
+def documented(text, heading):
+    """Names that a numpydoc section of a docstring explains."""
+    section = re.search(rf"^{heading}\n-+\n(.*?)(?=\n\n\w[\w ]*\n-+\n|\Z)", text, re.DOTALL | re.MULTILINE)
+    lines = section.group(1).splitlines() if section else []
+    return {name.strip(" *") for line in lines if (said := re.match(r"(\*{0,2}\w+(?:, \*{0,2}\w+)*) : ", line)) for name in said.group(1).split(",")}
+
+
+def test_a_docstring_explains_no_parameter_that_is_not_there():
+    gone = []
+    for path in MODULES:
+        for name, node in public(path):
+            arguments = node.args
+            there = {argument.arg for argument in [*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs, arguments.vararg, arguments.kwarg]
+                     if argument is not None}
+            extra = documented(ast.get_docstring(node) or "", "Parameters") - there
+            if extra:
+                gone.append(f"{'/'.join(name_of(path))}.py, {name}: {', '.join(sorted(extra))}")
+    assert not gone

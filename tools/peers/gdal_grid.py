@@ -19,7 +19,7 @@ def inverse_distance(points, raster, like, radius, power, threads):
     points : path of a point layer whose z is the value
     raster : path of the GeoTIFF to write
     like : path of a raster with the same cells
-    radius : m; all points within count
+    radius, power : m, all points within count; a point weighs 1 / distance^power
     threads : that gdal_grid may use
 
     Returns

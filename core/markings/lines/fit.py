@@ -76,6 +76,8 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
     clustered_points : RoadPoints with `cluster`
     markings : MarkingObjects of the same clusters
     frame : RoadFrame
+    settings : MarkingLineSettings
+    progress : Progress
     edges, road_points : RoadEdges and RoadPoints, or None: what the lines separate is told better with them
 
     Returns

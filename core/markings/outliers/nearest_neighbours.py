@@ -148,6 +148,8 @@ def mean_distances(units: np.ndarray, k: int, progress: Progress = Progress()) -
     Parameters
     ----------
     units : (N, 3) int32 of 0.1 mm
+    k : neighbours, at least 1
+    progress : Progress
 
     Returns
     -------

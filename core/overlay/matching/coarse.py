@@ -75,6 +75,7 @@ def find_places(photo: np.ndarray, paint: np.ndarray, cell: float, bounds: Bound
     cell : m, pixel of the intensity image
     bounds : Bounds, of the pixels of `photo`
     sign : 1, or -1 where paint is darker than the road
+    progress : Progress
 
     Returns
     -------

@@ -54,6 +54,7 @@ def line_mark(kind: str, line: int, path: Path, spans: Sequence[tuple[float, flo
     path : Path
     spans : (start, end) stations of its painted parts, m
     offsets : for each span the offsets at `stations_between(start, end)`, m
+    dashed : whether it is a dash of a line, and not a solid line
 
     Returns
     -------

@@ -139,6 +139,7 @@ def separated(samples: Samples, tracks: list[FirstTrack], progress: Progress = P
     ----------
     samples : Samples of one scanner, as it seems
     tracks : FirstTrack of each drive
+    progress : Progress
 
     Returns
     -------
@@ -172,6 +173,7 @@ def splitter_of(samples: Samples, progress: Progress = Progress()) -> ScannerSpl
     Parameters
     ----------
     samples : Samples of one scanner, as it seems
+    progress : Progress
     """
     if not samples.drives:
         return None
