@@ -73,6 +73,9 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
     progress.report(0.4)
     if estimates.roads and not estimates.sure:
         progress.warn(f"The survey hardly shows on which side traffic drives; the {estimates.side} was taken. Set Side of traffic if that is wrong.")
+    if estimates.against_arrows:
+        progress.warn("The vehicle drove against the arrows painted in its lanes; lanes lead the way it drove. Look at the times of the trajectory, "
+                      "or set Side of traffic if the arrows are right.")
     for count, (number, one) in enumerate(estimates.roads.items()):
         tracks = road_lanes(one, settings, estimates.lane_width)
         s = one.lines.s

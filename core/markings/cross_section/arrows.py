@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 
+from ...countries.neutral import NEUTRAL
 from ...survey.frame.placement import located
 
 if TYPE_CHECKING:
@@ -56,6 +57,23 @@ def arrows_of(markings: MarkingObjects, frame: RoadFrame, road: int) -> np.ndarr
     begin, finish = stems(arrows)
     way = np.clip((begin - finish) / SURE_LEAN, -1, 1) * (np.minimum(begin, finish) > POINTED)
     return np.c_[(first + last) / 2, (low + high) / 2, way]
+
+
+def driven_against(arrows: np.ndarray, s: np.ndarray, driven: np.ndarray, directions: np.ndarray) -> float:
+    """How many arrows point against those who drove over them, less those that point along with them, each as far as it surely points.
+
+    Parameters
+    ----------
+    arrows : (A, 3) as `arrows_of` gives them
+    s : (K,) metres, stations in order
+    driven, directions : (P, K) m and (P,), offsets of every pass, NaN where it did not drive, and 1 along the road or -1 against it
+    """
+    if not len(arrows) or not len(s):
+        return 0.0
+    at = np.searchsorted(s, arrows[:, 0]).clip(0, len(s) - 1)
+    with np.errstate(invalid="ignore"):
+        over = np.abs(driven[:, at] - arrows[:, 1]) < NEUTRAL.narrowest_lane / 2
+    return -float((over * directions[:, None] * arrows[:, 2]).sum())
 
 
 def stems(shapes: np.ndarray) -> np.ndarray:

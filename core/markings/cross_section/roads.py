@@ -10,7 +10,7 @@ import numpy as np
 
 from ...common.parallel import ordered_map
 from ..figures.parking_bays import rows_of_bays
-from .arrows import arrows_of
+from .arrows import arrows_of, driven_against
 from .candidates import Boundaries, boundary_candidates, gather_boundaries
 from .dashes import dash_lengths
 from .estimate import RoadEstimate, estimate_road, lane_spans
@@ -45,12 +45,14 @@ class RoadEstimates:
     roads : {number: EstimatedRoad}
     side : "right" or "left"; sure : whether the survey shows that
     lane_width : metres, usual
+    against_arrows : whether the survey was driven against the arrows in its lanes
     """
 
     roads: dict[int, EstimatedRoad]
     side: str
     sure: bool
     lane_width: float
+    against_arrows: bool
 
 
 def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_width: float, side: str = "automatic",
@@ -72,12 +74,19 @@ def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_widt
     weights : EstimateWeights
     """
     known = {}
+    drives = {number: driven_offsets(frame, number, of_road.s) for number, of_road in lines.items()}
+    arrows = {number: arrows_of(markings, frame, number) for number in lines} if markings is not None else {}
+    # lanes lead as they were driven; which of them lead alike arrows tell even then
+    against = side == "automatic" and weights.arrow_against * sum(
+        driven_against(found, lines[number].s, *drives[number]) for number, found in arrows.items()) > weights.against_arrows
+    if against:
+        arrows = {number: found * (1, 1, -1) for number, found in arrows.items()}
     if width_asked:
         weights = replace(weights, width_sigma=weights.width_sigma_asked, other_width=0.0, odd_width=weights.odd_width_asked)
     if side != "automatic":
         weights = replace(weights, driven_against=weights.driven_against_asked)
     for number, of_road in lines.items():
-        driven = driven_offsets(frame, number, of_road.s)
+        driven = drives[number]
         likely = _likely_ends(of_road, usual_width)
         covered, ends = _surface(road_points, paint, number, of_road.s, likely)
         open_ends = likely if ends is None else np.where(np.isnan(ends).all(1, keepdims=True), likely, np.nan)
@@ -88,8 +97,7 @@ def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_widt
                                        (pavement or {}).get(number), dash_lengths(of_road, markings, number))
         candidates = boundary_candidates(boundaries, weights)
         known[number] = boundaries, candidates, evidence_of(
-            candidates, of_road.s, *driven, covered, hatched, arrows_of(markings, frame, number) if markings is not None else None, markings,
-            number, other_carriageway(frame, number, of_road.s))
+            candidates, of_road.s, *driven, covered, hatched, arrows.get(number), markings, number, other_carriageway(frame, number, of_road.s))
     sides = {"right": (-1,), "left": (1,)}.get(side, (-1, 1))
     found = dict(zip(sides, ordered_map(lambda first: _estimates(known, first, usual_width, weights), sides)))
     total, unnamed, once = ({first: sum(getattr(one, name) for one in of_roads.values()) + (weights.left_hand if first > 0 else 0.0)
@@ -110,7 +118,7 @@ def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_widt
         elif len(used) > 1:
             estimate = replace(estimate, other=found[-best][number], behind=behind)
         roads[number] = EstimatedRoad(lines[number], known[number][0], estimate)
-    return RoadEstimates(roads, "right" if best < 0 else "left", behind >= SURE_SIDE, width)
+    return RoadEstimates(roads, "right" if best < 0 else "left", behind >= SURE_SIDE, width, against)
 
 
 def _closed_areas(markings, frame, number, s, driven):

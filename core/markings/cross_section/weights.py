@@ -53,6 +53,7 @@ class EstimateWeights:
     hatched_lane : of a lane over a hatched area
     arrow_outside, arrow_sigma : of an arrow where no lane is; m, scatter of arrows about the middle of their lane
     arrow_against : of an arrow that surely points against its lane: of 150, one is no arrow, or misread
+    against_arrows : of a survey driven against the arrows in its lanes: of a thousand, one was, or has times that run backwards
     wrong_side : of oncoming traffic on the near side
     split_stop : of a stop line across the border between the two directions: no authority paints one, of fifty one is another bar
     change : of a metre across that becomes lane, or ceases to be one; turn : that changes its direction
@@ -108,6 +109,7 @@ class EstimateWeights:
     arrow_outside: float = 4.0
     arrow_sigma: float = 0.4
     arrow_against: float = 5.0
+    against_arrows: float = 7.0
     wrong_side: float = 8.0
     split_stop: float = 4.0
     change: float = 0.5

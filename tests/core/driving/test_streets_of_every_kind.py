@@ -3,7 +3,11 @@
 import numpy as np
 import pytest
 from lanewright.core.common.features import Features
+from lanewright.core.common.progress import Progress
 from lanewright.core.common.schemas import MARKINGS, ROAD_EDGES
+from lanewright.core.driving.driving_lines import make_driving_lines
+from lanewright.core.markings.lines.painted_lines import lines_from_features
+from lanewright.core.markings.objects.marking_objects import markings_from_features
 from lanewright.core.sample.parts.paint import straight_arrow
 from lined_streets import EAST, HEIGHT, Street
 from shapely.geometry import LineString, Polygon
@@ -138,6 +142,26 @@ def test_arrows_that_point_against_the_drive_do_not_turn_it():
     street = Street(vehicle=-1.75).paint(3.5, kind="edge").paint(0.0).paint(-3.5, kind="edge")
     arrows = [(straight_arrow(station, -1.75, -1), "arrow") for station in (25.0, 60.0, 95.0)]
     assert lanes_of(street, markings=outlined(street, *arrows))[-1.75] == 1
+
+
+@pytest.mark.parametrize("way", [1, -1])
+def test_arrows_against_the_drive_still_tell_which_lanes_lead_alike(way):
+    """As where the times of a trajectory run backwards: lanes lead as it says, so the others lead as their arrows say, turned round."""
+    street = Street(vehicle=-3.5).paint(5.25, kind="edge").paint(1.75).paint(-1.75).paint(-5.25, kind="edge")
+    arrows = outlined(street, *((straight_arrow(station, offset, -1 if offset < -1 else -way), "arrow") for station in (25.0, 60.0, 95.0)
+                                for offset in (-3.5, 0.0)))
+    assert lanes_of(street, markings=arrows) == {-3.5: 1, 0.0: way, 3.5: -1}
+    said, progress = [], Progress()
+    progress.warn = said.append
+    make_driving_lines(lines_from_features(street.lines, street.frame), street.frame, progress=progress,
+                       markings=markings_from_features(arrows, street.frame))
+    assert "against the arrows" in " ".join(said)
+
+
+def test_one_arrow_against_the_drive_is_taken_for_misread():
+    street = Street(vehicle=-3.5).paint(5.25, kind="edge").paint(1.75).paint(-1.75).paint(-5.25, kind="edge")
+    arrows = outlined(street, (straight_arrow(60.0, -3.5, -1), "arrow"), *((straight_arrow(station, 0.0, -1), "arrow") for station in (25.0, 95.0)))
+    assert lanes_of(street, markings=arrows) == {-3.5: 1, 0.0: -1, 3.5: -1}
 
 
 def test_a_stop_line_across_two_lanes_says_that_they_lead_one_way():
