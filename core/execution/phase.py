@@ -78,6 +78,7 @@ class Phase:
     arguments : plain values that all items share
     place : names the stretch of road that an item is, for messages
     size : tells items apart by how long they take; any unit
+    together : so many items, one after the other along the road, are best given to one worker process, which keeps what they share
     join : the result of an item from those of the two halves of its range of numbers; None where an item cannot be halved
     """
 
@@ -87,6 +88,7 @@ class Phase:
     place: Callable[[Any], str] = field(default=no_place, compare=False)
     size: Callable[[Any], float] = field(default=no_size, compare=False)
     join: Callable[[list[Any]], Any] | None = field(default=None, compare=False)
+    together: int = field(default=1, compare=False)
 
     def result(self, item: Any) -> Any:
         """The result of one item, computed here."""

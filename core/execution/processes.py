@@ -22,6 +22,7 @@ from .phase import Phase, name_of
 from .plain import read_plain, write_plain
 from .tasks import ShippedPhase, raise_answer
 
+WORK_ROUNDS = 8     # of work that a worker has in a phase at least, where its items come several together, so that all end at about the same time
 TRIALS = 2          # of an item whose worker ended; what kills two workers kills a third
 END_TIME = 5.0      # s that a worker may take to end by itself
 LAST_WORDS = 2000   # characters of what a dead worker wrote that are passed on
@@ -63,7 +64,11 @@ class WorkerProcesses:
             write_plain(self.folder / shipped, ShippedPhase(name_of(phase.function), phase.source.recipe(self.folder), tuple(phase.arguments)))
         except OSError as error:
             raise self.disk_error(error) from error
-        yield from ordered_map(lambda item: self._result(phase, shipped, item), items, progress, self.workers)
+        # no more of them than leave every worker some rounds of work
+        count = max(min(phase.together, len(items) // (WORK_ROUNDS * self.workers)), 1)
+        some = [items[k:k + count] for k in range(0, len(items), count)]
+        for results in ordered_map(lambda few: [self._result(phase, shipped, item) for item in few], some, progress, self.workers):
+            yield from results
         (self.folder / shipped).unlink(missing_ok=True)
 
     def _result(self, phase, shipped, item):

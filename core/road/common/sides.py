@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 SIDE_SIGNS = {"left": 1, "right": -1}   # side -> sign of its offsets
 BLOCK_SECTION_LENGTH = 20.0   # m of road for which the length of blocks is decided
 WORK_SECTION_LENGTH = 20.0    # m of road that are worked on together
+SECTIONS_TOGETHER = 4         # of these that a worker process is best given: it reads, and decimates, what two of them share once
 MAX_CURB_OFFSET = 20.0        # m from the reference line within which curbs are looked for
 HEIGHT_NODE_SPACING = 0.25    # m between the nodes of the expected height
 MAX_LOOK_ALONG = 4.0          # m along the road from the vehicle to a point that is used, plus as much as it lies across

@@ -20,7 +20,7 @@ from ..common.curb_points import CurbPoints, curb_points_at
 from ..common.decimation import POINTS_PER_LEVEL_CELL_IN_PLAN, PointDecimation
 from ..common.hidden_curb import hidden_beside
 from ..common.occlusion import OcclusionGrid
-from ..common.sides import MAX_LOOK_ALONG, SIDE_SIGNS, ahead_of_vehicle, expected_height, work_sections
+from ..common.sides import MAX_LOOK_ALONG, SECTIONS_TOGETHER, SIDE_SIGNS, ahead_of_vehicle, expected_height, work_sections
 from ..common.tracking import MAX_JOINED_GAP
 from .beyond_corridor import with_curbs_beyond
 from .classify import CurbReturn, classify_curbs, is_curb_like
@@ -137,7 +137,8 @@ def find_curb_returns(decimation: PointDecimation, road: int, main: Mapping[str,
     tips = FollowedEnds.of([place for _, place in runs], np.full(len(runs), np.nan))
     phase = Phase(plan_steps_of_section, decimation, (road, limits, known, barrier, tips, settings, behind),
                   lambda section: survey.stretch(road, *(k * settings.profile_width for k in section)),
-                  lambda section: survey.store.points_between(road, *(k * settings.profile_width for k in section)), _join_parts)
+                  lambda section: survey.store.points_between(road, *(k * settings.profile_width for k in section)), _join_parts,
+                  SECTIONS_TOGETHER)
     sections = work_sections(survey, road, settings.profile_width)
     found = _join_parts(decimation.executor.run(phase, sections, progress.part(0.0, LED_PROGRESS)))
     if found is None:

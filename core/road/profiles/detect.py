@@ -23,6 +23,7 @@ from ..common.pseudo_scanlines import SPREAD_PROFILES
 from ..common.sides import (
     BLOCK_SECTION_LENGTH,
     MAX_CURB_OFFSET,
+    SECTIONS_TOGETHER,
     SIDE_SIGNS,
     OutermostTrack,
     expected_height,
@@ -129,7 +130,7 @@ def _steps_of_road(decimation, road, settings, progress):
     first, last = sections[0][0], sections[-1][1]
     occlusion = {side: OcclusionGrid(width, first, last - first, MAX_CURB_OFFSET) for side in SIDE_SIGNS}
     phase = Phase(steps_of_section, decimation, (road, settings), lambda section: survey.stretch(road, *(k * width for k in section)),
-                  lambda section: survey.store.points_between(road, *(k * width for k in section)), join_sections)
+                  lambda section: survey.store.points_between(road, *(k * width for k in section)), join_sections, SECTIONS_TOGETHER)
     parts = {side: [] for side in SIDE_SIGNS}
     for found, beside in decimation.executor.run(phase, sections, progress):
         for side, steps in found.items():

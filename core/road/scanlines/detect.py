@@ -26,7 +26,7 @@ from ..common.hidden_curb import hidden_points
 from ..common.in_line import with_pieces_in_line
 from ..common.occlusion import HIDDEN_POINT_SPACING, MIN_OCCLUDER_HEIGHT, OcclusionGrid
 from ..common.pseudo_scanlines import MIN_SCANNER_NOISE
-from ..common.sides import MAX_CURB_OFFSET, SIDE_SIGNS, OutermostTrack, expected_height, fixed_sections, join_sections
+from ..common.sides import MAX_CURB_OFFSET, SECTIONS_TOGETHER, SIDE_SIGNS, OutermostTrack, expected_height, fixed_sections, join_sections
 from ..common.tracking import curb_chains, drop_short_curbs, link_apart, select_along_road
 from ..edges.fit import EDGE_VERTEX_SPACING, MAX_EDGE_JUMP, MAX_EDGE_SKEW, MIN_EDGE_LENGTH, MIN_HIDDEN_SHARE, EdgeCurve, without_outliers
 from ..edges.road_edges import EdgePiece, RoadEdges, joined_pieces
@@ -135,7 +135,7 @@ def _corners_of_road(source, road, settings, progress):
     first, last = sections[0][0], sections[-1][1]
     occlusion = {side: OcclusionGrid(interval, first, last - first, MAX_CURB_OFFSET) for side in SIDE_SIGNS}
     phase = Phase(corners_of_section, source, (road, settings), lambda section: source.stretch(road, *(k * interval for k in section)),
-                  lambda section: source.points_between(road, *(k * interval for k in section)), join_sections)
+                  lambda section: source.points_between(road, *(k * interval for k in section)), join_sections, SECTIONS_TOGETHER)
     parts = {side: [] for side in SIDE_SIGNS}
     for found, beside in source.executor.run(phase, sections, progress):
         for side, corners in found.items():

@@ -11,9 +11,10 @@ from lanewright.core.common.errors import Cancelled, RoadExtractionError
 from lanewright.core.common.progress import Progress
 from lanewright.core.execution import choice, interpreter, processes
 from lanewright.core.execution.choice import ExecutionSettings, executor_for
-from lanewright.core.execution.phase import Phase
+from lanewright.core.execution.phase import NoSource, Phase
 from lanewright.core.execution.processes import WorkerProcesses
 from lanewright.core.execution.threads import Threads
+from lanewright.core.markings.objects.figures import figures_of_group
 from lanewright.core.survey.point_density import cubes_of_stretch
 from lanewright.core.survey.reading.sensor_height import sensor_height_of
 from lanewright.core.survey.store.road_points import RoadPoints
@@ -61,6 +62,17 @@ def test_a_worker_that_is_killed_is_replaced_and_nothing_is_lost(by_threads, pyt
     executor = killed_while_it_works(WorkerProcesses(python, 1), 1)
     assert numbers_of(boundaries(executor)) == by_threads
     assert not executor.folder.exists()
+
+
+@pytest.mark.parametrize(("items", "together"), [(40, 2), (70, 4), (9, 1)])
+def test_items_that_share_something_go_to_one_worker_and_come_in_order(monkeypatch, items, together):
+    """As many together as the phase wants, where each of two workers still has eight rounds."""
+    monkeypatch.setattr(WorkerProcesses, "_result", lambda self, phase, shipped, item: (threading.get_ident(), time.sleep(0.001), item))
+    with closing(WorkerProcesses("python", 2)) as executor:
+        found = list(executor.run(Phase(figures_of_group, NoSource(), together=4), list(range(items))))
+    assert [item for *_, item in found] == list(range(items))
+    runs = [found[k:k + together] for k in range(0, items, together)]
+    assert all(len({thread for thread, *_ in run}) == 1 for run in runs)
 
 
 def test_workers_that_forget_what_they_read_go_on_with_the_next_phase(python):
