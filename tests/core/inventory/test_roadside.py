@@ -146,6 +146,7 @@ def test_windows_of_another_length_give_the_same(monkeypatch):
     one = roadside_to_features(found_in(survey, edges))
     monkeypatch.setattr(finding, "ROADSIDE_WINDOW", 60.0)
     other = roadside_to_features(found_in(survey, edges))
+    assert len(one[0].rows) and len(one) == len(other)
     for layer, again in zip(one, other):
         assert [row["kind"] for row in layer.rows] == [row["kind"] for row in again.rows]
         assert all(shapely.hausdorff_distance(a, b) < 0.01 for a, b in zip(layer.geometries, again.geometries))

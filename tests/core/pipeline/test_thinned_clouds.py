@@ -67,7 +67,9 @@ def right(edges, survey, street):
 @pytest.mark.parametrize("kept", [2, 4, 8])
 def test_of_a_few_scan_lines_the_curbs_are_drawn_still(street, tmp_path, kept):
     survey = thinned(street, tmp_path, one_line_in(kept))
-    for clock in SurveyScanlines(survey).lattice.mirror_phases.values():
+    clocks = SurveyScanlines(survey).lattice.mirror_phases.values()
+    assert len(clocks) == len(survey.scanners)
+    for clock in clocks:
         assert abs(clock.frequency) / clock.spacing == pytest.approx(ROTATION / kept, rel=1e-3)
     for method in ("scanlines", "both"):
         assert right(drawn(survey, street, method)[0], survey, street)

@@ -248,14 +248,18 @@ def test_the_order_of_the_points_and_the_sections_change_nothing():
     shuffled.rng = whole.rng.__class__(np.random.PCG64(9))
     whole.rng = whole.rng.__class__(np.random.PCG64(9))
     shuffled.points = [shuffled.points[k] for k in order]
-    for a, b in zip(whole.lines(), shuffled.lines()):
+    lines, again = whole.lines(), shuffled.lines()
+    assert len(lines) == len(again) == 2
+    for a, b in zip(lines, again):
         np.testing.assert_allclose(shapely.get_coordinates(a[0]), shapely.get_coordinates(b[0]), atol=1e-9)
         assert {k: v for k, v in a[1].items()} == {k: v for k, v in b[1].items()}
 
 
 def test_every_piece_lies_on_the_curve_that_its_params_tell():
     street = ClusteredStreet().dashes(3.0, 6.0, 0.0, missing=(4, 5)).paint(0, 120, 4.5, kind="edge")
-    for geometry, row in street.lines():
+    lines = street.lines()
+    assert {row["status"] for _, row in lines} == {"measured", "bridged"}
+    for geometry, row in lines:
         params = json.loads(row["params"])
         curve = curve_from_params(params)
         assert params["curve"] == row["curve"]

@@ -112,7 +112,9 @@ def test_all_stripes_end_on_one_line_however_few_tracks_met_their_ends():
     places, _ = spots(askew, tracks=0.35, kept=0.5)
     rng = np.random.default_rng(1)
     places[:, 0] += rng.normal(0, 0.02, len(places))
-    for stripe in crossings_in(places):
+    stripes = crossings_in(places)
+    assert len(stripes) == len(askew)
+    for stripe in stripes:
         middle = stripe.corners[:, 1].mean()
         assert stripe.corners[:, 0].max() - 0.1 * middle == pytest.approx(2.0, abs=0.2)
 

@@ -77,9 +77,9 @@ def test_a_street_whose_corner_is_hidden_is_drawn_where_it_is_seen():
 def test_a_corner_begins_where_the_main_edge_ends():
     edges = edges_of_a_side_street()
     ends = {g.coords[k] for g, row in edges if row["kind"] == "main" for k in (0, -1)}
-    for geometry, row in edges:
-        if row["kind"] == "corner":
-            assert geometry.coords[0] in ends or geometry.coords[-1] in ends
+    corners = [geometry for geometry, row in edges if row["kind"] == "corner"]
+    assert len(corners) == 2
+    assert all(corner.coords[0] in ends or corner.coords[-1] in ends for corner in corners)
 
 
 @pytest.mark.parametrize(("island", "within"), [(shapely.buffer(shapely.LineString([(12, 2.2), (26, 2.2)]), 0.75), 0.05),
