@@ -32,7 +32,6 @@ LAGS = np.arange(-int(round(MAX_OFFSET / LAG_CELL)), int(round(MAX_OFFSET / LAG_
 MIN_CELL_HEIGHT, MAX_CELL_HEIGHT = -0.3, 0.4   # m about the road's expected height: ground and curbs
 HEIGHT_BLUR_CELLS = 3               # cells over which heights are averaged
 DETREND_CELLS = 51            # cells: variations over more than a metre are neither curbs nor paint
-LEVEL_CELLS, MAX_NOISE_RATIO = 9, 4.5   # cells over which level ground keeps its height; times the median deviation, three of its standard deviations
 MAX_STEP, MAX_CONTRAST = 0.05, 4.0  # m of height, and standard deviations of intensity, at which cells are clipped
 MAX_CORRELATION = 0.999           # at which the correlation is clipped
 FLAT_STEP = 0.01           # m: the height offset is measured on cells flatter than this
@@ -93,24 +92,16 @@ class _Strips:
 
         self.heights = means(h, HEIGHT_BLUR_CELLS)
         self.steps = np.clip(_detrended(self.heights), -MAX_STEP, MAX_STEP)
-        # a curb face is bright or dark by where it is seen from, so paint is looked for on level ground alone
-        bright = means(intensity, 1)
-        paint = _detrended(np.where(_beside_steps(self.heights), np.float32(np.nan), bright))
+        paint = _detrended(means(intensity, 1))
         known = np.isfinite(paint)
         spread = float(np.median(np.abs(paint[known]))) / 0.6745 if known.any() else 0.0
         self.paint = np.clip(paint / max(spread, 1e-6), -MAX_CONTRAST, MAX_CONTRAST)
 
 
-def _beside_steps(heights):
-    """Where cells lie off the mean height of their neighbours, by more than noise explains."""
-    away = np.abs(_detrended(heights, LEVEL_CELLS))
-    return away > max(FLAT_STEP, MAX_NOISE_RATIO * float(np.nanmedian(away)) if np.isfinite(away).any() else 0.0)
-
-
-def _detrended(values, cells=DETREND_CELLS):
-    """Values minus their mean over some cells of the row; NaN stays."""
+def _detrended(values):
+    """Values minus their mean over DETREND_CELLS cells of the row; NaN stays."""
     known = np.isfinite(values)
-    return values - _box_sum(np.where(known, values, np.float32(0)), cells) / np.maximum(_box_sum(known.astype(np.float32), cells), 1)
+    return values - _box_sum(np.where(known, values, np.float32(0)), DETREND_CELLS) / np.maximum(_box_sum(known.astype(np.float32), DETREND_CELLS), 1)
 
 
 def _box_sum(values, cells):

@@ -94,17 +94,6 @@ def test_drives_that_agree_stay_as_they_were_measured():
     assert "stay as they were measured" in heard.said[0]
 
 
-def test_a_sidewalk_of_another_brightness_does_not_count_as_paint():
-    """Where a face of a curb is hit by chance, its brightness steps at its foot or at its top: half a centimetre off, were it paint."""
-    survey = twice(paint=lambda x, y: (np.abs(np.abs(y) - 3.0) < 0.06) + 0.5 * (y > 3.52))
-    offsets, = pass_offsets(survey, 0)
-    known = np.isfinite(offsets.left)
-    assert known.sum() >= 8
-    np.testing.assert_allclose(offsets.left[known], 0.0, atol=0.002)
-    adjust_passes(survey)
-    assert survey.frame.pass_sigma[0] < 0.001
-
-
 def test_drift_that_grows_along_the_street_is_followed():
     survey = twice(left=lambda x: 0.0006 * x)
     adjust_passes(survey)
