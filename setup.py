@@ -1,5 +1,6 @@
 """The library as a package: the checkout is itself the package `lanewright`, of which what needs QGIS is left out."""
 
+import shutil
 from pathlib import Path
 
 from setuptools import find_packages, setup
@@ -9,6 +10,12 @@ FOLDERS = ("core", "algorithms", "library")
 
 
 class BuildWithoutPlugin(build_py):
+    def run(self):
+        """Begin anew: an earlier build may have left modules that have gone since."""
+        if not getattr(self, "editable_mode", False):
+            shutil.rmtree(self.build_lib, ignore_errors=True)
+        super().run()
+
     def find_package_modules(self, package, package_dir):
         """Of the checkout's own files `__init__.py` alone: the others are for QGIS or for the build."""
         return [module for module in super().find_package_modules(package, package_dir) if package != "lanewright" or module[1] == "__init__"]
