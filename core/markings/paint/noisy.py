@@ -50,6 +50,8 @@ DASH_SLOPE_FACTOR = 2.5     # a single dash may be so many times steeper where i
 MAX_COVERED = 1 / 3     # of a piece's points: covered by an object above, such as a parked car
 STROKE_AREA, STROKE_LENGTH, STROKE_ELONGATION = 0.12, 0.80, 3.5  # m2, m, length over width: least of an elongated piece
 CLEAR_BRIGHTNESS, CLEAR_LENGTH = 4 / 3, 2.0   # of the threshold, m: an elongated piece must be so bright or so long
+FAINT_LINE_LENGTH, FAINT_LINE_WIDTH, FAINT_LINE_ELONGATION = 3.0, 0.30, 15.0   # m, m, length over width: noise is never so straight and thin,
+FAINT_LINE = 0.5         # of the threshold: so faint may a piece of that shape be
 BRANCHED_LENGTH = 1.5   # m: least area over thickness of a branched piece
 DASH_AREA, DASH_LENGTH, DASH_WIDTH = 0.03, 0.25, 0.40    # m2, m: least, least and most of a dash in a row
 VIEW_RING = 3, 8        # cells from a piece: asphalt that it is compared with in each view
@@ -184,6 +186,12 @@ class BrightPiece:
         return self.shape.area / self.thickness >= max(BRANCHED_LENGTH, STROKE_ELONGATION * self.thickness)
 
     @property
+    def is_line(self) -> bool:
+        """Whether it is a thin straight line, however faint, on asphalt: between dark seams asphalt itself is brighter than what lies beside it."""
+        thin = self.shape.width <= FAINT_LINE_WIDTH and self.shape.elongation >= FAINT_LINE_ELONGATION
+        return self.is_elongated and thin and self.shape.length >= FAINT_LINE_LENGTH and self.fading >= -MAX_FADING
+
+    @property
     def may_be_dash(self) -> bool:
         """Whether it is long and narrow enough for a dash in a row."""
         return self.shape.length >= DASH_LENGTH and self.shape.width <= DASH_WIDTH
@@ -242,11 +250,14 @@ def noisy_paint_cells(averages: CellAverages, rim: np.ndarray, samples: ViewSamp
     """
     z, contrast = averages.z, averages.contrast
     with np.errstate(invalid="ignore"):
-        bright = z > PIECE_BRIGHTNESS * threshold
+        bright, faint = z > PIECE_BRIGHTNESS * threshold, z > PIECE_BRIGHTNESS * FAINT_LINE * threshold
     mask = np.zeros(rim.shape, bool)
-    elongated = [piece for piece in bright_pieces(bright, averages, rim, threshold) if piece.is_elongated
-               and np.hypot(*piece.slope) < MAX_SLOPE and (piece.z >= CLEAR_BRIGHTNESS * threshold or piece.shape.length >= CLEAR_LENGTH)]
-    for piece in without_artefacts(elongated, samples, rim.shape):
+    strokes = [piece for piece in bright_pieces(bright, averages, rim, threshold) if piece.is_elongated
+               and (piece.z >= CLEAR_BRIGHTNESS * threshold or piece.shape.length >= CLEAR_LENGTH)]
+    lines = [piece for piece in bright_pieces(faint, averages, rim, FAINT_LINE * threshold) if piece.is_line]
+    # a stroke may be the clear part of a line
+    for piece in (piece for some in (strokes, lines)
+                  for piece in without_artefacts([one for one in some if np.hypot(*one.slope) < MAX_SLOPE], samples, rim.shape)):
         row, column = piece.cells
         # beside a broad stroke the average is darker than asphalt
         inner = contrast[row, column] > HALF_MAXIMUM * piece.top * (1.0 + min(piece.fading, 0.0))

@@ -6,7 +6,8 @@ from lanewright.core.intensity.correction import correct_intensity
 from lanewright.core.markings.objects.dash_rows import dashes_beyond, rows_of_dashes
 from lanewright.core.markings.objects.shape import measure
 from lanewright.core.markings.paint.extract import extract_markings
-from lanewright.core.markings.paint.noisy import CellAverages
+from lanewright.core.markings.paint.noisy import SPOT_SIGMA, CellAverages, ViewSamples, noisy_paint_cells
+from scipy.ndimage import gaussian_filter
 from spun_streets import spun
 
 
@@ -112,6 +113,21 @@ def test_worn_dashes_are_found_where_they_lead_on_a_row_that_is_sure_and_nowhere
     assert found_of(alone, worn_street) == 0
     found = worn_street[1]
     assert (sure(found.x, found.y) | led_on(found.x, found.y)).mean() > 0.7
+
+
+@pytest.mark.parametrize(("rows", "columns", "is_paint"), [(slice(40, 140), slice(60, 64), True), (slice(60, 64), slice(20, 120), True),
+                                                            (slice(40, 65), slice(60, 64), False), (slice(40, 140), slice(60, 72), False)])
+def test_a_long_thin_piece_is_a_line_though_it_is_faint_and_a_short_or_broad_one_is_none(rows, columns, is_paint):
+    rng, shape = np.random.default_rng(3), (180, 140)
+    mark = np.zeros(shape, bool)
+    mark[rows, columns] = True
+    noise = gaussian_filter(rng.normal(size=shape), SPOT_SIGMA)
+    contrast = (0.4 * noise / noise.std() + gaussian_filter(2.2 * mark, SPOT_SIGMA)).astype(np.float32)
+    averages = CellAverages(contrast, np.full(shape, 50.0), np.ones(shape, np.float32), np.zeros((2, *shape), np.float32))
+    cell = np.arange(contrast.size)
+    found = noisy_paint_cells(averages, np.full(shape, 3.0), ViewSamples(cell, contrast.ravel(), np.zeros(contrast.size, bool)), threshold=3.0)
+    assert (found[mark].mean() > 0.7) == is_paint
+    assert found.any() == is_paint and found[~mark].mean() < 0.02
 
 
 @pytest.mark.slow
