@@ -48,11 +48,6 @@ class CurveFit:
         """Bayesian information criterion ``n ln(RSS/n) + p ln n``, with the soft L1 loss that was minimised as RSS."""
         return float(self._information + self.parameters * np.log(len(self.residuals)))
 
-    @property
-    def aic(self) -> float:
-        """Akaike information criterion ``n ln(RSS/n) + 2 p``."""
-        return float(self._information + 2 * self.parameters)
-
 
 def bic_lower_bound(points: int, parameters: float) -> float:
     """Lower bound of the BIC of every fit to so many points with at least so many parameters."""

@@ -19,7 +19,7 @@ MINORS = range(9)                # of version 1
 STATED_NEAR = 0.01               # m by which a record may lie beyond its end
 FARTHEST_OBJECT = 100.0          # m beside the reference line
 PI_HALF = np.pi / 2
-POSITIVE, NOT_NEGATIVE, ANY = (0.0, np.inf, False), (0.0, np.inf, True), (-np.inf, np.inf, True)   # least, most, whether least itself may be
+POSITIVE, NOT_NEGATIVE = (0.0, np.inf, False), (0.0, np.inf, True)   # least, most, whether least itself may be
 MARK_COLOURS = ("standard", "blue", "green", "red", "white", "yellow", "orange", "violet", "black")
 ROAD_TYPES = ("unknown", "rural", "motorway", "town", "lowSpeed", "pedestrian", "bicycle", "townExpressway", "townCollector", "townArterial",
               "townPrivate", "townLocal", "townPlayStreet")
