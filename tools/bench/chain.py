@@ -9,12 +9,11 @@ from pathlib import Path
 
 from lanewright.core.common.parallel import cancellation_scope
 from lanewright.core.common.progress import Progress
-from lanewright.core.execution import choice
 from lanewright.core.execution.choice import ExecutionSettings
 from lanewright.core.pipeline.road_map import RoadMapSettings, make_road_map
 from lanewright.core.survey.trajectory.reader import read_trajectory
 
-from .ours import peak_mib, timed
+from .ours import peak_mib, threads_alone, timed
 from .prepare import prepared
 from .surveys import clouds_of, trajectory_of
 
@@ -51,7 +50,7 @@ def run(survey, size, method="profiles", suffix="laz", workers=0, scheduler="", 
     As users have it, large surveys are worked on by worker processes; `threads` has threads do it.
     """
     if threads:
-        choice.WORKER_POINTS = float("inf")
+        threads_alone()
     target = prepared(f"chain_{survey}.tif", size)
     target.parent.mkdir(parents=True, exist_ok=True)
     watch = Watch()

@@ -19,6 +19,13 @@ def timed(work):
     return result, dict(wall=time.perf_counter() - began[0], cpu=time.process_time() - began[1])
 
 
+def threads_alone():
+    """Have this process do without worker processes, however many points there are."""
+    from lanewright.core.execution import choice
+
+    choice.WORKER_POINTS = float("inf")
+
+
 def peak_mib():
     """The highest resident memory of this process so far."""
     status = Path("/proc/self/status")  # getrusage would tell the parent's where that was higher
@@ -93,6 +100,7 @@ def storing(size):
             return (lambda block=block: block for file in files for block in decoded[file.path])
 
     reading.ParallelCloudReader = Decoded
+    threads_alone()
     survey, seconds = timed(lambda: open_survey(clouds, trajectory))
     return dict(seconds, points=survey.store.count)
 
@@ -103,6 +111,7 @@ def scanlines(size):
     from lanewright.core.survey.open_survey import open_survey
     from lanewright.core.survey.trajectory.reader import read_trajectory
 
+    threads_alone()
     survey = open_survey(clouds_of("dense", size), read_trajectory(trajectory_of("dense", size)))
     for road in survey.store.roads():
         for section in survey.store.sections(road):  # put in order when they are first read
