@@ -58,8 +58,8 @@ EXECUTION_SETTINGS = (
         "WORKERS", "execution.choice:ExecutionSettings", "workers", tr("Worker processes, 0 = automatic (whole number)"),
         tr("So many further processes of Python read the points, find curbs and do most of what is done point by point, with the same "
            "results. More are faster as long as there are processor cores for them, and each takes some hundred MB of memory. Automatic takes "
-           "one for every 8 million points, eight or one per core at most, and none for less than 16 million points. Where no Python can be "
-           "started, this program does their work, and the log says so."),
+           "one for every 8 million points, eight or one per core at most, and none for less than 24 million points, nor on two cores for "
+           "less than 100 million. Where no Python can be started, this program does their work, and the log says so."),
         advanced=True,
     ),
     SettingSpec(

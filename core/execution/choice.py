@@ -16,6 +16,7 @@ from .threads import Threads
 from .work_folder import KeptResults, WorkFolder
 
 WORKER_POINTS = 8_000_000   # points of the files for each worker: starting takes it a second, about as long as decoding so many
+TWO_WORKERS_POINTS = 100_000_000   # points of the files from which two workers pay, all that two cores can do with
 MOST_AUTOMATIC_WORKERS = 8   # each takes some hundred MB
 
 
@@ -82,12 +83,13 @@ def executor_for(points: int, settings: ExecutionSettings = ExecutionSettings(),
 def automatic_workers(points: int) -> int:
     """How many worker processes are started for so many points where the user leaves that open; 0 for threads.
 
-    Threads wait for each other in Python; of 2 km of road with 17 million points two processes make a map in 0.94 of the time of two threads,
-    their start counted in, and of 200 m with as many in 0.99 (docs/benchmarks.md of November 2026). More processes gain more.
+    Threads wait for each other in Python, and more than four of them gain nothing. On two cores two processes make a map of 17 million points
+    in 0.92 (2 km) and 1.01 (200 m, both methods) of the time of threads, their start counted in, with more work of the processor, so that they
+    are for surveys in which the start does not matter. More processes gain more (docs/scale.md).
     """
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     workers = min(cores, MOST_AUTOMATIC_WORKERS, int(points / WORKER_POINTS))
-    return workers if workers > 1 else 0
+    return workers if workers > 2 or workers == 2 and points >= TWO_WORKERS_POINTS else 0
 
 
 def _executor_for(points, settings, progress):

@@ -13,7 +13,7 @@ from lanewright.core.execution.choice import ExecutionSettings
 from lanewright.core.pipeline.road_map import RoadMapSettings, make_road_map
 from lanewright.core.survey.trajectory.reader import read_trajectory
 
-from .ours import peak_mib, threads_alone, timed
+from .ours import peak_mib, timed
 from .prepare import prepared
 from .surveys import clouds_of, trajectory_of
 
@@ -44,13 +44,8 @@ class Watch(Progress):
         return dict(bar_off=off, silence=max(gaps))
 
 
-def run(survey, size, method="profiles", suffix="laz", workers=0, scheduler="", threads=False):
-    """Figures of the chain on a survey; `seconds` of every stage. Memory is that of all processes at one moment.
-
-    As users have it, large surveys are worked on by worker processes; `threads` has threads do it.
-    """
-    if threads:
-        threads_alone()
+def run(survey, size, method="profiles", suffix="laz", workers=0, scheduler=""):
+    """Figures of the chain on a survey; `seconds` of every stage. Memory is that of all processes at one moment."""
     target = prepared(f"chain_{survey}.tif", size)
     target.parent.mkdir(parents=True, exist_ok=True)
     watch = Watch()
