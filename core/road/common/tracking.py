@@ -16,7 +16,7 @@ import numpy as np
 
 from ...common.groups import linked_groups
 from .corners import CurbSteps
-from .curb_limits import MAX_FAINT_SCATTER, MIN_FAINT_LENGTH, CurbLimits
+from .curb_limits import MIN_FAINT_LENGTH, CurbLimits
 from .pseudo_scanlines import expand_ranges
 
 MAX_LINK_LENGTH = 1.0       # m along the road that a link may span
@@ -43,13 +43,6 @@ MAX_NOISE_ALLOWANCE = 0.3   # share of the least curb height by which such a sca
 MAX_ROAD_ROUGHNESS = 0.010  # m about the road side's line, if the scanner's noise is less than half of it
 JUMP_COST = 4.0             # m of curb that a lateral jump of 1 m must gain
 CLIMB_COST = 60.0           # m of curb that a difference of 1 m in height must gain: ground behind a curb is higher
-USUAL_HEIGHT_RATIO = 1.6    # of the steps of two pieces of one curb, in any case
-HEIGHT_RATIO_COST = 2.0     # m of curb that e times that ratio must gain: a curb does not change its height from one piece to the next
-MAX_STEP_RATIO = 2.5        # of the steps of two pieces, of which one continues the other
-MIN_UNLIKE_STEPS = 3        # steps at the end of a chain, more than others there, of which each may be off: with as many it is no longer this curb
-LINE_STEPS = 8              # steps of a chain that give its line beyond
-LEAST_HEIGHT_DOUBT = 0.01   # m, added to both before they are compared, or
-HEIGHT_DOUBT_SIGMAS = 3.0   # sigmas of the heights beside them: what the scanner and the ground change in one profile
 MAX_JUMP_COST = 10.0        # m of curb that any jump costs at most
 DISTANCE_PENALTY = 0.03     # share of its value that a metre of curb loses for each metre farther from the track
 TRACKING_MEMORY = 40.0      # m of road after which a chain is no longer continued
@@ -159,8 +152,7 @@ def curb_chains(steps: CurbSteps, label: np.ndarray, profile_width: float, limit
     cuts = np.flatnonzero(np.diff(label[order])) + 1
     chains: list[StepChain] = []
     weak: list[StepChain] = []
-    heights = _log_heights(steps)
-    for members in (part for linked in np.split(order, cuts) for part in _of_one_height(steps, heights, linked)):
+    for members in np.split(order, cuts):
         s = steps.s[members]
         length = (steps.profile[members[-1]] - steps.profile[members[0]] + 1) * profile_width
         if length < MIN_CHAIN_LENGTH - 1e-9 or len(members) * profile_width < MIN_CHAIN_DENSITY * length:
@@ -184,23 +176,6 @@ def curb_chains(steps: CurbSteps, label: np.ndarray, profile_width: float, limit
     for chain in _continuing(chains, weak, steps):
         chain.weak = False
     return sorted([*chains, *weak], key=lambda c: (c.start, c.end))
-
-
-def _of_one_height(steps, heights, members):
-    """The steps of a chain; apart from them its ends where most steps have another height and leave its line, as a seam does where a curb ends."""
-    value = np.where(np.abs(heights[members] - np.median(heights[members])) <= np.log(MAX_STEP_RATIO), 1, -1)
-    ends = []
-    for order, inward in ((members, np.cumsum(value)), (members[::-1], np.cumsum(value[::-1]))):
-        k = int(np.argmin(inward)) + 1
-        end, body = order[:k], order[k:k + LINE_STEPS]
-        if inward.min() > -MIN_UNLIKE_STEPS or len(body) < LINE_STEPS:
-            ends.append(0)
-            continue
-        # a curb that is lowered keeps its line
-        direction, middle = np.polyfit(steps.s[body] - steps.s[end[-1]], steps.u[body], 1)
-        off = steps.u[end] - middle - direction * (steps.s[end] - steps.s[end[-1]])
-        ends.append(k if np.median(np.abs(off)) > WEAK_SCATTER_FACTOR * MAX_FAINT_SCATTER else 0)
-    return [part for part in np.split(members, [ends[0], len(members) - ends[1]]) if len(part)]
 
 
 def _continuing(chains, weak, steps):
@@ -245,8 +220,6 @@ def select_along_road(chains: Sequence[StepChain], steps: CurbSteps,
     strong = np.array([not c.weak for c in chains], bool)
     cuts = np.unique(np.r_[starts[strong], ends[strong]])
     tips = np.array([_end_directions(steps, c.steps) for c in chains]).reshape(-1, 2)
-    log_heights = _log_heights(steps)
-    heights = np.array([np.median(log_heights[c.steps]) for c in chains])
     value = np.full(len(chains), -np.inf)  # of the best path that ends, or last was, on this chain
     path: list = [None] * len(chains)      # that path: (chain, first, last station, path before)
     old_value, old_path = 0.0, None        # the best path that left the memory; at first, the one without a curb
@@ -268,9 +241,7 @@ def select_along_road(chains: Sequence[StepChain], steps: CurbSteps,
             turn = np.minimum(gap, MAX_EXTRAPOLATION) * 0.5 * (tips[known, 1] + (tips[c, 0] if a <= starts[c] else 0.0))
             jump = np.maximum(np.abs(u - there[:, 0] - np.where(gap > 0, turn, 0.0)) - 0.05 - 0.1 * gap, 0.0)
             climb = np.maximum(np.abs(h - there[:, 1]) - 0.03 - 0.003 * gap, 0.0)
-            unlike = np.maximum(np.abs(heights[c] - heights[known]) - np.log(USUAL_HEIGHT_RATIO), 0.0)
-            cost = JUMP_COST * jump + CLIMB_COST * climb + HEIGHT_RATIO_COST * unlike
-            total = value[known] - np.where(known == c, 0.0, np.minimum(cost, MAX_JUMP_COST))
+            total = value[known] - np.where(known == c, 0.0, np.minimum(JUMP_COST * jump + CLIMB_COST * climb, MAX_JUMP_COST))
             best, before = old_value - (MAX_JUMP_COST / 2 if old_path else 0.0), old_path
             if len(known) and total.max() >= best:
                 k = int(np.argmax(total))
@@ -356,15 +327,8 @@ def _in_line(steps, before, after):
     a, b = before[-1], after[0]
     gap = steps.s[b] - steps.s[a]
     turn = min(gap, MAX_EXTRAPOLATION) * 0.5 * (_end_directions(steps, before)[1] + _end_directions(steps, after)[0])
-    heights = _log_heights(steps)
-    alike = abs(np.median(heights[after]) - np.median(heights[before])) <= np.log(MAX_STEP_RATIO)
-    jump, level = abs(steps.u[b] - steps.u[a] - turn), alike and abs(steps.h[b] - steps.h[a]) <= HEIGHT_TOLERANCE + 0.02 * gap
+    jump, level = abs(steps.u[b] - steps.u[a] - turn), abs(steps.h[b] - steps.h[a]) <= HEIGHT_TOLERANCE + 0.02 * gap
     return level and gap <= MAX_CHAIN_GAP and jump <= 0.15 + 0.15 * gap, level and gap <= MAX_STEADY_GAP and jump <= MAX_STEADY_JUMP
-
-
-def _log_heights(steps):
-    """(M,) log of the heights of steps, of which small differences count little where heights scatter."""
-    return np.log(steps.height + max(LEAST_HEIGHT_DOUBT, HEIGHT_DOUBT_SIGMAS * float(np.median(steps.noise))))
 
 
 def _end_directions(steps, members):

@@ -39,28 +39,3 @@ def test_alone_it_is_not():
 
 def test_who_asks_for_a_height_gets_no_lower_curb():
     assert curbs((0.0, 6.0, 0.002, 0.0), (8.0, 10.0, 0.009, 0.0), limits=CurbLimits.of(0.05, 60.0, 0.05, 60.0)) == []
-
-
-def chains_of(height, aside=0.0):
-    """(start, end) of the chains of one line of steps of some heights, m, 0.25 m apart; those lower than 0.03 m lie `aside`, m."""
-    number, ones, height = np.arange(len(height)), np.ones(len(height)), np.array(height)
-    steps = CurbSteps(profile=number, s=0.25 * number, u=4.0 + aside * (height < 0.03), h=0 * ones, skew=0 * ones, height=height, run=0 * ones,
-                      noise=0.003 * ones, scanner_noise=0.003 * ones, support=50 * ones, behind=20 * ones)
-    return [(chain.start, chain.end) for chain in curb_chains(steps, 0 * number, 0.25, AUTOMATIC)]
-
-
-def test_a_seam_that_goes_on_where_the_curb_ends_is_no_part_of_it():
-    assert chains_of([0.16] * 40 + [0.022] * 8, aside=0.03) == [(0.0, 9.75)]
-    assert chains_of([0.022] * 8 + [0.16] * 40, aside=-0.03) == [(2.0, 11.75)]
-
-
-def test_a_curb_that_is_lowered_keeps_its_line():
-    assert chains_of([0.16] * 40 + [0.022] * 8) == [(0.0, 11.75)]
-
-
-def test_a_single_step_that_is_off_is_left_in_it():
-    assert chains_of([0.16] * 40 + [0.04, 0.16, 0.04]) == [(0.0, 10.5)]
-
-
-def test_a_curb_goes_on_where_it_is_lowered_a_little():
-    assert chains_of([0.16] * 40 + [0.09] * 8) == [(0.0, 11.75)]
