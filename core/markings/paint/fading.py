@@ -17,10 +17,11 @@ FADING_BESIDE = 2, 4   # cells from a run of paint across the road: where its fa
 TOP_REACH = 6          # cells in which the brightest of a run stands for it
 RUN_ALONG = 62         # cells, either way: 5 m of road that fading is averaged over
 RUN_ACROSS = 3         # cells, either way, that the rim may waver
-MIN_CELLS_BESIDE = 60  # that were measured there
+MIN_CELLS_BESIDE = 30  # that were measured there: they tell the fading of the palest paint, three spreads above asphalt, to 0.06 of its contrast
 SLIGHT_FADING, CLEAR_FADING = 0.10, 0.22   # of the contrast of a run that is left beside a rim everywhere, and in places
 AREA_WIDTH = 0.35      # m across the road: broader pieces are no lines, and they are judged one by one
 AREA_CELLS_BESIDE = 15  # that were measured beside them
+SPECK_CELLS = 26       # what two points brighten, each the cells no farther than two from it: smaller pieces outside an area are no end of it
 
 
 def side_fading(z: np.ndarray, mask: np.ndarray, seen: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -94,23 +95,26 @@ def without_fading_areas(z: np.ndarray, mask: np.ndarray, seen: np.ndarray, gutt
     if not broad.any():
         return mask
     refused = np.zeros(count, bool)
-    rows = np.flatnonzero(mask.any(axis=1))
+    pieces = mask & (stats[:, cv2.CC_STAT_AREA] >= SPECK_CELLS)[label]
+    # a speck is none of the ground beside an area, and neither are the cells that it brightens
+    ground = seen & np.isfinite(z) & ~cv2.dilate(mask.astype(np.uint8), np.ones((1, 3), np.uint8)).astype(bool)
+    rows = np.flatnonzero(pieces.any(axis=1))
     for outward in (-1, 1):
         # the outermost cell of each row
-        columns = (mask if outward < 0 else mask[:, ::-1])[rows].argmax(axis=1)
+        columns = (pieces if outward < 0 else pieces[:, ::-1])[rows].argmax(axis=1)
         columns = columns if outward < 0 else mask.shape[1] - 1 - columns
         number = label[rows, columns]
         own = broad[number] & (offsets[columns] * outward > 0)
         row, column, number = rows[own], columns[own], number[own]
         reach = np.clip(column[:, None] - outward * np.arange(TOP_REACH + 1), 0, mask.shape[1] - 1)
-        inside = mask[row[:, None], reach] & np.isfinite(z[row[:, None], reach])
+        inside = pieces[row[:, None], reach] & np.isfinite(z[row[:, None], reach])
         top = np.where(inside, z[row[:, None], reach], 0.0).max(axis=1, initial=0.0)
         # on asphalt or a sidewalk beside it, and in a gutter too
         rest, whole, cells = np.zeros((2, count)), np.zeros((2, count)), np.zeros((2, count))
         for away in range(FADING_BESIDE[0], FADING_BESIDE[1] + 1):
             beside = column + outward * away
             known = np.flatnonzero((beside >= 0) & (beside < mask.shape[1]))
-            known = known[seen[row[known], beside[known]] & np.isfinite(z[row[known], beside[known]])]
+            known = known[ground[row[known], beside[known]]]
             for k, counted in enumerate((known[~gutter[row[known], beside[known]]], known)):
                 rest[k] += np.bincount(number[counted], z[row[counted], beside[counted]], count)
                 whole[k] += np.bincount(number[counted], top[counted], count)

@@ -251,7 +251,10 @@ class WindowExtractor:
         z, gutter = flatten(brightness, median, spread, view.rims)
         with np.errstate(invalid="ignore"):
             bright = morphology((z > threshold * scale) & ~gutter, np.isfinite(brightness), self.settings)
-        mask = without_fading_areas(z, without_fading_rims(z, bright, view.occupied & ~gutter), view.occupied, gutter, grid.offsets())
+        mask = without_fading_rims(z, bright, view.occupied & ~gutter)
+        # areas are judged as they look and, where they hang together with a rim, without it
+        for area in ((bright, mask) if (mask != bright).any() else (bright,)):
+            mask = mask & without_fading_areas(z, area, view.occupied, gutter, grid.offsets())
         # the background that was subtracted from the cell is subtracted from the point as well
         least = (brightness - z * spread) + (threshold - 0.5) * (spread * scale)
         lines, halfway = faint_lines(brightness, view.occupied, view.rims[0].distance, mask, bright & ~mask)
