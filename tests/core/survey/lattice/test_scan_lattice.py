@@ -120,7 +120,7 @@ def test_times_too_coarse_for_the_order_of_points_are_no_lattice():
 
 def test_without_times_there_are_no_lines_to_tell():
     lattice = find_lattice(survey_of(scanned(), has_time=False))
-    assert lattice.mirror_phases == {} and "no gps_time" in lattice.notes[0]
+    assert lattice.mirror_phases == {} and "Without gps_time in the cloud" in lattice.notes[0]
 
 
 def test_one_line_is_too_little():
