@@ -94,13 +94,6 @@ def test_bright_specks_behind_such_a_sidewalk_do_not_make_it_paint():
     assert left[:, :190].sum() < 0.05 * rest
 
 
-def test_a_metre_and_a_half_of_rim_fades_too_in_a_thinned_survey():
-    z = road(rim(100, height=9.0, fade=20.0), noise=0.3)
-    seen = np.random.default_rng(3).random(SHAPE) < 0.4
-    mask = (z > 3.0) & (np.abs(np.arange(SHAPE[0]) - 250) < 19)[:, None]
-    assert without_fading_rims(z, mask, seen).sum() < 0.05 * mask.sum()
-
-
 def test_a_bar_an_arrow_or_a_line_as_short_stays():
     for width in (4, 15, 80):
         z = in_a_gap(road(line(165 - width, 165)))
