@@ -83,7 +83,7 @@ def executor_for(points: int, settings: ExecutionSettings = ExecutionSettings(),
 def automatic_workers(points: int) -> int:
     """How many worker processes are started for so many points where the user leaves that open; 0 for threads.
 
-    Threads wait for each other in Python, and more than four of them gain nothing. On two cores two processes make a map of 17 million points
+    Threads wait for each other in Python, and no more than four are started. On two cores two processes make a map of 17 million points
     in 0.92 (2 km) and 1.01 (200 m, both methods) of the time of threads, their start counted in, with more work of the processor, so that they
     are for surveys in which the start does not matter. More processes gain more (docs/scale.md).
     """

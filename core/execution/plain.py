@@ -67,9 +67,17 @@ def read_plain(path: Path) -> Any:
     with open(path, "rb") as file:
         if file.read(len(FORMAT)) != FORMAT:
             raise OSError(f"{path} is no file of ours")
-        tree, layouts = json.loads(file.read(*TEXT_LENGTH.unpack(file.read(TEXT_LENGTH.size))))
+        (length,) = TEXT_LENGTH.unpack(_read_bytes(file, TEXT_LENGTH.size))
+        tree, layouts = json.loads(_read_bytes(file, length))
         arrays = {f"a{k}": _read_array(file, *layout) for k, layout in enumerate(layouts)}
     return _value(tree, arrays)
+
+
+def _read_bytes(file, count):
+    found = file.read(count)
+    if len(found) != count:
+        raise OSError(f"{file.name} ends early")
+    return found
 
 
 def _bytes_of(array):

@@ -14,7 +14,7 @@ from ...algorithms.cloud_files import cloud_files
 from ...core.common.errors import RoadExtractionError
 from ...processing_provider.results.runs import survey_name
 from ...processing_provider.texts import tr
-from .destinations import LAST_OUTPUT, outputs_by_default, survey_destinations
+from .destinations import LAST_OUTPUT, destinations, outputs_by_default
 
 CLOUDS = "POINT_CLOUDS"
 PATH_WIDTH = 330  # px
@@ -49,7 +49,7 @@ class BatchAlgorithmDialog(qgis_batch.BatchAlgorithmDialog):
         """Set the destinations of the rows that have an input."""
         names = self.surveys()
         for row, name in enumerate(names):
-            for output, place in survey_destinations(self.algorithm(), folder, name).items():
+            for output, place in destinations(self.algorithm(), folder, name).items():
                 self._place(row, output).setValue(place)
         self.messageBar().clearWidgets()
         self.messageBar().pushMessage("", tr("The results of {count} rows go to {folder}: {names}.").format(

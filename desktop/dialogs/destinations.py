@@ -19,25 +19,17 @@ def table_name(definition: QgsProcessingParameterDefinition) -> str:
     return definition.name().split(":")[-1].lower()
 
 
-def destinations(algorithm: QgsProcessingAlgorithm, folder: str) -> dict[str, str]:
-    """Where each result goes: layers into one GeoPackage called like the algorithm, other files under their own names."""
+def destinations(algorithm: QgsProcessingAlgorithm, folder: str, survey: str = "") -> dict[str, str]:
+    """Where each result goes: layers into one GeoPackage called like the algorithm, other files under their own names.
+
+    Where several surveys share the folder, the GeoPackage is called like the survey, and names of other files begin with that.
+    """
     found = {}
     for definition in outputs_by_default(algorithm):
         table = table_name(definition)
         if definition.type() == "sink":
-            found[definition.name()] = f"ogr:dbname='{Path(folder) / algorithm.name()}.gpkg' table=\"{table}\" (geom)"
+            found[definition.name()] = f"ogr:dbname='{Path(folder) / (survey or algorithm.name())}.gpkg' table=\"{table}\" (geom)"
         else:
-            found[definition.name()] = str(Path(folder) / f"{table}.{definition.defaultFileExtension()}")
-    return found
-
-
-def survey_destinations(algorithm: QgsProcessingAlgorithm, folder: str, survey: str) -> dict[str, str]:
-    """The same for one survey of several that share a folder: names of files begin with that of the survey."""
-    found = {}
-    for definition in outputs_by_default(algorithm):
-        table = table_name(definition)
-        if definition.type() == "sink":
-            found[definition.name()] = f"ogr:dbname='{Path(folder) / survey}.gpkg' table=\"{table}\" (geom)"
-        else:
-            found[definition.name()] = str(Path(folder) / f"{survey}_{table}.{definition.defaultFileExtension()}")
+            name = f"{survey}_{table}" if survey else table
+            found[definition.name()] = str(Path(folder) / f"{name}.{definition.defaultFileExtension()}")
     return found

@@ -26,15 +26,13 @@ def arrows_of(markings: MarkingObjects, frame: RoadFrame, road: int) -> np.ndarr
     """Where arrows lie and which way they point.
 
     An arrow begins with a bare shaft and soon is broad behind its tip, so it points to the end at which less of it is a single stroke. That
-    is read from the painted outline alone.
+    is read from the painted outline alone. Shorter arrows than a lane of a road has belong to cycle paths or are none.
 
     Parameters
     ----------
     markings : MarkingObjects
     frame : RoadFrame
     road : number of the road
-
-    Shorter arrows than a lane of a road has belong to cycle paths or are none.
 
     Returns
     -------

@@ -38,9 +38,11 @@ def test_arrays_keep_their_order_in_memory(tmp_path):
 def test_a_file_that_ends_early_and_one_of_others_are_refused(tmp_path):
     path = tmp_path / "value.plain"
     write_plain(path, [np.arange(9)])
-    path.write_bytes(path.read_bytes()[:-8])
-    with pytest.raises(OSError, match="ends early"):
-        read_plain(path)
+    whole = path.read_bytes()
+    for length in (len(whole) - 8, len(FORMAT) + TEXT_LENGTH.size + 5, len(FORMAT) + 3):
+        path.write_bytes(whole[:length])
+        with pytest.raises(OSError, match="ends early"):
+            read_plain(path)
     path.write_bytes(b"PK\x03\x04 another program's")
     with pytest.raises(OSError, match="no file of ours"):
         read_plain(path)
