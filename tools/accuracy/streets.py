@@ -13,14 +13,6 @@ DRIVEN = 1.2        # m between a driven lane's middle and the track
 APART = 2.5         # m: what is drawn on the track but this far from every true lane runs where the truth has no lanes
 SAME = 0.5          # m, between lines whose directions are compared
 
-# Figures in the order of the page: name, what it says
-FIGURES = {
-    "curbs": "curbs found", "curbs_right": "edges right", "corners": "corners and islands found", "pavement": "pavement edges found",
-    "paint": "paint found", "paint_right": "paint right",
-    "lanes_5": "driving lines, 5 cm", "lanes": "driving lines, 15 cm", "driven_5": "driven lanes, 5 cm", "driven": "driven lanes, 15 cm",
-    "lanes_right": "driving lines right, 15 cm", "directions": "directions right",
-    "edges_sigma": "edges within their sigma", "lanes_sigma": "driving lines within their sigma"}
-
 
 def judged(case, track, edges, paint, lanes):
     """All figures of one road map.
