@@ -10,7 +10,7 @@ from .machine import machine
 from .measures import LATER, MEASURES, PARTS, in_this_process, measure
 from .page import page
 from .prepare import prepared
-from .surveys import make_surveys
+from .surveys import make_far_survey, make_surveys
 
 READS = 3   # of laspy a round, so that the floor is no matter of luck
 
@@ -37,7 +37,7 @@ def _arguments():
     parser.add_argument("--quick", dest="size", action="store_const", const="quick", default="full",
                         help="on short surveys, once: whether all works; its figures are not to be quoted")
     parser.add_argument("--parts", nargs="+", choices=sorted(PARTS), default=[part for part in PARTS if part not in LATER],
-                        help="default: all but cancel, which presses Cancel at many moments and takes a quarter of an hour")
+                        help="default: all but far, 40 km of road, and cancel, which presses Cancel at many moments; each takes a quarter of an hour")
     parser.add_argument("--rounds", type=int, help="default 3, 1 with --quick")
     parser.add_argument("--cores", type=int, default=cores, help="processor cores that ours and theirs get (default %(default)s)")
     parser.add_argument("--page", type=lambda text: ROOT / text, help="where the page is written (default docs/benchmarks.md, where all was run)")
@@ -51,6 +51,8 @@ def _run(arguments):
     """Every measurement of the chosen parts, in turns."""
     size, began = arguments.size, time.time()
     make_surveys(size)
+    if "far" in arguments.parts:
+        make_far_survey(size)
     names = list(dict.fromkeys(name for part in arguments.parts for name in PARTS[part]))
     if any(name.endswith(("_ours", "_gdal", "_pcl", "_open3d")) for name in names):
         print("Looking for the programs to compare with …", flush=True)

@@ -23,6 +23,7 @@ MEASURES = {
     "workers": lambda size: chain.run("dense", size, "both", workers=len(os.sched_getaffinity(0))),
     "alone_workers": lambda size: chain.run("dense", size, "both", workers=1),
     "tiles_workers": lambda size: chain.run("long", size, workers=len(os.sched_getaffinity(0))),
+    "far": lambda size: chain.run("far", size, workers=len(os.sched_getaffinity(0))),
     "dask_one": lambda size: on_cluster.run("long", size, 1),
     "dask_all": lambda size: on_cluster.run("long", size, len(os.sched_getaffinity(0))),
     "short": lambda size: chain.run("short", size),
@@ -35,8 +36,8 @@ ONE_CORE = ("sor_", "clusters_", "alone_")   # PCL has no more, so nobody gets m
 PARTS = dict(stages=("read", "placing", "storing", "profiles", "las", "both", "scanlines"), memory=("profiles", "short", "tiles", "read_long"),
              cores=("both", "alone_both", "workers", "alone_workers", "tiles_workers"), cluster=("read_long", "dask_one", "dask_all"),
              image=("image_ours", "image_gdal"), outliers=("sor_ours", "sor_pcl", "sor_open3d"),
-             clusters=("clusters_ours", "clusters_pcl", "clusters_open3d"), cancel=("cancel",))
-LATER = ("cancel",)  # takes longer than all the others together, so it runs where it is asked for
+             clusters=("clusters_ours", "clusters_pcl", "clusters_open3d"), far=("tiles_workers", "far"), cancel=("cancel",))
+LATER = ("far", "cancel")  # each takes longer than all the others together, so they run where they are asked for
 
 
 def measure(name, size, cores):

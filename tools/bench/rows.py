@@ -38,6 +38,10 @@ def _over(one, other, kind):
     return lambda r: r[one][kind] / r[other][kind]
 
 
+def _points_per_second(one, other):
+    return lambda r: r[one]["points"] / r[one]["wall"] / (r[other]["points"] / r[other]["wall"])
+
+
 READ = "× reading"
 ROWS = (
     Row("placing decoded points in the road frame", READ, 0.35, _against_reading("placing"), ("read", "placing")),
@@ -67,12 +71,15 @@ ROWS = (
     Row("2 km in tiles by a Dask cluster on this computer, one worker a core", READ + " these tiles", None,
         _against_reading("dask_all", read="read_long"), ("read_long", "dask_all")),
     Row("parallel efficiency of it", "T₁ / n Tₙ", 0.85, _efficiency("dask_one", "dask_all"), ("dask_one", "dask_all"), least=True),
+    Row("points per second by worker processes, 40 km in tiles", "× 2 km", 0.9, _points_per_second("far", "tiles_workers"),
+        ("far", "tiles_workers"), least=True),
     Row("peak memory, dense 200 m", "GiB", 1.2, lambda r: r["profiles"]["peak"] / 1024, ("profiles",)),
     Row("peak memory, 2 km in tiles", "GiB", 1.2, lambda r: r["tiles"]["peak"] / 1024, ("tiles",)),
     Row("peak memory, dense 200 m, both methods, worker processes and their caller together", "GiB", 1.2,
         lambda r: r["workers"]["peak"] / 1024, ("workers",)),
     Row("peak memory of ten times the length at as many points", "× dense", 1.15, _over("tiles", "profiles", "peak"), ("tiles", "profiles")),
     Row("peak memory of ten times the length and the points", "× 200 m", None, _over("tiles", "short", "peak"), ("tiles", "short")),
+    Row("peak memory of worker processes and their caller, 40 km in tiles", "GiB", None, lambda r: r["far"]["peak"] / 1024, ("far",)),
     Row("progress bar, farthest from the time passed (profiles)", "% of the whole", None, lambda r: 100 * r["profiles"]["bar_off"], ("profiles",)),
     Row("progress bar, farthest from the time passed (both)", "% of the whole", None, lambda r: 100 * r["both"]["bar_off"], ("both",)),
     Row("longest time in which Cancel is not asked for (both)", "s", 2.0, lambda r: r["both"]["silence"][0], ("both",)),
