@@ -1,13 +1,15 @@
 """`make bench`: rounds of figures in, a page out."""
 
 import json
+import os
+import sys
 
 import numpy as np
 import pytest
 
 pytest.importorskip("osgeo.gdal")
 
-from bench import meaning, surveys  # noqa: E402
+from bench import meaning, measures, surveys  # noqa: E402
 from bench.chain import Watch  # noqa: E402
 from bench.measures import MEASURES, PARTS  # noqa: E402
 from bench.page import page  # noqa: E402
@@ -55,6 +57,22 @@ def test_two_cores_that_take_little_more_than_half_the_time_of_one_reach_the_goa
     figures = a_round(alone_both=dict(CHAIN, wall=10.0, cores=1), both=dict(CHAIN, wall=wall, cores=2))
     assert reached(row("of the default, threads"), [figures])[::3] == (pytest.approx(share), verdict)
     assert "| ≥ 0.9 |" in a_page(figures)
+
+
+def test_what_runs_on_one_core_each_lose_side_by_side_is_the_ceiling_of_efficiency():
+    figures = a_round(alone_both=dict(CHAIN, wall=9.0), side_by_side=dict(wall=10.0, cpu=9.8))
+    assert reached(row("ceiling"), [figures])[::3] == (pytest.approx(0.9), "")
+
+
+@pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="cores are chosen on Linux only")
+def test_runs_side_by_side_have_a_core_each_and_their_mean_is_told(tmp_path, monkeypatch):
+    told = "import json, os; found = os.sched_getaffinity(0); print(json.dumps(dict(wall=sum(found), cpu=len(found), peak=os.getpid())))"
+    python = tmp_path / "python"
+    python.write_text(f"#!/bin/sh\nexec {sys.executable} -c '{told}'\n")
+    python.chmod(0o755)
+    monkeypatch.setattr(measures.sys, "executable", str(python))
+    found = measures.side_by_side("alone_both", "quick")
+    assert found["cpu"] == 1 and found["wall"] == pytest.approx(np.mean(sorted(os.sched_getaffinity(0))))
 
 
 def test_a_busy_machine_is_told_of_and_a_quiet_one_is_not():

@@ -46,7 +46,7 @@ class Watch(Progress):
 
 def run(survey, size, method="profiles", suffix="laz", workers=0, scheduler=""):
     """Figures of the chain on a survey; `seconds` of every stage. Memory is that of all processes at one moment."""
-    target = prepared(f"chain_{survey}.tif", size)
+    target = prepared(f"chain_{survey}_{os.getpid()}.tif", size)   # runs side by side write their own
     target.parent.mkdir(parents=True, exist_ok=True)
     watch = Watch()
     settings = RoadMapSettings(boundary_method=method, execution=ExecutionSettings(workers=workers, scheduler=scheduler))

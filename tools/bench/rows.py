@@ -68,6 +68,8 @@ ROWS = (
     Row("parallel efficiency of the default, threads", "T₁ / n Tₙ", 0.9, _efficiency("alone_both", "both"), ("alone_both", "both"), least=True),
     Row("parallel efficiency of the default, worker processes", "T₁ / n Tₙ", 0.9, _efficiency("alone_workers", "workers"),
         ("alone_workers", "workers"), least=True),
+    Row("ceiling: independent runs of it on one core each, side by side on all cores", "T₁ / T₁ side by side", None,
+        _over("alone_both", "side_by_side", "wall"), ("alone_both", "side_by_side")),
     Row("2 km in tiles by a Dask cluster on this computer, one worker a core", READ + " these tiles", None,
         _against_reading("dask_all", read="read_long"), ("read_long", "dask_all")),
     Row("parallel efficiency of it", "T₁ / n Tₙ", 0.85, _efficiency("dask_one", "dask_all"), ("dask_one", "dask_all"), least=True),
