@@ -23,7 +23,7 @@ from . import cluster_task
 from .cluster_connection import all_paused, check_versions, check_workers, client_of, wait_for_workers
 from .phase import Phase, name_of
 from .plain import read_plain, write_plain
-from .tasks import ShippedPhase, raise_answer
+from .tasks import ShippedPhase, items_together, raise_answer
 from .work_folder import WorkFolder, code_digest
 
 BEAT_TIME = 2.0         # s between two signs of life of the caller
@@ -31,6 +31,7 @@ CALLER_LOST = 300.0     # s without one after which workers remove the caller's 
 SCHEDULER_LOST = 15.0   # s without a connection to the scheduler after which the run ends
 CLOSE_TIME = 5.0        # s for the last tasks to let go of the folder
 PAUSED_TIME = 20.0      # s without a result after which is looked whether memory makes all workers pause: they may do so for ever
+ITEMS_PER_TASK = 4      # usually: a task costs caller, scheduler and worker 11 ms of the processor, an item of road 50 ms or more
 RESULT_TIME = 30.0      # s until a result written by another machine is seen here: network file systems remember that it was not there
 
 
@@ -55,7 +56,7 @@ def cluster_of(address: str, insecure: bool, work: WorkFolder | None, progress: 
         workers = wait_for_workers(client, progress)
         check_versions(client)
         try:
-            cluster = Cluster(client, work.path if work else None)
+            cluster = Cluster(client, work.path if work else None, sum(workers.values()))
         except OSError as error:
             raise (work.error(error) if work else _disk_error(tempfile.gettempdir(), error)) from error
         check_workers(client, cluster.folder, cluster_task.BEAT, work is not None, progress)
@@ -86,14 +87,15 @@ class Cluster:
     ----------
     client : distributed.Client, closed at the end
     work : folder that all workers see; None takes one for temporary files
+    threads : of all workers together, as far as they are there already
 
     Attributes
     ----------
     folder : own folder of the run, removed at the end
     """
 
-    def __init__(self, client: Any, work: Path | None = None):
-        self.client, self.named = client, work is not None
+    def __init__(self, client: Any, work: Path | None = None, threads: int = 1):
+        self.client, self.named, self.threads = client, work is not None, threads
         self.folder = Path(tempfile.mkdtemp(prefix="lanewright-")) if work is None else work / f"run-{uuid4().hex[:8]}"
         self.folder.mkdir(exist_ok=True)
         self._left = weakref.finalize(self, shutil.rmtree, self.folder, ignore_errors=True)
@@ -102,7 +104,7 @@ class Cluster:
         threading.Thread(target=_beat, args=(self.folder / cluster_task.BEAT, self._closed), daemon=True).start()
 
     def run(self, phase: Phase, items: Sequence[Any], progress: Progress = Progress(), keep: Sequence[Path] = ()) -> Iterator[Any]:
-        """Yield the results of all items in their order; see `Executor`. The largest begin.
+        """Yield the results of all items in their order; see `Executor`. Successive ones go to one worker together, the largest of these begin.
 
         Raises
         ------
@@ -114,7 +116,7 @@ class Cluster:
         try:
             write_plain(shipped, ShippedPhase(name_of(phase.function), phase.source.recipe(self.folder), tuple(phase.arguments)))
             parts = [_Part(item, keep[k] if keep else self.new_file(), phase.size(item)) for k, item in enumerate(items)]
-            work.submit(parts)
+            work.submit(parts, items_together(phase, len(parts), self.threads, ITEMS_PER_TASK))
             for part in parts:
                 while not part.done:
                     progress.report(work.done / len(parts))
@@ -165,7 +167,7 @@ class Cluster:
 
 
 class _Work:
-    """The tasks of a phase: sent, awaited, sent again in halves."""
+    """The tasks of a phase, each of some parts: sent, awaited, sent again part by part, then in halves."""
 
     def __init__(self, cluster, phase, shipped):
         self.cluster, self.client, self.phase, self.shipped = cluster, cluster.client, phase, shipped
@@ -173,15 +175,19 @@ class _Work:
         self.heard, self.paused = time.monotonic(), False
         self.ready: queue.SimpleQueue = queue.SimpleQueue()
 
-    def submit(self, parts):
-        """Send parts, the largest first."""
-        rank = {size: k for k, size in enumerate(sorted({part.size for part in parts}))}
-        for part in parts:
-            item = self.cluster.new_file()
-            write_plain(item, part.item)
-            future = self.client.submit(cluster_task.do, str(self.shipped), str(item), str(part.file), self.code, pure=False, retries=0,
-                                        priority=rank[part.size], key=f"{self.phase.function.__name__}-{uuid4().hex}")
-            self.pending[future.key] = part, future, item
+    def submit(self, parts, count=1):
+        """Send parts, so many successive ones in a task, the largest tasks first."""
+        tasks = [parts[k:k + count] for k in range(0, len(parts), count)]
+        sizes = [sum(part.size for part in some) for some in tasks]
+        rank = {size: k for k, size in enumerate(sorted(set(sizes)))}
+        for some, size in zip(tasks, sizes):
+            items = [self.cluster.new_file() for _ in some]
+            for item, part in zip(items, some):
+                write_plain(item, part.item)
+            future = self.client.submit(cluster_task.do, str(self.shipped), [str(item) for item in items], [str(part.file) for part in some],
+                                        self.code, pure=False, retries=0, priority=rank[size],
+                                        key=f"{self.phase.function.__name__}-{uuid4().hex}")
+            self.pending[future.key] = some, future, items
             future.add_done_callback(self.ready.put)
 
     def take(self):
@@ -194,34 +200,43 @@ class _Work:
         self.heard, self.paused = time.monotonic(), False
         if future.key not in self.pending:
             return
-        part, future, item = self.pending.pop(future.key)
-        item.unlink(missing_ok=True)
+        parts, future, items = self.pending.pop(future.key)
+        for item in items:
+            item.unlink(missing_ok=True)
         if future.status == "finished":
-            self._answered(part, future.result())
+            self._answered(parts, future.result())
         elif future.status == "error":
-            self._failed(part, future.exception())
+            self._failed(parts, future.exception())
         else:
             raise self._lost()
 
-    def _answered(self, part, answer):
+    def _answered(self, parts, answer):
         if "memory" in answer:
-            self._halve(part)
+            self._divide(parts)
             return
         if "code" in answer:
             raise RoadExtractionError("A worker that came later has another Lanewright than this computer. Install this one there.")
-        raise_answer(answer, self.phase, part.item, "A worker of the cluster")
-        self._finish(part)
-        if part.whole is not None and all(half.done for half in part.whole.halves):
-            self._join(part.whole)
+        raise_answer(answer, self.phase, parts[int(answer.get("at", 0))].item, "A worker of the cluster")
+        for part in parts:
+            self._finish(part)
+            if part.whole is not None and all(half.done for half in part.whole.halves):
+                self._join(part.whole)
 
     def _finish(self, part):
         part.done = True
         self.done += part.whole is None
 
-    def _failed(self, part, error):
+    def _failed(self, parts, error):
         if type(error).__name__ != "KilledWorker":
             raise error
-        self._halve(part)
+        self._divide(parts)
+
+    def _divide(self, parts):
+        """Send the parts of a task at which workers end one by one, or the halves of a single one; what is finished is not computed again."""
+        if len(parts) > 1:
+            self.submit(parts)
+        else:
+            self._halve(parts[0])
 
     def _halve(self, part):
         """Send the halves of a part at which workers end; refuse where it is half already, or cannot be halved."""
@@ -277,8 +292,9 @@ class _Work:
         futures = [future for _, future, _ in self.pending.values()]
         if futures and self.client.status == "running":
             self.client.cancel(futures, force=True)
-        for _, _, item in self.pending.values():
-            item.unlink(missing_ok=True)
+        for _, _, items in self.pending.values():
+            for item in items:
+                item.unlink(missing_ok=True)
         self.pending.clear()
 
 

@@ -1,4 +1,4 @@
-"""What runs on the workers of a Dask cluster: the look around before the work, and one item of a phase after the other.
+"""What runs on the workers of a Dask cluster: the look around before the work, and items of phases.
 
 The caller keeps a folder that all of them see. A phase is wanted as long as its file is there; the caller itself is alive as long as
 it touches the file BEAT, and where it does no longer, the workers remove the folder.
@@ -10,6 +10,7 @@ import os
 import shutil
 import threading
 import time
+from collections.abc import Sequence
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -66,26 +67,34 @@ def sees(sizes: dict[str, int]) -> bool:
         os.path.exists(path) and os.path.getsize(path) == size for path, size in sizes.items())
 
 
-def do(phase: str, item: str, result: str, code: str) -> dict[str, str]:
-    """Compute one item of a phase, unless its result is there.
+def do(phase: str, items: Sequence[str], results: Sequence[str], code: str) -> dict[str, str]:
+    """Compute some items of a phase, one after the other, but for those whose results are there.
 
     Parameters
     ----------
-    phase, item, result : files as in `Tasks.answer`
+    phase : file as in `Tasks.answer`
+    items, results : as many files, likewise
     code : digest of the caller's Lanewright
 
     Returns
     -------
-    as `Tasks.answer`; also {"code": ...} where the worker's Lanewright is another
+    as `Tasks.answer`, with the number of the item that it is about as "at"; those before it are computed, those after it not. Also {"code": ...}
+    where the worker's Lanewright is another
     """
-    if Path(result).exists():
+    left = [k for k, result in enumerate(results) if not Path(result).exists()]
+    if not left:
         return {}
     if code_digest() != code:
         return {"code": code_digest()}
     _watch(str(Path(phase).parent))
     reuse_freed_memory()
+    answer: dict[str, str] = {}
     with cancellation_scope(_WhileWanted(Path(phase))):
-        answer = _tasks.answer(Path(phase), Path(item), Path(result))
+        for k in left:
+            answer = _tasks.answer(Path(phase), Path(items[k]), Path(results[k]))
+            if answer:
+                answer["at"] = str(k)
+                break
     # a worker whose memory seems full pauses
     trim_heap()
     return answer

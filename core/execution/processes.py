@@ -20,9 +20,8 @@ from ..common.progress import Progress
 from .interpreter import command_of, environment, import_folders, no_window
 from .phase import Phase, name_of
 from .plain import read_plain, write_plain
-from .tasks import ShippedPhase, raise_answer
+from .tasks import ShippedPhase, items_together, raise_answer
 
-WORK_ROUNDS = 8     # of work that a worker has in a phase at least, where its items come several together, so that all end at about the same time
 TRIALS = 2          # of an item whose worker ended; what kills two workers kills a third
 END_TIME = 5.0      # s that a worker may take to end by itself
 LAST_WORDS = 2000   # characters of what a dead worker wrote that are passed on
@@ -64,8 +63,7 @@ class WorkerProcesses:
             write_plain(self.folder / shipped, ShippedPhase(name_of(phase.function), phase.source.recipe(self.folder), tuple(phase.arguments)))
         except OSError as error:
             raise self.disk_error(error) from error
-        # no more of them than leave every worker some rounds of work
-        count = max(min(phase.together, len(items) // (WORK_ROUNDS * self.workers)), 1)
+        count = items_together(phase, len(items), self.workers)
         some = [items[k:k + count] for k in range(0, len(items), count)]
         for results in ordered_map(lambda few: [self._result(phase, shipped, item) for item in few], some, progress, self.workers):
             yield from results

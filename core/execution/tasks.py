@@ -15,6 +15,20 @@ from .phase import Phase, Recipe, named
 from .plain import read_plain, write_plain
 
 OPEN_PHASES = 2   # phases kept open in a worker: the current one and the one before
+WORK_ROUNDS = 8   # of work that a worker has in a phase at least, where its items come several together, so that all end at about the same time
+
+
+def items_together(phase: Phase, count: int, workers: int, usual: int = 1) -> int:
+    """How many items, one after the other along the road, a worker is given at once.
+
+    Parameters
+    ----------
+    phase : Phase, which may ask for some
+    count : of all its items
+    workers : that share them
+    usual : where the phase asks for fewer; in any case there are no more than leave every worker some rounds of work
+    """
+    return max(min(max(phase.together, usual), count // (WORK_ROUNDS * max(workers, 1))), 1)
 
 
 @dataclass(frozen=True)

@@ -95,6 +95,12 @@ def cluster(tmp_path_factory):
     running.close()
 
 
+@pytest.fixture(params=[1, 2])
+def sections_together(request, monkeypatch):
+    """So many sections in a task; of themselves short streets have one in each."""
+    monkeypatch.setattr("lanewright.core.execution.cluster.items_together", lambda *_: request.param)
+
+
 @pytest.fixture
 def new_cluster(tmp_path):
     """Starts clusters of a test's own."""

@@ -67,7 +67,7 @@ class AtPhase:
         return getattr(self.executor, name)
 
 
-def test_two_workers_find_what_threads_find_and_leave_nothing(cluster, by_threads):
+def test_two_workers_find_what_threads_find_and_leave_nothing(cluster, by_threads, sections_together):
     heard = Heard()
     executor = cluster_of(cluster.address, False, None, heard)
     assert numbers_of(boundaries(executor)) == by_threads
@@ -86,7 +86,7 @@ def test_scanlines_made_by_workers_are_those_that_threads_make(cluster):
 
 
 @pytest.mark.parametrize("phase", PHASES)
-def test_a_worker_that_is_killed_costs_nothing_that_was_finished(cluster, by_threads, tmp_path, phase):
+def test_a_worker_that_is_killed_costs_nothing_that_was_finished(cluster, by_threads, tmp_path, sections_together, phase):
     work, finished = WorkFolder(str(tmp_path / "work")), {}
 
     def kill():
@@ -114,7 +114,7 @@ def ends_soon_when_cancelled(cluster, phase, work):
 
 
 @pytest.mark.parametrize("phase", PHASES)
-def test_cancel_ends_within_two_seconds_and_leaves_the_workers_idle(cluster, phase):
+def test_cancel_ends_within_two_seconds_and_leaves_the_workers_idle(cluster, sections_together, phase):
     ends_soon_when_cancelled(cluster, phase, boundaries)
     with contextlib.closing(connecting.client_of(cluster.address)) as client:
         until = time.monotonic() + 10.0

@@ -13,7 +13,7 @@ from executed_boundaries import boundaries, numbers_of
 from lanewright.core.common.errors import Cancelled, RoadExtractionError
 from lanewright.core.common.parallel import check_cancelled
 from lanewright.core.common.progress import Progress
-from lanewright.core.execution import cluster, cluster_task
+from lanewright.core.execution import cluster, cluster_task, tasks
 from lanewright.core.execution.choice import ExecutionSettings
 from lanewright.core.execution.cluster import Cluster
 from lanewright.core.execution.cluster_connection import check_address, client_of, is_loopback
@@ -29,22 +29,31 @@ class KilledWorker(Exception):
 
 
 class StandIn:
-    """Does in threads what a distributed.Client has done; `deadly(first, last)` says at which items a worker would end."""
+    """Does in threads what a distributed.Client has done; `deadly(first, last)` says at which items a worker would end.
+
+    tasks : the items of each task that was sent, in this order
+    """
 
     status = "running"
 
     def __init__(self, deadly=lambda first, last: False):
-        self.pool, self.deadly, self.keys, self.items, self.priorities = ThreadPoolExecutor(2), deadly, [], [], []
+        self.pool, self.deadly, self.tasks, self.priorities = ThreadPoolExecutor(2), deadly, [], []
 
-    def submit(self, function, phase, item, *arguments, pure, retries, priority, key):
-        self.items.append(tuple(read_plain(item)))
+    @property
+    def items(self):
+        return [item for some in self.tasks for item in some]
+
+    def submit(self, function, phase, items, results, code, pure, retries, priority, key):
+        self.tasks.append([tuple(read_plain(item)) for item in items])
         self.priorities.append(priority)
-        return StandInFuture(key, self.pool.submit(self._do, function, phase, item, *arguments))
+        return StandInFuture(key, self.pool.submit(self._do, function, phase, items, results, code))
 
-    def _do(self, function, phase, item, *arguments):
-        if self.deadly(*read_plain(item)):
-            raise KilledWorker
-        return function(phase, item, *arguments)
+    def _do(self, function, phase, items, results, code):
+        for k, item in enumerate(items):
+            if self.deadly(*read_plain(item)):
+                function(phase, items[:k], results[:k], code)
+                raise KilledWorker
+        return function(phase, items, results, code)
 
     def cancel(self, futures, force):
         for future in futures:
@@ -136,6 +145,71 @@ def test_the_largest_sections_begin():
     executor.close()
 
 
+@pytest.fixture
+def few_rounds(monkeypatch):
+    """Tasks of several sections on a short street."""
+    monkeypatch.setattr(tasks, "WORK_ROUNDS", 1)
+
+
+def test_successive_sections_go_to_a_worker_together_and_every_worker_has_rounds_of_work(by_threads, few_rounds):
+    client = StandIn()
+    assert numbers_of(boundaries(Cluster(client))) == by_threads
+    assert {len(some) for some in client.tasks} == {3}, "all sections of a street of 51 m"
+    assert all(a[1] == b[0] for some in client.tasks for a, b in zip(some, some[1:]))
+    shared = StandIn()
+    assert numbers_of(boundaries(Cluster(shared, threads=100))) == by_threads
+    assert max(map(len, shared.tasks)) == 1 and sorted(set(shared.items)) == sorted(set(client.items))
+
+
+def test_tasks_with_the_most_work_begin(few_rounds):
+    client = StandIn(deadly=lambda first, last: True)
+    executor = Cluster(client, threads=2)
+    items = [(0, 9), (9, 18), (18, 50), (50, 60), (60, 61)]
+    with pytest.raises(RoadExtractionError):
+        list(executor.run(Phase(lengths_of, survey_of(street()), size=lambda item: item[1] - item[0]), items))
+    assert client.tasks[:3] == [[(0, 9), (9, 18)], [(18, 50), (50, 60)], [(60, 61)]] and client.priorities[:3] == [1, 2, 0]
+    executor.close()
+
+
+def test_where_workers_end_only_the_section_that_they_end_at_is_computed_again(by_threads, few_rounds, monkeypatch):
+    computed, answer = [], cluster_task._tasks.answer
+
+    def counted(phase, item, result):
+        computed.append(result)
+        return answer(phase, item, result)
+
+    monkeypatch.setattr(cluster_task._tasks, "answer", counted)
+    client = StandIn(lambda first, last: first <= 100 < last and not any((a == first) != (b == last) for a, b in client.items))
+    assert numbers_of(boundaries(Cluster(client))) == by_threads
+    assert len(computed) == len(set(computed)), "what was finished before a worker ended stays"
+
+
+def test_memory_that_one_section_lacks_does_not_divide_the_others(few_rounds, monkeypatch):
+    def scarce(phase, item, result):
+        first, last = read_plain(item)
+        if first <= 20 < last and last - first > 5:
+            return {"memory": "out of memory"}
+        write_plain(result, last - first)
+        return {}
+
+    monkeypatch.setattr(cluster_task._tasks, "answer", scarce)
+    client = StandIn()
+    executor = Cluster(client)
+    items = [(0, 9), (9, 18), (18, 27), (27, 36)]
+    assert list(executor.run(Phase(lengths_of, survey_of(street()), join=sum), items)) == [9, 9, 9, 9]
+    assert client.tasks == [items, *([item] for item in items), [(18, 22)], [(22, 27)]]
+    executor.close()
+
+
+def test_what_goes_wrong_names_the_section_where_it_did(few_rounds, monkeypatch):
+    monkeypatch.setattr(cluster_task._tasks, "answer",
+                        lambda phase, item, result: {"bug": "a traceback"} if read_plain(item) == (18, 27) else write_plain(result, 0) or {})
+    executor, items = Cluster(StandIn()), [(0, 9), (9, 18), (18, 27), (27, 36)]
+    with pytest.raises(RuntimeError, match=r"failed at section 18 to 27:\na traceback"):
+        list(executor.run(Phase(lengths_of, survey_of(street()), place=lambda item: "section {} to {}".format(*item)), items))
+    executor.close()
+
+
 def test_cancel_leaves_no_folder():
     class Impatient(Progress):
         def report(self, fraction):
@@ -161,12 +235,12 @@ def test_a_task_stops_when_its_phase_is_no_longer_wanted(tmp_path, monkeypatch):
 
 def test_a_result_that_is_there_is_not_computed_again(tmp_path):
     write_plain(tmp_path / "result.plain", 7)
-    assert cluster_task.do(str(tmp_path / "no phase"), str(tmp_path / "no item"), str(tmp_path / "result.plain"), code_digest()) == {}
+    assert cluster_task.do(str(tmp_path / "no phase"), [str(tmp_path / "no item")], [str(tmp_path / "result.plain")], code_digest()) == {}
     assert read_plain(tmp_path / "result.plain") == 7
 
 
 def test_a_worker_with_other_code_computes_nothing(tmp_path):
-    assert cluster_task.do(str(tmp_path / "phase"), str(tmp_path / "item"), str(tmp_path / "result"), "another") == {"code": code_digest()}
+    assert cluster_task.do(str(tmp_path / "phase"), [str(tmp_path / "item")], [str(tmp_path / "result")], "another") == {"code": code_digest()}
     assert not list(tmp_path.iterdir())
 
 
