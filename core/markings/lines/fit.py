@@ -17,6 +17,7 @@ from ...countries.neutral import NEUTRAL
 from ...curves.model_selection import CURVES
 from ...survey.store.records import join_columns
 from ..objects.marking_objects import MarkingObjects
+from .between_tracks import with_unseen_paint
 from .common_trend import CommonTrend
 from .dash_pattern import same_dash_pattern
 from .edges_beside import edges_beside
@@ -128,6 +129,8 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
         progress.warn(f"{replaced} of {number} lines cannot take the curve “{settings.curve}”; "
                       "the automatic curve was used for them.")
     drawn = painted_lines_of(rows, frame, clustered_points.crs)
+    if road_points is not None:
+        drawn = with_unseen_paint(drawn, markings, clustered_points, road_points)
     return named_by_estimate(drawn, frame, country(settings.country).usual_lane, markings, edges, road_points, clustered_points)
 
 

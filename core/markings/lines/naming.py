@@ -13,6 +13,7 @@ from ..cross_section.roads import estimate_roads
 from ..cross_section.sections import sections_of_edges, sections_of_lines, sections_of_pavement
 from ..objects.classify import LINE_KINDS
 from ..objects.marking_objects import MarkingObjects
+from .between_tracks import with_paint_between_tracks
 from .painted_lines import PaintedLines
 
 if TYPE_CHECKING:
@@ -51,7 +52,7 @@ def named_by_estimate(lines: PaintedLines, frame: RoadFrame, usual_width: float,
 
 
 def named_by_lines(markings: MarkingObjects, lines: PaintedLines) -> MarkingObjects:
-    """Markings of lines (`keep`) with the `kind` of the marking line that runs along them.
+    """Markings of lines (`keep`) with the `kind` of the marking line that runs along them, and paint between tracks of the scan.
 
     Parameters
     ----------
@@ -60,7 +61,7 @@ def named_by_lines(markings: MarkingObjects, lines: PaintedLines) -> MarkingObje
 
     Returns
     -------
-    MarkingObjects, the same with the new names
+    MarkingObjects, the same with the new names, and what `with_paint_between_tracks` adds
     """
     rows = np.flatnonzero(markings.keep & np.isin(markings.kind.astype(str), LINE_KINDS))
     if not len(rows) or not len(lines):
@@ -70,4 +71,4 @@ def named_by_lines(markings: MarkingObjects, lines: PaintedLines) -> MarkingObje
     same_road = markings.road[rows[found]] == lines.course.road[line]
     kind = markings.kind.copy()
     kind[rows[found][same_road]] = lines.kind[line[same_road]]
-    return markings.with_kinds(kind)
+    return with_paint_between_tracks(markings.with_kinds(kind), lines)

@@ -67,6 +67,8 @@ class PaintedLines:
     fitted : FittedPieces, None for lines that were read from a layer
     crs : WKT, "" where unknown
     rmse, width : (P,) metres, of the paint from the curve and of the paint across; NaN where unknown; None where nothing is known
+    unseen : P arrays (K, 3), metres: first and last station of stretches of a bridged piece that lie between two tracks of the scan,
+        and the width of the line; None where it was not looked for
     """
 
     line: np.ndarray
@@ -78,6 +80,7 @@ class PaintedLines:
     crs: str = ""
     rmse: np.ndarray | None = None
     width: np.ndarray | None = None
+    unseen: list[np.ndarray] | None = None
 
     def __len__(self) -> int:
         return len(self.line)
@@ -173,7 +176,8 @@ def painted_lines_of(rows: list[dict[str, Any]], frame: RoadFrame, crs: str) -> 
 
     Parameters
     ----------
-    rows : dicts of road, line, kind, pattern, status, and of what FittedPieces holds: curve, arc, places (V, 3), station, end, offset, width, rmse
+    rows : dicts of road, line, kind, pattern, status, and of what FittedPieces holds: curve, arc, places (V, 3), station, end, offset, width, rmse;
+        and of `unseen`, where it is known
     frame : RoadFrame
     crs : WKT, "" where unknown
     """
@@ -186,7 +190,7 @@ def painted_lines_of(rows: list[dict[str, Any]], frame: RoadFrame, crs: str) -> 
                           *(column(name, float) for name in ("station", "end", "offset", "width", "rmse")))
     course = lines_in_frame(fitted.linestrings(frame), column("road", int), frame)
     return PaintedLines(column("line", int), column("kind", object), column("pattern", object), column("status", object), course, fitted, crs,
-                        fitted.rmse, fitted.width)
+                        fitted.rmse, fitted.width, [row.get("unseen", np.empty((0, 3))) for row in rows])
 
 
 def pieces_of_lines(lines: PaintedLines) -> list[dict[str, Any]]:
@@ -195,6 +199,7 @@ def pieces_of_lines(lines: PaintedLines) -> list[dict[str, Any]]:
     if fitted is None:
         raise ValueError("Lines that were read from a layer have no fitted curves.")
     return [dict(road=int(lines.course.road[k]), line=int(lines.line[k]), kind=lines.kind[k], pattern=lines.pattern[k], status=lines.status[k],
-                 curve=fitted.curve[k], arc=fitted.arc[k], places=fitted.vertices[fitted.start[k]:fitted.start[k + 1]],
+                 unseen=np.empty((0, 3)) if lines.unseen is None else lines.unseen[k], curve=fitted.curve[k], arc=fitted.arc[k],
+                 places=fitted.vertices[fitted.start[k]:fitted.start[k + 1]],
                  **{name: float(getattr(fitted, name)[k]) for name in ("station", "end", "offset", "width", "rmse")})
             for k in range(len(lines))]

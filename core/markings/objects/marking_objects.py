@@ -194,6 +194,9 @@ def markings_from_features(features: Features, frame: RoadFrame) -> MarkingObjec
 
 
 def with_kinds_of(features: Features, markings: MarkingObjects) -> Features:
-    """A layer MARKINGS with the classes of the MarkingObjects read from it; geometries and all other fields stay as they are."""
+    """A layer MARKINGS with the classes of the MarkingObjects read from it; geometries and all other fields stay as they are.
+
+    Markings behind those that were read, which lines have added, are left out.
+    """
     rows = [row if (row.get("class") or "") == kind else {**row, "class": kind} for row, kind in zip(features.rows, markings.kind.tolist())]
     return Features(features.geometry_type, features.schema, list(features.geometries), rows, features.crs)
