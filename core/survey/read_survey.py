@@ -16,6 +16,7 @@ from .adjustment.adjust import adjust_passes
 from .clock_check import check_clock
 from .frame.build import build_frame
 from .frame.road import CORRIDOR
+from .las.copies import distinct_rows, may_overlap
 from .las.luminance import check_coloured, without_intensity
 from .las.parallel_reader import ParallelCloudReader
 from .las.reader import CloudHeader
@@ -138,13 +139,14 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     progress.info(f"Points read: {total:,} from {len(files)} file(s), {store.count:,} near the road kept; "
                  f"{len(frame.roads)} road(s), {len(frame.passes)} pass(es), {len(scanners)} scanner(s); "
                  f"sensor {height:.2f} m above the road.")
+    time, place = _sampled(files, reader, has_time, progress)
     if coloured:
         progress.info("The brightness of the points' colours is taken as their intensity.")
     if not survey.has_intensity and (note := without_intensity(files, settings.intensity_from)):
         progress.warn(note)
     if has_time and len(scanners) == 1:
         at = read_at if shared is None else PARTS_PROGRESS * read_at
-        _tell_scanners_apart(survey, reader, progress.part(at, at))
+        _tell_scanners_apart(survey, time, place, reader.slots.stride, progress.part(at, at))
     if shared is not None:
         shared.ordered.mkdir(exist_ok=True)
         survey.put_in_order(shared.ordered, shared.ordering, progress.part(PARTS_PROGRESS * read_at, read_at))
@@ -180,15 +182,26 @@ def section_length(files: list[CloudHeader], frame: RoadFrame) -> float:
     return max((length for length in SECTION_LENGTHS if length * density <= SECTION_POINTS), default=SECTION_LENGTH)
 
 
-def _tell_scanners_apart(survey, reader, progress):
+def _sampled(files, reader, has_time, progress):
+    """Times and places of the points sampled, each once, and a word on those that files have in common; empty without times."""
+    time, place = (np.concatenate(column) for column in zip((np.empty(0), np.empty((0, 3), np.int32)), *reader.sampled))
+    if not has_time or len(files) == 1 or not may_overlap(files):
+        return time, place
+    rows = distinct_rows(time, place)
+    if len(rows) < len(time):
+        progress.info(f"About {100 * (1 - len(rows) / len(time)):.2g} % of the points that were read are copies of points in another file, as where "
+                      "tiles overlap. Each point is used once.")
+    return time[rows], place[rows]
+
+
+def _tell_scanners_apart(survey, time, place, stride, progress):
     """Where the points of one scanner, as it seems, are those of two by their scan lines, let the survey tell them apart."""
     from .estimation.estimate import splitter_of
     from .estimation.rough.samples import samples_of
 
-    time, place = (np.concatenate(column) for column in zip(*reader.sampled))
-    if time.min() == time.max():
+    if not len(time) or time.min() == time.max():
         return
-    samples = samples_of(time, place * COORDINATE_SCALE, np.zeros(len(time), np.uint8), np.zeros(3), reader.slots.stride)
+    samples = samples_of(time, place * COORDINATE_SCALE, np.zeros(len(time), np.uint8), np.zeros(3), stride)
     survey.splitter = splitter_of(samples, progress)
     if survey.splitter is not None:
         survey.scanners = [0, 1]

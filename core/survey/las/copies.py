@@ -1,10 +1,11 @@
-"""Copies of a file among the files of a survey: their points would count twice."""
+"""Copies of files and of points among the files of a survey: they would count twice."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
+import shapely
 
 from .reader import CloudHeader, read_blocks
 
@@ -47,6 +48,31 @@ def without_copies(files: list[CloudHeader], warn: Callable[[str], None]) -> lis
         else:
             kept.append(file)
     return kept
+
+
+def may_overlap(files: Sequence[CloudHeader]) -> bool:
+    """Whether the bounds of any two files have an area in common."""
+    boxes = shapely.box(*np.array([(*file.minimum[:2], *file.maximum[:2]) for file in files if file.count], float).reshape(-1, 4).T)
+    one, other = shapely.STRtree(boxes).query(boxes, predicate="intersects")
+    apart = one < other
+    return bool((shapely.area(shapely.intersection(boxes[one[apart]], boxes[other[apart]])) > 0.0).any())
+
+
+def distinct_rows(time: np.ndarray, place: np.ndarray) -> np.ndarray:
+    """Indices of the points that are no copies of earlier ones.
+
+    Parameters
+    ----------
+    time : (N,) s
+    place : (N, 3) in any unit
+
+    Returns
+    -------
+    (M,) intp, ascending
+    """
+    order = np.lexsort((*place.T, time))
+    same = (time[order[1:]] == time[order[:-1]]) & (place[order[1:]] == place[order[:-1]]).all(axis=1)
+    return np.sort(order[np.r_[True, ~same][:len(order)]])
 
 
 def _whole(places):

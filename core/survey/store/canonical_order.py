@@ -1,4 +1,4 @@
-"""The order in which a section returns its points: it does not depend on the order of the files."""
+"""The order in which a section returns its points, each once: it does not depend on the order of the files, nor on how far these overlap."""
 
 from __future__ import annotations
 
@@ -18,6 +18,8 @@ ALL_KEYS = "returns", "source", "y", "x", "intensity", "time", *PLACE_KEYS
 def canonical_order(records: np.ndarray | Columns, mask: np.ndarray | None = None) -> np.ndarray:
     """Indices that sort records by station, offset, height, time and the remaining columns.
 
+    A record that is the same as another in all of them is the same point from two files, as where tiles overlap: one of them is taken.
+
     Parameters
     ----------
     records : (N,) of at least the columns `ALL_KEYS`
@@ -25,7 +27,7 @@ def canonical_order(records: np.ndarray | Columns, mask: np.ndarray | None = Non
 
     Returns
     -------
-    (M,) intp
+    (M,) intp, no two of them of equal records
     """
     if not len(records):
         return np.empty(0, np.intp)
@@ -52,7 +54,7 @@ def canonical_order(records: np.ndarray | Columns, mask: np.ndarray | None = Non
             by_keys = np.lexsort(keys)
             order[places] = order[places[by_keys]]
             tied = places[_same_as_next(*(key[by_keys] for key in keys))]
-    return order
+    return np.delete(order, tied) if len(tied) else order
 
 
 def _same_as_next(*keys):

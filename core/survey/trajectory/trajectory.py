@@ -116,7 +116,7 @@ def refuse_standstill(trajectory: Trajectory) -> None:
     length = float(np.hypot(np.diff(x), np.diff(y)).sum())
     if len(x) < 2 or length < 1.0:
         raise RoadExtractionError(
-            f"The trajectory has {len(x)} usable position{'s' * (len(x) != 1)} over {length:.1f} m. At least two positions and "
+            f"The trajectory has {len(x)} usable position(s) over {length:.1f} m. At least two positions and "
             "1 m of driving are needed; check the time and coordinate columns of the file.")
 
 

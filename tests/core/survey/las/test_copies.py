@@ -1,9 +1,9 @@
-"""A file that holds the points of another one of the survey is left out."""
+"""A file that holds the points of another one of the survey is left out, and points that files share count once."""
 
 import numpy as np
 import pytest
 from drives import write_cloud
-from lanewright.core.survey.las.copies import without_copies
+from lanewright.core.survey.las.copies import distinct_rows, may_overlap, without_copies
 from lanewright.core.survey.las.reader import read_headers
 
 
@@ -35,3 +35,18 @@ def test_a_copy_is_left_out_and_named(tmp_path, copied):
 @pytest.mark.parametrize("differing", [{"moved": 0.001}, {"later": 60.0}, {"intensity": 900}], ids=["place", "time", "intensity"])
 def test_points_that_differ_in_anything_are_others(tmp_path, differing):
     assert kept(cloud(tmp_path / "a.laz"), cloud(tmp_path / "b.laz", **differing)) == ([0, 1], [])
+
+
+def test_of_points_that_come_again_the_first_are_taken():
+    time = np.array([5.0, 3.0, 5.0, 5.0, 3.0])
+    place = np.array([[1, 2, 3], [4, 5, 6], [1, 2, 3], [1, 2, 4], [4, 5, 6]], np.int32)
+    assert distinct_rows(time, place).tolist() == [0, 1, 3]
+    assert distinct_rows(time[:0], place[:0]).tolist() == []
+
+
+@pytest.mark.parametrize(("east", "share"), [(0.0, True), (9.0, True), (12.0, False)])
+def test_files_may_overlap_where_their_bounds_do(tmp_path, east, share):
+    a = write_cloud(tmp_path / "a.laz", *np.array([[0.0, 10.0], [0.0, 10.0], [0.0, 1.0], [1.0, 2.0]]))
+    b = write_cloud(tmp_path / "b.laz", *np.array([[east, east + 10.0], [0.0, 10.0], [0.0, 1.0], [1.0, 2.0]]))
+    assert may_overlap(read_headers([a, b])) is share
+    assert not may_overlap(read_headers([a]))
