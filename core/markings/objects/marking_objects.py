@@ -166,6 +166,11 @@ def markings_to_features(markings: MarkingObjects, frame: RoadFrame) -> Features
     Features MARKINGS, one row an element, in the same order
     """
     shapes = markings.outlines.polygons(frame.origin)
+    return Features("PolygonZ", MARKINGS, list(shapes), _rows(markings, shapes), markings.crs)
+
+
+def _rows(markings, shapes):
+    """The fields of markings, of which the polygons are given, too."""
     numbers = {name: getattr(markings, attribute).tolist() for attribute, name in NUMBER_FIELDS.items()}
     rows = [dict(road=road, cluster=cluster, use="keep" if keep else "other", area_m2=area, **{"class": kind})
             for road, cluster, keep, kind, area in zip(markings.road.tolist(), markings.cluster.tolist(), markings.keep.tolist(),
@@ -173,7 +178,7 @@ def markings_to_features(markings: MarkingObjects, frame: RoadFrame) -> Features
     for k, row in enumerate(rows):
         row.update((name, None if np.isnan(values[k]) else values[k]) for name, values in numbers.items())
         row["points"] = None if row["points"] is None else int(row["points"])
-    return Features("PolygonZ", MARKINGS, list(shapes), rows, markings.crs)
+    return rows
 
 
 def markings_from_features(features: Features, frame: RoadFrame) -> MarkingObjects:
@@ -196,7 +201,19 @@ def markings_from_features(features: Features, frame: RoadFrame) -> MarkingObjec
 def with_kinds_of(features: Features, markings: MarkingObjects) -> Features:
     """A layer MARKINGS with the classes of the MarkingObjects read from it; geometries and all other fields stay as they are.
 
-    Markings behind those that were read, which lines have added, are left out.
+    Markings behind those that were read, which their lines have added, come behind them.
     """
     rows = [row if (row.get("class") or "") == kind else {**row, "class": kind} for row, kind in zip(features.rows, markings.kind.tolist())]
-    return Features(features.geometry_type, features.schema, list(features.geometries), rows, features.crs)
+    shapes = list(features.geometries)
+    if len(markings) > len(rows):
+        more = markings.take(np.arange(len(rows), len(markings)))
+        added = more.outlines.polygons(_origin(shapes, markings.outlines))
+        shapes, rows = shapes + list(added), rows + _rows(more, added)
+    return Features(features.geometry_type, features.schema, shapes, rows, features.crs)
+
+
+def _origin(shapes, outlines):
+    """What lies between the outlines of markings and the map that they were read from: whole metres."""
+    k = int(np.flatnonzero(np.diff(outlines.marking_start))[0])
+    vertex = outlines.vertices[outlines.ring_start[outlines.polygon_start[outlines.marking_start[k]]]]
+    return np.rint(shapely.get_coordinates(shapes[k], include_z=True)[0] - vertex)

@@ -7,7 +7,7 @@ from lanewright.core.common.features import Features
 from lanewright.core.common.schemas import MARKING_LINES, MARKINGS
 from lanewright.core.markings.lines.between_tracks import with_paint_between_tracks, with_unseen_paint
 from lanewright.core.markings.lines.painted_lines import lines_from_features
-from lanewright.core.markings.objects.marking_objects import markings_from_features
+from lanewright.core.markings.objects.marking_objects import markings_from_features, markings_to_features, with_kinds_of
 from lanewright.core.survey.frame.build import build_frame
 from lanewright.core.survey.store.records import ROAD_POINT, to_units
 from lanewright.core.survey.store.road_points import RoadPoints
@@ -105,3 +105,12 @@ def test_a_dashed_line_keeps_its_gaps():
 def test_lines_that_were_drawn_by_hand_add_no_paint():
     markings, lines, *_ = street()
     assert with_paint_between_tracks(markings, lines) is markings
+
+
+def test_stage_by_stage_the_layer_gets_the_same_paint_as_in_one_call():
+    markings, *rest = street()
+    found = completed(markings, *rest)
+    read, whole = markings_to_features(markings, FRAME), markings_to_features(found, FRAME)
+    layer = with_kinds_of(read, found)
+    assert len(layer.rows) > len(read.rows) and layer.rows == whole.rows
+    assert all(shapely.equals_identical(a, b) for a, b in zip(layer.geometries, whole.geometries, strict=True))
