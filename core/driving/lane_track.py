@@ -65,7 +65,7 @@ class LaneTrack:
 
     def followed_by(self, other: LaneTrack) -> LaneTrack:
         """This track and one that begins at the next station."""
-        return replace(self, **self._each(lambda name, v: np.append(v, getattr(other, name))))
+        return replace(self, **self._each(lambda name, v: np.concatenate([v, getattr(other, name)])))
 
     def stretched(self, first: int, d: np.ndarray, width: np.ndarray, row: int) -> LaneTrack:
         """A track from station `first` on that is in all but its place and width as this one is at a row."""

@@ -74,7 +74,7 @@ def _within_its_borders(track, boundaries):
 def _rank(track):
     """(N,) how sure the place of a lane is: beside one line, between worn ones, in a strip of several lanes, or between two lines that are seen."""
     between = (track.left >= 0) & (track.right >= 0)
-    return np.select([track.status == MEASURED, track.offset, between], [BETWEEN_LINES, BESIDE_ONE, BETWEEN_WORN], DIVIDED)
+    return np.where(track.status == MEASURED, BETWEEN_LINES, np.where(track.offset, BESIDE_ONE, np.where(between, BETWEEN_WORN, DIVIDED)))
 
 
 def _appended(found, part):

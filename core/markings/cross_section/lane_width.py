@@ -7,6 +7,8 @@ import numpy as np
 from .weights import CURB, ISLAND, OPEN, PAVEMENT, SURFACE
 
 LIKELY_SHARE = 0.8, 1.5    # of the usual width of a lane: lanes in bends
+# whether nothing is painted there, and whether the surface ends without an edge or nothing is known of it, by what a boundary is made of
+UNPAINTED, SURFACE_END = (np.isin(np.arange(PAVEMENT + 1), made) for made in ((CURB, ISLAND, PAVEMENT, SURFACE, OPEN), (SURFACE, OPEN)))
 
 
 def lane_places(left: np.ndarray, right: np.ndarray, made_left: np.ndarray, made_right: np.ndarray, number: np.ndarray | int, usual: float,
@@ -31,7 +33,7 @@ def lane_places(left: np.ndarray, right: np.ndarray, made_left: np.ndarray, made
     begin : metres, offset of the left border of the leftmost lane
     each : metres, width of each lane
     """
-    open_left, open_right = (np.isin(made, (CURB, ISLAND, PAVEMENT, SURFACE, OPEN)) for made in (made_left, made_right))
+    open_left, open_right = UNPAINTED[made_left], UNPAINTED[made_right]
     loose = open_left ^ open_right
     each = (left - right) / number
     widened = bend & (each > LIKELY_SHARE[0] * usual) & (each < LIKELY_SHARE[1] * usual)
@@ -49,4 +51,4 @@ def beside_island(made_left: np.ndarray, made_right: np.ndarray) -> np.ndarray:
 
 def beside_surface_end(made_left: np.ndarray, made_right: np.ndarray) -> np.ndarray:
     """Bool, whether a strip reaches to where the surface ends without an edge, or to where nothing is known of it."""
-    return np.isin(made_left, (SURFACE, OPEN)) | np.isin(made_right, (SURFACE, OPEN))
+    return SURFACE_END[made_left] | SURFACE_END[made_right]
