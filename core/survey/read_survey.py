@@ -159,10 +159,11 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
             for file in shared.ordered.iterdir():
                 file.unlink()
             survey.put_in_order(shared.ordered, shared.ordering, progress.part(1.0, 1.0))
-    if settings.trajectory_sigma:
+    # what the user says overrules what lies beside the trajectory
+    if across := settings.trajectory_sigma or trajectory.sigma_across:
         # what passes differ by is part of the same error
         differ = survey.frame.pass_sigma
-        survey.frame.pass_sigma = {road: max(differ.get(road, 0.0), settings.trajectory_sigma) for road in range(len(frame.roads))}
+        survey.frame.pass_sigma = {road: max(differ.get(road, 0.0), across) for road in range(len(frame.roads))}
     if shared is not None:
         survey.keep(shared.ordered)
     return survey

@@ -14,6 +14,7 @@ import numpy as np
 from ...common.errors import RoadExtractionError
 from ...io.crs import horizontal_part, parse_crs
 from ...io.text_table import SAMPLE_BYTES, finite_or_nan, read_number_table
+from .accuracy_file import accuracy_across
 from .assigned_columns import place_of_roles
 from .columns import ROLES, find_header, stated_angle_unit
 from .drive_checks import HEADING_TOLERANCE, METRES_PER_DEGREE, angle_between, driven_course, geographic_unit
@@ -273,5 +274,6 @@ def _read_sbet(path, crs):
     columns = dict(time=rows[:, 0], x=np.degrees(rows[:, 2]), y=np.degrees(rows[:, 1]), z=rows[:, 3],
                    roll=rows[:, 7], pitch=rows[:, 8], heading=true_heading)
     trajectory = trajectory_from_columns(columns, crs or WGS84, "radians", path.name, notes)
-    remarks = tuple(note for note in trajectory.notes if "radians" not in note)
-    return replace(trajectory, notes=remarks)
+    sigma, remark = accuracy_across(path, rows[:, 0], columns["x"], columns["y"])
+    remarks = tuple(note for note in (*trajectory.notes, remark) if note and "radians" not in note)
+    return replace(trajectory, notes=remarks, sigma_across=sigma)

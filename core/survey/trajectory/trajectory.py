@@ -27,6 +27,7 @@ class Trajectory:
     crs : WKT, "" where unknown
     has_time : False where the source has no time
     notes : sentences for the user about what was recognised and changed
+    sigma_across : m, one sigma across the way as its processing tells; 0 where unknown
     """
 
     time: np.ndarray
@@ -39,6 +40,7 @@ class Trajectory:
     crs: str = ""
     has_time: bool = True
     notes: tuple[str, ...] = field(default=())
+    sigma_across: float = 0.0
 
     def __post_init__(self) -> None:
         for name in ("roll", "pitch", "heading"):
