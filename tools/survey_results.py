@@ -100,7 +100,8 @@ def qgis_process(checkout, algorithm, **inputs):
     if run.returncode:
         raise Failed(f"{algorithm} ended with code {run.returncode}.\n{run.stderr.strip()}")
     log = json.loads(run.stdout).get("log", {})
-    return "".join(f"{kind}: {line}\n" for kind in ("errors", "warnings", "info") for line in log.get(kind, []))
+    # QGIS names the kinds: errors, warning, info
+    return "".join(f"{kind}: {line}\n" for kind in sorted(log, key=lambda kind: kind == "info") for line in log[kind])
 
 
 def make_results(survey, into, checkout):

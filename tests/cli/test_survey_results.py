@@ -4,6 +4,7 @@ import shutil
 import subprocess
 from pathlib import Path
 
+import laspy
 import pytest
 from lanewright.core.sample.scenes import SCENES
 
@@ -51,6 +52,18 @@ def test_every_survey_has_its_results_one_that_fails_stops_no_other_and_a_second
     (tmp_path / "second" / "street" / "edges.gpkg").unlink()
     different = call("compare_results.sh", tmp_path / "first" / "street", tmp_path / "second" / "street")
     assert different.returncode == 1 and "different  edges.gpkg: only in the first folder" in different.stdout.splitlines()
+
+
+def test_the_log_of_a_survey_begins_with_what_was_warned_of(surveys, tmp_path):
+    cloud = laspy.read(surveys / "street" / "cloud.laz")
+    cloud.vlrs.clear()
+    (tmp_path / "bare").mkdir()
+    cloud.write(tmp_path / "bare" / "cloud.laz")
+    shutil.copy(surveys / "street" / "trajectory.csv", tmp_path / "bare")
+    assert call("survey_results.sh", tmp_path / "results", "--surveys", tmp_path, "--only", "bare").returncode == 0
+    said = (tmp_path / "results" / "bare" / "log.txt").read_text().splitlines()
+    assert said[0].startswith("warning: ") and [line for line in said if line.startswith("warning: The point cloud carries no CRS")]
+    assert said[-1].startswith("info: ")
 
 
 def test_a_name_that_no_survey_has_is_refused_with_those_there_are(surveys, tmp_path):
