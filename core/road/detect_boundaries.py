@@ -12,9 +12,11 @@ from .agreement import measure_agreement, select_curb_points
 from .common.curb_points import CurbPoints
 from .common.decimation import LevelGround, PointDecimation
 from .common.occlusion import OcclusionGrid
+from .common.side_chains import SideChains
 from .curb_returns.detect import with_curb_returns
 from .edges.fit import EdgeSettings, fit_road_edges
 from .edges.road_edges import RoadEdges
+from .in_line_of_both import with_pieces_of_both
 from .profiles.detect import CurbSettings, detect_curbs
 from .scanlines.candidates import GAP_FILL_REACH
 from .scanlines.detect import ScanlineBoundarySettings, curbs_from_scanlines
@@ -101,18 +103,19 @@ def _find_curb_points(decimation, settings, progress):
     """`find_curb_points` with the points of a PointDecimation."""
     survey, both, found = decimation.survey, settings.method == "both", {}
     beside: dict[int, dict[str, OcclusionGrid]] = {}
+    chains: list[dict[tuple[int, str], SideChains]] = [{}, {}]
     if settings.method != "scanlines":
         part = progress.part(0.0, PROFILES_PROGRESS) if both else progress
-        found["profiles"] = detect_curbs(survey, settings.curbs, part, include_returns=not both, decimation=decimation, beside=beside)
+        found["profiles"] = detect_curbs(survey, settings.curbs, part, not both, decimation, beside, chains[0])
     if settings.method != "profiles":
         part = progress.part(PROFILES_PROGRESS if both else 0.0, 1.0)
         source = SurveyScanlines(survey, settings.planes, settings.scanlines.sensor_height, progress=part.part(0.0, LATTICE_PROGRESS),
                                  level=_level_for(decimation, settings.scanlines))
         found["scanlines"] = curbs_from_scanlines(source, settings.scanlines, settings.curbs.block_length,
-                                                  part.part(LATTICE_PROGRESS, RETURNS_PROGRESS), None if both else beside)
+                                                  part.part(LATTICE_PROGRESS, RETURNS_PROGRESS), None if both else beside, chains[1])
         drawn = "both" if both else "scanlines"
         if both:
-            found["both"] = _better_points(found, survey.frame)
+            found["both"] = with_pieces_of_both(_better_points(found, survey.frame), chains, beside, survey)
         found[drawn] = with_curb_returns(found[drawn], decimation, settings.curbs, part.part(RETURNS_PROGRESS, 1.0), beside)
     return found
 

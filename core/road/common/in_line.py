@@ -7,7 +7,8 @@ row of parked cars. It may scatter more than a curb that nothing else speaks for
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.polynomial import Polynomial
@@ -47,7 +48,8 @@ def with_pieces_in_line(kept: Sequence[tuple[int, float, float]], chains: Sequen
     for (_, _, a), (_, b, _) in zip(kept[:-1], kept[1:]):
         if 2 * MIN_PIECE_LENGTH <= b - a <= MAX_LINE_GAP:
             before, after = _between(steps, chosen, a - LINE_FIT_LENGTH, a + 1e-9), _between(steps, chosen, b - 1e-9, b + LINE_FIT_LENGTH)
-            found += _pieces_between(before, after, chains, steps, to_plan)
+            pieces = pieces_between(steps[before], steps[after], chains, steps, to_plan)
+            found += [(piece.chain, piece.start, piece.end) for piece in side_by_side(pieces)]
     return sorted(found, key=lambda part: part[1:])
 
 
@@ -55,13 +57,40 @@ def _between(steps, members, start, end):
     return members[(steps.s[members] >= start) & (steps.s[members] <= end)]
 
 
-def _pieces_between(before, after, chains, steps, to_plan):
-    """Pieces of chains on the line between two runs of steps; of pieces side by side one that is not weak, and the one nearest to the line."""
-    a, b = steps.s[before].max(), steps.s[after].min()
-    line = GapLine(*(np.array(to_plan(steps.s[end], steps.u[end])) for end in (before, after)))
-    (s0, h0, height0), (s1, h1, height1) = ([np.median(v[end]) for v in (steps.s, steps.h, steps.height)] for end in (before, after))
+@dataclass(frozen=True, order=True)
+class PieceInLine:
+    """A piece of a chain on the line across a gap; the better ones sort first.
+
+    weak : is its chain too weak for a curb by itself?
+    off : m, greatest distance from the line
+    chain, start, end : number of the chain, and the stations between which the piece lies, m
+    """
+
+    weak: bool
+    off: float
+    chain: int
+    start: float
+    end: float
+
+
+def pieces_between(before: CurbSteps, after: CurbSteps, chains: Sequence[StepChain], steps: CurbSteps,
+                   to_plan: Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]) -> list[PieceInLine]:
+    """The pieces of chains that lie on the line between two runs of curb.
+
+    Parameters
+    ----------
+    before, after : CurbSteps on both sides of the gap, or any rows with `s`, `u`, `h` and `height`; not empty
+    chains : list of StepChain
+    steps : CurbSteps to which they refer
+    to_plan : function, stations and outward offsets in m -> x and y in m
+    """
+    a, b = before.s.max(), after.s.min()
+    line = GapLine(np.array(to_plan(before.s, before.u)), np.array(to_plan(after.s, after.u)))
+    (s0, h0, height0), (s1, h1, height1) = ([np.median(v) for v in (end.s, end.h, end.height)] for end in (before, after))
     pieces = []
     for number, chain in enumerate(chains):
+        if chain.end < a + MIN_PIECE_LENGTH or chain.start > b - MIN_PIECE_LENGTH:
+            continue
         members = _between(steps, chain.steps, a + 1e-6, b - 1e-6)
         if len(members) < MIN_PIECE_STEPS or np.ptp(steps.s[members]) < MIN_PIECE_LENGTH:
             continue
@@ -71,11 +100,16 @@ def _pieces_between(before, after, chains, steps, to_plan):
         up = np.abs(steps.h[members] - h0 - share * (h1 - h0)) - IN_LINE_GRADE * np.minimum(s - a, b - s)
         ratio = np.median(steps.height[members] / (height0 + share * (height1 - height0)))
         if off <= IN_LINE_ACROSS and up.max() <= HEIGHT_TOLERANCE and 1 / MAX_HEIGHT_RATIO <= ratio <= MAX_HEIGHT_RATIO:
-            pieces.append((chain.weak, off, number, float(s[0]), float(s[-1])))
-    chosen: list[tuple[int, float, float]] = []
-    for _, _, number, c, d in sorted(pieces):
-        if all(d < other[1] or c > other[2] for other in chosen):
-            chosen.append((number, c, d))
+            pieces.append(PieceInLine(chain.weak, float(off), number, float(s[0]), float(s[-1])))
+    return pieces
+
+
+def side_by_side(pieces: Iterable[PieceInLine]) -> list[PieceInLine]:
+    """Of pieces beside each other one that is not weak, and the one nearest to the line."""
+    chosen: list[PieceInLine] = []
+    for piece in sorted(pieces):
+        if all(piece.end < other.start or piece.start > other.end for other in chosen):
+            chosen.append(piece)
     return chosen
 
 

@@ -45,7 +45,7 @@ JUMP_COST = 4.0             # m of curb that a lateral jump of 1 m must gain
 CLIMB_COST = 60.0           # m of curb that a difference of 1 m in height must gain: ground behind a curb is higher
 MAX_JUMP_COST = 10.0        # m of curb that any jump costs at most
 DISTANCE_PENALTY = 0.03     # share of its value that a metre of curb loses for each metre farther from the track
-TRACKING_MEMORY = 40.0      # m of road after which a chain is no longer continued
+TRACKING_MEMORY = 40.0      # m of road after which the best chain alone may still be continued
 
 
 @dataclass
@@ -222,12 +222,10 @@ def select_along_road(chains: Sequence[StepChain], steps: CurbSteps,
     tips = np.array([_end_directions(steps, c.steps) for c in chains]).reshape(-1, 2)
     value = np.full(len(chains), -np.inf)  # of the best path that ends, or last was, on this chain
     path: list = [None] * len(chains)      # that path: (chain, first, last station, path before)
-    old_value, old_path = 0.0, None        # the best path that left the memory; at first, the one without a curb
     for a, b in zip(cuts[:-1], cuts[1:]):
-        for c in np.flatnonzero((ends + TRACKING_MEMORY < a) & np.isfinite(value)):
-            if value[c] > old_value:
-                old_value, old_path = value[c], path[c]
-            value[c] = -np.inf
+        # of the chains that ended long ago the best alone is continued
+        old = np.flatnonzero((ends + TRACKING_MEMORY < a) & np.isfinite(value))
+        value[old[value[old] < value[old].max(initial=-np.inf)]] = -np.inf
         active = np.flatnonzero(strong & (starts <= a) & (ends >= b))
         known = np.flatnonzero(np.isfinite(value))
         there = np.array([[np.interp(a, places[k][0], v) for v in places[k][1:]] for k in known]).reshape(-1, 2)
@@ -242,19 +240,18 @@ def select_along_road(chains: Sequence[StepChain], steps: CurbSteps,
             jump = np.maximum(np.abs(u - there[:, 0] - np.where(gap > 0, turn, 0.0)) - 0.05 - 0.1 * gap, 0.0)
             climb = np.maximum(np.abs(h - there[:, 1]) - 0.03 - 0.003 * gap, 0.0)
             total = value[known] - np.where(known == c, 0.0, np.minimum(JUMP_COST * jump + CLIMB_COST * climb, MAX_JUMP_COST))
-            best, before = old_value - (MAX_JUMP_COST / 2 if old_path else 0.0), old_path
+            best, before = 0.0, None       # the path that begins here
             if len(known) and total.max() >= best:
                 k = int(np.argmax(total))
                 best, before = total[k], path[known[k]]
             found.append((c, best + gain, (int(c), float(a), float(b), before)))
         for c, new_value, step in found:
             value[c], path[c] = new_value, step
-    if len(chains) and value.max() >= old_value:
-        old_path = path[int(np.argmax(value))]
+    last = path[int(np.argmax(value))] if len(chains) else None
     selected = []
-    while old_path:
-        selected.append(old_path[:3])
-        old_path = old_path[3]
+    while last:
+        selected.append(last[:3])
+        last = last[3]
     return _continued(_merged(selected[::-1]), chains, steps)
 
 

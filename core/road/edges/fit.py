@@ -28,7 +28,8 @@ OUTLIER_FLOOR = 0.05          # m, the least distance from it at which a point i
 MIN_HIDDEN_SHARE = 0.5        # share of a gap that must be hidden for a bridge of a pavement edge or of a boundary line
 HIDDEN_CURB_SHARE = 0.33      # the same of a curb: where one goes on unseen, two fifths and more are hidden, at an opening next to nothing
 GAP_END_ALLOWANCE = 1.0       # m of a gap, half at each end, that need not be hidden
-IN_LINE_GAP_FACTOR = 2.0      # times the longest bridged gap that a curb may be hidden whose two parts lie in one line
+IN_LINE_GAP_FACTOR = 2.0      # times the longest bridged gap that a curb may be hidden whose two parts lie in one line, turned by
+IN_LINE_TURN = IN_LINE_ACROSS / LINE_FIT_LENGTH   # rad at most; by more across shorter gaps
 MAX_EDGE_SKEW = 1.0           # m across per m along of a joined edge
 MAX_EDGE_JUMP = 0.25          # m across that two joined points may differ in any case
 EDGE_VERTEX_SPACING = 0.5     # m between vertices
@@ -121,7 +122,9 @@ def _pieces(rows, max_gap):
     covered = HIDDEN_POINT_SPACING * (np.searchsorted(hidden, end) - np.searchsorted(hidden, start, side="right"))
     bridged = (gap > MAX_JOINED_GAP) & (gap <= IN_LINE_GAP_FACTOR * max_gap) & (covered >= HIDDEN_CURB_SHARE * (gap - GAP_END_ALLOWANCE)) \
         & (across <= MAX_EDGE_JUMP + 0.1 * gap)
-    bridged[[k for k in np.flatnonzero(bridged & (gap > max_gap)) if not _goes_on_in_line(points, k)]] = False
+    # the longer a gap is, the better both parts must show the direction of one line
+    bridged[[k for k in np.flatnonzero(bridged & (gap > max_gap))
+             if _turn_between(points, k) > IN_LINE_TURN * IN_LINE_GAP_FACTOR * max_gap / gap[k]]] = False
     breaks = np.flatnonzero(~(joined | bridged)) + 1
     pieces = []
     for part, flags in zip(np.split(points, breaks), np.split(np.r_[bridged, False], breaks)):
@@ -130,18 +133,19 @@ def _pieces(rows, max_gap):
     return pieces
 
 
-def _goes_on_in_line(points, k):
-    """Do the points after a gap, which begins at point k, lie on one even bend with those before it, on the map or as seen from the road?
+def _turn_between(points, k):
+    """Radians that the curb on both sides of a gap, which begins at point k, turns off one even bend, on the map or as seen from the road.
 
     Where a bend begins or ends behind a row of parked cars no even bend leads through both sides; the road itself bends there alike.
+    A bay is only as long as the cars in it: its curb turns aside next to the gap, and the last metres tell where it leads.
     """
-    s = points["s"]
-    before = points[(s >= s[k] - LINE_FIT_LENGTH) & (s <= s[k])]
-    after = points[(s >= s[k + 1]) & (s <= s[k + 1] + LINE_FIT_LENGTH)]
-    if max(np.ptp(before["s"]), np.ptp(after["s"])) < MIN_BEND_LENGTH:
-        return False
-    return any(GapLine(*(np.array([part[axis] for axis in axes]) for part in (before, after)), max_degree=2).miss <= IN_LINE_ACROSS
-               for axes in ("xy", "sd"))
+    s, turns = points["s"], [np.inf]
+    for reach in (LINE_FIT_LENGTH, MIN_BEND_LENGTH):
+        parts = points[(s >= s[k] - reach) & (s <= s[k])], points[(s >= s[k + 1]) & (s <= s[k + 1] + reach)]
+        if reach == LINE_FIT_LENGTH and max(np.ptp(part["s"]) for part in parts) < MIN_BEND_LENGTH:
+            break
+        turns += [GapLine(*(np.array([part[axis] for axis in axes]) for part in parts), max_degree=2).miss / reach for axes in ("xy", "sd")]
+    return min(turns)
 
 
 def without_outliers(points: np.ndarray) -> np.ndarray:

@@ -20,6 +20,7 @@ from ..common.hidden_curb import hidden_points
 from ..common.in_line import with_pieces_in_line
 from ..common.occlusion import OcclusionGrid
 from ..common.pseudo_scanlines import SPREAD_PROFILES
+from ..common.side_chains import SideChains
 from ..common.sides import (
     BLOCK_SECTION_LENGTH,
     MAX_CURB_OFFSET,
@@ -88,7 +89,8 @@ class CurbSettings:
 
 def detect_curbs(survey: Survey, settings: CurbSettings = CurbSettings(), progress: Progress = Progress(),
                  include_returns: bool = True, decimation: PointDecimation | None = None,
-                 beside: dict[int, dict[str, OcclusionGrid]] | None = None) -> CurbPoints:
+                 beside: dict[int, dict[str, OcclusionGrid]] | None = None,
+                 side_chains: dict[tuple[int, str], SideChains] | None = None) -> CurbPoints:
     """Bottom corners of the curb on each side of every road, one per block.
 
     Parameters
@@ -99,6 +101,7 @@ def detect_curbs(survey: Survey, settings: CurbSettings = CurbSettings(), progre
     include_returns : are corners, side streets and islands looked for too?
     decimation : PointDecimation of the survey, where it is used again
     beside : is given what was seen beside each road: number of the road -> side -> OcclusionGrid
+    side_chains : is given all chains that were found: (number of the road, side) -> SideChains
 
     Returns
     -------
@@ -107,14 +110,16 @@ def detect_curbs(survey: Survey, settings: CurbSettings = CurbSettings(), progre
     """
     if decimation is None:
         with closing(PointDecimation(survey, settings.profile_width, settings.point_spacing)) as own:
-            return detect_curbs(survey, settings, progress, include_returns, own, beside)
-    parts, beside = [], {} if beside is None else beside
+            return detect_curbs(survey, settings, progress, include_returns, own, beside, side_chains)
+    parts, beside, side_chains = [], {} if beside is None else beside, {} if side_chains is None else side_chains
     roads = survey.store.roads()
     for i, road in enumerate(roads):
         part = progress.part(MAIN_CURB_PROGRESS * i / len(roads), MAIN_CURB_PROGRESS * (i + 1) / len(roads))
         steps, beside[road] = _steps_of_road(decimation, road, settings, part)
         for side in SIDE_SIGNS:
-            parts.append(_points_of_side(survey, road, side, steps[side], beside[road][side], settings))
+            if steps[side] is not None and len(steps[side]):
+                known = side_chains[road, side] = _chains_of_side(survey, road, steps[side], settings)
+                parts.append(_points_of_side(survey, road, side, known, beside[road][side]))
     found = CurbPoints.join(parts, survey.crs)
     measured, main = np.count_nonzero(found.status == "measured"), len(found)
     if include_returns:
@@ -208,21 +213,20 @@ def _merge_passes(found):
                  behind=np.bincount(group, steps.behind).astype(np.int64))
 
 
-def _points_of_side(survey, road, side, steps, occlusion, settings):
-    """Curb points of one side of one road, measured and hidden, in order of station."""
-    if steps is None or not len(steps):
-        return CurbPoints.none()
-    frame, sign = survey.frame, SIDE_SIGNS[side]
-    track = OutermostTrack(frame, road, sign)
+def _chains_of_side(survey, road, steps, settings):
+    """The SideChains of the steps of one side of one road."""
+    bounds = block_bounds(survey.frame.road(road), *survey.store.span(road), settings.block_length)
     chains = curb_chains(steps, link_steps(steps, settings.profile_width), settings.profile_width, settings.limits)
+    return SideChains(steps, chains, lambda members, number: _block_points(members, bounds, number))
+
+
+def _points_of_side(survey, road, side, known, occlusion):
+    """Curb points of one side of one road, measured and hidden, in order of station."""
+    frame, sign, steps, chains = survey.frame, SIDE_SIGNS[side], known.steps, known.chains
+    track = OutermostTrack(frame, road, sign)
     selected = drop_short_curbs(select_along_road(chains, steps, track), chains, steps)
     selected = with_pieces_in_line(selected, chains, steps, lambda s, u: frame.road(road).to_map(s, sign * u))
-    bounds = block_bounds(frame.road(road), *survey.store.span(road), settings.block_length)
-    rows = []
-    for number, (chain, a, b) in enumerate(selected):
-        members = chains[chain].steps
-        members = members[(steps.s[members] >= a) & (steps.s[members] <= b)]
-        rows += _block_points(steps[members], bounds, number)
+    rows = [row for number, part in enumerate(selected) for row in known.points(*part, number)]
     measured = np.array([(r["s"], r["u"], r["h"]) for r in rows]).reshape(-1, 3)
     rows += hidden_points(measured, occlusion, track)
     rows.sort(key=lambda r: r["s"])

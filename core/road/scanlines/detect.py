@@ -26,6 +26,7 @@ from ..common.hidden_curb import hidden_points
 from ..common.in_line import with_pieces_in_line
 from ..common.occlusion import HIDDEN_POINT_SPACING, MIN_OCCLUDER_HEIGHT, OcclusionGrid
 from ..common.pseudo_scanlines import MIN_SCANNER_NOISE
+from ..common.side_chains import SideChains
 from ..common.sides import MAX_CURB_OFFSET, SECTIONS_TOGETHER, SIDE_SIGNS, OutermostTrack, expected_height, fixed_sections, join_sections
 from ..common.tracking import curb_chains, drop_short_curbs, link_apart, select_along_road
 from ..edges.fit import EDGE_VERTEX_SPACING, MAX_EDGE_JUMP, MAX_EDGE_SKEW, MIN_EDGE_LENGTH, MIN_HIDDEN_SHARE, EdgeCurve, without_outliers
@@ -96,7 +97,8 @@ class ScanlineBoundarySettings:
 
 def curbs_from_scanlines(source: SurveyScanlines | LayerScanlines, settings: ScanlineBoundarySettings = ScanlineBoundarySettings(),
                          block_length: float = 0.0, progress: Progress = Progress(),
-                         beside: dict[int, dict[str, OcclusionGrid]] | None = None) -> CurbPoints:
+                         beside: dict[int, dict[str, OcclusionGrid]] | None = None,
+                         side_chains: dict[tuple[int, str], SideChains] | None = None) -> CurbPoints:
     """Bottom and top corners of the curb on each side of every road, one of each per block.
 
     Parameters
@@ -106,12 +108,13 @@ def curbs_from_scanlines(source: SurveyScanlines | LayerScanlines, settings: Sca
     block_length : m of road per corner; 0 = 0.5 to 2.0, shorter in sharp bends
     progress : Progress
     beside : is given what was seen beside each road: number of the road -> side -> OcclusionGrid
+    side_chains : is given all chains that were found: (number of the road, side) -> SideChains
 
     Returns
     -------
     CurbPoints, `part` bottom or top. Those of status `occluded` mark places where an object hides the curb.
     """
-    parts = []
+    parts, side_chains = [], {} if side_chains is None else side_chains
     roads = source.roads()
     for i, road in enumerate(roads):
         part = progress.part(i / len(roads), (i + 1) / len(roads))
@@ -120,7 +123,8 @@ def curbs_from_scanlines(source: SurveyScanlines | LayerScanlines, settings: Sca
             beside[road] = occlusion
         for side in SIDE_SIGNS:
             if corners[side] is not None and len(corners[side]):
-                parts.append(_points_of_side(source, road, side, corners[side], occlusion[side], settings, block_length))
+                known = side_chains[road, side] = _chains_of_side(source, road, corners[side], settings, block_length)
+                parts.append(_points_of_side(source, road, side, known, occlusion[side]))
     found = CurbPoints.join(parts, source.crs)
     measured, hidden = (np.count_nonzero((found.part == "bottom") & (found.status == status)) for status in ("measured", "occluded"))
     progress.info(f"Corners of curbs: {measured:,} measured on scanlines, {hidden:,} hidden by objects.")
@@ -259,21 +263,20 @@ def _with_scanner_noise(corners):
     return corners
 
 
-def _points_of_side(source, road, side, corners, occlusion, settings, block_length):
+def _chains_of_side(source, road, corners, settings, block_length):
+    """The SideChains of the corners of one side of one road."""
+    edges = block_bounds(source.frame.road(road), *source.span(road), block_length)
+    chains = curb_chains(corners, link_apart(corners, source.interval, ~corners.sloped), source.interval, settings.limits)
+    return SideChains(corners, chains, lambda members, number: _block_points(members, edges, number))
+
+
+def _points_of_side(source, road, side, known, occlusion):
     """The bottom and top corners of one side of one road, measured and hidden, sorted by station."""
-    frame, sign = source.frame, SIDE_SIGNS[side]
+    frame, sign, corners, chains = source.frame, SIDE_SIGNS[side], known.steps, known.chains
     track = OutermostTrack(frame, road, sign)
-    limits = settings.limits
-    label = link_apart(corners, source.interval, ~corners.sloped)
-    chains = curb_chains(corners, label, source.interval, limits)
     stretches = drop_short_curbs(select_along_road(chains, corners, track), chains, corners)
     stretches = with_pieces_in_line(stretches, chains, corners, lambda s, u: frame.road(road).to_map(s, sign * u))
-    edges = block_bounds(frame.road(road), *source.span(road), block_length)
-    rows = []
-    for number, (chain, a, b) in enumerate(stretches):
-        members = chains[chain].steps
-        members = members[(corners.s[members] >= a) & (corners.s[members] <= b)]
-        rows += _block_points(corners[members], edges, number)
+    rows = [row for number, part in enumerate(stretches) for row in known.points(*part, number)]
     bottoms = np.array([(r["s"], r["u"], r["h"]) for r in rows if r["fields"]["part"] == "bottom"]).reshape(-1, 3)
     rows += [{**r, "fields": dict(r["fields"], part="bottom")} for r in hidden_points(bottoms, occlusion, track)]
     rows.sort(key=lambda r: (r["s"], r["fields"]["part"]))

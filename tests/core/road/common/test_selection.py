@@ -32,3 +32,8 @@ def test_a_curb_before_a_platform_is_followed_to_its_end(length, back):
 def test_what_lies_aside_in_a_gap_is_another_thing(other):
     assert selected((0.0, 11.0, 4.0), (11.5, 16.0, 7.0), (16.5, 30.0, 4.0)) == [0, 2]
     assert 1 not in selected((0.0, 30.0, 4.0), other)
+
+
+@pytest.mark.parametrize("hidden", [30.0, 39.0, 41.0, 90.0])
+def test_a_curb_goes_on_behind_parked_cars_however_long_their_row(hidden):
+    assert selected((0.0, 20.0, 4.0), (20.0 + hidden, 24.5 + hidden, 4.0)) == [0, 1]

@@ -104,6 +104,20 @@ def test_a_gap_longer_than_usual_is_bridged_where_both_parts_lie_in_one_line(asi
     assert sum(r["status"] == "bridged" for r in edges.rows) == bridged
 
 
+@pytest.mark.parametrize("cars", [14.0, 16.0, 18.0])
+def test_the_curb_of_a_bay_is_bridged_behind_the_cars_in_it(cars):
+    """The bay is 2 m wide; before and behind the cars 3 m of its curb are seen, and beyond these its ends, at 45°."""
+    def bay(s):
+        return 3.5 + np.clip(min(s - 15.0, 25.0 + cars - s), 0.0, 2.0)
+
+    stations = np.r_[np.arange(0.0, 20.1, 0.5), np.arange(20.0 + cars, 60.0, 0.5)]
+    hidden = np.arange(20.25, 20.0 + cars, 0.5)
+    edges = fit_road_edges(curb_points(stations, bay, hidden=hidden, noise=0.003), straight_frame())
+    (line, row), = [(line, row) for line, row in edges if row["status"] == "bridged"]
+    assert row["end_m"] - row["station_m"] == pytest.approx(cars, abs=0.6)
+    np.testing.assert_allclose(shapely.get_coordinates(line)[:, 1] - NORTH, 5.5, atol=0.05)
+
+
 @pytest.mark.parametrize(("aside", "bridged"), [(0.0, 1), (0.6, 0)], ids=["with the road", "aside"])
 def test_a_long_gap_in_which_a_bend_begins_is_bridged_where_the_curb_goes_on_beside_the_road(aside, bridged):
     s = np.arange(0.0, 90.0, 0.25)
