@@ -69,4 +69,5 @@ def test_a_road_ten_times_as_long_is_divided_where_its_tenth_is():
     assert len(long) >= 36
     for (first, last), (a, b) in zip(long[:6], short[:6]):
         assert first == pytest.approx(a, abs=5.0) and last == pytest.approx(b, abs=5.0)
-    assert [(segment.first, segment.last) for segment in segment_line(x[:480], y[:480])] == short
+    # the order in which a processor's library sums depends on how many lines are solved together
+    np.testing.assert_allclose([(segment.first, segment.last) for segment in segment_line(x[:480], y[:480])], short, rtol=0, atol=1e-9)

@@ -95,15 +95,22 @@ def rounded(records, step):
     return result[np.argsort(result["s"], kind="stable")]
 
 
+def repeated(records, times):
+    """Each point so many times at its place, one after the other, as where the vehicle stood."""
+    result = np.repeat(records, times)
+    result["time"] += 1e-3 * np.arange(len(result))
+    return result
+
+
 def every_second_repeated(records, times):
     """Not the last one, which is the lone point where there is one."""
-    return np.repeat(records, np.where(np.arange(len(records))[::-1] % 2, times, 1))
+    return repeated(records, np.where(np.arange(len(records))[::-1] % 2, times, 1))
 
 
 EXPORTS = {
     "a grid of 1 cm": lambda records: rounded(records, 0.01),
     "a grid of 10 cm": lambda records: rounded(records, 0.1),
-    "every point 25 times": lambda records: np.repeat(records, 25),
+    "every point 25 times": lambda records: repeated(records, 25),
     "every second point 22 times on a grid of 1 cm": lambda records: every_second_repeated(rounded(records, 0.01), 22),
 }
 
