@@ -4,26 +4,23 @@ from __future__ import annotations
 
 import os
 import threading
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from glob import escape
 from pathlib import Path
 from typing import Any
-from uuid import uuid4
 
 import numpy as np
 
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from .gdal_errors import gdal_exceptions
+from .unfinished import unfinished_path
 
 GEOTIFF_TILE = 512          # px, side of a tile of the file, and of the parts that are processed at a time
 NODATA = -9999.0            # value of pixels without data
 MAX_SAMPLED_WINDOW = 4 * GEOTIFF_TILE**2   # px that are read as one window to be sampled
 MAX_CACHED_PIXELS = 32 * GEOTIFF_TILE**2   # px that GDAL may cache of what a thread has read
 COMPRESSION_THREADS = 2
-ABANDONED_TIME = 24 * 3600.0   # s since the last write to an unfinished file after which its run is taken for dead; a computer may be suspended
 DISPLAY_SIZE = 2000         # px, longer side of the reduced image from which the stretch is computed
 MAX_DISPLAY_STEP = 16       # px between its pixels at the most, where few tiles of a large image hold data
 
@@ -294,8 +291,7 @@ def new_geotiff(path: str | os.PathLike[str], width: int, height: int, geotransf
                 nodata: float = NODATA) -> Iterator[NewGeoTiff]:
     """A new GeoTIFF with one band: tiled, DEFLATE, without empty tiles. It appears at its path only when all is written.
 
-    Until then it has a hidden name of its own, so that of several runs that write the same file each ends well, and the last to end
-    is kept. What a killed run left behind is removed by a later one that writes the same file.
+    Of several runs that write the same file each ends well, and the last to end is kept.
 
     Parameters
     ----------
@@ -307,8 +303,7 @@ def new_geotiff(path: str | os.PathLike[str], width: int, height: int, geotransf
         If the file cannot be written.
     """
     target = Path(path)
-    _remove_abandoned(target)
-    unfinished = target.with_name(f".{target.name}.{uuid4().hex}.unfinished.tif")
+    unfinished = unfinished_path(target, ".tif")
     image = None
     try:
         image = NewGeoTiff(unfinished, width, height, geotransform, crs, byte, nodata)
@@ -323,16 +318,6 @@ def new_geotiff(path: str | os.PathLike[str], width: int, height: int, geotransf
         if image is not None:
             image.drop()
         unfinished.unlink(missing_ok=True)
-
-
-def _remove_abandoned(target):
-    """Remove what runs that were killed left of a file."""
-    for path in target.parent.glob(f".{escape(target.name)}.*.unfinished.tif"):
-        try:
-            if time.time() - path.stat().st_mtime > ABANDONED_TIME:
-                path.unlink()
-        except OSError:
-            pass   # another run was quicker, or it is held open
 
 
 def write_display_image(image_path: str | os.PathLike[str], path: str | os.PathLike[str], progress: Progress = Progress()) -> None:

@@ -12,6 +12,7 @@ from ..common.errors import Cancelled, RoadExtractionError
 from ..common.progress import Progress
 from ..io.gdal_errors import gdal_exceptions
 from ..io.geotiff import GEOTIFF_TILE
+from ..io.unfinished import unfinished_path
 from .georeference import Georeferencing, node_grid, own_pixel_size
 
 GDAL_CACHE = 128_000_000  # bytes: a larger cache delays the writing of blocks to the end of the work
@@ -106,7 +107,7 @@ def draw_image(found: Georeferencing, path: str | Path, progress: Progress | Non
 
     progress = progress or Progress()
     bounds, width, height = output_grid(found)
-    unfinished, tiled = (Path(path).with_name(Path(path).name + end) for end in (".unfinished.tif", ".source.tif"))
+    unfinished, tiled = (unfinished_path(path, suffix) for suffix in (".tif", ".source.tif"))
     source = view = result = None
     cancelled: list[bool] = []
     failure = ""

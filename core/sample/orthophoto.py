@@ -19,6 +19,7 @@ from ..common.features import Features
 from ..common.progress import Progress
 from ..common.schemas import CONTROL_POINTS
 from ..io.gdal_errors import gdal_exceptions
+from ..io.unfinished import unfinished_path
 from ..lazy import cv2
 from .camera import GROUND_PIXEL, Camera
 from .camera_tags import camera_tags
@@ -286,7 +287,7 @@ def write_uav_image(survey: SampleSurvey, path: str | os.PathLike[str], progress
     progress = progress or Progress()
     scene, camera = seen_from_above(survey)
     street = StreetColours(scene, camera, survey.settings.seed)
-    unfinished = Path(path).with_name(Path(path).name + ".unfinished.tif")
+    unfinished = unfinished_path(path, ".tif")
     dataset = None
     try:
         dataset = gdal.GetDriverByName("GTiff").Create(str(unfinished), camera.width, camera.height, 3, gdal.GDT_Byte, [

@@ -5,10 +5,10 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
-from pathlib import Path
 from typing import Any
 
 from ...common.errors import RoadExtractionError
+from ...io.unfinished import unfinished_path
 from ..store.records import COORDINATE_SCALE
 
 MAX_LAS_INTEGER = 2**31 - 2    # largest coordinate, as an integer about the offset, in a LAS file
@@ -54,7 +54,7 @@ def new_laz(path: str | os.PathLike[str], header: Any) -> Iterator[Any]:
     import laspy
 
     suffix = ".las" if str(path).lower().endswith(".las") else ".laz"
-    unfinished = Path(f"{path}.unfinished{suffix}")
+    unfinished = unfinished_path(path, suffix)
     try:
         # A file that laspy opened itself would stay open when its last points cannot be written.
         with open(unfinished, "wb") as stream, laspy.open(
