@@ -12,7 +12,7 @@ def mask_runs(mask: np.ndarray) -> list[tuple[int, int]]:
 
 
 def stretch_of(places: np.ndarray, start: float, end: float) -> slice:
-    """Those of (N,) ascending places that lie from `start` to `end`, both included: a look-up, so that many stretches of a long road take no longer."""
+    """Those of (N,) ascending places that lie from `start` to `end`, both included: looked up, since a long road has many stretches."""
     return slice(int(np.searchsorted(places, start, side="left")), int(np.searchsorted(places, end, side="right")))
 
 

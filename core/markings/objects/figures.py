@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ...common.groups import linked_groups, members_of
+from ...common.near_pairs import overlapping_pairs
 from ...common.parallel import check_cancelled
 from ...countries.painted_symbols import SYMBOLS
 from ...lazy import cv2
@@ -20,7 +21,6 @@ from ..cells.road_grid import CELL_SIZE
 from ..cells.scan_tracks import fill_gaps, filled_between_tracks
 from ..figures.match import PaintImage, agreement
 from .classify import NOT_PAINT
-from ...common.near_pairs import overlapping_pairs
 
 if TYPE_CHECKING:
     from ...execution.phase import NoSource

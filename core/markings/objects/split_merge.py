@@ -19,6 +19,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ...common.groups import linked_groups, members_of
+from ...common.near_pairs import overlapping_pairs
 from ...common.order_statistics import order_by
 from ...common.parallel import check_cancelled
 from ...common.runs import stretch_of
@@ -39,7 +40,6 @@ from .bars import (
     even_strip,
 )
 from .classify import columns_of
-from ...common.near_pairs import overlapping_pairs
 
 if TYPE_CHECKING:
     from ...survey.store.columns import Columns

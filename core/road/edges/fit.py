@@ -138,7 +138,7 @@ def _pieces(rows, max_gap):
 
 
 def _turn_between(points, s, k):
-    """Radians that the curb on both sides of a gap, which begins at point k, turns off one even bend, on the map or as seen from the road; s : (N,) m.
+    """Radians that the curb on both sides of a gap, which begins at point k, turns off one even bend, on the map or as seen from the road.
 
     Where a bend begins or ends behind a row of parked cars no even bend leads through both sides; the road itself bends there alike.
     A bay is only as long as the cars in it: its curb turns aside next to the gap, and the last metres tell where it leads.
