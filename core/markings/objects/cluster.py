@@ -265,11 +265,11 @@ def _stripes_of_crossings(records, road, work, progress):
     cells, member = occupied(records["x"] // CELL_UNITS, records["y"] // CELL_UNITS)
     station = np.zeros(len(cells))
     station[member] = records["s"] * COORDINATE_SCALE
-    places = (cells + 0.5) * CELL_UNITS * COORDINATE_SCALE
-    way = road.heading(station)
+    places, way = (cells + 0.5) * CELL_UNITS * COORDINATE_SCALE, road.heading(station)
+    del cells, station
     stripes = zebra_stripes(places, way, lambda windows: work.combs(places, windows, progress.part(0.0, 0.7)),
                             lambda crossings: work.stripes(places, way, crossings, progress.part(0.7, 0.9)))
-    stripe_of, found = np.full(len(cells), -1), []
+    stripe_of, found = np.full(len(places), -1, np.int32), []
     for k, stripe in enumerate(stripes):
         stripe_of[stripe.spots] = k
     of_point = stripe_of[member]
