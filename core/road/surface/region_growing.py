@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import correlate1d, uniform_filter1d
 
+from ...common.parallel import check_cancelled
 from .ground_grid import COLUMN_WIDTH, ROW_LENGTH, GroundCells, known_median
 
 MAX_HEIGHT_DEVIATION = 0.035  # m from the predicted height: more is a curb, a car or an island
@@ -95,6 +96,7 @@ def _walk(relative, count, columns, start, noise, height, ground):
     error, weight_of_cell = NOISE_FACTOR * noise / np.sqrt(np.clip(count, 1.0, 25.0)), np.minimum(count, 20.0)
     kernel = _bell(ROW_SMOOTHING_SIGMA / ROW_LENGTH)
     for k, pair in enumerate(columns):
+        check_cancelled()
         predicted = z + tilt * (0.5 * COLUMN_WIDTH if k == 0 else COLUMN_WIDTH)
         there = relative[:, pair].T
         off = there - predicted
