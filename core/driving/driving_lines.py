@@ -109,11 +109,18 @@ def road_lanes(road: EstimatedRoad, settings: DrivingSettings, lane_width: float
     lane_width : metres, of lanes beside which only one line is painted
     """
     tracks = estimated_lanes(road.boundaries, road.estimate, lane_width, settings.line_distance)
-    tracks = connect(tracks, road.lines, settings.max_bridge, settings.max_inferred, road.boundaries.seen[road.boundaries.painted].any(0))
+    tracks = connect(tracks, road.lines, settings.max_bridge, settings.max_inferred, _shown(road.boundaries))
     known = [track.without_doubtful_ends() for track in laid_out(tracks)]
     tracks = [replace(track, confidence=confidence_of(track.confidence, track.directed)) for track in known
               if track is not None and len(track) * STATION_STEP >= settings.shortest]
     return sorted(tracks, key=lambda track: (track.first, float(track.d[0])))
+
+
+def _shown(boundaries):
+    """(K,) bool, whether any line is seen at a grid station."""
+    spans, found = boundaries.d.spans, np.zeros(len(boundaries.s), bool)
+    found[spans.station[boundaries.seen.values & boundaries.painted[spans.owner]]] = True
+    return found
 
 
 def _lane_pieces(track: LaneTrack, way: int, course: Course, elements: list[Element], road_lines: CrossSections,

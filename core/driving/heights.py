@@ -138,15 +138,18 @@ class _Near:
 
 def line_heights(lines: CrossSections, first: int, d: np.ndarray) -> np.ndarray:
     """(N,) height between the marking lines (or beside them) at offsets d from grid station `first` on."""
-    window = slice(first, first + len(d))
-    z, at = lines.z[:, window], lines.d[:, window]
-    known = np.isfinite(z) & np.isfinite(at)
-    left = np.where(known & (at >= d), at - d, np.inf)
-    right = np.where(known & (at < d), d - at, np.inf)
-    i, j = left.argmin(0), right.argmin(0)
-    columns = np.arange(len(d))
-    a, b = left[i, columns], right[j, columns]
-    za, zb = z[i, columns], z[j, columns]
+    spans, end = lines.d.spans, first + len(d)
+    # the nearest line on either side, and its height
+    a, b, za, zb = np.repeat([[np.inf], [np.inf], [np.nan], [np.nan]], len(d), axis=1)
+    for row in spans.near(first, end - 1).tolist():
+        own = spans.values_of(row, first, end)
+        begin = max(int(spans.first[row]) - first, 0)
+        inside = slice(begin, begin + own.stop - own.start)
+        at, z = lines.d.values[own], lines.z.values[own]
+        for sign, away, height in ((1, a[inside], za[inside]), (-1, b[inside], zb[inside])):
+            apart = sign * (at - d[inside])
+            nearer = np.isfinite(z) & (apart < away) & ((apart >= 0) if sign > 0 else (apart > 0))
+            away[nearer], height[nearer] = apart[nearer], z[nearer]
     with np.errstate(invalid="ignore"):
         between = (za * b + zb * a) / (a + b)
     return np.where(np.isfinite(a) & np.isfinite(b), between, np.where(np.isfinite(a), za, np.where(np.isfinite(b), zb, np.nan)))

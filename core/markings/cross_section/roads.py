@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -16,6 +15,7 @@ from .dashes import dash_lengths
 from .estimate import RoadEstimate, estimate_road, lane_spans
 from .evidence import between_ends, driven_offsets, evidence_of, other_carriageway, surface_coverage
 from .hatching import borders_of_hatching, hatched_places, places_of_bays
+from .row_table import stacked
 from .sections import STATION_STEP, CrossSections
 from .weights import PAVEMENT, EstimateWeights
 
@@ -130,7 +130,7 @@ def _closed_areas(markings, frame, number, s, driven):
     if not rows:
         return hatched, borders
     bays, ends = places_of_bays(rows, s, driven)
-    return bays if hatched is None else hatched | bays, np.concatenate([borders, ends])
+    return bays if hatched is None else hatched | bays, stacked([borders, ends])
 
 
 def _surface(road_points, paint, number, s, likely):
@@ -144,9 +144,11 @@ def _surface(road_points, paint, number, s, likely):
 
 def _likely_ends(lines, width):
     """(2, K) metres, where the road would end beyond the outermost lines if it had one more lane there."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)
-        return np.stack([np.nanmax(lines.d, axis=0) + width, np.nanmin(lines.d, axis=0) - width])
+    found = np.full((2, len(lines.s)), np.nan)
+    for row, (first, end) in enumerate(zip(lines.d.spans.first, lines.d.spans.end)):
+        own, d = slice(first, end), lines.d.row(row)
+        found[0, own], found[1, own] = np.fmax(found[0, own], d), np.fmin(found[1, own], d)
+    return found + np.array([[width], [-width]])
 
 
 def _estimates(known, first_direction, width, weights):
