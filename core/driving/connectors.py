@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left, bisect_right
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -39,11 +40,14 @@ def connectors_on_road(s: np.ndarray, tracks: list[LaneTrack], heights: list[np.
     for way in (1, -1):
         ends = [(track, z, track.last if way > 0 else track.first) for track, z in zip(tracks, heights) if track.direction == way]
         begins = [(track, z, track.first if way > 0 else track.last) for track, z in zip(tracks, heights) if track.direction == way]
+        by_station = sorted(range(len(begins)), key=lambda k: begins[k][2])
+        stations, reach = [begins[k][2] for k in by_station], int(LONGEST_CONNECTOR / STATION_STEP)
         for before, z_before, a in ends:
             for p in np.flatnonzero(directions == way).tolist():
                 if not abs(driven[p, a] - before.at(a)[0]) < before.at(a)[1] / 2:
                     continue
-                found = [(way * (b - a), after, z, b) for after, z, b in begins if NEXT_LANE_GAP < way * (b - a) * STATION_STEP < LONGEST_CONNECTOR
+                near = sorted(by_station[slice(bisect_left(stations, a - reach), bisect_right(stations, a + reach))])
+                found = [(way * (b - a), after, z, b) for after, z, b in (begins[k] for k in near) if NEXT_LANE_GAP < way * (b - a) * STATION_STEP < LONGEST_CONNECTOR
                          and abs(driven[p, b] - after.at(b)[0]) < after.at(b)[1] / 2]
                 if not found:
                     continue

@@ -164,7 +164,7 @@ def _patterns(track, rows, way, lines):
 def _between(course, start, end, code_first, code_last):
     """Vertices of a course from one station to another, with a vertex of its own at every cut."""
     s = course.s
-    inside = (s > start + 0.02) & (s < end - 0.02)
+    inside = slice(np.searchsorted(s, start + 0.02, side="right"), np.searchsorted(s, end - 0.02))
     at = np.r_[s[0] if code_first else start, s[inside], s[-1] if code_last else end]
     at = at[np.r_[True, np.diff(at) > 0]]
     return np.interp(at, s, course.x), np.interp(at, s, course.y), at

@@ -11,6 +11,7 @@ from ..common.order_statistics import order_by
 from ..common.parallel import ordered_map
 from ..markings.cross_section.sections import STATION_STEP
 from ..survey.store.records import COORDINATE_SCALE
+from .lane_track import spans_of
 
 if TYPE_CHECKING:
     from ..markings.cross_section.sections import CrossSections
@@ -39,13 +40,12 @@ def road_heights(road_points: RoadPoints, road: int, s: np.ndarray, tracks: list
     -------
     list of (N,) z, NaN where there are fewer than 3 points, one array per track
     """
-    found = [np.full(len(track), np.nan) for track in tracks]
+    found, spans = [np.full(len(track), np.nan) for track in tracks], spans_of(tracks)
     size, length = int(HEIGHT_WINDOW / STATION_STEP), road_points.store.section_length
 
     def of_window(first):
         last = min(first + size, len(s)) - 1
-        inside = [(k, max(first, track.first), min(last, track.last)) for k, track in enumerate(tracks)]
-        inside = [row for row in inside if row[1] <= row[2]]
+        inside = [(k, max(first, tracks[k].first), min(last, tracks[k].last)) for k in spans.near(first, last).tolist()]
         if not inside:
             return []
         near = [int(np.floor((s[k] + side * STATION_STEP / 2) / length)) for k, side in ((first, -1), (last, 1))]

@@ -105,13 +105,26 @@ def _border(road, curbs, rows, separates, columns):
 
 def follow(rows: list[dict[str, Any]]) -> None:
     """Name in every row what follows it in the direction of travel."""
+    begins = {way: _begins(rows, way) for way in (1, -1)}
     for row in rows:
-        way = row["direction"]
+        row["successors"] = ()
+        if not (way := row["direction"]):
+            continue
         at, d = (row["end"], row["last"]) if way > 0 else (row["station"], row["first"])
+        stations, of = begins[way]
+        near = [rows[k] for k in sorted(of[slice(*np.searchsorted(stations, [at - NEXT_LANE_GAP - STATION_STEP, at + NEXT_LANE_GAP + STATION_STEP]))])]
         row["successors"] = tuple(
-            other["lane_id"] for other in rows if way and other is not row and other["direction"] == way
+            other["lane_id"] for other in near if other is not row
             and -STATION_STEP <= way * ((other["station"] if way > 0 else other["end"]) - at) <= NEXT_LANE_GAP
             and abs((other["first"] if way > 0 else other["last"]) - d) < max(row["width"], other["width"]) / 2)
+
+
+def _begins(rows, way):
+    """Stations, ascending, at which the lanes of a direction begin, and the rows they are of."""
+    of = [k for k, row in enumerate(rows) if row["direction"] == way]
+    stations = np.array([rows[k]["station" if way > 0 else "end"] for k in of], float)
+    order = np.argsort(stations, kind="stable")
+    return stations[order], np.array(of, int)[order].tolist()
 
 
 def make_lanes(rows: list[dict[str, Any]], crs: str) -> Lanes:
