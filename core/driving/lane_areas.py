@@ -96,8 +96,7 @@ def _border(road, curbs, rows, separates, columns):
         what = separates[rows == row]
         return f"line {number}", KIND_OF_BORDER.get(int(np.bincount(what[what >= 0]).argmax()) if (what >= 0).any() else EDGE_LINE), pattern
     if made_of in (CURB, ISLAND) and curbs is not None:
-        numbers = curbs.number.row(row - len(road.lines.d))
-        return f"edge {int(numbers.max())}", "curb", ""
+        return f"edge {int(curbs.number.row(row - len(road.lines.d)).max())}", "curb", ""
     if made_of == HATCHING:
         return "none", "hatch", ""
     return ("none", "pavement", "") if made_of == SURFACE else NO_BORDER

@@ -85,10 +85,11 @@ def other_carriageway(frame: RoadFrame, road: int, s: np.ndarray) -> np.ndarray:
     ways = {p.direction for p in frame.passes_of(road)}
     if len(ways) != 1:
         return found
+    of_road = frame.road(road)
     for p in frame.passes:
-        if p.road == road:
+        if p.road == road or _apart(p, of_road) > CARRIAGEWAY_DISTANCE:
             continue
-        station, d = frame.road(road).locate(p.x, p.y, corridor=CARRIAGEWAY_DISTANCE)
+        station, d = of_road.locate(p.x, p.y, corridor=CARRIAGEWAY_DISTANCE)
         against = np.gradient(np.nan_to_num(station)) * next(iter(ways)) < 0
         beside = np.isfinite(station) & against & (np.abs(d) > OWN_ROAD)
         at = np.rint((station[beside] - s[0]) / STATION_STEP)
@@ -96,6 +97,11 @@ def other_carriageway(frame: RoadFrame, road: int, s: np.ndarray) -> np.ndarray:
         found[at] = True
     # the places of a pass are sparser than the stations
     return binary_closing(found, np.ones(2 * PASS_SPACING + 1, bool)) if len(found) else found
+
+
+def _apart(p, road):
+    """Metres east or north between the rectangles about a pass and a road, the greater of both; 0 or less where they overlap."""
+    return max(max(a.min() - b.max(), b.min() - a.max()) for a, b in ((p.x, road.x), (p.y, road.y)))
 
 
 def surface_coverage(points: RoadPoints, road: int, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -68,7 +68,7 @@ class RowSpans:
     def near(self, first: int, last: int) -> np.ndarray:
         """(N,) int, ascending, the rows that are kept at any of the stations from `first` to `last` (inclusive)."""
         blocks, rows = self._blocks
-        low, high = max(first, 0) // BLOCK, min(max(last, 0), max(self.stations - 1, 0)) // BLOCK
+        low, high = (min(max(station, 0), max(self.stations - 1, 0)) // BLOCK for station in (first, last))
         some = np.unique(rows[blocks[low]:blocks[high + 1]])
         return some[(self.first[some] <= last) & (self.end[some] > first)]
 

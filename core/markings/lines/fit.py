@@ -111,7 +111,8 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
         framing: list[Strand] = []
         while borders := hatching_borders(lines, hatched, framing):
             framing += borders
-            strands = [strand for strand in strands if not any(strand is border for border in borders)]
+            known = set(map(id, borders))
+            strands = [strand for strand in strands if id(strand) not in known]
             lines, trend = _linked(strands, beside[road], settings)
         part.report(0.5)
         selected = select_lines(lines, trend, crossings(markings, road), settings.min_paint, hatched, country(settings.country).longest_dash)
@@ -150,17 +151,16 @@ def _records_of(points, road):
 
 def _drawn_pieces(one: SelectedLine, shape: LineShape, origin: np.ndarray) -> Iterator[dict[str, Any]]:
     """The pieces of one line that have a length on the map."""
-    s, d, *_ = one.line.places()
     for piece in one.pieces:
         places = shape.draw(piece.first, piece.last)
         if not np.ptp(places[:, :2] + origin[:2], axis=0).any():
             continue
-        residuals = shape.fit.residuals[(shape.s >= piece.first) & (shape.s <= piece.last)]
+        residuals = shape.fit.residuals[slice(np.searchsorted(shape.s, piece.first), np.searchsorted(shape.s, piece.last, side="right"))]
         measured = piece.status == "measured" and len(residuals)
-        near = (s >= piece.first - PAINT_BESIDE_PIECE) & (s <= piece.last + PAINT_BESIDE_PIECE)
+        _, near = one.line.near(piece.first - PAINT_BESIDE_PIECE, piece.last + PAINT_BESIDE_PIECE)
         yield dict(
             kind="", pattern=f"double-{piece.pattern}" if one.double else piece.pattern, status=piece.status,
             curve=shape.fit.curve, arc=shape.u(np.array([piece.first, piece.last])), places=places,
-            station=piece.first, end=piece.last, offset=np.median(d[near]) if near.any() else np.nan, width=one.width(piece),
+            station=piece.first, end=piece.last, offset=np.median(near) if len(near) else np.nan, width=one.width(piece),
             rmse=np.sqrt(np.mean(residuals**2)) if measured else np.nan)
 
