@@ -176,6 +176,10 @@ class Candidates:
         """(I, M) bool, whether a boundary is a painted line."""
         return self.made_of <= DOUBLE
 
+    def take(self, intervals: slice | np.ndarray) -> Candidates:
+        """Some of the intervals."""
+        return Candidates(**{name: values[intervals] for name, values in vars(self).items()})
+
     @property
     def length(self) -> np.ndarray:
         """(I,) metres."""

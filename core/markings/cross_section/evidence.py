@@ -48,6 +48,14 @@ class Evidence:
     stops: np.ndarray
     divided: np.ndarray
 
+    def part(self, first: int, end: int) -> Evidence:
+        """That of the intervals from `first` to `end` (exclusive)."""
+        def of(rows):
+            return rows[(rows[:, 0] >= first) & (rows[:, 0] < end)] - [first, 0, 0]
+
+        asphalt, hatched = (None if share is None else share[first:end] for share in (self.asphalt, self.hatched))
+        return Evidence(self.driven[:, first:end], self.directions, asphalt, hatched, of(self.arrows), of(self.stops), self.divided[first:end])
+
 
 def driven_offsets(frame: RoadFrame, road: int, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Where the vehicle drove.
