@@ -71,7 +71,7 @@ def lane_elements(tracks: list[LaneTrack], s: np.ndarray, road: Road) -> list[li
         if rank in waiting:
             groups.append(_parallel_lanes(rank, by_length, waiting, spans))
             check_cancelled()
-    groups = [([(order[rank], offset) for rank, offset in members], *axis) for members, *axis in groups]
+    groups = [([(order[rank], offset) for rank, offset in members], axis, first) for members, axis, first in groups]
     for (members, _, _), divided in zip(groups, _divided([_Axis.of(s, axis, first, road) for _, axis, first in groups])):
         for i, offset in members:
             found[i] = _of_lane(tracks[i], offset, divided, s, road)

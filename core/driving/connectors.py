@@ -47,7 +47,8 @@ def connectors_on_road(s: np.ndarray, tracks: list[LaneTrack], heights: list[np.
                 if not abs(driven[p, a] - before.at(a)[0]) < before.at(a)[1] / 2:
                     continue
                 near = sorted(by_station[slice(bisect_left(stations, a - reach), bisect_right(stations, a + reach))])
-                found = [(way * (b - a), after, z, b) for after, z, b in (begins[k] for k in near) if NEXT_LANE_GAP < way * (b - a) * STATION_STEP < LONGEST_CONNECTOR
+                found = [(way * (b - a), after, z, b) for after, z, b in map(begins.__getitem__, near)
+                         if NEXT_LANE_GAP < way * (b - a) * STATION_STEP < LONGEST_CONNECTOR
                          and abs(driven[p, b] - after.at(b)[0]) < after.at(b)[1] / 2]
                 if not found:
                     continue

@@ -9,6 +9,7 @@ from scipy.ndimage import gaussian_filter1d, median_filter
 
 from ..common.order_statistics import order_by
 from ..common.parallel import ordered_map
+from ..common.progress import Progress
 from ..markings.cross_section.sections import STATION_STEP
 from ..survey.store.records import COORDINATE_SCALE
 from .lane_track import spans_of
@@ -26,7 +27,8 @@ HEIGHT_SMOOTHING_SIGMA = 2.0          # m: a car does not follow a pothole
 HEIGHT_WINDOW = 20.0                  # m of road points in memory at a time
 
 
-def road_heights(road_points: RoadPoints, road: int, s: np.ndarray, tracks: list[LaneTrack]) -> list[np.ndarray]:
+def road_heights(road_points: RoadPoints, road: int, s: np.ndarray, tracks: list[LaneTrack],
+                 progress: Progress = Progress()) -> list[np.ndarray]:
     """Median height of road points within 0.3 m of the places along lanes.
 
     Parameters
@@ -35,6 +37,7 @@ def road_heights(road_points: RoadPoints, road: int, s: np.ndarray, tracks: list
     road : number
     s : (K,) grid stations
     tracks : list of LaneTrack
+    progress : Progress
 
     Returns
     -------
@@ -54,7 +57,7 @@ def road_heights(road_points: RoadPoints, road: int, s: np.ndarray, tracks: list
         heights = _heights([records for records in sections if len(records)], s[first:last + 1], lanes)
         return [(k, a - tracks[k].first, z) for (k, a, _), z in zip(inside, heights)]
 
-    for heights in ordered_map(of_window, range(0, len(s), size)):
+    for heights in ordered_map(of_window, range(0, len(s), size), progress):
         for k, first, z in heights:
             found[k][first:first + len(z)] = z
     return found
@@ -171,9 +174,10 @@ def smooth_heights(z: np.ndarray) -> np.ndarray:
     return gaussian_filter1d(np.r_[head, z, tail], HEIGHT_SMOOTHING_SIGMA / STATION_STEP)[pad:pad + len(z)]
 
 
-def lane_heights(lines: CrossSections, road_points: RoadPoints | None, road: int, tracks: list[LaneTrack]) -> list[np.ndarray]:
+def lane_heights(lines: CrossSections, road_points: RoadPoints | None, road: int, tracks: list[LaneTrack],
+                 progress: Progress = Progress()) -> list[np.ndarray]:
     """Local z along every lane, (N,) each: from road points where there are any, else from the marking lines beside it."""
-    measured = road_heights(road_points, road, lines.s, tracks) if road_points is not None else [None] * len(tracks)
+    measured = road_heights(road_points, road, lines.s, tracks, progress) if road_points is not None else [None] * len(tracks)
     return [_height(z, line_heights(lines, track.first, track.d)) for z, track in zip(measured, tracks)]
 
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..common.parallel import check_cancelled
 from ..markings.cross_section.sections import STATION_STEP, CrossSections
 from ..markings.cross_section.weights import CENTRE_LINE, CURB, EDGE_LINE, HATCHING, ISLAND, LANE_LINE, OTHER_LINE, SURFACE
 from .centreline import status_pieces, without_short_status
@@ -37,6 +38,7 @@ def lane_areas(road: EstimatedRoad, curbs: CrossSections | None, tracks: list[La
     """
     rows = []
     for lane, (track, z) in enumerate(zip(tracks, heights), start=1):
+        check_cancelled()
         status = without_short_status(track.status)
         for code, start, end in status_pieces(status, track.first, road.lines.s):
             part = slice(*np.searchsorted(road.lines.s[track.first:track.last + 1], [start, end + STATION_STEP / 2]))
@@ -110,8 +112,8 @@ def follow(rows: list[dict[str, Any]]) -> None:
         if not (way := row["direction"]):
             continue
         at, d = (row["end"], row["last"]) if way > 0 else (row["station"], row["first"])
-        stations, of = begins[way]
-        near = [rows[k] for k in sorted(of[slice(*np.searchsorted(stations, [at - NEXT_LANE_GAP - STATION_STEP, at + NEXT_LANE_GAP + STATION_STEP]))])]
+        (stations, of), reach = begins[way], NEXT_LANE_GAP + STATION_STEP
+        near = [rows[k] for k in sorted(of[slice(*np.searchsorted(stations, [at - reach, at + reach]))])]
         row["successors"] = tuple(
             other["lane_id"] for other in near if other is not row
             and -STATION_STEP <= way * ((other["station"] if way > 0 else other["end"]) - at) <= NEXT_LANE_GAP

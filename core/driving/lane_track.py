@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..common.parallel import check_cancelled
 from ..markings.cross_section.row_table import RowSpans
 from ..markings.cross_section.sections import STATION_STEP
 
@@ -179,6 +180,7 @@ def _connected(tracks, lines, most_bridged, most_inferred, shown):
     firsts = np.array([track.first for track in tracks])
     pairs = []
     for i, a in enumerate(tracks):
+        check_cancelled()
         low, high = np.searchsorted(firsts, [a.last + 1, a.last + 1 + reach + 1])
         for j in range(low, high):
             around = [tracks[k] for k in spans.near(a.last - near, tracks[j].first + near).tolist()]

@@ -115,7 +115,7 @@ def best_sections(candidates: Candidates, costs: StripCosts, stops: np.ndarray, 
         best[:, j][~candidates.valid[:, j]] = np.inf
     reach = _reach(best, costs, size - 1)
     reach[:, :, FIRST:SECOND + 1] = np.inf
-    return _traced(back, *_lowest(reach, kept), costs)
+    return _traced(back, _lowest(reach, kept), costs)
 
 
 def _reach(best, costs, j):
@@ -153,9 +153,10 @@ def _boundary_costs(c, stops, w):
     return cost
 
 
-def _traced(back, chosen, value, costs):
+def _traced(back, ends, costs):
     """Sections from the ends of the chains: `back` tells from where each chain came."""
     count, size, kinds, kept = back.shape
+    chosen, value = ends
     strip, right, lanes, first_lanes = np.full((4, *chosen.shape, size), -1, np.int8)
     row = np.arange(count)[:, None]
     at, place = np.full(chosen.shape, size - 1), np.where(np.isfinite(value), chosen, -1)

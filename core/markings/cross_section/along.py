@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -18,7 +18,7 @@ INTERVALS_AT_ONCE = 32   # of which cross-sections are compared with each other
 SAME_DIVIDER = 1 # places by which the same border between lanes may lie elsewhere
 
 
-def transitions(candidates: Candidates, sections: Sections, known: np.ndarray, lane_width: float, fading: Callable[[np.ndarray], np.ndarray],
+def transitions(candidates: Candidates, sections: Sections, known: np.ndarray, lane_width: float, left: Sequence[np.ndarray],
                 weights: EstimateWeights) -> np.ndarray:
     """Nats of going from each cross-section of an interval to each of the next of those of which something is known.
 
@@ -27,7 +27,7 @@ def transitions(candidates: Candidates, sections: Sections, known: np.ndarray, l
     candidates, sections : of all intervals
     known : (N,) int, intervals, ascending
     lane_width : metres, usual
-    fading : tells what is left, (N - 1,) 0 to 1, of what was known of lanes (0) and of directions (1) after the way to the next one
+    left : of what was known of lanes, and of directions, what is left after the way to the next one, (N - 1,) 0 to 1 each
     weights : EstimateWeights
 
     Returns
@@ -35,7 +35,7 @@ def transitions(candidates: Candidates, sections: Sections, known: np.ndarray, l
     (N - 1, K, K)
     """
     kept = sections.cost.shape[1]
-    found, left = np.empty((max(len(known) - 1, 0), kept, kept)), [fading(which) for which in (0, 1)]
+    found = np.empty((max(len(known) - 1, 0), kept, kept))
     # what is compared is larger than the costs
     for first in range(0, len(found), INTERVALS_AT_ONCE):
         check_cancelled()
@@ -84,7 +84,7 @@ def occupancy(candidates: Candidates, sections: Sections, lane_width: float) -> 
 
 
 def _transition_costs(area, divider, weights):
-    """Nats of going from a cross-section of one interval to one of the next: of lanes that begin, end or divide, and of lanes whose direction changes."""
+    """Nats of going from a cross-section to one of the next interval: of lanes that begin, end or divide, and of those that change direction."""
     first, second = area.astype(np.float32)
     wide = np.zeros(divider.shape, np.float32)
     for shift in range(-SAME_DIVIDER, SAME_DIVIDER + 1):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -50,12 +51,12 @@ class Boundaries:
     wide: RowTable
     short: RowTable
 
-    @property
+    @cached_property
     def bounding(self) -> np.ndarray:
         """(R,) bool, whether a row is paint that bounds lanes: a line, or the border of a hatched area."""
         return self.painted | (self.made_of == HATCHING)
 
-    @property
+    @cached_property
     def painted(self) -> np.ndarray:
         """(R,) bool, whether a row is a painted line."""
         return self.made_of <= DOUBLE
@@ -79,7 +80,7 @@ def gather_boundaries(lines: CrossSections, curbs: CrossSections | None = None, 
         made_of = np.where(np.array(curbs.kinds, object) == "island", ISLAND, CURB).astype(np.int8)
         d, seen = _on_stations(curbs, lines.s)
         found.append((d, seen.values, made_of, d.like(made_of[d.spans.owner], made_of)))
-    ends = []
+    ends: list[tuple[RowTable, int, np.ndarray | int]] = []
     if surface is not None:
         surface, at_edge = _at_edges(surface, pavement, lines.s)
         ends.append((RowTable.of_rows([(0, row) for row in surface], count), SURFACE, np.where(at_edge, PAVEMENT, SURFACE).ravel()))
@@ -90,12 +91,12 @@ def gather_boundaries(lines: CrossSections, curbs: CrossSections | None = None, 
     for d, made, at_places in ends:
         patterns = np.empty(d.spans.size, np.int8)
         patterns[:] = at_places
-        found.append((d, True, np.full(len(d), made), d.like(patterns, made)))
-    found_d, patterns = (stacked([one[k] for one in found]) for k in (0, 3))
-    found_seen = np.isfinite(found_d.values) & np.concatenate([np.broadcast_to(seen, d.spans.size) for d, seen, *_ in found])
+        found.append((d, np.ones(d.spans.size, bool), np.full(len(d), made), d.like(patterns, made)))
+    found_d, all_patterns = stacked([d for d, *_ in found]), stacked([made_of for *_, made_of in found])
+    found_seen = np.isfinite(found_d.values) & np.concatenate([seen for _, seen, *_ in found])
     others = len(found_d) - len(lines.d)
     paint = STATION_STEP * np.bincount(found_d.spans.owner, found_seen, len(found_d))
-    return Boundaries(lines.s, found_d, found_d.like(found_seen, False), np.concatenate([made_of for _, _, made_of, _ in found]), patterns, paint,
+    return Boundaries(lines.s, found_d, found_d.like(found_seen, False), np.concatenate([made_of for _, _, made_of, _ in found]), all_patterns, paint,
                       np.r_[[NAMES.get(kind, -1) for kind in lines.kinds], np.full(others, -1)].astype(int),
                       np.zeros(count, bool) if bend is None else bend,
                       *(found_d.like(np.append(share, np.full(found_d.spans.size - len(share), np.nan)), np.nan)

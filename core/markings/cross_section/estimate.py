@@ -82,8 +82,8 @@ def estimate_road(candidates: Candidates, evidence: Evidence, first_direction: i
         between = np.r_[0.0, np.cumsum(candidates.length)]
         gap = between[known[1:]] - between[known[:-1] + 1]
         both = np.minimum(shown[known[:-1]], shown[known[1:]])
-        remembered = weights.lanes_remembered, weights.directions_remembered
-        transition = transitions(candidates, sections, known, lane_width, lambda which: both * np.exp(-gap / remembered[which]), weights)
+        left = [both * np.exp(-gap / remembered) for remembered in (weights.lanes_remembered, weights.directions_remembered)]
+        transition = transitions(candidates, sections, known, lane_width, left, weights)
         choice[known], total = best_sequence(sections.cost[known], transition)
         posterior[known] = probabilities(sections.cost[known], transition)
         unnamed[known], unnamed_total = best_sequence(cost[known], transition)

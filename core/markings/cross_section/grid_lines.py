@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...common.parallel import check_cancelled
 from .row_table import BLOCK, RowSpans, RowTable
 
 STATION_STEP = 0.5                             # m of station between places where lanes are looked for
@@ -139,8 +140,9 @@ def joined(lines: GridLines) -> tuple[GridLines, list[tuple[int, int, int, bool,
     ending = defaultdict(set)           # rows by the station that they end at
     for k in kept:
         ending[rows[k].end].add(k)
-    gaps = []
+    gaps: list[tuple[int, int, int, bool, bool]] = []
     for k in sorted(kept, key=lambda k: (rows[k].begin, k)):
+        check_cancelled()
         last, d = rows[k].begin, rows[k].columns["d"][rows[k].begin - rows[k].first]
         behind = np.array(sorted(j for end in range(last - REACH, last) for j in ending.get(end, ())), int)
         away = np.array([abs(d - rows[chains[j][-1]].at("d", np.array([rows[chains[j][-1]].end]))[0]) for j in behind.tolist()])
@@ -156,7 +158,7 @@ def joined(lines: GridLines) -> tuple[GridLines, list[tuple[int, int, int, bool,
         chains[j] += chains.pop(k)
     number = {j: k for k, j in enumerate(sorted(chains))}
     found = [_chained([rows[k] for k in chains[j]]) for j in sorted(chains)]
-    return GridLines(lines.s, found, lines.names), [(number[j], *gap) for j, *gap in gaps]
+    return GridLines(lines.s, found, lines.names), [(number[j], first, last, before, behind) for j, first, last, before, behind in gaps]
 
 
 def _chained(rows):

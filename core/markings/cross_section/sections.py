@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...common.parallel import check_cancelled
 from ...curves.robust import median
 from ...road.edges.road_edges import RoadEdges
 from ...survey.frame.frame_lines import FrameLines
@@ -44,6 +46,11 @@ class CrossSections:
     number: RowTable
     width: RowTable
 
+    @cached_property
+    def usual(self) -> np.ndarray:
+        """(L,) int, how most of each line is drawn, a row of `names`."""
+        return np.array([self.names.index(pattern) for pattern in self.patterns], int)
+
 
 def cross_sections(lines: FrameLines, number: np.ndarray, kind: np.ndarray, pattern: np.ndarray, seen: np.ndarray,
                    width: np.ndarray | None = None) -> dict[int, CrossSections]:
@@ -63,6 +70,7 @@ def cross_sections(lines: FrameLines, number: np.ndarray, kind: np.ndarray, patt
     """
     pieces: dict[int, dict[int, list[Piece]]] = {}
     for k in range(len(lines)):
+        check_cancelled()
         road, window = int(lines.road[k]), lines.line(k)
         piece = _piece(lines.s[window], lines.d[window], lines.z[window], kind[k], pattern[k], bool(seen[k]),
                        np.nan if width is None else float(width[k]))

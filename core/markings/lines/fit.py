@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from ...survey.store.road_points import RoadPoints
     from .strands import Strand
 
+LINES_SHARE = 0.65         # of the work; the rest is the estimate that names the lines
 PAINT_BESIDE_PIECE = 2.0   # m of station before and after a piece whose paint counts for its offset
 
 
@@ -100,11 +101,11 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
     roads = clustered_points.roads()
     beside = edges_beside(edges, roads)
     for k, road in enumerate(roads):
-        part = progress.part(k / len(roads), (k + 1) / len(roads))
+        part = progress.part(LINES_SHARE * k / len(roads), LINES_SHARE * (k + 1) / len(roads))
         records, rank = line_paint(_records_of(clustered_points, road), markings, road)
         part.report(0.1)
         strands = painted_strands(records, rank)
-        part.report(0.4)
+        part.report(0.2)
         hatched = hatching_bars(markings, road)
         lines, trend = _linked(strands, beside[road], settings)
         # a line that leads up to a hatched area may be taken for its border: linked anew without that, it goes on behind the area
@@ -114,17 +115,16 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
             known = set(map(id, borders))
             strands = [strand for strand in strands if id(strand) not in known]
             lines, trend = _linked(strands, beside[road], settings)
-        part.report(0.5)
+        part.report(0.4)
         selected = select_lines(lines, trend, crossings(markings, road), settings.min_paint, hatched, country(settings.country).longest_dash)
         dropped += len(lines) - len(selected)
         shapes, unwanted = fit_line_shapes([one.line for one in selected], [one.span for one in selected], frame.road(road), trend, beside[road],
-                                     partial(frame.track_height, road), settings)
-        part.report(0.8)
+                                     partial(frame.track_height, road), settings, part.part(0.45, 0.9))
         replaced += unwanted
         for j, (one, shape) in enumerate(zip(selected, shapes)):
             number += 1
             rows += [dict(row, line=number, road=int(road)) for row in _drawn_pieces(one, shape, frame.origin)]
-            part.report(0.8 + 0.2 * (j + 1) / len(selected))
+            part.report(0.9 + 0.1 * (j + 1) / len(selected))
     progress.info(f"Marking lines: {number}; {dropped} fragments were left out.")
     if replaced:
         progress.warn(f"{replaced} of {number} lines cannot take the curve “{settings.curve}”; "
@@ -132,7 +132,8 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
     drawn = painted_lines_of(rows, frame, clustered_points.crs)
     if road_points is not None:
         drawn = with_unseen_paint(drawn, markings, clustered_points, road_points)
-    return named_by_estimate(drawn, frame, country(settings.country).usual_lane, markings, edges, road_points, clustered_points)
+    return named_by_estimate(drawn, frame, country(settings.country).usual_lane, markings, edges, road_points, clustered_points,
+                             progress.part(LINES_SHARE, 1.0))
 
 
 def _linked(strands, edges, settings):

@@ -1,4 +1,4 @@
-"""Which stretches of lines, strands or crossings are at a place along a road: things are compared with those beside them, not with all of the road."""
+"""Which lines, strands or crossings are at a place along a road: things are compared with those beside them, not with all of the road."""
 
 from __future__ import annotations
 

@@ -302,7 +302,7 @@ class _Bars:
     def __init__(self, hatched):
         middle = hatched[:, :2].mean(axis=1)
         order = np.argsort(middle, kind="stable")
-        self.middle, self.low, self.high = middle[order], *hatched[order, 2:].T
+        self.middle, (self.low, self.high) = middle[order], hatched[order, 2:].T
 
 
 def _frames_hatching(line, bars, fewest=MIN_BARS):

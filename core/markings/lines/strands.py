@@ -9,6 +9,7 @@ import numpy as np
 
 from ...common.groups import linked_groups
 from ...common.order_statistics import order_by
+from ...common.parallel import check_cancelled
 from ...curves.robust import median, percentiles
 from ...survey.store.records import COORDINATE_SCALE
 from ..objects.classify import LINE_KINDS
@@ -247,6 +248,7 @@ def _strands(columns, label):
     bounds = np.flatnonzero(np.r_[True, np.diff(label) != 0, True]) if len(label) else np.zeros(1, int)
     found = []
     for a, b in zip(bounds[:-1].tolist(), bounds[1:].tolist()):
+        check_cancelled()
         strand = _strand(place[a:b], *(column[a:b] for column in columns))
         mixed = strand.classes.get("mixed", 0.0) > 0.5 * strand.length
         if strand.length >= (MIN_MIXED_STRAND if mixed else MIN_STRAND_LENGTH):
