@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
@@ -21,3 +23,21 @@ def linked_groups(first: np.ndarray, second: np.ndarray, count: int) -> np.ndarr
     """
     graph = coo_matrix((np.ones(len(first), bool), (first, second)), shape=(count, count))
     return connected_components(graph, directed=False)[1]
+
+
+def members_of(number: np.ndarray) -> Iterator[tuple[int, np.ndarray]]:
+    """The members of all groups, found by sorting: a search of its members for every group compares everything with everything.
+
+    Parameters
+    ----------
+    number : (N,) int, the group of each thing; below 0 where it is of none
+
+    Yields
+    ------
+    number of a group, ascending, and (M,) its members, ascending
+    """
+    order = np.argsort(number, kind="stable")
+    order = order[np.searchsorted(number[order], 0):]
+    starts = np.flatnonzero(np.diff(number[order], prepend=-1))
+    for begin, end in zip(starts.tolist(), [*starts[1:].tolist(), len(order)]):
+        yield int(number[order[begin]]), order[begin:end]

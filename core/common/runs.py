@@ -1,4 +1,4 @@
-"""Runs of True in a mask, and the greatest of neighbours in a row of cells."""
+"""Runs of True in a mask, stretches of ascending places, and the greatest of neighbours in a row of cells."""
 
 from __future__ import annotations
 
@@ -9,6 +9,11 @@ def mask_runs(mask: np.ndarray) -> list[tuple[int, int]]:
     """(first, last + 1) of every run of True in (N,) bool."""
     change = np.flatnonzero(np.diff(np.r_[False, mask, False].astype(np.int8)))
     return list(zip(change[::2].tolist(), change[1::2].tolist()))
+
+
+def stretch_of(places: np.ndarray, start: float, end: float) -> slice:
+    """Those of (N,) ascending places that lie from `start` to `end`, both included: looked up, since a long road has many stretches."""
+    return slice(int(np.searchsorted(places, start, side="left")), int(np.searchsorted(places, end, side="right")))
 
 
 def best_within(place: np.ndarray, row: np.ndarray, score: np.ndarray, span: int) -> np.ndarray:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..common.runs import mask_runs
+from ..common.runs import mask_runs, stretch_of
 from ..survey.frame.road_frame import RoadFrame
 from .common.curb_points import CurbPoints
 from .common.sides import SIDE_SIGNS
@@ -64,7 +64,7 @@ def sample_edges(edges: RoadEdges, frame: RoadFrame, road: int, side: str) -> Ed
             continue
         order = np.argsort(at, kind="stable")
         at, d, z = at[order], d[order], z[order]
-        inside = np.flatnonzero((s >= at[0] - COMPARISON_STEP / 2) & (s <= at[-1] + COMPARISON_STEP / 2))
+        inside = stretch_of(s, at[0] - COMPARISON_STEP / 2, at[-1] + COMPARISON_STEP / 2)
         samples.d[inside], samples.z[inside] = np.interp(s[inside], at, d), np.interp(s[inside], at, z)
         samples.measured[inside] = edges.status[k] == "measured"
         samples.scatter[inside] = edges.rmse[k]
@@ -151,7 +151,7 @@ def measure_agreement(edges: RoadEdges, first_edges: RoadEdges, second_edges: Ro
             first, second, drawn = (sample_edges(e, frame, road.number, side) for e in (first_edges, second_edges, edges))
             apart = np.abs(first.d - second.d)
             for k in np.flatnonzero((edges.road == road.number) & (edges.side == side)):
-                beside = apart[(first.s >= edges.station[k]) & (first.s <= edges.end[k])]
+                beside = apart[stretch_of(first.s, edges.station[k], edges.end[k])]
                 beside = beside[np.isfinite(beside)]
                 if len(beside):
                     agree[k] = round(100 * float(np.quantile(beside, AGREEMENT_QUANTILE)), 1)

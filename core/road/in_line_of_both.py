@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..common.runs import stretch_of
 from .common.curb_points import CurbPoints, curb_points_at
 from .common.hidden_curb import hidden_beside
-from .common.in_line import LINE_FIT_LENGTH, MAX_LINE_GAP, pieces_between, side_by_side
+from .common.in_line import LINE_FIT_LENGTH, MAX_LINE_GAP, chains_beside, pieces_between, side_by_side
 from .common.occlusion import OcclusionGrid
 from .common.side_chains import SideChains
 from .common.sides import SIDE_SIGNS, expected_height
@@ -35,7 +36,7 @@ class _Ends:
     h: np.ndarray
     height: np.ndarray
 
-    def __getitem__(self, rows: np.ndarray) -> _Ends:
+    def __getitem__(self, rows: np.ndarray | slice) -> _Ends:
         return _Ends(self.s[rows], self.u[rows], self.h[rows], self.height[rows])
 
 
@@ -70,11 +71,13 @@ def _pieces_of_side(points, chains, survey, road, side, number):
     curb = _Ends(own.station, sign * own.offset, own.z - expected_height(survey, road, own.station), own.height)
     rows: list[dict] = []
     gap = np.diff(curb.s)
-    for k in np.flatnonzero((gap > MAX_JOINED_GAP) & (gap <= MAX_LINE_GAP)):
-        a, b = curb.s[k], curb.s[k + 1]
-        before, after = curb[(curb.s >= a - LINE_FIT_LENGTH) & (curb.s <= a)], curb[(curb.s >= b) & (curb.s <= b + LINE_FIT_LENGTH)]
-        pieces = {piece: known for known in chains
-                  for piece in pieces_between(before, after, known.chains, known.steps, lambda s, u: frame.road(road).to_map(s, sign * u))}
+    begin = np.flatnonzero((gap > MAX_JOINED_GAP) & (gap <= MAX_LINE_GAP))
+    gaps = np.column_stack([curb.s[begin], curb.s[begin + 1]])
+    of_methods = [chains_beside(gaps, known.chains) for known in chains]
+    for k, (a, b) in enumerate(gaps.tolist()):
+        before, after = curb[stretch_of(curb.s, a - LINE_FIT_LENGTH, a)], curb[stretch_of(curb.s, b, b + LINE_FIT_LENGTH)]
+        pieces = {piece: known for known, beside in zip(chains, of_methods)
+                  for piece in pieces_between(before, after, known.chains, known.steps, lambda s, u: frame.road(road).to_map(s, sign * u), beside[k])}
         for piece in side_by_side(pieces):
             rows += pieces[piece].points(piece.chain, piece.start, piece.end, number + len(rows))
     s, u, h = (np.array([row[name] for row in rows], float) for name in ("s", "u", "h"))

@@ -9,12 +9,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...common.runs import stretch_of
 from ...lazy import cv2
 from .road_grid import CELL_SIZE
 
 TRACK_WIDTH = 0.03       # m that points may lie farther apart than the middles of their tracks
 MIN_TRACK_GAP = 0.10     # m: points so near across the road are of one marking in any case
 MAX_GAP_ON_TRACK = 0.40  # m along the road between points on one track
+ROWS_AT_ONCE = 2500      # of cells, along the road, that are filled together: 100 m
 
 
 def fill_gaps(mask: np.ndarray, limit: int, axis: int = 0) -> np.ndarray:
@@ -67,15 +69,30 @@ def filled_between_tracks(cells: np.ndarray, reach: np.ndarray) -> tuple[np.ndar
     wide = gaps > 0
     if not wide.any():
         return mask, first
-    # along each track first: two tracks rarely show points at the same station
-    sparse = np.zeros(shape, np.int16)
-    sparse[tuple((cells[wide] - first).T)] = gaps[wide]
-    on_track = fill_gaps(sparse > 0, int(round(MAX_GAP_ON_TRACK / CELL_SIZE)), 0)
-    widest = np.where(on_track & (sparse == 0), _carried(sparse), sparse)
-    mask |= on_track
-    for gap in np.unique(gaps[wide]).tolist():
-        mask |= fill_gaps(widest >= gap, gap, 1)
+    (row, column), gaps = (cells[wide] - first).T, gaps[wide]
+    order = np.argsort(row, kind="stable")
+    row, column, gaps = np.ascontiguousarray(row[order]), column[order], gaps[order]
+    longest = int(round(MAX_GAP_ON_TRACK / CELL_SIZE))
+    # a marking may be as long as the road
+    for begin in range(0, len(mask), ROWS_AT_ONCE):
+        near = stretch_of(row, begin - longest, begin + ROWS_AT_ONCE + longest - 1)
+        if near.stop > near.start:
+            _fill(mask[begin:begin + ROWS_AT_ONCE], row[near] - begin, column[near], gaps[near], longest)
     return mask, first
+
+
+def _fill(mask, row, column, gaps, longest):
+    """Turn on, in some rows of a mask, the cells between those at (N,) places with gaps, of these rows and `longest` rows before and behind them."""
+    # along each track first: two tracks rarely show points at the same station
+    sparse = np.zeros((len(mask) + 2 * longest, mask.shape[1]), np.int16)
+    here = row < len(mask) + longest
+    sparse[row[here] + longest, column[here]] = gaps[here]
+    on_track = fill_gaps(sparse > 0, longest, 0)
+    own = slice(longest, longest + len(mask))
+    widest = np.where(on_track & (sparse == 0), _carried(sparse), sparse)[own]
+    mask |= on_track[own]
+    for gap in np.unique(gaps).tolist():
+        mask |= fill_gaps(widest >= gap, gap, 1)
 
 
 def _carried(values):

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...common.runs import stretch_of
 from ..cells.road_grid import CELL_SIZE
 from ..cells.scan_tracks import fill_gaps
 from .classify import MIN_STOP_LINE_FILL
@@ -48,20 +49,23 @@ def even_strip(cells: np.ndarray) -> tuple[np.ndarray, float]:
     return np.abs(cells[:, 1] - middle) <= (usual + WIDTH_TOLERANCE) / 2, usual
 
 
-def complete_bar(parts: np.ndarray, number: int, turned: np.ndarray) -> None:
+def complete_bar(parts: np.ndarray, bar: np.ndarray, turned: np.ndarray, along: np.ndarray) -> None:
     """Give a bar what is left over between its front and its rear: where it is worn it is no less its paint.
 
     Parameters
     ----------
     parts : (K,) int, the part of every cell, below 0 for what is left over; changed in place
-    number : the bar's
-    turned : (K, 2) int cells, across the road first
+    bar : (N,) the numbers of its cells, ascending
+    turned : (K, 2) int cells, across the road first, sorted along it
+    along : (K,) the second column of `turned`
     """
-    own = turned[parts == number]
-    near = (parts < 0) & ((turned >= own.min(axis=0)) & (turned <= own.max(axis=0))).all(axis=1)
-    some = np.flatnonzero(near | (parts == number))
+    own = turned[bar]
+    (left, front), (right, rear) = own.min(axis=0), own.max(axis=0)
+    about = stretch_of(along, front, rear)
+    near = about.start + np.flatnonzero((parts[about] < 0) & (turned[about, 0] >= left) & (turned[about, 0] <= right))
+    some = np.sort(np.concatenate([bar, near]))
     inside, _ = even_strip(turned[some])
-    parts[some[inside & near[some]]] = number
+    parts[some[inside & (parts[some] < 0)]] = parts[bar[0]]
 
 
 def bar_with_lines(cells: np.ndarray) -> tuple[np.ndarray, int]:

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...common.errors import RoadExtractionError
+from ...common.near_pairs import overlapping_pairs
 from ...curves.robust import percentiles
 from ...survey.store.records import COORDINATE_SCALE
 from ..cells.clusters import ROAD_EDGE_CLEARANCE
 from .dash_rows import rows_of_dashes
-from .near_pairs import overlapping_pairs
 
 if TYPE_CHECKING:
     from .shape import Shape

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import shapely
 
+from ...common.groups import members_of
 from ...common.order_statistics import order_by
 from ...common.progress import Progress
 from ...common.setting import check_limits, setting
@@ -265,13 +266,11 @@ def _stripes_of_crossings(records, road, work, progress):
     for k, stripe in enumerate(stripes):
         stripe_of[stripe.spots] = k
     of_point = stripe_of[member]
-    for k, stripe in enumerate(stripes):
-        rows = np.flatnonzero(of_point == k)
-        if len(rows):
-            own = records.take(rows)
-            length, width = (float(np.hypot(*(stripe.corners[j] - stripe.corners[j - 1]))) for j in (1, 2))
-            shape = replace(measure(own["s"], own["d"], own["spacing"]), length=length, width=width)
-            found.append(_Marking(own, rows, shape, "zebra", "other", shapely.Polygon(stripe.corners)))
+    for k, rows in members_of(of_point):
+        own, corners = records.take(rows), stripes[k].corners
+        length, width = (float(np.hypot(*(corners[j] - corners[j - 1]))) for j in (1, 2))
+        shape = replace(measure(own["s"], own["d"], own["spacing"]), length=length, width=width)
+        found.append(_Marking(own, rows, shape, "zebra", "other", shapely.Polygon(corners)))
     return found, np.flatnonzero(of_point < 0)
 
 

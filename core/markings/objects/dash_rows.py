@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ...common.groups import linked_groups
+from ...common.groups import linked_groups, members_of
 from ..cells.road_grid import CELL_SIZE
 
 if TYPE_CHECKING:
@@ -141,30 +141,37 @@ def give_way_blocks(filled: np.ndarray, sides: np.ndarray, middle: np.ndarray) -
     sure = np.unique(np.concatenate(rows))
     rest = np.setdiff1d(squares, sure)
     pairs, size, apart = _pairs_of_squares(sides[rest], middle[rest])
-    for row in list(rows):
-        usual, pace = sides[row].mean(), _pace(middle[row])
-        alike = (np.maximum(size.max(axis=1), usual) <= MAX_BLOCK_RATIO * np.minimum(size.min(axis=1), usual)) \
-            & (np.abs(apart - pace) <= MAX_PACE_ERROR * pace)
-        rows += list(rest[pairs[alike]])
+    at_pace = np.zeros(len(pairs), bool)
     for row in rows:
+        usual, pace = sides[row].mean(), _pace(middle[row])
+        at_pace |= (np.maximum(size.max(axis=1), usual) <= MAX_BLOCK_RATIO * np.minimum(size.min(axis=1), usual)) \
+            & (np.abs(apart - pace) <= MAX_PACE_ERROR * pace)
+    larger = sides.max(axis=1)
+    small = np.flatnonzero(larger > 0)
+    tree = cKDTree(middle[small])
+    for row in [*rows, *rest[pairs[at_pace]]]:
         result[row] = True
         usual = sides[row].mean()
-        likely = (sides.max(axis=1) >= usual / MAX_END_RATIO) & (sides.max(axis=1) <= MAX_END_RATIO * usual)
-        result[_led_on(middle[row], middle, np.flatnonzero(likely))] = True
+
+        def likely(place, reach, usual=usual):
+            near = small[sorted(tree.query_ball_point(place, reach))]
+            return near[(larger[near] >= usual / MAX_END_RATIO) & (larger[near] <= MAX_END_RATIO * usual)]
+
+        result[_led_on(middle[row], middle, likely)] = True
     return result
 
 
 def _led_on(row, middle, likely):
-    """Pieces, of those that are likely, at the pace of a row of (K, 2) places beyond its ends."""
+    """Pieces at the pace of a row of (K, 2) places beyond its ends; `likely` gives those that may be, within a distance of a place."""
     way, pace, found = _way(row), _pace(row), []
     along = (row - row.mean(axis=0)) @ way
     for sign, place in ((1.0, row[np.argmax(along)]), (-1.0, row[np.argmin(along)])):
-        while len(likely):
-            off = np.hypot(*(middle[likely] - (place + sign * pace * way)).T)
-            if off.min() > MAX_END_OFFSET * pace:
-                break
-            found.append(int(likely[np.argmin(off)]))
+        while True:
             place = place + sign * pace * way
+            near = likely(place, MAX_END_OFFSET * pace)
+            if not len(near):
+                break
+            found.append(int(near[np.argmin(np.hypot(*(middle[near] - place).T))]))
     return found
 
 
@@ -263,6 +270,5 @@ def _chains(pairs, apart, ways, fewest=MIN_DASHES_IN_ROW, max_step_ratio=MAX_STE
     joined = even & straight & (off <= max_offset)
     row = linked_groups(before[joined], after[joined], len(pairs))
     # a row is found twice, forwards and backwards
-    found = {tuple(np.unique(pairs[row == k]).tolist())
-             for k in np.flatnonzero(np.bincount(row) >= fewest - 1)}
+    found = {tuple(np.unique(pairs[steps]).tolist()) for _, steps in members_of(row) if len(steps) >= fewest - 1}
     return [np.array(members) for members in sorted(found) if len(members) >= fewest]

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ...common.groups import linked_groups
+from ...common.groups import linked_groups, members_of
+from ...common.near_pairs import overlapping_pairs
 from ...common.parallel import check_cancelled
 from ...countries.painted_symbols import SYMBOLS
 from ...lazy import cv2
@@ -20,7 +21,6 @@ from ..cells.road_grid import CELL_SIZE
 from ..cells.scan_tracks import fill_gaps, filled_between_tracks
 from ..figures.match import PaintImage, agreement
 from .classify import NOT_PAINT
-from .near_pairs import overlapping_pairs
 
 if TYPE_CHECKING:
     from ...execution.phase import NoSource
@@ -95,8 +95,7 @@ def _candidates(shapes: Sequence[Shape], kinds: Sequence[str], parts: np.ndarray
         links.append(np.column_stack([a, b])[across <= LETTER_GAP])
     pairs = np.concatenate(links)
     group = linked_groups(pairs[:, 0], pairs[:, 1], len(parts))
-    for number in np.unique(group).tolist():
-        together = np.flatnonzero(group == number)
+    for _, together in members_of(group):
         painted = together[[kinds[k] != NOT_PAINT for k in parts[together]]]
         tried, large = set(), []
         for some in (together, painted, *(one[None] for one in together)):

@@ -18,8 +18,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ...common.groups import linked_groups
+from ...common.groups import linked_groups, members_of
+from ...common.near_pairs import overlapping_pairs
 from ...common.order_statistics import order_by
+from ...common.parallel import check_cancelled
+from ...common.runs import stretch_of
 from ...lazy import cv2
 from ...survey.store.records import COORDINATE_SCALE
 from ..cells.components import occupied
@@ -37,7 +40,6 @@ from .bars import (
     even_strip,
 )
 from .classify import columns_of
-from .near_pairs import overlapping_pairs
 
 if TYPE_CHECKING:
     from ...survey.store.columns import Columns
@@ -127,15 +129,15 @@ def _parts(cells, spacing):
     if not reach.any():
         return _parts_of_filled(cells)
     mask, first = filled_between_tracks(cells, reach)
-    number = np.full(mask.shape, -1)
-    filled = np.argwhere(mask)
-    parts, _ = _parts_of_filled(filled + first)
-    number[tuple(filled.T)] = parts
-    _, parts = np.unique(number[tuple((cells - first).T)], return_inverse=True)
+    place = np.flatnonzero(mask)
+    parts, _ = _parts_of_filled(np.column_stack(np.divmod(place, mask.shape[1])) + first)
+    own = np.ravel_multi_index(tuple((cells - first).T), mask.shape)
+    _, parts = np.unique(parts[np.searchsorted(place, own)], return_inverse=True)
     return parts, int(parts.max()) + 1
 
 
 def _parts_of_filled(cells):
+    """`_parts` of cells without gaps between tracks of the scan, sorted along the road."""
     size = CELL_UNITS * COORDINATE_SCALE
     even, width = even_strip(cells)
     if even.all() and width * size <= MAX_WIDTH_ALONE:
@@ -147,23 +149,24 @@ def _parts_of_filled(cells):
         rest = np.flatnonzero(parts < 0)
         strip = rest[_in_lines(cells[rest], MAX_SCAN_GAP, window)]
         before, count = count, _number_strips(parts, count, cells, strip, MAX_SCAN_GAP, size, least)
-        for number in range(before, count):
-            inside = np.flatnonzero(parts == number)
+        for _, inside in members_of(np.where(parts >= before, parts, -1)):
             parts[inside[~even_strip(cells[inside])[0]]] = -1
     rest, turned = np.flatnonzero(parts < 0), cells[:, ::-1]
     # scan lines lie apart within a bar
     bars = rest[_in_runs(turned[rest], MAX_PAINT_GAP, MIN_RUN_ACROSS)]
     before, count = count, _number_strips(parts, count, turned, bars, MAX_PAINT_GAP, MAX_SCAN_GAP, MIN_RUN_ACROSS)
-    for number in range(before, count):
-        complete_bar(parts, number, turned)
+    along = np.ascontiguousarray(cells[:, 0])
+    for _, bar in members_of(np.where(parts >= before, parts, -1)):
+        complete_bar(parts, bar, turned, along)
     if not count:
         return bar_with_lines(cells)
     rest = np.flatnonzero(parts < 0)
     pieces = _linked(cells[rest], MAX_SCAN_GAP / size, 3.0)
-    for piece in range(pieces.max(initial=-1) + 1):
-        own = np.flatnonzero(pieces == piece)
+    number = int(pieces.max(initial=-1))
+    for _, own in members_of(pieces):
         inner, _ = bar_with_lines(cells[rest[own]])
-        pieces[own[inner > 0]] = pieces.max() + inner[inner > 0]
+        pieces[own[inner > 0]] = number + inner[inner > 0]
+        number += int(inner.max())
     areas = np.bincount(pieces) * size**2 if len(pieces) else np.empty(0)
     kept = areas >= MIN_LEFTOVER_AREA
     later = np.where(kept, count + np.cumsum(kept) - 1, -1)
@@ -176,7 +179,7 @@ def _parts_of_filled(cells):
 
 
 def _in_lines(cells, longest_gap, window):
-    """(K,) whether a cell lies on a straight line roughly along the road that is painted over most of `window` metres.
+    """(K,) whether a cell lies on a straight line roughly along the road that is painted over most of `window` metres; cells are sorted along it.
 
     Bars, letters and the stripes of a crossing are shorter than the window; the line itself may be worn and askew.
     """
@@ -186,18 +189,18 @@ def _in_lines(cells, longest_gap, window):
     size = CELL_UNITS * COORDINATE_SCALE
     steps = int(MAX_BORDER_SLOPE * window / MAX_BORDER_DRIFT)
     gap, length, chunk = round(longest_gap / size) // 2 * 2, round(window / size) | 1, int(MORPHOLOGY_CHUNK / size)
-    numbers = np.floor_divide(cells[:, 0], chunk)
-    for number in np.unique(numbers):
+    along = np.ascontiguousarray(cells[:, 0])
+    for number in np.unique(along // chunk).tolist():
+        check_cancelled()
         first = number * chunk - 2 * length
-        rows = np.flatnonzero((cells[:, 0] >= first) & (cells[:, 0] < (number + 1) * chunk + 2 * length))
-        column, across = cells[rows, 0] - first, cells[rows, 1]
-        own = numbers[rows] == number
+        rows = stretch_of(along, first, (number + 1) * chunk + 2 * length - 1)
+        column, across = along[rows] - first, cells[rows, 1]
         # most lines run along the road: fewer and fewer cells are looked for, and none that lie too far from them to matter
-        wanted, near = np.flatnonzero(own), np.arange(len(rows))
+        wanted, near = np.flatnonzero(along[rows] // chunk == number), np.arange(len(column))
         for slope in sorted(range(-steps, steps + 1), key=abs):
-            painted = np.zeros(len(rows), bool)
+            painted = np.zeros(len(column), bool)
             painted[near] = _painted_along(column[near], across[near], slope * (MAX_BORDER_DRIFT / window), gap, length)
-            result[rows[wanted[painted[wanted]]]] = True
+            result[rows.start + wanted[painted[wanted]]] = True
             wanted = wanted[~painted[wanted]]
             if not len(wanted):
                 break
@@ -250,7 +253,7 @@ def _number_strips(parts, count, cells, rows, gap, gap_across, least):
 
 
 def _in_runs(cells, longest_gap, shortest_run):
-    """(K,) whether a cell lies in a run of paint along the first axis; gaps are closed."""
+    """(K,) whether a cell lies in a run of paint along the first axis, across the road; gaps are closed, cells are sorted by the second axis."""
     if not len(cells):
         return np.zeros(0, bool)
     size = CELL_UNITS * COORDINATE_SCALE
@@ -258,18 +261,18 @@ def _in_runs(cells, longest_gap, shortest_run):
     gap, run, chunk = round(longest_gap / size) // 2 * 2, round(shortest_run / size) | 1, int(MORPHOLOGY_CHUNK / size)
     halo = 2 * (gap + run)
     result = np.zeros(len(cells), bool)
-    numbers = np.floor_divide(cells[:, 0], chunk)
-    for number in np.unique(numbers):
-        first, last = number * chunk - halo, (number + 1) * chunk + halo
-        rows = np.flatnonzero((cells[:, 0] >= first) & (cells[:, 0] < last))
-        column, row = cells[rows, 0] - first, cells[rows, 1] - cells[rows, 1].min() + 1
-        mask = np.zeros((row.max() + 2, last - first), np.uint8)
+    along = np.ascontiguousarray(cells[:, 1])
+    for number in np.unique(along // chunk).tolist():
+        check_cancelled()
+        rows = stretch_of(along, number * chunk - 1, (number + 1) * chunk)
+        column, row = cells[rows, 0] - cells[rows, 0].min() + halo, along[rows] - along[rows.start]
+        mask = np.zeros((row[-1] + 1, column.max() + halo + 1), np.uint8)
         mask[row, column] = 1
         # a line may leave its row of cells by one: the road's frame is not the paint's
         joined = cv2.dilate(cv2.morphologyEx(mask, cv2.MORPH_CLOSE, np.ones((1, gap + 1), np.uint8)), np.ones((3, 1), np.uint8))
         runs = cv2.morphologyEx(joined, cv2.MORPH_OPEN, np.ones((1, run), np.uint8))
-        own = numbers[rows] == number
-        result[rows[own]] = runs[row[own], column[own]] > 0
+        own = np.flatnonzero(along[rows] // chunk == number)
+        result[rows.start + own] = runs[row[own], column[own]] > 0
     return result
 
 

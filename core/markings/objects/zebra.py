@@ -12,8 +12,11 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
+from scipy.spatial import cKDTree
 
-from ...common.groups import linked_groups
+from ...common.groups import linked_groups, members_of
+from ...common.parallel import check_cancelled
+from ...common.place_index import PlaceIndex
 from ...curves.robust import percentiles
 from ...lazy import cv2
 
@@ -89,51 +92,35 @@ def zebra_stripes(places: np.ndarray, way: np.ndarray, combs_of: Callable[[Seque
     way : (N,) radians, the direction of the road at each, in the same axes
     combs_of : what applies `comb_of_window` to the spots of windows, given their rows; by default one after the other
     """
-    windows = _windows(places)
+    if len(places) < LEAST_SPOTS:
+        return []
+    spots = PlaceIndex(places, COMB_WINDOW / 2)
+    windows = spots.windows(LEAST_SPOTS)
     known = combs_of(windows) if combs_of else [comb_of_window(places[own]) for own in windows]
     combs = [comb for comb in known if comb is not None]
     rows = [own for own, comb in zip(windows, known) if comb is not None]
+    del windows
     found, free = [], np.ones(len(places), bool)
     for group in _alike(combs):
+        check_cancelled()
         best = max((combs[k] for k in group), key=lambda comb: comb.coherence)
-        own = _about(places, np.unique(np.concatenate([rows[k] for k in group])), best.heading)
+        own = _about(spots, np.unique(np.concatenate([rows[k] for k in group])), best.heading)
         stripes = _stripes(places, own[free[own]], best, way)
         free[np.concatenate([np.empty(0, np.int64), *(stripe.spots for stripe in stripes)])] = False
         found += stripes
     return found
 
 
-def _about(places, rows, heading):
+def _about(spots, rows, heading):
     """Rows of the spots in the box about some spots, along a heading and across it, and `REACH_OF_CROSSING` beyond it."""
+    places = spots.places
     turn = np.array([[np.cos(heading), -np.sin(heading)], [np.sin(heading), np.cos(heading)]])
     own = places[rows] @ turn
     low, high = own.min(axis=0) - REACH_OF_CROSSING, own.max(axis=0) + REACH_OF_CROSSING
     corners = np.array([low, (low[0], high[1]), high, (high[0], low[1])]) @ turn.T
-    # most spots lie far from the box
-    x, y = places.T
-    (left, bottom), (right, top) = corners.min(axis=0) - 1.0, corners.max(axis=0) + 1.0
-    near = np.flatnonzero((x >= left) & (x <= right))
-    near = near[(y[near] >= bottom) & (y[near] <= top)]
+    near = spots.within(corners.min(axis=0) - 1.0, corners.max(axis=0) + 1.0)
     turned = places[near] @ turn
     return near[((turned >= low) & (turned <= high)).all(axis=1)]
-
-
-def _windows(places):
-    """Rows of the spots of every window that has enough of them."""
-    if len(places) < LEAST_SPOTS:
-        return []
-    low = np.floor(places / (COMB_WINDOW / 2)).astype(np.int64)
-    first = low.min(axis=0)
-    columns = int(low[:, 1].max() - first[1]) + 2
-    # a spot is in four windows
-    keys = np.concatenate([(low[:, 0] - first[0] + 1 - a) * columns + low[:, 1] - first[1] + 1 - b for a in (0, 1) for b in (0, 1)])
-    order = np.argsort(keys, kind="stable")
-    keys, spots = keys[order], (order % len(places)).astype(np.int32)
-    del order
-    starts = np.flatnonzero(np.r_[True, np.diff(keys) != 0])
-    counts = np.diff(np.r_[starts, len(keys)])
-    enough = counts >= LEAST_SPOTS
-    return [spots[a:a + n] for a, n in zip(starts[enough].tolist(), counts[enough].tolist())]
 
 
 def comb_of_window(spots: np.ndarray) -> Comb | None:
@@ -246,11 +233,10 @@ def _alike(combs):
     if not combs:
         return []
     heading, pitch, middle = (np.array([getattr(comb, name) for comb in combs]) for name in ("heading", "pitch", "middle"))
-    turn = np.abs((heading[:, None] - heading + np.pi / 2) % np.pi - np.pi / 2)
-    same = (turn <= SAME_HEADING) & (np.abs(pitch[:, None] - pitch) <= SAME_PITCH * pitch) \
-        & (np.hypot(*(middle[:, None] - middle).transpose(2, 0, 1)) <= COMB_WINDOW)
-    group = linked_groups(*np.nonzero(same), len(combs))
-    return [np.flatnonzero(group == k).tolist() for k in range(group.max() + 1)]
+    a, b = cKDTree(middle).query_pairs(COMB_WINDOW, output_type="ndarray").reshape(-1, 2).T
+    turn = np.abs((heading[a] - heading[b] + np.pi / 2) % np.pi - np.pi / 2)
+    same = (turn <= SAME_HEADING) & (np.abs(pitch[a] - pitch[b]) <= SAME_PITCH * np.maximum(pitch[a], pitch[b]))
+    return [members.tolist() for _, members in members_of(linked_groups(a[same], b[same], len(combs)))]
 
 
 def _stripes(places, rows, comb, way):

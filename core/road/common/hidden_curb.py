@@ -71,11 +71,12 @@ def hidden_beside(pieces: CurbPoints, main: Mapping[str, np.ndarray], beside: Ma
         later = np.c_[own.station, sign * own.offset, own.z - expected_height(survey, road, own.station)]
         known = main[side] * (1, sign, 1, 1)
         measured = np.concatenate([later, known[known[:, 3] > 0, :3]])
-        order, reported = np.argsort(measured[:, 0], kind="stable"), np.append(known[known[:, 3] == 0, 0], np.inf)
+        order, reported = np.argsort(measured[:, 0], kind="stable"), np.r_[-np.inf, np.sort(known[known[:, 3] == 0, 0]), np.inf]
         ends, rows = measured[order, 0], []
         for row in hidden_points(measured, beside[side], OutermostTrack(survey.frame, road, sign)):
             k = np.searchsorted(ends, row["s"])
-            if (order[k - 1:k + 1] < len(later)).any() and np.abs(reported - row["s"]).min() > 0.5 * HIDDEN_POINT_SPACING:
+            at = np.searchsorted(reported, row["s"])
+            if (order[k - 1:k + 1] < len(later)).any() and np.abs(reported[at - 1:at + 1] - row["s"]).min() > 0.5 * HIDDEN_POINT_SPACING:
                 rows.append(row)
         s, u, h = (np.array([row[name] for row in rows], float) for name in ("s", "u", "h"))
         places = survey.frame.to_map(road, s, sign * u, h + expected_height(survey, road, s))

@@ -13,6 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.polynomial import Polynomial
 
+from ...common.near_pairs import overlapping_pairs
+from ...common.runs import stretch_of
 from .corners import CurbSteps
 from .tracking import HEIGHT_TOLERANCE, StepChain
 
@@ -44,13 +46,27 @@ def with_pieces_in_line(kept: Sequence[tuple[int, float, float]], chains: Sequen
     """
     members = [_between(steps, chains[chain].steps, a - 1e-9, b + 1e-9) for chain, a, b in kept]
     chosen = np.concatenate(members) if members else np.empty(0, np.int64)
+    order = np.argsort(steps.s[chosen], kind="stable")
+    by_station = steps.s[chosen[order]]
+    gaps = [(a, b) for (_, _, a), (_, b, _) in zip(kept[:-1], kept[1:]) if 2 * MIN_PIECE_LENGTH <= b - a <= MAX_LINE_GAP]
     found = list(kept)
-    for (_, _, a), (_, b, _) in zip(kept[:-1], kept[1:]):
-        if 2 * MIN_PIECE_LENGTH <= b - a <= MAX_LINE_GAP:
-            before, after = _between(steps, chosen, a - LINE_FIT_LENGTH, a + 1e-9), _between(steps, chosen, b - 1e-9, b + LINE_FIT_LENGTH)
-            pieces = pieces_between(steps[before], steps[after], chains, steps, to_plan)
-            found += [(piece.chain, piece.start, piece.end) for piece in side_by_side(pieces)]
+    for (a, b), some in zip(gaps, chains_beside(gaps, chains)):
+        before, after = (steps[chosen[np.sort(order[stretch_of(by_station, *ends)])]]
+                         for ends in ((a - LINE_FIT_LENGTH, a + 1e-9), (b - 1e-9, b + LINE_FIT_LENGTH)))
+        pieces = pieces_between(before, after, chains, steps, to_plan, some)
+        found += [(piece.chain, piece.start, piece.end) for piece in side_by_side(pieces)]
     return sorted(found, key=lambda part: part[1:])
+
+
+def chains_beside(gaps: Sequence[tuple[float, float]], chains: Sequence[StepChain]) -> list[list[int]]:
+    """Numbers, ascending, of the chains that lie along each gap between two stations, m; some that lie a hair beside it are among them."""
+    found: list[list[int]] = [[] for _ in gaps]
+    first, last = np.array(gaps, float).reshape(-1, 2).T
+    starts, ends = (np.array([getattr(chain, name) for chain in chains], float) for name in ("start", "end"))
+    for gap, chain in overlapping_pairs(first, last, starts, ends):
+        for g, c in zip(gap.tolist(), chain.tolist()):
+            found[g].append(c)
+    return [sorted(some) for some in found]
 
 
 def _between(steps, members, start, end):
@@ -74,7 +90,7 @@ class PieceInLine:
 
 
 def pieces_between(before: CurbSteps, after: CurbSteps, chains: Sequence[StepChain], steps: CurbSteps,
-                   to_plan: Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]) -> list[PieceInLine]:
+                   to_plan: Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]], some: Sequence[int]) -> list[PieceInLine]:
     """The pieces of chains that lie on the line between two runs of curb.
 
     Parameters
@@ -83,12 +99,15 @@ def pieces_between(before: CurbSteps, after: CurbSteps, chains: Sequence[StepCha
     chains : list of StepChain
     steps : CurbSteps to which they refer
     to_plan : function, stations and outward offsets in m -> x and y in m
+    some : numbers of the chains that are looked at, those of `chains_beside`
     """
+    if not some:
+        return []
     a, b = before.s.max(), after.s.min()
     line = GapLine(np.array(to_plan(before.s, before.u)), np.array(to_plan(after.s, after.u)))
     (s0, h0, height0), (s1, h1, height1) = ([np.median(v) for v in (end.s, end.h, end.height)] for end in (before, after))
     pieces = []
-    for number, chain in enumerate(chains):
+    for number, chain in ((number, chains[number]) for number in some):
         if chain.end < a + MIN_PIECE_LENGTH or chain.start > b - MIN_PIECE_LENGTH:
             continue
         members = _between(steps, chain.steps, a + 1e-6, b - 1e-6)

@@ -8,13 +8,14 @@ jumps, with a weak preference for what is near the vehicle.
 
 from __future__ import annotations
 
-from bisect import bisect_left
+from bisect import bisect_left, insort
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from ...common.groups import linked_groups
+from ...common.near_pairs import ROUNDING_TOLERANCE
 from .corners import CurbSteps
 from .curb_limits import MIN_FAINT_LENGTH, CurbLimits
 from .pseudo_scanlines import expand_ranges
@@ -180,14 +181,21 @@ def curb_chains(steps: CurbSteps, label: np.ndarray, profile_width: float, limit
 
 def _continuing(chains, weak, steps):
     """Those of the weak chains that continue a chain, or another such one: how much a short chain scatters depends on where profiles are cut."""
-    known, found = list(chains), []
+    found: list[StepChain] = []
     for onward in (True, False):
+        # by the end that another chain may continue, so that those near a chain are looked up
+        known = sorted(((c.end if onward else c.start, k) for k, c in enumerate([*chains, *found])))
+        numbered = [*chains, *found]
         for own in sorted(weak, key=lambda c: c.start if onward else -c.end):
-            beside = [one for one in known if 0 < (own.start - one.end if onward else one.start - own.end) <= MAX_CHAIN_GAP]
+            first = own.start - MAX_CHAIN_GAP if onward else own.end
+            nearby = known[bisect_left(known, (first - ROUNDING_TOLERANCE, -1)):bisect_left(known, (first + MAX_CHAIN_GAP + ROUNDING_TOLERANCE, -1))]
+            beside = [numbered[k] for tip, k in nearby if 0 < (own.start - tip if onward else tip - own.end) <= MAX_CHAIN_GAP]
             if any(_in_line(steps, *((one.steps, own.steps) if onward else (own.steps, one.steps)))[0] for one in beside):
-                known.append(own)
+                insort(known, (own.end if onward else own.start, len(numbered)))
+                numbered.append(own)
                 found.append(own)
-        weak = [own for own in weak if not any(own is one for one in found)]
+        there = set(map(id, found))
+        weak = [own for own in weak if id(own) not in there]
     return found
 
 
@@ -219,15 +227,21 @@ def select_along_road(chains: Sequence[StepChain], steps: CurbSteps,
     starts, ends = np.array([c.start for c in chains]), np.array([c.end for c in chains])
     strong = np.array([not c.weak for c in chains], bool)
     cuts = np.unique(np.r_[starts[strong], ends[strong]])
+    waiting = np.flatnonzero(strong)[np.argsort(-starts[strong], kind="stable")].tolist()   # the next to begin is the last
+    active: list[int] = []                 # chains beside the road at a place, by number, and
+    continued: list[int] = []              # those that a path ends on which may be continued: few, however long the road is
     tips = np.array([_end_directions(steps, c.steps) for c in chains]).reshape(-1, 2)
     value = np.full(len(chains), -np.inf)  # of the best path that ends, or last was, on this chain
     path: list = [None] * len(chains)      # that path: (chain, first, last station, path before)
     for a, b in zip(cuts[:-1], cuts[1:]):
         # of the chains that ended long ago the best alone is continued
-        old = np.flatnonzero((ends + TRACKING_MEMORY < a) & np.isfinite(value))
-        value[old[value[old] < value[old].max(initial=-np.inf)]] = -np.inf
-        active = np.flatnonzero(strong & (starts <= a) & (ends >= b))
-        known = np.flatnonzero(np.isfinite(value))
+        best = max((value[k] for k in continued if ends[k] + TRACKING_MEMORY < a), default=-np.inf)
+        value[[k for k in continued if ends[k] + TRACKING_MEMORY < a and value[k] < best]] = -np.inf
+        continued = [k for k in continued if np.isfinite(value[k])]
+        while waiting and starts[waiting[-1]] <= a:
+            insort(active, waiting.pop())
+        active = [c for c in active if ends[c] >= b]
+        known = np.array(continued, np.int64)
         there = np.array([[np.interp(a, places[k][0], v) for v in places[k][1:]] for k in known]).reshape(-1, 2)
         middle, found = 0.5 * (a + b), []
         for c in active:
@@ -247,6 +261,7 @@ def select_along_road(chains: Sequence[StepChain], steps: CurbSteps,
             found.append((c, best + gain, (int(c), float(a), float(b), before)))
         for c, new_value, step in found:
             value[c], path[c] = new_value, step
+        continued = sorted({*continued, *active})
     last = path[int(np.argmax(value))] if len(chains) else None
     selected = []
     while last:

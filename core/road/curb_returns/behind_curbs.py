@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
+from .curb_lines import CurbLines
 from .steps import PlanSteps
 
 ROAD_WIDTH = 16.0     # m down from a step within which the first curb is looked for: two carriageways and a side street are no wider
@@ -13,22 +12,21 @@ PLACES = 5            # of a line from which it is looked for
 OWN_CURB = 0.3        # m within which the line itself, or a double of it, is met
 
 
-def lies_behind(line: PlanSteps, curbs: Sequence[tuple[np.ndarray, np.ndarray]]) -> bool:
+def lies_behind(line: PlanSteps, curbs: CurbLines) -> bool:
     """Does one who goes straight down from a line step off another curb before stepping up one?
 
     Parameters
     ----------
     line : N PlanSteps in order
-    curbs : (x, y) of curbs, local m, uphill on the right
+    curbs : CurbLines
 
     Returns
     -------
     whether that holds at most places that meet a curb at all
     """
-    segments = [np.c_[x[:-1], y[:-1], np.diff(x), np.diff(y)] for x, y in curbs if len(x) > 1]
-    if not segments:
+    ax, ay, sx, sy = curbs.segments_about(line.x, line.y, 2 * ROAD_WIDTH).T
+    if not len(ax):
         return False
-    ax, ay, sx, sy = np.concatenate(segments).T
     off = []
     for k in np.unique(np.linspace(0, len(line) - 1, PLACES).round().astype(int)):
         rx, ry = -line.nx[k], -line.ny[k]

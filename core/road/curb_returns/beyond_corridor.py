@@ -106,7 +106,7 @@ def with_curbs_beyond(curbs: Sequence[CurbReturn], decimation: PointDecimation, 
     if not any(number < 0 for number in survey.store.numbers()):
         return list(curbs)
     line, more = survey.frame.road(road), []
-    met = KnownPlaces(np.concatenate([known.places] + [np.c_[curb.steps.x, curb.steps.y] for curb in curbs]))
+    met = known.and_places(*(np.concatenate([np.empty(0), *(getattr(curb.steps, axis) for curb in curbs)]) for axis in "xy"))
     for curb in curbs:
         if curb.closed or curb.kind not in BEYOND_KINDS:
             continue
@@ -312,5 +312,5 @@ def _distinct(found, met):
         if np.mean(met.within(x, y, KNOWN_CURB_DISTANCE)) > 0.5:
             continue
         chosen.append(curb)
-        met = KnownPlaces(np.concatenate([met.places, np.c_[x, y]]))
+        met = met.and_places(x, y)
     return chosen

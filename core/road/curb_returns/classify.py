@@ -15,6 +15,7 @@ from ..common.curb_limits import MIN_FAINT_LENGTH
 from ..common.sides import SIDE_SIGNS
 from ..common.tracking import MAX_CHAIN_SCATTER, MAX_JOINED_GAP, MAX_ROAD_ROUGHNESS, MIN_CURB_LENGTH
 from .behind_curbs import lies_behind
+from .curb_lines import CurbLines
 from .free_corners import is_free_corner
 from .main_curbs import OPENING_MARGIN
 from .steps import PlanSteps
@@ -125,9 +126,11 @@ def classify_curbs(chains: Sequence[PlanStepChain], steps: PlanSteps, falls: np.
     """
     if not chains:
         return []
-    alone = {k: curb for k, chain in enumerate(chains) if (curb := _own_curb(chain, steps, falls, line, limits, passes, elsewhere)) is not None}
+    others = CurbLines(elsewhere)
+    alone = {k: curb for k, chain in enumerate(chains) if (curb := _own_curb(chain, steps, falls, line, limits, passes, others)) is not None}
     runs = [*runs, *((curb.side, (curb.steps.x, curb.steps.y, curb.steps.h)) for curb in alone.values())]
     chains = [chain for k, chain in enumerate(chains) if k not in alone]
+    main_ends, lines = CurbLines([(x, y) for _, (x, y, _) in runs]), _LinesOfSteps([steps[chain.steps] for chain in chains])
     places = [place for _, place in runs] + [(steps.x[c.steps], steps.y[c.steps], steps.h[c.steps]) for c in chains]
     group = group_lines(places)
     sides: dict[int, str] = {}
@@ -138,21 +141,22 @@ def classify_curbs(chains: Sequence[PlanStepChain], steps: PlanSteps, falls: np.
         own = steps[chain.steps]
         s, d = line.locate(own.x, own.y)
         if not chain.closed and number in sides:
-            found += classify_continuation(own, s, d, sides[number], line, limits[sides[number]], places[:len(runs)])
+            found += classify_continuation(own, s, d, sides[number], line, limits[sides[number]], main_ends)
             continue
         behind = np.any([limit.behind(s, d) for limit in limits.values()], axis=0)
         side = _side(s, d, passes)
         if np.mean(np.isfinite(falls[chain.steps]) & ~behind) >= MIN_ISLAND_SHARE:
             islands.append((CurbReturn(own, s, d, side, "island", chain.closed), falls[chain.steps]))
-        elif _may_be_side_street(own, s, line, behind, [steps[c.steps] for c in chains]):
+        elif _may_be_side_street(own, s, line, behind, lines):
             # a side street whose corner is hidden
             straight = _straight_part(own)
             found.append(CurbReturn(own[straight], s[straight], d[straight], side, "side_street"))
         elif np.mean(behind) <= MAX_BEHIND_SHARE:
             free.append(CurbReturn(own, s, d, side, "corner"))
     own_curbs = [(x, y) for _, (x, y, _) in runs] + [(curb.steps.x, curb.steps.y) for curb in found]
-    islands = [(curb, down) for curb, down in islands if not lies_behind(curb.steps, own_curbs)]
-    return found + [curb for curb in free if is_free_corner(curb.steps, own_curbs + list(elsewhere))] + _long_islands(island_outlines(islands))
+    before, beside = CurbLines(own_curbs), CurbLines([*own_curbs, *elsewhere])
+    islands = [(curb, down) for curb, down in islands if not lies_behind(curb.steps, before)]
+    return found + [curb for curb in free if is_free_corner(curb.steps, beside)] + _long_islands(island_outlines(islands))
 
 
 def _own_curb(chain, steps, falls, line, limits, passes, elsewhere):
@@ -164,15 +168,9 @@ def _own_curb(chain, steps, falls, line, limits, passes, elsewhere):
     out = SIDE_SIGNS[side] * (own.ny * np.cos(line.heading(s)) - own.nx * np.sin(line.heading(s)))
     if chain.closed or not free.any() or np.ptp(s[free]) < MIN_CURB_LENGTH or np.median(out) < MIN_PARALLEL_COSINE \
             or np.mean(np.isfinite(falls[chain.steps])) >= MIN_ISLAND_SHARE \
-            or elsewhere and _follows(own, elsewhere):
+            or elsewhere.lines and np.median(elsewhere.distances(own.x, own.y)) <= OUTLINE_MARGIN:
         return None
     return CurbReturn(own, s, d, side, "main")
-
-
-def _follows(own, lines):
-    """Does a line run along others?"""
-    others = shapely.multilinestrings([shapely.linestrings(x, y) for x, y in lines if len(x) > 1])
-    return bool(np.median(shapely.distance(shapely.points(own.x, own.y), others)) <= OUTLINE_MARGIN)
 
 
 def _side(s, d, passes):
@@ -195,7 +193,7 @@ def _straight_part(own):
 
 
 def classify_continuation(own: PlanSteps, s: np.ndarray, d: np.ndarray, side: str, line: Road, limit: SearchLimit,
-                          runs: Sequence[tuple[np.ndarray, np.ndarray, np.ndarray]]) -> list[CurbReturn]:
+                          runs: CurbLines) -> list[CurbReturn]:
     """A line that continues a main curb: a piece of that curb, or a corner with the straight curb of a side street behind it.
 
     Parameters
@@ -205,13 +203,12 @@ def classify_continuation(own: PlanSteps, s: np.ndarray, d: np.ndarray, side: st
     side : of the main curb
     line : Road
     limit : SearchLimit of that side
-    runs : main curbs in plan, (x, y, h), local m
+    runs : CurbLines, the main curbs
     """
     along = _road_cosine(own, s, line)
     if np.median(along) > MIN_ROAD_COSINE and not limit.between(np.nanmin(s) + MAIN_CURB_OVERLAP, np.nanmax(s) - MAIN_CURB_OVERLAP):
         return [CurbReturn(own, s, d, side, "main")]
-    tips = np.array([(run[0][k], run[1][k]) for run in runs for k in (0, -1)])
-    near = [np.hypot(*(tips - (own.x[k], own.y[k])).T).min() for k in (0, -1)]
+    near = runs.end_distances(own.x[[0, -1]], own.y[[0, -1]])
     # in order from the main curb outward
     order = np.arange(len(own)) if near[0] <= near[1] else np.arange(len(own))[::-1]
     cut = len(own) if max(near) <= MAX_JOINED_GAP else _where_straight(own, order, along)
@@ -219,10 +216,23 @@ def classify_continuation(own: PlanSteps, s: np.ndarray, d: np.ndarray, side: st
     return [CurbReturn(own[np.sort(part)], s[np.sort(part)], d[np.sort(part)], side, kind) for part, kind in parts if len(part) > 1]
 
 
+class _LinesOfSteps:
+    """Lines of PlanSteps, among which those near a place are looked up."""
+
+    def __init__(self, lines):
+        self.lines = lines
+        self.owner = np.repeat(np.arange(len(lines)), [len(own) for own in lines])
+        self.tree = cKDTree(np.concatenate([np.empty((0, 2)), *(np.c_[own.x, own.y] for own in lines)]))
+
+    def about(self, x, y, distance):
+        """Those with steps within a distance of a place."""
+        return [self.lines[k] for k in np.unique(self.owner[self.tree.query_ball_point((x, y), distance)])]
+
+
 def _has_opposite_curb(own, lines):
     """Is there another line along the opposite side of the street that this one bounds?"""
     k = len(own) // 2
-    for other in lines:
+    for other in lines.about(own.x[k], own.y[k], SIDE_STREET_WIDTHS[1] + MAX_OPPOSITE_SHIFT):
         dx, dy = other.x - own.x[k], other.y - own.y[k]
         out, aside = -(dx * own.nx[k] + dy * own.ny[k]), np.abs(dx * own.ny[k] - dy * own.nx[k])
         opposite = other.nx * own.nx[k] + other.ny * own.ny[k] < -0.7
@@ -268,11 +278,12 @@ def island_outlines(islands: Sequence[tuple[CurbReturn, np.ndarray]]) -> list[Cu
         k, j = np.nonzero(out < (falls - OUTLINE_MARGIN)[:, None])
         own = line.steps
         inner.append(np.c_[own.x[k] + out[j] * own.nx[k], own.y[k] + out[j] * own.ny[k]])
+    owner = np.repeat(np.arange(len(inner)), [len(places) for places in inner])
+    tree = cKDTree(np.concatenate([np.empty((0, 2)), *inner]))
     found = []
     for number, (line, _) in enumerate(islands):
-        others = np.concatenate([np.empty((0, 2))] + inner[:number] + inner[number + 1:])
-        away = cKDTree(others).query(np.c_[line.steps.x, line.steps.y])[0] if len(others) else np.full(len(line.steps), np.inf)
-        if np.mean(away <= INNER_DISTANCE) < MIN_ISLAND_SHARE:
+        near = tree.query_ball_point(np.c_[line.steps.x, line.steps.y], INNER_DISTANCE)
+        if np.mean([(owner[rows] != number).any() for rows in near]) < MIN_ISLAND_SHARE:
             found.append(line)
     return found
 
@@ -283,9 +294,11 @@ def _long_islands(lines):
         return []
     trees = [cKDTree(np.c_[line.steps.x, line.steps.y]) for line in lines]
     length = np.array([_length(line.steps.x, line.steps.y) for line in lines])
+    box = np.array([(*tree.mins, *tree.maxes) for tree in trees])
+    boxes, around = shapely.STRtree(shapely.box(*box.T)), shapely.box(*(box + np.array([-1, -1, 1, 1]) * MAX_ISLAND_GAP).T)
     long = []
     for k, line in enumerate(lines):
-        near = [j for j in range(len(lines)) if j == k or trees[k].count_neighbors(trees[j], MAX_ISLAND_GAP)]
+        near = [j for j in np.sort(boxes.query(around[k])).tolist() if j == k or trees[k].count_neighbors(trees[j], MAX_ISLAND_GAP)]
         if length[near].sum() >= MIN_ISLAND_LENGTH:
             long.append(line)
     return long

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...common.place_index import PlaceIndex
 from ...common.progress import Progress
 from ...execution.phase import Phase
 from ...survey.frame.road import CORRIDOR
@@ -132,7 +133,7 @@ def find_curb_returns(decimation: PointDecimation, road: int, main: Mapping[str,
     survey = decimation.survey
     limits = {side: SearchLimit(points, SIDE_SIGNS[side]) for side, points in main.items()}
     line = survey.frame.road(road)
-    known, barrier = KnownPlaces(places_along(line, main, MAX_JOINED_GAP)), places_along(line, main, MIN_OPENING_LENGTH).T
+    known, barrier = KnownPlaces(places_along(line, main, MAX_JOINED_GAP)), PlaceIndex(places_along(line, main, MIN_OPENING_LENGTH), CORRIDOR)
     runs = main_runs(main, line)
     tips = FollowedEnds.of([place for _, place in runs], np.full(len(runs), np.nan))
     phase = Phase(plan_steps_of_section, decimation, (road, limits, known, barrier, tips, settings, behind),
@@ -156,8 +157,8 @@ def _noisy_sections(sections, line, steps, scanner_noise, settings):
     noisy = scanner_noise > NOISY_RASTER_SHARE * settings.limits.clear_height
     if not settings.limits.automatic_height or not noisy.any():
         return []
-    number = np.floor(line.locate(steps.x[noisy], steps.y[noisy])[0] / settings.profile_width)
-    return [section for section in sections if ((number >= section[0]) & (number < section[1])).any()]
+    number = np.sort(np.floor(line.locate(steps.x[noisy], steps.y[noisy])[0] / settings.profile_width))
+    return [section for section in sections if np.searchsorted(number, section[0]) < np.searchsorted(number, section[1])]
 
 
 def _join_parts(parts):
@@ -170,7 +171,7 @@ def _join_parts(parts):
 
 
 def plan_steps_of_section(decimation: PointDecimation, section: tuple[int, int], road: int, limits: Mapping[str, SearchLimit],
-                          known: KnownPlaces, barrier: np.ndarray, tips: FollowedEnds, settings: CurbSettings, behind: np.ndarray,
+                          known: KnownPlaces, barrier: PlaceIndex, tips: FollowedEnds, settings: CurbSettings, behind: np.ndarray,
                           points_per_cell: int | None = POINTS_PER_LEVEL_CELL_IN_PLAN) -> tuple[PlanSteps, np.ndarray, np.ndarray] | None:
     """The phase of curb returns: steps in plan in one section of a road.
 
@@ -181,7 +182,7 @@ def plan_steps_of_section(decimation: PointDecimation, section: tuple[int, int],
     road : number of the road
     limits : side -> SearchLimit
     known : places of the main curbs
-    barrier : (2, M) local x and y of places that the driven ground does not go beyond
+    barrier : local places that the driven ground does not go beyond
     tips : ends of the main curbs
     settings : CurbSettings
     behind : (2, K) local x and y of places that are road although something stands between them and the track
@@ -214,7 +215,8 @@ def plan_steps_of_section(decimation: PointDecimation, section: tuple[int, int],
     track = _track(survey, road, first, last)
     clear = settings.limits.clear_height
     inside = [np.concatenate([v[inner], more]) for v, more in zip(place[:2], behind)]
-    driven, stepped = driven_ground(raster, slopes, track[0], track[1], inside, barrier[0], barrier[1], clear)
+    bounds = barrier.places[barrier.within(*raster.box)].T
+    driven, stepped = driven_ground(raster, slopes, track[0], track[1], inside, bounds[0], bounds[1], clear)
 
     def wanted(x, y, before_curbs=False):
         own, d = line.locate(x, y)
@@ -226,8 +228,7 @@ def plan_steps_of_section(decimation: PointDecimation, section: tuple[int, int],
         return fresh
 
     x, y, nx, ny = step_places(raster, slopes, driven, stepped, clear, settings.max_height, wanted)
-    at, _ = line.locate(tips.x, tips.y)
-    tips = tips[(at >= start) & (at < end)]
+    tips = tips[line.within(tips.x, tips.y, start, end)]
     if not len(x) and not len(tips):
         return None
     views = _averaged_views(raster, place, along, settings.layer_jump) if noisy else [raster]

@@ -2,30 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
+from .curb_lines import CurbLines
 from .steps import PlanSteps
 
 MAX_CROSSING_GAP = 8.0        # m of dropped curb between a corner and the curb that goes on
+END_MARGIN = 0.01             # m, more than distances are rounded by
 CORNER_RADII = (1.0, 25.0)    # m
 MIN_CORNER_ANGLE = np.radians(15.0)   # that the seen part of a corner must turn
 MAX_BEND_DEVIATION = 0.04     # m from its circle
 POINTING_TOLERANCE = np.radians(12.0)   # by which a corner and a curb end may miss each other, besides the turn of the gap between them
 
-Line = tuple[np.ndarray, np.ndarray]
 
-
-def is_free_corner(own: PlanSteps, curbs: Sequence[Line]) -> bool:
+def is_free_corner(own: PlanSteps, curbs: CurbLines) -> bool:
     """Does a line bend evenly about its uphill side, and point at the end of a curb both ways?
 
     Parameters
     ----------
     own : N PlanSteps in order
-    curbs : (x, y) of the other curbs, local m
+    curbs : CurbLines, the other curbs
     """
-    if len(own) < 4 or not curbs:
+    if len(own) < 4 or not curbs.lines:
         return False
     # the circle of least squares (Kåsa)
     mx, my = own.x.mean(), own.y.mean()
@@ -44,19 +42,9 @@ def is_free_corner(own: PlanSteps, curbs: Sequence[Line]) -> bool:
         tip = np.array([own.x[k], own.y[k]])
         # along the circle, out of the line
         direction = out * np.array([-np.sin(about[k]), np.cos(about[k])])
-        if not any(_points_at(tip, direction, np.array(end), radius, out) for curb in curbs for end in _ends(*curb)):
+        if not any(_points_at(tip, direction, end, radius, out) for end in curbs.ends_about(tip, MAX_CROSSING_GAP + END_MARGIN)):
             return False
     return True
-
-
-def _ends(x, y):
-    """(x, y, direction out of the line) of both ends; their last metre gives the direction."""
-    for at, order in ((0, 1), (-1, -1)):
-        away = np.hypot(x - x[at], y - y[at])[::order]
-        k = int(np.argmax(away >= 1.0)) or len(x) - 1
-        back = np.array([x[::order][k], y[::order][k]])
-        out = np.array([x[at], y[at]]) - back
-        yield x[at], y[at], *(out / max(np.hypot(*out), 1e-9))
 
 
 def _points_at(tip, direction, end, radius, way):

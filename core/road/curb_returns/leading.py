@@ -15,6 +15,7 @@ from ...execution.phase import Phase
 from ..common.decimation import PointDecimation
 from ..common.sides import MAX_LOOK_ALONG, ahead_of_vehicle, expected_height
 from .classify import MIN_RETURN_STEPS, CurbReturn, classify_continuation
+from .curb_lines import CurbLines
 from .faint import LED_LENGTH, LED_STEP, MAX_LAYER_HEIGHT, MAX_LED_LENGTH, led_on
 from .following import FollowedEnds
 from .ground.raster import averaged, ground_raster
@@ -56,12 +57,13 @@ def with_led_on(curbs: Sequence[CurbReturn], runs: Sequence[tuple], decimation: 
     line, free = survey.frame.road(road), [curb for curb in curbs if curb.kind in LED_KINDS and not curb.closed]
     lines = [place for _, place in runs] + [(curb.steps.x, curb.steps.y, curb.steps.h) for curb in free]
     ends, owner = FollowedEnds.with_lines(lines)
-    met = type(known)(np.concatenate([known.places] + [np.c_[curb.steps.x, curb.steps.y] for curb in curbs]))
+    met = known.and_places(*(np.concatenate([np.empty(0), *(getattr(curb.steps, axis) for curb in curbs)]) for axis in "xy"))
     open_ones = np.flatnonzero(~met.within(ends.x + LEAVING_LENGTH * ends.tx, ends.y + LEAVING_LENGTH * ends.ty, 0.5 * LEAVING_LENGTH))
     ends, owner = ends[open_ones], owner[open_ones]
     phase = Phase(led_steps_of_section, decimation, (road, ends, settings), lambda section: survey.stretch(road, *(k * width for k in section)),
                   lambda section: survey.store.points_between(road, *(k * width for k in section)), join_led)
     more: list[CurbReturn] = []
+    main_ends = CurbLines([(x, y) for _, (x, y, _) in runs])
     extended = {id(curb): curb for curb in curbs}
     for number, own in join_led(list(decimation.executor.run(phase, sections, progress))):
         # inside a tight bend a place may have no station
@@ -70,11 +72,11 @@ def with_led_on(curbs: Sequence[CurbReturn], runs: Sequence[tuple], decimation: 
         if len(own) < MIN_RETURN_STEPS:
             continue
         # from the other end of a gap only the rest is led on
-        met = type(met)(np.concatenate([met.places, np.c_[own.x, own.y]]))
+        met = met.and_places(own.x, own.y)
         own = own[::-1] if at_head else own
         s, d = line.locate(own.x, own.y)
         if k < len(runs):
-            more += classify_continuation(own, s, d, runs[k][0], line, limits[runs[k][0]], [place for _, place in runs])
+            more += classify_continuation(own, s, d, runs[k][0], line, limits[runs[k][0]], main_ends)
         else:
             curb = free[k - len(runs)]
             extended[id(curb)] = _joined(extended[id(curb)], CurbReturn(own, s, d, curb.side, curb.kind), at_head)

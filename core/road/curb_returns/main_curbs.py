@@ -50,15 +50,15 @@ class SearchLimit:
         self.sign = sign
         self.s, self.u, self.seen = points[:, 0], sign * points[:, 1], points[points[:, 3] > 0, 0]
         cuts = np.flatnonzero(np.diff(self.s) > MIN_OPENING_LENGTH) + 1
-        self.runs = [(part[0], part[-1]) for part in np.split(self.s, cuts) if len(part)]
+        # where runs of curb begin and end, both ascending: which of them is near a place is looked up
+        self.begins, self.ends = (np.array([part[k] for part in np.split(self.s, cuts) if len(part)], float) for k in (0, -1))
 
     def __call__(self, s: np.ndarray, behind: float = SEARCH_BEHIND_CURB, at_opening: float = OPENING_MARGIN) -> np.ndarray:
         """(N,) m, largest outward offset at (N,) stations: `behind` metres behind the curb, except for its last metres beside openings."""
         if not len(self.s):
             return np.full(len(s), CORRIDOR)
-        bounded = np.zeros(len(s), bool)
-        for a, b in self.runs:
-            bounded |= (s > a + at_opening) & (s < b - at_opening)
+        k = np.searchsorted(self.begins + at_opening, s) - 1
+        bounded = (k >= 0) & (s < self.ends[k] - at_opening)
         return np.where(bounded, np.interp(s, self.s, self.u) + behind, CORRIDOR)
 
     def outward(self, s: np.ndarray, d: np.ndarray) -> np.ndarray:
@@ -71,18 +71,21 @@ class SearchLimit:
         A side street leaves at 45° or more: what lies as far out from the curb as its end is away may belong to one.
         """
         out = self.outward(s, d)
-        end = np.zeros(len(s))
-        for a, b in self.runs:
-            end = np.maximum(end, np.minimum(s - a, b - s))
-        return (out > 0.0) & (out < end)
+        if not len(self.begins):
+            return np.zeros(len(s), bool)
+        k = np.searchsorted(self.begins, s, side="right") - 1
+        return (out > 0.0) & (k >= 0) & (out < np.minimum(s - self.begins[k], self.ends[k] - s))
 
     def far_from(self, s: np.ndarray, distance: float) -> np.ndarray:
         """(N,) bool, is no main curb known within a distance along the road of (N,) stations?"""
-        return np.all([(s < a - distance) | (s > b + distance) for a, b in self.runs] or [np.ones(len(s), bool)], axis=0)
+        if not len(self.begins):
+            return np.ones(len(s), bool)
+        k = np.searchsorted(self.begins - distance, s, side="right") - 1
+        return (k < 0) | (s > self.ends[k] + distance)
 
     def between(self, start: float, end: float) -> bool:
         """Was a point of main curb measured between two stations?"""
-        return bool(((self.seen > start) & (self.seen < end)).any())
+        return bool(np.searchsorted(self.seen, start, side="right") < np.searchsorted(self.seen, end))
 
 
 def places_along(line: Road, main: Mapping[str, np.ndarray], gap: float) -> np.ndarray:
@@ -122,18 +125,28 @@ class KnownPlaces:
     """
 
     def __init__(self, places: np.ndarray):
-        self.places = places
-        self._tree = cKDTree(places)
+        self._trees = [cKDTree(places)]
 
     def __getstate__(self) -> dict:
-        return dict(places=self.places)
+        return dict(places=np.concatenate([tree.data for tree in self._trees]))
 
     def __setstate__(self, state: dict) -> None:
         KnownPlaces.__init__(self, **state)
 
+    def and_places(self, x: np.ndarray, y: np.ndarray) -> KnownPlaces:
+        """These and (N,) further places; what is known of these is not made anew for every few that come."""
+        found = KnownPlaces(np.c_[x, y])
+        found._trees = self._trees + found._trees
+        # trees of like size are joined, so that a place is put into few of them, and few are asked
+        while len(found._trees) > 1 and 2 * found._trees[-1].n >= found._trees[-2].n:
+            found._trees[-2:] = [cKDTree(np.concatenate([tree.data for tree in found._trees[-2:]]))]
+        return found
+
     def within(self, x: np.ndarray, y: np.ndarray, distance: float) -> np.ndarray:
         """(N,) bool, is one of the places within a distance of (N,) local places?"""
-        if not self._tree.n or not len(x):
-            return np.zeros(len(x), bool)
-        # the tree finds what is nearer than its bound
-        return self._tree.query(np.c_[x, y], distance_upper_bound=np.nextafter(distance, np.inf))[0] <= distance
+        there = np.zeros(len(x), bool)
+        for tree in self._trees if len(x) else ():
+            if tree.n:
+                # the tree finds what is nearer than its bound
+                there |= tree.query(np.c_[x, y], distance_upper_bound=np.nextafter(distance, np.inf))[0] <= distance
+        return there

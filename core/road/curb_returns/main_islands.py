@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import cKDTree
 
+from ...common.runs import stretch_of
 from ..common.curb_points import CurbPoints
 from ..common.hidden_curb import MAX_HIDDEN_GAP
 from ..common.occlusion import OCCLUSION_CELL, OcclusionGrid
@@ -51,13 +52,13 @@ def on_main_islands(points: CurbPoints, survey: Survey,
     across = np.arange(0.0, MIN_ROAD_BEHIND, PLAN_CELL)
     for road, sides in (beside or {}).items():
         for side, sign in SIDE_SIGNS.items():
-            whole = (points.road == road) & (points.side == side)
-            own = np.flatnonzero(whole & (points.part == "bottom") & (points.status == "measured"))
-            own = own[np.argsort(points.station[own], kind="stable")]
-            s = points.station[own]
+            whole = np.flatnonzero((points.road == road) & (points.side == side))
+            whole = whole[np.argsort(points.station[whole], kind="stable")]
+            own = whole[(points.part[whole] == "bottom") & (points.status[whole] == "measured")]
+            s, of_whole = points.station[own], points.station[whole]
             heights = points.z[own] - expected_height(survey, road, s), points.height[own]
             for part, away in island_stretches(s, sign * points.offset[own], *heights, sides[side]):
-                found |= whole & (points.station >= s[part][0]) & (points.station <= s[part][-1])
+                found[whole[stretch_of(of_whole, s[part][0], s[part][-1])]] = True
                 down = np.flatnonzero(np.isfinite(away))
                 d = points.offset[own][part][down] + sign * (away[down] + across[:, None])
                 behind[road].append(np.array(survey.frame.road(road).to_map(np.broadcast_to(s[part][down], d.shape).ravel(), d.ravel())))

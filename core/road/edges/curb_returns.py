@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from scipy.interpolate import Akima1DInterpolator
+from scipy.spatial import cKDTree
 
 from ...survey.frame.placement import COORDINATE_DECIMALS
 from ...survey.frame.road_frame import RoadFrame
@@ -61,10 +62,11 @@ def draw_curb_returns(edges: list[EdgePiece], road: int, lines: list[tuple[CurbP
     The next free line number
     """
     ends = _main_ends(edges, road)
+    tree = cKDTree(ends[:, :2])
     for points, places in lines:
         kind = points.kind[0]
         closed = kind == "island" and np.hypot(*(places[0, :2] - places[-1, :2])) <= SAME_PLACE_DISTANCE
-        first, last = (None, None) if kind == "island" else (_nearest(ends, places[k]) for k in (0, -1))
+        first, last = (None, None) if kind == "island" else (_nearest(ends, tree, places[k]) for k in (0, -1))
         if first is not None and last is not None and np.array_equal(first, last):
             near = np.hypot(*(first[:2] - places[0, :2])) <= np.hypot(*(first[:2] - places[-1, :2]))
             first, last = (first, None) if near else (None, last)
@@ -163,14 +165,10 @@ def _main_ends(edges, road):
     if not ends:
         return np.empty((0, 3))
     ends = np.array(ends)
-    apart = np.hypot(*(ends[:, None, :2] - ends[None, :, :2]).transpose(2, 0, 1))
-    return ends[(apart <= SAME_PLACE_DISTANCE).sum(1) == 1]
+    return ends[cKDTree(ends[:, :2]).query_ball_point(ends[:, :2], SAME_PLACE_DISTANCE, return_length=True) == 1]
 
 
-def _nearest(ends, place):
-    """The end within MAX_JOINED_GAP of a place, None where there is none."""
-    if not len(ends):
-        return None
-    distance = np.hypot(*(ends[:, :2] - place[:2]).T)
-    k = int(np.argmin(distance))
-    return ends[k] if distance[k] <= MAX_JOINED_GAP else None
+def _nearest(ends, tree, place):
+    """The end within MAX_JOINED_GAP of a place, None where there is none; `tree` : cKDTree of the ends in plan."""
+    distance, k = tree.query(place[:2])
+    return ends[k] if distance <= MAX_JOINED_GAP else None

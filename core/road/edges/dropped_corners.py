@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from ...survey.frame.placement import COORDINATE_DECIMALS
 from ...survey.frame.road_frame import RoadFrame
@@ -52,12 +53,14 @@ def dropped_corners(pieces: Sequence[EdgePiece], frame: RoadFrame, number: int) 
     lines = [(piece, _uphill_right(piece)) for piece in pieces if piece.kind != "island" and piece.status != "inferred" and piece.part == "bottom"]
     tails, heads = ([_end(piece, line[::step]) for piece, line in lines] for step in (1, -1))
     places = np.array([end.place[:2] for end in tails + heads]).reshape(-1, 2)
-    free = [(np.hypot(*(places - place).T) <= MEETING_DISTANCE).sum() == 1 for place in places]
+    free = cKDTree(places).query_ball_point(places, MEETING_DISTANCE, return_length=True) == 1
+    begin, end = np.flatnonzero(free[:len(tails)]), np.flatnonzero(free[len(tails):])
+    near = cKDTree(places[begin]).query_ball_tree(cKDTree(places[len(tails) + end]), MAX_DROPPED_GAP + MEETING_DISTANCE)
     found = []
-    for i, tail in enumerate(tails):
-        for j, head in enumerate(heads):
-            if i != j and free[i] and free[len(tails) + j] and _is_corner(tail, head):
-                found.append((float(np.hypot(*(head.place - tail.place)[:2])), i, j))
+    for i, ahead in zip(begin.tolist(), near):
+        for j in end[ahead].tolist():
+            if i != j and _is_corner(tails[i], heads[j]):
+                found.append((float(np.hypot(*(heads[j].place - tails[i].place)[:2])), i, j))
     arcs: list[EdgePiece] = []
     used: set[tuple[str, int]] = set()
     for _, i, j in sorted(found):

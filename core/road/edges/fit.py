@@ -10,6 +10,7 @@ from scipy.ndimage import median_filter
 
 from ...common.parallel import check_cancelled
 from ...common.progress import Progress
+from ...common.runs import stretch_of
 from ...common.setting import check_limits, setting
 from ...curves.robust import MAD_TO_SIGMA
 from ...survey.frame.road_frame import RoadFrame
@@ -73,17 +74,19 @@ def fit_road_edges(curb_points: CurbPoints, frame: RoadFrame, settings: EdgeSett
     """
     found: list[EdgePiece] = []
     table, returns = _table(curb_points, frame), curb_return_lines(curb_points, frame)
-    lines = 0
+    lines, of_table = 0, np.ascontiguousarray(table["road"])
     for road in frame.roads:
+        of_road: list[EdgePiece] = []
+        own = table[stretch_of(of_table, road.number, road.number)]
         for side in ("left", "right"):
-            rows = table[(table["road"] == road.number) & (table["side"] == side)]
             drawn = []
-            for piece in _pieces(rows, settings.max_gap):
-                drawn.append(_draw(found, road, side, piece, lines, frame.pass_sigma.get(road.number, 0.0)))
+            for piece in _pieces(own[own["side"] == side], settings.max_gap):
+                drawn.append(_draw(of_road, road, side, piece, lines, frame.pass_sigma.get(road.number, 0.0)))
                 lines += 1
             if settings.fallback_width:
-                lines = _draw_fallback(found, frame, road, side, drawn, settings.fallback_width, lines)
-        lines = draw_curb_returns(found, road.number, returns.get(road.number, []), lines, frame.pass_sigma.get(road.number, 0.0))
+                lines = _draw_fallback(of_road, frame, road, side, drawn, settings.fallback_width, lines)
+        lines = draw_curb_returns(of_road, road.number, returns.get(road.number, []), lines, frame.pass_sigma.get(road.number, 0.0))
+        found += of_road
     found += dropped_corners(found, frame, lines)
     edges = joined_pieces(found, frame, curb_points.crs)
     length = {status: edges.length[edges.status == status].sum() for status in ("measured", "bridged")}
@@ -123,8 +126,9 @@ def _pieces(rows, max_gap):
     bridged = (gap > MAX_JOINED_GAP) & (gap <= IN_LINE_GAP_FACTOR * max_gap) & (covered >= HIDDEN_CURB_SHARE * (gap - GAP_END_ALLOWANCE)) \
         & (across <= MAX_EDGE_JUMP + 0.1 * gap)
     # the longer a gap is, the better both parts must show the direction of one line
+    s = np.ascontiguousarray(points["s"])
     bridged[[k for k in np.flatnonzero(bridged & (gap > max_gap))
-             if _turn_between(points, k) > IN_LINE_TURN * IN_LINE_GAP_FACTOR * max_gap / gap[k]]] = False
+             if _turn_between(points, s, k) > IN_LINE_TURN * IN_LINE_GAP_FACTOR * max_gap / gap[k]]] = False
     breaks = np.flatnonzero(~(joined | bridged)) + 1
     pieces = []
     for part, flags in zip(np.split(points, breaks), np.split(np.r_[bridged, False], breaks)):
@@ -133,15 +137,15 @@ def _pieces(rows, max_gap):
     return pieces
 
 
-def _turn_between(points, k):
+def _turn_between(points, s, k):
     """Radians that the curb on both sides of a gap, which begins at point k, turns off one even bend, on the map or as seen from the road.
 
     Where a bend begins or ends behind a row of parked cars no even bend leads through both sides; the road itself bends there alike.
     A bay is only as long as the cars in it: its curb turns aside next to the gap, and the last metres tell where it leads.
     """
-    s, turns = points["s"], [np.inf]
+    turns = [np.inf]
     for reach in (LINE_FIT_LENGTH, MIN_BEND_LENGTH):
-        parts = points[(s >= s[k] - reach) & (s <= s[k])], points[(s >= s[k + 1]) & (s <= s[k + 1] + reach)]
+        parts = points[stretch_of(s, s[k] - reach, s[k])], points[stretch_of(s, s[k + 1], s[k + 1] + reach)]
         if reach == LINE_FIT_LENGTH and max(np.ptp(part["s"]) for part in parts) < MIN_BEND_LENGTH:
             break
         turns += [GapLine(*(np.array([part[axis] for axis in axes]) for part in parts), max_degree=2).miss / reach for axes in ("xy", "sd")]
@@ -160,8 +164,8 @@ def without_outliers(points: np.ndarray) -> np.ndarray:
     (K,) of the same type
     """
     inliers = np.ones(len(points), bool)
-    for chain in np.unique(points["chain"]):
-        rows = np.flatnonzero(points["chain"] == chain)
+    order = np.argsort(points["chain"], kind="stable")
+    for rows in np.split(order, np.flatnonzero(np.diff(points["chain"][order])) + 1):
         if len(rows) < 5:
             continue
         s, d = points["s"][rows], points["d"][rows]

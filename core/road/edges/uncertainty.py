@@ -57,9 +57,11 @@ def edge_sigma(at: np.ndarray, places: np.ndarray, residual: np.ndarray, support
     float, m
     """
     first, last = np.searchsorted(places, at - SCATTER_REACH), np.searchsorted(places, at + SCATTER_REACH, side="right")
-    few = np.zeros(len(places)) if support is None else np.where(support > 0, 1.0 / np.maximum(support, 1), 0.0)
-    scatter, spacing = (np.diff(np.append(0.0, np.cumsum(each))[[first, last]], axis=0)[0] / np.maximum(last - first, 1)
-                        for each in (np.square(residual), few))
+    # of a line as long as the road, only the points about the piece
+    near = slice(int(first.min()), int(last.max()))
+    few = np.zeros(near.stop - near.start) if support is None else np.where(support[near] > 0, 1.0 / np.maximum(support[near], 1), 0.0)
+    scatter, spacing = (np.diff(np.append(0.0, np.cumsum(each))[[first - near.start, last - near.start]], axis=0)[0] / np.maximum(last - first, 1)
+                        for each in (np.square(residual[near]), few))
     k = np.clip(np.searchsorted(places, at), 1, len(places) - 1)
     gap = np.clip(np.minimum(at - places[k - 1], places[k] - at), 0.0, None)
     end = np.clip(np.minimum(at - places[0], places[-1] - at), 0.0, None)

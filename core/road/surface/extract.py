@@ -22,7 +22,7 @@ from .limits import edge_offsets, rows_with_edge
 from .measured_ground import WINDOW_ROWS, MeasuredGround
 from .openings import cells_driven, opened_limits, street_ground
 from .outline import outlines
-from .pavement_edge import GrownLimit, SurfaceProfiles, grown_limit
+from .pavement_edge import GrownLimit, grown_limit
 from .point_spacing import Margins, said_of_thin
 from .region_growing import follow_road, smooth_road
 from .road_points import surface_about, surface_points
@@ -171,8 +171,8 @@ def find_carriageway(survey: Survey, road: int, edges: RoadEdges | None, setting
     for side, sign, track in (("left", 1.0, tracks.max(axis=0)), ("right", -1.0, tracks.min(axis=0))):
         offset, known = measured[side]
         closed[side] = np.isfinite(offset) & ~known
-        if np.isnan(offset).any():
-            grown[side] = grown_limit(SurfaceProfiles.joined(profiles), cells, height - prior[:, None], sign, track, settings.max_width)
+        if profiles is not None and np.isnan(offset).any():
+            grown[side] = grown_limit(profiles, cells, height - prior[:, None], sign, track, settings.max_width)
             offset = np.where(np.isnan(offset), grown[side].offset - sign * GROWN_INSET, offset)
         limits[side] = offset, known
     limits = _with_mouths(limits, closed, tracks, cells, followed.ground, cells_driven(survey.frame, road, cells), settings.max_width)

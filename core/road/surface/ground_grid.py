@@ -6,7 +6,7 @@ Parked cars, branches and signs lie above the lowest layer. The cells are the in
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -54,14 +54,6 @@ class GroundCells:
     scatter: np.ndarray
     count: np.ndarray
 
-    NAMES = ("height", "rough", "brightness", "scatter", "count")
-
-    @classmethod
-    def joined(cls, parts: Sequence[GroundCells]) -> GroundCells:
-        """The cells of consecutive windows as one grid."""
-        return cls(parts[0].first_row, parts[0].first_column, parts[0].row_size, parts[0].column_size,
-                   *(np.concatenate([getattr(part, name) for part in parts]) for name in cls.NAMES))
-
     @property
     def stations(self) -> np.ndarray:
         """(R,) m, stations of the middles of the rows."""
@@ -94,6 +86,11 @@ def known_median(values: np.ndarray, axis: int) -> np.ndarray:
     return np.squeeze(0.5 * (low + high), axis)
 
 
+def ground_columns(reach: float, column_size: float) -> int:
+    """Columns of ground cells on either side of the reference line, as far as it is looked at, m."""
+    return int(np.ceil(reach / column_size))
+
+
 def ground_cells(points: Points, first_row: int, rows: int, reach: float, road_height: Callable[[np.ndarray], np.ndarray],
                  row_size: float = ROW_LENGTH, column_size: float = COLUMN_WIDTH,
                  bright: Callable[[Points], np.ndarray] | None = None) -> GroundCells:
@@ -112,7 +109,7 @@ def ground_cells(points: Points, first_row: int, rows: int, reach: float, road_h
     -------
     GroundCells
     """
-    half = int(np.ceil(reach / column_size))
+    half = ground_columns(reach, column_size)
     columns = 2 * half
     prior = road_height((first_row + np.arange(rows) + 0.5) * row_size)
     index, cell = _near_ground(points.records, first_row, rows, half, prior, row_size, column_size)

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...common.runs import stretch_of
+
 if TYPE_CHECKING:
     from ..edges.road_edges import RoadEdges
 
@@ -33,17 +35,18 @@ def edge_offsets(edges: RoadEdges | None, road: int, stations: np.ndarray) -> di
         offset = np.full(len(stations), np.nan)
         measured = np.zeros(len(stations), bool)
         for s, d, status in () if edges is None else _lines_of(edges, road, side, edges.of_curb):
-            inside = (stations >= s[0]) & (stations <= s[-1])
-            here = np.interp(stations, s, d)
+            beside = stretch_of(stations, s[0], s[-1])
+            here = np.interp(stations[beside], s, d)
             # of two parallel lines the outer one is the limit of the road
-            take = inside & ~(sign * offset > sign * here)
-            offset[take] = here[take]
-            measured[take] = status != "inferred"
+            take = ~(sign * offset[beside] > sign * here)
+            offset[beside][take] = here[take]
+            measured[beside][take] = status != "inferred"
         offset = _continued(stations, offset)
         for s, d, _ in () if edges is None else _lines_of(edges, road, side, ~edges.of_curb):
-            take = np.isnan(offset) & (stations >= s[0]) & (stations <= s[-1])
-            offset[take] = np.interp(stations[take], s, d)
-            measured[take] = True
+            beside = stretch_of(stations, s[0], s[-1])
+            take = np.isnan(offset[beside])
+            offset[beside][take] = np.interp(stations[beside][take], s, d)
+            measured[beside][take] = True
         found[side] = offset, measured
     return found
 
@@ -54,7 +57,7 @@ def rows_with_edge(edges: RoadEdges | None, road: int, stations: np.ndarray, cur
     for side in ("left", "right"):
         found[side] = np.zeros(len(stations), bool)
         for s, _, _ in () if edges is None else _lines_of(edges, road, side, edges.of_curb == curb):
-            found[side] |= (stations >= s[0]) & (stations <= s[-1])
+            found[side][stretch_of(stations, s[0], s[-1])] = True
     return found
 
 

@@ -6,7 +6,7 @@ are our own.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -73,12 +73,6 @@ class SurfaceProfiles:
         above = cells.height - road_height(cells.stations)[:, None]
         return cls(cells.stations, cells.offsets, *(v.astype(np.float32) for v in (above, cells.rough, cells.brightness, cells.scatter, cells.count)))
 
-    @classmethod
-    def joined(cls, parts: Sequence[SurfaceProfiles]) -> SurfaceProfiles:
-        """The rows of several windows."""
-        return cls(np.concatenate([part.stations for part in parts]), parts[0].offsets,
-                   *(np.concatenate([getattr(part, name) for part in parts]) for name in cls.NAMES))
-
     def side(self, sign: int | float) -> SurfaceProfiles:
         """The cells of one side, 1 left or -1 right, outward from the reference line; offsets count outward."""
         u = sign * self.offsets
@@ -136,7 +130,8 @@ def grown_limit(profiles: SurfaceProfiles, cells: GroundCells, above: np.ndarray
     """
     stations = cells.stations
     nowhere = np.zeros(len(stations), bool)
-    rows = replace(profiles, height=profiles.height - _at(above, cells, profiles.stations, profiles.offsets)).side(sign)
+    rows = profiles.side(sign)
+    rows = replace(rows, height=rows.height - _at(above, cells, rows.stations, sign * rows.offsets))
     pooled = rows.pooled()
     beside = sign * np.interp(pooled.stations, stations, track)
     halves = HalfProfiles(pooled.offsets, pooled.height, pooled.rough)

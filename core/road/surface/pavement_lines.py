@@ -6,6 +6,7 @@ Where nothing tells the pavement from what lies beside it, there is no line, nor
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,7 +14,9 @@ import shapely
 from scipy.interpolate import splev, splrep
 from scipy.ndimage import uniform_filter1d
 
+from ...common.parallel import check_cancelled
 from ...common.progress import Progress
+from ...common.runs import stretch_of
 from ..common.in_line import GapLine
 from ..edges.fit import EDGE_VERTEX_SPACING, IN_LINE_GAP_FACTOR, MAX_EDGE_JUMP, MIN_HIDDEN_SHARE, EdgeSettings
 from ..edges.road_edges import EdgePiece, RoadEdges
@@ -84,35 +87,51 @@ def pavement_pieces(frame: RoadFrame, road: int, carriageway: Carriageway, edges
     stations = carriageway.cells.stations
     there = np.isfinite(carriageway.left) & np.isfinite(carriageway.right)
     curbs = edge_offsets(edges, road, stations)
-    barrier = shapely.union_all(edges.map_lines(frame)[edges.of_curb & (edges.status == "measured")])
+    curb_lines = shapely.STRtree(shapely.force_2d(edges.map_lines(frame)[edges.of_curb & (edges.status == "measured")]))
     for side, grown in carriageway.grown.items():
         curb = curbs[side][0]
         free = there & np.isnan(curb)
         # beside a curb that goes on from it the edge is shown, too
         shown = grown.shown & (free | there & (np.abs(np.nan_to_num(curb, nan=np.inf) - grown.offset) <= MAX_ROW_JUMP))
         agreeing = uniform_filter1d(shown.astype(float), int(AGREEING_LENGTH / ROW_LENGTH) | 1, mode="constant") > 0.5
-        places, crossed = np.array(frame.to_map(road, stations, grown.offset)), np.empty(0)
+        places, rows = np.array(frame.to_map(road, stations, grown.offset)), free
+        known: dict[tuple[tuple[int, int], ...], tuple[list[EdgePiece], np.ndarray]] = {}   # lines drawn so far, and where they cross curbs
         while True:
-            # whatever was taken for an edge that crosses a curb, it is seen in averages of that length
-            rows = free & (np.abs(stations[:, None] - crossed) > AGREEING_LENGTH).all(axis=1)
             likely = rows & grown.likely
-            drawn: list[EdgePiece] = []
-            for runs in _lines(rows & agreeing, likely, likely | rows & grown.hidden, grown.offset, places, max_gap):
-                drawn += _drawn(frame, road, side, carriageway, grown, runs, chain + len(found) + len(drawn))
-            more = np.concatenate([_crossings(piece, barrier) for piece in drawn] or [np.empty(0)])
-            if not (rows & (np.abs(stations[:, None] - more) <= AGREEING_LENGTH).any(axis=1)).any():
+            lines = [tuple(runs) for runs in _lines(rows & agreeing, likely, likely | rows & grown.hidden, grown.offset, places, max_gap)]
+            for runs in lines:
+                if runs not in known:
+                    check_cancelled()
+                    pieces = _drawn(frame, road, side, carriageway, grown, runs)
+                    known[runs] = pieces, np.concatenate([_crossings(piece, curb_lines) for piece in pieces])
+            # whatever was taken for an edge that crosses a curb, it is seen in averages of that length
+            more = np.concatenate([np.empty(0), *(known[runs][1] for runs in lines)])
+            taken = rows & (_distance(stations, more) <= AGREEING_LENGTH)
+            if not taken.any():
                 break
-            crossed = np.append(crossed, more)
-        found += drawn
+            rows = rows & ~taken
+        for runs in lines:
+            number = chain + len(found)
+            found += [replace(piece, chain=number) for piece in known[runs][0]]
     return found
 
 
-def _crossings(piece, barrier):
-    """(K,) stations at which a measured piece crosses lines, not those at which it ends at one."""
+def _distance(places, others):
+    """(N,) m from each of (N,) places to the nearest of others, infinite where there are none."""
+    around = np.r_[-np.inf, np.sort(others), np.inf]
+    after = np.searchsorted(around, places)
+    return np.minimum(places - around[after - 1], around[after] - places)
+
+
+def _crossings(piece, curb_lines):
+    """(K,) stations at which a measured piece crosses lines of a STRtree, not those at which it ends at one."""
+    if piece.status != "measured":
+        return np.empty(0)
     line = shapely.linestrings(piece.vertices[:, :2])
-    points = shapely.points(shapely.get_coordinates(shapely.intersection(line, shapely.force_2d(barrier))))
+    met = shapely.union_all(curb_lines.geometries[np.sort(curb_lines.query(line, predicate="intersects"))])
+    points = shapely.points(shapely.get_coordinates(shapely.intersection(line, met)))
     along = shapely.line_locate_point(line, points)
-    inside = (along > MEETING_LENGTH) & (along < line.length - MEETING_LENGTH) & (piece.status == "measured")
+    inside = (along > MEETING_LENGTH) & (along < line.length - MEETING_LENGTH)
     away = np.r_[0.0, np.cumsum(np.hypot(*np.diff(piece.vertices[:, :2], axis=0).T))]
     return np.interp(along[inside], away, np.linspace(piece.station, piece.end, len(away)))
 
@@ -149,8 +168,8 @@ def _in_line(before, after):
     return long and GapLine(before, after, max_degree=2).miss <= MAX_LINE_MISS
 
 
-def _drawn(frame, road, side, carriageway, grown, runs, chain):
-    """The pieces of one line."""
+def _drawn(frame, road, side, carriageway, grown, runs):
+    """The pieces of one line, which has no number yet."""
     stations = carriageway.cells.stations
     rows = np.concatenate([np.arange(a, b) for a, b in runs])
     offset, sigma = grown.offset[rows], grown.sigma[rows]
@@ -168,10 +187,10 @@ def _drawn(frame, road, side, carriageway, grown, runs, chain):
         s = np.linspace(start, end, max(int(np.ceil((end - start) / EDGE_VERTEX_SPACING)), 1) + 1)
         d = splev(s, curve) if status == "measured" else np.interp(s, [start, end], splev([start, end], curve))
         vertices = np.c_[frame.to_map(road, s, d, _height(carriageway, s, d))]
-        near = (stations[rows] >= start) & (stations[rows] <= end)
+        near = stretch_of(stations[rows], start, end)
         rmse = float(np.sqrt(np.mean(residual[near] ** 2)))
         length = float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum())
-        found.append(EdgePiece(vertices, road, side, status, chain, float(start), float(end), length, rmse=rmse,
+        found.append(EdgePiece(vertices, road, side, status, -1, float(start), float(end), length, rmse=rmse,
                                what="pavement", sigma=float(np.sqrt(np.mean(sigma[near] ** 2) + rmse**2 + passes**2))))
     return found
 

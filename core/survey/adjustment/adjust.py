@@ -168,7 +168,7 @@ def _moved_track(frame, moves, p):
         return p
     change = _coordinate_changes(frame, moves, p.number, p.s, p.d)
     return replace(p, **{name: getattr(p, name) + metres for name, metres in zip(MOVED_COLUMNS, change)},
-                   _by_station=None, _progress=None, _by_tick={})
+                   _by_station=None, _progress=None, _span=None, _by_tick={})
 
 
 def _replace_points(survey, moves, progress, folder):

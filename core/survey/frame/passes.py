@@ -249,6 +249,7 @@ class Pass:
     attitude: np.ndarray | None = field(default=None, repr=False)
     _by_station: tuple[np.ndarray, np.ndarray, np.ndarray] | None = field(default=None, repr=False)
     _progress: np.ndarray | None = field(default=None, repr=False)
+    _span: tuple[float, float] | None = field(default=None, repr=False)
     _by_tick: dict = field(default_factory=dict, repr=False)
 
     def __getstate__(self) -> dict:
@@ -327,4 +328,6 @@ class Pass:
     @property
     def span(self) -> tuple[float, float]:
         """(first, last) station of the pass, m."""
-        return float(self.s.min()), float(self.s.max())
+        if self._span is None:
+            self._span = float(self.s.min()), float(self.s.max())
+        return self._span

@@ -122,6 +122,15 @@ class Road:
         d[~inside] = np.nan
         return s, d
 
+    def within(self, x: np.ndarray, y: np.ndarray, start: float, end: float) -> np.ndarray:
+        """(N,) bool, whether the stations of (N,) local places, as of `locate`, lie from `start` to before `end`; places far away cost little."""
+        line = np.stack(self.to_map(np.arange(start, end + NODE_SPACING, NODE_SPACING), 0.0))
+        low, high = line.min(axis=1) - CORRIDOR - 1.0, line.max(axis=1) + CORRIDOR + 1.0
+        found = (x >= low[0]) & (x <= high[0]) & (y >= low[1]) & (y <= high[1])
+        s, _ = self.locate(x[found], y[found])
+        found[found] = (s >= start) & (s < end)
+        return found
+
     def nearest_station(self, x: np.ndarray, y: np.ndarray, corridor: float = CORRIDOR) -> np.ndarray:
         """Station of the nearest node of the line, (N,) m; NaN where none is within the corridor."""
         if self._tree is None:

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from .columns import Columns
-from .section_store import SectionStore
-from .store_index import StoreIndex
+from .section_store import SectionStore, Stretch
+from .store_index import Key, StoreIndex
 
 
 class ColumnOverlay(SectionStore):
@@ -44,6 +44,9 @@ class ColumnOverlay(SectionStore):
 
     def sections(self, road: int) -> list[int]:
         return self.points.sections(road)
+
+    def in_stretch(self, stretch: Stretch) -> list[Key]:
+        return self.points.in_stretch(stretch)
 
     def shared(self) -> dict[str, Any]:
         """As `SectionStore.contents` of the column alone, and the folder that its values lie in then."""

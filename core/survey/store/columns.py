@@ -29,7 +29,7 @@ class Columns:
     load_rows : function of a name and (M,) indices within bounds that returns those rows of the column
     """
 
-    __slots__ = ("_arrays", "_load", "_load_rows", "_load_cost", "_source", "_parts", "_read_only", "_length", "dtype")
+    __slots__ = ("_arrays", "_load", "_load_rows", "_load_cost", "_source", "_parts", "_ends", "_read_only", "_length", "dtype")
 
     def __init__(self, arrays: dict[str, np.ndarray], dtype: Any, length: int | None = None,
                  load: Callable[[str], np.ndarray] | None = None, source: tuple[Columns, np.ndarray] | None = None,
@@ -38,6 +38,7 @@ class Columns:
         self._load_cost: dict[str, int] = {}   # cost so far of reading rows by name, in rows; beyond half of the column it is read whole
         self._source = source
         self._parts = parts
+        self._ends: np.ndarray | None = None   # of the parts
         self._read_only = False
         self.dtype = np.dtype(dtype)
         self._length: int = len(next(iter(arrays.values()))) if length is None else length
@@ -144,10 +145,14 @@ class Columns:
             column = self[name]
             # A column of one repeated value has stride 0 and stays one value.
             return column.take(rows) if column.strides[0] or not len(rows) else np.broadcast_to(column[0], len(rows))
-        ends = np.cumsum([len(part) for part in self._parts])
+        if self._ends is None:
+            self._ends = np.cumsum([len(part) for part in self._parts])
+        # a marking lies in few of the parts of a long road
+        first, last = np.searchsorted(self._ends, rows[[0, -1]], side="right").tolist()
+        parts, ends = self._parts[first:last + 1], self._ends[first:last + 1]
         bounds = [0, *np.searchsorted(rows, ends).tolist()]
         found = [part.column_rows(name, rows[a:b] - (end - len(part)))
-                 for part, end, a, b in zip(self._parts, ends, bounds[:-1], bounds[1:]) if b > a]
+                 for part, end, a, b in zip(parts, ends, bounds[:-1], bounds[1:]) if b > a]
         return found[0] if len(found) == 1 else np.concatenate(found)
 
     def row_range(self, first: int, end: int) -> Columns:
@@ -176,7 +181,7 @@ class Columns:
         for name in self.names:
             self[name]
         # There are arrays for every name now, so nothing is ever loaded again.
-        self._load = self._load_rows = self._source = self._parts = None
+        self._load = self._load_rows = self._source = self._parts = self._ends = None
         return self
 
     def read_only(self) -> Columns:

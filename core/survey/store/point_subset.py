@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from .columns import Columns
-from .section_store import SectionStore
-from .store_index import StoreIndex
+from .section_store import SectionStore, Stretch
+from .store_index import Key, StoreIndex
 
 SUBSET_MEMORY_LIMIT = 16 * 2**20  # bytes of masks, and as many of additional columns, in memory
 
@@ -86,6 +86,9 @@ class PointSubset(SectionStore):
 
     def sections(self, road: int) -> list[int]:
         return self._own.sections(road)
+
+    def in_stretch(self, stretch: Stretch) -> list[Key]:
+        return self._own.in_stretch(stretch)
 
     def rows(self, road: int, section: int) -> np.ndarray:
         """(M,) indices into a section of the store, ascending."""

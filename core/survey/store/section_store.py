@@ -187,7 +187,7 @@ class SectionStore:
     def in_stretch(self, stretch: Stretch) -> list[Key]:
         """(road, number) of the sections of a stretch that have points."""
         road, first, end = stretch
-        return [(road, number) for number in self.sections(road) if first <= number < end]
+        return [(road, number) for number in range(first, end) if (road, number) in self._sections]
 
     def section(self, road: int, section: int) -> Columns:
         """The Columns of one section in canonical order, read-only; empty where there are no points."""

@@ -46,6 +46,12 @@ class GroundRaster:
     low: np.ndarray
     noise: float
 
+    @property
+    def box(self) -> tuple[np.ndarray, np.ndarray]:
+        """(2,) m each, local corners of the grid and of a cell about it."""
+        corner = np.array([self.x0, self.y0])
+        return corner - PLAN_CELL, corner + PLAN_CELL * (np.array(self.low.shape[::-1]) + 1)
+
     def inside(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """(row, column) of those local places, (N,) m, that lie on the grid."""
         row, column = self.cells_at(x, y)

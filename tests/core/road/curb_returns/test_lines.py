@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from lanewright.core.road.curb_returns.classify import CurbReturn, is_curb_like, island_outlines
+from lanewright.core.road.curb_returns.curb_lines import CurbLines
 from lanewright.core.road.curb_returns.free_corners import is_free_corner
 from lanewright.core.road.curb_returns.steps import PlanSteps
 from lanewright.core.road.curb_returns.tracking import PlanStepChain, group_lines
@@ -49,15 +50,15 @@ def curbs(radius=9.0, gap=0.0):
 
 
 def test_a_corner_between_two_dropped_crossings_bends_from_one_curb_to_the_other():
-    assert is_free_corner(arc(), curbs())
-    assert is_free_corner(arc(), curbs(gap=2.0))
+    assert is_free_corner(arc(), CurbLines(curbs()))
+    assert is_free_corner(arc(), CurbLines(curbs(gap=2.0)))
 
 
 @pytest.mark.parametrize(("line", "ends"), [
     (arc(), curbs()[:1]), (arc(), []), (arc(uphill_inside=False), curbs()), (arc(wave=0.15), curbs()), (arc(), curbs(gap=6.0)),
     (arc(first=44.0, last=48.0), curbs())], ids=["one curb", "no curb", "a basin", "uneven", "too far", "too short to bend"])
 def test_what_does_not_bend_evenly_from_curb_to_curb_is_no_corner(line, ends):
-    assert not is_free_corner(line, ends)
+    assert not is_free_corner(line, CurbLines(ends))
 
 
 def test_two_steps_are_no_line():

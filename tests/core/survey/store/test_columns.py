@@ -51,6 +51,17 @@ def test_rows_of_joined_parts_are_those_of_the_whole(which):
     assert (joined[which]["s"] == 7).all() and (joined[which]["time"] == records[which]["time"]).all()
 
 
+def test_a_marking_asks_those_parts_of_a_long_road_alone_that_it_lies_in(monkeypatch):
+    records, asked = some(400), []
+    joined = Columns.concatenate([Columns.from_records(records[k:k + 4]) for k in range(0, 400, 4)], records.dtype)
+    plain = Columns.__len__
+    monkeypatch.setattr(Columns, "__len__", lambda columns: asked.append(columns) or plain(columns))
+    for rows in ([201, 202], [198, 203, 204], [0], [399]):
+        asked.clear()
+        np.testing.assert_array_equal(joined.take(np.array(rows))["time"], records["time"][rows])
+    assert len(asked) < 10
+
+
 def test_a_row_beyond_joined_parts_is_refused():
     joined = Columns.concatenate([Columns.from_records(some(5)), Columns.from_records(some(5))], some().dtype)
     with pytest.raises(IndexError):
