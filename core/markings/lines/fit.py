@@ -15,7 +15,7 @@ from ...common.setting import check_limits, setting
 from ...countries.catalogue import country
 from ...countries.neutral import NEUTRAL
 from ...curves.model_selection import CURVES
-from ...survey.store.records import join_columns
+from ...survey.store.road_columns import columns_of_roads
 from ..objects.marking_objects import MarkingObjects
 from .between_tracks import with_unseen_paint
 from .common_trend import CommonTrend
@@ -146,8 +146,7 @@ def _linked(strands, edges, settings):
 
 
 def _records_of(points, road):
-    parts = [points.store.section(road, section) for section in points.sections(road)]
-    return join_columns(parts, points.store.dtype)
+    return columns_of_roads(points.store, [road])
 
 
 def _drawn_pieces(one: SelectedLine, shape: LineShape, origin: np.ndarray) -> Iterator[dict[str, Any]]:

@@ -172,7 +172,7 @@ def find_carriageway(survey: Survey, road: int, edges: RoadEdges | None, setting
         offset, known = measured[side]
         closed[side] = np.isfinite(offset) & ~known
         if profiles is not None and np.isnan(offset).any():
-            grown[side] = grown_limit(profiles, cells, height - prior[:, None], sign, track, settings.max_width)
+            grown[side] = grown_limit(profiles, cells, height, prior, sign, track, settings.max_width)
             offset = np.where(np.isnan(offset), grown[side].offset - sign * GROWN_INSET, offset)
         limits[side] = offset, known
     limits = _with_mouths(limits, closed, tracks, cells, followed.ground, cells_driven(survey.frame, road, cells), settings.max_width)
