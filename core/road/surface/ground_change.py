@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import median_filter, uniform_filter1d
 
-from ...common.parts import by_rows
+from ...common.memory import by_rows
 from .ground_grid import known_median
 from .pavement_limit import INNER_CELLS
 from .region_growing import MAX_HEIGHT_DEVIATION

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...common.parts import by_rows
+from ...common.memory import by_rows
 from ...survey.store.records import Points
 from .edge_path import cheapest_path
 from .ground_change import HalfProfiles, other_ground_begins
