@@ -62,10 +62,10 @@ def with_unseen_paint(lines: PaintedLines, markings: MarkingObjects, paint: Road
     unseen = [np.empty((0, 3)) for _ in range(len(lines))]
     if not paint.has_spacing:
         return replace(lines, unseen=unseen)
-    known = _MarkedLines(lines, markings)
+    marked = _MarkedLines(lines, markings)
     for k in np.flatnonzero((lines.status == "bridged") & (lines.pattern == "solid")).tolist():
         check_cancelled()
-        road, (whole, own) = int(lines.course.road[k]), known.of_piece(k)
+        road, (whole, own) = int(lines.course.road[k]), marked.of_piece(k)
         piece = lines.course.s[lines.course.line(k)]
         first, last = float(np.nanmin(piece)), float(np.nanmax(piece))
         course = _between(whole, first - 2 * BESIDE_GAP, last + 2 * BESIDE_GAP)
