@@ -20,12 +20,13 @@ class PlaceIndex:
 
     def __init__(self, places: np.ndarray, side: float):
         self.places, self.side = places, side
-        square = np.floor(places / side).astype(np.int64)
+        row, column = (np.floor(values / side).astype(np.int32) for values in places.T)
         # a column more on either side: the neighbours of a square in the last column are none of the next row
-        self._first = square.min(axis=0) - 1 if len(square) else np.zeros(2, np.int64)
-        square -= self._first
-        self._columns = int(square[:, 1].max(initial=0)) + 2
-        key = square[:, 0] * self._columns + square[:, 1]
+        self._first = np.array([values.min() if len(values) else 0 for values in (row, column)], np.int64) - 1
+        self._columns = int(column.max(initial=self._first[1]) - self._first[1]) + 2
+        key = row - self._first[0]
+        key *= self._columns
+        key += column - self._first[1]
         order = np.argsort(key, kind="stable")
         key = key[order]
         self._order = order.astype(np.int32)

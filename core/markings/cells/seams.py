@@ -35,7 +35,7 @@ class RoadPaint(NamedTuple):
 
     records : N points
     labels : (N,) int, the cluster of each
-    home : (N, 2) int, whose the points are: the place of their road among all, and their row there
+    home : (N, 2) int32, whose the points are: the place of their road among all, and their row there
     """
 
     records: Columns
@@ -56,7 +56,7 @@ def told_by_one_road(found: Sequence[tuple[Columns, np.ndarray]], roads: Sequenc
     -------
     RoadPaint of each road, the points that others gave to it behind its own
     """
-    paint = [RoadPaint(records, labels, np.column_stack([np.full(len(records), k), np.arange(len(records))]))
+    paint = [RoadPaint(records, labels, np.column_stack([np.full(len(records), k, np.int32), np.arange(len(records), dtype=np.int32)]))
              for k, (records, labels) in enumerate(found)]
     if sum(len(records) > 0 for records, _ in found) < 2:
         return paint

@@ -103,15 +103,20 @@ def cluster_markings(marking_points: RoadPoints, frame: RoadFrame, settings: Clu
     first, second, last = ([progress.part(begin + share * k / len(roads), begin + share * (k + 1) / len(roads)) for k in range(len(roads))]
                            for begin, share in ((0.0, 0.1), (0.1, 0.6), (0.7, 0.3)))
     connected = [connected_points(marking_points, road, settings.distance, part) for road, part in zip(roads, first)]
+    counts = [len(records) for records, _ in connected]
     works = [ApartWork(executor, line.number) for line in lines]
     known = [_stripes_of_crossings(records, line, work, part.part(0.0, 0.5))
              for (records, _), line, work, part in zip(connected, lines, works, second)]
     others = [(records.take(rest), labels[rest]) for (records, labels), (_, rest) in zip(connected, known)]
-    found = [_pieces(paint, work, settings, part.part(0.5, 1.0))
-             for paint, work, part in zip(told_by_one_road(others, lines, settings.distance), works, second)]
+    # what is not used any more is let go, since the paint of a whole road is in memory
+    del connected
+    paint = told_by_one_road(others, lines, settings.distance)
+    del others
+    found = [_pieces(of_road, work, settings, part.part(0.5, 1.0)) for of_road, work, part in zip(paint, works, second)]
+    del paint
     blocks = _blocks_of_all(found)
     rows, polygons, refused = [], [], 0
-    cluster = [np.zeros(len(records), np.int32) for records, _ in connected]
+    cluster = [np.zeros(count, np.int32) for count in counts]
     number = 0
     for k, ((stripes, _), pieces, line, block, part) in enumerate(zip(known, found, lines, blocks, last)):
         painted, without = _markings(pieces, block, settings, marking_points.has_corrected, part.part(0.0, 0.5))
@@ -260,17 +265,21 @@ def _stripes_of_crossings(records, road, work, progress):
     cells, member = occupied(records["x"] // CELL_UNITS, records["y"] // CELL_UNITS)
     station = np.zeros(len(cells))
     station[member] = records["s"] * COORDINATE_SCALE
-    places = (cells + 0.5) * CELL_UNITS * COORDINATE_SCALE
-    stripes = zebra_stripes(places, road.heading(station), lambda windows: work.combs(places, windows, progress))
-    stripe_of, found = np.full(len(cells), -1), []
+    places, way = (cells + 0.5) * CELL_UNITS * COORDINATE_SCALE, road.heading(station)
+    del cells, station
+    stripes = zebra_stripes(places, way, lambda windows: work.combs(places, windows, progress.part(0.0, 0.7)),
+                            lambda crossings: work.stripes(places, way, crossings, progress.part(0.7, 0.9)))
+    stripe_of, found = np.full(len(places), -1, np.int32), []
     for k, stripe in enumerate(stripes):
         stripe_of[stripe.spots] = k
     of_point = stripe_of[member]
-    for k, rows in members_of(of_point):
-        own, corners = records.take(rows), stripes[k].corners
+    rows = list(members_of(of_point))
+    painted = records.take(np.concatenate([np.empty(0, np.intp), *(own for _, own in rows)])).load_all()
+    bounds = np.cumsum([0, *(len(own) for _, own in rows)])
+    for (k, own), first, end, shape in zip(rows, bounds[:-1], bounds[1:], work.shapes(painted, bounds, progress.part(0.9, 1.0))):
+        corners = stripes[k].corners
         length, width = (float(np.hypot(*(corners[j] - corners[j - 1]))) for j in (1, 2))
-        shape = replace(measure(own["s"], own["d"], own["spacing"]), length=length, width=width)
-        found.append(_Marking(own, rows, shape, "zebra", "other", shapely.Polygon(corners)))
+        found.append(_Marking(painted[first:end], own, replace(shape, length=length, width=width), "zebra", "other", shapely.Polygon(corners)))
     return found, np.flatnonzero(of_point < 0)
 
 

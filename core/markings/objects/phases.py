@@ -16,7 +16,7 @@ from .figures import Candidate, figures_of_group
 from .outline import drawn_outline
 from .shape import Shape, measure
 from .split_merge import parts_of_compound
-from .zebra import Comb, comb_of_window
+from .zebra import Comb, Crossing, Stripe, comb_of_window, stripes_of_crossing
 
 if TYPE_CHECKING:
     from ...survey.frame.road import Road
@@ -34,6 +34,22 @@ def combs_of_windows(source: NoSource, item: tuple[np.ndarray, np.ndarray]) -> l
         check_cancelled()
         comb = comb_of_window(places[first:end])
         found.append(None if comb is None else tuple(comb))
+    return found
+
+
+def stripes_of_crossings(source: NoSource, item: tuple[np.ndarray, np.ndarray, np.ndarray, list[tuple[Any, ...]]]) -> list[list[tuple[Any, ...]]]:
+    """The phase that finds the stripes of crossings.
+
+    Parameters
+    ----------
+    source : NoSource
+    item : (N, 2) m spots about crossings one after the other, (N,) radians of the road there, the bounds of the crossings, and the Comb of each
+    """
+    places, way, bounds, combs = item
+    found = []
+    for first, end, comb in zip(bounds[:-1].tolist(), bounds[1:].tolist(), combs):
+        check_cancelled()
+        found.append([tuple(stripe) for stripe in stripes_of_crossing(places[first:end], way[first:end], Comb(*comb))])
     return found
 
 
@@ -93,6 +109,13 @@ class ApartWork:
         rows = np.concatenate([np.empty(0, np.int32), *windows])
         found = self._run(combs_of_windows, (places,), bounds, progress, rows=rows)
         return [None if comb is None else Comb(*comb) for comb in found]
+
+    def stripes(self, places: np.ndarray, way: np.ndarray, crossings: Sequence[Crossing], progress: Progress) -> list[list[Stripe]]:
+        """The stripes of each crossing, their spots by number among those of the crossing; places, way : as of `zebra_stripes`."""
+        bounds = np.cumsum([0, *(len(own) for own, _ in crossings)])
+        rows = np.concatenate([np.empty(0, np.intp), *(own for own, _ in crossings)])
+        found = self._run(stripes_of_crossings, (places, way), bounds, progress, rows=rows, alone=True, looks=[tuple(comb) for _, comb in crossings])
+        return [[Stripe(*stripe) for stripe in some] for some in found]
 
     def parts(self, s: np.ndarray, d: np.ndarray, spacing: np.ndarray, spans: Sequence[tuple[int, int]],
               progress: Progress) -> list[tuple[np.ndarray, int]]:

@@ -83,7 +83,11 @@ class Stripe(NamedTuple):
     corners: np.ndarray
 
 
-def zebra_stripes(places: np.ndarray, way: np.ndarray, combs_of: Callable[[Sequence[np.ndarray]], list[Comb | None]] | None = None) -> list[Stripe]:
+Crossing = tuple[np.ndarray, Comb]   # rows of the spots about a crossing, and the clearest comb of its windows
+
+
+def zebra_stripes(places: np.ndarray, way: np.ndarray, combs_of: Callable[[Sequence[np.ndarray]], list[Comb | None]] | None = None,
+                  stripes_of: Callable[[Sequence[Crossing]], list[list[Stripe]]] | None = None) -> list[Stripe]:
     """The stripes of crossings.
 
     Parameters
@@ -91,6 +95,7 @@ def zebra_stripes(places: np.ndarray, way: np.ndarray, combs_of: Callable[[Seque
     places : (N, 2) m, spots of paint on the ground, one a cell. Where the road bends, station and offset would bend stripes, too
     way : (N,) radians, the direction of the road at each, in the same axes
     combs_of : what applies `comb_of_window` to the spots of windows, given their rows; by default one after the other
+    stripes_of : what applies `stripes_of_crossing` to the spots of crossings; by default likewise
     """
     if len(places) < LEAST_SPOTS:
         return []
@@ -100,12 +105,20 @@ def zebra_stripes(places: np.ndarray, way: np.ndarray, combs_of: Callable[[Seque
     combs = [comb for comb in known if comb is not None]
     rows = [own for own, comb in zip(windows, known) if comb is not None]
     del windows
-    found, free = [], np.ones(len(places), bool)
+    crossings: list[Crossing] = []
     for group in _alike(combs):
         check_cancelled()
         best = max((combs[k] for k in group), key=lambda comb: comb.coherence)
-        own = _about(spots, np.unique(np.concatenate([rows[k] for k in group])), best.heading)
-        stripes = _stripes(places, own[free[own]], best, way)
+        crossings.append((_about(spots, np.unique(np.concatenate([rows[k] for k in group])), best.heading), best))
+    each = stripes_of(crossings) if stripes_of else [stripes_of_crossing(places[own], way[own], best) for own, best in crossings]
+    found, free = [], np.ones(len(places), bool)
+    for (own, best), stripes in zip(crossings, each):
+        if not free[own].all():
+            # one before it has taken some of its spots
+            check_cancelled()
+            own = own[free[own]]
+            stripes = stripes_of_crossing(places[own], way[own], best)
+        stripes = [stripe._replace(spots=own[stripe.spots]) for stripe in stripes]
         free[np.concatenate([np.empty(0, np.int64), *(stripe.spots for stripe in stripes)])] = False
         found += stripes
     return found
@@ -239,12 +252,12 @@ def _alike(combs):
     return [members.tolist() for _, members in members_of(linked_groups(a[same], b[same], len(combs)))]
 
 
-def _stripes(places, rows, comb, way):
-    """[Stripe] of one crossing."""
-    if len(rows) < LEAST_SPOTS:
+def stripes_of_crossing(places: np.ndarray, way: np.ndarray, comb: Comb) -> list[Stripe]:
+    """The stripes of one crossing, from the (N, 2) spots about it, the (N,) direction of the road there, and a comb that it shows."""
+    if len(places) < LEAST_SPOTS:
         return []
-    middle = places[rows].mean(axis=0)
-    own = places[rows] - middle
+    rows, middle = np.arange(len(places)), places.mean(axis=0)
+    own = places - middle
     best, some = comb, own[::max(len(own) // (8 * MOST_SPOTS), 1)]
     # a window tells the pitch of three stripes less well than all of them do
     for steps in STEPS_OF_CROSSING:
