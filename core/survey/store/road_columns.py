@@ -10,7 +10,7 @@ from .columns import Columns
 from .section_store import SectionStore
 
 
-def columns_of_roads(store: SectionStore, roads: Sequence[int]) -> Columns:
+def columns_of_roads(store: SectionStore, roads: Sequence[int], names: Sequence[str] | None = None) -> Columns:
     """The Columns of all points of some roads, each by station.
 
     A column is there as long as whoever asked for it uses it, and is read again when it is asked for again: of a long road, columns that are
@@ -20,6 +20,7 @@ def columns_of_roads(store: SectionStore, roads: Sequence[int]) -> Columns:
     ----------
     store : SectionStore, to which no points are added any more
     roads : numbers
+    names : of the columns; all by default
     """
     sections = [(road, number) for road in roads for number in store.sections(road)]
     ends = np.cumsum([0, *(len(store.section(*key)) for key in sections)])
@@ -40,4 +41,5 @@ def columns_of_roads(store: SectionStore, roads: Sequence[int]) -> Columns:
             found[order[some]] = store.section(*sections[k]).column_rows(name, ascending[some] - ends[k])
         return found
 
-    return Columns({}, store.dtype, int(ends[-1]), load, load_rows=load_rows, kept=False).read_only()
+    dtype = store.dtype if names is None else np.dtype([(name, store.dtype[name]) for name in names])
+    return Columns({}, dtype, int(ends[-1]), load, load_rows=load_rows, kept=False).read_only()
