@@ -33,6 +33,7 @@ BOUNDARY_METHODS = ("profiles", "scanlines", "both")
 PROFILES_PROGRESS = 0.3       # share of the work that profiles are, with both methods; of the rest,
 LATTICE_PROGRESS = 0.1        # share at which the scan lattice is known, and
 RETURNS_PROGRESS = 0.85       # share at which the search for curb returns begins
+CURB_EDGES_PROGRESS = 0.1     # share of the edges that those at curbs are; the others need the ground beside the road
 LEVEL_STRIP_MARGIN = 0.20     # m beyond the points from which corners are measured, in which scanlines still continue
 
 
@@ -152,10 +153,11 @@ def draw_boundaries(found: dict[str, CurbPoints], frame: RoadFrame, settings: Ed
     -------
     RoadBoundaries
     """
-    boundaries = _drawn(found, frame, settings, progress)
+    boundaries = _drawn(found, frame, settings, progress if survey is None else progress.part(0.0, CURB_EDGES_PROGRESS))
     if survey is not None:
         boundaries.ground = MeasuredGround(survey)
-        boundaries.edges = with_pavement_edges(survey, boundaries.edges, settings, progress=progress, ground=boundaries.ground)
+        boundaries.edges = with_pavement_edges(survey, boundaries.edges, settings, progress=progress.part(CURB_EDGES_PROGRESS, 1.0),
+                                               ground=boundaries.ground)
     return boundaries
 
 

@@ -17,6 +17,7 @@ import shapely
 
 from ...common.groups import members_of
 from ...common.order_statistics import order_by
+from ...common.parallel import check_cancelled
 from ...common.progress import Progress
 from ...common.setting import check_limits, setting
 from ...curves.robust import median
@@ -124,6 +125,7 @@ def cluster_markings(marking_points: RoadPoints, frame: RoadFrame, settings: Clu
         markings = sorted([*stripes, *painted], key=lambda marking: (marking.shape.s0, marking.shape.d0, marking.shape.s1))
         for marking, drawn in zip(markings, _outlines(markings, pieces.paint.records, line, pieces.work, part.part(0.5, 1.0))):
             number += 1
+            check_cancelled()
             if marking.outline is not None:
                 cluster[k][marking.rows] = number
             else:
@@ -236,6 +238,7 @@ def _markings(pieces, blocks, settings, has_corrected, progress):
     found = []
     for members, kind, use in whole:
         if kind != NOT_PAINT:
+            check_cancelled()
             of_it = _rows_of(bounds, members)
             shape = shapes[members[0]] if len(members) == 1 else measure(*(records[name][of_it] for name in ("s", "d", "spacing")))
             found.append(_Marking(records[of_it], pieces.order[of_it], shape, kind, use))

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.polynomial import Polynomial
 
 from ...common.near_pairs import overlapping_pairs
+from ...common.parallel import check_cancelled
 from ...common.runs import stretch_of
 from .corners import CurbSteps
 from .tracking import HEIGHT_TOLERANCE, StepChain
@@ -51,6 +52,7 @@ def with_pieces_in_line(kept: Sequence[tuple[int, float, float]], chains: Sequen
     gaps = [(a, b) for (_, _, a), (_, b, _) in zip(kept[:-1], kept[1:]) if 2 * MIN_PIECE_LENGTH <= b - a <= MAX_LINE_GAP]
     found = list(kept)
     for (a, b), some in zip(gaps, chains_beside(gaps, chains)):
+        check_cancelled()
         before, after = (steps[chosen[np.sort(order[stretch_of(by_station, *ends)])]]
                          for ends in ((a - LINE_FIT_LENGTH, a + 1e-9), (b - 1e-9, b + LINE_FIT_LENGTH)))
         pieces = pieces_between(before, after, chains, steps, to_plan, some)

@@ -16,6 +16,7 @@ import numpy as np
 
 from ...common.groups import linked_groups
 from ...common.near_pairs import ROUNDING_TOLERANCE
+from ...common.parallel import check_cancelled
 from .corners import CurbSteps
 from .curb_limits import MIN_FAINT_LENGTH, CurbLimits
 from .pseudo_scanlines import expand_ranges
@@ -154,6 +155,7 @@ def curb_chains(steps: CurbSteps, label: np.ndarray, profile_width: float, limit
     chains: list[StepChain] = []
     weak: list[StepChain] = []
     for members in np.split(order, cuts):
+        check_cancelled()
         s = steps.s[members]
         length = (steps.profile[members[-1]] - steps.profile[members[0]] + 1) * profile_width
         if length < MIN_CHAIN_LENGTH - 1e-9 or len(members) * profile_width < MIN_CHAIN_DENSITY * length:
@@ -234,6 +236,7 @@ def select_along_road(chains: Sequence[StepChain], steps: CurbSteps,
     value = np.full(len(chains), -np.inf)  # of the best path that ends, or last was, on this chain
     path: list = [None] * len(chains)      # that path: (chain, first, last station, path before)
     for a, b in zip(cuts[:-1], cuts[1:]):
+        check_cancelled()
         # of the chains that ended long ago the best alone is continued
         best = max((value[k] for k in continued if ends[k] + TRACKING_MEMORY < a), default=-np.inf)
         value[[k for k in continued if ends[k] + TRACKING_MEMORY < a and value[k] < best]] = -np.inf

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
+from ...common.parallel import check_cancelled
 from ...survey.frame.placement import COORDINATE_DECIMALS
 from ...survey.frame.road_frame import RoadFrame
 from .road_edges import EdgePiece
@@ -58,6 +59,7 @@ def dropped_corners(pieces: Sequence[EdgePiece], frame: RoadFrame, number: int) 
     near = cKDTree(places[begin]).query_ball_tree(cKDTree(places[len(tails) + end]), MAX_DROPPED_GAP + MEETING_DISTANCE)
     found = []
     for i, ahead in zip(begin.tolist(), near):
+        check_cancelled()
         for j in end[ahead].tolist():
             if i != j and _is_corner(tails[i], heads[j]):
                 found.append((float(np.hypot(*(heads[j].place - tails[i].place)[:2])), i, j))

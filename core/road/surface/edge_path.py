@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...common.parallel import check_cancelled
+
 
 def cheapest_path(costs: np.ndarray, cost_per_place: float, largest_change: float) -> np.ndarray:
     """The place on every profile so that the costs of the places and of the changes between profiles are least together.
@@ -26,6 +28,7 @@ def cheapest_path(costs: np.ndarray, cost_per_place: float, largest_change: floa
     change = np.minimum(cost_per_place * np.abs(places[:, None] - places), largest_change)
     total, before = costs[0].astype(float), np.zeros(costs.shape, np.int32)
     for k in range(1, len(costs)):
+        check_cancelled()
         reached = total[:, None] + change
         before[k] = reached.argmin(axis=0)
         total = reached[before[k], places] + costs[k]

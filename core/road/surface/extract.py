@@ -37,6 +37,7 @@ TOLERANCE_SIGMAS = 4.0        # times the noise of the heights, added to it
 TRACK_REACH = 1.5             # m either side of the reference line where ground must be measured
 GROWN_INSET = 0.05            # m off a limit that is no edge: on a road that is too wide, verge is extracted as paint
 MIN_SURFACE_WIDTH = 0.5       # m between the limits of a row with road
+MEASURED_PROGRESS = 0.9       # share of the work on a carriageway at which its ground is measured
 
 
 @dataclass(frozen=True)
@@ -160,7 +161,7 @@ def find_carriageway(survey: Survey, road: int, edges: RoadEdges | None, setting
     missing = np.isnan(measured["left"][0]) | np.isnan(measured["right"][0])
 
     per_window = missing.reshape(-1, WINDOW_ROWS).any(axis=1)
-    cells, profiles = (ground or MeasuredGround(survey)).windows(road, windows, per_window.tolist(), progress)
+    cells, profiles = (ground or MeasuredGround(survey)).windows(road, windows, per_window.tolist(), progress.part(0.0, MEASURED_PROGRESS))
     prior = survey.road_height(road, stations)
     followed = follow_road(cells, prior)
     if followed is None:
@@ -175,6 +176,7 @@ def find_carriageway(survey: Survey, road: int, edges: RoadEdges | None, setting
             grown[side] = grown_limit(profiles, cells, height, prior, sign, track, settings.max_width)
             offset = np.where(np.isnan(offset), grown[side].offset - sign * GROWN_INSET, offset)
         limits[side] = offset, known
+        progress.report(MEASURED_PROGRESS + (1.0 - MEASURED_PROGRESS) * (0.6 if side == "left" else 0.9))
     limits = _with_mouths(limits, closed, tracks, cells, followed.ground, cells_driven(survey.frame, road, cells), settings.max_width)
     there = _has_road(followed.ground, cells.offsets) & (limits["left"][0] > limits["right"][0] + MIN_SURFACE_WIDTH)
     tolerance = float(np.clip(TOLERANCE_FLOOR + TOLERANCE_SIGMAS * followed.noise, 0.0, settings.height_tolerance))

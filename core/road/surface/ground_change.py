@@ -13,7 +13,11 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import median_filter, uniform_filter1d
 
+<<<<<<< HEAD
 from ...common.memory import by_rows
+=======
+from ...common.parallel import check_cancelled
+>>>>>>> work-b
 from .ground_grid import known_median
 from .pavement_limit import INNER_CELLS
 from .region_growing import MAX_HEIGHT_DEVIATION
@@ -78,6 +82,7 @@ class HalfProfiles:
         empty = self.blind()
         found = np.empty(len(self.off), np.int64)
         for first in range(0, len(found), PROFILES_PER_BATCH):
+            check_cancelled()
             part = slice(first, first + PROFILES_PER_BATCH)
             uneven = _unevenness(self.off[part], np.maximum(start[part], CELLS_OF_UNEVENNESS))
             differs = _differs(self.u, self.off[part], self.rough[part], uneven)

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.ndimage import correlate1d, uniform_filter1d
 
 from ...common.memory import by_rows
+from ...common.parallel import check_cancelled
 from .ground_grid import COLUMN_WIDTH, ROW_LENGTH, GroundCells, known_median
 
 MAX_HEIGHT_DEVIATION = 0.035  # m from the predicted height: more is a curb, a car or an island
@@ -94,6 +95,7 @@ def _walk(cells, base, columns, start, noise, height, ground):
     kernel = _bell(ROW_SMOOTHING_SIGMA / ROW_LENGTH)
     # one pair of columns after the other: of the whole road nothing is there but what comes in and goes out
     for k, pair in enumerate(columns):
+        check_cancelled()
         predicted = z + tilt * (0.5 * COLUMN_WIDTH if k == 0 else COLUMN_WIDTH)
         there, count = (cells.height[:, pair] - base[:, None]).T, np.nan_to_num(cells.count[:, pair]).T
         off = there - predicted
