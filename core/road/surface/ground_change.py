@@ -13,11 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import median_filter, uniform_filter1d
 
-<<<<<<< HEAD
 from ...common.memory import by_rows
-=======
 from ...common.parallel import check_cancelled
->>>>>>> work-b
 from .ground_grid import known_median
 from .pavement_limit import INNER_CELLS
 from .region_growing import MAX_HEIGHT_DEVIATION
