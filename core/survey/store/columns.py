@@ -189,6 +189,12 @@ class Columns:
         self._load = self._load_rows = self._source = self._parts = self._ends = None
         return self
 
+    def unread(self) -> Columns:
+        """Rows of other Columns anew, none of whose columns is in memory: what is read of them goes with them. Others as they are."""
+        if self._source is None or self._read_only:
+            return self
+        return Columns({}, self.dtype, self._length, self._load, self._source)
+
     def read_only(self) -> Columns:
         """These columns, protected from being written to."""
         self._read_only = True

@@ -90,3 +90,15 @@ def test_a_column_that_is_set_anew_keeps_as_many_points_ready_as_the_store(tmp_p
     ready = overlay._column._cache_limit / SURVEY_POINT["intensity"].itemsize
     assert ready <= 64 * 2**20 / SURVEY_POINT.itemsize + 1 and ROAD_POINT.itemsize > SURVEY_POINT.itemsize
     np.testing.assert_array_equal(columns_of_roads(overlay, [0])["intensity"], columns_of_roads(points, [0])["intensity"] // 2)
+
+
+def test_rows_that_were_read_can_be_asked_for_anew_without_what_was_read(road):
+    rows = np.arange(0, road.count, 3)
+    some = columns_of_roads(road, [0]).take(rows)
+    expected = some["x"].copy()
+    again = some.unread()
+    assert some._arrays and not again._arrays
+    np.testing.assert_array_equal(again["x"], expected)
+    # what was set stays where it was set
+    changed = again.with_columns(x=expected + 1)
+    np.testing.assert_array_equal(changed.unread()["x"], expected + 1)
