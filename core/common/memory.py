@@ -12,7 +12,6 @@ from functools import partial
 import numpy as np
 from numpy.typing import DTypeLike
 
-
 ROWS_OF_A_PART = 1024   # rows of some hundred cells: a megabyte of each array
 
 

@@ -128,7 +128,10 @@ class ApartWork:
 
     def shapes(self, records: Columns, bounds: np.ndarray, progress: Progress) -> list[Shape]:
         """The Shape of each cluster; bounds : of the clusters in the records."""
-        return self._run(shapes_of_clusters, lambda a, b: _columns_at(records, np.arange(bounds[a], bounds[b]), ("s", "d", "spacing")), bounds, progress)
+        def columns(a, b):
+            return _columns_at(records, np.arange(bounds[a], bounds[b]), ("s", "d", "spacing"))
+
+        return self._run(shapes_of_clusters, columns, bounds, progress)
 
     def outlines(self, records: Columns, rows: Sequence[np.ndarray], looks: Sequence[tuple[Shape, bool]], road: Road,
                  progress: Progress) -> list[list[Any]]:
