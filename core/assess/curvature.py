@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import shapely
@@ -12,6 +12,9 @@ from scipy.spatial import cKDTree
 
 from ..common.parallel import check_cancelled
 from .matching import SegmentIndex, single_lines
+
+if TYPE_CHECKING:
+    from ..survey.store.records import Points
 
 CURVATURE_KERNEL = 0.2       # m, radius of the neighbourhood, as in the driving-line thesis
 MAX_CANDIDATES = 1800        # marking points, evenly spread, that are tested for being beside a line,
@@ -22,6 +25,7 @@ MAX_QUADRIC_CONDITION = 1e3  # condition number of the normal equations of the q
 MAX_PAINT_DISTANCE = 0.25    # m from a fitted line within which a point is its paint
 KERNELS_PER_BATCH = 100      # neighbourhoods solved at a time
 HASHED_CELLS = 2**20         # hash values of cells of the kernel's size
+POINTS_LOOKED_AT = 2**18     # marking points looked at together
 CURVATURE_STEP = 1.0         # m between the values of a curvature diagram
 CURVATURE_BASE = 5.0         # m to either side over which the change of heading is measured
 
@@ -40,7 +44,7 @@ class MarkingCurvature:
     points: int
 
 
-def marking_curvature(points: Any, lines: Sequence[Any], origin: Sequence[float]) -> MarkingCurvature | None:
+def marking_curvature(points: Points, lines: Sequence[Any], origin: Sequence[float]) -> MarkingCurvature | None:
     """Roughness of line markings before and after fitting.
 
     The mean curvature of the quadric z = f(x, y) through the neighbours of each point, in the frame of their own
@@ -49,7 +53,7 @@ def marking_curvature(points: Any, lines: Sequence[Any], origin: Sequence[float]
 
     Parameters
     ----------
-    points : object with x, y, z (N,), local metres: the marking points
+    points : Points on paint; of a few of them columns are read, and all others some at a time
     lines : fitted lines with Z in map coordinates
     origin : (3,) map coordinates of the local origin
 
@@ -62,16 +66,17 @@ def marking_curvature(points: Any, lines: Sequence[Any], origin: Sequence[float]
         return None
     shift = np.asarray(origin, float)
     local = shapely.transform(np.asarray(lines, object), lambda xyz: xyz - shift, include_z=True)
-    x, y, z = points.x, points.y, points.z
     segments = SegmentIndex(local)
-    which = _spread(len(x), MAX_CANDIDATES)
-    nearest = segments.nearest(np.c_[x[which], y[which]])
+    which = _spread(len(points), MAX_CANDIDATES)
+    some = points[which]
+    nearest = segments.nearest(np.c_[some.x, some.y])
     beside = np.flatnonzero((nearest.distance <= MAX_PAINT_DISTANCE) & np.isfinite(nearest.z))
     if len(beside) < MIN_KERNEL_POINTS:
         return None
     beside = beside[_spread(len(beside), MAX_CURVATURE_POINTS)]
-    near = _near(x, y, which[beside])
-    xyz = np.c_[x[near], y[near], z[near]]
+    near = _near(points, which[beside])
+    around = points[near]
+    xyz = np.c_[around.x, around.y, around.z]
     before, after = _before_and_after(xyz, np.searchsorted(near, which[beside]), nearest[beside], segments)
     known = np.isfinite(before) & np.isfinite(after)
     if not known.any():
@@ -84,14 +89,22 @@ def _spread(count, most):
     return np.unique(np.linspace(0, count - 1, min(count, most)).astype(int))
 
 
-def _near(x, y, which):
+def _near(points, which):
     """Ascending rows of all points within the kernel of those at the rows `which`, and of some more."""
-    column, row = (np.floor(axis * (1.0 / CURVATURE_KERNEL)).astype(np.int32) for axis in (x, y))
+    column, row = _cells(points[which])
     marked = np.zeros(HASHED_CELLS, bool)
     for right in (-1, 0, 1):
         for up in (-1, 0, 1):
-            marked[_cell(column[which] + np.int32(right), row[which] + np.int32(up))] = True
-    return np.flatnonzero(marked.take(_cell(column, row)))
+            marked[_cell(column + np.int32(right), row + np.int32(up))] = True
+    found = [np.empty(0, np.intp)]
+    for first in range(0, len(points), POINTS_LOOKED_AT):
+        found.append(first + np.flatnonzero(marked.take(_cell(*_cells(points[first:first + POINTS_LOOKED_AT])))))
+    return np.concatenate(found)
+
+
+def _cells(points):
+    """(N,) int32 column and row of the cells of the kernel's size that points lie in."""
+    return [np.floor(axis * (1.0 / CURVATURE_KERNEL)).astype(np.int32) for axis in (points.x, points.y)]
 
 
 def _cell(column, row):

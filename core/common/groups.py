@@ -36,8 +36,8 @@ def members_of(number: np.ndarray) -> Iterator[tuple[int, np.ndarray]]:
     ------
     number of a group, ascending, and (M,) its members, ascending
     """
-    order = np.argsort(number, kind="stable")
-    order = order[np.searchsorted(number[order], 0):]
+    known = np.flatnonzero(number >= 0)
+    order = known[np.argsort(number[known], kind="stable")]
     starts = np.flatnonzero(np.diff(number[order], prepend=-1))
     for begin, end in zip(starts.tolist(), [*starts[1:].tolist(), len(order)]):
         yield int(number[order[begin]]), order[begin:end]

@@ -27,8 +27,8 @@ def ordered_map(function: Callable[[Item], Result], items: Iterable[Item], progr
     """Apply a function to every item in several threads and yield the results in the order of the items.
 
     At most one result more than there are threads is computed ahead, so memory stays bounded. While a result is
-    awaited, cancellation is checked too. numpy and scipy release the interpreter lock in their heavy loops, which is
-    where most of the time is spent.
+    awaited, cancellation is checked too, by `progress` and by `check_cancelled`. numpy and scipy release the
+    interpreter lock in their heavy loops, which is where most of the time is spent.
 
     Parameters
     ----------
@@ -68,6 +68,7 @@ def ordered_map(function: Callable[[Item], Result], items: Iterable[Item], progr
                     waiting.append(pool.submit(work, items[done + len(waiting)]))
                 while not wait(list(waiting)[:1], POLL_INTERVAL).done:
                     progress.report(done / len(items))
+                    check_cancelled()
                 yield waiting.popleft().result()
                 progress.report((done + 1) / len(items))
         finally:

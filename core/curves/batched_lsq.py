@@ -101,7 +101,7 @@ def fit_batch(lines: Sequence[tuple[np.ndarray, np.ndarray]], problem_of: Callab
         _store_fits(found, numbers, np.flatnonzero(whole.counts <= COARSE_POINTS), problem, lines, *solved)
         long = np.flatnonzero(whole.counts > COARSE_POINTS)
         for a, b in batches(whole.counts[long]):
-            there = np.flatnonzero(np.isin(whole.owner, long[a:b]))
+            there = np.concatenate([np.arange(whole.starts[k], whole.starts[k] + whole.counts[k]) for k in long[a:b]])
             state = tuple(np.interp(there, rows, values) for values in solved[2])
             part = problem.with_points(PointGroups(whole.counts[long[a:b]]), x[there], y[there], long[a:b], state)
             _refine(found, numbers[long[a:b]], part, lines, solved[0][long[a:b]], max_misfit)

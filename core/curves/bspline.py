@@ -13,6 +13,7 @@ from scipy.linalg import LinAlgError
 from scipy.linalg.lapack import dpbsv
 from scipy.sparse import csc_matrix, csr_matrix
 
+from ..common.parallel import check_cancelled
 from .base import TabulatedCurve
 from .batched_lsq import batches
 from .curve_fit import CurveFit, bic_lower_bound, checked_points
@@ -229,6 +230,7 @@ def fit_splines(lines: Sequence[tuple[np.ndarray, np.ndarray]], along: Sequence[
     selections = [_SplineSelection(*checked_points(x, y, 4), known, bandwidth) for (x, y), known in zip(lines, along or [None] * len(lines))]
     waiting = [line for line in selections if line.waiting]
     while waiting:
+        check_cancelled()
         some: list[tuple[_SplineSelection, int]] = []
         size = 0
         for line in waiting:
@@ -340,6 +342,7 @@ def smooth_profiles(profiles: Sequence[tuple[np.ndarray, np.ndarray]], bandwidth
         else:
             which.append(k)
     for first, end in batches([len(profiles[k][0]) for k in which], SPLINE_POINTS_PER_BATCH):
+        check_cancelled()
         some = which[first:end]
         for k, smooth in zip(some, _smooth([profiles[k] for k in some], bandwidth)):
             found[k] = smooth

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..common.errors import RoadExtractionError
+from ..common.parallel import check_cancelled
 from .base import Arc, Curve
 from .batched_lsq import COARSE_POINTS, PointGroups
 from .bspline import Spline, fit_spline, fit_splines
@@ -91,6 +92,7 @@ def _ellipses(lines):
 
 
 def _ellipse(x, y):
+    check_cancelled()
     rows = PointGroups([len(x)]).subsampled(COARSE_POINTS)
     try:
         few = fit_ellipse(x[rows], y[rows], MAX_MISFIT)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..common.parallel import check_cancelled
 from .bspline import fit_splines
 from .clothoid import fit_clothoid
 from .curve_fit import CurveFit, checked_points
@@ -113,6 +114,7 @@ def _divide(curve, u, e, sigma, length):
     prices = ELEMENT_COST_FACTOR * np.log(max(len(u), 2)) * np.array([degree + 2 for degree in ELEMENT_DEGREES.values()])
     begun = np.empty(0, np.int64)   # nodes at which an element may begin that is not yet beaten
     for j in range(1, count + 1):
+        check_cancelled()
         begun = begun[(beaten[begun] > j - shortest) & (nodes[begun] >= nodes[j] - MAX_ELEMENT_LENGTH - 1e-9)]
         if np.isfinite(best[j - 1]):
             begun = np.append(begun, j - 1)

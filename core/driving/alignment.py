@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from dataclasses import dataclass
+from heapq import heappop, heappush
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..common.parallel import check_cancelled
 from ..curves.base import Arc
 from ..curves.clothoid import fit_clothoids
 from ..curves.model_selection import MAX_MISFIT, select_each
 from ..curves.segmentation import element_ranges
 from ..markings.cross_section.sections import STATION_STEP
-from .lane_track import BRIDGED
+from .lane_track import BRIDGED, spans_of
 from .settings import MIN_PLACES_PER_FIT
 
 if TYPE_CHECKING:
@@ -60,52 +63,93 @@ def lane_elements(tracks: list[LaneTrack], s: np.ndarray, road: Road) -> list[li
     list, for every track, of lists of Element in order of station
     """
     found: list[list[Element]] = [[] for _ in tracks]
-    groups = []
-    waiting = sorted(range(len(tracks)), key=lambda i: (-len(tracks[i]), i))
-    while waiting:
-        groups.append(_parallel_lanes([(i, tracks[i]) for i in waiting]))
-        waiting = [i for i in waiting if i not in dict(groups[-1][0])]
+    groups: list[tuple[list[tuple[int, float]], np.ndarray, int]] = []
+    order = sorted(range(len(tracks)), key=lambda i: (-len(tracks[i]), i))
+    by_length = [tracks[i] for i in order]
+    waiting, spans = set(range(len(order))), spans_of(by_length)
+    for rank in range(len(order)):
+        if rank in waiting:
+            groups.append(_parallel_lanes(rank, by_length, waiting, spans))
+            check_cancelled()
+    groups = [([(order[rank], offset) for rank, offset in members], axis, first) for members, axis, first in groups]
     for (members, _, _), divided in zip(groups, _divided([_Axis.of(s, axis, first, road) for _, axis, first in groups])):
         for i, offset in members:
             found[i] = _of_lane(tracks[i], offset, divided, s, road)
     return found
 
 
-def _parallel_lanes(tracks):
-    """The longest lane and all that are parallel to it, directly or through others.
+def _parallel_lanes(longest, tracks, waiting, spans):
+    """The longest waiting lane of some in order of length, and all that are parallel to it, directly or through others; they wait no longer.
 
     Returns
     -------
     members : list of (index, offset from the axis)
     axis : (N,) offset of the common axis from the grid station `first` on
     """
-    size = max(track.last for _, track in tracks) + 1
-    total, weight = np.zeros(size), np.zeros(size)
-    members, rest = [], list(tracks)
+    common = _CommonAxis(tracks[longest])
+    members = [(longest, common.offset)]
+    waiting.remove(longest)
     added = True
     while added:
         added = False
-        for i, track in rest:
-            rows = np.arange(track.first, track.last + 1)
-            shared = weight[rows] > 0
-            offset = float(np.median(track.d))
-            if members:
-                if shared.sum() * STATION_STEP < min(MIN_SHARED_LANE_LENGTH, 0.5 * len(track) * STATION_STEP):
-                    continue
-                apart = track.d[shared] - total[rows[shared]] / weight[rows[shared]]
-                offset = float(np.median(apart))
-                if np.percentile(np.abs(apart - offset), 95) > MAX_PARALLEL_DEVIATION:
-                    continue
-            # a bridged place says little, but more than nothing where it is alone
-            w = np.where(track.status == BRIDGED, 1e-3, 1.0)
-            total[rows] += w * (track.d - offset)
-            weight[rows] += w
-            members.append((i, offset))
+        # in order of length; where the axis grows more lanes come into its reach
+        queue = [k for k in spans.near(common.low, common.high).tolist() if k in waiting]
+        queued = set(queue)
+        while queue:
+            k = heappop(queue)
+            offset = common.offset_of(tracks[k])
+            if offset is None:
+                continue
+            low, high = common.low, common.high
+            common.add(tracks[k], offset)
+            members.append((k, offset))
+            waiting.remove(k)
             added = True
-        rest = [(i, track) for i, track in rest if i not in dict(members)]
-    covered = np.flatnonzero(weight)
-    first, last = covered[0], covered[-1]
-    return members, total[first:last + 1] / weight[first:last + 1], int(first)
+            for more in (spans.near(common.low, low), spans.near(high, common.high)):
+                for other in more.tolist():
+                    if other > k and other in waiting and other not in queued:
+                        heappush(queue, other)
+                        queued.add(other)
+    return members, common.total[common.low - common.first:common.high + 1 - common.first] / \
+        common.weight[common.low - common.first:common.high + 1 - common.first], common.low
+
+
+class _CommonAxis:
+    """The weighted mean of the offsets of parallel lanes, each less its own offset from the axis, from grid station `low` to `high`.
+
+    total, weight : of the stations from `first` on
+    """
+
+    def __init__(self, track):
+        self.first = self.low = track.first
+        self.high, self.offset = track.last, float(np.median(track.d))
+        self.total, self.weight = np.zeros((2, len(track)))
+        self.add(track, self.offset)
+
+    def add(self, track, offset):
+        self.low, self.high = min(self.low, track.first), max(self.high, track.last)
+        before, behind = max(self.first - track.first, 0), max(track.last + 1 - self.first - len(self.total), 0)
+        if before or behind:
+            # as much again, so that a long axis is not copied for every lane of it
+            room = [max(more, len(self.total)) if more else 0 for more in (before, behind)]
+            self.total, self.weight = (np.pad(values, room) for values in (self.total, self.weight))
+            self.first -= room[0]
+        own = slice(track.first - self.first, track.last + 1 - self.first)
+        # a bridged place says little, but more than nothing where it is alone
+        w = np.where(track.status == BRIDGED, 1e-3, 1.0)
+        self.total[own] += w * (track.d - offset)
+        self.weight[own] += w
+
+    def offset_of(self, track):
+        """By how much a lane lies beside the axis; None where it is not parallel to it, or where they hardly run together."""
+        begin, end = max(track.first, self.first), min(track.last + 1, self.first + len(self.total))
+        own, there = slice(begin - self.first, end - self.first), slice(begin - track.first, end - track.first)
+        shared = self.weight[own] > 0
+        if shared.sum() * STATION_STEP < min(MIN_SHARED_LANE_LENGTH, 0.5 * len(track) * STATION_STEP):
+            return None
+        apart = track.d[there][shared] - self.total[own][shared] / self.weight[own][shared]
+        offset = float(np.median(apart))
+        return None if np.percentile(np.abs(apart - offset), 95) > MAX_PARALLEL_DEVIATION else offset
 
 
 @dataclass(frozen=True)
@@ -156,47 +200,51 @@ def _without_steps(axes, found):
     2 cm of the places: on the road an arc this short, with no straight around it, is
     half a transition.
     """
-    found, joints = list(found), [{} for _ in axes]
-    open_ones = range(len(axes))
+    found = [list(elements) for elements in found]
+    # of each pair of neighbours the clothoid in place of both, and how far it misses their places
+    joints = [[None] * max(len(elements) - 1, 0) for elements in found]
+    missed = [[np.inf] * len(one) for one in joints]
+    new = [(k, j) for k, one in enumerate(joints) for j in range(len(one))]
+    open_ones = list(range(len(axes)))
     while open_ones:
-        pairs = {k: _steps(found[k]) for k in open_ones}
-        new = [(k, first, last) for k, steps in pairs.items() for _, first, last in steps if (first, last) not in joints[k]]
-        for (k, first, last), joint in zip(new, fit_clothoids([axes[k].part(first, last) for k, first, last in new], MAX_MISFIT)):
-            joints[k][first, last] = joint
-        for k, steps in pairs.items():
-            merged = [(joints[k][first, last].residual_p95, j, joints[k][first, last]) for j, first, last in steps]
-            merged = [one for one in merged if one[0] < MAX_TRANSITION_MISFIT]
-            if merged:
-                _, j, joint = min(merged, key=lambda one: one[:2])
-                found[k] = found[k][:j] + [(found[k][j][0], found[k][j + 1][1], joint)] + found[k][j + 2:]
-            else:
-                pairs[k] = []
-        open_ones = [k for k, steps in pairs.items() if steps]
+        new = [(k, j) for k, j in new if _is_step(found[k][j], found[k][j + 1])]
+        parts = [axes[k].part(found[k][j][0], found[k][j + 1][1]) for k, j in new]
+        for (k, j), joint in zip(new, fit_clothoids(parts, MAX_MISFIT)):
+            joints[k][j], missed[k][j] = joint, joint.residual_p95
+        new, merging, open_ones = [], open_ones, []
+        for k in merging:
+            least = min(missed[k], default=np.inf)
+            if least < MAX_TRANSITION_MISFIT:
+                j = missed[k].index(least)
+                found[k][j:j + 2] = [(found[k][j][0], found[k][j + 1][1], joints[k][j])]
+                del joints[k][j], missed[k][j]
+                beside = [i for i in (j - 1, j) if 0 <= i < len(missed[k])]
+                for i in beside:
+                    missed[k][i] = np.inf
+                new += [(k, i) for i in beside]
+                open_ones.append(k)
     return found
 
 
-def _steps(found):
-    """(number, first, last) of an element that, with the next, may be half a transition each."""
-    steps = []
-    for j in range(len(found) - 1):
-        (first, middle, a), (_, last, b) = found[j:j + 2]
-        arcs = [q for q, length in ((a, middle - first), (b, last - middle))
-                if q.curve.kind == "circle" and length < MIN_ARC_LENGTH]
-        if arcs and not ({a.curve.kind, b.curve.kind} == {"circle", "line"} and last - first > 2 * MIN_ARC_LENGTH):
-            steps.append((j, first, last))
-    return steps
+def _is_step(one, other):
+    """Whether an element may, with the next, be half a transition each."""
+    (first, middle, a), (_, last, b) = one, other
+    short = any(q.curve.kind == "circle" and length < MIN_ARC_LENGTH for q, length in ((a, middle - first), (b, last - middle)))
+    return short and not ({a.curve.kind, b.curve.kind} == {"circle", "line"} and last - first > 2 * MIN_ARC_LENGTH)
 
 
 def _of_lane(track, offset, divided, s, road):
     at = s[track.first:track.last + 1]
     x, y = road.to_map(at, track.d)
     elements = []
-    for k, (start, end, curve) in enumerate(divided):
-        if not isinstance(curve, Arc):
-            continue
+    ends = [end for _, end, _ in divided]
+    for k in range(bisect_left(ends, at[0]), len(divided)):
+        start, end, curve = divided[k]
+        if start > at[-1]:
+            break
         a, b = max(start, at[0]), min(end, at[-1])
-        inside = (at >= a) & (at <= b)
-        if inside.sum() < MIN_PLACES_PER_FIT:
+        inside = slice(np.searchsorted(at, a), np.searchsorted(at, b, side="right"))
+        if not isinstance(curve, Arc) or inside.stop - inside.start < MIN_PLACES_PER_FIT:
             continue
         u, e = curve.parallel(offset).project(x[inside], y[inside])
         arc = curve.parallel(offset + float(np.median(e)))

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from dataclasses import dataclass
+from heapq import heapify, heappop, heappush
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..common.parallel import check_cancelled
 from ..curves.model_selection import fit_curves
 from ..markings.cross_section.sections import STATION_STEP
 from .lane_track import BRIDGED
@@ -65,7 +68,8 @@ def lane_courses(tracks: list[LaneTrack], s: np.ndarray, road: Road, elements: l
         places, station = places[good], station[good]
         for element in of_lane:
             if element.rmse < MAX_SHARED_ARC_RMSE:
-                places = _drawn_to(element, places, station)
+                _draw_to(element, places, station)
+        check_cancelled()
         found.append(Course(places[:, 0], places[:, 1], station, fit.curve, fit.rmse))
     return found
 
@@ -78,36 +82,47 @@ def _known_places(track, s, road):
     return road.to_map(s[track.first:track.last + 1][known], track.d[known])
 
 
-def _drawn_to(element, places, station):
-    """Places moved onto an element, less and less towards its ends unless the lane ends there."""
-    inside = (station >= element.start) & (station <= element.end)
-    if not inside.any():
-        return places
-    share = np.ones(inside.sum())
+def _draw_to(element, places, station):
+    """Move places onto an element, less and less towards its ends unless the lane ends there."""
+    inside = slice(np.searchsorted(station, element.start), np.searchsorted(station, element.end, side="right"))
     at = station[inside]
+    if not len(at):
+        return
+    share = np.ones(len(at))
     if element.start - station[0] > STATION_STEP:
         share = np.minimum(share, (at - element.start) / ARC_BLEND_LENGTH)
     if station[-1] - element.end > STATION_STEP:
         share = np.minimum(share, (element.end - at) / ARC_BLEND_LENGTH)
     u, e = element.arc.project(places[inside, 0], places[inside, 1])
     heading = element.arc.heading(u)
-    moved = places.copy()
-    moved[inside] -= (np.clip(share, 0.0, 1.0) * e)[:, None] * np.c_[-np.sin(heading), np.cos(heading)]
-    return moved
+    places[inside] -= (np.clip(share, 0.0, 1.0) * e)[:, None] * np.c_[-np.sin(heading), np.cos(heading)]
 
 
 def without_short_status(status: np.ndarray) -> np.ndarray:
     """Status along a lane without changes shorter than 5 m: these take the worse of their neighbours."""
     status = status.copy()
-    shortest = int(MIN_STATUS_LENGTH / STATION_STEP)
-    while True:
-        cuts = np.r_[0, np.flatnonzero(np.diff(status)) + 1, len(status)]
-        lengths = np.diff(cuts)
-        k = int(np.argmin(lengths))
-        if len(lengths) == 1 or lengths[k] >= shortest:
-            return status
-        beside = [status[i] for i in (cuts[k] - 1, cuts[k + 1]) if 0 <= i < len(status)]
-        status[cuts[k]:cuts[k + 1]] = max(beside)
+    cuts = [0, *(np.flatnonzero(np.diff(status)) + 1).tolist(), len(status)]
+    ends = dict(zip(cuts[:-1], cuts[1:]))       # of the pieces, by where they begin,
+    begins = dict(zip(cuts[1:], cuts[:-1]))     # and the other way
+    # the shortest first; a piece that has grown since is there again
+    queue = [(end - begin, begin) for begin, end in ends.items()]
+    heapify(queue)
+    while len(ends) > 1:
+        length, begin = heappop(queue)
+        if ends.get(begin, -1) - begin != length:
+            continue
+        if length >= int(MIN_STATUS_LENGTH / STATION_STEP):
+            break
+        end = ends.pop(begin)
+        beside = [status[k] for k in (begin - 1, end) if 0 <= k < len(status)]
+        status[begin:end] = max(beside)
+        if begin and status[begin - 1] == status[begin]:
+            begin = begins[begin]
+        if end < len(status) and status[end] == status[begin]:
+            end = ends.pop(end)
+        ends[begin], begins[end] = end, begin
+        heappush(queue, (end - begin, begin))
+    return status
 
 
 def status_pieces(status: np.ndarray, first: int, s: np.ndarray) -> list[tuple[int, float, float]]:
@@ -120,7 +135,9 @@ def status_pieces(status: np.ndarray, first: int, s: np.ndarray) -> list[tuple[i
 
 def element_of(elements: list[Element], start: float, end: float) -> Element | None:
     """The arc or straight that covers nine tenths of a piece between two stations, or None."""
-    for element in elements:
+    for element in elements[bisect_left([one.end for one in elements], start):]:
+        if element.start > end:
+            break
         if min(end, element.end) - max(start, element.start) >= MIN_ELEMENT_SHARE * (end - start):
             return element
     return None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left, bisect_right
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -39,11 +40,15 @@ def connectors_on_road(s: np.ndarray, tracks: list[LaneTrack], heights: list[np.
     for way in (1, -1):
         ends = [(track, z, track.last if way > 0 else track.first) for track, z in zip(tracks, heights) if track.direction == way]
         begins = [(track, z, track.first if way > 0 else track.last) for track, z in zip(tracks, heights) if track.direction == way]
+        by_station = sorted(range(len(begins)), key=lambda k: begins[k][2])
+        stations, reach = [begins[k][2] for k in by_station], int(LONGEST_CONNECTOR / STATION_STEP)
         for before, z_before, a in ends:
             for p in np.flatnonzero(directions == way).tolist():
                 if not abs(driven[p, a] - before.at(a)[0]) < before.at(a)[1] / 2:
                     continue
-                found = [(way * (b - a), after, z, b) for after, z, b in begins if NEXT_LANE_GAP < way * (b - a) * STATION_STEP < LONGEST_CONNECTOR
+                near = sorted(by_station[slice(bisect_left(stations, a - reach), bisect_right(stations, a + reach))])
+                found = [(way * (b - a), after, z, b) for after, z, b in map(begins.__getitem__, near)
+                         if NEXT_LANE_GAP < way * (b - a) * STATION_STEP < LONGEST_CONNECTOR
                          and abs(driven[p, b] - after.at(b)[0]) < after.at(b)[1] / 2]
                 if not found:
                     continue
@@ -116,6 +121,9 @@ def connectors_between_roads(lanes: dict[int, RoadLanes], frame: RoadFrame, rows
     rows of Lanes, each of the road that is left; a connector names the piece of lane that it leads to
     """
     found: dict[tuple[int, int, int, int], dict[str, Any]] = {}
+    rows_of: dict[int, dict[int, list[dict[str, Any]]]] = {}   # by road and lane
+    for row in rows:
+        rows_of.setdefault(row["road"], {}).setdefault(row["lane"], []).append(row)
     for before, after in zip(frame.passes[:-1], frame.passes[1:]):
         on = 0 <= after.time[0] - before.time[-1] <= DRIVEN_ON
         if not on or before.road == after.road or before.road not in lanes or after.road not in lanes:
@@ -126,12 +134,13 @@ def connectors_between_roads(lanes: dict[int, RoadLanes], frame: RoadFrame, rows
         area = _turn(left, entered, before, after, lanes, frame)
         if area is None:
             continue
-        number = 1 + max(row["lane"] for row in [*rows, *found.values()] if row["road"] == before.road)
+        number = 1 + max(rows_of[before.road])
         area.update(lane=number, lane_id=f"{before.road}.{number}.1",
-                    successors=(_piece_at(rows, after.road, entered.lane, lanes[after.road].s[entered.at])["lane_id"],))
-        piece = _piece_at(rows, before.road, left.lane, lanes[before.road].s[left.at])
+                    successors=(_piece_at(rows_of[after.road][entered.lane], lanes[after.road].s[entered.at])["lane_id"],))
+        piece = _piece_at(rows_of[before.road][left.lane], lanes[before.road].s[left.at])
         piece["successors"] += (area["lane_id"],)
         found[key] = area
+        rows_of[before.road][number] = [area]
     return list(found.values())
 
 
@@ -183,7 +192,6 @@ def _turn(left, entered, before, after, lanes, frame):
     return _row(before.road, left.track, entered.track, sides, wide, station=start, end=start + before.direction * float(along[-1]), first=d, last=d)
 
 
-def _piece_at(rows, road, lane, station):
-    """The row of a lane that ends nearest a station."""
-    return min((row for row in rows if row["road"] == road and row["lane"] == lane),
-               key=lambda row: min(abs(row["station"] - station), abs(row["end"] - station)))
+def _piece_at(rows, station):
+    """The row of those of a lane that ends nearest a station."""
+    return min(rows, key=lambda row: min(abs(row["station"] - station), abs(row["end"] - station)))

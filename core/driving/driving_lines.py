@@ -69,7 +69,8 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
     paint = marking_lines.scatter()
     curbs, pavement = (sections_of_edges(edges), sections_of_pavement(edges)) if edges is not None else (None, {})
     estimates = estimate_roads(sections_of_lines(marking_lines), frame, settings.lane_width or country(settings.country).usual_lane,
-                               settings.traffic_side, curbs, markings, road_points, width_asked=bool(settings.lane_width), pavement=pavement)
+                               settings.traffic_side, curbs, markings, road_points, width_asked=bool(settings.lane_width), pavement=pavement,
+                               progress=progress.part(0.0, 0.4))
     progress.report(0.4)
     if estimates.roads and not estimates.sure:
         progress.warn(f"The survey hardly shows on which side traffic drives; the {estimates.side} was taken. Set Side of traffic if that is wrong.")
@@ -77,10 +78,13 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
         progress.warn("The vehicle drove against the arrows painted in its lanes; lanes lead the way it drove. Look at the times of the trajectory, "
                       "or set Side of traffic if the arrows are right.")
     for count, (number, one) in enumerate(estimates.roads.items()):
+        part = progress.part(0.4 + 0.6 * count / len(estimates.roads), 0.4 + 0.6 * (count + 1) / len(estimates.roads))
         tracks = road_lanes(one, settings, estimates.lane_width)
         s = one.lines.s
+        part.report(0.25)
         alignment = lane_elements(tracks, s, frame.roads[number])
-        heights = lane_heights(one.lines, road_points, number, tracks)
+        part.report(0.5)
+        heights = lane_heights(one.lines, road_points, number, tracks, part.part(0.5, 0.7))
         if any(np.isnan(z).any() for z in heights):
             progress.warn("Neither the marking lines nor road points have heights; the trajectory's are used.")
             heights = [frame.track_height(number, s[t.first:t.last + 1]) for t in tracks]
@@ -89,10 +93,11 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
             sigma = lane_sigma(track, course, frame.roads[number], one, paint, frame.pass_sigma.get(number, 0.0))
             rows += [dict(row, road=number, lane=lane) for row in _lane_pieces(track, track.direction, course, elements, one.lines, z, sigma)]
             arcs += [dict(row, road=number, lane=lane) for row in _lane_curves(track.direction, elements)]
+            part.report(0.8 + 0.1 * lane / len(tracks))
         tracks = [track.without_jumps(s) for track in tracks]
         areas += lane_areas(one, curbs.get(number) if curbs else None, tracks, heights, frame, number, pavement.get(number))
         lanes[number] = RoadLanes(s, tracks, heights)
-        progress.report(0.4 + 0.6 * (count + 1) / len(estimates.roads))
+        part.report(1.0)
     areas += connectors_between_roads(lanes, frame, areas)
     lines = driving_lines_of(rows, marking_lines.crs)
     _report_lengths(lines, estimates.side, progress)
@@ -109,11 +114,18 @@ def road_lanes(road: EstimatedRoad, settings: DrivingSettings, lane_width: float
     lane_width : metres, of lanes beside which only one line is painted
     """
     tracks = estimated_lanes(road.boundaries, road.estimate, lane_width, settings.line_distance)
-    tracks = connect(tracks, road.lines, settings.max_bridge, settings.max_inferred, road.boundaries.seen[road.boundaries.painted].any(0))
+    tracks = connect(tracks, road.lines, settings.max_bridge, settings.max_inferred, _shown(road.boundaries))
     known = [track.without_doubtful_ends() for track in laid_out(tracks)]
     tracks = [replace(track, confidence=confidence_of(track.confidence, track.directed)) for track in known
               if track is not None and len(track) * STATION_STEP >= settings.shortest]
     return sorted(tracks, key=lambda track: (track.first, float(track.d[0])))
+
+
+def _shown(boundaries):
+    """(K,) bool, whether any line is seen at a grid station."""
+    spans, found = boundaries.d.spans, np.zeros(len(boundaries.s), bool)
+    found[spans.station[boundaries.seen.values & boundaries.painted[spans.owner]]] = True
+    return found
 
 
 def _lane_pieces(track: LaneTrack, way: int, course: Course, elements: list[Element], road_lines: CrossSections,
@@ -143,13 +155,12 @@ def _patterns(track, rows, way, lines):
     A line may be drawn otherwise farther on: the pattern is that of most places of the stretch.
     """
     names, columns = [*lines.names, "none"], np.arange(track.first, track.first + len(track))[rows]
-    usual = np.array([lines.names.index(pattern) for pattern in lines.patterns], int)
     found = []
     for side in (track.left[rows], track.right[rows])[::way]:
         painted = (side >= 0) & (side < len(lines.d))
         row = np.where(painted, side, 0)
         drawn = lines.drawn[row, columns]
-        drawn = np.where(painted, np.where(drawn < 0, usual[row], drawn), len(lines.names))
+        drawn = np.where(painted, np.where(drawn < 0, lines.usual[row], drawn), len(lines.names))
         found.append(names[np.bincount(drawn).argmax()] or "none")
     return "|".join(found)
 
@@ -157,7 +168,7 @@ def _patterns(track, rows, way, lines):
 def _between(course, start, end, code_first, code_last):
     """Vertices of a course from one station to another, with a vertex of its own at every cut."""
     s = course.s
-    inside = (s > start + 0.02) & (s < end - 0.02)
+    inside = slice(np.searchsorted(s, start + 0.02, side="right"), np.searchsorted(s, end - 0.02))
     at = np.r_[s[0] if code_first else start, s[inside], s[-1] if code_last else end]
     at = at[np.r_[True, np.diff(at) > 0]]
     return np.interp(at, s, course.x), np.interp(at, s, course.y), at

@@ -9,8 +9,10 @@ from scipy.ndimage import gaussian_filter1d, median_filter
 
 from ..common.order_statistics import order_by
 from ..common.parallel import ordered_map
+from ..common.progress import Progress
 from ..markings.cross_section.sections import STATION_STEP
 from ..survey.store.records import COORDINATE_SCALE
+from .lane_track import spans_of
 
 if TYPE_CHECKING:
     from ..markings.cross_section.sections import CrossSections
@@ -25,7 +27,8 @@ HEIGHT_SMOOTHING_SIGMA = 2.0          # m: a car does not follow a pothole
 HEIGHT_WINDOW = 20.0                  # m of road points in memory at a time
 
 
-def road_heights(road_points: RoadPoints, road: int, s: np.ndarray, tracks: list[LaneTrack]) -> list[np.ndarray]:
+def road_heights(road_points: RoadPoints, road: int, s: np.ndarray, tracks: list[LaneTrack],
+                 progress: Progress = Progress()) -> list[np.ndarray]:
     """Median height of road points within 0.3 m of the places along lanes.
 
     Parameters
@@ -34,18 +37,18 @@ def road_heights(road_points: RoadPoints, road: int, s: np.ndarray, tracks: list
     road : number
     s : (K,) grid stations
     tracks : list of LaneTrack
+    progress : Progress
 
     Returns
     -------
     list of (N,) z, NaN where there are fewer than 3 points, one array per track
     """
-    found = [np.full(len(track), np.nan) for track in tracks]
+    found, spans = [np.full(len(track), np.nan) for track in tracks], spans_of(tracks)
     size, length = int(HEIGHT_WINDOW / STATION_STEP), road_points.store.section_length
 
     def of_window(first):
         last = min(first + size, len(s)) - 1
-        inside = [(k, max(first, track.first), min(last, track.last)) for k, track in enumerate(tracks)]
-        inside = [row for row in inside if row[1] <= row[2]]
+        inside = [(k, max(first, tracks[k].first), min(last, tracks[k].last)) for k in spans.near(first, last).tolist()]
         if not inside:
             return []
         near = [int(np.floor((s[k] + side * STATION_STEP / 2) / length)) for k, side in ((first, -1), (last, 1))]
@@ -54,7 +57,7 @@ def road_heights(road_points: RoadPoints, road: int, s: np.ndarray, tracks: list
         heights = _heights([records for records in sections if len(records)], s[first:last + 1], lanes)
         return [(k, a - tracks[k].first, z) for (k, a, _), z in zip(inside, heights)]
 
-    for heights in ordered_map(of_window, range(0, len(s), size)):
+    for heights in ordered_map(of_window, range(0, len(s), size), progress):
         for k, first, z in heights:
             found[k][first:first + len(z)] = z
     return found
@@ -138,15 +141,18 @@ class _Near:
 
 def line_heights(lines: CrossSections, first: int, d: np.ndarray) -> np.ndarray:
     """(N,) height between the marking lines (or beside them) at offsets d from grid station `first` on."""
-    window = slice(first, first + len(d))
-    z, at = lines.z[:, window], lines.d[:, window]
-    known = np.isfinite(z) & np.isfinite(at)
-    left = np.where(known & (at >= d), at - d, np.inf)
-    right = np.where(known & (at < d), d - at, np.inf)
-    i, j = left.argmin(0), right.argmin(0)
-    columns = np.arange(len(d))
-    a, b = left[i, columns], right[j, columns]
-    za, zb = z[i, columns], z[j, columns]
+    spans, end = lines.d.spans, first + len(d)
+    # the nearest line on either side, and its height
+    a, b, za, zb = np.repeat([[np.inf], [np.inf], [np.nan], [np.nan]], len(d), axis=1)
+    for row in spans.near(first, end - 1).tolist():
+        own = spans.values_of(row, first, end)
+        begin = max(int(spans.first[row]) - first, 0)
+        inside = slice(begin, begin + own.stop - own.start)
+        at, z = lines.d.values[own], lines.z.values[own]
+        for sign, away, height in ((1, a[inside], za[inside]), (-1, b[inside], zb[inside])):
+            apart = sign * (at - d[inside])
+            nearer = np.isfinite(z) & (apart < away) & ((apart >= 0) if sign > 0 else (apart > 0))
+            away[nearer], height[nearer] = apart[nearer], z[nearer]
     with np.errstate(invalid="ignore"):
         between = (za * b + zb * a) / (a + b)
     return np.where(np.isfinite(a) & np.isfinite(b), between, np.where(np.isfinite(a), za, np.where(np.isfinite(b), zb, np.nan)))
@@ -168,9 +174,10 @@ def smooth_heights(z: np.ndarray) -> np.ndarray:
     return gaussian_filter1d(np.r_[head, z, tail], HEIGHT_SMOOTHING_SIGMA / STATION_STEP)[pad:pad + len(z)]
 
 
-def lane_heights(lines: CrossSections, road_points: RoadPoints | None, road: int, tracks: list[LaneTrack]) -> list[np.ndarray]:
+def lane_heights(lines: CrossSections, road_points: RoadPoints | None, road: int, tracks: list[LaneTrack],
+                 progress: Progress = Progress()) -> list[np.ndarray]:
     """Local z along every lane, (N,) each: from road points where there are any, else from the marking lines beside it."""
-    measured = road_heights(road_points, road, lines.s, tracks) if road_points is not None else [None] * len(tracks)
+    measured = road_heights(road_points, road, lines.s, tracks, progress) if road_points is not None else [None] * len(tracks)
     return [_height(z, line_heights(lines, track.first, track.d)) for z, track in zip(measured, tracks)]
 
 

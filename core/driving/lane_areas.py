@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..common.parallel import check_cancelled
 from ..markings.cross_section.sections import STATION_STEP, CrossSections
 from ..markings.cross_section.weights import CENTRE_LINE, CURB, EDGE_LINE, HATCHING, ISLAND, LANE_LINE, OTHER_LINE, SURFACE
 from .centreline import status_pieces, without_short_status
@@ -37,6 +38,7 @@ def lane_areas(road: EstimatedRoad, curbs: CrossSections | None, tracks: list[La
     """
     rows = []
     for lane, (track, z) in enumerate(zip(tracks, heights), start=1):
+        check_cancelled()
         status = without_short_status(track.status)
         for code, start, end in status_pieces(status, track.first, road.lines.s):
             part = slice(*np.searchsorted(road.lines.s[track.first:track.last + 1], [start, end + STATION_STEP / 2]))
@@ -96,8 +98,7 @@ def _border(road, curbs, rows, separates, columns):
         what = separates[rows == row]
         return f"line {number}", KIND_OF_BORDER.get(int(np.bincount(what[what >= 0]).argmax()) if (what >= 0).any() else EDGE_LINE), pattern
     if made_of in (CURB, ISLAND) and curbs is not None:
-        numbers = curbs.number[row - len(road.lines.d)]
-        return f"edge {int(numbers.max())}", "curb", ""
+        return f"edge {int(curbs.number.row(row - len(road.lines.d)).max())}", "curb", ""
     if made_of == HATCHING:
         return "none", "hatch", ""
     return ("none", "pavement", "") if made_of == SURFACE else NO_BORDER
@@ -105,13 +106,26 @@ def _border(road, curbs, rows, separates, columns):
 
 def follow(rows: list[dict[str, Any]]) -> None:
     """Name in every row what follows it in the direction of travel."""
+    begins = {way: _begins(rows, way) for way in (1, -1)}
     for row in rows:
-        way = row["direction"]
+        row["successors"] = ()
+        if not (way := row["direction"]):
+            continue
         at, d = (row["end"], row["last"]) if way > 0 else (row["station"], row["first"])
+        (stations, of), reach = begins[way], NEXT_LANE_GAP + STATION_STEP
+        near = [rows[k] for k in sorted(of[slice(*np.searchsorted(stations, [at - reach, at + reach]))])]
         row["successors"] = tuple(
-            other["lane_id"] for other in rows if way and other is not row and other["direction"] == way
+            other["lane_id"] for other in near if other is not row
             and -STATION_STEP <= way * ((other["station"] if way > 0 else other["end"]) - at) <= NEXT_LANE_GAP
             and abs((other["first"] if way > 0 else other["last"]) - d) < max(row["width"], other["width"]) / 2)
+
+
+def _begins(rows, way):
+    """Stations, ascending, at which the lanes of a direction begin, and the rows they are of."""
+    of = [k for k, row in enumerate(rows) if row["direction"] == way]
+    stations = np.array([rows[k]["station" if way > 0 else "end"] for k in of], float)
+    order = np.argsort(stations, kind="stable")
+    return stations[order], np.array(of, int)[order].tolist()
 
 
 def make_lanes(rows: list[dict[str, Any]], crs: str) -> Lanes:

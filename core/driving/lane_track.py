@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..common.parallel import check_cancelled
+from ..markings.cross_section.row_table import RowSpans
 from ..markings.cross_section.sections import STATION_STEP
 
 if TYPE_CHECKING:
@@ -63,9 +65,15 @@ class LaneTrack:
         """Rows a to b (exclusive) as a track of their own."""
         return replace(self, first=self.first + a, **self._each(lambda name, v: v[a:b]))
 
+    @staticmethod
+    def joined(parts: Sequence[LaneTrack]) -> LaneTrack:
+        """Tracks of which each begins at the next station after the one before, as one."""
+        first = parts[0]
+        return first if len(parts) == 1 else replace(first, **first._each(lambda name, v: np.concatenate([getattr(part, name) for part in parts])))
+
     def followed_by(self, other: LaneTrack) -> LaneTrack:
         """This track and one that begins at the next station."""
-        return replace(self, **self._each(lambda name, v: np.concatenate([v, getattr(other, name)])))
+        return LaneTrack.joined([self, other])
 
     def stretched(self, first: int, d: np.ndarray, width: np.ndarray, row: int) -> LaneTrack:
         """A track from station `first` on that is in all but its place and width as this one is at a row."""
@@ -123,8 +131,9 @@ def led_over(s: np.ndarray, offset: np.ndarray, rows: np.ndarray) -> np.ndarray:
         at = (s[k] + s[k + 1]) / 2
         lead = min(JUMP_LEAD * abs(jumps[k]), LONGEST_LEAD, 2 * (at - s[0]), 2 * (s[-1] - at))
         if lead > 2 * STATION_STEP:
-            share = np.clip((s - at) / lead + 0.5, 0.0, 1.0)
-            found += jumps[k] * (share**2 * (3 - 2 * share) - (s > at))
+            near = slice(*np.searchsorted(s, [at - lead, at + lead]))
+            share = np.clip((s[near] - at) / lead + 0.5, 0.0, 1.0)
+            found[near] += jumps[k] * (share**2 * (3 - 2 * share) - (s[near] > at))
         elif at - s[0] < s[-1] - at:   # the place or two at an end lie aside
             found[:k + 1] += jumps[k]
         else:
@@ -166,13 +175,16 @@ def connect(tracks: list[LaneTrack], lines: CrossSections, most_bridged: float, 
 
 def _connected(tracks, lines, most_bridged, most_inferred, shown):
     tracks = sorted(tracks, key=lambda t: (t.first, float(t.d[0])))
-    reach = int(max(most_bridged, most_inferred) / STATION_STEP)
+    reach, near = int(max(most_bridged, most_inferred) / STATION_STEP), int(GAP_NEIGHBOURHOOD / STATION_STEP)
+    spans = spans_of(tracks)
     firsts = np.array([track.first for track in tracks])
     pairs = []
     for i, a in enumerate(tracks):
+        check_cancelled()
         low, high = np.searchsorted(firsts, [a.last + 1, a.last + 1 + reach + 1])
         for j in range(low, high):
-            join = _join(a, tracks[j], tracks, lines, most_bridged, most_inferred, shown)
+            around = [tracks[k] for k in spans.near(a.last - near, tracks[j].first + near).tolist()]
+            join = _join(a, tracks[j], around, lines, most_bridged, most_inferred, shown)
             if join is not None:
                 pairs.append((tracks[j].first - a.last, abs(join[0]), i, j, join[1]))
     after, before, fill = {}, set(), {}
@@ -184,18 +196,22 @@ def _connected(tracks, lines, most_bridged, most_inferred, shown):
     for i in range(len(tracks)):
         if i in before:
             continue
-        track = tracks[i]
+        parts = [tracks[i]]
         while i in after:
-            if fill[i] is not None:
-                track = track.followed_by(fill[i])
+            parts += ([] if fill[i] is None else [fill[i]]) + [tracks[after[i]]]
             i = after[i]
-            track = track.followed_by(tracks[i])
-        joined.append(track)
+        joined.append(LaneTrack.joined(parts))
     return joined
 
 
+def spans_of(tracks: Sequence[LaneTrack]) -> RowSpans:
+    """The stations that each track runs over, to ask which are near a place."""
+    return RowSpans(np.array([track.first for track in tracks], int), np.array([len(track) for track in tracks], int),
+                    max((track.last + 1 for track in tracks), default=0))
+
+
 def _join(a, b, tracks, lines, most_bridged, most_inferred, shown):
-    """(lateral jump, the LaneTrack between or None), or None where a and b are not one lane."""
+    """(lateral jump, the LaneTrack between or None), or None where a and b are not one lane; `tracks` are those about the gap, by station."""
     if a.direction != b.direction:
         return None
     count = b.first - a.last - 1
@@ -235,8 +251,10 @@ def _hermite(a, b, count):
 
 def _guide(a, b, lines, others):
     """Course (N,) and status (N,) of what leads through a gap: the nearest measured line, else the nearest lane; or None."""
-    window = slice(a.last, b.first + 1)
-    through = np.flatnonzero((np.isfinite(lines.d[:, window]) & lines.seen[:, window]).all(1))
+    window, spans = slice(a.last, b.first + 1), lines.d.spans
+    through = spans.near(a.last, b.first)
+    through = through[(spans.first[through] <= a.last) & (spans.end[through] > b.first)]
+    through = through[(np.isfinite(lines.d[through, window]) & lines.seen[through, window]).all(1)]
     if len(through):
         nearest = through[np.argmin(np.abs(lines.d[through, a.last] - a.d[-1]))]
         return lines.d[nearest, window], np.full(b.first + 1 - a.last, INFERRED)

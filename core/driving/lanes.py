@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.ndimage import binary_dilation
 
+from ..common.parallel import check_cancelled
 from ..markings.cross_section.candidates import STATIONS_OF_CELL, Boundaries
 from ..markings.cross_section.estimate import LaneSpan, RoadEstimate, lane_spans
 from ..markings.cross_section.lane_width import beside_island, beside_surface_end, lane_places
@@ -16,6 +17,7 @@ from .lane_track import BRIDGED, INFERRED, MAX_LANE_JUMP_SHARE, MEASURED, LaneTr
 BESIDE_ONE, BETWEEN_WORN, DIVIDED, BETWEEN_LINES = 1, 2, 3, 4   # ranks of lanes by how sure their place is; those between two lines are not moved
 FULL_ROOM = 0.05        # m: less of a strip than that is not left over
 STEP_LENGTH = 10.0      # m along which a step between two stretches of a lane is evened out
+STATIONS_OF_STEP = int(STEP_LENGTH / STATION_STEP) + STATIONS_OF_CELL   # of a lane's end that are looked at where it goes on
 
 
 def estimated_lanes(boundaries: Boundaries, estimate: RoadEstimate, lane_width: float, line_distance: float = 0.0) -> list[LaneTrack]:
@@ -27,7 +29,7 @@ def estimated_lanes(boundaries: Boundaries, estimate: RoadEstimate, lane_width: 
     estimate : RoadEstimate over them
     lane_width : metres, of a lane beside which only one line is painted; line_distance : metres from that line to its middle, 0 for half of its width
     """
-    open_tracks: list[tuple[LaneTrack, np.ndarray]] = []
+    open_tracks: list[_OpenLane] = []
     closed: list[LaneTrack] = []
     spans: dict[int, list[LaneSpan]] = {}
     for span in lane_spans(estimate):
@@ -35,9 +37,41 @@ def estimated_lanes(boundaries: Boundaries, estimate: RoadEstimate, lane_width: 
     for i, (first, last) in enumerate(zip(estimate.candidates.first.tolist(), estimate.candidates.last.tolist())):
         parts = [part for span in spans.get(i, []) for part in [_part(boundaries, span, first, last, lane_width, line_distance)] if part is not None]
         follows = _followed(open_tracks, parts, first)
-        closed += [track for k, (track, _) in enumerate(open_tracks) if k not in follows.values()]
-        open_tracks = [_appended(open_tracks[follows[k]], part) if k in follows else (part, np.zeros(2)) for k, part in enumerate(parts)]
-    return [_to_its_ends(track, boundaries) for track in closed + [track for track, _ in open_tracks]]
+        closed += [LaneTrack.joined(one.parts) for k, one in enumerate(open_tracks) if k not in follows.values()]
+        open_tracks = [_appended(open_tracks[follows[k]], part) if k in follows else _OpenLane([part], np.zeros(2)) for k, part in enumerate(parts)]
+        check_cancelled()
+    return [_to_its_ends(track, boundaries) for track in closed + [LaneTrack.joined(one.parts) for one in open_tracks]]
+
+
+@dataclass
+class _OpenLane:
+    """A lane as far as it was followed: LaneTracks one after the other, and by how much its end is moved, m across and of width."""
+
+    parts: list[LaneTrack]
+    moved: np.ndarray
+
+    def tail(self, stations: int) -> LaneTrack:
+        """The last stations of the lane, so many of them as there are, which become its last part."""
+        taken: list[LaneTrack] = []
+        while self.parts and stations > 0:
+            part = self.parts.pop()
+            cut = max(len(part) - stations, 0)
+            if cut:
+                self.parts.append(part.part(0, cut))
+            taken.insert(0, part.part(cut, len(part)))
+            stations -= len(part) - cut
+        self.parts.append(LaneTrack.joined(taken))
+        return self.parts[-1]
+
+    def since_surer(self, rank: int) -> int:
+        """How many stations at its end there are from the last one on whose rank is above `rank`."""
+        count = 0
+        for part in reversed(self.parts):
+            surer = np.flatnonzero(_rank(part) > rank)
+            count += len(part) - (int(surer[-1]) if len(surer) else 0)
+            if len(surer):
+                break
+        return count
 
 
 def _to_its_ends(track, boundaries):
@@ -82,22 +116,24 @@ def _appended(found, part):
 
     It is moved as far as it is less sure: a stretch between two that are sure ends in both. A border that is a line in both stays on it. Of two
     that are as sure as each other the second stays moved as the first was (`moved`, m across and of width), and what else they differ by, as
-    where a line between them steps aside, is evened out there. `found` and what is given are the track and by how much its end is moved.
+    where a line between them steps aside, is evened out there. What is given is the lane with the part.
     """
-    track, moved = found
+    track, moved = found.tail(STATIONS_OF_STEP), found.moved
     step = np.array([track.d[-1] - part.d[0], track.width[-1] - part.width[0]])
     before, after = _rank(track), _rank(part)
     before, after = _with_lines_up_to(before[::-1], after)[::-1], _with_lines_up_to(after, before[::-1])
     if after[0] > before[-1]:
-        return _shifted(track, -step, _held(before[::-1])[::-1]).followed_by(part), np.zeros(2)
+        # the lane is moved back to where its place was surer
+        track = found.tail(found.since_surer(before[-1]))
+        return _OpenLane([*found.parts[:-1], _shifted(track, -step, _held(_rank(track)[::-1])[::-1]), part], np.zeros(2))
     held = _held(after)
     if after[0] < before[-1] or after[0] == BESIDE_ONE:
-        return track.followed_by(_shifted(part, step, held)), step * held[-1]
+        return _OpenLane([*found.parts, _shifted(part, step, held)], step * held[-1])
     if after[0] == BETWEEN_LINES:
-        return track.followed_by(part), np.zeros(2)
+        return _OpenLane([*found.parts, part], np.zeros(2))
     own = (step - moved) / 2
     track = _shifted(track, -own, _evened(before[::-1])[::-1])
-    return track.followed_by(_shifted(_shifted(part, moved, held), own, _evened(after))), moved * held[-1]
+    return _OpenLane([*found.parts[:-1], track, _shifted(_shifted(part, moved, held), own, _evened(after))], moved * held[-1])
 
 
 def _with_lines_up_to(rank, other):
@@ -163,13 +199,13 @@ def _filled(values):
 def _followed(found, parts, first):
     """{part: track} of the parts that go on as a track which ends right before them, one to one, the nearest first.
 
-    found : (track, by how much its end is moved) of `_appended`. An end that was moved to meet a surer stretch before it is no farther from
-    what follows than where it was seen
+    found : list of _OpenLane. An end that was moved to meet a surer stretch before it is no farther from what follows than where it was seen
     """
     pairs = []
     for k, part in enumerate(parts):
-        for j, (track, moved) in enumerate(found):
-            step = min(abs(part.d[0] - track.d[-1]), abs(part.d[0] - track.d[-1] + moved[0]))
+        for j, one in enumerate(found):
+            track = one.parts[-1]
+            step = min(abs(part.d[0] - track.d[-1]), abs(part.d[0] - track.d[-1] + one.moved[0]))
             if track.last == first - 1 and track.direction == part.direction \
                     and step < MAX_LANE_JUMP_SHARE * min(part.width[0], track.width[-1]):
                 pairs.append((step, k, j))

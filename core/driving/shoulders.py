@@ -9,7 +9,7 @@ import numpy as np
 from ..common.runs import mask_runs
 from ..markings.cross_section.sections import STATION_STEP, CrossSections
 from ..markings.cross_section.weights import EDGE_LINE
-from .lane_track import LaneTrack
+from .lane_track import LaneTrack, spans_of
 
 if TYPE_CHECKING:
     from ..markings.cross_section.roads import EstimatedRoad
@@ -40,24 +40,20 @@ def shoulders(road: EstimatedRoad, tracks: list[LaneTrack], borders: list[list[n
     rows of Lanes without numbers, left and right along the road; each has the vertices of the lane beside it
     """
     s, lines = road.lines.s, road.lines
-    at = np.rint((s - pavement.s[0]) / STATION_STEP).astype(int)
-    known = (at >= 0) & (at < len(pavement.s))
-    at = np.clip(at, 0, len(pavement.s) - 1)
-    rows = []
+    shift = int(np.rint((s[0] - pavement.s[0]) / STATION_STEP))   # stations by which the grid of the lines begins behind that of the pavement
+    rows, spans = [], spans_of(tracks)
     for track, (left, right) in zip(tracks, borders):
         columns = np.arange(track.first, track.last + 1)
         for sign, own, use, border in ((1, track.left, track.left_use, left), (-1, track.right, track.right_use, right)):
             inner = track.d + sign * track.width / 2
-            away = sign * (np.where(known[columns], pavement.d[:, at[columns]], np.nan) - inner)
-            away = np.where((away >= STRIP_WIDTH[0]) & (away <= STRIP_WIDTH[1]), away, np.inf)
-            nearest = np.argmin(away, axis=0)
-            width = away[nearest, np.arange(len(columns))]
-            wide = np.isfinite(width) & (use == EDGE_LINE) & (own >= 0) & (own < len(lines.d)) & ~_taken(tracks, track, inner, sign)
+            nearest, width = _nearest_edge(pavement, columns[0] + shift, inner, sign)
+            others = [tracks[k] for k in spans.near(track.first, track.last).tolist()]
+            wide = np.isfinite(width) & (use == EDGE_LINE) & (own >= 0) & (own < len(lines.d)) & ~_taken(others, track, inner, sign)
             for a, b in mask_runs(wide):
                 if (b - a - 1) * STATION_STEP < SHORTEST_SHOULDER or np.median(width[a:b]) < LEAST_SHOULDER:
                     continue
                 part, edge = slice(a, b), nearest[a:b]
-                places = at[columns[part]]
+                places = columns[part] + shift
                 x, y = frame.roads[number].to_map(s[columns[part]], inner[part] + sign * width[part])
                 z = pavement.z[edge, places]
                 outer = np.c_[x, y, np.where(np.isfinite(z), z, border[part, 2])]
@@ -72,6 +68,18 @@ def shoulders(road: EstimatedRoad, tracks: list[LaneTrack], borders: list[list[n
                     status="measured" if seen else "inferred", confidence=float(track.confidence[part].mean()), station=float(s[columns[a]]),
                     end=float(s[columns[b - 1]]), first=float(middle[0]), last=float(middle[-1]), width=float(np.median(width[part]))))
     return rows
+
+
+def _nearest_edge(pavement, first, inner, sign):
+    """Which edge of the pavement lies nearest beside a border, (N,) m from station `first` on, and how far, m; inf where none does."""
+    nearest, width = np.zeros(len(inner), int), np.full(len(inner), np.inf)
+    spans = pavement.d.spans
+    for row in spans.near(int(first), int(first) + len(inner) - 1).tolist():
+        own = slice(max(int(spans.first[row] - first), 0), min(int(spans.end[row] - first), len(inner)))
+        away = sign * (pavement.d[row, own.start + first:own.stop + first] - inner[own])
+        nearer = (away >= STRIP_WIDTH[0]) & (away <= STRIP_WIDTH[1]) & (away < width[own])
+        nearest[own], width[own] = np.where(nearer, row, nearest[own]), np.where(nearer, away, width[own])
+    return nearest, width
 
 
 def _usual(numbers):

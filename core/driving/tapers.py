@@ -12,7 +12,7 @@ import numpy as np
 
 from ..markings.cross_section.candidates import STATIONS_OF_CELL
 from ..markings.cross_section.sections import STATION_STEP
-from .lane_track import END_WIDTH_LENGTH, INFERRED, LaneTrack
+from .lane_track import END_WIDTH_LENGTH, INFERRED, LaneTrack, spans_of
 
 LONGEST_TAPER = 100.0     # m
 SHOWN_TAPER = 8.0         # m of a taper that show its course where the survey ends before it does
@@ -24,15 +24,18 @@ MISSING_SHARE = 0.25      # of a lane's width by which two lanes beside each oth
 
 def laid_out(tracks: list[LaneTrack]) -> list[LaneTrack]:
     """The same lanes with through lanes as wide along tapers as beside the lanes that open there, and these from their full width on."""
-    ends = [(k, head) for k in range(len(tracks)) for head in (True, False)]
-    through = list(tracks)
-    for k, head in ends:
-        for j, other in enumerate(tracks):
-            at = _opening(tracks[k], other, head) if j != k else None
-            if at is not None:
-                through[j] = _kept_width(through[j], tracks[k], at, head)
-    for k, head in ends:
-        if any(j != k and _opening(tracks[k], other, head) is not None for j, other in enumerate(tracks)):
+    # each end of a lane with the lanes that lead on beside it, and where
+    spans, beside = spans_of(tracks), []
+    for k, head in ((k, head) for k in range(len(tracks)) for head in (True, False)):
+        before = tracks[k].first - 1 if head else tracks[k].last + 1
+        found = [(j, _opening(tracks[k], tracks[j], head)) for j in spans.near(before, before).tolist() if j != k] if before >= 0 else []
+        beside.append((k, head, [(j, at) for j, at in found if at is not None]))
+    through = [replace(track, d=track.d.copy(), width=track.width.copy(), status=track.status.copy()) for track in tracks]
+    for k, head, others in beside:
+        for j, at in others:
+            _keep_width(through[j], tracks[k], at, head)
+    for k, head, others in beside:
+        if others:
             through[k] = _from_full_width(through[k], head)
     return through
 
@@ -52,8 +55,8 @@ def _opening(lane, other, head):
     return None
 
 
-def _kept_width(track, opens, at, head):
-    """A through lane that before (or behind) the grid station at which another one lies beside it first is no wider than beside that."""
+def _keep_width(track, opens, at, head):
+    """Make a through lane, in place, that before (or behind) the grid station at which another one lies beside it first no wider than beside that."""
     side = np.sign(opens.at(at)[0] - track.at(at)[0])
     at -= track.first
     near, reach = int(END_WIDTH_LENGTH / STATION_STEP), int(LONGEST_TAPER / STATION_STEP)
@@ -65,13 +68,11 @@ def _kept_width(track, opens, at, head):
     as_wide = np.flatnonzero(~wider[begin:])
     # a lane that is as wide all along divides into two, and has no taper
     if not wider[:int(BORDER_BEFORE_LANE / STATION_STEP)].any() or not (len(as_wide) or _narrows(track.width[ahead[begin:]] - width)):
-        return track
+        return
     ahead = ahead[begin:begin + int(as_wide[0])] if len(as_wide) else ahead[begin:]
-    d, widths, status = track.d.copy(), track.width.copy(), track.status.copy()
-    d[ahead] -= side * (widths[ahead] - width) / 2
-    widths[ahead] = width
-    status[ahead] = np.maximum(status[ahead], INFERRED)
-    return replace(track, d=d, width=widths, status=status)
+    track.d[ahead] -= side * (track.width[ahead] - width) / 2
+    track.width[ahead] = width
+    track.status[ahead] = np.maximum(track.status[ahead], INFERRED)
 
 
 def _narrows(excess):

@@ -115,14 +115,31 @@ def _border(track, lines, paint, rows):
     """Of one side of a lane, (N,) each: is its border painted; m², mean square scatter of its paint, NaN where unknown; m to its next paint."""
     columns = np.arange(track.first, track.last + 1)
     painted = (rows >= 0) & (rows < len(lines.d))
-    number = np.where(painted, lines.number[np.where(painted, rows, 0), columns], -1)
-    square, away = np.full(len(track), np.nan), np.zeros(len(track))
-    for one in np.unique(number[number >= 0]).tolist():
-        square[number == one] = paint.get(one, np.nan) ** 2
-    for row in np.unique(rows[painted]).tolist():
-        own = painted & (rows == row)
-        away[own] = _distance_to(lines.seen[row] & np.isfinite(lines.d[row]))[columns[own]]
+    if not painted.any():
+        return painted, np.full(len(track), np.nan), np.zeros(len(track))
+    names, of = np.unique(np.where(painted, lines.number[np.where(painted, rows, 0), columns], -1), return_inverse=True)
+    square = np.array([paint.get(one, np.nan) ** 2 if one >= 0 else np.nan for one in names.tolist()])[of]
+    away = np.zeros(len(track))
+    for begin, end in zip(*_runs(np.where(painted, rows, -1))):
+        if painted[begin]:
+            away[begin:end] = _distance_to_paint(lines.seen, int(rows[begin]), track.first + begin, track.first + end)
     return painted, square, away
+
+
+def _runs(values):
+    """Lists of where runs of equal values begin and end (exclusive)."""
+    cuts = np.r_[0, np.flatnonzero(np.diff(values)) + 1, len(values)].tolist()
+    return cuts[:-1], cuts[1:]
+
+
+def _distance_to_paint(seen, row, first, end):
+    """(N,) m from the stations `first` to `end` (exclusive) to the nearest one at which a line is seen, as `_distance_to`."""
+    if not seen.row(row).any():
+        return np.zeros(end - first)
+    low = max(first - int(MAX_GAP_DISTANCE / STATION_STEP), 0)
+    known = seen[row, low:end + int(MAX_GAP_DISTANCE / STATION_STEP)]
+    away = _distance_to(known) if known.any() else np.full(len(known), MAX_GAP_DISTANCE)
+    return away[first - low:end - low]
 
 
 def _distance_to(known):

@@ -46,7 +46,8 @@ from ..road.surface.extract import SurfaceSettings, extract_road_surface
 from ..road.surface.road_surface import SurfaceOutlines, surface_to_features
 from ..survey.open_survey import SurveySettings, open_survey
 from ..survey.point_density import CubeDensity, cube_densities
-from ..survey.store.records import Points, join_columns
+from ..survey.store.records import Points
+from ..survey.store.road_columns import columns_of_roads
 from .stages import INTENSITY_STAGES, Extent, Stages
 
 if TYPE_CHECKING:
@@ -227,11 +228,6 @@ def _span(survey):
     return tuple(float(np.ptp(np.concatenate(axis))) for axis in zip(*places))
 
 
-def _places(points):
-    """All points, of which only the columns are joined that are asked for."""
-    return Points(join_columns([points.store.section(*key) for key in points.all_sections()], points.store.dtype))
-
-
 def _paint(result, image_path, settings, stages, executor):
     """Intensity, markings and lines, added to the result."""
     frame = result.frame
@@ -269,7 +265,8 @@ def _paint(result, image_path, settings, stages, executor):
         lines = named_by_estimate(corrected, frame, country(settings.lines.country).usual_lane, markings, edges, result.road_points, clustered)
     markings = named_by_lines(markings, lines)
     result.markings, result.marking_lines = markings_to_features(markings, frame), lines_to_features(lines, frame)
-    result.marking_curvature = marking_curvature(_places(clustered), result.marking_lines.geometries, frame.origin)
+    paint = Points(columns_of_roads(clustered.store, clustered.roads()))
+    result.marking_curvature = marking_curvature(paint, result.marking_lines.geometries, frame.origin)
     driving, elements, lanes = stages.run(
         "driving", "Making driving lines …", make_driving_lines, lines, frame, settings.driving,
         markings=markings, edges=edges, road_points=result.road_points)

@@ -10,17 +10,18 @@ from scipy.spatial import cKDTree
 from ...common.groups import linked_groups
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
-from ...survey.store.columns import Columns
-from ...survey.store.records import COORDINATE_SCALE, join_columns
+from ...survey.store.records import COORDINATE_SCALE
+from ...survey.store.road_columns import columns_of_roads
 from .components import components, occupied
 from .road_grid import CELL_UNITS
 from .scan_tracks import track_reach
 
 if TYPE_CHECKING:
+    from ...survey.store.columns import Columns
     from ...survey.store.road_points import RoadPoints
 
 LINKING_WINDOW_CELLS = 1250                   # cells of 4 cm: 50 m of station are linked at a time
-# of a point of paint that clustering looks at: all of the road are in memory together
+# of a point of paint that clustering looks at
 PAINT_COLUMNS = ("x", "y", "z", "s", "d", "intensity", "corrected", "pass_number", "half_width", "covered", "spacing")
 ROAD_EDGE_CLEARANCE = 0.10                    # m: strips so near to the road edge are taken for verge
 REACH_ALONG_FACTOR = 2.5                      # neighbours may be this times the distance apart along the road,
@@ -39,7 +40,7 @@ def connected_points(marking_points: RoadPoints, road: int, distance: float, pro
 
     Returns
     -------
-    records : Columns PAINT_COLUMNS of the N points of the road, in memory
+    records : Columns PAINT_COLUMNS of the N points of the road, by station, which are read when they are asked for and not kept
     labels : (N,) int32 component of each; its numbering follows station
 
     Notes
@@ -51,7 +52,8 @@ def connected_points(marking_points: RoadPoints, road: int, distance: float, pro
     """
     start, end = marking_points.store.span(road)
     reach = int(np.ceil(distance * REACH_ALONG_FACTOR / (CELL_UNITS * COORDINATE_SCALE))) + 1
-    records, labels, links = [], [], []
+    records = columns_of_roads(marking_points.store, [road], PAINT_COLUMNS)
+    labels, links = [], []
     shared_cells, shared_labels, count = np.empty((0, 2), np.int64), np.empty(0, np.int64), 0
     first_window, last_window = (int(np.floor(s / COORDINATE_SCALE / CELL_UNITS / LINKING_WINDOW_CELLS)) for s in (start, end))
 
@@ -63,24 +65,19 @@ def connected_points(marking_points: RoadPoints, road: int, distance: float, pro
         found = found[(column >= first) & (column < last + reach)]
         cells, member, component = components_of_points(found, distance)
         own = found["s"] // CELL_UNITS < last
-        kept = found[own]
-        return cells, component, cells[:, 0] >= last, {name: kept[name] for name in PAINT_COLUMNS}, member[own]
+        return cells, component, cells[:, 0] >= last, member[own]
 
-    for cells, component, beyond, found, member in ordered_map(linked, range(first_window, last_window + 1), progress):
+    for cells, component, beyond, member in ordered_map(linked, range(first_window, last_window + 1), progress):
         component = component + count
         count = component.max(initial=count - 1) + 1
         links.append(_shared(shared_cells, shared_labels, cells, component))
         shared_cells, shared_labels = cells[beyond], component[beyond]
-        records.append(found)
         labels.append(component[member].astype(np.int32))
-    dtype = np.dtype([(name, marking_points.store.dtype[name]) for name in PAINT_COLUMNS])
-    if not records:
-        return join_columns([], dtype), np.empty(0, np.int32)
+    if not labels:
+        return records, np.empty(0, np.int32)
     pairs = np.concatenate(links)
     merged = linked_groups(pairs[:, 0], pairs[:, 1], count).astype(np.int32, copy=False)
-    # column by column, so that no more than one of them is there twice
-    joined = Columns({name: np.concatenate([part.pop(name) for part in records]) for name in PAINT_COLUMNS}, dtype)
-    return joined, np.concatenate([merged[some] for some in labels])
+    return records, np.concatenate([merged[some] for some in labels])
 
 
 def components_of_points(records: Columns, distance: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,7 +14,7 @@ from .weights import CENTRE_LINE, DASHED, EDGE_LINE, LANE_LINE, OTHER_LINE, SOLI
 KEPT = 32     # cross-sections of an interval that are kept
 
 # What a boundary between two strips separates, -1 where the two cannot follow each other, and whether traffic is on the wrong side there
-SEPARATES = np.full((len(STRIPS), len(STRIPS)), -1)
+SEPARATES = np.full((len(STRIPS), len(STRIPS)), -1, np.int8)
 for _left, _right, _what in (
         (REST_FIRST, REST_FIRST, OTHER_LINE), (REST_FIRST, FIRST, EDGE_LINE), (REST_FIRST, SECOND, EDGE_LINE),
         *((before, both, what) for both in TWO_WAY for before, what in ((REST_FIRST, EDGE_LINE), (FIRST, LANE_LINE))),
@@ -30,13 +31,30 @@ class Sections:
     """The best cross-sections of each interval, the best one first.
 
     cost : (I, K) nats; inf where there are fewer than K
-    strip : (I, K, M) kind of the strip to the right of each boundary, -1 where a boundary bounds nothing
-    right : (I, K, M) the boundary that the strip ends at
+    strip : (I, K, M) int8, kind of the strip to the right of each boundary, -1 where a boundary bounds nothing
+    right : (I, K, M) int8, the boundary that the strip ends at
+    lanes, first_lanes : (I, K, M) int8, how many lanes the strip holds, and how many of them are of the direction that is met first
     """
 
     cost: np.ndarray
     strip: np.ndarray
     right: np.ndarray
+    lanes: np.ndarray
+    first_lanes: np.ndarray
+
+    def take(self, intervals: slice | np.ndarray) -> Sections:
+        """Those of some intervals."""
+        return Sections(**{name: values[intervals] for name, values in vars(self).items()})
+
+    def chosen(self, choice: np.ndarray) -> Sections:
+        """One of each interval."""
+        rows = np.arange(len(choice))
+        return Sections(**{name: values[rows, choice][:, None] for name, values in vars(self).items()})
+
+    @staticmethod
+    def joined(parts: Sequence[Sections]) -> Sections:
+        """The cross-sections of intervals that follow each other."""
+        return Sections(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in vars(parts[0])})
 
 
 @dataclass
@@ -56,20 +74,19 @@ class LaneStrips:
     first: np.ndarray
 
 
-def lane_strips(sections: Sections, costs: StripCosts) -> LaneStrips:
+def lane_strips(sections: Sections) -> LaneStrips:
     """The LaneStrips of all cross-sections, in order of interval, cross-section and from left to right."""
     i, k, m = np.nonzero((sections.strip >= FIRST) & (sections.strip <= SECOND))
-    kind, end = sections.strip[i, k, m], sections.right[i, k, m]
-    return LaneStrips(i, k, m, end, kind, costs.lanes[kind, i, m, end], costs.first_lanes[kind, i, m, end])
+    return LaneStrips(i, k, m, *(values[i, k, m].astype(int) for values in (sections.right, sections.strip, sections.lanes, sections.first_lanes)))
 
 
 def separated_kinds(sections: Sections) -> np.ndarray:
     """(I, K, M) what each boundary separates, LANE_LINE ... OTHER_LINE; -1 where it bounds nothing."""
     strip = sections.strip
-    before = np.full(strip.shape, -1)
+    before = np.full(strip.shape, -1, np.int8)
     i, k, m = np.nonzero(strip >= 0)
     before[i, k, sections.right[i, k, m]] = strip[i, k, m]
-    return np.where((strip >= 0) & (before >= 0), SEPARATES[before, strip], -1)
+    return np.where((strip >= 0) & (before >= 0), SEPARATES[before, strip], np.int8(-1))
 
 
 def misnamed_costs(candidates: Candidates, sections: Sections, weights: EstimateWeights) -> np.ndarray:
@@ -88,7 +105,7 @@ def best_sections(candidates: Candidates, costs: StripCosts, stops: np.ndarray, 
     kinds = len(STRIPS)
     between = _boundary_costs(candidates, stops, weights)
     best = np.full((count, size, kinds, kept), np.inf)
-    back = np.full((count, size, kinds, kept), -1)
+    back = np.full((count, size, kinds, kept), -1, np.int32)
     # to the left of everything nobody drives
     best[:, 0, REST_FIRST, 0] = 0.0
     for j in range(1, size - 1):
@@ -98,7 +115,7 @@ def best_sections(candidates: Candidates, costs: StripCosts, stops: np.ndarray, 
         best[:, j][~candidates.valid[:, j]] = np.inf
     reach = _reach(best, costs, size - 1)
     reach[:, :, FIRST:SECOND + 1] = np.inf
-    return _traced(back, *_lowest(reach, kept))
+    return _traced(back, _lowest(reach, kept), costs)
 
 
 def _reach(best, costs, j):
@@ -136,10 +153,11 @@ def _boundary_costs(c, stops, w):
     return cost
 
 
-def _traced(back, chosen, value):
+def _traced(back, ends, costs):
     """Sections from the ends of the chains: `back` tells from where each chain came."""
     count, size, kinds, kept = back.shape
-    strip, right = np.full((2, *chosen.shape, size), -1)
+    chosen, value = ends
+    strip, right, lanes, first_lanes = np.full((4, *chosen.shape, size), -1, np.int8)
     row = np.arange(count)[:, None]
     at, place = np.full(chosen.shape, size - 1), np.where(np.isfinite(value), chosen, -1)
     while (alive := place >= 0).any():
@@ -148,6 +166,8 @@ def _traced(back, chosen, value):
         r, k = np.nonzero(alive)
         strip[r, k, boundary[alive]] = kind[alive]
         right[r, k, boundary[alive]] = at[alive]
+        for values, of_strip in ((lanes, costs.lanes), (first_lanes, costs.first_lanes)):
+            values[r, k, boundary[alive]] = of_strip[kind[alive], r, boundary[alive], at[alive]]
         at = np.where(alive, boundary, at)
         place = np.where(alive & (boundary > 0), back[row, boundary.clip(0), kind, rank], -1)
-    return Sections(value, strip, right)
+    return Sections(value, strip, right, lanes, first_lanes)

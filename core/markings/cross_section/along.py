@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
+from ...common.parallel import check_cancelled
 from .across import Sections, lane_strips
 from .candidates import FAR, Candidates
 from .lane_width import lane_places
-from .strips import FIRST, SECOND, StripCosts
+from .strips import FIRST, SECOND
 from .weights import EstimateWeights
 
 PLACE = 0.5      # m across at which cross-sections are compared
@@ -15,7 +18,35 @@ INTERVALS_AT_ONCE = 32   # of which cross-sections are compared with each other
 SAME_DIVIDER = 1 # places by which the same border between lanes may lie elsewhere
 
 
-def occupancy(candidates: Candidates, costs: StripCosts, sections: Sections) -> tuple[np.ndarray, np.ndarray]:
+def transitions(candidates: Candidates, sections: Sections, known: np.ndarray, lane_width: float, left: Sequence[np.ndarray],
+                weights: EstimateWeights) -> np.ndarray:
+    """Nats of going from each cross-section of an interval to each of the next of those of which something is known.
+
+    Parameters
+    ----------
+    candidates, sections : of all intervals
+    known : (N,) int, intervals, ascending
+    lane_width : metres, usual
+    left : of what was known of lanes, and of directions, what is left after the way to the next one, (N - 1,) 0 to 1 each
+    weights : EstimateWeights
+
+    Returns
+    -------
+    (N - 1, K, K)
+    """
+    kept = sections.cost.shape[1]
+    found = np.empty((max(len(known) - 1, 0), kept, kept))
+    # what is compared is larger than the costs
+    for first in range(0, len(found), INTERVALS_AT_ONCE):
+        check_cancelled()
+        some = known[first:first + INTERVALS_AT_ONCE + 1]
+        own = slice(first, first + len(some) - 1)
+        costs = _transition_costs(*occupancy(candidates.take(some), sections.take(some), lane_width), weights)
+        found[own] = sum(cost * share[own, None, None] for cost, share in zip(costs, left))
+    return found
+
+
+def occupancy(candidates: Candidates, sections: Sections, lane_width: float) -> tuple[np.ndarray, np.ndarray]:
     """What lies where across the road.
 
     Returns
@@ -26,10 +57,10 @@ def occupancy(candidates: Candidates, costs: StripCosts, sections: Sections) -> 
     count, kept, size = sections.strip.shape
     bins = int(2 * FAR / PLACE)
     area, divider = np.zeros((2, count, kept, bins + 1)), np.zeros((count, kept, bins), bool)
-    strips = lane_strips(sections, costs)
+    strips = lane_strips(sections)
     i, k, m, end, number = strips.interval, strips.section, strips.left, strips.right, strips.number
     d_left, each = lane_places(candidates.right[i, m], candidates.left[i, end], candidates.made_of[i, m], candidates.made_of[i, end], number,
-                               costs.lane_width, candidates.bend[i])
+                               lane_width, candidates.bend[i])
     d_right = d_left - number * each
     split = d_left - each * strips.first
     for which, (high, low) in enumerate(((d_left, split), (split, d_right))):
@@ -52,21 +83,8 @@ def occupancy(candidates: Candidates, costs: StripCosts, sections: Sections) -> 
     return area, divider
 
 
-def transition_costs(area: np.ndarray, divider: np.ndarray, weights: EstimateWeights) -> tuple[np.ndarray, np.ndarray]:
-    """Nats of going from a cross-section of one interval to one of the next.
-
-    Returns
-    -------
-    lanes : (I - 1, K, K) of lanes that begin, end or divide; turns : (I - 1, K, K) of lanes whose direction changes
-    """
-    # what is compared is larger than the costs
-    parts = [slice(first, first + INTERVALS_AT_ONCE + 1) for first in range(0, max(len(divider) - 1, 1), INTERVALS_AT_ONCE)]
-    lanes, turns = zip(*(_transition_costs(area[:, some], divider[some], weights) for some in parts))
-    return np.concatenate(lanes), np.concatenate(turns)
-
-
 def _transition_costs(area, divider, weights):
-    """The same of some intervals."""
+    """Nats of going from a cross-section to one of the next interval: of lanes that begin, end or divide, and of those that change direction."""
     first, second = area.astype(np.float32)
     wide = np.zeros(divider.shape, np.float32)
     for shift in range(-SAME_DIVIDER, SAME_DIVIDER + 1):

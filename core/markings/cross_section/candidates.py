@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
+from .row_table import RowTable, stacked
 from .sections import STATION_STEP, CrossSections
 from .weights import CENTRE_LINE, CURB, DASHED, DOUBLE, EDGE_LINE, HATCHING, ISLAND, OPEN, OUTSIDE, PAVEMENT, SOLID, SURFACE, EstimateWeights
 
@@ -29,7 +31,7 @@ ENDS = SURFACE, PAVEMENT       # ends of the surface
 class Boundaries:
     """All rows that may bound lanes on one grid of stations: lines, then curbs, then ends of the surface.
 
-    s : (K,) stations; d : (R, K) offsets, NaN where a row is not; seen : (R, K); made_of : (R,) of SOLID ... ISLAND
+    s : (K,) stations; d : RowTable of (R, K) offsets, NaN where a row is not; seen : (R, K); made_of : (R,) of SOLID ... ISLAND
     patterns : (R, K) what a row is made of at each place: lines are solid here and dashed there, and where the surface ends an edge of the
         pavement is seen (PAVEMENT) or not; paint : (R,) m of paint of each row
     named : (R,) what a row separates by its layer, -1 where that is not said
@@ -39,70 +41,72 @@ class Boundaries:
     """
 
     s: np.ndarray
-    d: np.ndarray
-    seen: np.ndarray
+    d: RowTable
+    seen: RowTable
     made_of: np.ndarray
-    patterns: np.ndarray
+    patterns: RowTable
     paint: np.ndarray
     named: np.ndarray
     bend: np.ndarray
-    wide: np.ndarray
-    short: np.ndarray
+    wide: RowTable
+    short: RowTable
 
-    @property
+    @cached_property
     def bounding(self) -> np.ndarray:
         """(R,) bool, whether a row is paint that bounds lanes: a line, or the border of a hatched area."""
         return self.painted | (self.made_of == HATCHING)
 
-    @property
+    @cached_property
     def painted(self) -> np.ndarray:
         """(R,) bool, whether a row is a painted line."""
         return self.made_of <= DOUBLE
 
 
 def gather_boundaries(lines: CrossSections, curbs: CrossSections | None = None, surface: np.ndarray | None = None,
-                      open_ends: np.ndarray | None = None, bend: np.ndarray | None = None, hatching: np.ndarray | None = None,
-                      pavement: CrossSections | None = None, dashes: np.ndarray | None = None) -> Boundaries:
+                      open_ends: np.ndarray | None = None, bend: np.ndarray | None = None, hatching: RowTable | None = None,
+                      pavement: CrossSections | None = None, dashes: RowTable | None = None) -> Boundaries:
     """Lines, curbs and the two ends of the surface or, where that is unknown, open ends, (2, K) offsets each or None, on the grid of the lines.
 
     Where an edge of the pavement was seen beside an end of the surface, the surface ends at it. `dashes` are the lengths of those of the lines,
     (L, K) m or None.
     """
-    rows, count = len(lines.d), len(lines.s)
-    of_name = np.array([_made_of(name) for name in lines.names] + [SOLID], int)
-    usual = np.array([_made_of(name) for name in lines.patterns], int)
-    patterns = np.where(lines.drawn >= 0, of_name[lines.drawn], usual[:, None]) if rows else np.empty((0, count), int)
-    d, seen = [lines.d], [lines.seen & np.isfinite(lines.d)]
-    made_of = [np.full(rows, SOLID)]
+    count = len(lines.s)
+    of_name = np.array([_made_of(name) for name in lines.names] + [SOLID], np.int8)
+    usual = np.array([_made_of(name) for name in lines.patterns], np.int8)
+    drawn, owner = lines.drawn.values, lines.d.spans.owner
+    # offsets, where they were seen, what rows are made of, as a whole and at each place
+    found = [(lines.d, lines.seen.values, np.full(len(lines.d), SOLID), lines.d.like(np.where(drawn >= 0, of_name[drawn], usual[owner]), usual))]
     if curbs is not None:
-        found = _on_stations(curbs, lines.s)
-        d.append(found[0])
-        seen.append(found[1])
-        made_of.append(np.where(np.array(curbs.kinds, object) == "island", ISLAND, CURB))
-    at_edge = np.zeros((0, count), bool)
+        made_of = np.where(np.array(curbs.kinds, object) == "island", ISLAND, CURB).astype(np.int8)
+        d, seen = _on_stations(curbs, lines.s)
+        found.append((d, seen.values, made_of, d.like(made_of[d.spans.owner], made_of)))
+    ends: list[tuple[RowTable, int, np.ndarray | int]] = []
     if surface is not None:
         surface, at_edge = _at_edges(surface, pavement, lines.s)
-    for ends, made in ((surface, SURFACE), (open_ends, OPEN), (hatching, HATCHING)):
-        if ends is not None:
-            d.append(ends)
-            seen.append(np.isfinite(ends))
-            made_of.append(np.full(len(ends), made))
-    found_d, found_seen, found_made = np.concatenate(d), np.concatenate(seen), np.concatenate(made_of)
-    other = np.repeat(found_made[rows:, None], count, axis=1)
-    other[found_made[rows:] == SURFACE] = np.where(at_edge, PAVEMENT, SURFACE)
-    return Boundaries(lines.s, found_d, found_seen, found_made, np.concatenate([patterns, other]), STATION_STEP * found_seen.sum(1),
-                      np.r_[[NAMES.get(kind, -1) for kind in lines.kinds], np.full(len(other), -1)].astype(int),
+        ends.append((RowTable.of_rows([(0, row) for row in surface], count), SURFACE, np.where(at_edge, PAVEMENT, SURFACE).ravel()))
+    if open_ends is not None:
+        ends.append((RowTable.of_rows([(0, row) for row in open_ends], count), OPEN, OPEN))
+    if hatching is not None:
+        ends.append((hatching, HATCHING, HATCHING))
+    for d, made, at_places in ends:
+        patterns = np.empty(d.spans.size, np.int8)
+        patterns[:] = at_places
+        found.append((d, np.ones(d.spans.size, bool), np.full(len(d), made), d.like(patterns, made)))
+    found_d, all_patterns = stacked([d for d, *_ in found]), stacked([made_of for *_, made_of in found])
+    found_seen = np.isfinite(found_d.values) & np.concatenate([seen for _, seen, *_ in found])
+    others = len(found_d) - len(lines.d)
+    paint = STATION_STEP * np.bincount(found_d.spans.owner, found_seen, len(found_d))
+    return Boundaries(lines.s, found_d, found_d.like(found_seen, False), np.concatenate([made_of for _, _, made_of, _ in found]), all_patterns, paint,
+                      np.r_[[NAMES.get(kind, -1) for kind in lines.kinds], np.full(others, -1)].astype(int),
                       np.zeros(count, bool) if bend is None else bend,
-                      *(np.concatenate([share, np.full(other.shape, np.nan)]) for share in (_wide_share(lines), _short_share(lines, dashes))))
+                      *(found_d.like(np.append(share, np.full(found_d.spans.size - len(share), np.nan)), np.nan)
+                        for share in (_wide_share(lines), _short_share(lines, dashes))))
 
 
 def _on_stations(sections, s):
     """Offsets of CrossSections at (K,) stations, NaN where they are not, and where they were seen."""
-    at = np.rint((s - sections.s[0]) / STATION_STEP).astype(int)
-    inside = (at >= 0) & (at < len(sections.s))
-    at = np.clip(at, 0, len(sections.s) - 1)
-    d = np.where(inside, sections.d[:, at], np.nan)
-    return d, sections.seen[:, at] & np.isfinite(d)
+    by = int(np.rint((s[0] - sections.s[0]) / STATION_STEP))
+    return sections.d.shifted(by, len(s)), sections.seen.shifted(by, len(s))
 
 
 def _at_edges(surface, pavement, s):
@@ -111,26 +115,28 @@ def _at_edges(surface, pavement, s):
     if pavement is None or not len(pavement.d):
         return surface, at_edge
     d, seen = _on_stations(pavement, s)
-    away = np.where(seen, d, np.inf)[None] - surface[:, None]
-    nearest = np.argmin(np.where(np.isfinite(away), np.abs(away), np.inf), axis=1)
-    away = np.take_along_axis(away, nearest[:, None], axis=1)[:, 0]
-    with np.errstate(invalid="ignore"):
-        at_edge = np.abs(away) < SURFACE_MERGE
-    return np.where(at_edge, surface + np.where(at_edge, away, 0.0), surface), at_edge
+    nearest = np.full(surface.shape, np.inf)
+    for row, (first, end) in enumerate(zip(d.spans.first, d.spans.end)):
+        own = slice(first, end)
+        away = np.where(seen.row(row), d.row(row), np.inf) - surface[:, own]
+        nearest[:, own] = np.where(np.isfinite(away) & (np.abs(away) < np.abs(nearest[:, own])), away, nearest[:, own])
+    at_edge = np.abs(nearest) < SURFACE_MERGE
+    return np.where(at_edge, surface + np.where(at_edge, nearest, 0.0), surface), at_edge
 
 
 def _wide_share(lines):
-    """(L, K) 0 to 1, whether lines are wide against the usual ones of their road, which the narrower of its painted length tells."""
-    known = lines.seen & np.isfinite(lines.d) & (lines.width > 0)
+    """Of each place of lines, 0 to 1, whether they are wide against the usual ones of their road, which the narrower of its painted length tells."""
+    d, seen, width = (table.values for table in (lines.d, lines.seen, lines.width))
+    known = seen & np.isfinite(d) & (width > 0)
     if not known.any():
-        return np.full(lines.d.shape, np.nan)
-    usual = np.clip(np.quantile(lines.width[known], USUAL_LINES), *USUAL_WIDTH)
-    return np.where(known, 1 / (1 + np.exp(-(np.where(known, lines.width, usual) / usual - WIDE_LINE) / WIDE_SOFTNESS)), np.nan)
+        return np.full(len(d), np.nan)
+    usual = np.clip(np.quantile(width[known], USUAL_LINES), *USUAL_WIDTH)
+    return np.where(known, 1 / (1 + np.exp(-(np.where(known, width, usual) / usual - WIDE_LINE) / WIDE_SOFTNESS)), np.nan)
 
 
 def _short_share(lines, dashes):
-    """(L, K) 0 to 1, whether dashes are shorter than any country draws them between lanes."""
-    return np.full(lines.d.shape, np.nan) if dashes is None else 1 / (1 + np.exp((dashes - SHORT_DASH) / SHORT_SOFTNESS))
+    """Of each place of lines, 0 to 1, whether dashes are shorter than any country draws them between lanes."""
+    return np.full(lines.d.spans.size, np.nan) if dashes is None else 1 / (1 + np.exp((dashes.values - SHORT_DASH) / SHORT_SOFTNESS))
 
 
 def _made_of(pattern):
@@ -171,6 +177,10 @@ class Candidates:
         """(I, M) bool, whether a boundary is a painted line."""
         return self.made_of <= DOUBLE
 
+    def take(self, intervals: slice | np.ndarray) -> Candidates:
+        """Some of the intervals."""
+        return Candidates(**{name: values[intervals] for name, values in vars(self).items()})
+
     @property
     def length(self) -> np.ndarray:
         """(I,) metres."""
@@ -185,38 +195,70 @@ def boundary_candidates(boundaries: Boundaries, weights: EstimateWeights) -> Can
     """Cut the road into intervals of the same boundaries, of at most 10 m."""
     cell = np.floor(boundaries.s / (STATION_STEP * STATIONS_OF_CELL) + 1e-6).astype(int)
     starts = np.flatnonzero(np.r_[True, np.diff(cell) != 0])
-    present = np.isfinite(boundaries.d)
-    inside = np.add.reduceat(present, starts, axis=1)
+    number = np.cumsum(np.r_[0, np.diff(cell) != 0])   # of the cell of each station
     size = np.diff(np.r_[starts, len(cell)])
-    in_cell = 2 * inside >= size
-    cut = np.r_[True, (in_cell[:, 1:] != in_cell[:, :-1]).any(0)]
+    cells = _Stretches(boundaries.d, number)
+    in_cell = 2 * cells.sums(np.isfinite(boundaries.d.values)) >= size[cells.of]
+    # what a row is in one cell and in the next, in the first and after the last of those that it reaches too
+    begins = np.r_[True, np.diff(cells.row) != 0] if len(cells.row) else np.empty(0, bool)
+    before = np.where(begins, False, np.roll(in_cell, 1))
+    behind = in_cell & np.roll(begins, -1)
+    cut = np.zeros(len(starts) + 1, bool)
+    cut[0] = cut[cells.of[in_cell != before]] = cut[cells.of[behind] + 1] = True
+    cut = cut[:-1]
     run = np.cumsum(cut) - 1
     within = np.arange(len(starts)) - np.flatnonzero(cut)[run]
     cut |= within % MAX_INTERVAL == 0
     first = starts[cut]
     last = np.r_[first[1:], len(cell)] - 1
-    in_interval = in_cell[:, cut]
-    stations = np.maximum(np.add.reduceat(present, first, axis=1), 1)
-    d = np.add.reduceat(np.where(present, boundaries.d, 0.0), first, axis=1) / stations
-    seen = np.add.reduceat(boundaries.seen, first, axis=1) / (last - first + 1)
-    dashed, double, edge = (np.add.reduceat((boundaries.patterns == kind) & present, first, axis=1) / stations for kind in (DASHED, DOUBLE, PAVEMENT))
-    row, interval = np.nonzero(in_interval)
-    made = np.where(boundaries.painted[row], np.select([double[row, interval] > 0.5, dashed[row, interval] > 0.5], [DOUBLE, DASHED], SOLID),
-                    np.where(edge[row, interval] > 0.5, PAVEMENT, boundaries.made_of[row]))
-    trust = np.clip((boundaries.paint[row] - weights.stroke) / (weights.long_line - weights.stroke), 0.02, 1.0)
-    wide, short = (_mean_where_known(share, first) for share in (boundaries.wide, boundaries.short))
-    entries = dict(interval=interval, row=row, d=d[row, interval], made=made, wide=wide[row, interval], short=short[row, interval],
-                   seen=np.minimum(seen[row, interval], 1.0),
-                   trust=np.where(made <= DOUBLE, trust, 1.0))
-    entries = _rows(entries, np.lexsort((-entries["d"], interval)))
+    intervals = _Stretches(boundaries.d, (np.cumsum(cut) - 1)[number])
+    entries = _entries(boundaries, intervals, last - first + 1, weights)
+    entries = _rows(entries, np.flatnonzero(_in_first_cell(cells, intervals, np.flatnonzero(cut), in_cell)))
+    entries = _rows(entries, np.lexsort((-entries["d"], entries["interval"])))
     return _table(_grouped(_rows(entries, ~_superfluous(entries, boundaries))), boundaries, first, last)
 
 
-def _mean_where_known(share, first):
-    """(R, I) means over the intervals that begin at stations `first`."""
-    known = np.isfinite(share)
-    with np.errstate(invalid="ignore"):
-        return np.add.reduceat(np.where(known, share, 0.0), first, axis=1) / np.add.reduceat(known, first, axis=1)
+class _Stretches:
+    """Stretches of the rows of a table, each within one cell or interval: its row, and `of` which cell it is, row after row.
+
+    of_station : (K,) int, ascending, the cell of each station
+    """
+
+    def __init__(self, table, of_station):
+        self.row, self.of = table.spans.owner, of_station[table.spans.station]
+        self.begin = np.flatnonzero(np.r_[True, (np.diff(self.row) != 0) | (np.diff(self.of) != 0)]) if len(self.of) else np.empty(0, int)
+        self.row, self.of = self.row[self.begin], self.of[self.begin]
+
+    def sums(self, values):
+        """Sums over the places of each stretch of what is known of all of them."""
+        return np.add.reduceat(values, self.begin, dtype=float if values.dtype.kind == "f" else int) if len(self.begin) else np.empty(0)
+
+    def means(self, share):
+        """The same as means of what is not NaN."""
+        known = np.isfinite(share)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            return self.sums(np.where(known, share, 0.0)) / self.sums(known)
+
+
+def _in_first_cell(cells, intervals, first_cell, in_cell):
+    """(N,) bool, whether rows are in the first cell of their intervals, and so in all cells of them."""
+    count = int(cells.of.max(initial=0)) + int(first_cell.max(initial=0)) + 1
+    key, wanted = cells.row * count + cells.of, intervals.row * count + first_cell[intervals.of]
+    at = np.searchsorted(key, wanted).clip(0, max(len(key) - 1, 0))
+    return (key[at] == wanted) & in_cell[at] if len(key) else np.zeros(len(wanted), bool)
+
+
+def _entries(boundaries, intervals, size, weights):
+    """What is known of rows in intervals: a dict of (N,) columns. `size` of intervals, in stations."""
+    present, row = np.isfinite(boundaries.d.values), intervals.row
+    stations = np.maximum(intervals.sums(present), 1)
+    dashed, double, edge = (intervals.sums((boundaries.patterns.values == kind) & present) / stations for kind in (DASHED, DOUBLE, PAVEMENT))
+    made = np.where(boundaries.painted[row], np.select([double > 0.5, dashed > 0.5], [DOUBLE, DASHED], SOLID),
+                    np.where(edge > 0.5, PAVEMENT, boundaries.made_of[row]))
+    trust = np.clip((boundaries.paint[row] - weights.stroke) / (weights.long_line - weights.stroke), 0.02, 1.0)
+    return dict(interval=intervals.of, row=row, d=intervals.sums(np.where(present, boundaries.d.values, 0.0)) / stations, made=made,
+                wide=intervals.means(boundaries.wide.values), short=intervals.means(boundaries.short.values),
+                seen=np.minimum(intervals.sums(boundaries.seen.values) / size[intervals.of], 1.0), trust=np.where(made <= DOUBLE, trust, 1.0))
 
 
 def _rows(entries, which):

@@ -6,15 +6,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .across import Sections, best_sections, lane_strips, misnamed_costs, separated_kinds
-from .along import INTERVALS_AT_ONCE, best_sequence, best_through, occupancy, probabilities, transition_costs
+from ...common.parallel import check_cancelled
+from .across import LaneStrips, Sections, best_sections, lane_strips, misnamed_costs, separated_kinds
+from .along import INTERVALS_AT_ONCE, best_sequence, best_through, probabilities, transitions
 from .candidates import Candidates
 from .evidence import Evidence
 from .lane_width import lane_places
-from .strips import FIRST, SECOND, StripCosts, strip_costs
+from .strips import FIRST, SECOND, strip_costs
 from .weights import CENTRE_LINE, DASHED, LANE_LINE, EstimateWeights
 
 FARTHEST_BEHIND = 30.0   # nats at most by which one direction is less probable than the other
+STRETCH = 256      # intervals that are looked at together, 1 to 2 km of road: what they are chosen from takes 0.2 MB for each
 SAME_LANE = 0.15   # m across within which lanes of two cross-sections are the same: as near as a driving line is right
 
 
@@ -23,6 +25,7 @@ class RoadEstimate:
     """The cross-sections of one road for one side of traffic.
 
     candidates : Candidates
+    lane_width : metres, the usual width of a lane
     sections : Sections; choice : (I,) which of them; total : nats of them; posterior : (I, K) how probable each is
     sureness : (I, K) the same as far as it was seen here, where what is laid out alike along the road counts once, and so do the same lanes
     first_direction : of the lanes met first from the left
@@ -33,7 +36,7 @@ class RoadEstimate:
     """
 
     candidates: Candidates
-    costs: StripCosts
+    lane_width: float
     sections: Sections
     choice: np.ndarray
     posterior: np.ndarray
@@ -66,43 +69,61 @@ def estimate_road(candidates: Candidates, evidence: Evidence, first_direction: i
     lane_width : metres, the usual width of a lane
     weights : EstimateWeights
     """
-    costs = strip_costs(candidates, evidence, weights, lane_width, first_direction)
-    sections = best_sections(candidates, costs, evidence.stops, weights)
-    sections.cost += _roads_of_many_lanes(candidates, costs, sections, evidence.divided, weights)
-    area, divider = occupancy(candidates, costs, sections)
+    sections = _best_sections(candidates, evidence, weights, lane_width, first_direction)
     # where no line is seen, as on a crossing, much may change; where no line is known nothing can be said
     paint = candidates.painted
     shown = (paint * candidates.seen).sum(1) / np.maximum(paint.sum(1), 1)
     choice, (posterior, sureness) = np.argmin(sections.cost, axis=1), np.zeros((2, *sections.cost.shape))
     known, total, unnamed_total = np.flatnonzero(paint.any(1)), 0.0, 0.0
     # what named the lines is the same evidence
-    cost = sections.cost - misnamed_costs(candidates, sections, weights)
+    cost = sections.cost - _by_stretch(lambda part: misnamed_costs(candidates.take(part), sections.take(part), weights), len(sections.cost))
     unnamed, once = np.argmin(cost, axis=1), np.full(cost.shape, np.inf)
     if len(known):
         between = np.r_[0.0, np.cumsum(candidates.length)]
         gap = between[known[1:]] - between[known[:-1] + 1]
-        lanes, turns = transition_costs(area[:, known], divider[known], weights)
         both = np.minimum(shown[known[:-1]], shown[known[1:]])
-        transition = sum(cost * (both * np.exp(-gap / reach))[:, None, None]
-                         for cost, reach in ((lanes, weights.lanes_remembered), (turns, weights.directions_remembered)))
+        left = [both * np.exp(-gap / remembered) for remembered in (weights.lanes_remembered, weights.directions_remembered)]
+        transition = transitions(candidates, sections, known, lane_width, left, weights)
         choice[known], total = best_sequence(sections.cost[known], transition)
         posterior[known] = probabilities(sections.cost[known], transition)
         unnamed[known], unnamed_total = best_sequence(cost[known], transition)
         seen_once = _seen_once(candidates, sections, cost, weights)[known]
         sureness[known], once[known] = probabilities(seen_once, transition), best_through(seen_once, transition)
-    return RoadEstimate(candidates, costs, sections, choice, posterior, sureness, total, first_direction, evidence, unnamed, unnamed_total, once)
+    return RoadEstimate(candidates, lane_width, sections, choice, posterior, sureness, total, first_direction, evidence, unnamed, unnamed_total, once)
+
+
+def _stretches(count):
+    """Intervals by stretches of road, of which so many are looked at together."""
+    return [slice(first, min(first + STRETCH, count)) for first in range(0, count, STRETCH)]
+
+
+def _by_stretch(function, count):
+    return np.concatenate([function(part) for part in _stretches(count)])
+
+
+def _best_sections(candidates, evidence, weights, lane_width, first_direction):
+    """Sections of all intervals; their costs are worked out stretch by stretch, for they are many times as large."""
+    found = []
+    for part in _stretches(len(candidates.first)):
+        check_cancelled()
+        own, seen = candidates.take(part), evidence.part(part.start, part.stop)
+        sections = best_sections(own, strip_costs(own, seen, weights, lane_width, first_direction), seen.stops, weights)
+        sections.cost += _roads_of_many_lanes(own, sections, seen.divided, weights)
+        found.append(sections)
+    return Sections.joined(found)
 
 
 def _seen_once(c, sections, cost, weights):
     """(I, K) nats that tell how sure a cross-section is, from the costs without names: what is laid out alike along the road was seen once."""
     cost = cost / (np.clip(c.length.sum(), weights.correlation, weights.laid_out) / weights.correlation)
-    return np.where(_told_before(sections, cost), np.inf, cost)
+    return np.where(_by_stretch(lambda part: _told_before(sections.take(part), cost[part]), len(cost)), np.inf, cost)
 
 
 def _told_before(sections, cost):
     """(I, K) bool, whether a cheaper cross-section of the interval has the same lanes: what bounds strips where nobody drives is no other reading."""
+    check_cancelled()
     lane = (sections.strip >= FIRST) & (sections.strip <= SECOND)
-    lanes = np.where(lane, sections.strip * lane.shape[2] + sections.right, -1)
+    lanes = np.where(lane, sections.strip.astype(np.int16) * lane.shape[2] + sections.right, -1)
     order = np.arange(cost.shape[1])
     before, told = order < order[:, None], np.empty(cost.shape, bool)
     # every cross-section is compared with every other one
@@ -115,9 +136,9 @@ def _told_before(sections, cost):
     return told
 
 
-def _roads_of_many_lanes(c, costs, sections, divided, weights):
+def _roads_of_many_lanes(c, sections, divided, weights):
     """(I, K) nats of how many lanes lead which way."""
-    strips = lane_strips(sections, costs)
+    strips = lane_strips(sections)
     total, ahead = np.zeros((2, *sections.cost.shape))
     for values, numbers in ((total, strips.number), (ahead, strips.first)):
         np.add.at(values, (strips.interval, strips.section), numbers)
@@ -166,14 +187,21 @@ class LaneSpan:
 
 def lane_spans(estimate: RoadEstimate) -> list[LaneSpan]:
     """The lanes of the best sequence, interval by interval, from left to right."""
+    return [span for part in _stretches(len(estimate.choice)) for span in _lane_spans(estimate, part)]
+
+
+def _lane_spans(estimate, part):
+    """Those of some intervals."""
+    check_cancelled()
     found = []
-    c, sections, borders = estimate.candidates, estimate.sections, boundary_uses(estimate)
-    strips = lane_strips(sections, estimate.costs)
+    c, strips = estimate.candidates, _strips_of(estimate, part)
+    borders = _uses(estimate.sections.take(part), estimate.choice[part])
     best = np.flatnonzero(strips.section == estimate.choice[strips.interval])
-    for shares, i, m, end, number, first in zip(_place_shares(estimate, strips, best), *(values[best].tolist() for values in (
+    for shares, i, m, end, number, first in zip(_place_shares(estimate, strips, best, part), *(values[best].tolist() for values in (
             strips.interval, strips.left, strips.right, strips.number, strips.first))):
         # what the borders of its lanes separate, from left to right
-        uses = [int(borders[i, m]), *(CENTRE_LINE if inner == first else LANE_LINE for inner in range(1, number)), int(borders[i, end])]
+        uses = [CENTRE_LINE if inner == first else LANE_LINE for inner in range(number + 1)]
+        uses[0], uses[-1] = borders[i - part.start, [m, end]].tolist()
         for place in range(number):
             direction = estimate.first_direction if place < first else -estimate.first_direction
             probability, confidence, directed, turned = shares[place]
@@ -197,17 +225,23 @@ class _Lanes:
     way: np.ndarray
 
 
+def _strips_of(estimate, part):
+    """The LaneStrips of all cross-sections of some intervals."""
+    found = lane_strips(estimate.sections.take(part))
+    return LaneStrips(**{**vars(found), "interval": found.interval + part.start})
+
+
 def _lanes(estimate, strips):
     c, at = estimate.candidates, strips.interval
     d_left, each = lane_places(c.right[at, strips.left], c.left[at, strips.right], c.made_of[at, strips.left], c.made_of[at, strips.right],
-                               strips.number, estimate.costs.lane_width, c.bend[at])
+                               strips.number, estimate.lane_width, c.bend[at])
     of = np.repeat(np.arange(len(at)), strips.number)
     place = np.arange(len(of)) - (np.cumsum(strips.number) - strips.number)[of]
     way = np.where(place < strips.first[of], estimate.first_direction, -estimate.first_direction)
     return _Lanes(at[of], strips.section[of], of, d_left[of] - each[of] * (place + 0.5), each[of], way)
 
 
-def _place_shares(estimate, strips, chosen):
+def _place_shares(estimate, strips, chosen, part):
     """Lists of four values for each lane of the chosen strips, from left to right: probability, confidence and directed of LaneSpan, whether turned.
 
     That is of all cross-sections that have a lane within SAME_LANE, whatever bounds it and whatever lies beside it. Of directions the most probable
@@ -218,14 +252,14 @@ def _place_shares(estimate, strips, chosen):
     known = [(lanes.interval, lanes.d, lanes.way, estimate.posterior[lanes.interval, lanes.section], estimate.sureness[lanes.interval, lanes.section],
               estimate.once[lanes.interval, lanes.section] - best, estimate.unnamed[lanes.interval] == lanes.section)]
     if other is not None:
-        more = _lanes(other, lane_strips(other.sections, other.costs))
+        more = _lanes(other, _strips_of(other, part))
         nothing = np.zeros(len(more.d))
         known.append((more.interval, more.d, more.way, nothing, nothing, other.once[more.interval, more.section] - other.once_total + estimate.behind,
                       nothing > 0))
     joined = [np.concatenate(values) for values in zip(*known)]
     order = np.argsort(joined[0], kind="stable")
     interval, d, way, posterior, sureness, nats, unnamed = (values[order] for values in joined)
-    first, last = (np.searchsorted(interval, np.arange(len(estimate.choice)), side=side) for side in ("left", "right"))
+    first, last = (np.searchsorted(interval, np.arange(part.stop), side=side) for side in ("left", "right"))
     own = np.flatnonzero(np.isin(lanes.strip, chosen))
     size = (last - first)[lanes.interval[own]]
     one = np.repeat(own, size)
@@ -255,4 +289,8 @@ def _driven_along(evidence, lanes):
 
 def boundary_uses(estimate: RoadEstimate) -> np.ndarray:
     """(I, M) what each boundary separates in the best sequence, LANE_LINE ... OTHER_LINE; -1 where it bounds nothing."""
-    return separated_kinds(estimate.sections)[np.arange(len(estimate.choice)), estimate.choice]
+    return _uses(estimate.sections, estimate.choice)
+
+
+def _uses(sections, choice):
+    return separated_kinds(sections.chosen(choice))[:, 0]

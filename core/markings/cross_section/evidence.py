@@ -48,6 +48,14 @@ class Evidence:
     stops: np.ndarray
     divided: np.ndarray
 
+    def part(self, first: int, end: int) -> Evidence:
+        """That of the intervals from `first` to `end` (exclusive)."""
+        def of(rows):
+            return rows[(rows[:, 0] >= first) & (rows[:, 0] < end)] - [first, 0, 0]
+
+        asphalt, hatched = (None if share is None else share[first:end] for share in (self.asphalt, self.hatched))
+        return Evidence(self.driven[:, first:end], self.directions, asphalt, hatched, of(self.arrows), of(self.stops), self.divided[first:end])
+
 
 def driven_offsets(frame: RoadFrame, road: int, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Where the vehicle drove.
@@ -85,10 +93,11 @@ def other_carriageway(frame: RoadFrame, road: int, s: np.ndarray) -> np.ndarray:
     ways = {p.direction for p in frame.passes_of(road)}
     if len(ways) != 1:
         return found
+    of_road = frame.road(road)
     for p in frame.passes:
-        if p.road == road:
+        if p.road == road or _apart(p, of_road) > CARRIAGEWAY_DISTANCE:
             continue
-        station, d = frame.road(road).locate(p.x, p.y, corridor=CARRIAGEWAY_DISTANCE)
+        station, d = of_road.locate(p.x, p.y, corridor=CARRIAGEWAY_DISTANCE)
         against = np.gradient(np.nan_to_num(station)) * next(iter(ways)) < 0
         beside = np.isfinite(station) & against & (np.abs(d) > OWN_ROAD)
         at = np.rint((station[beside] - s[0]) / STATION_STEP)
@@ -96,6 +105,11 @@ def other_carriageway(frame: RoadFrame, road: int, s: np.ndarray) -> np.ndarray:
         found[at] = True
     # the places of a pass are sparser than the stations
     return binary_closing(found, np.ones(2 * PASS_SPACING + 1, bool)) if len(found) else found
+
+
+def _apart(p, road):
+    """Metres east or north between the rectangles about a pass and a road, the greater of both; 0 or less where they overlap."""
+    return max(max(a.min() - b.max(), b.min() - a.max()) for a, b in ((p.x, road.x), (p.y, road.y)))
 
 
 def surface_coverage(points: RoadPoints, road: int, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -13,6 +13,7 @@ from ..cells.road_grid import CELL_SIZE
 from ..objects.classify import LINE_KINDS
 from .candidates import FAR
 from .evidence import BIN, BINS
+from .row_table import RowTable
 from .sections import STATION_STEP
 
 if TYPE_CHECKING:
@@ -48,7 +49,7 @@ def hatched_places(markings: MarkingObjects, frame: RoadFrame, road: int, s: np.
     return found
 
 
-def borders_of_hatching(markings: MarkingObjects, frame: RoadFrame, road: int, s: np.ndarray) -> np.ndarray:
+def borders_of_hatching(markings: MarkingObjects, frame: RoadFrame, road: int, s: np.ndarray) -> RowTable:
     """The outer borders of hatched areas: nobody drives between them, and they bound the lanes beside.
 
     A border is the middle of the line that is painted along the ends of the bars; where there is none, the ends themselves.
@@ -62,32 +63,44 @@ def borders_of_hatching(markings: MarkingObjects, frame: RoadFrame, road: int, s
 
     Returns
     -------
-    (2 G, K) metres, the left and the right border of each of G areas, NaN where it is not
+    RowTable (2 G, K) of metres, the left and the right border of each of G areas, NaN where it is not
     """
     here = markings.road == road
     bars, lines = ([shape for shape in shapely.force_2d(markings.outlines.polygons()[here & kind]) if not shape.is_empty]
                    for kind in (markings.kind == "hatch", np.isin(markings.kind.astype(str), LINE_KINDS)))
-    found = [np.empty((0, len(s)))]
-    for area in shapely.get_parts(shapely.union_all(shapely.buffer(bars, BAR_REACH))) if bars else ():
-        reach = _reach([bar for bar in bars if area.intersects(bar)], frame, road, s)
+    areas = shapely.get_parts(shapely.union_all(shapely.buffer(bars, BAR_REACH))) if bars else np.empty(0, object)
+    bars_of, lines_of = (_meeting(areas, shapes) for shapes in (bars, lines))
+    found = []
+    for k in range(len(areas)):
+        first, reach = _reach([bars[j] for j in bars_of[k]], frame, road, s)
         known = np.flatnonzero(np.isfinite(reach[0]))
         if not len(known) or np.ptp(known) * STATION_STEP < SHORTEST_AREA:
             continue
-        window = slice(known[0], known[-1] + 1)
-        borders = np.full((2, len(s)), np.nan)
+        borders = np.empty(reach.shape)
         for side, sign in enumerate((1.0, -1.0)):
             # bars touch the border only at their ends
-            outer = grey_closing(np.where(np.isfinite(reach[side]), sign * reach[side], -FAR)[window],
+            outer = grey_closing(np.where(np.isfinite(reach[side]), sign * reach[side], -FAR),
                                  size=int(2 * BAR_REACH / STATION_STEP) + 1, mode="nearest")
-            borders[side, window] = sign * (outer - OUTSIDE_PAINT - HALF_BORDER)
-        for line in lines:
-            if area.intersects(line):
-                _follow(borders, _reach([line], frame, road, s).mean(axis=0))
-        found.append(borders)
-    return np.concatenate(found)
+            borders[side] = sign * (outer - OUTSIDE_PAINT - HALF_BORDER)
+        for j in lines_of[k]:
+            begin, along = _reach([lines[j]], frame, road, s)
+            low, high = max(begin, first), min(begin + along.shape[1], first + reach.shape[1])
+            if low < high:
+                _follow(borders[:, low - first:high - first], along[:, low - begin:high - begin].mean(axis=0))
+        found += [(first, border) for border in borders]
+    return RowTable.of_rows(found, len(s))
 
 
-def places_of_bays(rows: list[np.ndarray], s: np.ndarray, driven: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _meeting(areas, shapes):
+    """For each area the numbers of the shapes that meet it, ascending."""
+    found: list[list[int]] = [[] for _ in areas]
+    if len(areas) and shapes:
+        for shape, area in sorted(zip(*shapely.STRtree(areas).query(shapes, predicate="intersects").tolist())):
+            found[area].append(shape)
+    return found
+
+
+def places_of_bays(rows: list[np.ndarray], s: np.ndarray, driven: np.ndarray) -> tuple[np.ndarray, RowTable]:
     """Where parking bays lie, and their ends towards the lanes.
 
     Parameters
@@ -99,34 +112,37 @@ def places_of_bays(rows: list[np.ndarray], s: np.ndarray, driven: np.ndarray) ->
     Returns
     -------
     places : (K, BINS) bool, cells of station and offset that lie in bays
-    ends : (G, K) metres, offset at which the lines of each row end towards the vehicle, NaN beyond the row
+    ends : RowTable (G, K) of metres, offset at which the lines of each row end towards the vehicle, NaN beyond the row
     """
-    places, ends = np.zeros((len(s), BINS), bool), np.full((len(rows), len(s)), np.nan)
+    places, ends = np.zeros((len(s), BINS), bool), []
     offsets = (np.arange(BINS) + 0.5) * BIN - FAR
-    for end, row in zip(ends, rows):
+    for row in rows:
         within = slice(*np.searchsorted(s, [row[0, 0], row[-1, 0]]))
         low, high = (np.interp(s[within], row[:, 0], row[:, k]) for k in (1, 2))
         places[within] |= (offsets > low[:, None]) & (offsets < high[:, None])
         track = driven[:, within][np.isfinite(driven[:, within])]
-        end[within] = high if np.median(row[:, 1:].sum(axis=1)) < 2 * (track.mean() if len(track) else 0.0) else low
-    return places, ends
+        ends.append((within.start, high if np.median(row[:, 1:].sum(axis=1)) < 2 * (track.mean() if len(track) else 0.0) else low))
+    return places, RowTable.of_rows(ends, len(s))
 
 
 def _reach(shapes, frame, road, s):
-    """(2, K) m, greatest and least offset of outlines at each station, NaN where there are none."""
+    """Greatest and least offset of outlines, (2, N) m, from a first station on that is given; NaN at stations where there are none."""
     x, y = shapely.get_coordinates(shapely.segmentize(shapes, OUTLINE_SPACING)).T
     station, d = located(frame, np.full(len(x), road), x, y)
     at = np.rint((station - s[0]) / STATION_STEP)
     inside = np.isfinite(at) & (at >= 0) & (at < len(s))
+    if not inside.any():
+        return 0, np.empty((2, 0))
     at, d = at[inside].astype(int), d[inside]
-    found = np.array([np.full(len(s), -np.inf), np.full(len(s), np.inf)])
-    np.maximum.at(found[0], at, d)
-    np.minimum.at(found[1], at, d)
-    return np.where(np.isfinite(found), found, np.nan)
+    first = int(at.min())
+    found = np.repeat([[-np.inf], [np.inf]], int(at.max()) - first + 1, axis=1)
+    np.maximum.at(found[0], at - first, d)
+    np.minimum.at(found[1], at - first, d)
+    return first, np.where(np.isfinite(found), found, np.nan)
 
 
 def _follow(borders, middle):
-    """Put borders on the middle of a line that runs along them, (K,) m."""
+    """Put borders on the middle of a line that runs along them, (N,) m at the same stations."""
     with np.errstate(invalid="ignore"):
         along = np.abs(borders - middle) < BORDER_LINE_REACH
     for border, near in zip(borders, along):

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...common.parallel import ordered_map
+from ...common.parallel import check_cancelled, ordered_map
+from ...common.progress import Progress
 from ..figures.parking_bays import rows_of_bays
 from .arrows import arrows_of, driven_against
-from .candidates import Boundaries, boundary_candidates, gather_boundaries
+from .candidates import Boundaries, Candidates, boundary_candidates, gather_boundaries
 from .dashes import dash_lengths
 from .estimate import RoadEstimate, estimate_road, lane_spans
-from .evidence import between_ends, driven_offsets, evidence_of, other_carriageway, surface_coverage
+from .evidence import Evidence, between_ends, driven_offsets, evidence_of, other_carriageway, surface_coverage
 from .hatching import borders_of_hatching, hatched_places, places_of_bays
+from .row_table import stacked
 from .sections import STATION_STEP, CrossSections
 from .weights import PAVEMENT, EstimateWeights
 
@@ -58,7 +59,8 @@ class RoadEstimates:
 def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_width: float, side: str = "automatic",
                    curbs: dict[int, CrossSections] | None = None, markings: MarkingObjects | None = None,
                    road_points: RoadPoints | None = None, paint: RoadPoints | None = None, width_asked: bool = False,
-                   weights: EstimateWeights = EstimateWeights(), pavement: dict[int, CrossSections] | None = None) -> RoadEstimates:
+                   weights: EstimateWeights = EstimateWeights(), pavement: dict[int, CrossSections] | None = None,
+                   progress: Progress = Progress()) -> RoadEstimates:
     """Estimate lines and lanes.
 
     Parameters
@@ -72,8 +74,9 @@ def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_widt
     road_points : RoadPoints or None; paint : points of markings, which serve where there are no road points, or None
     width_asked : whether `usual_width` is the user's own
     weights : EstimateWeights
+    progress : Progress
     """
-    known = {}
+    known: dict[int, tuple[Boundaries, Candidates, Evidence]] = {}
     drives = {number: driven_offsets(frame, number, of_road.s) for number, of_road in lines.items()}
     arrows = {number: arrows_of(markings, frame, number) for number in lines} if markings is not None else {}
     # lanes lead as they were driven; which of them lead alike arrows tell even then
@@ -96,10 +99,11 @@ def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_widt
                                        borders,
                                        (pavement or {}).get(number), dash_lengths(of_road, markings, number))
         candidates = boundary_candidates(boundaries, weights)
+        progress.report(0.4 * (len(known) + 1) / len(lines))
         known[number] = boundaries, candidates, evidence_of(
             candidates, of_road.s, *driven, covered, hatched, arrows.get(number), markings, number, other_carriageway(frame, number, of_road.s))
     sides = {"right": (-1,), "left": (1,)}.get(side, (-1, 1))
-    found = dict(zip(sides, ordered_map(lambda first: _estimates(known, first, usual_width, weights), sides)))
+    found = dict(zip(sides, ordered_map(lambda first: _estimates(known, first, usual_width, weights), sides, progress.part(0.4, 0.7))))
     total, unnamed, once = ({first: sum(getattr(one, name) for one in of_roads.values()) + (weights.left_hand if first > 0 else 0.0)
                              for first, of_roads in found.items()} for name in ("total", "unnamed_total", "once_total"))
     best = min(total, key=lambda first: total[first])
@@ -110,7 +114,7 @@ def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_widt
     width = usual_width if width_asked else _usual_width(known, found[best], usual_width)
     # the road's own width tells lanes better than that of a country
     if width != usual_width:
-        found = dict(zip(used, ordered_map(lambda first: _estimates(known, first, width, weights), used)))
+        found = dict(zip(used, ordered_map(lambda first: _estimates(known, first, width, weights), used, progress.part(0.7, 1.0))))
     roads = {}
     for number, estimate in found[best].items():
         if named:
@@ -130,7 +134,7 @@ def _closed_areas(markings, frame, number, s, driven):
     if not rows:
         return hatched, borders
     bays, ends = places_of_bays(rows, s, driven)
-    return bays if hatched is None else hatched | bays, np.concatenate([borders, ends])
+    return bays if hatched is None else hatched | bays, stacked([borders, ends])
 
 
 def _surface(road_points, paint, number, s, likely):
@@ -144,9 +148,11 @@ def _surface(road_points, paint, number, s, likely):
 
 def _likely_ends(lines, width):
     """(2, K) metres, where the road would end beyond the outermost lines if it had one more lane there."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)
-        return np.stack([np.nanmax(lines.d, axis=0) + width, np.nanmin(lines.d, axis=0) - width])
+    found = np.full((2, len(lines.s)), np.nan)
+    for row, (first, end) in enumerate(zip(lines.d.spans.first, lines.d.spans.end)):
+        own, d = slice(first, end), lines.d.row(row)
+        found[0, own], found[1, own] = np.fmax(found[0, own], d), np.fmin(found[1, own], d)
+    return found + np.array([[width], [-width]])
 
 
 def _estimates(known, first_direction, width, weights):
@@ -159,6 +165,7 @@ def _usual_width(known, estimates, usual):
     for number, estimate in estimates.items():
         boundaries, candidates, _ = known[number]
         for span in lane_spans(estimate):
+            check_cancelled()
             rows = slice(candidates.first[span.interval], candidates.last[span.interval] + 1)
             painted = boundaries.painted[[span.left, span.right]]
             edge = [np.mean(boundaries.patterns[row, rows] == PAVEMENT) > 0.5 for row in (span.left, span.right)]

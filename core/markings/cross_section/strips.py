@@ -31,7 +31,7 @@ class StripCosts:
     """Costs of all strips.
 
     cost : (7, I, M, M) nats, of a strip of one kind between two boundaries; inf where it cannot be
-    lanes, first_lanes : (7, I, M, M) how many lanes it holds at that cost, and how many of them are of the direction that is met first
+    lanes, first_lanes : (7, I, M, M) int8, how many lanes it holds at that cost, and how many of them are of the direction that is met first
     lane_width : metres, the usual width of a lane; beside a curb or the end of the surface no lane is wider
     """
 
@@ -58,7 +58,7 @@ def strip_costs(candidates: Candidates, evidence: Evidence, weights: EstimateWei
     arrows_in, arrows = _arrows(c, evidence.arrows)
 
     cost = np.full((len(STRIPS), count, size, size), np.inf)
-    lanes, first_lanes = np.zeros((2, len(STRIPS), count, size, size), int)
+    lanes, first_lanes = np.zeros((2, len(STRIPS), count, size, size), np.int8)
     between = np.where(width > NEUTRAL.widest_lane, w.unused_wide, w.unused_asphalt[0])
     # beyond short dashes the bay that they open, however it is bounded
     opened = np.nan_to_num(c.short) > 0.5

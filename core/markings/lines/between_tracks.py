@@ -13,11 +13,13 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import shapely
 
+from ...common.parallel import check_cancelled
 from ...curves.robust import median
 from ..cells.scan_tracks import MIN_TRACK_GAP
 from ..objects.classify import LINE_KINDS
 from ..objects.marking_objects import MarkingObjects, Outlines
 from ..paint.spacing import MAX_TRACK_GAP
+from .lines_beside import StretchLookup
 
 if TYPE_CHECKING:
     from ...survey.store.road_points import RoadPoints
@@ -60,15 +62,18 @@ def with_unseen_paint(lines: PaintedLines, markings: MarkingObjects, paint: Road
     unseen = [np.empty((0, 3)) for _ in range(len(lines))]
     if not paint.has_spacing:
         return replace(lines, unseen=unseen)
+    marked = _MarkedLines(lines, markings)
     for k in np.flatnonzero((lines.status == "bridged") & (lines.pattern == "solid")).tolist():
-        road, course = int(lines.course.road[k]), _course(lines, int(lines.line[k]))
-        own = _own_markings(markings, road, course)
+        check_cancelled()
+        road, (whole, own) = int(lines.course.road[k]), marked.of_piece(k)
         piece = lines.course.s[lines.course.line(k)]
         first, last = float(np.nanmin(piece)), float(np.nanmax(piece))
+        course = _between(whole, first - 2 * BESIDE_GAP, last + 2 * BESIDE_GAP)
         seen = _paint_beside(paint, road, course, first, last, _full_width(markings, own))
         if seen is None or seen.spacing < MIN_TRACK_GAP:
             continue
-        gaps = _less(first, last, markings.extent[own, :2])
+        near = own[(markings.extent[own, 0] <= last) & (markings.extent[own, 1] >= first)]
+        gaps = _less(first, last, markings.extent[near, :2])
         steps = [np.linspace(a, b, int(np.ceil((b - a) / STEP)) + 1) for a, b in gaps]
         states = [_states(road_points, road, course, some, seen) for some in steps]
         known = np.concatenate([*states, np.empty(0, int)])
@@ -78,22 +83,44 @@ def with_unseen_paint(lines: PaintedLines, markings: MarkingObjects, paint: Road
     return replace(lines, unseen=unseen)
 
 
-def _course(lines, number):
-    """(2, N) stations and offsets of all pieces of a line, by station."""
-    rows = np.concatenate([np.arange(lines.course.start[k], lines.course.start[k + 1]) for k in np.flatnonzero(lines.line == number)])
-    rows = rows[np.isfinite(lines.course.s[rows])]
-    rows = rows[np.argsort(lines.course.s[rows], kind="stable")]
-    return lines.course.s[rows], lines.course.d[rows]
+class _MarkedLines:
+    """The courses of lines and the markings on them, looked up once for each line."""
+
+    def __init__(self, lines, markings):
+        self.lines, self.markings, self.found = lines, markings, {}
+        self.pieces = {}
+        for k, number in enumerate(lines.line.tolist()):
+            self.pieces.setdefault(number, []).append(k)
+        of_lines = np.flatnonzero(markings.keep & np.isin(markings.kind.astype(str), LINE_KINDS) & np.isfinite(markings.extent[:, 0]))
+        self.markings_of = {road: of_lines[markings.road[of_lines] == road] for road in np.unique(lines.course.road).tolist()}
+        self.lookup = {road: StretchLookup(*markings.extent[rows, :2].T) for road, rows in self.markings_of.items()}
+
+    def of_piece(self, k):
+        """Of the line of a piece: (2, N) stations and offsets by station, and the numbers of the markings that lie on its course."""
+        key = int(self.lines.course.road[k]), int(self.lines.line[k])
+        if key not in self.found:
+            course = self._course(key[1])
+            self.found[key] = course, self._own_markings(key[0], course)
+        return self.found[key]
+
+    def _course(self, number):
+        course = self.lines.course
+        rows = np.concatenate([np.arange(course.start[k], course.start[k + 1]) for k in self.pieces[number]])
+        rows = rows[np.isfinite(course.s[rows])]
+        rows = rows[np.argsort(course.s[rows], kind="stable")]
+        return course.s[rows], course.d[rows]
+
+    def _own_markings(self, road, course):
+        near = self.markings_of[road][self.lookup[road].between(course[0][0], course[0][-1])]
+        first, last, *_ = self.markings.extent[near].T
+        away = np.abs(self.markings.offset[near] - np.interp((first + last) / 2, *course))
+        return near[(away <= ON_LINE) & (last > course[0][0]) & (first < course[0][-1])]
 
 
-def _own_markings(markings, road, course):
-    """Numbers of the markings that lie on the course of a line."""
-    first, last, *_ = markings.extent.T
-    middle = (first + last) / 2
-    away = np.abs(markings.offset - np.interp(middle, *course))
-    with np.errstate(invalid="ignore"):
-        return np.flatnonzero(markings.keep & (markings.road == road) & np.isin(markings.kind.astype(str), LINE_KINDS) & (away <= ON_LINE)
-                              & (last > course[0][0]) & (first < course[0][-1]))
+def _between(course, first, last):
+    """The course of a line between two stations, and the places before and after."""
+    inside = slice(max(int(np.searchsorted(course[0], first)) - 1, 0), int(np.searchsorted(course[0], last, side="right")) + 1)
+    return course[0][inside], course[1][inside]
 
 
 def _full_width(markings, own):
@@ -170,10 +197,11 @@ def with_paint_between_tracks(markings: MarkingObjects, lines: PaintedLines) -> 
     MarkingObjects, the same object where there is nothing to add
     """
     like, spans, polygons = [], [], []
+    known = _MarkedLines(lines, markings)
     for k, stretches in enumerate(lines.unseen or ()):
         if not len(stretches):
             continue
-        own = _own_markings(markings, int(lines.course.road[k]), _course(lines, int(lines.line[k])))
+        own = known.of_piece(k)[1]
         for first, last, width in stretches.tolist() if len(own) else ():
             away = np.maximum(markings.extent[own, 0] - last, first - markings.extent[own, 1])
             like.append(own[np.argmin(away)])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from itertools import chain
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
     from ..cross_section.sections import CrossSections
 
 LINE_TO_EDGE = 4.0   # m between a line and the edge that it runs along: the widest paved shoulders are 12 ft (AASHTO, Green Book, 4.4.2)
+STRETCH = 50.0       # m of road whose edges are listed together
 LEVEL_REACH = 3.0    # m of a line at either side of a gap that say how far it lies from the edge
 
 
@@ -27,26 +29,32 @@ class EdgesBeside:
     """
 
     def __init__(self, sections: list[CrossSections]) -> None:
-        self._rows: list[tuple[np.ndarray, np.ndarray]] = []
-        for found in sections:
-            for d in found.d:
-                known = np.flatnonzero(np.isfinite(d))
-                # where an edge is interrupted another begins
-                for part in np.split(known, np.flatnonzero(np.diff(known) > 1) + 1):
-                    if len(part) > 1:
-                        self._rows.append((found.s[part], d[part]))
+        self._by_stretch: dict[int, list[tuple[np.ndarray, np.ndarray]]] = {}
+        for s, d in chain.from_iterable(map(_edges, sections)):
+            for stretch in range(int(s[0] // STRETCH), int(s[-1] // STRETCH) + 1):
+                self._by_stretch.setdefault(stretch, []).append((s, d))
 
     def between(self, before: tuple[float, float], after: tuple[float, float]) -> Callable[[np.ndarray], np.ndarray] | None:
         """The nearest edge that leads along both of two places, (station, offset) in m: a function of stations (N,), its offset; None without one."""
         (s0, d0), (s1, d1) = before, after
         best = None
-        for s, d in self._rows:
+        for s, d in self._by_stretch.get(int(min(s0, s1) // STRETCH), ()):
             if not s[0] <= min(s0, s1) <= max(s0, s1) <= s[-1]:
                 continue
             far = float(np.abs(np.interp([s0, s1], s, d) - (d0, d1)).max())
             if far <= LINE_TO_EDGE and (best is None or far < best[0]):
                 best = far, s, d
         return None if best is None else partial(np.interp, xp=best[1], fp=best[2])
+
+
+def _edges(sections):
+    """(stations, offsets) of the edges of CrossSections; where one is interrupted another begins."""
+    for first, k in zip(sections.d.spans.first.tolist(), range(len(sections.d))):
+        d = sections.d.row(k)
+        known = np.flatnonzero(np.isfinite(d))
+        for part in np.split(known, np.flatnonzero(np.diff(known) > 1) + 1):
+            if len(part) > 1:
+                yield sections.s[first + part], d[part]
 
 
 def edges_beside(edges: RoadEdges | None, roads: list[int]) -> dict[int, EdgesBeside]:

@@ -33,13 +33,13 @@ def painted_strands(records: Columns, rank: np.ndarray) -> list[Strand]:
     """
     if not len(records):
         return []
-    cluster, of = np.unique(records["cluster"], return_inverse=True)
-    apart = records["spacing"] * 1e-3 >= FEW_TRACKS
+    of = records["cluster"]
     # most points of the marking, which is a line
-    sparse = 2 * np.bincount(of, apart & (rank < len(LINE_KINDS)), minlength=len(cluster)) > np.bincount(of, minlength=len(cluster))
-    few = np.flatnonzero(sparse[of])
+    apart = (records["spacing"] >= FEW_TRACKS * 1e3) & (rank < len(LINE_KINDS))
+    sparse = (2 * np.bincount(of[apart], minlength=int(of.max()) + 1) > np.bincount(of))[of]
+    few = np.flatnonzero(sparse)
     few = few[np.lexsort((records["s"][few], of[few]))]
-    found = trace_strands(records[~sparse[of]], rank[~sparse[of]])
+    found = trace_strands(records[~sparse], rank[~sparse]) if len(few) else trace_strands(records, rank)
     along = records["s"][few]
     new = np.r_[True, (np.diff(of[few]) != 0) | (np.diff(along) > LONGEST_HOLE_UNITS)] if len(few) else np.empty(0, bool)
     bounds = np.append(np.flatnonzero(new), len(few))

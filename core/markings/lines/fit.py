@@ -15,7 +15,7 @@ from ...common.setting import check_limits, setting
 from ...countries.catalogue import country
 from ...countries.neutral import NEUTRAL
 from ...curves.model_selection import CURVES
-from ...survey.store.records import join_columns
+from ...survey.store.road_columns import columns_of_roads
 from ..objects.marking_objects import MarkingObjects
 from .between_tracks import with_unseen_paint
 from .common_trend import CommonTrend
@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from ...survey.store.road_points import RoadPoints
     from .strands import Strand
 
+LINES_SHARE = 0.65         # of the work; the rest is the estimate that names the lines
 PAINT_BESIDE_PIECE = 2.0   # m of station before and after a piece whose paint counts for its offset
 
 
@@ -100,30 +101,30 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
     roads = clustered_points.roads()
     beside = edges_beside(edges, roads)
     for k, road in enumerate(roads):
-        part = progress.part(k / len(roads), (k + 1) / len(roads))
+        part = progress.part(LINES_SHARE * k / len(roads), LINES_SHARE * (k + 1) / len(roads))
         records, rank = line_paint(_records_of(clustered_points, road), markings, road)
         part.report(0.1)
         strands = painted_strands(records, rank)
-        part.report(0.4)
+        part.report(0.2)
         hatched = hatching_bars(markings, road)
         lines, trend = _linked(strands, beside[road], settings)
         # a line that leads up to a hatched area may be taken for its border: linked anew without that, it goes on behind the area
         framing: list[Strand] = []
         while borders := hatching_borders(lines, hatched, framing):
             framing += borders
-            strands = [strand for strand in strands if not any(strand is border for border in borders)]
+            known = set(map(id, borders))
+            strands = [strand for strand in strands if id(strand) not in known]
             lines, trend = _linked(strands, beside[road], settings)
-        part.report(0.5)
+        part.report(0.4)
         selected = select_lines(lines, trend, crossings(markings, road), settings.min_paint, hatched, country(settings.country).longest_dash)
         dropped += len(lines) - len(selected)
         shapes, unwanted = fit_line_shapes([one.line for one in selected], [one.span for one in selected], frame.road(road), trend, beside[road],
-                                     partial(frame.track_height, road), settings)
-        part.report(0.8)
+                                     partial(frame.track_height, road), settings, part.part(0.45, 0.9))
         replaced += unwanted
         for j, (one, shape) in enumerate(zip(selected, shapes)):
             number += 1
             rows += [dict(row, line=number, road=int(road)) for row in _drawn_pieces(one, shape, frame.origin)]
-            part.report(0.8 + 0.2 * (j + 1) / len(selected))
+            part.report(0.9 + 0.1 * (j + 1) / len(selected))
     progress.info(f"Marking lines: {number}; {dropped} fragments were left out.")
     if replaced:
         progress.warn(f"{replaced} of {number} lines cannot take the curve “{settings.curve}”; "
@@ -131,7 +132,8 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
     drawn = painted_lines_of(rows, frame, clustered_points.crs)
     if road_points is not None:
         drawn = with_unseen_paint(drawn, markings, clustered_points, road_points)
-    return named_by_estimate(drawn, frame, country(settings.country).usual_lane, markings, edges, road_points, clustered_points)
+    return named_by_estimate(drawn, frame, country(settings.country).usual_lane, markings, edges, road_points, clustered_points,
+                             progress.part(LINES_SHARE, 1.0))
 
 
 def _linked(strands, edges, settings):
@@ -144,23 +146,21 @@ def _linked(strands, edges, settings):
 
 
 def _records_of(points, road):
-    parts = [points.store.section(road, section) for section in points.sections(road)]
-    return join_columns(parts, points.store.dtype)
+    return columns_of_roads(points.store, [road])
 
 
 def _drawn_pieces(one: SelectedLine, shape: LineShape, origin: np.ndarray) -> Iterator[dict[str, Any]]:
     """The pieces of one line that have a length on the map."""
-    s, d, *_ = one.line.places()
     for piece in one.pieces:
         places = shape.draw(piece.first, piece.last)
         if not np.ptp(places[:, :2] + origin[:2], axis=0).any():
             continue
-        residuals = shape.fit.residuals[(shape.s >= piece.first) & (shape.s <= piece.last)]
+        residuals = shape.fit.residuals[slice(np.searchsorted(shape.s, piece.first), np.searchsorted(shape.s, piece.last, side="right"))]
         measured = piece.status == "measured" and len(residuals)
-        near = (s >= piece.first - PAINT_BESIDE_PIECE) & (s <= piece.last + PAINT_BESIDE_PIECE)
+        _, near = one.line.near(piece.first - PAINT_BESIDE_PIECE, piece.last + PAINT_BESIDE_PIECE)
         yield dict(
             kind="", pattern=f"double-{piece.pattern}" if one.double else piece.pattern, status=piece.status,
             curve=shape.fit.curve, arc=shape.u(np.array([piece.first, piece.last])), places=places,
-            station=piece.first, end=piece.last, offset=np.median(d[near]) if near.any() else np.nan, width=one.width(piece),
+            station=piece.first, end=piece.last, offset=np.median(near) if len(near) else np.nan, width=one.width(piece),
             rmse=np.sqrt(np.mean(residuals**2)) if measured else np.nan)
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...common.errors import RoadExtractionError
+from ...common.progress import Progress
 from ...curves.bspline import fit_splines, smooth_profiles
 from ...curves.curve_fit import CurveFit
 from ...curves.model_selection import fit_curve, fit_curves
@@ -61,7 +62,8 @@ class LineShape:
 
 
 def fit_line_shapes(lines: list[LinkedLine], spans: list[tuple[float, float]], road: Road, trend: CommonTrend, edges: EdgesBeside,
-                    track_height: Callable[[np.ndarray], np.ndarray], settings: MarkingLineSettings) -> tuple[list[LineShape], int]:
+                    track_height: Callable[[np.ndarray], np.ndarray], settings: MarkingLineSettings,
+                    progress: Progress = Progress()) -> tuple[list[LineShape], int]:
     """The LineShapes of linked lines, fitted together.
 
     Parameters
@@ -74,6 +76,7 @@ def fit_line_shapes(lines: list[LinkedLine], spans: list[tuple[float, float]], r
     track_height : function of stations (N,), height of the trajectory; the line's height is
         smoothed as the difference to it, so that it goes on along the road's slope
     settings : MarkingLineSettings
+    progress : Progress
 
     Returns
     -------
@@ -81,12 +84,16 @@ def fit_line_shapes(lines: list[LinkedLine], spans: list[tuple[float, float]], r
     """
     if not lines:
         return [], 0
-    courses = [_course(line, trend, edges, span) for line, span in zip(lines, spans)]
+    courses = []
+    for line, span in zip(lines, spans):
+        courses.append(_course(line, trend, edges, span))
+        progress.report(0.2 * len(courses) / len(lines))
     s, d, own = (np.concatenate(parts) for parts in zip(*((course.s, course.d, course.own) for course in courses)))
     bounds = np.cumsum([len(course.s) for course in courses])[:-1]
     x, y = (np.split(values, bounds) for values in road.to_map(s, d))
     measured = [(x[k][course.own], y[k][course.own]) for k, course in enumerate(courses)]
     fits, replaced = _fitted(measured, settings)
+    progress.report(0.6)
     # splines once more with the guides, which are no measurements and count in no choice
     curved = [k for k, fit in enumerate(fits) if fit.curve.kind == "b-spline"]
     along = [_along(road, courses[k].s, courses[k].d) for k in curved]
@@ -97,6 +104,7 @@ def fit_line_shapes(lines: list[LinkedLine], spans: list[tuple[float, float]], r
     heights = smooth_profiles([(course.s[course.own], course.z - below) for course, below in zip(courses, track)], LINE_HEIGHT_SMOOTHING)
     found = []
     for k, (course, fit, height) in enumerate(zip(courses, fits, heights)):
+        progress.report(0.9 + 0.1 * k / len(courses))
         u, e = fit.curve.project(x[k], y[k], near[k])
         if near[k] is not None:
             fit = CurveFit(fit.curve, e[course.own], fit.parameters)

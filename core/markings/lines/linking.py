@@ -17,9 +17,11 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from ...common.groups import linked_groups
+from ...common.parallel import check_cancelled
 from ...curves.robust import median
 from .common_trend import MAX_LINE_SLOPE, CommonTrend, weighted_medians
 from .edges_beside import LEVEL_REACH
+from .lines_beside import lines_beside
 
 if TYPE_CHECKING:
     from .edges_beside import EdgesBeside
@@ -32,6 +34,7 @@ STRAY_WINDOW = 20.0                        # m before and after a strand that sa
 MAX_STRAY_LENGTH = 4.0                     # m: longer strands make their own case
 MAX_STRAY_OFFSET = 0.10                    # m across
 DOUBLE_LINE_SPACING = (0.19, 0.50)         # m between the middles of the two lines of a double line
+TWIN_REACH = 2.0                           # m before and after a place at which the other line of a double line is looked for
 MIDDLE_SHARE = (0.25, 0.75)                # of the way from one line of a double to the other: its middle
 COST_WITHOUT_LINK = 2.01                   # the worst possible link costs 1 for its mismatch and 1 for its gap
 
@@ -50,10 +53,43 @@ class LinkedLine:
     def last(self) -> float:
         return self.strands[-1].last
 
-    @property
+    @cached_property
     def painted(self) -> float:
         """Metres of paint."""
         return sum(strand.length for strand in self.strands)
+
+    @cached_property
+    def middle(self) -> float:
+        """Metres across, the median offset of all places."""
+        return median(self._places[1])
+
+    @cached_property
+    def by_station(self) -> tuple[np.ndarray, np.ndarray]:
+        """s, d of all places in order of station."""
+        s, d, *_ = self._places
+        order = np.argsort(s, kind="stable")
+        return s[order], d[order]
+
+    @cached_property
+    def mean_width(self) -> float:
+        """Metres of paint across, on average."""
+        return float(np.average([strand.width for strand in self.strands], weights=[strand.length for strand in self.strands]))
+
+    @cached_property
+    def _ends_of_strands(self):
+        """Where strands begin, and how far they and those before them reach."""
+        return np.array([strand.first for strand in self.strands]), np.maximum.accumulate([strand.last for strand in self.strands])
+
+    def strands_between(self, first: float, last: float) -> list[Strand]:
+        """Its strands from the first to the last one that reach into the road between two stations."""
+        begin, reach = self._ends_of_strands
+        return self.strands[int(np.searchsorted(reach, first)):int(np.searchsorted(begin, last, side="right"))]
+
+    def near(self, first: float, last: float) -> tuple[np.ndarray, np.ndarray]:
+        """s, d of the places from one station to another, in order of station."""
+        s, d = self.by_station
+        inside = slice(np.searchsorted(s, first), np.searchsorted(s, last, side="right"))
+        return s[inside], d[inside]
 
     def places(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """s, d, z, weight of all places."""
@@ -174,6 +210,7 @@ def link_lines(lines: list[LinkedLine], trend: CommonTrend, edges: EdgesBeside, 
     twin_ends, twin_starts = (twin_offsets(lines, trend, tips, at_start) for tips, at_start in ((ends, False), (starts, True)))
     pairs = []
     for a, before in enumerate(ends):
+        check_cancelled()
         low, high = np.searchsorted(stations, [before.s - MAX_STRAND_OVERLAP, before.s + max_gap])
         for b in by_start[low:high]:
             after, gap = starts[b], starts[b].s - before.s
@@ -193,23 +230,15 @@ def twin_offsets(lines: list[LinkedLine], trend: CommonTrend, tips: list[_End], 
     """(N,) signed distance across to the other line of a double line at each start (or end), of which `tips` tell; 0 where there is none."""
     spans = np.array([(line.first, line.last) for line in lines]).reshape(-1, 2)
     inner = np.array([tip.s for tip in tips]) + (1.0 if at_start else -1.0) * np.minimum(2.0, (spans[:, 1] - spans[:, 0]) / 2)
-    by_start = np.argsort(spans[:, 0], kind="stable")
-    longest = float((spans[:, 1] - spans[:, 0]).max(initial=0.0))
-    low = np.searchsorted(spans[by_start, 0], inner - longest)
-    high = np.searchsorted(spans[by_start, 0], inner, side="right")
-    result, levels = np.zeros(len(lines)), {}
+    beside = lines_beside(lines)
+    result = np.zeros(len(lines))
     for k, tip in enumerate(tips):
-        around = by_start[low[k]:high[k]]
-        for j in sorted(around[spans[around, 1] >= inner[k]].tolist()):
+        for j in beside.between(inner[k], inner[k]).tolist():
             if j == k:
                 continue
-            if j not in levels:
-                s, d, *_ = lines[j].places()
-                levels[j] = s, d - trend.at(s)
-            s, level = levels[j]
-            near = np.abs(s - inner[k]) <= 2.0
-            if near.any():
-                away = median(level[near]) - tip.d
+            s, d = lines[j].near(inner[k] - TWIN_REACH, inner[k] + TWIN_REACH)
+            if len(s):
+                away = median(d - trend.at(s)) - tip.d
                 if DOUBLE_LINE_SPACING[0] <= abs(away) <= DOUBLE_LINE_SPACING[1]:
                     result[k] = away
     return result
@@ -287,7 +316,9 @@ def link_over_long_gaps(lines: list[LinkedLine], trend: CommonTrend, edges: Edge
         by_start = np.argsort([e.s for e in starts], kind="stable")
         stations = np.array([starts[k].s for k in by_start])
         pairs = []
+        beside = lines_beside(lines)
         for a, before in enumerate(ends):
+            check_cancelled()
             low, high = np.searchsorted(stations, [before.s + max_gap - MAX_STRAND_OVERLAP, before.s + max_bridge])
             for b in by_start[low:high]:
                 after = starts[b]
@@ -295,7 +326,7 @@ def link_over_long_gaps(lines: list[LinkedLine], trend: CommonTrend, edges: Edge
                     continue
                 if (miss := _miss(before, after, trend, edges, lines[a], lines[b])) > allowed:
                     continue
-                if same_dash_pattern(lines[a], lines[b]) or _runs_beside(lines, (a, b), before, after, trend):
+                if same_dash_pattern(lines[a], lines[b]) or _runs_beside(lines, beside, (a, b), before, after, trend):
                     score = (miss / allowed) ** 2 + (after.s - before.s) / max_bridge
                     pairs.append((score, a, int(b)))
         if not pairs:
@@ -341,16 +372,16 @@ def _robust_level(s, level, weight):
     return found[0]
 
 
-def _runs_beside(lines, pair, before, after, trend):
+def _runs_beside(lines, beside, pair, before, after, trend):
     """Another line within 8 m painted over most of the gap, with holes of at most 5 m, while keeping its distance."""
-    for k, other in enumerate(lines):
+    for k in beside.between(before.s - 5, after.s + 5).tolist():
         if k in pair:
             continue
-        s, d, *_ = other.places()
+        s, d = lines[k].near(before.s - 5, after.s + 5)
         there = (s > before.s - 5) & (s < after.s + 5)
         if not there.any() or np.abs(median(d[there]) - trend.at(before.s) - before.d) > 8.0:
             continue
-        covered = np.r_[before.s, np.sort(s[(s > before.s) & (s < after.s)]), after.s]
+        covered = np.r_[before.s, s[(s > before.s) & (s < after.s)], after.s]
         if np.diff(covered).max() <= 5.0:
             return True
     return False

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 
+from ...common.progress import Progress
 from ..cross_section.named_lines import line_kinds
 from ..cross_section.roads import estimate_roads
 from ..cross_section.sections import sections_of_edges, sections_of_lines, sections_of_pavement
@@ -25,7 +26,8 @@ MAX_DISTANCE_TO_LINE = 0.15   # m between a marking and the line along it
 
 
 def named_by_estimate(lines: PaintedLines, frame: RoadFrame, usual_width: float, markings: MarkingObjects | None = None,
-                      edges: RoadEdges | None = None, road_points: RoadPoints | None = None, paint: RoadPoints | None = None) -> PaintedLines:
+                      edges: RoadEdges | None = None, road_points: RoadPoints | None = None, paint: RoadPoints | None = None,
+                      progress: Progress = Progress()) -> PaintedLines:
     """Lines with the `kind` that the estimate of their road gives them; one that bounds no lane is called by how it is drawn.
 
     Parameters
@@ -35,6 +37,7 @@ def named_by_estimate(lines: PaintedLines, frame: RoadFrame, usual_width: float,
     usual_width : metres, of lanes where the lines do not tell
     markings, edges, road_points : what else the estimate is made from, or None
     paint : points of markings, which serve where there are no road points, or None
+    progress : Progress
 
     Returns
     -------
@@ -44,7 +47,7 @@ def named_by_estimate(lines: PaintedLines, frame: RoadFrame, usual_width: float,
         return lines
     curbs, pavement = (sections_of_edges(edges), sections_of_pavement(edges)) if edges is not None else (None, None)
     found = line_kinds(estimate_roads(sections_of_lines(lines), frame, usual_width, curbs=curbs, markings=markings, road_points=road_points,
-                                      paint=paint, pavement=pavement))
+                                      paint=paint, pavement=pavement, progress=progress))
     drawn = np.where([pattern.startswith("double") for pattern in lines.pattern], "centre",
                      np.where(lines.pattern == "dashed", "lane", "edge")).astype(object)
     kind = np.array([found.get(number, own) for number, own in zip(lines.line.tolist(), drawn)], object)

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...common.parallel import check_cancelled
 from ...countries.neutral import NEUTRAL
 from ...curves.robust import median
 from ..objects.classify import LANE_CLEARANCE
 from .dash_pattern import LinePiece, line_pieces, merged_pieces, stretches
+from .lines_beside import StretchLookup, lines_beside
 from .linking import DOUBLE_LINE_SPACING, MAX_STRAY_OFFSET, LinkedLine
 
 if TYPE_CHECKING:
@@ -45,9 +48,9 @@ class SelectedLine:
 
     def width(self, piece: LinePiece) -> float:
         """Metres of paint across, of its own strands, or of those of the whole line where it has none."""
-        strands = self.line.strands
+        strands = self.line.strands_between(piece.first, piece.last)
         own = [max(min(strand.last, piece.last) - max(strand.first, piece.first), 0.0) for strand in strands]
-        return float(np.average([strand.width for strand in strands], weights=own if sum(own) > 0 else [strand.length for strand in strands]))
+        return float(np.average([strand.width for strand in strands], weights=own)) if sum(own) > 0 else self.line.mean_width
 
     @property
     def span(self) -> tuple[float, float]:
@@ -95,47 +98,65 @@ def select_lines(lines: list[LinkedLine], trend: CommonTrend, crossed: np.ndarra
     """
     if not lines:
         return []
-    parts = [_without_pairs_at_crossings(stretches(line, longest_dash), line, crossed) for line in lines]
-    level = [_level(line, trend) for line in lines]
+    bars, beside, strands = _Bars(hatched), lines_beside(lines), _StrandsBeside(lines)
+    crossings_there = StretchLookup(crossed[:, 0], crossed[:, 1])
+    parts = [_without_pairs_at_crossings(stretches(line, longest_dash), line, crossed, crossings_there) for line in lines]
+    level = np.array([_level(line, trend) for line in lines])
     patterns = [_dash_patterns(stretch) for stretch in parts]
     painted_to = max(line.last for line in lines)
     painted_from = min(line.first for line in lines)
-    frayed, double = _beside(lines, trend, longest_dash)
-    outside = _beyond_the_edge(lines, level)
+    frayed, double = _beside(lines, beside, trend, longest_dash)
+    outside = _beyond_the_edge(lines, beside, level)
+    dashes = _DashesElsewhere(lines, patterns, level)
     found = []
     for k, line in enumerate(lines):
+        check_cancelled()
         single = None
         if not patterns[k] and line.painted < longest_dash:
-            single = _dash_of_another(k, lines, patterns, level)
-        if frayed[k] or outside[k] or _frames_hatching(line, hatched) or not (line.painted >= min_paint or patterns[k] or single):
+            single = dashes.alike(k)
+        if frayed[k] or outside[k] or _frames_hatching(line, bars) or not (line.painted >= min_paint or patterns[k] or single):
             continue
         drawn = line_pieces(parts[k])
         if single is not None:
             drawn = [LinePiece(line.first, line.last, "measured", "dashed")]
-        neighbours = _painted_beside(k, lines, level)
-        drawn = _extended(drawn, parts[k], single, (painted_from, painted_to), crossed, neighbours, line)
+        drawn = _extended(drawn, parts[k], single, (painted_from, painted_to), partial(_crossed_there, crossed, crossings_there, line.middle),
+                          partial(strands.near, level, k), line)
         found.append(SelectedLine(line, bool(double[k]), drawn))
     return found
 
 
-def _without_pairs_at_crossings(parts, line, crossed):
+def _without_pairs_at_crossings(parts, line, crossed, crossings_there):
     """Stretches, of which two pieces alone are no dashes where a crossing lies between them: that is why there is a gap."""
     found = []
     for part in parts:
         if part.dashes and len(part.intervals) == 2:
             (_, before), (after, _) = part.intervals
-            s, d, *_ = line.places()
-            at = median(d[(s >= part.first) & (s <= part.last)])
-            between = (crossed[:, 0] < after) & (crossed[:, 1] > before) & (crossed[:, 2] <= at + AT_CROSSING) & (crossed[:, 3] >= at - AT_CROSSING)
+            there = _crossed_there(crossed, crossings_there, median(line.near(part.first, part.last)[1]), before, after)
+            between = (there[:, 0] < after) & (there[:, 1] > before)
             part = replace(part, dashes=None) if between.any() else part
         found.append(part)
     return found
 
 
-def _painted_beside(k, lines, level):
-    """(M, 2) stations between which the lines beside line k are painted."""
-    near = [line for j, line in enumerate(lines) if j != k and abs(level[j] - level[k]) <= MAX_NEIGHBOUR_OFFSET]
-    return np.array([(strand.first, strand.last) for line in near for strand in line.strands]).reshape(-1, 2)
+def _crossed_there(crossed, crossings_there, d, first, last):
+    """(M, 4) crossings that reach over an offset or near it, between two stations."""
+    near = crossed[crossings_there.between(first, last)]
+    return near[(near[:, 2] <= d + AT_CROSSING) & (near[:, 3] >= d - AT_CROSSING)]
+
+
+class _StrandsBeside:
+    """Lookup of the strands of lines by station."""
+
+    def __init__(self, lines):
+        self.spans = np.array([(strand.first, strand.last) for line in lines for strand in line.strands]).reshape(-1, 2)
+        self.owner = np.repeat(np.arange(len(lines)), [len(line.strands) for line in lines])
+        self.lookup = StretchLookup(*self.spans.T)
+
+    def near(self, level, k, first, last):
+        """(M, 2) stations between which the lines beside line k are painted, of what is painted between two stations."""
+        near = self.lookup.between(first, last)
+        of = self.owner[near]
+        return self.spans[near[(of != k) & (np.abs(level[of] - level[k]) <= MAX_NEIGHBOUR_OFFSET)]]
 
 
 def _level(line, trend):
@@ -147,20 +168,32 @@ def _dash_patterns(parts):
     return [part.dashes for part in parts if part.dashes]
 
 
-def _dash_of_another(k, lines, patterns, level):
-    """The DashPattern of a dashed line elsewhere on the road, on whose course and of whose dash length line k is."""
-    if lines[k].painted < MIN_SINGLE_DASH or len(lines[k].strands) > 2:
-        return None
-    for j, of_line in enumerate(patterns):
-        apart = lines[j].last < lines[k].first or lines[j].first > lines[k].last
-        for pattern in of_line if apart and abs(level[j] - level[k]) <= SAME_COURSE_OFFSET else ():
-            differs = abs(lines[k].last - lines[k].first - pattern.dash)
-            if len(lines[j].strands) >= 3 and differs <= max(0.6, 0.25 * pattern.dash):
-                return pattern
-    return None
+class _DashesElsewhere:
+    """The dash patterns of the lines of a road, by how far across these lie."""
+
+    def __init__(self, lines, patterns, level):
+        self.lines, self.level = lines, level
+        found = [(j, pattern) for j, of_line in enumerate(patterns) if len(lines[j].strands) >= 3 for pattern in of_line]
+        order = np.argsort([level[j] for j, _ in found], kind="stable").astype(int)
+        self.of, self.patterns = np.array([found[n][0] for n in order], int), [found[n][1] for n in order]
+        self.dash = np.array([pattern.dash for pattern in self.patterns])
+        self.first, self.last = (np.array([getattr(lines[j], end) for j in self.of]) for end in ("first", "last"))
+
+    def alike(self, k):
+        """The DashPattern of a dashed line elsewhere on the road, on whose course and of whose dash length line k is; of several the first one's."""
+        line = self.lines[k]
+        if line.painted < MIN_SINGLE_DASH or len(line.strands) > 2:
+            return None
+        levels = self.level[self.of]
+        near = slice(*np.searchsorted(levels, self.level[k] + SAME_COURSE_OFFSET * np.array([-1.001, 1.001])))
+        apart = (self.last[near] < line.first) | (self.first[near] > line.last)
+        same = np.abs(levels[near] - self.level[k]) <= SAME_COURSE_OFFSET
+        differs = np.abs(line.last - line.first - self.dash[near])
+        found = near.start + np.flatnonzero(apart & same & (differs <= np.maximum(0.6, 0.25 * self.dash[near])))
+        return self.patterns[found[np.argmin(self.of[found])]] if len(found) else None
 
 
-def _beside(lines, trend, longest_dash):
+def _beside(lines, beside, trend, longest_dash):
     """(N,) frayed: a sliver beside a longer line; (N,) double: one of two equal lines side by side."""
     frayed, double = np.zeros(len(lines), bool), np.zeros(len(lines), bool)
     tracks = []
@@ -170,10 +203,11 @@ def _beside(lines, trend, longest_dash):
         cells, first = np.unique(cell, return_index=True)
         tracks.append((cells, (d - trend.at(s))[first]))
     for k in range(len(lines)):
-        for j in range(len(lines)):
-            if j == k or lines[j].first > lines[k].last or lines[j].last < lines[k].first:
+        check_cancelled()
+        for j in beside.between(lines[k].first, lines[k].last).tolist():
+            if j == k:
                 continue
-            _, a, b = np.intersect1d(tracks[k][0], tracks[j][0], assume_unique=True, return_indices=True)
+            a, b = _shared(tracks[k][0], tracks[j][0])
             if len(a) < 3:
                 continue
             away = median(np.abs(tracks[k][1][a] - tracks[j][1][b]))
@@ -190,24 +224,34 @@ def _beside(lines, trend, longest_dash):
     return frayed, double
 
 
+def _shared(one, other):
+    """Where in each of two arrays, ascending, the values are that both have."""
+    begin, end = max(one[0], other[0]), min(one[-1], other[-1])
+    windows = [slice(np.searchsorted(cells, begin), np.searchsorted(cells, end, side="right")) for cells in (one, other)]
+    _, a, b = np.intersect1d(one[windows[0]], other[windows[1]], assume_unique=True, return_indices=True)
+    return a + windows[0].start, b + windows[1].start
+
+
 def _painted_there(line, other):
     """Metres of paint of those strands of a line that run beside another."""
-    return sum(strand.length for strand in line.strands if strand.last > other.first and strand.first < other.last)
+    return sum(strand.length for strand in line.strands_between(other.first, other.last) if strand.last > other.first and strand.first < other.last)
 
 
-def _beyond_the_edge(lines, level):
+def _beyond_the_edge(lines, beside, level):
     """(N,) whether a fragment lies farther out than a long line that bounds the road there: gutter, verge or yard.
 
     With less than a lane's room between the two, what is much shorter than the edge
     line is no line of its own; farther out, what is short.
     """
     result = np.zeros(len(lines), bool)
-    bounds = [j for j, line in enumerate(lines)
-              if line.painted >= MIN_BOUNDING_PAINT and _votes(line).get("edge", 0.0) > 0.3 * line.painted]
+    bounds = {j for j, line in enumerate(lines)
+              if line.painted >= MIN_BOUNDING_PAINT and _votes(line).get("edge", 0.0) > 0.3 * line.painted}
     for k, line in enumerate(lines):
-        for j in bounds:
+        for j in beside.between(line.first, line.last).tolist():
+            if j not in bounds:
+                continue
             # the vehicle drove between the edge lines
-            farther = np.sign(median(lines[j].places()[1])) * (level[k] - level[j])
+            farther = np.sign(lines[j].middle) * (level[k] - level[j])
             shared = min(lines[j].last, line.last) - max(lines[j].first, line.first)
             least = MAX_FRAYED_SHARE * lines[j].painted if farther < LANE_CLEARANCE else 0.0
             if j != k and farther > DOUBLE_LINE_SPACING[0] and shared > 0.5 * (line.last - line.first) \
@@ -221,15 +265,18 @@ def hatching_borders(lines: list[LinkedLine], hatched: np.ndarray, known: list[S
 
     `known` are those found before. What leads from the straight way to one of them is its end, however short.
     """
-    whole = [strand for line in lines if _frames_hatching(line, hatched) for strand in line.strands]
-    borders = known + whole
-    found = [strand for line in lines if len(line.strands) > 1
-             for k, strand in enumerate(line.strands) if _frames_hatching(LinkedLine([strand]), hatched, MIN_BARS_OF_STRAND)
-             and (_frames_hatching(line, hatched) or _aside(line.strands[k - 1:k + 2]) > LEAST_TURN_ASIDE)]
+    bars = _Bars(hatched)
+    framing = [_frames_hatching(line, bars) for line in lines]
+    borders = known + [strand for line, frames in zip(lines, framing) if frames for strand in line.strands]
+    found = [strand for line, frames in zip(lines, framing) if len(line.strands) > 1
+             for k, strand in enumerate(line.strands) if _frames_hatching(LinkedLine([strand]), bars, MIN_BARS_OF_STRAND)
+             and (frames or _aside(line.strands[k - 1:k + 2]) > LEAST_TURN_ASIDE)]
     if found:
         return found
     aside = [strand for line in lines for k, strand in enumerate(line.strands) if _aside(line.strands[k - 1:k + 2]) > MAX_STRAY_OFFSET]
-    return [strand for strand in aside if any(_meet(strand, border) for border in borders if border is not strand)]
+    there = StretchLookup(np.array([border.first for border in borders]), np.array([border.last for border in borders]))
+    return [strand for strand in aside if any(_meet(strand, borders[k]) for k in there.between(
+        strand.first - MAX_BORDER_GAP, strand.last + MAX_BORDER_GAP) if borders[k] is not strand)]
 
 
 def _aside(strands):
@@ -249,12 +296,24 @@ def _meet(one, other):
     return False
 
 
-def _frames_hatching(line, hatched, fewest=MIN_BARS):
+class _Bars:
+    """Bars of hatched areas, (K, 4) as `hatching_bars` gives them, by the station of their middle."""
+
+    def __init__(self, hatched):
+        middle = hatched[:, :2].mean(axis=1)
+        order = np.argsort(middle, kind="stable")
+        self.middle, (self.low, self.high) = middle[order], hatched[order, 2:].T
+
+
+def _frames_hatching(line, bars, fewest=MIN_BARS):
     """Whether bars end at a line along most of it; an edge line beside a hatched area goes on after it."""
+    inside = slice(*np.searchsorted(bars.middle, [line.first, line.last]))
+    middle = bars.middle[inside]
+    if len(middle) < fewest:
+        return False
     s, d, *_ = line.places()
-    middle = hatched[:, :2].mean(axis=1)
     at = np.interp(middle, s, d)
-    ends = np.minimum(np.abs(hatched[:, 2] - at), np.abs(hatched[:, 3] - at)) < MAX_BAR_END_OFFSET
+    ends = np.minimum(np.abs(bars.low[inside] - at), np.abs(bars.high[inside] - at)) < MAX_BAR_END_OFFSET
     near = middle[ends & (middle > line.first) & (middle < line.last)]
     if len(near) < fewest:
         return False
@@ -271,18 +330,17 @@ def _votes(line):
     return votes
 
 
-def _extended(drawn, parts, single, painted, crossed, neighbours, line):
+def _extended(drawn, parts, single, painted, crossed, painted_beside, line):
     """A dashed line ends with a gap: its ends go on by one gap.
 
     But not past the paint of the road, into a crossing, or past where the lines
-    beside it begin or end.
+    beside it begin or end. `crossed` and `painted_beside` tell crossings and paint between two stations.
     """
     drawn = list(drawn)
     before, after = single or parts[0].dashes, single or parts[-1].dashes
-    d = median(line.places()[1])
-    beside = crossed[(crossed[:, 2] <= d + AT_CROSSING) & (crossed[:, 3] >= d - AT_CROSSING)]
     if before:
         limit = line.first - before.gap
+        beside, neighbours = crossed(limit - 1.0, line.first + 1.0), painted_beside(limit - 1.0, line.first + 1.0)
         begun = neighbours[(neighbours[:, 0] > limit) & (neighbours[:, 0] <= line.first), 0]
         running = ((neighbours[:, 0] <= limit) & (neighbours[:, 1] > limit + 1.0)).any()
         start = max(limit, painted[0], *beside[beside[:, 1] < line.first + 0.5, 1],
@@ -290,6 +348,7 @@ def _extended(drawn, parts, single, painted, crossed, neighbours, line):
         drawn.insert(0, LinePiece(min(start, line.first), line.first, "measured", "dashed"))
     if after:
         limit = line.last + after.gap
+        beside, neighbours = crossed(line.last - 1.0, limit + 1.0), painted_beside(line.last - 1.0, limit + 1.0)
         ended = neighbours[(neighbours[:, 1] < limit) & (neighbours[:, 1] >= line.last), 1]
         running = ((neighbours[:, 1] >= limit) & (neighbours[:, 0] < limit - 1.0)).any()
         end = min(limit, painted[1], *beside[beside[:, 0] > line.last - 0.5, 0],

@@ -9,6 +9,7 @@ import numpy as np
 
 from ...common.groups import linked_groups
 from ...common.order_statistics import order_by
+from ...common.parallel import check_cancelled
 from ...curves.robust import median, percentiles
 from ...survey.store.records import COORDINATE_SCALE
 from ..objects.classify import LINE_KINDS
@@ -79,7 +80,7 @@ def line_paint(records: Columns, markings: MarkingObjects, road: int) -> tuple[C
     # of a marking of several parts the last one counts
     known, last = np.unique(markings.cluster[here][::-1], return_index=True)
     here = here[::-1][last]
-    ranks = np.full(len(known), len(LINE_KINDS))
+    ranks = np.full(len(known), len(LINE_KINDS), np.int8)
     for k, name in enumerate(LINE_KINDS):
         ranks[markings.keep[here] & (markings.kind[here] == name)] = k
     mixed_ones = (ranks == len(LINE_KINDS)) & (markings.length[here] > MIN_MIXED_MARKING)
@@ -131,22 +132,29 @@ def trace_strands(records: Columns, rank: np.ndarray) -> list[Strand]:
         return []
     across, bins = records["d"], records["s"] // RUN_BIN_UNITS
     order = order_by(across, bins)
-    run = _without_thin(_runs(bins[order], across[order].astype(np.int64)))
+    run = _without_thin(_runs(bins[order], across[order]))
     inside = np.flatnonzero(run >= 0)
     if not len(inside):
         return []
     run, order = run[inside], order[inside]
+    del inside
     starts = np.flatnonzero(np.append(True, run[1:] != run[:-1]))
     node_d, width = _middle_and_width(across[order], starts)
     label = _chains(bins[order[starts]], node_d, width <= MAX_LINE_WIDTH_UNITS)
     of_point = np.repeat(label, np.diff(np.append(starts, len(run))))
+    del run
     used = np.flatnonzero(of_point >= 0)
-    order = order[used]
-    return _strands([rank[order], *(records[name][order] for name in ("s", "d", "z"))], of_point[used])
+    order, of_point = order[used], of_point[used]
+    place = records["s"][order] // PLACE_STEP_UNITS
+    # within a place points keep their order, which is across
+    by_place = order_by(place, of_point)
+    order, of_point, place = order[by_place], of_point[by_place], place[by_place]
+    del used, by_place
+    return _strands(place, [rank[order], *(records[name][order] for name in ("s", "d", "z"))], of_point)
 
 
 def _runs(bins, across):
-    """(N,) number of the run of paint each point belongs to; points sorted by bin, then across."""
+    """(N,) int32, number of the run of paint each point belongs to; points sorted by bin, then across."""
     cut = np.r_[True, (np.diff(bins) != 0) | (np.diff(across) > RUN_GAP_UNITS)]
     starts = np.flatnonzero(cut)
     for _ in range(8):
@@ -160,9 +168,9 @@ def _runs(bins, across):
             break
         starts = np.delete(starts, np.flatnonzero(joins) + 1)
     starts = _part_hazy_doubles(bins, across, starts)
-    run = np.zeros(len(bins), np.int64)
-    run[starts] = 1
-    return np.cumsum(run) - 1
+    run = np.zeros(len(bins), np.int32)
+    run[starts[1:]] = 1
+    return np.cumsum(run, out=run)
 
 
 def _part_hazy_doubles(bins, across, starts):
@@ -187,7 +195,7 @@ def _part_hazy_doubles(bins, across, starts):
 
 def _without_thin(run):
     """-1 for the points of runs of too few points."""
-    return np.where(np.bincount(run)[run] >= MIN_POINTS_PER_RUN, run, -1)
+    return np.where((np.bincount(run) >= MIN_POINTS_PER_RUN)[run], run, np.int32(-1))
 
 
 def _middle_and_width(across, starts):
@@ -238,15 +246,12 @@ def _mutual(node_bin, node_d, ends, starts, leap, span):
     return ends[rows], starts[there[rows]]
 
 
-def _strands(columns, label):
-    """Strands of points that lie by bin, then across: columns rank, s, d and z, (N,) each, and the chain of each point."""
-    place = columns[1] // PLACE_STEP_UNITS
-    # within a place points keep their order, which is across
-    order = order_by(place, label)
-    label, place, columns = label[order], place[order], [column[order] for column in columns]
+def _strands(place, columns, label):
+    """Strands of points that lie by chain, place and across: their place, columns rank, s, d and z, and the chain of each point, (N,) each."""
     bounds = np.flatnonzero(np.r_[True, np.diff(label) != 0, True]) if len(label) else np.zeros(1, int)
     found = []
     for a, b in zip(bounds[:-1].tolist(), bounds[1:].tolist()):
+        check_cancelled()
         strand = _strand(place[a:b], *(column[a:b] for column in columns))
         mixed = strand.classes.get("mixed", 0.0) > 0.5 * strand.length
         if strand.length >= (MIN_MIXED_STRAND if mixed else MIN_STRAND_LENGTH):

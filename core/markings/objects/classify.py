@@ -111,9 +111,12 @@ def relative_contrast(value: np.ndarray, s: np.ndarray, starts: np.ndarray) -> n
     bounds = np.searchsorted(stretch[order], np.arange(first - 1, last + 3))
     ends = np.array([percentiles(value[order[a:b]], [FAINT_PERCENTILE, BRIGHT_PERCENTILE]) if b > a else (0.0, 1.0)
                      for a, b in zip(bounds[:-3], bounds[3:])])
-    low, high = ends[stretch - first].T
-    share = (value - low) / np.maximum(high - low, 1e-6)
-    return np.array([percentiles(share[a:b], [CONTRAST_PERCENTILE])[0] for a, b in zip(starts[:-1], starts[1:])])
+    del order
+    found = []
+    for a, b in zip(starts[:-1].tolist(), starts[1:].tolist()):
+        low, high = ends[stretch[a:b] - first].T
+        found += percentiles((value[a:b] - low) / np.maximum(high - low, 1e-6), [CONTRAST_PERCENTILE])
+    return np.array(found)
 
 
 def classify_markings(shapes: list[Shape], half_widths: Sequence[float], settings: ClassSettings = ClassSettings(),

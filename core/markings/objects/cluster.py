@@ -179,8 +179,8 @@ def _pieces(paint, work, settings, progress):
 def _blocks_of_all(found):
     """Of each road (N,) bool, which clusters are blocks of give-way lines: a row of them may lie on several roads, and askew to them."""
     shapes = [shape for pieces in found for shape in pieces.shapes]
-    rectangles = [_rectangle(pieces.records, bounds) if max(shape.sides) <= SMALL_MARKING_SIZE else (0.0, 0.0, 0.0, 0.0)
-                  for pieces in found for bounds, shape in zip(pieces.bounds, pieces.shapes)]
+    rectangles = [_rectangle(records, bounds) if max(shape.sides) <= SMALL_MARKING_SIZE else (0.0, 0.0, 0.0, 0.0)
+                  for pieces in found for records in [pieces.records.unread()] for bounds, shape in zip(pieces.bounds, pieces.shapes)]
     sides, middles = np.split(np.array(rectangles).reshape(-1, 4), 2, axis=1)
     blocks = give_way_blocks(filled(shapes), sides, middles)
     return np.split(blocks, np.cumsum([len(pieces.shapes) for pieces in found])[:-1]) if found else []
@@ -217,9 +217,9 @@ def _ranges(values, starts):
 
 def _markings(pieces, blocks, settings, has_corrected, progress):
     """[_Marking] of one road but for stripes of crossings, and how many clusters are none; blocks : (N,) bool."""
-    records, bounds, shapes = pieces.records, pieces.bounds, pieces.shapes
-    half_width, hidden = records["half_width"].astype(float), records["covered"]
-    half_widths = [median(half_width[a:b]) * 1e-3 for a, b in bounds]
+    records, bounds, shapes = pieces.records.unread(), pieces.bounds, pieces.shapes
+    half_width, hidden = records["half_width"], records["covered"]
+    half_widths = [median(half_width[a:b].astype(float)) * 1e-3 for a, b in bounds]
     covered = [float(np.count_nonzero(hidden[a:b])) / (b - a) for a, b in bounds]
     kinds = classify_markings(shapes, half_widths, settings.classes, covered, blocks)
     clear = np.array(half_widths) - np.abs([shape.offset for shape in shapes]) > RIM_CLEARANCE
@@ -235,7 +235,8 @@ def _markings(pieces, blocks, settings, has_corrected, progress):
         for k in members:
             whole[k] = ((), NOT_PAINT, "other")
         whole[members[0]] = (members, kind, "other")
-    found = []
+    # the columns that told kinds of markings are not used any more
+    found, records = [], records.unread()
     for members, kind, use in whole:
         if kind != NOT_PAINT:
             check_cancelled()

@@ -107,14 +107,15 @@ class ApartWork:
         """The Comb of each window, None where it has no stripes; places : (N, 2) m, windows : rows of the spots of each."""
         bounds = np.cumsum([0, *map(len, windows)])
         rows = np.concatenate([np.empty(0, np.int32), *windows])
-        found = self._run(combs_of_windows, (places,), bounds, progress, rows=rows)
+        found = self._run(combs_of_windows, lambda a, b: (places[rows[bounds[a]:bounds[b]]],), bounds, progress)
         return [None if comb is None else Comb(*comb) for comb in found]
 
     def stripes(self, places: np.ndarray, way: np.ndarray, crossings: Sequence[Crossing], progress: Progress) -> list[list[Stripe]]:
         """The stripes of each crossing, their spots by number among those of the crossing; places, way : as of `zebra_stripes`."""
         bounds = np.cumsum([0, *(len(own) for own, _ in crossings)])
         rows = np.concatenate([np.empty(0, np.intp), *(own for own, _ in crossings)])
-        found = self._run(stripes_of_crossings, (places, way), bounds, progress, rows=rows, alone=True, looks=[tuple(comb) for _, comb in crossings])
+        found = self._run(stripes_of_crossings, lambda a, b: tuple(values[rows[bounds[a]:bounds[b]]] for values in (places, way)), bounds, progress,
+                          alone=True, looks=[tuple(comb) for _, comb in crossings])
         return [[Stripe(*stripe) for stripe in some] for some in found]
 
     def parts(self, s: np.ndarray, d: np.ndarray, spacing: np.ndarray, spans: Sequence[tuple[int, int]],
@@ -122,28 +123,36 @@ class ApartWork:
         """Of each compound cluster, which begins and ends at rows of the columns, the part of every point, and how many parts there are."""
         rows = np.concatenate([np.empty(0, np.intp), *(np.arange(first, end) for first, end in spans)])
         bounds = np.cumsum([0, *(end - first for first, end in spans)])
-        return self._run(parts_of_compounds, (s, d, spacing), bounds, progress, rows=rows, alone=True)
+        return self._run(parts_of_compounds, lambda a, b: tuple(column[rows[bounds[a]:bounds[b]]] for column in (s, d, spacing)), bounds, progress,
+                         alone=True)
 
     def shapes(self, records: Columns, bounds: np.ndarray, progress: Progress) -> list[Shape]:
         """The Shape of each cluster; bounds : of the clusters in the records."""
-        return self._run(shapes_of_clusters, tuple(records[name] for name in ("s", "d", "spacing")), bounds, progress)
+        def columns(a, b):
+            return _columns_at(records, np.arange(bounds[a], bounds[b]), ("s", "d", "spacing"))
+
+        return self._run(shapes_of_clusters, columns, bounds, progress)
 
     def outlines(self, records: Columns, rows: Sequence[np.ndarray], looks: Sequence[tuple[Shape, bool]], road: Road,
                  progress: Progress) -> list[list[Any]]:
         """The polygons of each marking, of `drawn_outline`; rows : in the records, of each; looks : the Shape of each and whether it is a strip."""
-        columns = tuple(records[name] for name in ("s", "d", "x", "y", "z", "spacing"))
-        return self._run(outlines_of_markings, columns, np.cumsum([0, *map(len, rows)]), progress,
-                         rows=np.concatenate([np.empty(0, np.intp), *rows]), looks=looks, arguments=(road,), read=_polygons)
+        def columns(a, b):
+            return _columns_at(records, np.concatenate(rows[a:b]), ("s", "d", "x", "y", "z", "spacing"))
+
+        return self._run(outlines_of_markings, columns, np.cumsum([0, *map(len, rows)]), progress, looks=looks, arguments=(road,), read=_polygons)
 
     def figures(self, groups: list[list[Candidate]], begin: float, end: float, progress: Progress) -> Iterator[list[tuple[int, str]]]:
         """What `figures_of_group` finds in each group; they are the work from a fraction `begin` of the progress to `end`."""
         phase = Phase(figures_of_group, NoSource(), (), lambda item: f"markings of road {self.road}")
         return self.executor.run(phase, groups, progress.part(begin, end))
 
-    def _run(self, function: Callable[..., Any], columns: Sequence[np.ndarray], bounds: np.ndarray, progress: Progress,
-             rows: np.ndarray | None = None, alone: bool = False, looks: Sequence[Any] | None = None, arguments: tuple[Any, ...] = (),
+    def _run(self, function: Callable[..., Any], columns: Callable[[int, int], tuple[np.ndarray, ...]], bounds: np.ndarray, progress: Progress,
+             alone: bool = False, looks: Sequence[Any] | None = None, arguments: tuple[Any, ...] = (),
              read: Callable[[Any], list[Any]] = list) -> list[Any]:
-        """Results of all clusters; threads of this process take one after the other, or each `alone`: for the small ones Python is the cost."""
+        """Results of all clusters; threads of this process take one after the other, or each `alone`: for the small ones Python is the cost.
+
+        `columns` gives those of the clusters from a number to before another, one after the other: PHASE_POINTS are there at a time.
+        """
         phase = Phase(function, NoSource(), arguments, lambda item: f"markings of road {self.road}")
         whole, found = _cuts(bounds, PHASE_POINTS), []
         for begin, end in zip(whole[:-1].tolist(), whole[1:].tolist()):
@@ -152,7 +161,8 @@ class ApartWork:
                 cuts = _cuts(own, TASK_POINTS)
             else:
                 cuts = np.arange(len(own)) if alone else np.array([0, len(own) - 1])
-            items = [_item(columns, rows, own[a:b + 1], None if looks is None else list(looks[begin + a:begin + b]))
+            here = columns(begin, end)
+            items = [_item(here, own[a:b + 1] - own[0], None if looks is None else list(looks[begin + a:begin + b]))
                      for a, b in zip(cuts[:-1].tolist(), cuts[1:].tolist())]
             part = progress.part(begin / whole[-1], end / whole[-1])
             found += [one for some in self.executor.run(phase, items, part) for one in read(some)]
@@ -165,11 +175,15 @@ def _cuts(bounds, points):
     return np.unique(np.r_[0, np.searchsorted(bounds - bounds[0], np.arange(points, total, points)), len(bounds) - 1])
 
 
-def _item(columns, rows, bounds, looks):
-    """What a phase needs of some clusters."""
-    some: Any = slice(bounds[0], bounds[-1])
-    some = some if rows is None else rows[some]
-    return (*(column[some] for column in columns), bounds - bounds[0], *([] if looks is None else [looks]))
+def _columns_at(records, rows, names):
+    """Some columns of some rows."""
+    some = records.take(rows)
+    return tuple(some[name] for name in names)
+
+
+def _item(columns, bounds, looks):
+    """What a phase needs of some clusters, whose bounds in the columns are given."""
+    return (*(column[bounds[0]:bounds[-1]] for column in columns), bounds - bounds[0], *([] if looks is None else [looks]))
 
 
 def _polygons(found):

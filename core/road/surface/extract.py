@@ -173,7 +173,7 @@ def find_carriageway(survey: Survey, road: int, edges: RoadEdges | None, setting
         offset, known = measured[side]
         closed[side] = np.isfinite(offset) & ~known
         if profiles is not None and np.isnan(offset).any():
-            grown[side] = grown_limit(profiles, cells, height - prior[:, None], sign, track, settings.max_width)
+            grown[side] = grown_limit(profiles, cells, height, prior, sign, track, settings.max_width)
             offset = np.where(np.isnan(offset), grown[side].offset - sign * GROWN_INSET, offset)
         limits[side] = offset, known
         progress.report(MEASURED_PROGRESS + (1.0 - MEASURED_PROGRESS) * (0.6 if side == "left" else 0.9))

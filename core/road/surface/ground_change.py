@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import median_filter, uniform_filter1d
 
+from ...common.memory import by_rows
 from ...common.parallel import check_cancelled
 from .ground_grid import known_median
 from .pavement_limit import INNER_CELLS
@@ -205,6 +206,18 @@ def other_ground_begins(brightness: np.ndarray, track: np.ndarray, limit: np.nda
     -------
     (P,) cells; NaN where there is no such ground
     """
+    begins = by_rows(lambda some: _brighter_from(brightness[some], track[some], limit[some]), len(brightness))
+    there = begins >= 0
+    lasting = there & (uniform_filter1d(there.astype(float), LASTING_PROFILES, mode="nearest") > 0.5)
+    if not lasting.any():
+        return np.full(len(begins), np.nan)
+    known = np.flatnonzero(there)
+    place = median_filter(np.interp(np.arange(len(begins)), known, begins[known]), AGREEING_PROFILES, mode="nearest")
+    return np.where(lasting, place, np.nan)
+
+
+def _brighter_from(brightness, track, limit):
+    """(P,) int, the cell of each profile by itself from which on the ground is brighter as far as the limit; -1 where there is none."""
     count = brightness.shape[1]
     level = np.log(np.maximum(brightness, 1.0))
     padded = np.pad(level, ((0, 0), (COMPARED_CELLS, COMPARED_CELLS)), constant_values=np.nan)
@@ -219,9 +232,4 @@ def other_ground_begins(brightness: np.ndarray, track: np.ndarray, limit: np.nda
     last = beside[rows, np.clip(np.rint(limit).astype(np.int64), 0, count)]
     there = step[rows, begins] >= BRIGHTER
     there[there] = last[there] - inner[rows[there], begins[there]] >= LASTING_SHARE * step[rows[there], begins[there]]
-    lasting = there & (uniform_filter1d(there.astype(float), LASTING_PROFILES, mode="nearest") > 0.5)
-    if not lasting.any():
-        return np.full(len(step), np.nan)
-    known = np.flatnonzero(there)
-    place = median_filter(np.interp(rows, known, begins[known]), AGREEING_PROFILES, mode="nearest")
-    return np.where(lasting, place, np.nan)
+    return np.where(there, begins, -1)

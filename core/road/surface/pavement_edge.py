@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ...common.memory import by_rows
 from ...survey.store.records import Points
 from .edge_path import cheapest_path
 from .ground_change import HalfProfiles, other_ground_begins
@@ -74,18 +75,40 @@ class SurfaceProfiles:
         return cls(cells.stations, cells.offsets, *(v.astype(np.float32) for v in (above, cells.rough, cells.brightness, cells.scatter, cells.count)))
 
     def side(self, sign: int | float) -> SurfaceProfiles:
-        """The cells of one side, 1 left or -1 right, outward from the reference line; offsets count outward."""
-        u = sign * self.offsets
-        outward = np.argsort(u, kind="stable")[np.count_nonzero(u < 0):]
-        return SurfaceProfiles(self.stations, u[outward], *(getattr(self, name)[:, outward] for name in self.NAMES))
+        """The cells of one side, 1 left or -1 right, outward from the reference line, as views; offsets count outward."""
+        middle = int(np.searchsorted(self.offsets, 0.0))
+        outward = slice(middle, None) if sign > 0 else slice(middle - 1, None, -1)
+        return SurfaceProfiles(self.stations, sign * self.offsets[outward], *(getattr(self, name)[:, outward] for name in self.NAMES))
 
-    def pooled(self) -> SurfaceProfiles:
-        """Profiles of POOLED_ROWS rows every ROWS_PER_STEP rows: medians of the cells."""
-        half = POOLED_ROWS // 2
-        return SurfaceProfiles(self.stations[::ROWS_PER_STEP], self.offsets, *(
-            known_median(np.lib.stride_tricks.sliding_window_view(
-                np.pad(getattr(self, name), ((half, half), (0, 0)), constant_values=np.nan), POOLED_ROWS, axis=0)[::ROWS_PER_STEP], 2)
-            for name in self.NAMES))
+
+@dataclass(frozen=True)
+class PooledProfiles:
+    """The ground across the road every ROWS_PER_STEP rows of SurfaceProfiles: medians of the cells of POOLED_ROWS rows.
+
+    stations : (Q,) m; height, rough, brightness : (Q, K)
+    """
+
+    stations: np.ndarray
+    height: np.ndarray
+    rough: np.ndarray
+    brightness: np.ndarray
+
+    @classmethod
+    def of(cls, rows: SurfaceProfiles) -> PooledProfiles:
+        """Those of P rows."""
+        return cls(rows.stations[::ROWS_PER_STEP], *(_pooled(values) for values in (rows.height, rows.rough, rows.brightness)))
+
+
+def _pooled(values):
+    """(Q, K) medians of (P, K) cells."""
+    half = POOLED_ROWS // 2
+
+    def medians(some):
+        first, end = some.start * ROWS_PER_STEP - half, (some.stop - 1) * ROWS_PER_STEP + half + 1
+        here = np.pad(values[max(first, 0):end], ((max(-first, 0), max(end - len(values), 0)), (0, 0)), constant_values=np.nan)
+        return known_median(np.lib.stride_tricks.sliding_window_view(here, POOLED_ROWS, axis=0)[::ROWS_PER_STEP], 2)
+
+    return by_rows(medians, -(-len(values) // ROWS_PER_STEP))
 
 
 @dataclass(frozen=True)
@@ -106,7 +129,7 @@ class GrownLimit:
     hidden: np.ndarray
 
 
-def grown_limit(profiles: SurfaceProfiles, cells: GroundCells, above: np.ndarray, sign: int | float, track: np.ndarray,
+def grown_limit(profiles: SurfaceProfiles, cells: GroundCells, height: np.ndarray, prior: np.ndarray, sign: int | float, track: np.ndarray,
                 max_width: float) -> GrownLimit:
     """The limit of the road on a side without an edge.
 
@@ -119,7 +142,8 @@ def grown_limit(profiles: SurfaceProfiles, cells: GroundCells, above: np.ndarray
     ----------
     profiles : SurfaceProfiles
     cells : GroundCells of the road, R rows and C columns
-    above : (R, C) m, height of the road above its expected height
+    height : (R, C) m, local z of the road
+    prior : (R,) m, its expected height, above which that of profiles counts
     sign : 1 for the left side, -1 for the right
     track : (R,) m, offset of the outermost track on that side
     max_width : m from the track
@@ -131,18 +155,19 @@ def grown_limit(profiles: SurfaceProfiles, cells: GroundCells, above: np.ndarray
     stations = cells.stations
     nowhere = np.zeros(len(stations), bool)
     rows = profiles.side(sign)
-    rows = replace(rows, height=rows.height - _at(above, cells, rows.stations, sign * rows.offsets))
-    pooled = rows.pooled()
+    above = by_rows(lambda some: rows.height[some] - _rise(height, prior, cells, rows.stations[some], sign * rows.offsets), len(rows.stations))
+    rows = replace(rows, height=above)
+    pooled = PooledProfiles.of(rows)
     beside = sign * np.interp(pooled.stations, stations, track)
-    halves = HalfProfiles(pooled.offsets, pooled.height, pooled.rough)
+    halves = HalfProfiles(rows.offsets, pooled.height, pooled.rough)
     changes = halves.changes(beside, max_width)
     known = np.flatnonzero(changes >= 0)
     if not len(known):
         return GrownLimit(track + sign * max_width, np.full(len(track), np.inf), nowhere, nowhere, ~nowhere)
     # at the last cell, nothing beyond it was looked for
     blind = np.pad(halves.blind(), ((0, 0), (0, 1)))[np.arange(len(changes)), changes]
-    changes = np.interp(pooled.stations, pooled.stations[known], _agreed(changes[known], blind[known], len(pooled.offsets)))
-    other = other_ground_begins(pooled.brightness, (beside - pooled.offsets[0]) / PROFILE_COLUMN, changes)
+    changes = np.interp(pooled.stations, pooled.stations[known], _agreed(changes[known], blind[known], len(rows.offsets)))
+    other = other_ground_begins(pooled.brightness, (beside - rows.offsets[0]) / PROFILE_COLUMN, changes)
     changes = np.interp(rows.stations, pooled.stations, np.where(np.isfinite(other), other, changes))
     found = pavement_limits(rows, changes)
     outward = np.interp(stations, rows.stations, rows.offsets[0] + (found.cell - 0.5) * PROFILE_COLUMN)
@@ -159,11 +184,14 @@ def _agreed(changes, blind, cells):
     return cheapest_path(np.where(blind[:, None] & (miss > 0), BLIND_SHARE * cost, cost), WIDENING_COST * PROFILE_COLUMN, LARGEST_WIDENING_COST)
 
 
-def _at(grid, cells, stations, offsets):
-    """Bilinear values of a grid of cells at stations and offsets."""
-    row = np.clip(stations / cells.row_size - cells.first_row - 0.5, 0, len(grid) - 1)
-    column = np.clip(offsets / cells.column_size - cells.first_column - 0.5, 0, grid.shape[1] - 1)
-    i, j = np.minimum(row.astype(int), len(grid) - 2), np.minimum(column.astype(int), grid.shape[1] - 2)
+def _rise(height, prior, cells, stations, offsets):
+    """Bilinear height of the road above its expected one at stations and offsets."""
+    row = np.clip(stations / cells.row_size - cells.first_row - 0.5, 0, len(height) - 1)
+    column = np.clip(offsets / cells.column_size - cells.first_column - 0.5, 0, height.shape[1] - 1)
+    i, j = np.minimum(row.astype(int), len(height) - 2), np.minimum(column.astype(int), height.shape[1] - 2)
+    first, end = int(i.min()), int(i.max()) + 2
+    grid = height[first:end] - prior[first:end, None]
     a, b = (row - i)[:, None], (column - j)[None, :]
+    i = i - first
     return ((1 - a) * ((1 - b) * grid[np.ix_(i, j)] + b * grid[np.ix_(i, j + 1)])
             + a * ((1 - b) * grid[np.ix_(i + 1, j)] + b * grid[np.ix_(i + 1, j + 1)]))

@@ -96,14 +96,14 @@ def _mostly(rows):
 
 def _densities(cells: GroundCells, ground: np.ndarray, sign: float, limit: np.ndarray) -> np.ndarray:
     """(K,) points per m² along one margin, of stretches of STRETCH_ROWS; NaN where it was hardly seen."""
-    inside = sign * (limit[:, None] - cells.offsets)   # NaN is not inside
-    margin = (inside > 0) & (inside < MARGIN)
-    seen = margin & ground & (cells.count > 0)
     found = []
     for first in range(0, len(limit), STRETCH_ROWS):
         rows = slice(first, first + STRETCH_ROWS)
-        count = cells.count[rows][seen[rows]]
-        enough = 2 * np.isfinite(limit[rows]).sum() >= STRETCH_ROWS and len(count) >= max(SEEN_SHARE * margin[rows].sum(), 1)
+        inside = sign * (limit[rows, None] - cells.offsets)   # NaN is not inside
+        margin = (inside > 0) & (inside < MARGIN)
+        count = cells.count[rows]
+        count = count[margin & ground[rows] & (count > 0)]
+        enough = 2 * np.isfinite(limit[rows]).sum() >= STRETCH_ROWS and len(count) >= max(SEEN_SHARE * margin.sum(), 1)
         found.append(float(np.median(count)) / (cells.row_size * cells.column_size) if enough else np.nan)
     return np.array(found)
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import correlate1d, uniform_filter1d
 
+from ...common.memory import by_rows
 from ...common.parallel import check_cancelled
 from .ground_grid import COLUMN_WIDTH, ROW_LENGTH, GroundCells, known_median
 
@@ -17,6 +18,7 @@ TRACK_HALF_WIDTH = 0.6        # m either side of the reference line, where the r
 HEIGHT_GAIN, TILT_GAIN = 0.5, 0.15  # share of a deviation by which predicted height and tilt are corrected
 MAX_CROSS_SLOPE = 0.12        # m per m across the road
 ROW_SMOOTHING_SIGMA = 1.0     # m along the road
+SMOOTHED_COLUMNS = 16         # columns smoothed along the road at a time
 
 
 @dataclass
@@ -59,15 +61,14 @@ def follow_road(cells: GroundCells, prior: np.ndarray) -> RoadHeight | None:
         return None
     noise = noise if np.isfinite(noise) else 0.01
     base = prior + _running_median(base, 5)
-    relative = cells.height - base[:, None]
-    height, ground = np.full(relative.shape, np.nan), np.zeros(relative.shape, bool)
+    height, ground = np.full(cells.height.shape, np.nan, np.float32), np.zeros(cells.height.shape, bool)
     middle = int(np.flatnonzero(offsets > 0)[0])
-    start = _starting_tilt(relative, offsets)
+    start = _starting_tilt(cells.height, base, offsets)
     # both sides at once, as far as the narrower one
     both = min(middle, len(offsets) - middle)
     columns = np.stack([middle + np.arange(both), middle - 1 - np.arange(both)], axis=1)
-    _walk(relative, cells.count, columns, start, noise, height, ground)
-    return RoadHeight((height + base[:, None]).astype(np.float32), ground, noise)
+    _walk(cells, base, columns, start, noise, height, ground)
+    return RoadHeight(height, ground, noise)
 
 
 def _running_median(values, reach):
@@ -79,32 +80,31 @@ def _running_median(values, reach):
     return np.median(np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1), axis=1)
 
 
-def _starting_tilt(relative, offsets):
+def _starting_tilt(height, base, offsets):
     """(R,) m per m, cross slope under the vehicle."""
     near = np.abs(offsets) < 2 * TRACK_HALF_WIDTH
-    left = known_median(relative[:, near & (offsets > 0)], 1)
-    right = known_median(relative[:, near & (offsets < 0)], 1)
+    left, right = (known_median(height[:, near & side] - base[:, None], 1) for side in (offsets > 0, offsets < 0))
     tilt = (left - right) / (2 * TRACK_HALF_WIDTH)
     return np.clip(_running_median(tilt, 5), -MAX_CROSS_SLOPE, MAX_CROSS_SLOPE) if np.isfinite(tilt).any() else np.zeros(len(tilt))
 
 
-def _walk(relative, count, columns, start, noise, height, ground):
-    """Follow both sides outward, (K, 2) columns; fills `height` and `ground` in place."""
+def _walk(cells, base, columns, start, noise, height, ground):
+    """Follow both sides outward from the heights `base` under the vehicle, (K, 2) columns; fills `height` and `ground` in place."""
     tilt = np.stack([start, -start])
     z, skipped = np.zeros_like(tilt), np.zeros_like(tilt)
-    count = np.nan_to_num(count)
-    error, weight_of_cell = NOISE_FACTOR * noise / np.sqrt(np.clip(count, 1.0, 25.0)), np.minimum(count, 20.0)
     kernel = _bell(ROW_SMOOTHING_SIGMA / ROW_LENGTH)
+    # one pair of columns after the other: of the whole road nothing is there but what comes in and goes out
     for k, pair in enumerate(columns):
         check_cancelled()
         predicted = z + tilt * (0.5 * COLUMN_WIDTH if k == 0 else COLUMN_WIDTH)
-        there = relative[:, pair].T
+        there, count = (cells.height[:, pair] - base[:, None]).T, np.nan_to_num(cells.count[:, pair]).T
         off = there - predicted
-        tolerance = MAX_HEIGHT_DEVIATION + error[:, pair].T + np.minimum(TOLERANCE_GAIN * np.maximum(skipped - 0.5, 0.0), MAX_TOLERANCE_GAIN)
+        tolerance = MAX_HEIGHT_DEVIATION + NOISE_FACTOR * noise / np.sqrt(np.clip(count, 1.0, 25.0)) \
+            + np.minimum(TOLERANCE_GAIN * np.maximum(skipped - 0.5, 0.0), MAX_TOLERANCE_GAIN)
         near = np.abs(off) < tolerance   # False where there is no ground
         off = np.where(near, off, 0.0)
         # cells near the tolerance have little weight: the surface must not climb a low curb
-        weight = np.where(near, (1.0 - (off / tolerance) ** 2) ** 2, 0.0) * weight_of_cell[:, pair].T
+        weight = np.where(near, (1.0 - (off / tolerance) ** 2) ** 2, 0.0) * np.minimum(count, 20.0)
         # weighted mean over neighbouring rows, which fill the gaps of a row
         total, around = correlate1d(np.stack([weight, off * weight]), kernel, mode="nearest")
         around /= np.maximum(total, 1e-9)
@@ -114,7 +114,7 @@ def _walk(relative, count, columns, start, noise, height, ground):
         tilt = np.clip(tilt + TILT_GAIN * certainty * around / COLUMN_WIDTH, -MAX_CROSS_SLOPE, MAX_CROSS_SLOPE)
         tilt = correlate1d(tilt, kernel, mode="nearest")
         skipped = np.where(certainty > 0.5, 0.0, skipped + COLUMN_WIDTH)
-        height[:, pair] = z.T
+        height[:, pair] = (z + base).T
         ground[:, pair] = (np.abs(there - z) < tolerance).T
 
 
@@ -139,11 +139,18 @@ def smooth_road(road: RoadHeight, cells: GroundCells) -> np.ndarray:
     -------
     (R, C) m, local z
     """
-    weight = np.where(road.ground, np.minimum(cells.count, 20.0), 0.0)
-    off = np.where(road.ground, np.nan_to_num(cells.height - road.height), 0.0)
+    # a running mean along the road depends on its rows, and not on other columns
+    total, rise = np.empty((2, *road.height.shape), np.float32)
+    for first in range(0, road.height.shape[1], SMOOTHED_COLUMNS):
+        some = slice(first, first + SMOOTHED_COLUMNS)
+        ground = road.ground[:, some]
+        weight = np.where(ground, np.minimum(cells.count[:, some], 20.0), 0.0)
+        off = np.where(ground, np.nan_to_num(cells.height[:, some] - road.height[:, some]), 0.0)
+        for values, whole in ((weight, total), (off * weight, rise)):
+            uniform_filter1d(values, 5, axis=0, mode="nearest", output=whole[:, some])
 
-    def blurred(values):
-        return uniform_filter1d(uniform_filter1d(values, 5, axis=0, mode="nearest"), 3, axis=1, mode="nearest")
+    def smoothed(some):
+        about, above = (uniform_filter1d(values[some], 3, axis=1, mode="nearest") for values in (total, rise))
+        return road.height[some] + np.where(about > 1e-6, above / np.maximum(about, 1e-9), 0.0)
 
-    total = blurred(weight)
-    return road.height + np.where(total > 1e-6, blurred(off * weight) / np.maximum(total, 1e-9), 0.0)
+    return by_rows(smoothed, len(road.height))

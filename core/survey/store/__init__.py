@@ -9,6 +9,7 @@ __getattr__, __all__ = public(__name__, {
     "columns": ("Columns",),
     "point_subset": ("PointSubset",),
     "records": ("COORDINATE_SCALE", "Points", "ROAD_POINT", "SURVEY_POINT", "to_units"),
+    "road_columns": ("columns_of_roads",),
     "road_points": ("RoadPoints",),
     "section_store": ("SectionStore",),
 })

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from .columns import Columns
-from .section_store import SectionStore, Stretch
+from .section_store import CACHE_LIMIT, SectionStore, Stretch
 from .store_index import Key, StoreIndex
 
 
@@ -25,7 +25,10 @@ class ColumnOverlay(SectionStore):
     def __init__(self, points: SectionStore, name: str, folder: Path | None = None):
         super().__init__(points.dtype, points.section_length, points.memory_limit)
         self.points, self._name = points, name
-        self._column = SectionStore([(name, points.dtype[name])], points.section_length, points.memory_limit, folder=folder)
+        # of as many points as the store keeps ready, not of as many bytes
+        share = points.dtype[name].itemsize / points.dtype.itemsize
+        self._column = SectionStore([(name, points.dtype[name])], points.section_length, points.memory_limit, folder=folder,
+                                    cache_limit=int(share * CACHE_LIMIT))
 
     @property
     def count(self) -> int:

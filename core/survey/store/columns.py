@@ -27,19 +27,20 @@ class Columns:
     source : (Columns, (N,) indices) whose rows these are
     parts : Columns that these are the concatenation of
     load_rows : function of a name and (M,) indices within bounds that returns those rows of the column
+    kept : whether a column stays in memory once it was loaded; of a long road each would take as much again
     """
 
-    __slots__ = ("_arrays", "_load", "_load_rows", "_load_cost", "_source", "_parts", "_ends", "_read_only", "_length", "dtype")
+    __slots__ = ("_arrays", "_load", "_load_rows", "_load_cost", "_source", "_parts", "_ends", "_read_only", "_length", "_kept", "dtype")
 
     def __init__(self, arrays: dict[str, np.ndarray], dtype: Any, length: int | None = None,
                  load: Callable[[str], np.ndarray] | None = None, source: tuple[Columns, np.ndarray] | None = None,
-                 parts: Sequence[Columns] | None = None, load_rows: Callable[[str, np.ndarray], np.ndarray] | None = None):
+                 parts: Sequence[Columns] | None = None, load_rows: Callable[[str, np.ndarray], np.ndarray] | None = None, kept: bool = True):
         self._arrays, self._load, self._load_rows = arrays, load, load_rows
         self._load_cost: dict[str, int] = {}   # cost so far of reading rows by name, in rows; beyond half of the column it is read whole
         self._source = source
         self._parts = parts
         self._ends: np.ndarray | None = None   # of the parts
-        self._read_only = False
+        self._read_only, self._kept = False, kept
         self.dtype = np.dtype(dtype)
         self._length: int = len(next(iter(arrays.values()))) if length is None else length
 
@@ -87,6 +88,8 @@ class Columns:
                 return self._slice_of_parts(*which.indices(self._length)[:2])
             if which.step not in (None, 1) and (self._load_rows or self._parts or self._source):
                 return self.take(np.arange(*which.indices(self._length)))
+            if not self._kept and self._load_rows is not None:
+                return self.take(np.arange(*which.indices(self._length)))
             length = len(range(*which.indices(self._length)))
             if self._load is None:
                 return Columns({name: array[which] for name, array in self._arrays.items()}, self.dtype, length)
@@ -101,7 +104,8 @@ class Columns:
             found = self._load(name)
             if self._read_only:
                 found.flags.writeable = False
-            self._arrays[name] = found
+            if self._kept:
+                self._arrays[name] = found
         return found
 
     def take(self, which: np.ndarray) -> Columns:
@@ -135,9 +139,10 @@ class Columns:
         (M,) array
         """
         if self._load_rows is not None and name not in self._arrays:
-            cost = self._load_cost.get(name, 0) + len(rows) + self._length // ROWS_OVERHEAD
+            cost = self._load_cost.get(name, 0) + len(rows) + self._length // ROWS_OVERHEAD if self._kept else len(rows)
             if 2 * cost <= self._length and (not len(rows) or rows.min() >= 0 and rows.max() < self._length):
-                self._load_cost[name] = cost
+                if self._kept:
+                    self._load_cost[name] = cost
                 return self._load_rows(name, rows)
         # The rows are split among the parts only where they ascend within bounds.
         if self._parts is None or name in self._arrays or not len(rows) or rows[0] < 0 or rows[-1] >= self._length \
@@ -183,6 +188,12 @@ class Columns:
         # There are arrays for every name now, so nothing is ever loaded again.
         self._load = self._load_rows = self._source = self._parts = self._ends = None
         return self
+
+    def unread(self) -> Columns:
+        """Rows of other Columns anew, none of whose columns is in memory: what is read of them goes with them. Others as they are."""
+        if self._source is None or self._read_only:
+            return self
+        return Columns({}, self.dtype, self._length, self._load, self._source)
 
     def read_only(self) -> Columns:
         """These columns, protected from being written to."""

@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 from lanewright.core.assess.curvature import curvature_along, marking_curvature, mean_curvature
+from lanewright.core.survey.store.columns import Columns
+from lanewright.core.survey.store.records import Points, to_units
 from shapely.geometry import LineString
 
 
@@ -16,12 +18,8 @@ def inner(x, y):
     return np.flatnonzero((x > x.min() + 0.2) & (x < x.max() - 0.2))[::40]
 
 
-class Paint:
-    def __init__(self, x, y, z):
-        self.x, self.y, self.z = x, y, z
-
-    def __len__(self):
-        return len(self.x)
+def paint(x, y, z):
+    return Points(Columns({name: to_units(values) for name, values in zip("xyz", (x, y, z))}, [(name, "i4") for name in "xyz"]))
 
 
 def test_a_plane_has_no_curvature_however_it_slopes():
@@ -50,14 +48,14 @@ def test_fitting_takes_the_roughness_out_of_paint():
     z = 100.0 + np.random.default_rng(3).normal(0, 0.004, len(x))
     origin = np.array([500000.0, 5400000.0, 90.0])
     line = LineString([(500000.0, 5400000.0, 190.0), (500020.0, 5400000.0, 190.0)])
-    found = marking_curvature(Paint(x, y, z), [line], origin)
+    found = marking_curvature(paint(x, y, z), [line], origin)
     assert found.before > 0.05 and found.after < 1e-4
 
 
 def test_paint_beside_no_line_has_no_figure():
     x, y = strip()
-    assert marking_curvature(Paint(x, y + 3, 0 * x), [LineString([(0, 0, 0), (20, 0, 0)])], np.zeros(3)) is None
-    assert marking_curvature(Paint(x, y, 0 * x), [], np.zeros(3)) is None
+    assert marking_curvature(paint(x, y + 3, 0 * x), [LineString([(0, 0, 0), (20, 0, 0)])], np.zeros(3)) is None
+    assert marking_curvature(paint(x, y, 0 * x), [], np.zeros(3)) is None
 
 
 @pytest.mark.parametrize("turn", [1, -1])

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from lanewright.core.common import memory
-from lanewright.core.common.memory import trim_heap
+from lanewright.core.common.memory import by_rows, trim_heap
 
 BLOCK, BLOCKS = 100_000, 1000  # bytes; small blocks are kept by the C library, large ones are not
 
@@ -57,3 +57,15 @@ def test_what_threads_freed_goes_back_to_the_system():
         trim_heap()
         assert full - resident() > 0.8 * BLOCK * BLOCKS
         assert blocks[0].all()
+
+
+@pytest.mark.parametrize("count", [0, 1, 9, 10, 11, 37])
+def test_rows_worked_on_some_at_a_time_give_what_all_of_them_give(count):
+    table, seen = np.arange(3.0 * count).reshape(count, 3), []
+
+    def work(some):
+        seen.append(len(table[some]))
+        return table[some] ** 2
+
+    np.testing.assert_array_equal(by_rows(work, count, 10), table**2)
+    assert max(seen) <= 10 and sum(seen) == count

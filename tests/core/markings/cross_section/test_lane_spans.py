@@ -17,7 +17,7 @@ def read_as_one_way():
     street.paint(0.15, pattern="double-solid").paint(-0.15, pattern="double-solid")
     lines = lines_from_features(street.lines, street.frame)
     estimate = estimate_roads(sections_of_lines(lines), street.frame, 3.5, "right").roads[0].estimate
-    strips, shape = lane_strips(estimate.sections, estimate.costs), estimate.sections.cost.shape
+    strips, shape = lane_strips(estimate.sections), estimate.sections.cost.shape
     number, first = np.zeros((2, *shape))
     np.add.at(number, (strips.interval, strips.section), strips.number)
     np.add.at(first, (strips.interval, strips.section), strips.first)

@@ -25,7 +25,8 @@ def bays(*rows, width=0.1, driven=-1.5, skew=0.0):
             corners = street.places([s, s + width, s + width + lean, s + lean], [right, right, left, left])
             layer.add(Polygon(np.c_[corners, np.full(4, HEIGHT)]), **{"road": 0, "class": "symbol", "use": "other", "width_m": width})
     track = np.full((1, len(S)), driven)
-    return places_of_bays(rows_of_bays(markings_from_features(layer, street.frame), 0, S, track), S, track)
+    places, ends = places_of_bays(rows_of_bays(markings_from_features(layer, street.frame), 0, S, track), S, track)
+    return places, ends[np.arange(len(ends)), :]
 
 
 @pytest.mark.parametrize("stations, skew", [(PERPENDICULAR, 0.0), (np.arange(30.0, 80.0, 3.4), 1.0), (np.arange(20.0, 100.0, 6.0), 0.0)],

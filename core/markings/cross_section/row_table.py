@@ -1,0 +1,166 @@
+"""Rows of values along a road, of which each is kept from where it begins to where it ends.
+
+A road of tens of kilometres has thousands of lines, each of which is on a small part of it: a full table of lines by stations would grow with the
+square of the road's length.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+BLOCK = 64   # stations for which the rows that are there are listed together
+
+
+class RowSpans:
+    """Which stations each row of tables is kept for.
+
+    Parameters
+    ----------
+    first, count : (R,) int, the first station of each row and how many follow each other; those before station 0 or behind the last are left out
+    stations : number of stations of the grid
+    """
+
+    def __init__(self, first: np.ndarray, count: np.ndarray, stations: int) -> None:
+        first, count = np.asarray(first, int), np.asarray(count, int)
+        end = np.minimum(first + count, stations)
+        self.first = np.maximum(first, 0)
+        self.end = np.maximum(end, self.first)
+        self.start = np.append(0, np.cumsum(self.end - self.first))
+        self.stations = stations
+
+    def __len__(self) -> int:
+        return len(self.first)
+
+    @property
+    def size(self) -> int:
+        """How many values a table holds."""
+        return int(self.start[-1])
+
+    @cached_property
+    def owner(self) -> np.ndarray:
+        """(V,) int, the row of each value."""
+        return np.repeat(np.arange(len(self)), self.end - self.first)
+
+    @cached_property
+    def station(self) -> np.ndarray:
+        """(V,) int, the station of each value."""
+        return np.arange(self.size) - np.repeat(self.start[:-1] - self.first, self.end - self.first)
+
+    def values_of(self, row: int, first: int = 0, end: int | None = None) -> slice:
+        """The values of a row at the stations from `first` to `end` (exclusive), as far as it is kept there."""
+        begin = self.first[row]
+        low = min(max(first, begin), self.end[row])
+        high = self.end[row] if end is None else max(min(end, self.end[row]), low)
+        shift = self.start[row] - begin
+        return slice(int(low + shift), int(high + shift))
+
+    def places(self, rows: Any, stations: Any) -> tuple[np.ndarray, np.ndarray]:
+        """Which value belongs to rows and stations, which broadcast together, and whether they are kept; 0 where not."""
+        rows, stations = np.asarray(rows), np.asarray(stations)
+        first = self.first[rows]
+        there = (stations >= first) & (stations < self.end[rows])
+        return np.where(there, self.start[:-1][rows] + stations - first, 0), there
+
+    def near(self, first: int, last: int) -> np.ndarray:
+        """(N,) int, ascending, the rows that are kept at any of the stations from `first` to `last` (inclusive)."""
+        blocks, rows = self._blocks
+        low, high = (min(max(station, 0), max(self.stations - 1, 0)) // BLOCK for station in (first, last))
+        some = np.unique(rows[blocks[low]:blocks[high + 1]])
+        return some[(self.first[some] <= last) & (self.end[some] > first)]
+
+    @cached_property
+    def _blocks(self):
+        """Where the list of rows of each block begins, and these lists one after the other."""
+        kept = np.flatnonzero(self.end > self.first)
+        low, high = self.first[kept] // BLOCK, (self.end[kept] - 1) // BLOCK
+        count = high - low + 1
+        block = np.repeat(low, count) + np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
+        order = np.argsort(block, kind="stable")
+        return np.searchsorted(block[order], np.arange(self.stations // BLOCK + 2)), np.repeat(kept, count)[order]
+
+
+class RowTable:
+    """A table of R rows by K stations, indexed as an array of that shape: `table[rows, stations]`.
+
+    Parameters
+    ----------
+    spans : RowSpans
+    values : (V,) of the stations that the rows are kept for, row after row
+    missing : what stands elsewhere, one value or (R,) of them
+    """
+
+    def __init__(self, spans: RowSpans, values: np.ndarray, missing: Any) -> None:
+        self.spans, self.values, self.missing = spans, values, missing
+
+    @classmethod
+    def full(cls, spans: RowSpans, value: Any, kind: Any = float) -> RowTable:
+        """A table of one value, which stands where nothing is kept too."""
+        return cls(spans, np.full(spans.size, value, kind), value)
+
+    @classmethod
+    def of_rows(cls, rows: Sequence[tuple[int, np.ndarray]], stations: int, missing: Any = np.nan) -> RowTable:
+        """A table of rows (first station, values)."""
+        spans = RowSpans(np.array([first for first, _ in rows], int), np.array([len(values) for _, values in rows], int), stations)
+        kept = [values[max(-first, 0):max(-first, 0) + end - begin] for (first, values), begin, end in zip(rows, spans.first, spans.end)]
+        return cls(spans, np.concatenate([np.empty(0), *kept]), missing)
+
+    def __len__(self) -> int:
+        return len(self.spans)
+
+    def like(self, values: np.ndarray, missing: Any) -> RowTable:
+        """Other values of the same rows and stations."""
+        return RowTable(self.spans, values, missing)
+
+    def row(self, row: int) -> np.ndarray:
+        """The values that are kept of a row, from station `spans.first[row]` on: a view."""
+        return self.values[self.spans.values_of(row)]
+
+    def __getitem__(self, key: tuple[Any, Any]) -> np.ndarray:
+        rows, stations = key
+        if isinstance(stations, slice):
+            if np.ndim(rows) == 0:
+                return self._stretch(int(rows), *stations.indices(self.spans.stations)[:2])
+            stations = np.arange(*stations.indices(self.spans.stations))
+            rows = np.asarray(rows)[:, None]
+        places, there = self.spans.places(rows, stations)
+        missing = self.missing if np.ndim(self.missing) == 0 else self.missing[np.asarray(rows)]
+        return np.where(there, self.values[places], missing).astype(self.values.dtype, copy=False) if self.spans.size \
+            else np.broadcast_to(np.asarray(missing, self.values.dtype), there.shape).copy()
+
+    def _stretch(self, row, first, end):
+        """The row at the stations from `first` to `end` (exclusive)."""
+        begin, last = max(first, int(self.spans.first[row])), min(end, int(self.spans.end[row]))
+        start = int(self.spans.start[row]) - int(self.spans.first[row])
+        if begin == first and last == end:
+            return self.values[start + first:start + end].copy()
+        missing = self.missing if np.ndim(self.missing) == 0 else self.missing[row]
+        found = np.full(max(end - first, 0), missing, self.values.dtype)
+        if last > begin:
+            found[begin - first:last - first] = self.values[start + begin:start + last]
+        return found
+
+    def __setitem__(self, key: tuple[Any, Any], values: Any) -> None:
+        """Only where rows are kept."""
+        places, there = self.spans.places(*key)
+        if not there.all():
+            raise IndexError("Stations at which a row is not kept cannot be set.")
+        self.values[places] = values
+
+    def shifted(self, by: int, stations: int) -> RowTable:
+        """The rows on a grid that begins `by` stations later."""
+        spans = RowSpans(self.spans.first - by, self.spans.end - self.spans.first, stations)
+        if spans.size == self.spans.size:
+            return RowTable(spans, self.values, self.missing)
+        return RowTable(spans, self.values[self.spans.places(spans.owner, spans.station + by)[0]], self.missing)
+
+
+def stacked(tables: Sequence[RowTable]) -> RowTable:
+    """The rows of several tables on one grid, one table after the other."""
+    spans = RowSpans(np.concatenate([table.spans.first for table in tables]),
+                     np.concatenate([table.spans.end - table.spans.first for table in tables]), tables[0].spans.stations)
+    missing = np.concatenate([np.broadcast_to(table.missing, len(table)) for table in tables])
+    return RowTable(spans, np.concatenate([table.values for table in tables]), missing)

@@ -1,0 +1,122 @@
+"""Lanes of a long road: those of its stretches, for as much work and memory as these take one by one."""
+
+import sys
+from collections import Counter
+
+import numpy as np
+import pytest
+from lanewright.core.driving.alignment import lane_elements
+from lanewright.core.driving.centreline import without_short_status
+from lanewright.core.driving.driving_lines import DrivingSettings, make_driving_lines
+from lanewright.core.driving.lane_areas import follow
+from lanewright.core.driving.lane_track import LaneTrack, connect
+from lanewright.core.driving.tapers import laid_out
+from lanewright.core.markings.cross_section.candidates import boundary_candidates, gather_boundaries
+from lanewright.core.markings.cross_section.sections import sections_of_lines
+from lanewright.core.markings.cross_section.weights import EstimateWeights
+from lanewright.core.markings.lines.painted_lines import lines_from_features
+from lined_streets import Street
+
+BLOCK = 100.0   # m from one junction to the next
+FEW, MANY = 20, 80
+
+
+def street(blocks):
+    """Two lanes with edge lines that end before every junction, and dashes between them."""
+    found = Street(length=BLOCK * blocks)
+    for at in BLOCK * np.arange(blocks):
+        found.paint(3.5, at + 5.0, at + 60.0, kind="edge").paint(-3.5, at + 5.0, at + 60.0, kind="edge")
+        found.paint(0.0, at + 5.0, at + 60.0, kind="centre", pattern="dashed")
+    return found
+
+
+def painted(blocks):
+    made = street(blocks)
+    return lines_from_features(made.lines, made.frame), made.frame
+
+
+def lanes_of(blocks):
+    """Two lanes of each block, and one that opens beside them."""
+    found = []
+    for at in (200 * np.arange(blocks)).tolist():
+        for first, count, d in ((at, 120, -1.75), (at, 120, 1.75), (at + 60, 60, -5.25)):
+            values = dict(d=np.full(count, d), width=np.full(count, 3.5), status=np.zeros(count, int), offset=np.zeros(count, bool),
+                          **{name: np.full(count, -1) for name in ("left", "right", "left_use", "right_use")},
+                          **{name: np.ones(count) for name in ("probability", "confidence", "directed")})
+            found.append(LaneTrack(first, direction=1 if d < 0 else -1, **values))
+    return found
+
+
+def calls(function):
+    """How many calls of Python and of compiled functions a piece of work takes."""
+    counted = Counter()
+    sys.setprofile(lambda frame, event, _: counted.update([event]))
+    try:
+        function()
+    finally:
+        sys.setprofile(None)
+    return counted["call"] + counted["c_call"]
+
+
+def test_two_streets_end_to_end_give_the_lanes_of_each():
+    def lanes(blocks):
+        driving, _, _ = make_driving_lines(*painted(blocks), DrivingSettings(max_bridge=0.0, max_inferred=0.0))
+        return np.array(sorted(zip(driving.station, driving.end, driving.direction)))
+
+    one, two = lanes(1), lanes(2)
+    assert len(one) == 2
+    # grids of stations are cut half a metre apart
+    np.testing.assert_allclose(two, np.concatenate([one, one + [BLOCK, BLOCK, 0]]), atol=0.51)
+
+
+def test_tables_hold_the_stations_at_which_a_line_is():
+    """Not all stations of the road for every line."""
+    for blocks in (FEW, MANY):
+        lines = sections_of_lines(painted(blocks)[0])[0]
+        ends = np.array([lines.s[[0, -1]]] * 2) * [[0.0], [0.0]] + [[3.6], [-3.6]]
+        found = gather_boundaries(lines, surface=np.repeat(ends[:, :1], len(lines.s), axis=1))
+        assert lines.d.values.size < 3 * blocks * (60.0 + 2 * 9.5) / 0.5
+        assert found.d.values.size == lines.d.values.size + 2 * len(lines.s)
+        assert len(boundary_candidates(found, EstimateWeights()).first) < 20 * blocks
+
+
+def test_lanes_are_compared_with_those_beside_them():
+    """Four times the lanes take four times the calls."""
+    lines, frame = painted(MANY)
+    sections = sections_of_lines(lines)[0]
+    shown = np.ones(len(sections.s), bool)
+    work = dict(
+        joined=lambda tracks: connect(tracks, sections, 20.0, 60.0, shown), tapers=laid_out,
+        elements=lambda tracks: lane_elements(tracks, sections.s, frame.roads[0]))
+    for name, function in work.items():
+        few, many = (calls(lambda tracks=lanes_of(blocks): function(tracks)) for blocks in (FEW // 2, MANY // 2))
+        assert many < 1.2 * MANY / FEW * few, name
+
+
+@pytest.mark.parametrize("way", [1, -1])
+def test_what_follows_a_lane_is_looked_for_where_it_ends(way):
+    def rows(count):
+        return [dict(lane_id=f"0.{k}.1", direction=way, station=50.0 * k, end=50.0 * (k + 1), first=0.0, last=0.0, width=3.5) for k in range(count)]
+
+    few, many = rows(FEW), rows(MANY)
+    assert calls(lambda: follow(many)) < 1.2 * MANY / FEW * calls(lambda: follow(few))
+    ahead = [row["successors"] for row in many][::way]
+    assert ahead == [(many[k + way]["lane_id"],) for k in range(MANY)[::way][:-1]] + [()]
+
+
+def merged_one_by_one(status, shortest):
+    """The shortest of the short pieces, of equal ones the first, takes the worse of its neighbours, again and again."""
+    while True:
+        cuts = np.r_[0, np.flatnonzero(np.diff(status)) + 1, len(status)]
+        k = int(np.argmin(np.diff(cuts)))
+        if len(cuts) == 2 or cuts[k + 1] - cuts[k] >= shortest:
+            return status
+        beside = [status[i] for i in (cuts[k] - 1, cuts[k + 1]) if 0 <= i < len(status)]
+        status[cuts[k]:cuts[k + 1]] = max(beside)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_short_changes_of_status_take_the_worse_of_their_neighbours(seed):
+    rng = np.random.default_rng(seed)
+    status = np.repeat(rng.integers(0, 3, 40), rng.integers(1, 25, 40))
+    assert without_short_status(status).tolist() == merged_one_by_one(status.copy(), 10).tolist()
