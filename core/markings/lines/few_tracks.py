@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...common.parallel import check_cancelled
 from ...curves.robust import median, percentiles
 from ...survey.store.records import COORDINATE_SCALE
 from ..objects.classify import LINE_KINDS
@@ -38,6 +39,7 @@ def painted_strands(records: Columns, rank: np.ndarray) -> list[Strand]:
     # most points of the marking, which is a line
     sparse = 2 * np.bincount(of, apart & (rank < len(LINE_KINDS)), minlength=len(cluster)) > np.bincount(of, minlength=len(cluster))
     few = np.flatnonzero(sparse[of])
+    check_cancelled()
     few = few[np.lexsort((records["s"][few], of[few]))]
     found = trace_strands(records[~sparse[of]], rank[~sparse[of]])
     along = records["s"][few]
