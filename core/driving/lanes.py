@@ -118,6 +118,9 @@ def _appended(found, part):
     that are as sure as each other the second stays moved as the first was (`moved`, m across and of width), and what else they differ by, as
     where a line between them steps aside, is evened out there. What is given is the lane with the part.
     """
+    # between lines that are seen on both sides of the joint nothing is moved
+    if found.parts[-1].status[-1] == part.status[0] == MEASURED:
+        return _OpenLane([*found.parts, part], np.zeros(2))
     track, moved = found.tail(STATIONS_OF_STEP), found.moved
     step = np.array([track.d[-1] - part.d[0], track.width[-1] - part.width[0]])
     before, after = _rank(track), _rank(part)
@@ -129,8 +132,6 @@ def _appended(found, part):
     held = _held(after)
     if after[0] < before[-1] or after[0] == BESIDE_ONE:
         return _OpenLane([*found.parts, _shifted(part, step, held)], step * held[-1])
-    if after[0] == BETWEEN_LINES:
-        return _OpenLane([*found.parts, part], np.zeros(2))
     own = (step - moved) / 2
     track = _shifted(track, -own, _evened(before[::-1])[::-1])
     return _OpenLane([*found.parts[:-1], track, _shifted(_shifted(part, moved, held), own, _evened(after))], moved * held[-1])

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...common.parallel import check_cancelled
 from ...curves.robust import median, percentiles
 from ...survey.store.records import COORDINATE_SCALE
 from ..objects.classify import LINE_KINDS
@@ -38,6 +39,7 @@ def painted_strands(records: Columns, rank: np.ndarray) -> list[Strand]:
     apart = (records["spacing"] >= FEW_TRACKS * 1e3) & (rank < len(LINE_KINDS))
     sparse = (2 * np.bincount(of[apart], minlength=int(of.max()) + 1) > np.bincount(of))[of]
     few = np.flatnonzero(sparse)
+    check_cancelled()
     few = few[np.lexsort((records["s"][few], of[few]))]
     found = trace_strands(records[~sparse], rank[~sparse]) if len(few) else trace_strands(records, rank)
     along = records["s"][few]

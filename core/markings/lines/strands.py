@@ -134,6 +134,7 @@ def trace_strands(records: Columns, rank: np.ndarray) -> list[Strand]:
     order = order_by(across, bins)
     run = _without_thin(_runs(bins[order], across[order]))
     inside = np.flatnonzero(run >= 0)
+    check_cancelled()
     if not len(inside):
         return []
     run, order = run[inside], order[inside]
@@ -141,6 +142,7 @@ def trace_strands(records: Columns, rank: np.ndarray) -> list[Strand]:
     starts = np.flatnonzero(np.append(True, run[1:] != run[:-1]))
     node_d, width = _middle_and_width(across[order], starts)
     label = _chains(bins[order[starts]], node_d, width <= MAX_LINE_WIDTH_UNITS)
+    check_cancelled()
     of_point = np.repeat(label, np.diff(np.append(starts, len(run))))
     del run
     used = np.flatnonzero(of_point >= 0)
@@ -179,6 +181,7 @@ def _part_hazy_doubles(bins, across, starts):
     wide = np.flatnonzero(across[last] - across[starts] > 2600)
     cuts = []
     for k in wide:
+        check_cancelled()
         values = across[starts[k]:last[k] + 1]
         if len(values) < 4 * MIN_POINTS_PER_RUN:
             continue
@@ -213,6 +216,7 @@ def _chains(node_bin, node_d, good):
     preceded = np.zeros(count, bool)
     span = float(np.ptp(node_d)) + 10 * RUN_BIN_UNITS
     for leap in range(1, MAX_BIN_STEP + 1):
+        check_cancelled()
         open_end = np.flatnonzero(good & (follows < 0))
         open_start = np.flatnonzero(good & ~preceded)
         if not len(open_end) or not len(open_start):

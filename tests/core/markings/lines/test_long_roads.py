@@ -28,7 +28,8 @@ def strands_of(blocks):
     found = []
     for at in (BLOCK * np.arange(blocks)).tolist():
         for side in (-1, 1):
-            found += [strand(at + 5, at + 30, 3.5 * side, "edge"), strand(at + 42, at + 80, 3.5 * side, "edge"), strand(at + 60, at + 80, 0.15 * side)]
+            found += [strand(at + 5, at + 30, 3.5 * side, "edge"), strand(at + 42, at + 80, 3.5 * side, "edge")]
+            found.append(strand(at + 60, at + 80, 0.15 * side))
         found += [strand(at + first, at + first + 3, 0.0) for first in range(6, 54, 9)]
         found += [strand(at + 60, at + 78, -2.0), strand(at + 20, at + 23, 1.2)]
     return sorted(found, key=lambda one: (one.first, one.d[0]))
