@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
 DISTANCE_OFFSET = 1e-3        # m added to a distance, so that a point on a cell's centre has a finite weight
 DISTANCES_AT_ONCE = 1 << 19   # distances computed at a time: what fits the processor's cache
+# multiplications of a matrix product; OpenBLAS starts threads of its own for more than 2**18, which wait for each other where all cores are busy
+PRODUCTS_AT_ONCE = 1 << 18
 RADIUS_ROUNDING = 2e-6        # of the weight at the radius: a point exactly on it counts, whatever the rounding
 
 
@@ -157,6 +159,7 @@ class _Kernel:
     def __init__(self, settings: ImageSettings, offsets: list[tuple[int, int]]):
         self.settings, self.offsets = settings, offsets
         self.at_once = max(DISTANCES_AT_ONCE // max(len(offsets), 1), 1)
+        self.rows_at_once = max(PRODUCTS_AT_ONCE // (4 * max(len(offsets), 1)), 1)
         self._kept = ScratchBuffers()   # reused: new memory costs page faults
         right, up = np.array(offsets, np.float32).reshape(-1, 2).T
         # squared distances as a product: (e - r)^2 + (n - u)^2 = (e^2 + n^2) 1 - 2 e r - 2 n u + 1 (r^2 + u^2)
@@ -185,13 +188,17 @@ class _Kernel:
         own = self._kept.of(4 * len(east))("own", np.float32).reshape(-1, 4)
         own[:, 0] = east * east + north * north
         own[:, 1], own[:, 2], own[:, 3] = east, north, 1.0
-        found = cv2.gemm(own, self._squares, 1.0, None, 0.0, self._kept.of(len(east) * len(self.offsets))("found", np.float32).reshape(len(east), -1))
-        cv2.sqrt(found, found)
-        found *= np.float32(self.settings.cell_size)
-        found += np.float32(DISTANCE_OFFSET)
-        found = self._weight(found)
+        found = self._kept.of(len(east) * len(self.offsets))("found", np.float32).reshape(len(east), -1)
         farthest = self._weight(np.full(1, self.settings.radius_cells * self.settings.cell_size + DISTANCE_OFFSET, np.float32))
-        return cv2.threshold(found, float(farthest[0]) * (1 - RADIUS_ROUNDING), 0.0, cv2.THRESH_TOZERO, found)[1]
+        for first in range(0, len(east), self.rows_at_once):
+            some = found[first:first + self.rows_at_once]
+            cv2.gemm(own[first:first + self.rows_at_once], self._squares, 1.0, None, 0.0, some)
+            cv2.sqrt(some, some)
+            some *= np.float32(self.settings.cell_size)
+            some += np.float32(DISTANCE_OFFSET)
+            self._weight(some)
+            cv2.threshold(some, float(farthest[0]) * (1 - RADIUS_ROUNDING), 0.0, cv2.THRESH_TOZERO, some)
+        return found
 
     def _weight(self, distance):
         """1 / distance^power, in place."""

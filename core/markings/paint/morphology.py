@@ -67,9 +67,13 @@ def _between(ends, specks):
 
 def _met_since(ends, breaks):
     """Cells from which an end is reached before a break, going back along the first axis."""
-    row = np.arange(1, len(ends) + 1, dtype=np.int16)[:, None]
-    last_end, last_break = (np.maximum.accumulate(np.where(mask, row, np.int16(0)), axis=0) for mask in (ends, breaks))
-    return last_end > last_break
+    # what was met last: twice its row, and 1 more where it is an end and no break
+    twice = np.arange(2, 2 * len(ends) + 2, 2, dtype=np.int16)[:, None]
+    met = (ends | breaks) * twice
+    met += ends > breaks
+    met = np.maximum.accumulate(met, axis=0, out=met)
+    met &= np.int16(1)
+    return met.astype(bool)
 
 
 def long_runs(mask: np.ndarray, length: int, axis: int) -> np.ndarray:

@@ -43,7 +43,8 @@ def raised_cells(heights: Sequence[tuple[np.ndarray, np.ndarray]], mask: np.ndar
     count, total = np.zeros(2 * size), np.zeros(2 * size)
     bright = mask.ravel()
     for cell, z in heights:
-        row, column = np.divmod(cell, np.int32(mask.shape[1]))
+        row = cell // np.int32(mask.shape[1])
+        column = cell - row * np.int32(mask.shape[1])
         place = row // np.int32(SQUARE_CELLS) * np.int32(columns) + column // np.int32(SQUARE_CELLS) + np.int32(size) * bright.take(cell)
         count += np.bincount(place, minlength=2 * size)
         total += np.bincount(place, (z - low).astype(float), 2 * size)

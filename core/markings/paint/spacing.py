@@ -26,8 +26,12 @@ def track_spacing(occupied: np.ndarray) -> np.ndarray:
     tracks = cv2.dilate(occupied.astype(np.uint8), np.ones((2 * ALONG_REACH + 1, 1), np.uint8), borderValue=0).astype(bool)
     columns = np.arange(tracks.shape[1], dtype=np.int16)
     far = np.int16(2 * tracks.shape[1])
-    before = np.maximum.accumulate(np.where(tracks, columns, -far), axis=1)
-    after = np.minimum.accumulate(np.where(tracks, columns, 2 * far)[:, ::-1], axis=1)[:, ::-1]
+    # beyond the outermost tracks they are far away; a product is quicker than a choice between a column and that
+    before = tracks * (columns + far)
+    before = np.maximum.accumulate(before, axis=1, out=before)
+    before -= far
+    after = (tracks * (columns - 2 * far))[:, ::-1]
+    after = np.minimum.accumulate(after, axis=1)[:, ::-1] + 2 * far
     gap = after - before
     gap[gap > int(MAX_TRACK_GAP / CELL_SIZE)] = 0
     return cv2.dilate(gap.astype(np.float32), np.ones((1, 2 * ACROSS_REACH + 1), np.uint8), borderValue=0) * np.float32(CELL_SIZE)

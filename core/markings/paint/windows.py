@@ -266,10 +266,7 @@ class WindowExtractor:
     def _heights(self, part: PieceOfRoad, grid: RoadGrid) -> tuple[np.ndarray, np.ndarray]:
         """Flat numbers in the grid of the cells of an even share of the points of a part, and the heights of these."""
         step = max(len(part.cell) // MAX_HEIGHTS, 1)
-        row, column = np.divmod(part.cell[::step], np.int32(part.grid.shape[1]))
-        row += np.int32(part.grid.first - grid.first)
-        column += np.int32(part.grid.low - grid.low)
-        return row * np.int32(grid.shape[1]) + column, self._points(part.grid.first, part.grid.last).records["z"][::step]
+        return part.numbers_in(grid, part.cell[::step]), self._points(part.grid.first, part.grid.last).records["z"][::step]
 
     def _from_averages(self, window: int) -> Paint:
         """Paint where single points are noisy: bright pieces must have the shape of paint, too."""
@@ -296,22 +293,26 @@ class WindowExtractor:
 
         occupied, mask, least : (rows, columns) of the grid
         """
-        found, on = [], np.zeros(grid.shape, bool)
-        spacing = np.rint(track_spacing(occupied) * 1e3).astype(np.uint16)
+        if not parts:
+            return self._nothing()
+        rows, cells, before = [], [], 0
         for part in parts:
-            place = part.within(grid)
-            rows, cell = part.points_on(mask[place])
-            records = take_rows(self._points(part.grid.first, part.grid.last).records, rows)
-            if least is not None:
-                bright = np.flatnonzero(Points(records).value > least[place].ravel().take(cell))
-                records, cell = take_rows(records, bright), cell.take(bright)
-            found.append(records.with_columns(spacing=spacing[place].ravel().take(cell)))
-            own = np.zeros(part.grid.shape, bool)
-            own.ravel()[cell] = True
-            on[place] = own
-        records = join_columns(found, self.road_points.store.dtype)
+            own, cell = part.points_on(mask[part.within(grid)])
+            rows.append(own + before)
+            cells.append(part.numbers_in(grid, cell))
+            before += len(part.cell)
+        # the columns of all parts are read together
+        records = take_rows(self._points(parts[0].grid.first, parts[-1].grid.last).records, np.concatenate(rows))
+        cell = np.concatenate(cells)
+        if least is not None:
+            bright = np.flatnonzero(Points(records).value > least.ravel().take(cell))
+            records, cell = take_rows(records, bright), cell.take(bright)
+        spacing = np.rint(track_spacing(occupied).ravel().take(cell) * 1e3).astype(np.uint16)
+        records = records.with_columns(spacing=spacing)
         if not self.masked:
             return _arrays(records), np.empty(0), np.empty(0)
+        on = np.zeros(grid.shape, bool)
+        on.ravel()[cell] = True
         # the image spreads a point over neighbouring cells: a cell whose own points are dark is no marking
         for part in parts:
             place = part.within(grid)

@@ -66,9 +66,12 @@ class LevelStrip:
     def contains(self, s: np.ndarray, d: np.ndarray) -> np.ndarray:
         """(N,) bool: does a point lie in the strip? s : (N,) stations, ascending; d : (N,) offsets; both in 0.1 mm."""
         edges = np.ceil((self.first + np.arange(1, len(self.low))) * (self.width / COORDINATE_SCALE) - 0.5).astype(np.int32)
-        counts = np.diff(np.searchsorted(s, edges), prepend=0, append=len(s))
-        inside = d > np.repeat(self.low, counts)
-        inside &= d < np.repeat(self.high, counts)
+        cuts = [0, *np.searchsorted(s, edges).tolist(), len(s)]
+        inside = np.empty(len(d), bool)
+        # stations ascend, so a profile is a range of points
+        for low, high, first, end in zip(self.low, self.high, cuts[:-1], cuts[1:]):
+            own = d[first:end]
+            np.logical_and(own > low, own < high, out=inside[first:end])
         return inside
 
     def at(self, s: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

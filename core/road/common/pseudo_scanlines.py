@@ -91,7 +91,7 @@ def expand_ranges(start: np.ndarray, end: np.ndarray) -> tuple[np.ndarray, np.nd
     length = np.maximum(end - start, 0)
     owner = np.repeat(np.arange(len(start)), length)
     index = np.arange(len(owner))
-    index += np.repeat(start - (np.cumsum(length) - length), length)
+    index += (start - (np.cumsum(length) - length)).take(owner)
     return owner, index
 
 
@@ -297,9 +297,9 @@ def _smooth(h, held, low):
         return np.full(rows, np.nan)
     size = held.take(crowded)
     start = (np.cumsum(held) - held).take(crowded)
-    _, index = expand_ranges(start, start + size)
+    owner, index = expand_ranges(start, start + size)
     first = np.cumsum(size) - size
-    off = np.abs(h.take(index) - np.repeat(low.take(crowded), size))
+    off = np.abs(h.take(index) - low.take(crowded).take(owner))
     near, count = off < MAX_GROUND_DEVIATION, size
     if not near.all():
         off = np.where(near, off, 0.0)

@@ -261,13 +261,13 @@ def _segments_near(lines, row, count, place_row, place_d, across, along):
     np.cumsum(marked, axis=1, out=before[:, 1:])
     cell = ((lines.d - low) * (1.0 / PLACE_CELL)).astype(np.int32)
     inside = (row >= 0) & (row < count)
-    line = np.repeat(np.arange(len(lines), dtype=np.int32), np.diff(lines.first))
-    cell += (np.where(inside, row, 0) * (cells + 1)).astype(np.int32)[line]
-    flat = before.reshape(-1)
-    near = flat[cell[1:] + 1] > flat[cell[:-1]]
-    near &= (line[1:] == line[:-1]) & inside[line[:-1]]
+    line = np.repeat(np.arange(len(lines)), np.diff(lines.first))
+    cell += (np.where(inside, row, 0) * (cells + 1)).astype(np.int32).take(line)
+    flat, cell = before.reshape(-1), cell.astype(np.intp)
+    near = flat.take(cell[1:] + 1) > flat.take(cell[:-1])
+    near &= (line[1:] == line[:-1]) & inside.take(line[:-1])
     segments = np.flatnonzero(near)
-    return segments, line[segments]
+    return segments, line.take(segments)
 
 
 def _at_equal_steps(lines, heights, segment, line):
@@ -276,21 +276,21 @@ def _at_equal_steps(lines, heights, segment, line):
     step += HEIGHT_WEIGHT * np.abs(np.diff(heights))
     step[lines.first[1:-1] - 1] = 0.0
     along = np.concatenate([[0.0], np.cumsum(step)])
-    begin, end = along[segment], along[segment + 1]
-    start = along[lines.first[:-1]][line]
+    begin, end = along.take(segment), along.take(segment + 1)
+    start = along.take(lines.first[:-1]).take(line)
     begin, end = begin - start, end - start
     first = np.ceil(begin / SCANLINE_RESOLUTION - 1e-9).astype(np.int64)
     last = np.ceil(end / SCANLINE_RESOLUTION - 1e-9).astype(np.int64)
     # the end of a line is a sample where a step falls on it
     closing = (segment + 2 == lines.first[1:][line]) & (last * SCANLINE_RESOLUTION <= end)
     number = last + closing - first
-    which = np.repeat(np.arange(len(segment), dtype=np.int32), number)
-    count = np.arange(len(which)) + (first - (np.cumsum(number) - number))[which]
-    share = np.clip((count * SCANLINE_RESOLUTION - begin[which]) / np.maximum(end - begin, 1e-9)[which], 0.0, 1.0)
-    d0, h0 = lines.d[segment], heights[segment]
-    d = d0[which] + share * (lines.d[segment + 1] - d0)[which]
-    h = h0[which] + share * (heights[segment + 1] - h0)[which]
-    line = line[which]
+    which = np.repeat(np.arange(len(segment)), number)
+    count = np.arange(len(which)) + (first - (np.cumsum(number) - number)).take(which)
+    share = np.clip((count * SCANLINE_RESOLUTION - begin.take(which)) / np.maximum(end - begin, 1e-9).take(which), 0.0, 1.0)
+    d0, h0 = lines.d.take(segment), heights.take(segment)
+    d = d0.take(which) + share * (lines.d.take(segment + 1) - d0).take(which)
+    h = h0.take(which) + share * (heights.take(segment + 1) - h0).take(which)
+    line = line.take(which)
     return line, d, h, _steepness(line, count, d, h)
 
 
@@ -303,4 +303,4 @@ def _steepness(line, count, d, h):
     before[0], after[-1] = 0, len(line) - 1
     before[1:] += parted
     after[:-1] -= parted
-    return np.abs(h[after] - h[before]) / np.maximum(np.abs(d[after] - d[before]), 1e-6)
+    return np.abs(h.take(after) - h.take(before)) / np.maximum(np.abs(d.take(after) - d.take(before)), 1e-6)

@@ -144,11 +144,11 @@ def scanner_lines(records: Columns | np.ndarray, p: Pass, mirror: MirrorPhase, c
         used_points = np.repeat(new, counts)
         columns, time = {name: column[used_points] for name, column in columns.items()}, time[used_points]
         counts = counts[used]
-    line = np.repeat(np.arange(len(used), dtype=np.int32), counts)
-    length = (begins[1:] - begins[:-1])[used]
-    phase = (time - np.repeat(begins[:-1][used], counts)) / np.repeat(length, counts)
+    number = np.repeat(np.arange(len(used)), counts)   # a look-up by it is quicker than numpy's repeat
+    phase = (time - begins[:-1][used].take(number)) / (begins[1:] - begins[:-1])[used].take(number)
     s, d, z = (columns[name] * COORDINATE_SCALE for name in ("s", "d", "z"))
-    ranges = _ranges(columns, p, begins[:-1][used], counts)
+    ranges = _ranges(columns, p, begins[:-1][used], number)
+    line = number.astype(np.int32)
     joined = _side_by_side(line, phase, ranges, (s, d, z), mirror)
     return ScannerLines(line, phase, s, d, z, columns.get("intensity"), ranges, joined, np.diff(driven)[used])
 
@@ -170,12 +170,12 @@ def _side_by_side(line, phase, ranges, places, mirror):
     return joined
 
 
-def _ranges(columns, p, time, counts):
+def _ranges(columns, p, time, line):
     """(N,) float32 m from the vehicle to its points; the vehicle is taken as standing during a turn."""
     away = np.zeros(len(columns["s"]), np.float32)
     for name, track in (("s", p.s), ("d", p.d), ("z", p.z)):
         stood = np.rint(np.interp(time, p.time, track) / COORDINATE_SCALE).astype(np.int32)
-        across = (columns[name] - np.repeat(stood, counts)).astype(np.float32)
+        across = (columns[name] - stood.take(line)).astype(np.float32)
         across *= across
         away += across
     np.sqrt(away, out=away)
@@ -255,9 +255,10 @@ def slanting_edges(lines: ScannerLines, mirror: MirrorPhase, interval: float) ->
     -------
     Ribs
     """
-    far = np.abs(np.diff(lines.s)) > SLANT_SHARE * mirror.spacing * lines.driven[lines.line[:-1]]
-    point = np.flatnonzero(far & lines.joined[:-1])
-    return Ribs(point, point, np.ones(len(point)), lines.s[point] / interval, lines.s[point + 1] / interval)
+    station = lines.s / interval
+    point = np.flatnonzero((np.diff(np.ceil(station)) != 0) & lines.joined[:-1])   # most have no plane between them and the next point
+    point = point[np.abs(lines.s.take(point + 1) - lines.s.take(point)) > SLANT_SHARE * mirror.spacing * lines.driven[lines.line.take(point)]]
+    return Ribs(point, point, np.ones(len(point)), station.take(point), station.take(point + 1))
 
 
 @dataclass
@@ -391,8 +392,8 @@ def increasing(d: np.ndarray, first: np.ndarray) -> np.ndarray:
     (V,) m
     """
     place = np.rint(d / OFFSET_UNIT).astype(np.int64)
-    place += np.repeat(np.arange(len(first) - 1) * LINE_OFFSET_UNITS, np.diff(first))
+    apart = np.repeat(np.arange(len(first) - 1) * LINE_OFFSET_UNITS, np.diff(first))
+    place += apart
     middle = np.maximum.accumulate(place)
     middle += np.minimum.accumulate(place[::-1])[::-1]
-    middle -= np.repeat(np.arange(len(first) - 1) * (2 * LINE_OFFSET_UNITS), np.diff(first))
-    return middle * (0.5 * OFFSET_UNIT)
+    return (middle - 2 * apart) * (0.5 * OFFSET_UNIT)

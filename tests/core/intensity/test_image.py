@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.intensity.coverage import check_image_shows
+from lanewright.core.intensity.idw import _kernels
 from lanewright.core.intensity.image import ImageSettings, make_intensity_image, write_intensity_image
 from lanewright.core.io.geotiff import IntensityImage, write_display_image
 from lanewright.core.markings.paint.mask import marking_mask
@@ -171,6 +172,20 @@ def test_where_points_are_dense_almost_every_pixel_is_as_if_all_points_weighed_o
     every = all_pixels(image_of(dense, tmp_path / "b.tif", ImageSettings(beta=0.0)))
     assert share.shape == every.shape and (share != every).mean() > 0.5
     assert (np.abs(share - every) <= 0.02 * (PAINT - ASPHALT)).sum() > 0.97 * np.isfinite(every).sum()
+
+
+def test_weights_do_not_depend_on_how_many_are_computed_at_a_time():
+    kernel, places = _kernels(ImageSettings())[0], np.random.default_rng(3).uniform(-0.5, 0.5, (2, 5000)).astype(np.float32)
+    found = kernel.weights(*places).copy()
+    away = np.hypot(*(place[:, None] - middle for place, middle in zip(places.astype(float), np.array(kernel.offsets).T))) * 0.04
+    expected = np.where(away <= 0.08, 1 / (away + 1e-3) ** 2, 0.0)
+    # but for rounding at the radius itself
+    clear = np.abs(away - 0.08) > 1e-6
+    np.testing.assert_allclose(found[clear], expected[clear], rtol=2e-3)
+    kernel.rows_at_once, at_once = 7, kernel.rows_at_once
+    again = kernel.weights(*places).copy()
+    kernel.rows_at_once = at_once
+    np.testing.assert_allclose(again, found, rtol=1e-4)
 
 
 def test_what_is_interpolated_again_for_a_later_tile_is_the_same(tmp_path, monkeypatch):

@@ -88,10 +88,13 @@ def _gradient(values, mask, dx, dy):
     """Slope of the plane through masked values of every row."""
     z = np.where(mask, values, 0.0)
     n = mask.sum(1)
+    # few places at a time, so that OpenBLAS starts no threads of its own for the products
+    sums = mask.astype(float) @ np.stack([dx, dy, dx * dx, dy * dy, dx * dy], axis=1)
+    moments = z @ np.stack([dx, dy], axis=1)
     with np.errstate(invalid="ignore", divide="ignore"):
-        mx, my, mz = mask @ dx / n, mask @ dy / n, z.sum(1) / n
-        xx, yy, xy = mask @ (dx * dx) / n - mx * mx, mask @ (dy * dy) / n - my * my, mask @ (dx * dy) / n - mx * my
-        xz, yz = z @ dx / n - mx * mz, z @ dy / n - my * mz
+        (mx, my, xx, yy, xy), (mxz, myz), mz = sums.T / n, moments.T / n, z.sum(1) / n
+        xx, yy, xy = xx - mx * mx, yy - my * my, xy - mx * my
+        xz, yz = mxz - mx * mz, myz - my * mz
         det = xx * yy - xy * xy + 1e-9
         return (yy * xz - xy * yz) / det, (xx * yz - xy * xz) / det
 

@@ -37,3 +37,14 @@ def test_a_bright_speck_with_nothing_about_it_is_none():
 def test_specks_farther_apart_than_points_of_one_track_are_none():
     mask = spots(16, 0, 4)
     assert not morphology(mask, mask, MarkingSettings()).any()
+
+
+@pytest.mark.parametrize("specks, kept", [([55, 70, 85], True), ([55, 85], False), ([55, 70], False), ([], True)])
+def test_specks_of_a_worn_line_are_paint_where_they_lead_from_one_clear_piece_to_the_next(specks, kept):
+    mask = np.zeros((160, 160), bool)
+    mask[20:40, 80:83] = mask[100:120, 80:83] = True
+    mask[specks, 81] = True
+    found = morphology(mask, np.ones(mask.shape, bool), MarkingSettings())
+    assert found[20:40, 80:83].all() and found[100:120, 80:83].all()
+    # no gap may be longer than 0.80 m, 20 cells
+    assert (found[specks, 81] == kept).all()

@@ -5,6 +5,7 @@ import pytest
 from curbed_streets import driven, survey_of
 from lanewright.core.road.common.curb_points import curb_points_to_features
 from lanewright.core.road.common.decimation import PointDecimation
+from lanewright.core.road.common.level_strip import LevelStrip
 from lanewright.core.road.common.occlusion import OcclusionGrid
 from lanewright.core.road.detect_boundaries import BoundarySettings, find_curb_points
 from lanewright.core.road.scanlines.source import SurveyScanlines
@@ -31,6 +32,14 @@ def strip(points, profiles=(38, 58), **survey):
     """The LevelStrip of 5 m in the middle, and its offsets in metres."""
     found = PointDecimation(survey_of(points, driven(20.0), **survey), WIDTH, SPACING).level_strip(0, 0, profiles, ACROSS, ALONG)
     return found, found.low * COORDINATE_SCALE, found.high * COORDINATE_SCALE
+
+
+def test_a_point_lies_in_the_strip_where_its_own_profile_is_level_so_far_out():
+    level = LevelStrip(40, WIDTH, np.array([-20_000, -5_000, 1 << 28], np.int32), np.array([10_000, 30_000, -1 << 28], np.int32), np.zeros(3))
+    s, d = (np.array(metres) for metres in ([9.0, 10.1, 10.1, 10.2, 10.3, 10.4, 10.4, 10.6, 12.0], [0.5, 0.9, 1.1, -1.9, -1.9, 2.9, 3.1, 0.0, 0.0]))
+    # before the first profile and after the last one these are meant
+    expected = [True, True, False, True, False, True, False, False, False]
+    np.testing.assert_array_equal(level.contains(*(np.rint(v / COORDINATE_SCALE).astype(np.int32) for v in (s, d))), expected)
 
 
 @pytest.mark.parametrize("height", [0.03, 0.12])

@@ -1,7 +1,8 @@
 """Vertices of section planes chained into lines."""
 
 import numpy as np
-from lanewright.core.road.scanlines.mesh import PlaneVertices, increasing, plane_order
+from lanewright.core.road.scanlines.mesh import PlaneVertices, ScannerLines, increasing, plane_order, slanting_edges
+from lanewright.core.survey.lattice.mirror_phase import MirrorPhase
 
 PULSE = 0.001
 
@@ -65,3 +66,16 @@ def test_vertices_are_put_in_order_by_plane_then_phase():
     order = plane_order(plane, phase)
     np.testing.assert_array_equal(plane[order], np.sort(plane))
     assert (np.diff(plane[order] + 0.999 * phase[order]) > -1e-4).all()
+
+
+def test_an_edge_that_runs_far_along_the_road_is_one_where_a_plane_lies_between_its_ends_and_its_points_are_joined():
+    stations = np.array([1.02, 1.08, 1.13, 1.07, 1.03, 1.105, 1.12, 1.21])
+    joined = np.array([True, True, True, True, False, True, True, False])
+    none = np.zeros(len(stations))
+    lines = ScannerLines(np.zeros(len(stations), np.int32), none, stations, none, none, None, none, joined, np.array([0.04]))
+    found = slanting_edges(lines, MirrorPhase(100.0, np.array([0.0, 1.0]), np.array([0.0, 100.0])), 0.1)
+    # of a turn of 4 cm an edge is 2 cm long at least; there and back over 1.10 m, and on over 1.20 m
+    np.testing.assert_array_equal(found.point, [1, 2, 6])
+    np.testing.assert_array_equal(found.ahead, found.point)
+    np.testing.assert_allclose(found.near, [10.8, 11.3, 11.2])
+    np.testing.assert_allclose(found.far, [11.3, 10.7, 12.1])
