@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..common.parallel import check_cancelled
-from ..markings.cross_section.row_table import RowSpans
 from ..markings.cross_section.sections import STATION_STEP
+from ..survey.frame.row_table import RowSpans
 
 if TYPE_CHECKING:
     from ..markings.cross_section.sections import CrossSections

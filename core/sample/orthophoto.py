@@ -9,7 +9,6 @@ Control points are corners of markings, and signalised plates beside the road.
 from __future__ import annotations
 
 import os
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np

@@ -7,7 +7,6 @@ from interval to interval, from which lines get their kinds and lanes their plac
 from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "named_lines": ("line_kinds",),
     "roads": ("EstimatedRoad", "RoadEstimates", "estimate_roads"),
     "sections": ("CrossSections", "sections_of_edges", "sections_of_lines", "sections_of_pavement"),
     "weights": ("EstimateWeights",),

@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from .row_table import RowTable, stacked
+from ...survey.frame.row_table import RowTable, stacked
 from .sections import STATION_STEP, CrossSections
 from .weights import CENTRE_LINE, CURB, DASHED, DOUBLE, EDGE_LINE, HATCHING, ISLAND, OPEN, OUTSIDE, PAVEMENT, SOLID, SURFACE, EstimateWeights
 

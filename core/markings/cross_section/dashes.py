@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...survey.frame.row_table import RowTable
 from ..objects.classify import LINE_KINDS
-from .row_table import RowTable
 from .sections import STATION_STEP, CrossSections
 
 if TYPE_CHECKING:

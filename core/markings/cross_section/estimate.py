@@ -16,7 +16,7 @@ from .strips import FIRST, SECOND, strip_costs
 from .weights import CENTRE_LINE, DASHED, LANE_LINE, EstimateWeights
 
 FARTHEST_BEHIND = 30.0   # nats at most by which one direction is less probable than the other
-STRETCH = 256      # intervals that are looked at together, 1 to 2 km of road: what they are chosen from takes 0.2 MB for each
+INTERVALS_OF_STRETCH = 256      # intervals that are looked at together, 1 to 2 km of road: what they are chosen from takes 0.2 MB for each
 SAME_LANE = 0.15   # m across within which lanes of two cross-sections are the same: as near as a driving line is right
 
 
@@ -94,7 +94,7 @@ def estimate_road(candidates: Candidates, evidence: Evidence, first_direction: i
 
 def _stretches(count):
     """Intervals by stretches of road, of which so many are looked at together."""
-    return [slice(first, min(first + STRETCH, count)) for first in range(0, count, STRETCH)]
+    return [slice(first, min(first + INTERVALS_OF_STRETCH, count)) for first in range(0, count, INTERVALS_OF_STRETCH)]
 
 
 def _by_stretch(function, count):

@@ -8,20 +8,20 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...common.parallel import check_cancelled
-from .row_table import BLOCK, RowSpans, RowTable
+from ...survey.frame.row_table import BLOCK, RowSpans, RowTable
 
 STATION_STEP = 0.5                             # m of station between places where lanes are looked for
 MIN_BOUNDARY_SPACING = 0.8                     # m: lines nearer than this are one boundary, a lane ends at the nearer one
 MAX_LINE_JUMP = 0.3                         # m across by which a line may jump where it goes on as another
 PARTING = 0.1                                  # m by which a line must leave one neighbour more than the other to run along that one
 MAX_DASH_GAP = 9.5                             # m that a dashed line may be silent at its ends before it is known to end
-REACH = int(MAX_DASH_GAP / STATION_STEP)       # the same in stations
+GAP_REACH = int(MAX_DASH_GAP / STATION_STEP)       # the same in stations
 # what is known of a line at each station, and what stands where it is not
 MISSING = dict(d=np.float64(np.nan), z=np.float64(np.nan), seen=np.bool_(False), drawn=np.int32(-1), number=np.int32(-1), width=np.float64(np.nan))
 
 
 @dataclass
-class Piece:
+class PieceOfLine:
     """Part of a line with rising stations: s, d, z (N,) metres, how it is drawn, and how broad, metres."""
 
     s: np.ndarray
@@ -99,7 +99,7 @@ class GridLines:
         return {name: RowTable(spans, values, MISSING[name]) for name, values in found.items()}
 
 
-def lines_on_grid(lines: dict[int, list[Piece]]) -> GridLines:
+def lines_on_grid(lines: dict[int, list[PieceOfLine]]) -> GridLines:
     """Lines of one road, given as their pieces by number, on the stations from their first to their last place."""
     first = np.ceil(min(p.s[0] for pieces in lines.values() for p in pieces) / STATION_STEP)
     last = np.floor(max(p.s[-1] for pieces in lines.values() for p in pieces) / STATION_STEP)
@@ -144,7 +144,7 @@ def joined(lines: GridLines) -> tuple[GridLines, list[tuple[int, int, int, bool,
     for k in sorted(kept, key=lambda k: (rows[k].begin, k)):
         check_cancelled()
         last, d = rows[k].begin, rows[k].columns["d"][rows[k].begin - rows[k].first]
-        behind = np.array(sorted(j for end in range(last - REACH, last) for j in ending.get(end, ())), int)
+        behind = np.array(sorted(j for end in range(last - GAP_REACH, last) for j in ending.get(end, ())), int)
         away = np.array([abs(d - rows[chains[j][-1]].at("d", np.array([rows[chains[j][-1]].end]))[0]) for j in behind.tolist()])
         behind, away = behind[away <= MAX_LINE_JUMP], away[away <= MAX_LINE_JUMP]
         if not len(behind):
@@ -194,11 +194,11 @@ def lead_over(lines: GridLines, gaps: list[tuple[int, int, int, bool, bool]]) ->
         # from the double line's own end to where the single one begins, in whichever direction
         own, other, step = (last, first, 1) if before else (first, last, -1)
         # a line that was led on before reaches farther than it did
-        near = sorted({*lines.near(own, REACH), *(k for k, _ in led)})
+        near = sorted({*lines.near(own, GAP_REACH), *(k for k, _ in led)})
         for k in near:
             row = lines.rows[k]
             end = row.end if step > 0 else row.begin
-            if k == j or "double" not in row.pattern or not 0 <= (own - end) * step <= REACH:
+            if k == j or "double" not in row.pattern or not 0 <= (own - end) * step <= GAP_REACH:
                 continue
             apart = _step_between(row, single, end)
             if abs(apart["d"]) >= MIN_BOUNDARY_SPACING:
@@ -261,7 +261,7 @@ def _present(row, known, stations):
 
 def _ahead(lines, end, step):
     """The stations of a dash gap beyond the end of a line."""
-    ahead = end + step * np.arange(1, REACH + 1)
+    ahead = end + step * np.arange(1, GAP_REACH + 1)
     return ahead[(ahead >= 0) & (ahead < len(lines.s))]
 
 
@@ -286,7 +286,7 @@ def lengthen_dashed(lines: GridLines) -> None:
             ahead = _ahead(lines, end, step)
             go = np.all([_present(lines.rows[j], known[j], ahead) & lines.rows[j].at("seen", ahead) for j in numbers], axis=0)
             ahead = ahead[:len(go) if go.all() else int(np.argmin(go))]
-            inner = end - step * np.arange(REACH + 1)
+            inner = end - step * np.arange(GAP_REACH + 1)
             share = _share_across(row, left, right, inner[(inner >= 0) & (inner < len(lines.s))])
             for name in ("d", "z"):
                 own, (beside, begin) = row.at(name, np.array([end]))[0], (

@@ -9,11 +9,11 @@ import shapely
 from scipy.ndimage import grey_closing
 
 from ...survey.frame.placement import located
+from ...survey.frame.row_table import RowTable
 from ..cells.road_grid import CELL_SIZE
 from ..objects.classify import LINE_KINDS
 from .candidates import FAR
 from .evidence import BIN, BINS
-from .row_table import RowTable
 from .sections import STATION_STEP
 
 if TYPE_CHECKING:

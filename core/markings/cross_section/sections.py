@@ -12,8 +12,8 @@ from ...common.parallel import check_cancelled
 from ...curves.robust import median
 from ...road.edges.road_edges import RoadEdges
 from ...survey.frame.frame_lines import FrameLines
-from .grid_lines import STATION_STEP, GridLines, Piece, even_doubles, joined, lead_over, lengthen_dashed, lines_on_grid
-from .row_table import RowTable
+from ...survey.frame.row_table import RowTable
+from .grid_lines import STATION_STEP, GridLines, PieceOfLine, even_doubles, joined, lead_over, lengthen_dashed, lines_on_grid
 
 if TYPE_CHECKING:
     from ..lines.painted_lines import PaintedLines
@@ -68,7 +68,7 @@ def cross_sections(lines: FrameLines, number: np.ndarray, kind: np.ndarray, patt
     -------
     dict of road number to CrossSections
     """
-    pieces: dict[int, dict[int, list[Piece]]] = {}
+    pieces: dict[int, dict[int, list[PieceOfLine]]] = {}
     for k in range(len(lines)):
         check_cancelled()
         road, window = int(lines.road[k]), lines.line(k)
@@ -134,7 +134,7 @@ def _sides_of_islands(course, island):
 
 
 def _piece(s, d, z, kind, pattern, seen, width):
-    """A Piece of the vertices of a line, None where it bounds no lane."""
+    """A PieceOfLine of the vertices of a line, None where it bounds no lane."""
     good = np.isfinite(s)
     if not good.all():
         s, d, z = s[good], d[good], z[good]
@@ -147,10 +147,10 @@ def _piece(s, d, z, kind, pattern, seen, width):
         s, d, z = s[rising], d[rising], z[rising]
     if len(s) < 2 or median(np.abs(np.diff(d)) / np.diff(s)) > MAX_LINE_OBLIQUITY:
         return None
-    return Piece(s, d, z, kind, pattern, seen, width)
+    return PieceOfLine(s, d, z, kind, pattern, seen, width)
 
 
-def _on_grid(pieces: dict[int, list[Piece]]) -> CrossSections:
+def _on_grid(pieces: dict[int, list[PieceOfLine]]) -> CrossSections:
     """CrossSections of the lines of one road, which go on over short gaps."""
     found, gaps = joined(lines_on_grid(pieces))
     even_doubles(found, lead_over(found, gaps))

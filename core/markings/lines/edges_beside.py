@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from ..cross_section.sections import CrossSections
 
 LINE_TO_EDGE = 4.0   # m between a line and the edge that it runs along: the widest paved shoulders are 12 ft (AASHTO, Green Book, 4.4.2)
-STRETCH = 50.0       # m of road whose edges are listed together
+LOOKUP_STRETCH = 50.0       # m of road whose edges are listed together
 LEVEL_REACH = 3.0    # m of a line at either side of a gap that say how far it lies from the edge
 
 
@@ -31,14 +31,14 @@ class EdgesBeside:
     def __init__(self, sections: list[CrossSections]) -> None:
         self._by_stretch: dict[int, list[tuple[np.ndarray, np.ndarray]]] = {}
         for s, d in chain.from_iterable(map(_edges, sections)):
-            for stretch in range(int(s[0] // STRETCH), int(s[-1] // STRETCH) + 1):
+            for stretch in range(int(s[0] // LOOKUP_STRETCH), int(s[-1] // LOOKUP_STRETCH) + 1):
                 self._by_stretch.setdefault(stretch, []).append((s, d))
 
     def between(self, before: tuple[float, float], after: tuple[float, float]) -> Callable[[np.ndarray], np.ndarray] | None:
         """The nearest edge that leads along both of two places, (station, offset) in m: a function of stations (N,), its offset; None without one."""
         (s0, d0), (s1, d1) = before, after
         best = None
-        for s, d in self._by_stretch.get(int(min(s0, s1) // STRETCH), ()):
+        for s, d in self._by_stretch.get(int(min(s0, s1) // LOOKUP_STRETCH), ()):
             if not s[0] <= min(s0, s1) <= max(s0, s1) <= s[-1]:
                 continue
             far = float(np.abs(np.interp([s0, s1], s, d) - (d0, d1)).max())

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..cross_section.row_table import RowSpans
+from ...survey.frame.row_table import RowSpans
 
 if TYPE_CHECKING:
     from .linking import LinkedLine
 
-CELL = 1.0   # m of station by which they are looked up
+LOOKUP_CELL = 1.0   # m of station by which they are looked up
 
 
 class StretchLookup:
@@ -25,12 +25,12 @@ class StretchLookup:
 
     def __init__(self, first: np.ndarray, last: np.ndarray) -> None:
         self.first, self.last = np.asarray(first, float), np.asarray(last, float)
-        self._origin = int(np.floor(self.first.min(initial=np.inf) / CELL)) if len(self.first) else 0
+        self._origin = int(np.floor(self.first.min(initial=np.inf) / LOOKUP_CELL)) if len(self.first) else 0
         low, high = self._cell(self.first), self._cell(self.last)
         self._spans = RowSpans(low, high - low + 1, int(high.max(initial=0)) + 1)
 
     def _cell(self, station):
-        return np.floor(station / CELL).astype(int) - self._origin
+        return np.floor(station / LOOKUP_CELL).astype(int) - self._origin
 
     def between(self, first: float, last: float) -> np.ndarray:
         """Numbers of those that reach into the road between two stations, ascending."""

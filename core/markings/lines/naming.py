@@ -9,9 +9,10 @@ import numpy as np
 import shapely
 
 from ...common.progress import Progress
-from ..cross_section.named_lines import line_kinds
+from ..cross_section.estimate import boundary_uses
 from ..cross_section.roads import estimate_roads
 from ..cross_section.sections import sections_of_edges, sections_of_lines, sections_of_pavement
+from ..cross_section.weights import CENTRE_LINE, EDGE_LINE, LANE_LINE
 from ..objects.classify import LINE_KINDS
 from ..objects.marking_objects import MarkingObjects
 from .between_tracks import with_paint_between_tracks
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame
     from ...survey.store.road_points import RoadPoints
 
+KINDS = {EDGE_LINE: "edge", LANE_LINE: "lane", CENTRE_LINE: "centre"}
 MAX_DISTANCE_TO_LINE = 0.15   # m between a marking and the line along it
 
 
@@ -46,7 +48,7 @@ def named_by_estimate(lines: PaintedLines, frame: RoadFrame, usual_width: float,
     if not len(lines):
         return lines
     curbs, pavement = (sections_of_edges(edges), sections_of_pavement(edges)) if edges is not None else (None, None)
-    found = line_kinds(estimate_roads(sections_of_lines(lines), frame, usual_width, curbs=curbs, markings=markings, road_points=road_points,
+    found = _line_kinds(estimate_roads(sections_of_lines(lines), frame, usual_width, curbs=curbs, markings=markings, road_points=road_points,
                                       paint=paint, pavement=pavement, progress=progress))
     drawn = np.where([pattern.startswith("double") for pattern in lines.pattern], "centre",
                      np.where(lines.pattern == "dashed", "lane", "edge")).astype(object)
@@ -75,3 +77,18 @@ def named_by_lines(markings: MarkingObjects, lines: PaintedLines) -> MarkingObje
     kind = markings.kind.copy()
     kind[rows[found][same_road]] = lines.kind[line[same_road]]
     return with_paint_between_tracks(markings.with_kinds(kind), lines)
+
+
+def _line_kinds(estimates):
+    """{number of a marking line: edge, lane or centre}, by what most of it separates; lines that bound no lane are not in it."""
+    votes: dict[int, np.ndarray] = {}
+    for road in estimates.roads.values():
+        c, uses = road.estimate.candidates, boundary_uses(road.estimate)
+        for i, m in zip(*np.nonzero((uses >= 0) & np.isin(uses, list(KINDS)))):
+            for row in set(c.rows[i, m].tolist()) - {-1}:
+                if not road.boundaries.painted[row]:
+                    continue
+                numbers = road.lines.number[row, c.first[i]:c.last[i] + 1]
+                for number, count in zip(*np.unique(numbers[numbers >= 0], return_counts=True)):
+                    votes.setdefault(int(number), np.zeros(len(KINDS)))[uses[i, m]] += count
+    return {number: KINDS[int(np.argmax(found))] for number, found in votes.items()}

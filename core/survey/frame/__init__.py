@@ -13,4 +13,5 @@ __getattr__, __all__ = public(__name__, {
     "placement": ("located",),
     "road": ("Road",),
     "road_frame": ("RoadFrame",),
+    "row_table": ("RowSpans", "RowTable"),
 })

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.markings.cross_section.row_table import BLOCK, RowSpans, RowTable, stacked
+from lanewright.core.survey.frame.row_table import BLOCK, RowSpans, RowTable, stacked
 
 STATIONS = 300
 ROWS = [(10, np.arange(5.0)), (-3, np.arange(8.0)), (290, np.arange(20.0)), (150, np.empty(0)), (0, np.arange(300.0)), (400, np.arange(4.0))]
