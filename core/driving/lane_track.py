@@ -129,8 +129,9 @@ def led_over(s: np.ndarray, offset: np.ndarray, rows: np.ndarray) -> np.ndarray:
     sudden = (np.diff(rows) != 0) & (np.abs(jumps) > LEAST_JUMP) | (np.abs(jumps) > MOST_ASKEW_BORDER * steps)
     for k in np.flatnonzero(sudden):
         at = (s[k] + s[k + 1]) / 2
-        lead = min(JUMP_LEAD * abs(jumps[k]), LONGEST_LEAD, 2 * (at - s[0]), 2 * (s[-1] - at))
-        if lead > 2 * STATION_STEP:
+        room = 2 * min(at - s[0], s[-1] - at)
+        if room > 2 * STATION_STEP:
+            lead = min(max(JUMP_LEAD * abs(jumps[k]), 2 * STATION_STEP), LONGEST_LEAD, room)
             near = slice(*np.searchsorted(s, [at - lead, at + lead]))
             share = np.clip((s[near] - at) / lead + 0.5, 0.0, 1.0)
             found[near] += jumps[k] * (share**2 * (3 - 2 * share) - (s[near] > at))

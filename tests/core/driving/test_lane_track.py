@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from lanewright.core.driving.lane_track import INFERRED, LaneTrack, led_over
-from lanewright.core.driving.lanes import _followed
+from lanewright.core.driving.lanes import _followed, _OpenLane
 
 S = np.arange(0.0, 60.0, 0.5)
 
@@ -16,6 +16,16 @@ def test_a_jump_from_line_to_line_is_spread_and_the_lines_stay_elsewhere(jump):
     far = np.abs(S - 29.75) > 15 * abs(jump) + 0.5
     assert led[far] == pytest.approx(offset[far])
     assert np.abs(led - offset).max() <= abs(jump) / 2 + 1e-9
+
+
+@pytest.mark.parametrize("step", [0.02, 0.025, 0.03, 0.034, 0.05, 0.3])
+def test_a_step_of_any_size_moves_the_border_beside_it_alone(step):
+    offset = np.where(S < 30.0, 1.75, 1.75 + step)
+    led = led_over(S, offset, np.where(S < 30.0, 4, 7))
+    far = np.abs(S - 30.0) > 15.0
+    assert far.sum() > 50
+    np.testing.assert_array_equal(led[far], offset[far])
+    assert np.abs(led - offset).max() < 0.6 * step
 
 
 def test_a_step_within_a_line_is_led_over_too_and_a_taper_is_kept():
@@ -53,9 +63,9 @@ def track(first, d, width=3.0):
 def test_a_lane_whose_end_was_moved_to_meet_what_lies_before_goes_on_where_it_was_seen():
     seen, moved = track(0, [0.0] * 10), track(0, [-0.2] * 10)
     beyond = track(10, [0.95] * 10)
-    assert _followed([(seen, np.zeros(2))], [beyond], 10) == {0: 0}
-    assert _followed([(moved, np.array([-0.2, 0.0]))], [beyond], 10) == {0: 0}
-    assert _followed([(moved, np.zeros(2))], [beyond], 10) == {}
+    assert _followed([_OpenLane([seen], np.zeros(2))], [beyond], 10) == {0: 0}
+    assert _followed([_OpenLane([moved], np.array([-0.2, 0.0]))], [beyond], 10) == {0: 0}
+    assert _followed([_OpenLane([moved], np.zeros(2))], [beyond], 10) == {}
 
 
 @pytest.mark.parametrize("beside_one, left", [(True, 80), (False, 120)])
