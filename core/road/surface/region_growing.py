@@ -19,6 +19,7 @@ HEIGHT_GAIN, TILT_GAIN = 0.5, 0.15  # share of a deviation by which predicted he
 MAX_CROSS_SLOPE = 0.12        # m per m across the road
 ROW_SMOOTHING_SIGMA = 1.0     # m along the road
 SMOOTHED_COLUMNS = 16         # columns smoothed along the road at a time
+CELLS_BETWEEN_QUESTIONS = 100_000   # followed until Cancel is asked for: some 50 ms
 
 
 @dataclass
@@ -93,9 +94,11 @@ def _walk(cells, base, columns, start, noise, height, ground):
     tilt = np.stack([start, -start])
     z, skipped = np.zeros_like(tilt), np.zeros_like(tilt)
     kernel = _bell(ROW_SMOOTHING_SIGMA / ROW_LENGTH)
+    step = max(CELLS_BETWEEN_QUESTIONS // tilt.size, 1)
     # one pair of columns after the other: of the whole road nothing is there but what comes in and goes out
     for k, pair in enumerate(columns):
-        check_cancelled()
+        if k % step == step - 1:
+            check_cancelled()
         predicted = z + tilt * (0.5 * COLUMN_WIDTH if k == 0 else COLUMN_WIDTH)
         there, count = (cells.height[:, pair] - base[:, None]).T, np.nan_to_num(cells.count[:, pair]).T
         off = there - predicted
