@@ -148,11 +148,13 @@ def clusters_ours(size):
     """Which of a million points on paint belong together."""
     from lanewright.core.markings.cells.clusters import connected_points
     from lanewright.core.markings.objects.cluster import ClusterSettings
+    from lanewright.core.survey.store.road_columns import columns_of_roads
 
     points = _paint(size)
-    (records, labels), seconds = timed(lambda: connected_points(points, points.roads()[0], ClusterSettings.distance))
+    road = points.roads()[0]
+    (_, labels), seconds = timed(lambda: connected_points(points, road, ClusterSettings.distance))
     clusters = np.empty(len(labels), np.int64)
-    clusters[records["time"].astype(np.int64)] = labels
+    clusters[columns_of_roads(points.store, [road], ("time",))["time"].astype(np.int64)] = labels
     np.save(prepared("clusters_ours.npy", size), clusters)
     return dict(seconds, points=len(labels), clusters=len(np.unique(labels)))
 
