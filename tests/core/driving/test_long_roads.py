@@ -1,10 +1,8 @@
 """Lanes of a long road: those of its stretches, for as much work and memory as these take one by one."""
 
-import sys
-from collections import Counter
-
 import numpy as np
 import pytest
+from counted_calls import calls
 from lanewright.core.driving.alignment import lane_elements
 from lanewright.core.driving.centreline import without_short_status
 from lanewright.core.driving.driving_lines import DrivingSettings, make_driving_lines
@@ -45,17 +43,6 @@ def lanes_of(blocks):
                           **{name: np.ones(count) for name in ("probability", "confidence", "directed")})
             found.append(LaneTrack(first, direction=1 if d < 0 else -1, **values))
     return found
-
-
-def calls(function):
-    """How many calls of Python and of compiled functions a piece of work takes."""
-    counted = Counter()
-    sys.setprofile(lambda frame, event, _: counted.update([event]))
-    try:
-        function()
-    finally:
-        sys.setprofile(None)
-    return counted["call"] + counted["c_call"]
 
 
 def test_two_streets_end_to_end_give_the_lanes_of_each():

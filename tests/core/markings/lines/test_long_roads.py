@@ -1,11 +1,10 @@
 """Lines of a long road are compared with what lies beside them, not with all lines of the road."""
 
-import sys
-from collections import Counter
 from functools import partial
 
 import numpy as np
 import pytest
+from counted_calls import calls
 from lanewright.core.markings.lines.common_trend import CommonTrend
 from lanewright.core.markings.lines.dash_pattern import same_dash_pattern
 from lanewright.core.markings.lines.edges_beside import EdgesBeside
@@ -47,17 +46,6 @@ def found_in(blocks):
     borders = hatching_borders(lines, bars, [])
     selected = select_lines(lines, trend, extents(blocks, (83.0, 86.0, -4.0, 4.0)), 4.0, bars)
     return lines, borders, selected
-
-
-def calls(function):
-    """How many calls of Python and of compiled functions a piece of work takes."""
-    counted = Counter()
-    sys.setprofile(lambda frame, event, _: counted.update([event]))
-    try:
-        function()
-    finally:
-        sys.setprofile(None)
-    return counted["call"] + counted["c_call"]
 
 
 def test_two_streets_end_to_end_give_the_lines_of_each():
