@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ...common.parallel import check_cancelled
-from .across import LaneStrips, Sections, best_sections, lane_strips, misnamed_costs, separated_kinds
+from .across import Sections, best_sections, lane_strips, misnamed_costs, separated_kinds
 from .along import INTERVALS_AT_ONCE, best_sequence, best_through, probabilities, transitions
 from .candidates import Candidates
 from .evidence import Evidence
@@ -228,7 +228,7 @@ class _Lanes:
 def _strips_of(estimate, part):
     """The LaneStrips of all cross-sections of some intervals."""
     found = lane_strips(estimate.sections.take(part))
-    return LaneStrips(**{**vars(found), "interval": found.interval + part.start})
+    return replace(found, interval=found.interval + part.start)
 
 
 def _lanes(estimate, strips):

@@ -15,7 +15,7 @@ MIN_BOUNDARY_SPACING = 0.8                     # m: lines nearer than this are o
 MAX_LINE_JUMP = 0.3                         # m across by which a line may jump where it goes on as another
 PARTING = 0.1                                  # m by which a line must leave one neighbour more than the other to run along that one
 MAX_DASH_GAP = 9.5                             # m that a dashed line may be silent at its ends before it is known to end
-GAP_REACH = int(MAX_DASH_GAP / STATION_STEP)       # the same in stations
+GAP_REACH = int(MAX_DASH_GAP / STATION_STEP)   # the same in stations
 # what is known of a line at each station, and what stands where it is not
 MISSING = dict(d=np.float64(np.nan), z=np.float64(np.nan), seen=np.bool_(False), drawn=np.int32(-1), number=np.int32(-1), width=np.float64(np.nan))
 

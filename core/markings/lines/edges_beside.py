@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from ..cross_section.sections import CrossSections
 
 LINE_TO_EDGE = 4.0   # m between a line and the edge that it runs along: the widest paved shoulders are 12 ft (AASHTO, Green Book, 4.4.2)
-LOOKUP_STRETCH = 50.0       # m of road whose edges are listed together
+LOOKUP_STRETCH = 50.0   # m of road whose edges are listed together
 LEVEL_REACH = 3.0    # m of a line at either side of a gap that say how far it lies from the edge
 
 
@@ -49,7 +49,7 @@ class EdgesBeside:
 
 def _edges(sections):
     """(stations, offsets) of the edges of CrossSections; where one is interrupted another begins."""
-    for first, k in zip(sections.d.spans.first.tolist(), range(len(sections.d))):
+    for k, first in enumerate(sections.d.spans.first.tolist()):
         d = sections.d.row(k)
         known = np.flatnonzero(np.isfinite(d))
         for part in np.split(known, np.flatnonzero(np.diff(known) > 1) + 1):

@@ -102,7 +102,7 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
     beside = edges_beside(edges, roads)
     for k, road in enumerate(roads):
         part = progress.part(LINES_SHARE * k / len(roads), LINES_SHARE * (k + 1) / len(roads))
-        records, rank = line_paint(_records_of(clustered_points, road), markings, road)
+        records, rank = line_paint(columns_of_roads(clustered_points.store, [road]), markings, road)
         part.report(0.1)
         strands = painted_strands(records, rank)
         part.report(0.2)
@@ -143,10 +143,6 @@ def _linked(strands, edges, settings):
     lines = link_over_long_gaps(lines, trend, edges, settings.max_gap, settings.max_bridge,
                                  partial(same_dash_pattern, longest_dash=country(settings.country).longest_dash))
     return [without_strays(line, trend, edges) for line in lines], trend
-
-
-def _records_of(points, road):
-    return columns_of_roads(points.store, [road])
 
 
 def _drawn_pieces(one: SelectedLine, shape: LineShape, origin: np.ndarray) -> Iterator[dict[str, Any]]:

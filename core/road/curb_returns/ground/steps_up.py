@@ -88,7 +88,7 @@ def _gradient(values, mask, dx, dy):
     """Slope of the plane through masked values of every row."""
     z = np.where(mask, values, 0.0)
     n = mask.sum(1)
-    # few places at a time, so that OpenBLAS starts no threads of its own for the products
+    # two products in place of seven: each reads all patches, and OpenBLAS may start threads of its own for each
     sums = mask.astype(float) @ np.stack([dx, dy, dx * dx, dy * dy, dx * dy], axis=1)
     moments = z @ np.stack([dx, dy], axis=1)
     with np.errstate(invalid="ignore", divide="ignore"):
