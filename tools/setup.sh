@@ -106,7 +106,7 @@ chmod 0700 "$XDG_RUNTIME_DIR"
   { rm -rf "$LANEWRIGHT_BUILD/venv"; "$PY" -m venv --system-site-packages "$LANEWRIGHT_BUILD/venv"; }
 "$LANEWRIGHT_BUILD/venv/bin/python" -m pip install -q --disable-pip-version-check --cache-dir "$LANEWRIGHT_BUILD/pip" --no-deps -r requirements-dev.txt
 LANEWRIGHT_LIBS="$(echo "$LANEWRIGHT_BUILD"/venv/lib/python3*/site-packages)"
-"$LANEWRIGHT_BUILD/venv/bin/python" -c 'import laspy, lazrs, pytest_qgis, shapely; assert shapely.geos_version' ||
+"$LANEWRIGHT_BUILD/venv/bin/python" -c 'import laspy, lazrs, pytest_qgis, pytest_timeout, shapely; assert shapely.geos_version' ||
   stop "The Python packages of requirements-dev.txt were installed but cannot be imported; the lines above say why."
 
 ln -sfn "$LANEWRIGHT_ROOT" "$QGIS_PLUGINPATH/lanewright"
