@@ -100,5 +100,5 @@ def _executor_for(points, settings, progress):
     if not interpreter:
         progress.info("No Python interpreter was found that worker processes can be started with, so threads of this program do their work.")
         return Threads()
-    progress.info(f"Points are read, and curbs and scanlines found, by {workers} worker process(es), {interpreter}.")
+    progress.info(f"The work is shared among {workers} worker process(es), {interpreter}.")
     return WorkerProcesses(interpreter, workers)

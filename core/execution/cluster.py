@@ -63,7 +63,7 @@ def cluster_of(address: str, insecure: bool, work: WorkFolder | None, progress: 
     except BaseException:
         (cluster or client).close()
         raise
-    progress.info(f"Points are read, and curbs and scanlines found, by {len(workers)} worker(s) of the Dask cluster {address}. "
+    progress.info(f"The work is shared among {len(workers)} worker(s) of the Dask cluster {address}. "
                   f"They can be watched at {client.dashboard_link}.")
     return cluster
 
