@@ -43,8 +43,12 @@ def check_address(address: str, insecure: bool) -> None:
     Raises
     ------
     RoadExtractionError
-        If it does not begin with tls://, leaves this computer, and `insecure` is not set.
+        If it is none, or does not begin with tls://, leaves this computer, and `insecure` is not set.
     """
+    if not address.rpartition(":")[2].rstrip("/").isdigit():
+        raise RoadExtractionError(
+            f"{address} is no address of a scheduler: it needs a port. Give the address that its log shows, such as tls://name:8786, or "
+            "tcp://127.0.0.1:8786 on this computer.")
     if not address.startswith("tls://") and not is_loopback(address) and not insecure:
         raise RoadExtractionError(
             f"The scheduler {address} lies outside this computer, and the connection to it would not be encrypted: anybody in the network "

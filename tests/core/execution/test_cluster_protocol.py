@@ -276,6 +276,12 @@ def test_another_computer_is_not_talked_to_without_encryption_unless_that_is_wan
     check_address("tcp://127.0.0.1:8786", insecure=False)
 
 
+@pytest.mark.parametrize("address", ["scheduler", "10.1.2.3", "tcp://127.0.0.1", "tls://scheduler.example:"])
+def test_an_address_without_a_port_is_no_address(address):
+    with pytest.raises(RoadExtractionError, match="needs a port"):
+        ExecutionSettings(scheduler=address)
+
+
 def test_where_dask_is_missing_one_sentence_says_how_to_get_it(monkeypatch):
     imported = builtins.__import__
 
