@@ -140,8 +140,8 @@ def measure_cross_sections(survey: Survey, layers: BorderLayers = BorderLayers()
             found.sections.append(section)
     if not found.sections:
         raise RoadExtractionError("No section saw a carriageway: the layers given lie on none of the driven roads. Choose those of this survey.")
-    progress.info(f"Cross-sections measured at {len(found.sections)} of {len(wanted)} stations." + (
-        "" if len(found.sections) == len(wanted) else " At the others the layers do not tell where the carriageway ends, or too little of it was seen."))
+    elsewhere = " At the others the layers do not tell where the carriageway ends, or too little of it was seen."
+    progress.info(f"Cross-sections measured at {len(found.sections)} of {len(wanted)} stations.{elsewhere * (len(found.sections) < len(wanted))}")
     _say(found, progress)
     return found
 

@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from ..common.setting import check_limits, setting
-from ..io.crs import check_metric, horizontal_part, parse_crs
+from ..io.crs import check_metric, check_projected, horizontal_part, parse_crs
 from .frame.build import build_frame
 from .las.copies import PER_METRE, distinct_rows, may_overlap, without_copies
 from .las.luminance import INTENSITY_SOURCES, without_intensity
@@ -272,7 +272,11 @@ def _named(counts):
 def _judge_crs(found):
     crs = parse_crs(found.crs)
     if crs is None:
-        found.notes.append("The point clouds carry no CRS: set the parameter CRS, so that the results carry one.")
+        try:
+            check_projected(found.files)
+            found.notes.append("The point clouds carry no CRS: set the parameter CRS, so that the results carry one.")
+        except RoadExtractionError as problem:
+            found.notes.append(str(problem))
         return
     try:
         check_metric(crs, "The point cloud")
