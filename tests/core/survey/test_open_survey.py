@@ -4,7 +4,6 @@ import re
 from dataclasses import replace
 from types import SimpleNamespace
 
-import laspy
 import numpy as np
 import pytest
 from drives import EAST, NORTH, ahead, bend, chain, contents, drive, joined, surveyed_points, write_cloud
@@ -309,18 +308,6 @@ def test_a_street_all_in_feet_that_no_crs_tells_of_is_warned_of(street, tmp_path
     open_survey([write_cloud(tmp_path / "feet.laz", *feet, crs=crs)], driven, progress=heard)
     assert any(re.search("as if cloud and trajectory were in feet.*set CRS", text) for text in heard.warnings) == warned
     assert not any("The times of the points" in text for text in heard.warnings)
-
-
-def test_coordinates_in_degrees_that_no_crs_tells_of_are_refused_by_name(street, tmp_path):
-    trajectory, (x, y, z, time), _ = street
-    degrees = 8.0 + (x - x[0]) / 7e4, 48.0 + (y - y[0]) / 1.1e5
-    header = laspy.LasHeader(point_format=6, version="1.4")
-    header.scales, header.offsets = [1e-8, 1e-8, 1e-3], [8.0, 48.0, 0.0]
-    cloud = laspy.LasData(header)
-    cloud.x, cloud.y, cloud.z, cloud.gps_time = *degrees, z, time
-    cloud.write(str(tmp_path / "degrees.laz"))
-    with pytest.raises(RoadExtractionError, match="look like longitude and latitude in degrees"):
-        open_survey([tmp_path / "degrees.laz"], replace(trajectory, x=8.0 + (trajectory.x - x[0]) / 7e4, y=48.0 + (trajectory.y - y[0]) / 1.1e5))
 
 
 @pytest.mark.parametrize("late, warned", [
