@@ -4,6 +4,7 @@
 which knows how values are given there and how layers are read and written.
 """
 
+import errno
 import os
 import tempfile
 from contextlib import ExitStack
@@ -295,7 +296,9 @@ def run(call, progress):
     except OSError as error:
         if error.strerror is None:
             raise
-        raise RoadExtractionError(call.in_users_names(f"{error.strerror}: {error.filename or tr('while writing')}")) from error
+        full = tr("Free some space there; the variable TMPDIR (Windows: TEMP) names the folder for temporary files.")
+        raise RoadExtractionError(call.in_users_names(
+            f"{error.strerror}: {error.filename or tr('while writing')}." + f" {full}" * (error.errno == errno.ENOSPC))) from error
     except MemoryError as error:
         raise RoadExtractionError(tr("Not enough memory for this step; close other programs or process fewer files at once.")) from error
     finally:

@@ -102,7 +102,7 @@ def add_execution(algorithm):
         "WORK_FOLDER", tr("Work folder"),
         tr("A folder for finished work, about 20 bytes for every point near the road. A run that ended early, or that is repeated with "
            "other settings of later stages, does not read the points and find the curbs again. What was made from other files, settings "
-           "or another version of Lanewright is not used. Nothing in it is ever removed; delete it when the map is done."),
+           "or another version of Lanewright is not used. Nothing that is finished is ever removed; delete it when the map is done."),
         optional=True, advanced=True,
     ))
 

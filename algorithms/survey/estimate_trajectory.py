@@ -51,7 +51,7 @@ class EstimateTrajectory(Algorithm):
         from ...core.survey.estimation import estimate_trajectory
 
         found = estimate_trajectory(call.point_clouds(), call.crs(), call.setting(SCANNER_SETTING[0]), progress)
-        for note in found.notes:
+        for note in found.cloud_notes + found.notes:
             progress.warn(note)
         track = found.trajectory
         progress.info(found.summary())

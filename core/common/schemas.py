@@ -91,7 +91,7 @@ CROSS_SECTIONS = [ROAD, Field("section", int, "Section"), STATION, Field("part",
                   Field("exceeds", str, "Limits not kept")]
 EDGE_DISTANCE = Field("edge_m", float, "Distance from the carriageway's edge (m)")
 ROADSIDE = [ROAD, SIDE, Field("kind", str, "Kind (guard_rail/barrier/wall/fence/hedge/gutter)"), STATION, END, OFFSET, EDGE_DISTANCE,
-            Field("height_m", float, "Height of its top above the ground; of a gutter, its depth (m)"),
+            Field("height_m", float, "Height of its top above the ground, of a gutter its depth (m)"),
             Field("foot_m", float, "Height of its lower edge above the ground (m)"), LENGTH]
 ROADSIDE_OBJECTS = [ROAD, SIDE, Field("kind", str, "Kind (pole/sign/trunk)"), STATION, OFFSET, EDGE_DISTANCE,
                     Field("height_m", float, "Height of its top above the ground (m)"), Field("diam_m", float, "Diameter of its shaft (m)")]

@@ -10,7 +10,7 @@ __getattr__, __all__ = public(__name__, {
     "choice": ("ExecutionSettings", "cluster_for", "executor_for"),
     "cluster": ("Cluster", "cluster_of"),
     "phase": ("Executor", "Phase", "Recipe"),
-    "plain": ("digest", "read_plain", "write_plain"),
+    "plain": ("digest", "is_whole", "read_plain", "write_plain"),
     "processes": ("WorkerProcesses",),
     "threads": ("THREADS", "Threads"),
     "work_folder": ("KeptResults", "WorkFolder"),

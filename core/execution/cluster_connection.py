@@ -9,6 +9,7 @@ from __future__ import annotations
 import importlib.metadata
 import ipaddress
 import platform
+import socket
 import time
 from pathlib import Path
 from typing import Any
@@ -43,8 +44,12 @@ def check_address(address: str, insecure: bool) -> None:
     Raises
     ------
     RoadExtractionError
-        If it does not begin with tls://, leaves this computer, and `insecure` is not set.
+        If it is none, or does not begin with tls://, leaves this computer, and `insecure` is not set.
     """
+    if not address.rpartition(":")[2].rstrip("/").isdigit():
+        raise RoadExtractionError(
+            f"{address} is no address of a scheduler: it needs a port. Give the address that its log shows, such as tls://name:8786, or "
+            "tcp://127.0.0.1:8786 on this computer.")
     if not address.startswith("tls://") and not is_loopback(address) and not insecure:
         raise RoadExtractionError(
             f"The scheduler {address} lies outside this computer, and the connection to it would not be encrypted: anybody in the network "
@@ -78,11 +83,38 @@ def client_of(address: str, insecure: bool = False) -> Any:
             f"The scheduler {address} wants certificates, and Dask's configuration names none. Set distributed.comm.tls.ca-file, "
             "client.cert and client.key there, or the variables DASK_DISTRIBUTED__COMM__TLS__CA_FILE, …__CLIENT__CERT and …__CLIENT__KEY.")
     try:
+        _check_greeting(address, security)
         return Client(address, timeout=CONNECT_TIME, security=security, set_as_default=False, name=PACKAGE)
     # of wrong certificates, names and ports, each library has errors of its own
     except Exception as error:
         raise RoadExtractionError(
             f"No Dask scheduler answers at {address}: {_words(error)}. Start one (dask scheduler), or look up its address in its log.") from error
+
+
+def _check_greeting(address, security):
+    """Refuse a server that accepts a connection and then says nothing, as a web server does: a Client waits for it without end.
+
+    A scheduler greets whoever connects. One that cannot be reached is left to Client, which waits until it has started.
+    """
+    scheme, _, place = address.rpartition("://")
+    host, _, port = place.rstrip("/").rpartition(":")
+    if scheme not in ("", "tcp", "tls"):
+        return
+    try:
+        connection = socket.create_connection((host.strip("[]"), int(port)), CONNECT_TIME)
+    except OSError:
+        return
+    with connection:
+        try:
+            if scheme == "tls":
+                connection = security.get_connection_args("client")["ssl_context"].wrap_socket(connection, server_hostname=host.strip("[]"))
+            greeted = connection.recv(1)
+        except TimeoutError as error:
+            raise TimeoutError("something listens there, but does not speak as a scheduler") from error
+        finally:
+            connection.close()
+    if not greeted:
+        raise ConnectionError("something listens there, but ends the connection")
 
 
 def wait_for_workers(client: Any, progress: Progress) -> dict[str, int]:

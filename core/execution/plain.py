@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 import os
 import struct
 from dataclasses import fields, is_dataclass
@@ -38,6 +39,8 @@ def write_plain(path: Path, value: Any, unfinished_in: Path | None = None) -> No
     ------
     TypeError
         If it holds anything else.
+    OSError
+        With a file name, if it cannot be written.
     """
     arrays: list[np.ndarray] = []
     tree = _tree(value, arrays)
@@ -52,6 +55,10 @@ def write_plain(path: Path, value: Any, unfinished_in: Path | None = None) -> No
             for array, last in zip(arrays, turned):
                 file.write(_bytes_of(np.ascontiguousarray(array.T if last else array)))
         os.replace(unfinished, path)
+    except OSError as error:
+        if error.filename is None:   # of a full disk
+            raise OSError(error.errno, error.strerror, str(path)) from error
+        raise
     finally:
         unfinished.unlink(missing_ok=True)
 
@@ -73,6 +80,20 @@ def read_plain(path: Path) -> Any:
     return _value(tree, arrays)
 
 
+def is_whole(path: Path) -> bool:
+    """Whether a file that `write_plain` wrote is there to its end, which it may not be after the power failed."""
+    try:
+        with open(path, "rb") as file:
+            if file.read(len(FORMAT)) != FORMAT:
+                return False
+            (length,) = TEXT_LENGTH.unpack(_read_bytes(file, TEXT_LENGTH.size))
+            _, layouts = json.loads(_read_bytes(file, length))
+            held = sum(_dtype(kind).itemsize * math.prod(shape) for kind, shape, _ in layouts)
+            return os.fstat(file.fileno()).st_size == file.tell() + held
+    except (OSError, ValueError):
+        return False
+
+
 def _read_bytes(file, count):
     found = file.read(count)
     if len(found) != count:
@@ -85,9 +106,13 @@ def _bytes_of(array):
     return array.reshape(-1).view(np.uint8)
 
 
+def _dtype(kind: Any) -> Any:
+    return np.lib.format.descr_to_dtype(kind if isinstance(kind, str) else [tuple(column) for column in kind])
+
+
 def _read_array(file: BinaryIO, kind: Any, shape: list[int], last: bool) -> np.ndarray:
     """The next array; `last` tells that its last index runs slowest."""
-    dtype = np.lib.format.descr_to_dtype(kind if isinstance(kind, str) else [tuple(column) for column in kind])
+    dtype = _dtype(kind)
     if dtype.hasobject:
         raise TypeError("An array of objects is no plain value.")
     array = np.empty(shape[::-1] if last else shape, dtype)

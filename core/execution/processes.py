@@ -106,9 +106,9 @@ class WorkerProcesses:
             f"Try fewer workers, or 0 for the automatic choice. {last}".rstrip())
 
     def disk_error(self, error: OSError) -> RoadExtractionError:
-        """One sentence about the folder, which cannot be used."""
-        return RoadExtractionError(f"The folder for temporary files, {self.folder}, cannot be used: {error}. "
-                                   "Free some space there, or run without worker processes.")
+        """One sentence about a file that cannot be read or written, there or in a work folder."""
+        return RoadExtractionError(f"Worker processes cannot use the disk: {error}. Free some space there, or run without worker processes; "
+                                   "the variable TMPDIR (Windows: TEMP) names the folder for temporary files.")
 
     def _take(self):
         """A worker without a task."""

@@ -19,7 +19,7 @@ from uuid import uuid4
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from .phase import Executor, Phase, name_of
-from .plain import digest, read_plain, write_plain
+from .plain import digest, is_whole, read_plain, write_plain
 
 
 class WorkFolder:
@@ -48,7 +48,8 @@ class WorkFolder:
     def error(self, error: OSError) -> RoadExtractionError:
         """One sentence about a folder that cannot be used."""
         return RoadExtractionError(f"The work folder {self.path} cannot be used: {error.strerror or error}. Choose a folder that can be "
-                                   "written to, with room for about 20 bytes for every point near the road, or none.")
+                                   "written to, with room for about 20 bytes for every point near the road, or none; a folder that a power "
+                                   "failure has damaged is to be deleted.")
 
     def begin(self, name: str) -> Path:
         """A new folder, not made yet, for something that will be known as `name` when it is finished."""
@@ -57,7 +58,8 @@ class WorkFolder:
     def finish(self, name: str, folder: Path, messages: Sequence[tuple[str, str]]) -> None:
         """Keep a folder of `begin`, and what was said while it was made: ("info" or "warn", text)."""
         unfinished = self.path / f"{name}.{uuid4().hex}.part"
-        unfinished.write_text(json.dumps(dict(folder=folder.name, messages=list(messages))), encoding="utf-8")
+        sizes = {file.name: file.stat().st_size for file in folder.iterdir()}
+        unfinished.write_text(json.dumps(dict(folder=folder.name, messages=list(messages), sizes=sizes)), encoding="utf-8")
         os.replace(unfinished, self.path / f"{name}.json")
 
     def discard(self) -> None:
@@ -70,13 +72,14 @@ class WorkFolder:
         shutil.rmtree(gone, ignore_errors=True)
 
     def finished(self, name: str) -> tuple[Path, list[tuple[str, str]]] | None:
-        """The folder and the messages that were kept under a name; None where there are none."""
+        """The folder and the messages that were kept under a name; None where there are none, or where not all of it has come to the disk."""
         try:
             found = json.loads((self.path / f"{name}.json").read_text(encoding="utf-8"))
-        except FileNotFoundError:
+            folder = self.path / found["folder"]
+            whole = all((folder / file).stat().st_size == size for file, size in found["sizes"].items())
+        except (FileNotFoundError, ValueError):
             return None
-        folder = self.path / found["folder"]
-        return (folder, [(kind, text) for kind, text in found["messages"]]) if folder.is_dir() else None
+        return (folder, [(kind, text) for kind, text in found["messages"]]) if whole and folder.is_dir() else None
 
 
 class Heard(Progress):
@@ -142,12 +145,14 @@ class KeptResults:
         key = digest((code_digest(), name_of(phase.function), phase.source.recipe(self.work.path), phase.arguments), str(self.work.path))
         folder = self.work.path / f"phase-{key}"
         files = [folder / f"{digest(item)}.plain" for item in items]
-        missing = [k for k, file in enumerate(files) if not file.exists()]
+        missing = [k for k, file in enumerate(files) if not is_whole(file)]
         if len(missing) < len(items):
             progress.info(f"{len(items) - len(missing)} of {len(items)} parts of the work were finished by an earlier run.")
         left = set(missing)
         try:
             folder.mkdir(exist_ok=True)
+            for k in missing:   # what the failing power left of a file
+                files[k].unlink(missing_ok=True)
             made = self.executor.run(phase, [items[k] for k in missing], progress, [files[k] for k in missing])
             for k, file in enumerate(files):
                 if k not in left:

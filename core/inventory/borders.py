@@ -40,6 +40,7 @@ class Strip:
     type : as in LANES; "carriageway" for the carriageway
     direction : of travel, 1 along the road, -1 against it, 0 where unknown
     borders : what they were taken from: lanes, lines, edges or track
+    curbs : whether its right and left border may be a curb: road edges that are not said to be the edge of a pavement without one
     """
 
     right: float
@@ -48,6 +49,7 @@ class Strip:
     type: str
     direction: int
     borders: str
+    curbs: tuple[bool, bool] = (False, False)
 
     @property
     def width(self) -> float:
@@ -108,7 +110,8 @@ class RoadBorders:
         track = self._track(road, s)
         lines = np.sort(np.array([d for d, _ in _crossings(self.lines, road, s)]))
         lanes = self._lanes(road, s, lines)
-        edges = np.sort(np.array([d for d, _ in _crossings(self.edges, road, s)]))
+        crossed = _crossings(self.edges, road, s)
+        edges = np.sort(np.array([d for d, _ in crossed]))
         # the track lies on the carriageway; edges are looked for beyond it and beyond the lanes that nobody doubts
         right, left = _nearest_outside(edges, float(track.min()), float(track.max()))
         if not lanes and len(lines) > 1:
@@ -124,7 +127,10 @@ class RoadBorders:
             right = min([*outer[0], *lines])
         if not np.isfinite(left):
             left = max([*outer[1], *lines])
-        return Strip(float(right), float(left), 0, "carriageway", 0, borders), lanes
+        if track.max() < right or track.min() > left:
+            return None   # lanes beside the road that was driven, such as of a street that it joins
+        curbs = {d for d, row in crossed if row.get("edge") != "pavement"}
+        return Strip(float(right), float(left), 0, "carriageway", 0, borders, (right in curbs, left in curbs)), lanes
 
     def _lanes(self, road, s, lines):
         if self.lane_borders is not None and len(self.lane_borders.rows):

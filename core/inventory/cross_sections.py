@@ -140,6 +140,8 @@ def measure_cross_sections(survey: Survey, layers: BorderLayers = BorderLayers()
             found.sections.append(section)
     if not found.sections:
         raise RoadExtractionError("No section saw a carriageway: the layers given lie on none of the driven roads. Choose those of this survey.")
+    elsewhere = " At the others the layers do not tell where the carriageway ends, or too little of it was seen."
+    progress.info(f"Cross-sections measured at {len(found.sections)} of {len(wanted)} stations.{elsewhere * (len(found.sections) < len(wanted))}")
     _say(found, progress)
     return found
 
@@ -309,11 +311,11 @@ def _clear_of(points, above, strips):
 def _curbs(d, profile, strip):
     """(right, left) heights of the curbs: the ground just outside the edge above the road's own, continued to the edge."""
     found = []
-    for edge, outward in ((strip.right, -1.0), (strip.left, 1.0)):
+    for edge, outward, may_be in ((strip.right, -1.0, strip.curbs[0]), (strip.left, 1.0, strip.curbs[1])):
         u = outward * (d - edge)
         road = np.isfinite(profile) & (u < -CURB_INSIDE[0]) & (u > -CURB_INSIDE[1])
         top = np.isfinite(profile) & (u > CURB_OUTSIDE[0]) & (u < CURB_OUTSIDE[1])
-        if min(road.sum(), top.sum()) < MIN_CURB_CELLS:
+        if not may_be or min(road.sum(), top.sum()) < MIN_CURB_CELLS:
             found.append(np.nan)
             continue
         slope, level = np.polyfit(u[road], profile[road], 1)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +12,8 @@ from ..common.errors import RoadExtractionError
 
 if TYPE_CHECKING:
     from pyproj import CRS
+
+SUSPICIOUS_SENSOR_HEIGHT = 5.0, 15.0  # m: higher than any survey vehicle; 1.5 to 4.5 m expressed in feet
 
 
 def parse_crs(text: str | None) -> CRS | None:
@@ -63,7 +66,7 @@ def check_projected(files: Sequence[Any], given: str = "", trajectory_crs: str =
     Raises
     ------
     RoadExtractionError
-        If clouds disagree, the CRS is geographic, or its unit is not the metre.
+        If clouds disagree, the CRS is geographic or none but the coordinates look so, or its unit is not the metre.
     """
     known: dict[str, str] = {}
     for file in files:
@@ -82,6 +85,10 @@ def check_projected(files: Sequence[Any], given: str = "", trajectory_crs: str =
     wkt = next(iter(known), "") or given or trajectory_crs
     crs = parse_crs(wkt)
     if crs is None:
+        if _in_degrees(files):
+            raise RoadExtractionError(
+                "The point cloud carries no CRS, and its coordinates look like longitude and latitude in degrees: it is less than 1 m wide if they "
+                "are metres. Reproject it to a projected CRS, such as the UTM zone of the survey, and run again.")
         return ""
     check_metric(crs, "The point cloud")
     return wkt if wkt in known or len(wkt) > 20 else crs.to_wkt()
@@ -115,6 +122,21 @@ def crs_note(files: Sequence[Any], given: str, crs: str) -> str:
         return (f"The point cloud says that it is in {horizontal_part(parse_crs(own)).name}; the parameter CRS "
                 f"({horizontal_part(parse_crs(given)).name}) is for clouds that carry none and was not used.")
     return ""
+
+
+def unit_note(height: float, crs: str) -> str:
+    """A note for the user where a cloud without CRS is in feet, as it seems; "" where there is nothing to note.
+
+    Parameters
+    ----------
+    height : m, of the sensor above the road; NaN where unknown
+    crs : WKT of the CRS of the survey, "" where unknown
+    """
+    if crs or not SUSPICIOUS_SENSOR_HEIGHT[0] < height < SUSPICIOUS_SENSOR_HEIGHT[1]:
+        return ""
+    return (f"The sensor seems to ride {height:.1f} m above the road, as if cloud and trajectory were in feet, and no CRS tells their "
+            "unit: everything is measured in metres, so curbs and markings would be missed. If they are in feet, convert both to metres "
+            "(in a metric CRS); if they are not, set CRS.")
 
 
 def check_metric(crs: Any, what: str) -> None:
@@ -154,6 +176,14 @@ def same_crs(a: Any, b: Any) -> bool:
     if a.equals(b, ignore_axis_order=True):
         return True
     # The WKT of LAS files has rounded parameters and other names: the projections themselves are compared.
-    ignored = ("title", "type", "no_defs")
-    first, second = ({key: value for key, value in crs.to_dict().items() if key not in ignored} for crs in (a, b))
-    return bool(a.to_dict()) and first == second
+    first, second = (_projection(crs) for crs in (a, b))
+    return bool(first) and first == second
+
+
+def _projection(crs):
+    """The projection and its parameters by name, without what is only said about them; empty where PROJ has no words for it."""
+    with warnings.catch_warnings():
+        # that the words leave out what WKT says besides, which is not asked for here
+        warnings.simplefilter("ignore", UserWarning)
+        words = crs.to_dict()
+    return {key: value for key, value in words.items() if key not in ("title", "type", "no_defs")}

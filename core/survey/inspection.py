@@ -12,9 +12,9 @@ from scipy.spatial import cKDTree
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from ..common.setting import check_limits, setting
-from ..io.crs import check_metric, horizontal_part, parse_crs
+from ..io.crs import check_metric, check_projected, horizontal_part, parse_crs
 from .frame.build import build_frame
-from .las.copies import without_copies
+from .las.copies import PER_METRE, distinct_rows, may_overlap, without_copies
 from .las.luminance import INTENSITY_SOURCES, without_intensity
 from .las.reader import POINTS_PER_BLOCK, read_blocks, read_headers
 from .las.scanners import ScannerCensus
@@ -28,6 +28,8 @@ NEAR_TRAJECTORY = 25.0        # m: points within this distance count as measured
 SAMPLING_INTERVAL = 50       # the distance to the trajectory is measured for every 50th point
 INTENSITY_VALUES = 65536
 MAX_DENSITY_CELLS = 40_000_000  # of the density raster
+MAX_COPY_SAMPLES = 500_000      # points among which copies are looked for
+COPY_PRIMES = np.array([73856093, 19349663, 83492791])   # mix the numbers of a place, so that neighbours are chosen apart from each other
 PROFILE_STEP = 2.0         # m driven between the heights of the profile
 
 
@@ -140,6 +142,9 @@ class _Counter:
         self.returns, self.classes = np.zeros(256, np.int64), np.zeros(256, np.int64)
         self.count = self.sampled = self.near = 0
         self.trajectory, self.on_track = trajectory, []
+        # copies of a point are all in the sample or none is: it is drawn by their places
+        self.every = max(sum(file.count for file in filled) // MAX_COPY_SAMPLES, 1) if len(filled) > 1 and may_overlap(filled) else 0
+        self.copy_samples = []
         self.tree = None if trajectory is None else cKDTree(np.c_[trajectory.x, trajectory.y])
 
     def take(self, block):
@@ -159,6 +164,8 @@ class _Counter:
         for name in ("point_source_id", "scanner_channel"):
             if name in names:
                 self.census.add(name, np.asarray(block[name]), time)
+        if self.every:
+            self.copy_samples.append(_copy_samples(np.stack([x, y, z], axis=1), time, self.every))
         if self.tree is not None:
             distance, row = self.tree.query(np.c_[x, y][::SAMPLING_INTERVAL], distance_upper_bound=NEAR_TRAJECTORY)
             below = distance < OWN_TRACK_HALF_WIDTH
@@ -178,6 +185,11 @@ class _Counter:
             found.near_share = self.near / self.sampled
         if self.near:
             found.drive = inspect_drive(self.trajectory, *(np.concatenate(parts) for parts in zip(*self.on_track)))
+        if self.copy_samples:
+            time, place = (np.concatenate(column) for column in zip(*self.copy_samples))
+            if share := 1 - len(distinct_rows(time, place)) / max(len(time), 1):
+                found.notes.append(f"About {100 * share:.2g} % of the points are copies of points in another file, as where tiles overlap. They are "
+                                   "counted here as often as they are there; a road map uses each point once.")
         _judge_crs(found)
         if trajectory is not None:
             _judge_trajectory(found, wkt, has_time, progress)
@@ -223,6 +235,14 @@ class _Tally:
         self.keys, self.counts = self.keys[order], self.counts[order]
 
 
+def _copy_samples(place, time, every):
+    """(M,) times and (M, 3) places in mm of one in `every` points, chosen by place."""
+    whole = np.rint(place * PER_METRE).astype(np.int64)
+    mixed = (whole * COPY_PRIMES).sum(axis=1).astype(np.uint64)
+    chosen = (mixed >> np.uint64(17)) % np.uint64(every) == 0
+    return time[chosen], whole[chosen]
+
+
 def _key(column, row, layer=0):
     """One int64 of up to three cell numbers below 2**20 each."""
     part = [np.clip(np.asarray(v), 0, 2**20 - 1).astype(np.int64) for v in (column, row, layer)]
@@ -252,7 +272,11 @@ def _named(counts):
 def _judge_crs(found):
     crs = parse_crs(found.crs)
     if crs is None:
-        found.notes.append("The point clouds carry no CRS: set the parameter CRS, so that the results carry one.")
+        try:
+            check_projected(found.files)
+            found.notes.append("The point clouds carry no CRS: set the parameter CRS, so that the results carry one.")
+        except RoadExtractionError as problem:
+            found.notes.append(str(problem))
         return
     try:
         check_metric(crs, "The point cloud")

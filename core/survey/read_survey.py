@@ -11,7 +11,7 @@ import numpy as np
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from ..execution.phase import Executor
-from ..io.crs import check_projected, crs_note, parse_crs
+from ..io.crs import check_projected, crs_note, parse_crs, unit_note
 from .adjustment.adjust import adjust_passes
 from .clock_check import check_clock
 from .frame.build import build_frame
@@ -40,7 +40,6 @@ PARTS_PROGRESS = 0.85        # of reading, where the points are put in order aft
 LOWEST_SENSOR = 0.5          # m above the road: no scanner rides lower, but lines and places drawn on the road lie within
 TOLD_APART = "The points are of two scanners that no field tells apart; they were told apart by where their scan lines lead."
 FEET = 0.3048, 1200 / 3937   # m, of the international foot and of that of surveys in the United States
-SUSPICIOUS_SENSOR_HEIGHT = 5.0, 15.0  # m: higher than any survey vehicle; 1.5 to 4.5 m expressed in feet
 
 
 @dataclass(frozen=True)
@@ -128,10 +127,8 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
             f"The trajectory lies {height:.2f} m above the road; a scanner rides at least {LOWEST_SENSOR} m above it. "
             "It seems to be a line on the road, such as a driving line of a map, and not where the scanner was: choose the "
             "trajectory that the navigation system recorded. If it is that of the vehicle's wheels, add the height of the scanner to its heights.")
-    if not crs and SUSPICIOUS_SENSOR_HEIGHT[0] < height < SUSPICIOUS_SENSOR_HEIGHT[1]:
-        progress.warn(f"The sensor seems to ride {height:.1f} m above the road, as if cloud and trajectory were in feet, and no CRS tells their "
-                      "unit: everything is measured in metres, so curbs and markings would be missed. If they are in feet, convert both to metres "
-                      "(in a metric CRS); if they are not, set CRS.")
+    if feet := unit_note(height, crs):
+        progress.warn(feet)
     scanner_field, scanners = reader.census.choose(settings.scanner_field)
     survey = Survey(files, frame, store, crs, reader.heights, scanner_field, scanners,
                     reader.brightest > reader.darkest, has_time,
@@ -150,7 +147,7 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     if shared is not None:
         shared.ordered.mkdir(exist_ok=True)
         survey.put_in_order(shared.ordered, shared.ordering, progress.part(PARTS_PROGRESS * read_at, read_at))
-    if has_time:
+    if has_time and not feet:   # a scanner that rides three times too high sees three times too far
         check_clock(survey, progress)
     if again:
         measured = survey.store

@@ -790,6 +790,11 @@
         </message>
         <message>
             <location filename="../../algorithms/call.py" />
+            <source>Free some space there; the variable TMPDIR (Windows: TEMP) names the folder for temporary files.</source>
+            <translation>Dort Platz schaffen; die Variable TMPDIR (Windows: TEMP) nennt den Ordner für vorübergehende Dateien.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/call.py" />
             <source>Not enough memory for this step; close other programs or process fewer files at once.</source>
             <translation>Der Arbeitsspeicher reicht für diesen Schritt nicht; andere Programme schließen oder weniger Dateien auf einmal verarbeiten.</translation>
         </message>
@@ -4525,8 +4530,8 @@
         </message>
         <message>
             <location filename="../../algorithms/survey_input.py" />
-            <source>A folder for finished work, about 20 bytes for every point near the road. A run that ended early, or that is repeated with other settings of later stages, does not read the points and find the curbs again. What was made from other files, settings or another version of Lanewright is not used. Nothing in it is ever removed; delete it when the map is done.</source>
-            <translation>Ein Ordner für fertige Arbeit, etwa 20 Byte je Punkt nahe der Straße. Ein Lauf, der vorzeitig endete oder mit anderen Einstellungen späterer Stufen wiederholt wird, liest die Punkte nicht noch einmal und sucht die Bordsteine nicht noch einmal. Was aus anderen Dateien, Einstellungen oder mit einer anderen Version von Lanewright entstand, wird nicht verwendet. Nichts darin wird je gelöscht; löschen Sie ihn, wenn die Karte fertig ist.</translation>
+            <source>A folder for finished work, about 20 bytes for every point near the road. A run that ended early, or that is repeated with other settings of later stages, does not read the points and find the curbs again. What was made from other files, settings or another version of Lanewright is not used. Nothing that is finished is ever removed; delete it when the map is done.</source>
+            <translation>Ein Ordner für fertige Arbeit, etwa 20 Byte je Punkt nahe der Straße. Ein Lauf, der vorzeitig endete oder mit anderen Einstellungen späterer Stufen wiederholt wird, liest die Punkte nicht noch einmal und sucht die Bordsteine nicht noch einmal. Was aus anderen Dateien, Einstellungen oder mit einer anderen Version von Lanewright entstand, wird nicht verwendet. Nichts Fertiges wird je gelöscht; löschen Sie ihn, wenn die Karte fertig ist.</translation>
         </message>
         <message>
             <location filename="../../algorithms/survey_input.py" />
@@ -8030,8 +8035,8 @@
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />
-            <source>Height of its top above the ground; of a gutter, its depth (m)</source>
-            <translation>Höhe der Oberkante über dem Boden; einer Rinne ihre Tiefe (m)</translation>
+            <source>Height of its top above the ground, of a gutter its depth (m)</source>
+            <translation>Höhe der Oberkante über dem Boden, einer Rinne ihre Tiefe (m)</translation>
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />

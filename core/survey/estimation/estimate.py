@@ -10,7 +10,7 @@ import numpy as np
 
 from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
-from ...io.crs import check_projected, crs_note
+from ...io.crs import check_projected, crs_note, unit_note
 from ..las.copies import without_copies
 from ..las.reader import read_headers
 from ..trajectory.trajectory import Trajectory
@@ -43,7 +43,9 @@ class EstimatedTrajectory:
     method : "rays" of mirrors, "turns" of a many-beam head, or "density" of points alone, which is rough
     scanners : the scanners that took part
     adjusted : Adjusted, None with density alone
+    above_road : m, median height above the road where it was measured, NaN where it was not
     notes : sentences for the user
+    cloud_notes : the same on the point clouds, which whoever reads them with this trajectory says too
     """
 
     trajectory: Trajectory
@@ -52,7 +54,9 @@ class EstimatedTrajectory:
     method: str
     scanners: list[Spinning] = field(default_factory=list)
     adjusted: Adjusted | None = None
+    above_road: float = np.nan
     notes: list[str] = field(default_factory=list)
+    cloud_notes: list[str] = field(default_factory=list)
 
     def summary(self) -> str:
         """One sentence on how it was estimated and how well it is known."""
@@ -90,10 +94,16 @@ def estimate_trajectory(paths: Sequence[str | Path], crs: str = "", scanner_fiel
     RoadExtractionError
         If a file cannot be read, the CRS is geographic or not in metres, or the cloud was not measured from a vehicle on a road.
     """
-    files = without_copies(read_headers(paths), progress.warn)
+    copies: list[str] = []
+    files = without_copies(read_headers(paths), copies.append)
     wkt = check_projected(files, crs)
-    if note := crs_note(files, crs, wkt):
-        progress.warn(note)
+    found = _estimated(files, scanner_field, wkt, progress)
+    found.cloud_notes = copies + [note for note in (crs_note(files, crs, wkt), unit_note(found.above_road, wkt)) if note]
+    return found
+
+
+def _estimated(files, scanner_field, wkt, progress):
+    """The trajectory from the points, of a CRS in metres or none."""
     samples = read_samples(files, scanner_field, progress.part(0.0, READ))
     if not samples.has_time:
         return _without_time(samples, wkt)
@@ -108,11 +118,11 @@ def estimate_trajectory(paths: Sequence[str | Path], crs: str = "", scanner_fiel
     refuse_airborne(tracks)
     heads = turning_heads(samples, tracks)
     if heads is not None:
-        refuse_terrestrial(tracks, [])
+        refuse_terrestrial(tracks, [head.place for head in heads])
         refuse_handheld(tracks, [])
         return _of_heads(samples, tracks, heads, wkt)
     scanners = spinning_scanners(samples, tracks)
-    refuse_terrestrial(tracks, scanners)
+    refuse_terrestrial(tracks, [fixes.place for one in scanners for fixes in one.fixes])
     found = None
     if samples.scanners == 1 and (both := separated(samples, tracks, progress.part(TRACKED, 1.0))) is not None:
         samples, scanners, found = both
@@ -121,8 +131,8 @@ def estimate_trajectory(paths: Sequence[str | Path], crs: str = "", scanner_fiel
         return _by_density(samples, tracks, wkt)
     if found is None:
         found = _adjusted(samples, tracks, scanners, progress.part(TRACKED, 1.0))
-        return _of_rays(samples, scanners, found, wkt)
-    result = _of_rays(samples, scanners, found, wkt)
+        return _of_rays(samples, tracks, scanners, found, wkt)
+    result = _of_rays(samples, tracks, scanners, found, wkt)
     result.notes.append("The points are of two scanners that no field tells apart; they were told apart by where their scan lines lead.")
     return result
 
@@ -200,7 +210,7 @@ def _returns(samples: Samples, poses: Poses, scanners: list[Spinning]) -> Return
     return Returns(*(np.concatenate(column) for column in zip(*parts)))
 
 
-def _of_rays(samples, scanners, found, crs):
+def _of_rays(samples, tracks, scanners, found, crs):
     """The poses at even times, as far as they are known well enough."""
     rows, lost = [], 0.0
     for drive, knots in zip(samples.drives, found.poses.drives):
@@ -219,7 +229,8 @@ def _of_rays(samples, scanners, found, crs):
             "give the cloud as the scanner's own program writes it, or a trajectory.")
     ox, oy, oz = samples.origin
     trajectory = Trajectory(time + samples.start, x + ox, y + oy, z + oz, np.degrees(roll), np.degrees(pitch), (90.0 - np.degrees(yaw)) % 360.0, crs)
-    result = EstimatedTrajectory(trajectory, flat, up, "rays", scanners, found)
+    ground = np.interp(time, *(np.concatenate(column) for column in zip(*((track.time, track.foot[:, 2]) for track in tracks))))
+    result = EstimatedTrajectory(trajectory, flat, up, "rays", scanners, found, float(np.median(z - ground)))
     left_out = samples.scanners - len(scanners)
     if left_out:
         result.notes.append(f"{left_out} of {samples.scanners} scanners show no steadily turning mirror and took no part.")

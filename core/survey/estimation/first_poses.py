@@ -90,7 +90,7 @@ def first_poses(samples: Samples, tracks: list[FirstTrack], scanners: list[Spinn
         knots = DriveKnots(start, first, count)
         values = np.zeros((count, POSE + len(scanners)))
         values[:, :3] = _places(track, [one.fixes[number] for one in scanners], lever, knots.middles)
-        values[:, YAW] = headings_of(values[:, :2])
+        values[:, YAW] = headings_of(values[:, :2], track.at(knots.middles)[1])
         for k, one in enumerate(scanners):
             values[:, POSE + k] = _phases(one.fixes[number], one.rate, knots.middles)
         drives.append(knots)

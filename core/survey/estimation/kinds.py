@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.ndimage import median_filter
 
 from ...common.errors import RoadExtractionError
 from .first_poses import Spinning
@@ -11,6 +12,7 @@ from .rough.first_track import FirstTrack
 FARTHEST_MEDIAN = 15.0     # m: half of what a vehicle on a road sees at a time is nearer; an aircraft's swath is wider
 MIN_PATH = 5.0           # m between the outermost places: less is no drive
 WALKING_PACE = 2.0       # m/s: nobody surveys a road by car at that pace all the time
+STEADY_PLACES = 7        # of some tenths of a second together: fewer than half of them may be wrong
 MIN_STANDING_TIME = 2.0  # s of measuring before standing still means anything
 
 
@@ -30,16 +32,26 @@ def refuse_airborne(tracks: list[FirstTrack]) -> None:
             "the road alone.")
 
 
-def refuse_terrestrial(tracks: list[FirstTrack], scanners: list[Spinning]) -> None:
+def refuse_terrestrial(tracks: list[FirstTrack], places: list[np.ndarray]) -> None:
     """Refuse a cloud that was measured from one place.
+
+    Parameters
+    ----------
+    tracks : FirstTrack of each drive
+    places : (N, 2 or more) m, where scanners were seen, in order of time, some of them wrong; none where that is not known
 
     Raises
     ------
     RoadExtractionError
         If it is one.
     """
-    places = [fixes.place for one in scanners for fixes in one.fixes if len(fixes.time)] or [track.foot for track in tracks]
-    low, high = (one(np.concatenate(places)[:, :2], q, axis=0) for one, q in ((np.quantile, 0.05), (np.quantile, 0.95)))
+    if places := [place[:, :2] for place in places if len(place)]:
+        # a vehicle may stand most of the time, but where it drives, it is seen several times
+        steady = np.concatenate([median_filter(place, (STEADY_PLACES, 1), mode="nearest") for place in places])
+        low, high = steady.min(axis=0), steady.max(axis=0)
+    else:
+        feet = np.concatenate([track.foot[:, :2] for track in tracks])
+        low, high = np.quantile(feet, 0.05, axis=0), np.quantile(feet, 0.95, axis=0)
     seconds = sum(float(np.ptp(track.time)) for track in tracks)
     if np.hypot(*(high - low)) < MIN_PATH and seconds > MIN_STANDING_TIME:
         raise RoadExtractionError(

@@ -217,12 +217,19 @@ class _OpenFile:
                     self.file.seek(place)
                     count = self.file.readinto(data)
             if not count:
-                raise EOFError(f"The temporary file ends at byte {place:,}.")
+                raise OSError(f"{self.file.name} ends early, at byte {place:,}")
             data, place = data[count:], place + count
 
     def write(self, place, array):
         """Write an array at a place."""
         data = memoryview(np.ascontiguousarray(array).view(np.uint8)) if array.nbytes else b""
+        try:
+            self._write(place, data)
+        except OSError as error:   # which does not say where the disk is full
+            name = self.file.name
+            raise OSError(error.errno, error.strerror, name if isinstance(name, str) else tempfile.gettempdir()) from error
+
+    def _write(self, place, data):
         while len(data):  # a signal may shorten a write; a full disk raises
             if hasattr(os, "pwrite"):
                 written = os.pwrite(self.file.fileno(), data, place)

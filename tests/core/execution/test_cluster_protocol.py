@@ -4,6 +4,7 @@ The real one, with a scheduler and workers, is that of `make test-cluster`.
 """
 
 import builtins
+import socket
 import threading
 from concurrent.futures import Future, ThreadPoolExecutor
 
@@ -13,7 +14,7 @@ from executed_boundaries import boundaries, numbers_of
 from lanewright.core.common.errors import Cancelled, RoadExtractionError
 from lanewright.core.common.parallel import check_cancelled
 from lanewright.core.common.progress import Progress
-from lanewright.core.execution import cluster, cluster_task, tasks
+from lanewright.core.execution import cluster, cluster_connection, cluster_task, tasks
 from lanewright.core.execution.choice import ExecutionSettings
 from lanewright.core.execution.cluster import Cluster
 from lanewright.core.execution.cluster_connection import check_address, client_of, is_loopback
@@ -274,6 +275,21 @@ def test_another_computer_is_not_talked_to_without_encryption_unless_that_is_wan
         ExecutionSettings(scheduler="tcp://10.1.2.3:8786")
     assert ExecutionSettings(scheduler="tls://10.1.2.3:8786").scheduler and ExecutionSettings(scheduler="tcp://10.1.2.3:1", insecure=True).insecure
     check_address("tcp://127.0.0.1:8786", insecure=False)
+
+
+@pytest.mark.parametrize("address", ["scheduler", "10.1.2.3", "tcp://127.0.0.1", "tls://scheduler.example:"])
+def test_an_address_without_a_port_is_no_address(address):
+    with pytest.raises(RoadExtractionError, match="needs a port"):
+        ExecutionSettings(scheduler=address)
+
+
+def test_a_server_that_is_no_scheduler_is_not_waited_for_without_end(monkeypatch):
+    monkeypatch.setattr(cluster_connection, "CONNECT_TIME", 0.3)
+    with socket.create_server(("127.0.0.1", 0)) as silent:
+        address = f"tcp://127.0.0.1:{silent.getsockname()[1]}"
+        with pytest.raises(TimeoutError, match="does not speak as a scheduler"):
+            cluster_connection._check_greeting(address, None)
+    cluster_connection._check_greeting(address, None)   # nobody is there: a scheduler may still start
 
 
 def test_where_dask_is_missing_one_sentence_says_how_to_get_it(monkeypatch):

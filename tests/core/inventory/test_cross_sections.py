@@ -89,6 +89,21 @@ def test_widths_grades_and_curbs_whatever_way_the_road_runs(north):
     np.testing.assert_allclose(column(rows_of(survey, "lane", layers), "width_m"), 3.25, atol=0.02)
 
 
+def test_curbs_are_measured_at_road_edges_that_may_be_curbs_alone():
+    survey, edges = measured_road(curb=0.14), edges_of()
+    for row in edges.rows:
+        row["edge"] = "pavement" if row["side"] == "left" else "curb"
+    measured = column(rows_of(survey, "carriageway", BorderLayers(edges, markings_of())), "curb_l_m", "curb_r_m")
+    assert np.isnan(measured[:, 0]).all() and np.allclose(measured[:, 1], 0.14, atol=0.01)
+    assert np.isnan(column(rows_of(survey, "carriageway", BorderLayers(marking_lines=markings_of())), "curb_l_m", "curb_r_m")).all()
+
+
+def test_a_lane_beside_the_road_that_was_driven_is_no_carriageway_of_it():
+    beside = lanes_of(strips=((3.0, 5.6, "driving", 1),))
+    with pytest.raises(RoadExtractionError, match="lie on none of the driven roads"):
+        rows_of(measured_road(), layers=BorderLayers(lanes=beside))
+
+
 def test_lanes_of_the_layer_are_measured_with_their_types_and_directions():
     rows = rows_of(measured_road(rut=0.01, lanes=(-1.5, 1.7)), layers=BorderLayers(edges_of(), lanes=lanes_of()))
     first = [row for row in rows if row["section"] == 2]

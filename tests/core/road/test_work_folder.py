@@ -105,6 +105,16 @@ def test_another_file_of_the_same_name_other_settings_and_other_code_are_read_an
 
 
 @pytest.mark.skipif(os.name == "nt", reason="a full disk is made of /dev/full")
+@pytest.mark.parametrize("cut", ["*.json", "survey-*/survey.plain", "survey-*/points*", "phase-*/*.plain"])
+@pytest.mark.parametrize("left", [0, 100])
+def test_what_a_power_failure_has_cut_off_is_made_again(sample, work, without, monkeypatch, cut, left):
+    for path in sorted(work.glob(cut)):
+        os.truncate(path, left)
+    assert numbers_of(boundaries(sample, work)) == without
+    monkeypatch.setattr(opening, "read_survey", never)
+    assert numbers_of(boundaries(sample, work)) == without
+
+
 def test_a_folder_that_cannot_be_used_is_named_before_anything_is_read(sample, tmp_path, monkeypatch):
     (tmp_path / "file").touch()
     monkeypatch.setattr(opening, "read_survey", never)

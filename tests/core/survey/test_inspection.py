@@ -48,6 +48,27 @@ def test_a_copy_is_noted_and_not_counted(tmp_path):
     assert found.count == 12000 and "copy.laz holds the same points as" in found.notes[0]
 
 
+def test_the_share_of_points_that_overlapping_tiles_have_in_common_is_told(tmp_path):
+    whole = laspy.read(a_carpet(tmp_path / "whole.laz"))
+    tiles = []
+    for name, rows in (("west", whole.x < WEST + 12.0), ("east", whole.x > WEST + 8.0)):
+        tiles.append(str(tmp_path / f"{name}.laz"))
+        laspy.LasData(whole.header, whole.points[rows]).write(tiles[-1])
+    notes = inspect_survey(tiles).notes
+    assert sum("About 17 % of the points are copies of points in another file" in note for note in notes) == 1   # 4 m of 20 m twice: 4 of 24
+    assert not any("copies" in note for note in inspect_survey([tiles[0], a_carpet(tmp_path / "beside.laz", start=318204100.0)]).notes)
+
+
+def test_coordinates_without_crs_that_can_only_be_degrees_are_told_as_that(tmp_path):
+    header = laspy.LasHeader(point_format=6, version="1.4")
+    header.scales, header.offsets = [1e-8, 1e-8, 1e-3], [8.4, 49.0, 0.0]
+    cloud = laspy.LasData(header)
+    cloud.x, cloud.y, cloud.z = 8.4 + np.arange(200) * 1e-6, 49.0 + np.arange(200) * 1e-6, np.full(200, 110.0)
+    cloud.write(str(tmp_path / "degrees.laz"))
+    assert any("look like longitude and latitude" in note for note in inspect_survey([tmp_path / "degrees.laz"]).notes)
+    assert not any("latitude" in note for note in inspect_survey([a_carpet(tmp_path / "carpet.laz", crs="")]).notes)
+
+
 def test_layers_above_each_other_add_up_in_the_plane_and_not_in_space(tmp_path):
     found = inspect_survey([a_carpet(tmp_path / "a.laz", layers=3)])
     assert found.per_area["mean"] == 300.0 and found.per_volume["mean"] == 100.0

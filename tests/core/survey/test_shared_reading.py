@@ -140,7 +140,7 @@ def test_a_cancel_ends_the_reading_workers_within_two_seconds(street, python):
 def test_a_folder_that_cannot_be_used_is_named(street, python):
     executor = WorkerProcesses(python, 1)
     executor.folder.rmdir()
-    with pytest.raises(RoadExtractionError, match="folder for temporary files.*cannot be used.*without worker processes"):
+    with pytest.raises(RoadExtractionError, match="cannot use the disk.*without worker processes.*folder for temporary files"):
         opened(street, executor)
 
 

@@ -12,6 +12,7 @@ WINDOW = 0.1             # s: the vehicle gets a few metres, every mirror turns 
 MIN_WINDOW_SAMPLES = 30
 MAX_WINDOW_SAMPLES = 1000   # used of a window
 MIN_STEP = 0.02          # m in a window: below, the direction is noise and the vehicle stands
+BACKING_STEP = 2.0       # m: no vehicle turns about within that
 DENSITY_WIDTH = 2.6      # m: the half width of the density under a scanner at its usual height
 GROUND_WEIGHT_DEPTH = 0.4       # m either side of the ground: points there weigh at least a half
 LOWEST_SHARE = 0.25      # of a window's points lie below the ground as first guessed
@@ -25,7 +26,7 @@ class FirstTrack:
 
     time : (W,) s, middles of windows
     foot : (W, 3) m, on the ground
-    heading : (W,) radians of the way driven, counter-clockwise from east, continuous
+    heading : (W,) radians, where the vehicle looked ahead, counter-clockwise from east, continuous
     count : (W,) samples
     reach : (W,) m, median horizontal distance of the samples from the densest place
     """
@@ -77,15 +78,41 @@ def first_track(time: np.ndarray, place: np.ndarray) -> FirstTrack:
     return FirstTrack(middles, track, headings_of(track), count, reach)
 
 
-def headings_of(track: np.ndarray) -> np.ndarray:
+def headings_of(track: np.ndarray, about: np.ndarray | None = None) -> np.ndarray:
     """(N,) continuous headings, radians counter-clockwise from east, of a track of (N, 2 or more) evenly timed places.
 
-    Where the vehicle stands, it keeps the heading in which it came.
+    Where the vehicle stands, it keeps the heading in which it came; where it backs up, it keeps looking ahead.
+
+    Parameters
+    ----------
+    track : (N, 2 or more) m
+    about : (N,) radians, headings known to less than a right angle; None for those of the track itself
     """
     velocity = np.gradient(track[:, :2], axis=0) if len(track) > 1 else np.zeros((len(track), 2))
     step = np.hypot(*velocity.T)
     moving = np.flatnonzero(step > MIN_STEP)
     if not len(moving):
         return np.zeros(len(track))
-    heading = np.unwrap(np.arctan2(velocity[moving, 1], velocity[moving, 0]))
+    way = np.arctan2(velocity[moving, 1], velocity[moving, 0])
+    about = _headings_by_distance(track) if about is None else about
+    # of the two ways along a line, the one that is nearer
+    heading = np.unwrap(way) if about is None else about[moving] + (way - about[moving] + np.pi / 2) % np.pi - np.pi / 2
     return np.interp(np.arange(len(track)), moving, heading)
+
+
+def _headings_by_distance(track):
+    """(N,) continuous headings between places BACKING_STEP apart; None for a track that is shorter.
+
+    A vehicle that goes back within so short a way has not turned about but changed its gear. More of the way is driven forward.
+    """
+    row, (x0, y0) = [0], track[0, :2]
+    for number, (x, y) in enumerate(track[:, :2].tolist()):
+        if (x - x0) ** 2 + (y - y0) ** 2 >= BACKING_STEP**2:
+            row.append(number)
+            x0, y0 = x, y
+    if len(row) < 2:
+        return None
+    way = np.arctan2(*np.diff(track[row, :2], axis=0).T[::-1])
+    backward = np.r_[0, np.cumsum(np.cos(np.diff(way)) < 0)] % 2
+    backward = 1 - backward if backward.mean() > 0.5 else backward
+    return np.interp(np.arange(len(track)), 0.5 * (np.array(row[:-1]) + row[1:]), np.unwrap(way + np.pi * backward))

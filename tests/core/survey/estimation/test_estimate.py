@@ -1,13 +1,17 @@
 """A known trajectory that is left out comes back from the points alone."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from drives import EAST, NORTH, write_cloud
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.survey.estimation.estimate import MAX_SIGMA, estimate_trajectory
 from mirror_drives import START, Mirror, mirror_drive, section, swaying
+from scipy.interpolate import PchipInterpolator
 
 BUTTERFLY = (Mirror(-45.0, -20.0, (0.0, 0.32, 0.0)), Mirror(45.0, -20.0, (0.0, -0.32, 0.0), ahead=0.55))
+CROSSED = tuple(replace(mirror, pulses=8000.0) for mirror in BUTTERFLY)   # as sparse as keeps a long drive short to compute
 OPEN = section(wall=(20.0, 1.0))
 
 
@@ -130,6 +134,13 @@ def test_without_time_the_ridge_of_density_is_followed_and_said_to_be_rough(tmp_
     assert np.abs(track.z[inner] - 100.0 - 2.5).max() < 0.5
 
 
+@pytest.mark.parametrize("unit, noted", [(0.3048, True), (1.0, False)])
+def test_a_cloud_in_feet_that_no_crs_tells_of_is_noted(tmp_path, unit, noted):
+    drive = mirror_drive(BUTTERFLY, corners=OPEN)
+    found = estimate_trajectory([write_cloud(tmp_path / "cloud.las", *drive.place.T / unit, drive.time, source=1 + drive.scanner)])
+    assert any("as if cloud and trajectory were in feet" in note for note in found.cloud_notes) == noted
+
+
 def test_an_airborne_cloud_is_refused_by_name(tmp_path):
     rng = np.random.default_rng(4)
     time = START + np.arange(0.0, 3.0, 1e-4)
@@ -137,6 +148,35 @@ def test_an_airborne_cloud_is_refused_by_name(tmp_path):
     path = write_cloud(tmp_path / "air.las", x + EAST, y + NORTH, 100.0 + rng.normal(0, 0.05, len(x)), time)
     with pytest.raises(RoadExtractionError, match="airborne"):
         estimate_trajectory([path])
+
+
+def along_the_street(seconds, metres):
+    """Poses of a vehicle that looks along x and is at `metres` after `seconds`, evenly or not, on springs."""
+    place, even = PchipInterpolator(seconds, metres), swaying(sway=0.5)
+
+    def poses(time):
+        t = np.asarray(time)
+        _, y, z, roll, pitch, _ = even(t)
+        return place(np.clip(t - START, 0.0, seconds[-1])), y, z, roll, pitch, np.zeros(len(t))
+
+    return poses
+
+
+def test_a_vehicle_that_stands_at_a_red_light_most_of_the_time_is_no_tripod(tmp_path):
+    poses = along_the_street([0.0, 2.0, 4.0, 44.0, 46.0, 48.0], [0.0, 16.0, 20.0, 20.0, 24.0, 40.0])
+    drive = mirror_drive(CROSSED, seconds=48.0, poses=poses)
+    close(drive, estimate_trajectory([drive.write(tmp_path / "cloud.las")]))
+
+
+def test_a_vehicle_that_backs_up_keeps_looking_ahead(tmp_path):
+    poses = along_the_street([0.0, 4.0, 6.0, 8.0, 12.0, 14.0, 20.0], [0.0, 30.0, 36.0, 34.0, 20.0, 20.0, 70.0])
+    drive = mirror_drive(CROSSED, seconds=20.0, poses=poses)
+    found = estimate_trajectory([drive.write(tmp_path / "cloud.las")])
+    close(drive, found)
+    inner = slice(50, -50)
+    np.testing.assert_allclose(found.trajectory.heading[inner], 90.0, atol=3.0)
+    _, left, _ = drive.errors(found.trajectory)
+    assert np.abs(left[inner]).max() < 0.05 and np.median(found.sigma) < 0.02
 
 
 def test_a_terrestrial_scan_is_refused_by_name(tmp_path):
