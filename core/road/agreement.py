@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..common.runs import mask_runs, stretch_of
 from ..survey.frame.road_frame import RoadFrame
+from .common.curb_limits import LEAST_HEIGHT
 from .common.curb_points import CurbPoints
+from .common.occlusion import OcclusionGrid
 from .common.sides import SIDE_SIGNS
 from .edges.road_edges import EdgePiece, RoadEdges, joined_pieces
 
@@ -18,7 +21,10 @@ MIN_REPORTED_DIFFERENCE = 0.05    # m across above which a stretch is reported
 AGREEMENT_QUANTILE = 0.95         # quantile of the distances that stands for a piece
 MIN_REPORTED_LENGTH = 1.0         # m of a stretch that is reported
 MIN_SINGLE_METHOD_LENGTH = 2.0    # m that one line must continue beyond the other to be drawn in its place
+MAX_LEVEL_RISE = 0.5 * LEAST_HEIGHT  # m that level ground rises at most from one side of a place to the other
 SECOND_METHOD_CHAIN_OFFSET = 100_000  # added to the chain numbers of the second method, to keep both apart
+
+Beside = Mapping[int, Mapping[str, OcclusionGrid]]   # number of the road -> side -> what was seen beside the road
 
 
 @dataclass
@@ -71,18 +77,21 @@ def sample_edges(edges: RoadEdges, frame: RoadFrame, road: int, side: str) -> Ed
     return samples
 
 
-def select_curb_points(points: CurbPoints, others: CurbPoints, edges: RoadEdges, other_edges: RoadEdges, frame: RoadFrame) -> CurbPoints:
+def select_curb_points(points: CurbPoints, others: CurbPoints, edges: RoadEdges, other_edges: RoadEdges, frame: RoadFrame,
+                       beside: Beside = {}, others_beside: Beside = {}) -> CurbPoints:
     """At every place the curb points of that method whose edge measures better there.
 
-    Where one method alone measured, its points are taken. Where both measured one curb
-    (MAX_SAME_CURB_DISTANCE), each such stretch takes the points that scatter less about their
-    line. Where they found different curbs, those of the first method are taken.
+    Where one method alone measured, its points are taken, unless the other saw level ground
+    there (MAX_LEVEL_RISE). Where both measured one curb (MAX_SAME_CURB_DISTANCE), each such stretch
+    takes the points that scatter less about their line. Where they found different curbs,
+    those of the first method are taken.
 
     Parameters
     ----------
     points, others : CurbPoints of two methods, the one with the stricter model of a curb first
     edges, other_edges : RoadEdges fitted through each
     frame : RoadFrame
+    beside, others_beside : what each method saw beside the roads: number of the road -> side -> OcclusionGrid
 
     Returns
     -------
@@ -95,7 +104,9 @@ def select_curb_points(points: CurbPoints, others: CurbPoints, edges: RoadEdges,
         for side in SIDE_SIGNS:
             first, second = (sample_edges(e, frame, road.number, side) for e in (edges, other_edges))
             take_second = _second_is_better(first, second)
-            for curbs, better in ((points, ~take_second), (others, take_second)):
+            level = [_level(seen, other, beside.get(road.number, {}).get(side), SIDE_SIGNS[side])
+                     for seen, other, beside in ((first, second, others_beside), (second, first, beside))]
+            for curbs, better in ((points, ~take_second & ~level[0]), (others, take_second & ~level[1])):
                 own = curbs[(curbs.road == road.number) & (curbs.side == side)]
                 found.append(own[better[_node(first.s, own.station)]])
     return CurbPoints.join(found, points.crs)
@@ -124,6 +135,17 @@ def _second_is_better(first, second):
             elif b < len(better) and one_curb[b]:
                 better[a:b] = better[b]
     return better
+
+
+def _level(measured, other, grid, sign):
+    """(N,) bool: did one method measure an edge where the other saw level ground? `grid` : OcclusionGrid of the other, or None."""
+    level = measured.measured & ~other.measured
+    alone = np.flatnonzero(level)
+    if grid is None:
+        return np.zeros(len(level), bool)
+    with np.errstate(invalid="ignore"):
+        level[alone] = grid.rise(measured.s[alone], sign * measured.d[alone]) < MAX_LEVEL_RISE
+    return level
 
 
 def measure_agreement(edges: RoadEdges, first_edges: RoadEdges, second_edges: RoadEdges, frame: RoadFrame) -> tuple[RoadEdges, RoadEdges]:
