@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from ..common.runs import mask_runs, stretch_of
 from ..survey.frame.road_frame import RoadFrame
+from .common.corners import CANDIDATE_HEIGHT_SHARE
 from .common.curb_limits import LEAST_HEIGHT
 from .common.curb_points import CurbPoints
 from .common.occlusion import OcclusionGrid
+from .common.side_chains import SideChains
 from .common.sides import SIDE_SIGNS
 from .edges.road_edges import EdgePiece, RoadEdges, joined_pieces
 
@@ -21,10 +23,24 @@ MIN_REPORTED_DIFFERENCE = 0.05    # m across above which a stretch is reported
 AGREEMENT_QUANTILE = 0.95         # quantile of the distances that stands for a piece
 MIN_REPORTED_LENGTH = 1.0         # m of a stretch that is reported
 MIN_SINGLE_METHOD_LENGTH = 2.0    # m that one line must continue beyond the other to be drawn in its place
-MAX_LEVEL_RISE = 0.5 * LEAST_HEIGHT  # m that level ground rises at most from one side of a place to the other
+MIN_RISE = CANDIDATE_HEIGHT_SHARE * LEAST_HEIGHT  # m of ground across a place below which it is level
+SURE_SUPPORT = 80.0               # points per metre of road that show a step beyond doubt
 SECOND_METHOD_CHAIN_OFFSET = 100_000  # added to the chain numbers of the second method, to keep both apart
 
-Beside = Mapping[int, Mapping[str, OcclusionGrid]]   # number of the road -> side -> what was seen beside the road
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """What a method saw beside the roads.
+
+    Attributes
+    ----------
+    chains : (number of the road, side) -> SideChains
+    beside : number of the road -> side -> OcclusionGrid
+    """
+
+    chains: Mapping[tuple[int, str], SideChains] = field(default_factory=dict)
+    beside: Mapping[int, Mapping[str, OcclusionGrid]] = field(default_factory=dict)
 
 
 @dataclass
@@ -78,11 +94,12 @@ def sample_edges(edges: RoadEdges, frame: RoadFrame, road: int, side: str) -> Ed
 
 
 def select_curb_points(points: CurbPoints, others: CurbPoints, edges: RoadEdges, other_edges: RoadEdges, frame: RoadFrame,
-                       beside: Beside = {}, others_beside: Beside = {}) -> CurbPoints:
+                       seen: Evidence = Evidence(), others_seen: Evidence = Evidence()) -> CurbPoints:
     """At every place the curb points of that method whose edge measures better there.
 
     Where one method alone measured, its points are taken, unless the other saw level ground
-    there (MAX_LEVEL_RISE). Where both measured one curb (MAX_SAME_CURB_DISTANCE), each such stretch
+    there, which rises by less than a curb: the fewer points show a curb (SURE_SUPPORT), the more the
+    ground must rise that the other saw. Where both measured one curb (MAX_SAME_CURB_DISTANCE), each such stretch
     takes the points that scatter less about their line. Where they found different curbs,
     those of the first method are taken.
 
@@ -91,7 +108,7 @@ def select_curb_points(points: CurbPoints, others: CurbPoints, edges: RoadEdges,
     points, others : CurbPoints of two methods, the one with the stricter model of a curb first
     edges, other_edges : RoadEdges fitted through each
     frame : RoadFrame
-    beside, others_beside : what each method saw beside the roads: number of the road -> side -> OcclusionGrid
+    seen, others_seen : what each method saw beside the roads
 
     Returns
     -------
@@ -104,9 +121,10 @@ def select_curb_points(points: CurbPoints, others: CurbPoints, edges: RoadEdges,
         for side in SIDE_SIGNS:
             first, second = (sample_edges(e, frame, road.number, side) for e in (edges, other_edges))
             take_second = _second_is_better(first, second)
-            level = [_level(seen, other, beside.get(road.number, {}).get(side), SIDE_SIGNS[side])
-                     for seen, other, beside in ((first, second, others_beside), (second, first, beside))]
-            for curbs, better in ((points, ~take_second & ~level[0]), (others, take_second & ~level[1])):
+            level = [_level(measured, other, shown.chains.get((road.number, side)), known.beside.get(road.number, {}).get(side), SIDE_SIGNS[side])
+                     for measured, other, shown, known in ((first, second, seen, others_seen), (second, first, others_seen, seen))]
+            no_curb = _without_remnants(level[0] | level[1], first.measured ^ second.measured)
+            for curbs, better in ((points, ~take_second & ~no_curb), (others, take_second & ~no_curb)):
                 own = curbs[(curbs.road == road.number) & (curbs.side == side)]
                 found.append(own[better[_node(first.s, own.station)]])
     return CurbPoints.join(found, points.crs)
@@ -137,15 +155,27 @@ def _second_is_better(first, second):
     return better
 
 
-def _level(measured, other, grid, sign):
-    """(N,) bool: did one method measure an edge where the other saw level ground? `grid` : OcclusionGrid of the other, or None."""
-    level = measured.measured & ~other.measured
-    alone = np.flatnonzero(level)
-    if grid is None:
-        return np.zeros(len(level), bool)
+def _level(measured, other, chains, grid, sign):
+    """(N,) bool: did one method, whose SideChains are given, measure an edge where the other, whose OcclusionGrid is given, saw level ground?"""
+    level = np.zeros(len(measured.s), bool)
+    alone = np.flatnonzero(measured.measured & ~other.measured)
+    if grid is None or not len(alone):
+        return level
+    s, u = measured.s[alone], sign * measured.d[alone]
+    doubt = np.clip(1.0 - (0.0 if chains is None else chains.support_along(s, u)) / SURE_SUPPORT, 0.0, 1.0)
+    skew = np.nan_to_num(np.gradient(sign * measured.d, COMPARISON_STEP)[alone])
     with np.errstate(invalid="ignore"):
-        level[alone] = grid.rise(measured.s[alone], sign * measured.d[alone]) < MAX_LEVEL_RISE
+        level[alone] = grid.rise(s, u, skew) < doubt * MIN_RISE
     return level
+
+
+def _without_remnants(level, alone):
+    """(N,) bool, `level` and what of the line of one method alone is left beside it in pieces that are too short; both (N,) bool."""
+    found = level.copy()
+    for a, b in mask_runs(alone & ~level):
+        if (b - a) * COMPARISON_STEP < MIN_SINGLE_METHOD_LENGTH and (level[max(a - 1, 0)] or level[min(b, len(level) - 1)]):
+            found[a:b] = True
+    return found
 
 
 def measure_agreement(edges: RoadEdges, first_edges: RoadEdges, second_edges: RoadEdges, frame: RoadFrame) -> tuple[RoadEdges, RoadEdges]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
-from .agreement import measure_agreement, select_curb_points
+from .agreement import Evidence, measure_agreement, select_curb_points
 from .common.curb_points import CurbPoints
 from .common.decimation import LevelGround, PointDecimation
 from .common.occlusion import OcclusionGrid
@@ -117,7 +117,8 @@ def _find_curb_points(decimation, settings, progress):
                                                   part.part(LATTICE_PROGRESS, RETURNS_PROGRESS), beside_of_scanlines if both else beside, chains[1])
         drawn = "both" if both else "scanlines"
         if both:
-            found["both"] = with_pieces_of_both(_better_points(found, survey.frame, beside_of_scanlines, beside), chains, beside, survey)
+            chosen = _better_points(found, survey.frame, Evidence(chains[1], beside_of_scanlines), Evidence(chains[0], beside))
+            found["both"] = with_pieces_of_both(chosen, chains, beside, survey)
         found[drawn] = with_curb_returns(found[drawn], decimation, settings.curbs, part.part(RETURNS_PROGRESS, 1.0), beside)
     return found
 
@@ -128,11 +129,11 @@ def _level_for(decimation, settings):
     return LevelGround(decimation, settings.distance_across + LEVEL_STRIP_MARGIN, along)
 
 
-def _better_points(found, frame, *beside):
+def _better_points(found, frame, *seen):
     """At every place the curb points of that method which measures better."""
     # scanlines first: three planes are a stricter model of a curb than a profile
     methods = ("scanlines", "profiles")
-    return select_curb_points(*(found[method] for method in methods), *(fit_road_edges(found[method], frame) for method in methods), frame, *beside)
+    return select_curb_points(*(found[method] for method in methods), *(fit_road_edges(found[method], frame) for method in methods), frame, *seen)
 
 
 def draw_boundaries(found: dict[str, CurbPoints], frame: RoadFrame, settings: EdgeSettings = EdgeSettings(),

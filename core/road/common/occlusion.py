@@ -123,29 +123,30 @@ class OcclusionGrid:
         tall = sums[r1, c1] - sums[r0, c1] - sums[r1, c0] + sums[r0, c0]
         return (seen.sum(1) < 2) & (tall > 0) | self._in_water(row, cell, h)
 
-    def rise(self, s: np.ndarray, u: np.ndarray) -> np.ndarray:
-        """How much higher the ground behind some places is than before them.
+    def rise(self, s: np.ndarray, u: np.ndarray, skew: np.ndarray) -> np.ndarray:
+        """How much higher the ground behind a line is than before it.
 
         Parameters
         ----------
-        s, u : (N,) m, station and outward offset
+        s, u : (N,) m, station and outward offset of places on the line
+        skew : (N,) m outward per m along, direction of the line
 
         Returns
         -------
         (N,) m, the median over 2 * RISE_HALF_LENGTH of road; NaN where nowhere there ground was seen on both sides
         """
         around = int(round(RISE_HALF_LENGTH / self.width))
-        rows = np.floor(s / self.width).astype(np.int64)[:, None] - self.first + np.arange(-around, around + 1)
-        before = np.floor((u - RISE_FACE_HALF_WIDTH) / OCCLUSION_CELL).astype(np.int64) - 1
-        behind = np.ceil((u + RISE_FACE_HALF_WIDTH) / OCCLUSION_CELL).astype(np.int64)
-        there = (rows >= 0) & (rows < len(self.ground)) & ((before >= 0) & (behind < self.cells))[:, None]
+        rows = np.floor(s / self.width).astype(np.int64)[:, None] + np.arange(-around, around + 1)
+        line = u[:, None] + skew[:, None] * ((rows + 0.5) * self.width - s[:, None])
+        rows -= self.first
+        before = np.floor((line - RISE_FACE_HALF_WIDTH) / OCCLUSION_CELL).astype(np.int64) - 1
+        behind = np.ceil((line + RISE_FACE_HALF_WIDTH) / OCCLUSION_CELL).astype(np.int64)
+        there = (rows >= 0) & (rows < len(self.ground)) & (before >= 0) & (behind < self.cells)
         rows = np.clip(rows, 0, len(self.ground) - 1)
-        low, high = (self.ground[rows, np.clip(cells, 0, self.cells - 1)[:, None]] for cells in (before, behind))
+        low, high = (self.ground[rows, np.clip(cells, 0, self.cells - 1)] for cells in (before, behind))
         rises = np.sort(np.where(there, high - low, np.nan), axis=1)
-        seen = np.isfinite(rises).sum(1)
-        own = np.arange(len(rises))
-        middle = 0.5 * (rises[own, np.maximum(seen - 1, 0) // 2] + rises[own, np.maximum(seen - 1, 0) - np.maximum(seen - 1, 0) // 2])
-        return np.where(seen > 0, middle, np.nan)
+        last, own = np.maximum(np.isfinite(rises).sum(1) - 1, 0), np.arange(len(rises))
+        return 0.5 * (rises[own, last // 2] + rises[own, last - last // 2])
 
     def _in_water(self, row, cell, h):
         """(N,) bool, whether the road before a place returned nothing and the ground behind it is raised like the top of a curb."""
