@@ -123,8 +123,7 @@ def select_curb_points(points: CurbPoints, others: CurbPoints, edges: RoadEdges,
             take_second = _second_is_better(first, second)
             level = [_level(measured, other, shown.chains.get((road.number, side)), known.beside.get(road.number, {}).get(side), SIDE_SIGNS[side])
                      for measured, other, shown, known in ((first, second, seen, others_seen), (second, first, others_seen, seen))]
-            no_curb = _without_remnants(level[0] | level[1], first.measured ^ second.measured)
-            for curbs, better in ((points, ~take_second & ~no_curb), (others, take_second & ~no_curb)):
+            for curbs, better in ((points, ~take_second & ~level[0]), (others, take_second & ~level[1])):
                 own = curbs[(curbs.road == road.number) & (curbs.side == side)]
                 found.append(own[better[_node(first.s, own.station)]])
     return CurbPoints.join(found, points.crs)
@@ -157,25 +156,21 @@ def _second_is_better(first, second):
 
 def _level(measured, other, chains, grid, sign):
     """(N,) bool: did one method, whose SideChains are given, measure an edge where the other, whose OcclusionGrid is given, saw level ground?"""
-    level = np.zeros(len(measured.s), bool)
+    level, doubtful = np.zeros((2, len(measured.s)), bool)
     alone = np.flatnonzero(measured.measured & ~other.measured)
     if grid is None or not len(alone):
         return level
     s, u = measured.s[alone], sign * measured.d[alone]
+    rise = grid.rise(s, u, np.nan_to_num(np.gradient(sign * measured.d, COMPARISON_STEP)[alone]))
     doubt = np.clip(1.0 - (0.0 if chains is None else chains.support_along(s, u)) / SURE_SUPPORT, 0.0, 1.0)
-    skew = np.nan_to_num(np.gradient(sign * measured.d, COMPARISON_STEP)[alone])
     with np.errstate(invalid="ignore"):
-        level[alone] = grid.rise(s, u, skew) < doubt * MIN_RISE
-    return level
-
-
-def _without_remnants(level, alone):
-    """(N,) bool, `level` and what of the line of one method alone is left beside it in pieces that are too short; both (N,) bool."""
-    found = level.copy()
-    for a, b in mask_runs(alone & ~level):
+        level[alone] = rise < doubt * MIN_RISE
+        doubtful[alone] = (doubt > 0) & ~(level[alone] | (rise >= LEAST_HEIGHT))
+    # what is left beside such places is too short to be a curb on such evidence
+    for a, b in mask_runs(doubtful):
         if (b - a) * COMPARISON_STEP < MIN_SINGLE_METHOD_LENGTH and (level[max(a - 1, 0)] or level[min(b, len(level) - 1)]):
-            found[a:b] = True
-    return found
+            level[a:b] = True
+    return level
 
 
 def measure_agreement(edges: RoadEdges, first_edges: RoadEdges, second_edges: RoadEdges, frame: RoadFrame) -> tuple[RoadEdges, RoadEdges]:
