@@ -154,15 +154,22 @@ def _second_is_better(first, second):
     return better
 
 
+def _slopes(d):
+    """(N,) m per m along of offsets at regular stations, from those of its neighbours that are known; 0 where there are none."""
+    steps = np.diff(d) / COMPARISON_STEP
+    before, after = np.r_[np.nan, steps], np.r_[steps, np.nan]
+    return np.nan_to_num(np.where(np.isnan(before), after, np.where(np.isnan(after), before, 0.5 * (before + after))))
+
+
 def _level(measured, other, chains, grid, sign):
     """(N,) bool: did one method, whose SideChains are given, measure an edge where the other, whose OcclusionGrid is given, saw level ground?"""
     level, doubtful = np.zeros((2, len(measured.s)), bool)
     alone = np.flatnonzero(measured.measured & ~other.measured)
     if grid is None or not len(alone):
         return level
-    s, u = measured.s[alone], sign * measured.d[alone]
-    rise = grid.rise(s, u, np.nan_to_num(np.gradient(sign * measured.d, COMPARISON_STEP)[alone]))
-    doubt = np.clip(1.0 - (0.0 if chains is None else chains.support_along(s, u)) / SURE_SUPPORT, 0.0, 1.0)
+    line = measured.s[alone], sign * measured.d[alone], sign * _slopes(measured.d)[alone]
+    rise, support = grid.rise(*line), 0.0 if chains is None else chains.support_along(*line)
+    doubt = np.clip(1.0 - support / SURE_SUPPORT, 0.0, 1.0)
     with np.errstate(invalid="ignore"):
         level[alone] = rise < doubt * MIN_RISE
         doubtful[alone] = (doubt > 0) & ~(level[alone] | (rise >= LEAST_HEIGHT))

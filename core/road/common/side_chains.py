@@ -30,12 +30,13 @@ class SideChains:
         members = self.chains[chain].steps
         return self.block_points(self.steps[members[(self.steps.s[members] >= start) & (self.steps.s[members] <= end)]], number)
 
-    def support_along(self, s: np.ndarray, u: np.ndarray) -> np.ndarray:
-        """Laser points that show a step at some places.
+    def support_along(self, s: np.ndarray, u: np.ndarray, skew: np.ndarray) -> np.ndarray:
+        """Laser points that show a step on a line.
 
         Parameters
         ----------
-        s, u : (N,) m, station and outward offset
+        s, u : (N,) m, station and outward offset of places on the line
+        skew : (N,) m outward per m along, direction of the line
 
         Returns
         -------
@@ -45,5 +46,5 @@ class SideChains:
         by_station = self.steps.s[order]
         place, row = expand_ranges(*(np.searchsorted(by_station, s + end) for end in (-0.5 * MAX_LINK_LENGTH, 0.5 * MAX_LINK_LENGTH)))
         row = order[row]
-        near = np.abs(self.steps.u[row] - u[place]) <= 2 * LINK_TOLERANCE
+        near = np.abs(self.steps.u[row] - u[place] - skew[place] * (self.steps.s[row] - s[place])) <= 2 * LINK_TOLERANCE
         return np.bincount(place[near], self.steps.support[row[near]], len(s)) / MAX_LINK_LENGTH
