@@ -23,7 +23,7 @@ MIN_REPORTED_DIFFERENCE = 0.05    # m across above which a stretch is reported
 AGREEMENT_QUANTILE = 0.95         # quantile of the distances that stands for a piece
 MIN_REPORTED_LENGTH = 1.0         # m of a stretch that is reported
 MIN_SINGLE_METHOD_LENGTH = 2.0    # m that one line must continue beyond the other to be drawn in its place
-MIN_RISE = CANDIDATE_HEIGHT_SHARE * LEAST_HEIGHT  # m of ground across a place below which it is level
+MIN_RISE = CANDIDATE_HEIGHT_SHARE * LEAST_HEIGHT  # m from one side of a place to the other below which ground is level
 SURE_SUPPORT = 80.0               # points per metre of road that show a step beyond doubt
 SECOND_METHOD_CHAIN_OFFSET = 100_000  # added to the chain numbers of the second method, to keep both apart
 
@@ -98,8 +98,8 @@ def select_curb_points(points: CurbPoints, others: CurbPoints, edges: RoadEdges,
     """At every place the curb points of that method whose edge measures better there.
 
     Where one method alone measured, its points are taken, unless the other saw level ground
-    there, which rises by less than a curb: the fewer points show a curb (SURE_SUPPORT), the more the
-    ground must rise that the other saw. Where both measured one curb (MAX_SAME_CURB_DISTANCE), each such stretch
+    there: the fewer points show a curb (SURE_SUPPORT), the more must the ground rise that the other
+    saw, up to MIN_RISE. Where both measured one curb (MAX_SAME_CURB_DISTANCE), each such stretch
     takes the points that scatter less about their line. Where they found different curbs,
     those of the first method are taken.
 
@@ -171,7 +171,7 @@ def _level(measured, other, chains, grid, sign):
     rise, support = grid.rise(*line), 0.0 if chains is None else chains.support_along(*line)
     doubt = np.clip(1.0 - support / SURE_SUPPORT, 0.0, 1.0)
     with np.errstate(invalid="ignore"):
-        level[alone] = rise < doubt * MIN_RISE
+        level[alone] = np.abs(rise) < doubt * MIN_RISE   # a fall is something else: the roof of a car, say
         doubtful[alone] = (doubt > 0) & ~(level[alone] | (rise >= LEAST_HEIGHT))
     # what is left beside such places is too short to be a curb on such evidence
     for a, b in mask_runs(doubtful):

@@ -118,6 +118,7 @@ def _find_curb_points(decimation, settings, progress):
         drawn = "both" if both else "scanlines"
         if both:
             chosen = _better_points(found, survey.frame, Evidence(chains[1], beside_of_scanlines), Evidence(chains[0], beside))
+            beside_of_scanlines.clear()   # planes lie close: along a long road their grids are large
             found["both"] = with_pieces_of_both(chosen, chains, beside, survey)
         found[drawn] = with_curb_returns(found[drawn], decimation, settings.curbs, part.part(RETURNS_PROGRESS, 1.0), beside)
     return found
