@@ -30,7 +30,7 @@ SECOND_METHOD_CHAIN_OFFSET = 100_000  # added to the chain numbers of the second
 
 
 @dataclass(frozen=True)
-class Evidence:
+class CurbEvidence:
     """What a method saw beside the roads.
 
     Attributes
@@ -94,7 +94,7 @@ def sample_edges(edges: RoadEdges, frame: RoadFrame, road: int, side: str) -> Ed
 
 
 def select_curb_points(points: CurbPoints, others: CurbPoints, edges: RoadEdges, other_edges: RoadEdges, frame: RoadFrame,
-                       seen: Evidence = Evidence(), others_seen: Evidence = Evidence()) -> CurbPoints:
+                       seen: CurbEvidence = CurbEvidence(), others_seen: CurbEvidence = CurbEvidence()) -> CurbPoints:
     """At every place the curb points of that method whose edge measures better there.
 
     Where one method alone measured, its points are taken, unless the other saw level ground

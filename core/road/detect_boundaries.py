@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
-from .agreement import Evidence, measure_agreement, select_curb_points
+from .agreement import CurbEvidence, measure_agreement, select_curb_points
 from .common.curb_points import CurbPoints
 from .common.decimation import LevelGround, PointDecimation
 from .common.occlusion import OcclusionGrid
@@ -117,7 +117,7 @@ def _find_curb_points(decimation, settings, progress):
                                                   part.part(LATTICE_PROGRESS, RETURNS_PROGRESS), beside_of_scanlines if both else beside, chains[1])
         drawn = "both" if both else "scanlines"
         if both:
-            chosen = _better_points(found, survey.frame, Evidence(chains[1], beside_of_scanlines), Evidence(chains[0], beside))
+            chosen = _better_points(found, survey.frame, CurbEvidence(chains[1], beside_of_scanlines), CurbEvidence(chains[0], beside))
             beside_of_scanlines.clear()   # planes lie close: along a long road their grids are large
             found["both"] = with_pieces_of_both(chosen, chains, beside, survey)
         found[drawn] = with_curb_returns(found[drawn], decimation, settings.curbs, part.part(RETURNS_PROGRESS, 1.0), beside)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from curbed_streets import LENGTH, driven, parked_car, street, survey_of
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.road.agreement import Evidence, measure_agreement, select_curb_points
+from lanewright.core.road.agreement import CurbEvidence, measure_agreement, select_curb_points
 from lanewright.core.road.common.corners import CurbSteps
 from lanewright.core.road.common.curb_points import curb_points_at
 from lanewright.core.road.common.occlusion import OcclusionGrid
@@ -80,7 +80,7 @@ def ground(rise):
     """What a method saw of 60 m of road on the left: ground that rises at 3.5 m, by as much as a function of the station says; nowhere where NaN."""
     grid = OcclusionGrid(0.25, 0, 240, 20.0)
     grid.ground[:] = np.where(np.arange(grid.cells) * 0.25 >= 3.5, rise((np.arange(240) + 0.5) * 0.25)[:, None], 0.0)
-    return Evidence(beside={0: {"left": grid}})
+    return CurbEvidence(beside={0: {"left": grid}})
 
 
 def shown_by(points_per_step):
@@ -89,7 +89,7 @@ def shown_by(points_per_step):
     ones = np.ones(len(s))
     steps = CurbSteps(profile=np.arange(len(s)), s=s, u=3.5 * ones, h=0 * ones, skew=0 * ones, height=0.03 * ones, run=0 * ones, noise=0.003 * ones,
                       scanner_noise=0.003 * ones, support=points_per_step * ones.astype(int), behind=5 * ones.astype(int))
-    return Evidence(chains={(0, "left"): SideChains(steps, [], lambda members, number: [])})
+    return CurbEvidence(chains={(0, "left"): SideChains(steps, [], lambda members, number: [])})
 
 
 @pytest.mark.parametrize("swapped", [False, True])
