@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from ..common.runs import mask_runs, stretch_of
 from ..survey.frame.road_frame import RoadFrame
+from .common.corners import CANDIDATE_HEIGHT_SHARE
+from .common.curb_limits import LEAST_HEIGHT
 from .common.curb_points import CurbPoints
+from .common.occlusion import OcclusionGrid
+from .common.side_chains import SideChains
 from .common.sides import SIDE_SIGNS
 from .edges.road_edges import EdgePiece, RoadEdges, joined_pieces
 
@@ -18,7 +23,24 @@ MIN_REPORTED_DIFFERENCE = 0.05    # m across above which a stretch is reported
 AGREEMENT_QUANTILE = 0.95         # quantile of the distances that stands for a piece
 MIN_REPORTED_LENGTH = 1.0         # m of a stretch that is reported
 MIN_SINGLE_METHOD_LENGTH = 2.0    # m that one line must continue beyond the other to be drawn in its place
+MIN_RISE = CANDIDATE_HEIGHT_SHARE * LEAST_HEIGHT  # m from one side of a place to the other below which ground is level
+SURE_SUPPORT = 80.0               # points per metre of road that show a step beyond doubt
 SECOND_METHOD_CHAIN_OFFSET = 100_000  # added to the chain numbers of the second method, to keep both apart
+
+
+
+@dataclass(frozen=True)
+class CurbEvidence:
+    """What a method saw beside the roads.
+
+    Attributes
+    ----------
+    chains : (number of the road, side) -> SideChains
+    beside : number of the road -> side -> OcclusionGrid
+    """
+
+    chains: Mapping[tuple[int, str], SideChains] = field(default_factory=dict)
+    beside: Mapping[int, Mapping[str, OcclusionGrid]] = field(default_factory=dict)
 
 
 @dataclass
@@ -71,18 +93,22 @@ def sample_edges(edges: RoadEdges, frame: RoadFrame, road: int, side: str) -> Ed
     return samples
 
 
-def select_curb_points(points: CurbPoints, others: CurbPoints, edges: RoadEdges, other_edges: RoadEdges, frame: RoadFrame) -> CurbPoints:
+def select_curb_points(points: CurbPoints, others: CurbPoints, edges: RoadEdges, other_edges: RoadEdges, frame: RoadFrame,
+                       seen: CurbEvidence = CurbEvidence(), others_seen: CurbEvidence = CurbEvidence()) -> CurbPoints:
     """At every place the curb points of that method whose edge measures better there.
 
-    Where one method alone measured, its points are taken. Where both measured one curb
-    (MAX_SAME_CURB_DISTANCE), each such stretch takes the points that scatter less about their
-    line. Where they found different curbs, those of the first method are taken.
+    Where one method alone measured, its points are taken, unless the other saw level ground
+    there: the fewer points show a curb (SURE_SUPPORT), the more must the ground rise that the other
+    saw, up to MIN_RISE. Where both measured one curb (MAX_SAME_CURB_DISTANCE), each such stretch
+    takes the points that scatter less about their line. Where they found different curbs,
+    those of the first method are taken.
 
     Parameters
     ----------
     points, others : CurbPoints of two methods, the one with the stricter model of a curb first
     edges, other_edges : RoadEdges fitted through each
     frame : RoadFrame
+    seen, others_seen : what each method saw beside the roads
 
     Returns
     -------
@@ -95,7 +121,9 @@ def select_curb_points(points: CurbPoints, others: CurbPoints, edges: RoadEdges,
         for side in SIDE_SIGNS:
             first, second = (sample_edges(e, frame, road.number, side) for e in (edges, other_edges))
             take_second = _second_is_better(first, second)
-            for curbs, better in ((points, ~take_second), (others, take_second)):
+            level = [_level(measured, other, shown.chains.get((road.number, side)), known.beside.get(road.number, {}).get(side), SIDE_SIGNS[side])
+                     for measured, other, shown, known in ((first, second, seen, others_seen), (second, first, others_seen, seen))]
+            for curbs, better in ((points, ~take_second & ~level[0]), (others, take_second & ~level[1])):
                 own = curbs[(curbs.road == road.number) & (curbs.side == side)]
                 found.append(own[better[_node(first.s, own.station)]])
     return CurbPoints.join(found, points.crs)
@@ -124,6 +152,32 @@ def _second_is_better(first, second):
             elif b < len(better) and one_curb[b]:
                 better[a:b] = better[b]
     return better
+
+
+def _slopes(d):
+    """(N,) m per m along of offsets at regular stations, from those of its neighbours that are known; 0 where there are none."""
+    steps = np.diff(d) / COMPARISON_STEP
+    before, after = np.r_[np.nan, steps], np.r_[steps, np.nan]
+    return np.nan_to_num(np.where(np.isnan(before), after, np.where(np.isnan(after), before, 0.5 * (before + after))))
+
+
+def _level(measured, other, chains, grid, sign):
+    """(N,) bool: did one method, whose SideChains are given, measure an edge where the other, whose OcclusionGrid is given, saw level ground?"""
+    level, doubtful = np.zeros((2, len(measured.s)), bool)
+    alone = np.flatnonzero(measured.measured & ~other.measured)
+    if grid is None or not len(alone):
+        return level
+    line = measured.s[alone], sign * measured.d[alone], sign * _slopes(measured.d)[alone]
+    rise, support = grid.rise(*line), 0.0 if chains is None else chains.support_along(*line)
+    doubt = np.clip(1.0 - support / SURE_SUPPORT, 0.0, 1.0)
+    with np.errstate(invalid="ignore"):
+        level[alone] = np.abs(rise) < doubt * MIN_RISE   # a fall is something else: the roof of a car, say
+        doubtful[alone] = (doubt > 0) & ~(level[alone] | (rise >= LEAST_HEIGHT))
+    # what is left beside such places is too short to be a curb on such evidence
+    for a, b in mask_runs(doubtful):
+        if (b - a) * COMPARISON_STEP < MIN_SINGLE_METHOD_LENGTH and (level[max(a - 1, 0)] or level[min(b, len(level) - 1)]):
+            level[a:b] = True
+    return level
 
 
 def measure_agreement(edges: RoadEdges, first_edges: RoadEdges, second_edges: RoadEdges, frame: RoadFrame) -> tuple[RoadEdges, RoadEdges]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
-from .agreement import measure_agreement, select_curb_points
+from .agreement import CurbEvidence, measure_agreement, select_curb_points
 from .common.curb_points import CurbPoints
 from .common.decimation import LevelGround, PointDecimation
 from .common.occlusion import OcclusionGrid
@@ -104,6 +104,7 @@ def _find_curb_points(decimation, settings, progress):
     """`find_curb_points` with the points of a PointDecimation."""
     survey, both, found = decimation.survey, settings.method == "both", {}
     beside: dict[int, dict[str, OcclusionGrid]] = {}
+    beside_of_scanlines: dict[int, dict[str, OcclusionGrid]] = {}
     chains: list[dict[tuple[int, str], SideChains]] = [{}, {}]
     if settings.method != "scanlines":
         part = progress.part(0.0, PROFILES_PROGRESS) if both else progress
@@ -113,10 +114,12 @@ def _find_curb_points(decimation, settings, progress):
         source = SurveyScanlines(survey, settings.planes, settings.scanlines.sensor_height, progress=part.part(0.0, LATTICE_PROGRESS),
                                  level=_level_for(decimation, settings.scanlines))
         found["scanlines"] = curbs_from_scanlines(source, settings.scanlines, settings.curbs.block_length,
-                                                  part.part(LATTICE_PROGRESS, RETURNS_PROGRESS), None if both else beside, chains[1])
+                                                  part.part(LATTICE_PROGRESS, RETURNS_PROGRESS), beside_of_scanlines if both else beside, chains[1])
         drawn = "both" if both else "scanlines"
         if both:
-            found["both"] = with_pieces_of_both(_better_points(found, survey.frame), chains, beside, survey)
+            chosen = _better_points(found, survey.frame, CurbEvidence(chains[1], beside_of_scanlines), CurbEvidence(chains[0], beside))
+            beside_of_scanlines.clear()   # planes lie close: along a long road their grids are large
+            found["both"] = with_pieces_of_both(chosen, chains, beside, survey)
         found[drawn] = with_curb_returns(found[drawn], decimation, settings.curbs, part.part(RETURNS_PROGRESS, 1.0), beside)
     return found
 
@@ -127,11 +130,11 @@ def _level_for(decimation, settings):
     return LevelGround(decimation, settings.distance_across + LEVEL_STRIP_MARGIN, along)
 
 
-def _better_points(found, frame):
+def _better_points(found, frame, *seen):
     """At every place the curb points of that method which measures better."""
     # scanlines first: three planes are a stricter model of a curb than a profile
     methods = ("scanlines", "profiles")
-    return select_curb_points(*(found[method] for method in methods), *(fit_road_edges(found[method], frame) for method in methods), frame)
+    return select_curb_points(*(found[method] for method in methods), *(fit_road_edges(found[method], frame) for method in methods), frame, *seen)
 
 
 def draw_boundaries(found: dict[str, CurbPoints], frame: RoadFrame, settings: EdgeSettings = EdgeSettings(),

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...common.groups import linked_groups, members_of
+from ...common.near_pairs import overlapping_pairs
 from ...common.parallel import check_cancelled
 from ...countries.neutral import NEUTRAL
 from ...curves.robust import median
@@ -263,14 +265,17 @@ def _beyond_the_edge(lines, beside, level):
 def hatching_borders(lines: list[LinkedLine], hatched: np.ndarray, known: list[Strand]) -> list[Strand]:
     """Strands that frame hatched areas: of those lines that do so as a whole, and those that leave the straight way from strand to strand.
 
+    In a hatched area, up to the tip behind its last bar, there are no other lines that do so than its borders.
     `known` are those found before. What leads from the straight way to one of them is its end, however short.
     """
     bars = _Bars(hatched)
-    framing = [_frames_hatching(line, bars) for line in lines]
+    framing, within = [_frames_hatching(line, bars) for line in lines], _areas(hatched)
     borders = known + [strand for line, frames in zip(lines, framing) if frames for strand in line.strands]
     found = [strand for line, frames in zip(lines, framing) if len(line.strands) > 1
-             for k, strand in enumerate(line.strands) if _frames_hatching(LinkedLine([strand]), bars, MIN_BARS_OF_STRAND)
-             and (frames or _aside(line.strands[k - 1:k + 2]) > LEAST_TURN_ASIDE)]
+             for k, strand in enumerate(line.strands)
+             if frames and _frames_hatching(LinkedLine([strand]), bars, MIN_BARS_OF_STRAND)
+             or _aside(line.strands[k - 1:k + 2]) > LEAST_TURN_ASIDE
+             and (_frames_hatching(LinkedLine([strand]), bars, MIN_BARS_OF_STRAND) or _lies_within(strand, within))]
     if found:
         return found
     aside = [strand for line in lines for k, strand in enumerate(line.strands) if _aside(line.strands[k - 1:k + 2]) > MAX_STRAY_OFFSET]
@@ -294,6 +299,24 @@ def _meet(one, other):
         if abs(b.first - a.last) <= MAX_BORDER_GAP and abs(b.d[0] - a.d[-1]) <= MAX_BAR_END_OFFSET:
             return True
     return False
+
+
+def _areas(hatched):
+    """(A, 4) m, extents of rows of bars; along the road one pitch more, where the borders meet and no bar fits any more."""
+    if not len(hatched):
+        return np.empty((0, 4))
+    first, last, low, high = hatched.T
+    a, b = (np.concatenate(found) for found in zip(*overlapping_pairs(first, last, first, last, MAX_BAR_PITCH)))
+    beside = (low[a] <= high[b]) & (low[b] <= high[a])
+    rows = [hatched[own] for _, own in members_of(linked_groups(a[beside], b[beside], len(hatched))) if len(own) >= MIN_BARS]
+    return np.array([[*row[:, [0, 2]].min(0), *row[:, [1, 3]].max(0)] for row in rows]).reshape(-1, 4) + [-MAX_BAR_PITCH, 0, MAX_BAR_PITCH, 0]
+
+
+def _lies_within(strand, areas):
+    """Whether a strand lies in one of the areas, (A, 4) as `_areas` gives them, or on its border."""
+    first, low, last, high = areas.T
+    return bool(((first <= strand.first) & (strand.last <= last) & (low - MAX_BAR_END_OFFSET <= strand.d.min())
+                 & (strand.d.max() <= high + MAX_BAR_END_OFFSET)).any())
 
 
 class _Bars:

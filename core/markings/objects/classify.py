@@ -43,6 +43,7 @@ MIN_STOP_LINE_LENGTH = 1.5                   # m
 MIN_STOP_LINE_FILL = 0.62                    # of length times width: a stop line is a full bar, the outline of hatching with its bars is not
 MAX_BAR_TO_OUTLINE = 0.3                     # m from a bar of hatching to its outline
 MAX_HATCHING_PITCH = 3.0                     # m between bars of one hatching
+MIN_BARS_BEFORE_TIP = 2                      # that make a row which leads to its tip
 MIN_HATCHING_LENGTH = 4.0                    # m along the road: what is longer is more than one bar
 MIN_ARROW_SHAFT, MAX_ARROW_TIP = 0.20, 0.25  # of an arrow's length: its shaft at least, and at the other end the tip of its head at most
 
@@ -163,8 +164,9 @@ def classify_markings(shapes: list[Shape], half_widths: Sequence[float], setting
         else:
             kind = _other_kind(shape)
         found.append((kind, "keep" if kind in LINE_KINDS else "other"))
-    for k in _outlines(column, [kind for kind, _ in found]):
-        found[k] = "hatch", "other"
+    for looked_like in (_outlines, _tips):
+        for k in looked_like(column, [kind for kind, _ in found]):
+            found[k] = "hatch", "other"
     for k in _single_bars(column, [kind for kind, _ in found]):
         found[k] = NOT_PAINT if clearance[k] < CURB_CORNER_CLEARANCE and shapes[k].length < MAX_CURB_CORNER_LENGTH else "symbol", "other"
     return found
@@ -234,6 +236,17 @@ def _outlines(column, kinds):
             touch &= (column[low][a] < column[high][b] + MAX_BAR_TO_OUTLINE) & (column[high][a] > column[low][b] - MAX_BAR_TO_OUTLINE)
         touched[a[touch]] = True
     return np.flatnonzero(touched)
+
+
+def _tips(column, kinds):
+    """What looked like an arrow, and is the last bar of hatching with the borders that meet behind it: it stands in the row of bars."""
+    kinds = np.array(kinds, dtype=object)
+    bars, rows = np.flatnonzero((kinds == "hatch") & (column["s1"] - column["s0"] < MIN_HATCHING_LENGTH)), np.flatnonzero(kinds == "arrow")
+    count = np.zeros(len(kinds), int)
+    for a, b in overlapping_pairs(column["s0"][rows], column["s1"][rows], column["s0"][bars], column["s1"][bars], MAX_HATCHING_PITCH):
+        a, b = rows[a], bars[b]
+        np.add.at(count, a[(column["d0"][a] < column["d1"][b]) & (column["d1"][a] > column["d0"][b])], 1)
+    return np.flatnonzero(count >= MIN_BARS_BEFORE_TIP)
 
 
 def _single_bars(column, kinds):

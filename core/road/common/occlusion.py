@@ -21,6 +21,8 @@ HIDDEN_POINT_SPACING = 0.5    # m along the road between two points of hidden cu
 WATER_CELLS = 4               # before a curb whose foot lies in water, and as many behind its foot: 1 m
 LEAST_WATER_STEP = 0.05       # m above the foot, from which the ground behind it is raised: dropped curbs of driveways are lower
 SHADOW_REACH = 3.0            # m along the road: the scan planes are oblique, so the shadows are, too
+RISE_FACE_HALF_WIDTH = 0.05   # m on either side of a place between which a face lies: cells that reach into it tell neither level
+RISE_HALF_LENGTH = 0.5        # m along the road on either side over which a rise is averaged
 
 
 class OcclusionGrid:
@@ -120,6 +122,31 @@ class OcclusionGrid:
         c1 = np.maximum(np.clip(cell + 1, 0, self.cells), c0)
         tall = sums[r1, c1] - sums[r0, c1] - sums[r1, c0] + sums[r0, c0]
         return (seen.sum(1) < 2) & (tall > 0) | self._in_water(row, cell, h)
+
+    def rise(self, s: np.ndarray, u: np.ndarray, skew: np.ndarray) -> np.ndarray:
+        """How much higher the ground behind a line is than before it.
+
+        Parameters
+        ----------
+        s, u : (N,) m, station and outward offset of places on the line
+        skew : (N,) m outward per m along, direction of the line
+
+        Returns
+        -------
+        (N,) m, the median over 2 * RISE_HALF_LENGTH of road; NaN where nowhere there ground was seen on both sides
+        """
+        around = int(round(RISE_HALF_LENGTH / self.width))
+        rows = np.floor(s / self.width).astype(np.int64)[:, None] + np.arange(-around, around + 1)
+        line = u[:, None] + skew[:, None] * ((rows + 0.5) * self.width - s[:, None])
+        rows -= self.first
+        before = np.floor((line - RISE_FACE_HALF_WIDTH) / OCCLUSION_CELL).astype(np.int64) - 1
+        behind = np.ceil((line + RISE_FACE_HALF_WIDTH) / OCCLUSION_CELL).astype(np.int64)
+        there = (rows >= 0) & (rows < len(self.ground)) & (before >= 0) & (behind < self.cells)
+        rows = np.clip(rows, 0, len(self.ground) - 1)
+        low, high = (self.ground[rows, np.clip(cells, 0, self.cells - 1)] for cells in (before, behind))
+        rises = np.sort(np.where(there, high - low, np.nan), axis=1)
+        last, own = np.maximum(np.isfinite(rises).sum(1) - 1, 0), np.arange(len(rises))
+        return 0.5 * (rises[own, last // 2] + rises[own, last - last // 2])
 
     def _in_water(self, row, cell, h):
         """(N,) bool, whether the road before a place returned nothing and the ground behind it is raised like the top of a curb."""

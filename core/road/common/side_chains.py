@@ -5,8 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+import numpy as np
+
 from .corners import CurbSteps
-from .tracking import StepChain
+from .pseudo_scanlines import expand_ranges
+from .tracking import LINK_TOLERANCE, MAX_LINK_LENGTH, StepChain
 
 
 @dataclass(frozen=True)
@@ -26,3 +29,22 @@ class SideChains:
         """Curb points of the steps of a chain between two stations, m; they get the number."""
         members = self.chains[chain].steps
         return self.block_points(self.steps[members[(self.steps.s[members] >= start) & (self.steps.s[members] <= end)]], number)
+
+    def support_along(self, s: np.ndarray, u: np.ndarray, skew: np.ndarray) -> np.ndarray:
+        """Laser points that show a step on a line.
+
+        Parameters
+        ----------
+        s, u : (N,) m, station and outward offset of places on the line
+        skew : (N,) m outward per m along, direction of the line
+
+        Returns
+        -------
+        (N,) points per metre of road, over MAX_LINK_LENGTH of it, half on either side
+        """
+        order = np.argsort(self.steps.s, kind="stable")
+        by_station = self.steps.s[order]
+        place, row = expand_ranges(*(np.searchsorted(by_station, s + end) for end in (-0.5 * MAX_LINK_LENGTH, 0.5 * MAX_LINK_LENGTH)))
+        row = order[row]
+        near = np.abs(self.steps.u[row] - u[place] - skew[place] * (self.steps.s[row] - s[place])) <= 2 * LINK_TOLERANCE
+        return np.bincount(place[near], self.steps.support[row[near]], len(s)) / MAX_LINK_LENGTH

@@ -4,8 +4,11 @@ import numpy as np
 import pytest
 from curbed_streets import LENGTH, driven, parked_car, street, survey_of
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.road.agreement import measure_agreement, select_curb_points
+from lanewright.core.road.agreement import CurbEvidence, measure_agreement, select_curb_points
+from lanewright.core.road.common.corners import CurbSteps
 from lanewright.core.road.common.curb_points import curb_points_at
+from lanewright.core.road.common.occlusion import OcclusionGrid
+from lanewright.core.road.common.side_chains import SideChains
 from lanewright.core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
 from lanewright.core.road.edges.fit import fit_road_edges
 from lanewright.core.road.profiles.detect import CurbSettings
@@ -71,6 +74,34 @@ def test_of_two_curbs_that_of_the_first_method_is_drawn_and_its_gaps_are_filled_
     s, d = drawn.station, drawn.offset
     np.testing.assert_allclose(d[s < 39], 3.5)
     np.testing.assert_allclose(d[s > 41], 5.0)
+
+
+def ground(rise):
+    """What a method saw of 60 m of road on the left: ground that rises at 3.5 m, by as much as a function of the station says; nowhere where NaN."""
+    grid = OcclusionGrid(0.25, 0, 240, 20.0)
+    grid.ground[:] = np.where(np.arange(grid.cells) * 0.25 >= 3.5, rise((np.arange(240) + 0.5) * 0.25)[:, None], 0.0)
+    return CurbEvidence(beside={0: {"left": grid}})
+
+
+def shown_by(points_per_step):
+    """Chains of a method whose profiles, 25 cm apart, show a step at 3.5 m on the left, each by so many points."""
+    s = np.arange(0.125, 60.0, 0.25)
+    ones = np.ones(len(s))
+    steps = CurbSteps(profile=np.arange(len(s)), s=s, u=3.5 * ones, h=0 * ones, skew=0 * ones, height=0.03 * ones, run=0 * ones, noise=0.003 * ones,
+                      scanner_noise=0.003 * ones, support=points_per_step * ones.astype(int), behind=5 * ones.astype(int))
+    return CurbEvidence(chains={(0, "left"): SideChains(steps, [], lambda members, number: [])})
+
+
+@pytest.mark.parametrize("swapped", [False, True])
+@pytest.mark.parametrize("rise, points, end", [(0.0, 8, 30), (0.01, 8, 30), (0.03, 8, 55), (np.nan, 8, 55), (0.01, 50, 55)],
+                         ids=["level", "nearly level", "raised", "not seen", "shown by many points"])
+def test_a_curb_that_one_method_leads_on_ends_where_the_other_saw_level_ground(frame, rise, points, end, swapped):
+    short, long = curb_points(frame, 3.5, np.arange(1.0, 30.5, 0.5)), curb_points(frame, 3.5, np.arange(1.0, 55.5, 0.5))
+    methods = [(short, ground(lambda s: np.where(s < 30, 0.12, rise))), (long, shown_by(points))]
+    (first, seen), (second, others_seen) = methods[::-1 if swapped else 1]
+    drawn = select_curb_points(first, second, fit_road_edges(first, frame), fit_road_edges(second, frame), frame, seen, others_seen)
+    assert drawn.station.max() == pytest.approx(end, abs=1.0)
+
 
 
 def test_a_stretch_where_the_two_lie_eight_centimetres_apart_is_reported(frame):

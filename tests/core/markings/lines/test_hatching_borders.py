@@ -1,6 +1,7 @@
 """What frames a hatched area is no part of the line that leads up to it."""
 
 import numpy as np
+import pytest
 from lanewright.core.markings.lines.linking import LinkedLine
 from lanewright.core.markings.lines.selection import hatching_borders
 from lanewright.core.markings.lines.strands import Strand
@@ -28,3 +29,15 @@ def test_a_piece_too_short_for_bars_between_the_line_and_the_outline_is_of_the_o
 def test_a_piece_in_line_with_the_line_and_one_that_no_outline_goes_on_from_stay():
     assert hatching_borders(leading_up(0.0)[1], BARS, []) == []
     assert hatching_borders(leading_up(0.2)[1][:1], BARS, []) == []
+
+
+@pytest.mark.parametrize("bars, found", [(BARS, True), (BARS + [0, 0, 4, 4], False), (BARS[:3], False), (BARS[:8], False)],
+                         ids=["the tip", "an area elsewhere", "three bars", "an area that ends long before"])
+def test_a_piece_of_border_behind_the_last_bar_is_none_of_the_line_that_goes_on_behind_the_area(bars, found):
+    piece = strand(39.5, 42.0, 0.75, 0.45)
+    line = LinkedLine([strand(5.0, 20.0, 0.0, 0.0), piece, strand(45.0, 80.0, 0.0, 0.0)])
+    assert hatching_borders([line], bars, []) == ([piece] if found else [])
+
+
+def test_without_hatching_no_strand_is_a_border():
+    assert hatching_borders(leading_up(0.4)[1], np.empty((0, 4)), []) == []
