@@ -47,8 +47,8 @@ def found_by(sample, executor=None, work=None, progress=Progress()):
         patch.setattr(extraction, "WINDOWS_PER_TASK", 1)
         patch.setattr(scatter, "EXAMINED_WINDOWS", 1)
         patch.setattr(phases, "TASK_POINTS", 300)
-        for module in (remove, heights):
-            patch.setattr(module, "TASK_WINDOWS", 1)
+        patch.setattr(remove, "TASK_WINDOWS", 1)
+        patch.setattr(heights, "TASK_POINTS", 1)
         patch.setattr(linking, "LINKING_WINDOW_CELLS", 250)
         patch.setattr(linking, "TASK_POINTS", 300)
         patch.setattr(linking, "PHASE_POINTS", 3000)
