@@ -26,7 +26,7 @@ DENSE_SLICE, DENSE_COUNT = 0.05, 200  # m before and after a place: with so many
 OFFSET_GRAIN_BITS = 4                 # bits: points are sorted by offset to 1.6 mm
 HEIGHT_SMOOTHING_SIGMA = 2.0          # m: a car does not follow a pothole
 HEIGHT_WINDOW = 20.0                  # m of road points in memory at a time
-TASK_POINTS = 500_000                 # road points that a worker process looks at, about: 30 ms of its time
+HEIGHT_POINTS = 500_000               # road points that a worker process looks at, about: 30 ms of its time
 
 
 def road_heights(road_points: RoadPoints, road: int, s: np.ndarray, tracks: list[LaneTrack],
@@ -58,7 +58,7 @@ def road_heights(road_points: RoadPoints, road: int, s: np.ndarray, tracks: list
             places.append([(k, a - tracks[k].first) for k, a, _ in inside])
     executor = road_points.executor
     points = sum(road_points.store.size(road, number) for number in road_points.sections(road))
-    together = max(TASK_POINTS * len(windows) // max(points, 1), 1) if executor.folder else 1
+    together = max(HEIGHT_POINTS * len(windows) // max(points, 1), 1) if executor.folder else 1
     phase = Phase(heights_of_windows, road_points, (road,), lambda item: road_points.survey.stretch(road, item[0][1][0], item[-1][1][-1]))
     items = [windows[k:k + together] for k in range(0, len(windows), together)]
     for own, heights in zip(places, (one for some in executor.run(phase, items, progress) for one in some)):

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..assess.curvature import marking_curvature
-from ..common.background import InBackground
 from ..common.features import Features
 from ..common.progress import Progress
 from ..corrections.corrections import Corrections, corrections_from_features
@@ -267,14 +266,11 @@ def _paint(result, image_path, settings, stages, executor):
     markings = named_by_lines(markings, lines)
     result.markings, result.marking_lines = markings_to_features(markings, frame), lines_to_features(lines, frame)
     paint = Points(columns_of_roads(clustered.store, clustered.roads()))
-    drawn = result.marking_lines.geometries
-    # for the report alone
-    with InBackground(lambda _: marking_curvature(paint, drawn, frame.origin)) as curvature:
-        driving, elements, lanes = stages.run(
-            "driving", "Making driving lines …", make_driving_lines, lines, frame, settings.driving,
-            markings=markings, edges=edges, road_points=result.road_points)
-        executor.release()
-        result.marking_curvature = curvature.result(stages.progress)
+    result.marking_curvature = marking_curvature(paint, result.marking_lines.geometries, frame.origin)
+    driving, elements, lanes = stages.run(
+        "driving", "Making driving lines …", make_driving_lines, lines, frame, settings.driving,
+        markings=markings, edges=edges, road_points=result.road_points)
+    executor.release()
     driving, elements, lanes = correct_lanes(driving, elements, lanes, frame, result.corrections,
                                              settings.driving.lane_width or country(settings.driving.country).usual_lane, known)
     result.driving_lines, result.curve_elements = driving_lines_to_features(driving, frame), curve_elements_to_features(elements, frame)

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import TYPE_CHECKING
 
-from ..common.background import InBackground
 from ..common.errors import RoadExtractionError
+from ..common.parallel import InBackground
 from ..common.progress import Progress
 from ..survey.lattice.scan_lattice import find_lattice
 from .agreement import measure_agreement, select_curb_points

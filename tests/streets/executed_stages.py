@@ -36,7 +36,7 @@ PHASES = ["ground_of_windows", "surface_points", "cubes_of_stretch", "levels_of_
 
 
 def found_by(sample, executor=None, work=None, progress=Progress()):
-    """All numbers of road points, outline, image, paint, markings, lines and lanes; `progress` is that of paint and what follows. The executor is closed."""
+    """All numbers of road points, outline, image, paint, markings and lines; `progress` is that of the last three. The executor is closed."""
     made, path = sample
     with pytest.MonkeyPatch.context() as patch:
         for module in (extract, correction, point_density, evidence):
@@ -48,9 +48,9 @@ def found_by(sample, executor=None, work=None, progress=Progress()):
         patch.setattr(scatter, "EXAMINED_WINDOWS", 1)
         patch.setattr(phases, "TASK_POINTS", 300)
         patch.setattr(remove, "TASK_WINDOWS", 1)
-        patch.setattr(heights, "TASK_POINTS", 1)
+        patch.setattr(heights, "HEIGHT_POINTS", 1)
         patch.setattr(linking, "LINKING_WINDOW_CELLS", 250)
-        patch.setattr(linking, "TASK_POINTS", 300)
+        patch.setattr(linking, "LINKED_POINTS", 300)
         patch.setattr(linking, "PHASE_POINTS", 3000)
         if executor is not None:
             patch.setattr(opening, "executor_for", lambda *_: KeptResults(executor, work) if work else executor)

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 LINKING_WINDOW_CELLS = 1250                   # cells of 4 cm: 50 m of station are linked at a time
 LINKING_COLUMNS = ("s", "d", "spacing", "half_width")   # of a point, that linking looks at
-TASK_POINTS = 50_000                          # of paint, that a worker process links together at least: about 50 ms of its time
+LINKED_POINTS = 50_000                        # of paint, that a worker process links together at least: about 50 ms of its time
 PHASE_POINTS = 500_000                        # of paint, whose columns are held for tasks at a time
 # of a point of paint that clustering looks at
 PAINT_COLUMNS = ("x", "y", "z", "s", "d", "intensity", "corrected", "pass_number", "half_width", "covered", "spacing")
@@ -78,7 +78,7 @@ def _linked_windows(marking_points, road, distance, progress, executor):
     """What `links_of_windows` finds in each window of a road, in their order."""
     phase = Phase(links_of_windows, NoSource(), (distance,), lambda item: f"markings of road {road}")
     first, last = (int(np.floor(s / COORDINATE_SCALE / CELL_UNITS / LINKING_WINDOW_CELLS)) for s in marking_points.store.span(road))
-    least = 0 if executor.folder is None else TASK_POINTS
+    least = 0 if executor.folder is None else LINKED_POINTS
     items, size, held, begin = [], least, 0, first
     for number in range(first, last + 1):
         check_cancelled()
@@ -118,7 +118,7 @@ def links_of_windows(source: NoSource, item: list[tuple[Any, ...]], distance: fl
     of each window (K, 2) int occupied cells, (K,) int their component, (K,) bool whether they lie beyond the end, and (M,) int the cell of
     each point that does not
     """
-    found = []
+    found: list[tuple[np.ndarray, ...]] = []
     for *columns, end in item:
         cells, member, component = components_of_points(dict(zip(LINKING_COLUMNS, columns)), distance)
         found.append((cells, component, cells[:, 0] >= end, member[columns[0] // CELL_UNITS < end]))
