@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.ndimage import gaussian_filter1d, median_filter
 
 from ..common.order_statistics import order_by
-from ..common.parallel import ordered_map
+from ..common.parallel import check_cancelled
 from ..common.progress import Progress
+from ..execution.phase import Phase
 from ..markings.cross_section.sections import STATION_STEP
 from ..survey.store.records import COORDINATE_SCALE
 from .lane_track import spans_of
@@ -25,6 +26,7 @@ DENSE_SLICE, DENSE_COUNT = 0.05, 200  # m before and after a place: with so many
 OFFSET_GRAIN_BITS = 4                 # bits: points are sorted by offset to 1.6 mm
 HEIGHT_SMOOTHING_SIGMA = 2.0          # m: a car does not follow a pothole
 HEIGHT_WINDOW = 20.0                  # m of road points in memory at a time
+HEIGHT_POINTS = 500_000               # road points that a worker process looks at, about: 30 ms of its time
 
 
 def road_heights(road_points: RoadPoints, road: int, s: np.ndarray, tracks: list[LaneTrack],
@@ -45,21 +47,45 @@ def road_heights(road_points: RoadPoints, road: int, s: np.ndarray, tracks: list
     """
     found, spans = [np.full(len(track), np.nan) for track in tracks], spans_of(tracks)
     size, length = int(HEIGHT_WINDOW / STATION_STEP), road_points.store.section_length
-
-    def of_window(first):
+    windows, places = [], []
+    for first in range(0, len(s), size):
         last = min(first + size, len(s)) - 1
         inside = [(k, max(first, tracks[k].first), min(last, tracks[k].last)) for k in spans.near(first, last).tolist()]
-        if not inside:
-            return []
-        near = [int(np.floor((s[k] + side * STATION_STEP / 2) / length)) for k, side in ((first, -1), (last, 1))]
-        sections = [road_points.section(road, number).records for number in range(near[0], near[1] + 1)]
-        lanes = [(np.arange(a, b + 1) - first, tracks[k].d[a - tracks[k].first:b - tracks[k].first + 1]) for k, a, b in inside]
-        heights = _heights([records for records in sections if len(records)], s[first:last + 1], lanes)
-        return [(k, a - tracks[k].first, z) for (k, a, _), z in zip(inside, heights)]
-
-    for heights in ordered_map(of_window, range(0, len(s), size), progress):
-        for k, first, z in heights:
+        if inside:
+            near = [int(np.floor((s[k] + side * STATION_STEP / 2) / length)) for k, side in ((first, -1), (last, 1))]
+            lanes = [(np.arange(a, b + 1) - first, tracks[k].d[a - tracks[k].first:b - tracks[k].first + 1]) for k, a, b in inside]
+            windows.append((near, s[first:last + 1], lanes))
+            places.append([(k, a - tracks[k].first) for k, a, _ in inside])
+    executor = road_points.executor
+    points = sum(road_points.store.size(road, number) for number in road_points.sections(road))
+    together = max(HEIGHT_POINTS * len(windows) // max(points, 1), 1) if executor.folder else 1
+    phase = Phase(heights_of_windows, road_points, (road,), lambda item: road_points.survey.stretch(road, item[0][1][0], item[-1][1][-1]))
+    items = [windows[k:k + together] for k in range(0, len(windows), together)]
+    for own, heights in zip(places, (one for some in executor.run(phase, items, progress) for one in some)):
+        for (k, first), z in zip(own, heights):
             found[k][first:first + len(z)] = z
+    return found
+
+
+def heights_of_windows(road_points: RoadPoints, item: list[tuple[Any, ...]], road: int) -> list[list[np.ndarray]]:
+    """The phase that measures heights along lanes.
+
+    Parameters
+    ----------
+    road_points : RoadPoints
+    item : of each window the first and the last section that it lies in, (K,) m its stations, and of each lane (M,) int those that it has, and
+        (M,) m its offsets there
+    road : number
+
+    Returns
+    -------
+    of each window the (M,) heights of each lane
+    """
+    found = []
+    for (first, last), s, lanes in item:
+        check_cancelled()
+        sections = [road_points.section(road, number).records for number in range(first, last + 1)]
+        found.append(_heights([records for records in sections if len(records)], s, lanes))
     return found
 
 

@@ -141,8 +141,11 @@ class WorkerProcesses:
     def release(self) -> None:
         """End the workers; the next phase starts new ones."""
         self._idle = queue.SimpleQueue()
-        while self._all:
-            self._all.pop().end()
+        ending, self._all = self._all, set()
+        for worker in ending:
+            worker.leave()
+        for worker in ending:
+            worker.end()
 
     def close(self) -> None:
         """End the workers and remove the folder; nothing more is run."""
@@ -202,9 +205,12 @@ class _Worker:
         self._process.kill()
         self._finish()
 
-    def end(self):
-        """End the process politely."""
+    def leave(self):
+        """Have the process end by itself; nobody waits for it yet."""
         self._say(json.dumps(dict(end=True)))
+
+    def end(self):
+        """Wait for a process that was told to end."""
         try:
             self._process.wait(END_TIME)
         except subprocess.TimeoutExpired:

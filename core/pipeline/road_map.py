@@ -254,7 +254,7 @@ def _paint(result, image_path, settings, stages, executor):
     result.counts["marking_points_kept"] = len(points)
     markings, clustered = stages.run("clusters", "Clustering markings …", cluster_markings, points, frame, settings.clusters,
                                      executor=executor.passing())
-    executor.release()
+    executor.forget()
     markings = correct_markings(markings, result.corrections)
     edges = result.edges.densified(frame)
     lines = stages.run("lines", "Fitting marking lines …", fit_marking_lines, clustered, markings, frame, settings.lines,
@@ -270,6 +270,7 @@ def _paint(result, image_path, settings, stages, executor):
     driving, elements, lanes = stages.run(
         "driving", "Making driving lines …", make_driving_lines, lines, frame, settings.driving,
         markings=markings, edges=edges, road_points=result.road_points)
+    executor.release()
     driving, elements, lanes = correct_lanes(driving, elements, lanes, frame, result.corrections,
                                              settings.driving.lane_width or country(settings.driving.country).usual_lane, known)
     result.driving_lines, result.curve_elements = driving_lines_to_features(driving, frame), curve_elements_to_features(elements, frame)

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from contextlib import closing
+from contextlib import closing, contextmanager
 from dataclasses import dataclass, field
+from functools import partial
 from typing import TYPE_CHECKING
 
 from ..common.errors import RoadExtractionError
+from ..common.parallel import InBackground
 from ..common.progress import Progress
+from ..survey.lattice.scan_lattice import find_lattice
 from .agreement import CurbEvidence, measure_agreement, select_curb_points
 from .common.curb_points import CurbPoints
 from .common.decimation import LevelGround, PointDecimation
@@ -96,12 +99,24 @@ def find_curb_points(survey: Survey, settings: BoundarySettings = BoundarySettin
     and islands are found in plan, once, and belong to the curbs that are drawn.
     """
     least = settings.scanlines.limits.least_height
-    with closing(PointDecimation(survey, settings.curbs.profile_width, settings.curbs.point_spacing, least)) as decimation:
-        return _find_curb_points(decimation, settings, progress)
+    with (closing(PointDecimation(survey, settings.curbs.profile_width, settings.curbs.point_spacing, least)) as decimation,
+          _lattice_meanwhile(survey, settings) as lattice):
+        return _find_curb_points(decimation, lattice, settings, progress)
 
 
-def _find_curb_points(decimation, settings, progress):
-    """`find_curb_points` with the points of a PointDecimation."""
+@contextmanager
+def _lattice_meanwhile(survey, settings):
+    """A function of a Progress that gives the scan lattice; with both methods this process finds it while others find the curbs on profiles."""
+    find = partial(find_lattice, survey, settings.planes.rotation_frequency)
+    if settings.method == "both" and survey.executor.folder is not None:
+        with InBackground(find) as finding:
+            yield finding.result
+    else:
+        yield find
+
+
+def _find_curb_points(decimation, lattice, settings, progress):
+    """`find_curb_points` with the points of a PointDecimation and a function that gives the lattice."""
     survey, both, found = decimation.survey, settings.method == "both", {}
     beside: dict[int, dict[str, OcclusionGrid]] = {}
     beside_of_scanlines: dict[int, dict[str, OcclusionGrid]] = {}
@@ -111,7 +126,7 @@ def _find_curb_points(decimation, settings, progress):
         found["profiles"] = detect_curbs(survey, settings.curbs, part, not both, decimation, beside, chains[0])
     if settings.method != "profiles":
         part = progress.part(PROFILES_PROGRESS if both else 0.0, 1.0)
-        source = SurveyScanlines(survey, settings.planes, settings.scanlines.sensor_height, progress=part.part(0.0, LATTICE_PROGRESS),
+        source = SurveyScanlines(survey, settings.planes, settings.scanlines.sensor_height, lattice(part.part(0.0, LATTICE_PROGRESS)),
                                  level=_level_for(decimation, settings.scanlines))
         found["scanlines"] = curbs_from_scanlines(source, settings.scanlines, settings.curbs.block_length,
                                                   part.part(LATTICE_PROGRESS, RETURNS_PROGRESS), beside_of_scanlines if both else beside, chains[1])

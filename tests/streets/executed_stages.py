@@ -1,15 +1,20 @@
-"""The stages of a road map up to markings, run by any executor on a sample survey in small tasks, and what must be the same to the last bit."""
+"""The stages of a road map, run by any executor on a sample survey in small tasks, and what must be the same to the last bit."""
 
 import numpy as np
 import pytest
 import shapely
 from lanewright.core.common.progress import Progress
+from lanewright.core.driving import heights
+from lanewright.core.driving.driving_lines import make_driving_lines
 from lanewright.core.execution.choice import ExecutionSettings
 from lanewright.core.execution.work_folder import KeptResults
 from lanewright.core.intensity import correction
 from lanewright.core.intensity import image as imaging
 from lanewright.core.intensity.correction import correct_intensity
 from lanewright.core.intensity.image import make_intensity_image
+from lanewright.core.markings.cells import clusters as linking
+from lanewright.core.markings.cross_section import evidence
+from lanewright.core.markings.lines.fit import fit_marking_lines
 from lanewright.core.markings.objects import phases
 from lanewright.core.markings.objects.cluster import cluster_markings
 from lanewright.core.markings.objects.marking_objects import markings_to_features
@@ -26,15 +31,15 @@ from lanewright.core.survey import point_density
 from lanewright.core.survey.point_density import cube_densities
 
 PHASES = ["ground_of_windows", "surface_points", "cubes_of_stretch", "levels_of_stretch", "corrected_of_stretch", "windows_of_image",
-          "sums_of_pieces", "scatter_of_windows", "levels_of_windows", "paint_of_windows", "kept_of_windows", "combs_of_windows",
-          "shapes_of_clusters", "outlines_of_markings"]
+          "sums_of_pieces", "scatter_of_windows", "levels_of_windows", "paint_of_windows", "kept_of_windows", "links_of_windows",
+          "combs_of_windows", "shapes_of_clusters", "outlines_of_markings", "seen_in_stretch", "heights_of_windows"]
 
 
 def found_by(sample, executor=None, work=None, progress=Progress()):
-    """All numbers of road points, outline, image, paint and markings; `progress` is that of the last two. The executor is closed."""
+    """All numbers of road points, outline, image, paint, markings and lines; `progress` is that of the last three. The executor is closed."""
     made, path = sample
     with pytest.MonkeyPatch.context() as patch:
-        for module in (extract, correction, point_density):
+        for module in (extract, correction, point_density, evidence):
             patch.setattr(module, "STRETCH_POINTS", 40_000)
         patch.setattr(measured_ground, "MEASURED_WINDOWS", 2)
         patch.setattr(imaging, "LOOKED_WINDOWS", 1)
@@ -43,6 +48,10 @@ def found_by(sample, executor=None, work=None, progress=Progress()):
         patch.setattr(scatter, "EXAMINED_WINDOWS", 1)
         patch.setattr(phases, "TASK_POINTS", 300)
         patch.setattr(remove, "TASK_WINDOWS", 1)
+        patch.setattr(heights, "HEIGHT_POINTS", 1)
+        patch.setattr(linking, "LINKING_WINDOW_CELLS", 250)
+        patch.setattr(linking, "LINKED_POINTS", 300)
+        patch.setattr(linking, "PHASE_POINTS", 3000)
         if executor is not None:
             patch.setattr(opening, "executor_for", lambda *_: KeptResults(executor, work) if work else executor)
         survey = opening.open_survey([path], made.trajectory, execution=ExecutionSettings(work_folder=str(work.path) if work else ""))
@@ -58,10 +67,14 @@ def found_by(sample, executor=None, work=None, progress=Progress()):
             image.close()
             paint = remove_outliers(paint, progress=progress, executor=survey.executor.passing())
             markings, clustered = cluster_markings(paint, survey.frame, progress=progress, executor=survey.executor.passing())
+            edges = edges.densified(survey.frame)
+            lines = fit_marking_lines(clustered, markings, survey.frame, progress=progress, edges=edges, road_points=road_points)
+            driving, _, lanes = make_driving_lines(lines, survey.frame, progress=progress, markings=markings, edges=edges, road_points=road_points)
+            lined = lines.course.x.tobytes(), lines.kind.tolist(), driving.vertices.tobytes(), driving.sigma.tobytes(), lanes.left.tobytes()
             clusters = [clustered.section(*key).cluster.tobytes() for key in clustered.all_sections()]
             drawn = [shapely.to_wkb(one) for one in markings_to_features(markings, survey.frame).geometries], markings.kind.tolist()
             painted = [(key, np.array(paint.section(*key).records).tobytes()) for key in paint.all_sections()]
             corrected = [road_points.section(*key).corrected.tobytes() for key in road_points.all_sections()]
-            return selected, corrected, surface.area.tobytes(), surface.status.tolist(), density, report, pixels, painted, clusters, drawn
+            return selected, corrected, surface.area.tobytes(), surface.status.tolist(), density, report, pixels, painted, clusters, drawn, lined
         finally:
             survey.store.close()

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.spatial import cKDTree
 
 from ...common.groups import linked_groups
-from ...common.parallel import ordered_map
+from ...common.parallel import check_cancelled
 from ...common.progress import Progress
+from ...execution.phase import Executor, NoSource, Phase
+from ...execution.threads import THREADS
 from ...survey.store.records import COORDINATE_SCALE
 from ...survey.store.road_columns import columns_of_roads
 from .components import components, occupied
@@ -21,6 +24,9 @@ if TYPE_CHECKING:
     from ...survey.store.road_points import RoadPoints
 
 LINKING_WINDOW_CELLS = 1250                   # cells of 4 cm: 50 m of station are linked at a time
+LINKING_COLUMNS = ("s", "d", "spacing", "half_width")   # of a point, that linking looks at
+LINKED_POINTS = 50_000                        # of paint, that a worker process links together at least: about 50 ms of its time
+PHASE_POINTS = 500_000                        # of paint, whose columns are held for tasks at a time
 # of a point of paint that clustering looks at
 PAINT_COLUMNS = ("x", "y", "z", "s", "d", "intensity", "corrected", "pass_number", "half_width", "covered", "spacing")
 ROAD_EDGE_CLEARANCE = 0.10                    # m: strips so near to the road edge are taken for verge
@@ -28,7 +34,8 @@ REACH_ALONG_FACTOR = 2.5                      # neighbours may be this times the
 REACH_ACROSS_DIVISOR = 2.0                    # and across it the distance over this, or the reach between tracks of the scan
 
 
-def connected_points(marking_points: RoadPoints, road: int, distance: float, progress: Progress = Progress()) -> tuple[Columns, np.ndarray]:
+def connected_points(marking_points: RoadPoints, road: int, distance: float, progress: Progress = Progress(),
+                     executor: Executor = THREADS) -> tuple[Columns, np.ndarray]:
     """Connected components of the points of one road.
 
     Parameters
@@ -37,6 +44,7 @@ def connected_points(marking_points: RoadPoints, road: int, distance: float, pro
     road : number of the road
     distance : m, by which points of one marking are joined
     progress : Progress
+    executor : who links the points of windows
 
     Returns
     -------
@@ -50,24 +58,10 @@ def connected_points(marking_points: RoadPoints, road: int, distance: float, pro
     in station, and windows are joined through the cells they share, so neither
     window nor section length shows in the result.
     """
-    start, end = marking_points.store.span(road)
-    reach = int(np.ceil(distance * REACH_ALONG_FACTOR / (CELL_UNITS * COORDINATE_SCALE))) + 1
     records = columns_of_roads(marking_points.store, [road], PAINT_COLUMNS)
     labels, links = [], []
     shared_cells, shared_labels, count = np.empty((0, 2), np.int64), np.empty(0, np.int64), 0
-    first_window, last_window = (int(np.floor(s / COORDINATE_SCALE / CELL_UNITS / LINKING_WINDOW_CELLS)) for s in (start, end))
-
-    def linked(window):
-        first, last = window * LINKING_WINDOW_CELLS, (window + 1) * LINKING_WINDOW_CELLS
-        bounds = (row * CELL_UNITS * COORDINATE_SCALE for row in (first - 1, last + reach + 1))
-        found = marking_points.window(road, *bounds).records
-        column = found["s"] // CELL_UNITS
-        found = found[(column >= first) & (column < last + reach)]
-        cells, member, component = components_of_points(found, distance)
-        own = found["s"] // CELL_UNITS < last
-        return cells, component, cells[:, 0] >= last, member[own]
-
-    for cells, component, beyond, member in ordered_map(linked, range(first_window, last_window + 1), progress):
+    for cells, component, beyond, member in _linked_windows(marking_points, road, distance, progress, executor):
         component = component + count
         count = component.max(initial=count - 1) + 1
         links.append(_shared(shared_cells, shared_labels, cells, component))
@@ -80,7 +74,58 @@ def connected_points(marking_points: RoadPoints, road: int, distance: float, pro
     return records, np.concatenate([merged[some] for some in labels])
 
 
-def components_of_points(records: Columns, distance: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _linked_windows(marking_points, road, distance, progress, executor):
+    """What `links_of_windows` finds in each window of a road, in their order."""
+    phase = Phase(links_of_windows, NoSource(), (distance,), lambda item: f"markings of road {road}")
+    first, last = (int(np.floor(s / COORDINATE_SCALE / CELL_UNITS / LINKING_WINDOW_CELLS)) for s in marking_points.store.span(road))
+    least = 0 if executor.folder is None else LINKED_POINTS
+    items, size, held, begin = [], least, 0, first
+    for number in range(first, last + 1):
+        check_cancelled()
+        window = _points_to_link(marking_points, road, distance, number)
+        if size >= least:
+            items.append([])
+            size = 0
+        items[-1].append(window)
+        size, held = size + len(window[0]), held + len(window[0])
+        if held >= PHASE_POINTS or number == last:
+            part = progress.part((begin - first) / (last + 1 - first), (number + 1 - first) / (last + 1 - first))
+            yield from (one for some in executor.run(phase, items, part) for one in some)
+            items, size, held, begin = [], least, 0, number + 1
+
+
+def _points_to_link(marking_points, road, distance, number):
+    """LINKING_COLUMNS of the points of a window and of those beyond its end that they may reach, and the cell along the road at which it ends."""
+    reach = int(np.ceil(distance * REACH_ALONG_FACTOR / (CELL_UNITS * COORDINATE_SCALE))) + 1
+    first, end = number * LINKING_WINDOW_CELLS, (number + 1) * LINKING_WINDOW_CELLS
+    found = marking_points.window(road, *(row * CELL_UNITS * COORDINATE_SCALE for row in (first - 1, end + reach + 1))).records
+    column = found["s"] // CELL_UNITS
+    found = found[(column >= first) & (column < end + reach)]
+    return *(found[name] for name in LINKING_COLUMNS), end
+
+
+def links_of_windows(source: NoSource, item: list[tuple[Any, ...]], distance: float) -> list[tuple[np.ndarray, ...]]:
+    """The phase that links the points of windows.
+
+    Parameters
+    ----------
+    source : NoSource
+    item : of each window LINKING_COLUMNS of its N points, one after the other, and the cell along the road at which it ends
+    distance : m, by which points of one marking are joined
+
+    Returns
+    -------
+    of each window (K, 2) int occupied cells, (K,) int their component, (K,) bool whether they lie beyond the end, and (M,) int the cell of
+    each point that does not
+    """
+    found: list[tuple[np.ndarray, ...]] = []
+    for *columns, end in item:
+        cells, member, component = components_of_points(dict(zip(LINKING_COLUMNS, columns)), distance)
+        found.append((cells, component, cells[:, 0] >= end, member[columns[0] // CELL_UNITS < end]))
+    return found
+
+
+def components_of_points(records: Columns | Mapping[str, np.ndarray], distance: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Connected components of some points.
 
     Parameters

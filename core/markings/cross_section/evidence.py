@@ -9,14 +9,16 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from scipy.ndimage import binary_closing
 
-from ...common.parallel import ordered_map
+from ...execution.phase import Phase
 from ...survey.store.records import COORDINATE_SCALE
+from ...survey.store.section_store import STRETCH_POINTS
 from .candidates import FAR, Candidates
 from .sections import STATION_STEP
 
 if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame
     from ...survey.store.road_points import RoadPoints
+    from ...survey.store.section_store import Stretch
     from ..objects.marking_objects import MarkingObjects
 
 BIN = 0.2              # m across, of what is seen of the surface and of hatching
@@ -139,7 +141,11 @@ def _surface_coverage(points, road, first, count):
     """The same for stations first to first + count of the grid."""
     covered = np.zeros((count, BINS), bool)
     total, number = np.zeros((2, count, 2))
-    for begin, *seen in ordered_map(lambda section: _seen_in_section(points.section(road, section).records, first, count), points.sections(road)):
+    executor, length = points.executor, points.store.section_length
+    phase = Phase(seen_in_stretch, points, (first, count), lambda item: points.survey.stretch(road, item[1] * length, item[2] * length))
+    numbers = [one for one in points.roads() if one == road]
+    stretches = points.store.stretches(STRETCH_POINTS if executor.folder else 0, numbers)
+    for begin, *seen in (one for some in executor.run(phase, stretches) for one in some):
         own = slice(begin, begin + len(seen[0]))
         covered[own] |= seen[0]
         total[own] += seen[1]
@@ -149,9 +155,25 @@ def _surface_coverage(points, road, first, count):
     return covered, ends
 
 
+def seen_in_stretch(points: RoadPoints, stretch: Stretch, first: int, count: int) -> list[tuple[int, np.ndarray, np.ndarray, np.ndarray]]:
+    """The phase that looks where the surface was scanned.
+
+    Parameters
+    ----------
+    points : RoadPoints
+    stretch : Stretch of a road
+    first, count : stations first to first + count of the grid are looked at
+
+    Returns
+    -------
+    of each section the first of the N stations that it shows, less `first`; (N, BINS) bool, the bins with points; (N, 2) sums of half widths (mm)
+    and (N, 2) numbers of points on the left and on the right
+    """
+    return [_seen_in_section(points.section(*key).records, first, count) for key in points.store.in_stretch(stretch)]
+
+
 def _seen_in_section(records, first, count):
-    """Of the stations first to first + count that a section shows: the first one of these, less `first`, and by station the bins with
-    points, the sum of half widths (mm) and the number of points on the left and on the right."""
+    """What `seen_in_stretch` gives of one section."""
     step, wide, far = (int(round(length / COORDINATE_SCALE)) for length in (STATION_STEP, BIN, FAR))
     k, d = (records["s"] + step // 2) // step - first, records["d"]
     inside = (k >= 0) & (k < count) & (np.abs(d) < far)

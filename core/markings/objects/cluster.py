@@ -90,7 +90,7 @@ def cluster_markings(marking_points: RoadPoints, frame: RoadFrame, settings: Clu
     frame : RoadFrame
     settings : ClusterSettings
     progress : Progress
-    executor : who looks for crossings, divides compound clusters and measures clusters
+    executor : who links points, looks for crossings, divides compound clusters and measures clusters
 
     Returns
     -------
@@ -103,7 +103,7 @@ def cluster_markings(marking_points: RoadPoints, frame: RoadFrame, settings: Clu
     lines = [frame.road(road) for road in roads]
     first, second, last = ([progress.part(begin + share * k / len(roads), begin + share * (k + 1) / len(roads)) for k in range(len(roads))]
                            for begin, share in ((0.0, 0.1), (0.1, 0.6), (0.7, 0.3)))
-    connected = [connected_points(marking_points, road, settings.distance, part) for road, part in zip(roads, first)]
+    connected = [connected_points(marking_points, road, settings.distance, part, executor) for road, part in zip(roads, first)]
     counts = [len(records) for records, _ in connected]
     works = [ApartWork(executor, line.number) for line in lines]
     known = [_stripes_of_crossings(records, line, work, part.part(0.0, 0.5))
