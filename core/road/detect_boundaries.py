@@ -108,7 +108,8 @@ def find_curb_points(survey: Survey, settings: BoundarySettings = BoundarySettin
 def _lattice_meanwhile(survey, settings):
     """A function of a Progress that gives the scan lattice; with both methods this process finds it while others find the curbs on profiles."""
     find = partial(find_lattice, survey, settings.planes.rotation_frequency)
-    if settings.method == "both" and survey.executor.folder is not None:
+    # points that are not yet where others see them are moved there as the phase begins: nobody may read them meanwhile
+    if settings.method == "both" and survey.executor.folder is not None and survey.folder is not None:
         with InBackground(find) as finding:
             yield finding.result
     else:

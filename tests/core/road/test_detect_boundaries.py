@@ -142,6 +142,25 @@ def test_while_others_look_for_curbs_on_profiles_the_scan_lattice_is_found(tmp_p
     find = detect_boundaries.find_lattice
     monkeypatch.setattr(detect_boundaries, "find_lattice", lambda *arguments: begun.set() or find(*arguments))
     surveyed = survey_of(street())
+    surveyed.recipe(tmp_path)
     surveyed.executor = Elsewhere(tmp_path, begun)
     found = find_curb_points(surveyed, BoundarySettings("both"))["both"]
     assert begun.is_set() and found.x.tobytes() == known.x.tobytes() and len(found)
+
+
+def test_points_that_others_do_not_see_yet_are_not_read_while_they_are_moved(tmp_path, monkeypatch):
+    def find(survey, *others):
+        assert survey.folder is not None
+        return find_lattice(survey, *others)
+
+    class Moving(Threads):
+        def run(self, phase, *others, **named):
+            surveyed.recipe(tmp_path)
+            return super().run(phase, *others, **named)
+
+    find_lattice = detect_boundaries.find_lattice
+    monkeypatch.setattr(detect_boundaries, "find_lattice", find)
+    surveyed = survey_of(street())
+    surveyed.executor = Moving()
+    surveyed.executor.folder = tmp_path
+    assert len(find_curb_points(surveyed, BoundarySettings("both"))["both"])
