@@ -7,6 +7,7 @@ import json
 import os
 import signal
 import sys
+import warnings
 from importlib.util import find_spec
 
 from ..algorithms import parameters as specs
@@ -45,6 +46,8 @@ class Parser(argparse.ArgumentParser):
 def main(arguments=None):
     """Run the program; its exit code: 0, 1 after one sentence on stderr (with --json on stdout too), 130 after Ctrl-C."""
     arguments = sys.argv[1:] if arguments is None else list(arguments)
+    # CRSs are compared by their projections' words, which leave out names that do not matter
+    warnings.filterwarnings("ignore", "You will likely lose important projection information", UserWarning)
     as_json = JSON in arguments
     arguments = [argument for argument in arguments if argument != JSON]
     language, arguments = asked_language(arguments)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -182,8 +181,5 @@ def same_crs(a: Any, b: Any) -> bool:
 
 def _projection(crs):
     """The projection and its parameters by name, without what is only said about them; empty where PROJ has no words for it."""
-    with warnings.catch_warnings():
-        # that the words leave out what WKT says besides, which is not asked for here
-        warnings.simplefilter("ignore", UserWarning)
-        words = crs.to_dict()
+    words = crs.to_dict()
     return {key: value for key, value in words.items() if key not in ("title", "type", "no_defs")}

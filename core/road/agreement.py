@@ -177,6 +177,10 @@ def _level(measured, other, chains, grid, sign):
     for a, b in mask_runs(doubtful):
         if (b - a) * COMPARISON_STEP < MIN_SINGLE_METHOD_LENGTH and (level[max(a - 1, 0)] or level[min(b, len(level) - 1)]):
             level[a:b] = True
+    # a place alone says nothing of a curb that goes on on both sides of it
+    for a, b in mask_runs(level):
+        if b - a == 1:
+            level[a:b] = False
     return level
 
 
