@@ -77,7 +77,7 @@ class WorkFolder:
             found = json.loads((self.path / f"{name}.json").read_text(encoding="utf-8"))
             folder = self.path / found["folder"]
             whole = all((folder / file).stat().st_size == size for file, size in found["sizes"].items())
-        except (FileNotFoundError, ValueError):
+        except (FileNotFoundError, ValueError, KeyError):
             return None
         return (folder, [(kind, text) for kind, text in found["messages"]]) if whole and folder.is_dir() else None
 

@@ -150,7 +150,8 @@ def _better_points(found, frame, *seen):
     """At every place the curb points of that method which measures better."""
     # scanlines first: three planes are a stricter model of a curb than a profile
     methods = ("scanlines", "profiles")
-    return select_curb_points(*(found[method] for method in methods), *(fit_road_edges(found[method], frame) for method in methods), frame, *seen)
+    edges = (fit_road_edges(found[method], frame, led_across=False) for method in methods)
+    return select_curb_points(*(found[method] for method in methods), *edges, frame, *seen)
 
 
 def draw_boundaries(found: dict[str, CurbPoints], frame: RoadFrame, settings: EdgeSettings = EdgeSettings(),

@@ -161,6 +161,7 @@ class GapLine:
         self.origin, self.along = first, (last - first) / max(np.hypot(*(last - first)), 1e-9)
         degree = 1 + sum(np.hypot(*(end[:, -1] - end[:, 0])) >= MIN_BEND_LENGTH for end in ends)
         t, v = self.place(*known)
+        self.ends = np.c_[before[:, -1], after[:, 0]]
         self.line = Polynomial.fit(t, v, min(degree, max_degree), w=np.sqrt(np.concatenate(weights)))
         self.miss = float(np.abs(v - self.line(t)).max())
 
@@ -168,6 +169,13 @@ class GapLine:
         """(N,) m along the chord and left of it."""
         dx, dy = x - self.origin[0], y - self.origin[1]
         return dx * self.along[0] + dy * self.along[1], dy * self.along[0] - dx * self.along[1]
+
+    def between(self, spacing: float) -> np.ndarray:
+        """(2, N) m, x and y of places in the gap about so far apart on the line, which is moved to meet the last place before and the first after."""
+        t, off = self.place(*self.ends)[0], self.off(*self.ends)
+        inner = np.linspace(t[0], t[1], max(int(np.ceil((t[1] - t[0]) / spacing)), 1) + 1)[1:-1]
+        v = self.line(inner) + np.interp(inner, t, off)
+        return self.origin[:, None] + np.array([inner * self.along[0] - v * self.along[1], inner * self.along[1] + v * self.along[0]])
 
     def off(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
         """(N,) m from the line, left positive."""

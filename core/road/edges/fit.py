@@ -33,6 +33,7 @@ IN_LINE_GAP_FACTOR = 2.0      # times the longest bridged gap that a curb may be
 IN_LINE_TURN = IN_LINE_ACROSS / LINE_FIT_LENGTH   # rad at most; by more across shorter gaps
 MAX_EDGE_SKEW = 1.0           # m across per m along of a joined edge
 MAX_EDGE_JUMP = 0.25          # m across that two joined points may differ in any case
+BRIDGE_SPACING = 3.0          # m, about, between places on a line across a gap
 EDGE_VERTEX_SPACING = 0.5     # m between vertices
 MIN_EDGE_LENGTH = 2.0         # m of a piece with curb points
 GAP_SIGMA = 0.0005            # m per m of the longest bridged gap, least noise of the points of a curve across it
@@ -57,7 +58,7 @@ class EdgeSettings:
 
 
 def fit_road_edges(curb_points: CurbPoints, frame: RoadFrame, settings: EdgeSettings = EdgeSettings(),
-                   progress: Progress = Progress()) -> RoadEdges:
+                   progress: Progress = Progress(), led_across: bool = True) -> RoadEdges:
     """Fit a smoothing cubic B-spline through the curb points of each side.
 
     Parameters
@@ -66,6 +67,7 @@ def fit_road_edges(curb_points: CurbPoints, frame: RoadFrame, settings: EdgeSett
     frame : RoadFrame
     settings : EdgeSettings
     progress : Progress
+    led_across : do even bends lead the curve across gaps? Not needed where only what is measured counts
 
     Returns
     -------
@@ -81,7 +83,7 @@ def fit_road_edges(curb_points: CurbPoints, frame: RoadFrame, settings: EdgeSett
         for side in ("left", "right"):
             drawn = []
             for piece in _pieces(own[own["side"] == side], settings.max_gap):
-                drawn.append(_draw(of_road, road, side, piece, lines, frame.pass_sigma.get(road.number, 0.0)))
+                drawn.append(_draw(of_road, frame, road.number, side, piece, lines, led_across))
                 lines += 1
             if settings.fallback_width:
                 lines = _draw_fallback(of_road, frame, road, side, drawn, settings.fallback_width, lines)
@@ -128,7 +130,7 @@ def _pieces(rows, max_gap):
     # the longer a gap is, the better both parts must show the direction of one line
     s = np.ascontiguousarray(points["s"])
     bridged[[k for k in np.flatnonzero(bridged & (gap > max_gap))
-             if _turn_between(points, s, k) > IN_LINE_TURN * IN_LINE_GAP_FACTOR * max_gap / gap[k]]] = False
+             if _line_across(points, s, k)[0] > IN_LINE_TURN * IN_LINE_GAP_FACTOR * max_gap / gap[k]]] = False
     breaks = np.flatnonzero(~(joined | bridged)) + 1
     pieces = []
     for part, flags in zip(np.split(points, breaks), np.split(np.r_[bridged, False], breaks)):
@@ -137,19 +139,52 @@ def _pieces(rows, max_gap):
     return pieces
 
 
-def _turn_between(points, s, k):
-    """Radians that the curb on both sides of a gap, which begins at point k, turns off one even bend, on the map or as seen from the road.
+def _line_across(points, s, k):
+    """The even bend that leads best across a gap, which begins at point k, on the map or as seen from the road.
+
+    Returns (radians that the curb on both sides turns off it, GapLine or None, the fields that are its axes).
 
     Where a bend begins or ends behind a row of parked cars no even bend leads through both sides; the road itself bends there alike.
-    A bay is only as long as the cars in it: its curb turns aside next to the gap, and the last metres tell where it leads.
+    A bay is only as long as the cars in it: its curb turns aside next to the gap, and where the last ten metres are not in one line the last
+    three tell where it leads.
     """
-    turns = [np.inf]
+    best = np.inf, None, ""
     for reach in (LINE_FIT_LENGTH, MIN_BEND_LENGTH):
+        if best[0] <= IN_LINE_TURN:
+            break
         parts = points[stretch_of(s, s[k] - reach, s[k])], points[stretch_of(s, s[k + 1], s[k + 1] + reach)]
         if reach == LINE_FIT_LENGTH and max(np.ptp(part["s"]) for part in parts) < MIN_BEND_LENGTH:
             break
-        turns += [GapLine(*(np.array([part[axis] for axis in axes]) for part in parts), max_degree=2).miss / reach for axes in ("xy", "sd")]
-    return min(turns)
+        for axes in ("xy", "sd"):
+            line = GapLine(*(np.array([part[axis] for axis in axes]) for part in parts), max_degree=2)
+            best = min(best, (line.miss / reach, line, axes), key=lambda found: found[0])
+    return best
+
+
+def _with_bridges(points, bridged, frame, road, led_across):
+    """Points of an edge with places of its bridges between them, as a GapLine leads, and the numbers that the points have among them.
+
+    Also the longest bridge without such a line, m.
+    """
+    found, rows, longest = [], np.arange(len(points)), 0.0
+    s = np.ascontiguousarray(points["s"])
+    for k in np.flatnonzero(bridged):
+        turn, line, axes = _line_across(points, s, k) if led_across else (np.inf, None, "")
+        gap = points["s"][k + 1] - points["s"][k]
+        if turn > IN_LINE_TURN:
+            longest = max(longest, gap)
+            continue
+        places = line.between(BRIDGE_SPACING)
+        places = np.array(places if axes == "xy" else frame.to_map(road, *places, np.zeros(places.shape[1]))[:2])
+        bridge = np.repeat(points[k:k + 1], places.shape[1])
+        bridge["x"], bridge["y"] = places
+        share = np.arange(1, len(bridge) + 1) / (len(bridge) + 1)
+        bridge["z"] += share * (points["z"][k + 1] - points["z"][k])
+        found.append((k + 1, bridge))
+        rows[k + 1:] += len(bridge)
+    for k, bridge in found[::-1]:
+        points = np.concatenate([points[:k], bridge, points[k:]])
+    return points, rows, longest
 
 
 def without_outliers(points: np.ndarray) -> np.ndarray:
@@ -189,7 +224,9 @@ class EdgeCurve:
     Parameters
     ----------
     points : (N,) structured array with the fields `x`, `y`, `z`, `d` (m)
-    longest_gap : m that the curve bridges; the longer it is, the stiffer the curve, since the last points before a gap may give a poor direction
+    longest_gap : m that the curve bridges by itself; the longer it is, the stiffer the curve, since the last points before a gap may give a
+        poor direction
+    measured : numbers of the points whose scatter is that of all; None for all of them
 
     Attributes
     ----------
@@ -197,13 +234,14 @@ class EdgeCurve:
     residual : (N,) m, distance in plan of the points from the curve
     """
 
-    def __init__(self, points: np.ndarray, longest_gap: float = 0.0):
+    def __init__(self, points: np.ndarray, longest_gap: float = 0.0, measured: np.ndarray | None = None):
         x, y, z = points["x"], points["y"], points["z"]
         self.middle = np.array([x.mean(), y.mean(), z.mean()])
         x, y, z = x - self.middle[0], y - self.middle[1], z - self.middle[2]
         self.t = np.r_[0.0, np.cumsum(np.maximum(np.hypot(np.diff(x), np.diff(y)), 1e-3))]
         order = min(3, len(x) - 1)
-        across, up = (max(_noise(self.t, points[name]), GAP_SIGMA * longest_gap) for name in ("d", "z"))
+        known = np.arange(len(x)) if measured is None else measured
+        across, up = (max(_noise(self.t[known], points[name][known]), GAP_SIGMA * longest_gap) for name in ("d", "z"))
         # the noise across divides between x and y: N points have the sum N sigma²
         self.plan, _ = splprep([x, y], u=self.t, k=order, s=len(x) * across**2)
         self.height = splrep(self.t, z, k=order, s=len(x) * up**2)
@@ -226,21 +264,23 @@ def _noise(t, values):
     return max(float(np.median(np.abs(off) / np.sqrt(1 + f**2 + (1 - f) ** 2))) * MAD_TO_SIGMA, MIN_POINT_SIGMA)
 
 
-def _draw(found, road, side, piece, number, passes):
+def _draw(found, frame, road, side, piece, number, led_across):
     """Add the pieces of one edge; returns its (start, end) station."""
     points, bridged = piece
-    curve = EdgeCurve(points, float(np.diff(points["s"])[bridged].max(initial=0.0)))
+    with_bridges, known, longest = _with_bridges(points, bridged, frame, road, led_across)
+    curve = EdgeCurve(with_bridges, longest, known)
+    t, residual = curve.t[known], curve.residual[known]
     changes = np.flatnonzero(np.diff(bridged.astype(int))) + 1
     bounds = np.r_[0, changes, len(points) - 1]
     for i, j in zip(bounds[:-1], bounds[1:]):
         check_cancelled()
-        a, b = curve.t[i], curve.t[j]
+        a, b = t[i], t[j]
         along = np.linspace(a, b, max(int(np.ceil((b - a) / EDGE_VERTEX_SPACING)), 1) + 1)
         vertices, rows = curve.at(along), points[i:j + 1]
-        found.append(EdgePiece(vertices, road.number, side, "bridged" if bridged[i] else "measured", number, float(rows["s"][0]),
+        found.append(EdgePiece(vertices, road, side, "bridged" if bridged[i] else "measured", number, float(rows["s"][0]),
                                float(rows["s"][-1]), float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum()),
-                               float(np.median(rows["height"])), float(np.sqrt(np.mean(curve.residual[i:j + 1] ** 2))),
-                               sigma=edge_sigma(along, curve.t, curve.residual, points["support"], passes=passes)))
+                               float(np.median(rows["height"])), float(np.sqrt(np.mean(residual[i:j + 1] ** 2))),
+                               sigma=edge_sigma(along, t, residual, points["support"], passes=frame.pass_sigma.get(road, 0.0))))
     return float(points["s"][0]), float(points["s"][-1])
 
 

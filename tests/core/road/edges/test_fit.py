@@ -118,6 +118,27 @@ def test_the_curb_of_a_bay_is_bridged_behind_the_cars_in_it(cars):
     np.testing.assert_allclose(shapely.get_coordinates(line)[:, 1] - NORTH, 5.5, atol=0.05)
 
 
+def test_the_line_behind_the_cars_in_a_bay_on_a_bend_does_not_depend_on_where_its_points_lie():
+    """Of the curb of the bay 3 m are seen beside the cars, and beyond these its ends, which turn aside by a metre or two."""
+    radius, depth, first, last = 60.0, 2.0, 15.0, 44.0
+    s = np.arange(0.0, 70.0, 0.25)
+    frame = build_frame(Trajectory(s / 10.0, radius * np.sin(s / radius) + EAST, radius * (1 - np.cos(s / radius)) + NORTH, np.full(len(s), 102.5)))
+    errors = []
+    for shift, noise in [(k / 11, seed) for k in range(11) for seed in range(3)]:
+        rng, points = np.random.default_rng(noise), Features("PointZ", list(CURB_POINTS))
+        at = np.r_[np.arange(2.0, 21.0, 0.5), np.arange(38.0, 66.0, 0.5)] + 0.5 * shift
+        for status, stations in (("measured", at), ("occluded", np.arange(21.5, 38.0, 0.5))):
+            for place in stations:
+                smooth = np.clip([(place - first) / 3.0 + 0.2, (last - place) / 3.0 + 0.2], 0.0, 1.0).min()
+                d = 3.5 + depth * smooth**2 * (3 - 2 * smooth) + rng.normal(0.0, 0.003)
+                x, y = (radius - d) * np.sin(place / radius), radius - (radius - d) * np.cos(place / radius)
+                points.add(shapely.Point(x + EAST, y + NORTH, 100.0), road=0, side="left", status=status, part="bottom", station_m=float(place),
+                           offset_m=float(d), height_m=0.12, chain=0)
+        bridge, = [shapely.get_coordinates(line) for line, row in fit_road_edges(points, frame) if row["status"] == "bridged"]
+        errors.append(np.abs(radius - 3.5 - depth - np.hypot(bridge[:, 0] - EAST, bridge[:, 1] - NORTH - radius)).max())
+    assert max(errors) < 0.05 and np.ptp(errors) < 0.02
+
+
 @pytest.mark.parametrize(("aside", "bridged"), [(0.0, 1), (0.6, 0)], ids=["with the road", "aside"])
 def test_a_long_gap_in_which_a_bend_begins_is_bridged_where_the_curb_goes_on_beside_the_road(aside, bridged):
     s = np.arange(0.0, 90.0, 0.25)
