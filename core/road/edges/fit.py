@@ -166,13 +166,12 @@ def _with_bridges(points, bridged, frame, road, led_across):
 
     Also the longest bridge without such a line, m.
     """
-    found, rows, longest = [], np.arange(len(points)), 0.0
+    parts, begin, before, longest = [], 0, np.zeros(len(points), int), 0.0
     s = np.ascontiguousarray(points["s"])
     for k in np.flatnonzero(bridged):
         turn, line, axes = _line_across(points, s, k) if led_across else (np.inf, None, "")
-        gap = points["s"][k + 1] - points["s"][k]
         if turn > IN_LINE_TURN:
-            longest = max(longest, gap)
+            longest = max(longest, s[k + 1] - s[k])
             continue
         places = line.between(BRIDGE_SPACING)
         places = np.array(places if axes == "xy" else frame.to_map(road, *places, np.zeros(places.shape[1]))[:2])
@@ -180,11 +179,9 @@ def _with_bridges(points, bridged, frame, road, led_across):
         bridge["x"], bridge["y"] = places
         share = np.arange(1, len(bridge) + 1) / (len(bridge) + 1)
         bridge["z"] += share * (points["z"][k + 1] - points["z"][k])
-        found.append((k + 1, bridge))
-        rows[k + 1:] += len(bridge)
-    for k, bridge in found[::-1]:
-        points = np.concatenate([points[:k], bridge, points[k:]])
-    return points, rows, longest
+        parts += [points[begin:k + 1], bridge]
+        begin, before[k + 1] = k + 1, len(bridge)
+    return np.concatenate([*parts, points[begin:]]), np.arange(len(points)) + np.cumsum(before), longest
 
 
 def without_outliers(points: np.ndarray) -> np.ndarray:
