@@ -28,7 +28,6 @@ SURE_SUPPORT = 80.0               # points per metre of road that show a step be
 SECOND_METHOD_CHAIN_OFFSET = 100_000  # added to the chain numbers of the second method, to keep both apart
 
 
-
 @dataclass(frozen=True)
 class CurbEvidence:
     """What a method saw beside the roads.
