@@ -16,7 +16,7 @@ import numpy as np
 from ..common.runs import stretch_of
 from .common.curb_points import CurbPoints, curb_points_at
 from .common.hidden_curb import hidden_beside
-from .common.in_line import LINE_FIT_LENGTH, MAX_LINE_GAP, chains_beside, pieces_between, side_by_side
+from .common.in_line import LINE_FIT_LENGTH, MAX_LINE_GAP, PieceInLine, StepsByStation, pieces_between
 from .common.occlusion import OcclusionGrid
 from .common.side_chains import SideChains
 from .common.sides import SIDE_SIGNS, expected_height
@@ -73,13 +73,20 @@ def _pieces_of_side(points, chains, survey, road, side, number):
     gap = np.diff(curb.s)
     begin = np.flatnonzero((gap > MAX_JOINED_GAP) & (gap <= MAX_LINE_GAP))
     gaps = np.column_stack([curb.s[begin], curb.s[begin + 1]])
-    of_methods = [chains_beside(gaps, known.chains) for known in chains]
-    for k, (a, b) in enumerate(gaps.tolist()):
+    of_methods = [StepsByStation(known.steps) for known in chains]
+
+    def to_plan(s, u):
+        return frame.road(road).to_map(s, sign * u)
+
+    for a, b in gaps.tolist():
         before, after = curb[stretch_of(curb.s, a - LINE_FIT_LENGTH, a)], curb[stretch_of(curb.s, b, b + LINE_FIT_LENGTH)]
-        pieces = {piece: known for known, beside in zip(chains, of_methods)
-                  for piece in pieces_between(before, after, known.chains, known.steps, lambda s, u: frame.road(road).to_map(s, sign * u), beside[k])}
-        for piece in side_by_side(pieces):
-            rows += pieces[piece].points(piece.chain, piece.start, piece.end, number + len(rows))
+        pieces = [(known, piece) for known, others in zip(chains, of_methods) for piece in pieces_between(before, after, others, to_plan)]
+        # of pieces beside each other the one nearest to the line
+        chosen: list[PieceInLine] = []
+        for known, piece in sorted(pieces, key=lambda found: found[1].off):
+            if all(piece.end < other.start or piece.start > other.end for other in chosen):
+                chosen.append(piece)
+                rows += known.points(piece.steps, number + len(rows))
     s, u, h = (np.array([row[name] for row in rows], float) for name in ("s", "u", "h"))
     places = frame.to_map(road, s, sign * u, h + expected_height(survey, road, s))
     return curb_points_at(frame, road, places, [row["fields"] for row in rows], points.crs, side=side, station=s, offset=sign * u)

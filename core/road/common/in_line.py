@@ -2,28 +2,38 @@
 
 A short piece of curb may be anything where it stands alone. Between two stretches of curb that were chosen already, a piece
 of their height that lies on the smooth line through both is the same curb, seen between what hides the rest of it, such as a
-row of parked cars. It may scatter more than a curb that nothing else speaks for.
+row of parked cars. Its steps are taken one by one, upright or sloped, linked with each other or not: which of them were linked
+to a chain hangs on a millimetre. It may scatter more than a curb that nothing else speaks for.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from ...common.near_pairs import overlapping_pairs
 from ...common.parallel import check_cancelled
 from ...common.runs import stretch_of
 from .corners import CurbSteps
-from .tracking import HEIGHT_TOLERANCE, StepChain
+from .tracking import (
+    HEIGHT_TOLERANCE,
+    LINK_TOLERANCE,
+    MAX_CHAIN_SCATTER,
+    MAX_JOINED_GAP,
+    MAX_LINK_LENGTH,
+    MAX_ROAD_ROUGHNESS,
+    StepChain,
+    seen_stretch,
+)
 
 LINE_FIT_LENGTH = 10.0      # m of curb before and after a gap that give the line across it
 WEIGHT_LENGTH = 5.0         # m from the gap at which a place counts half
 MIN_BEND_LENGTH = 3.0       # m of curb at an end from which its direction is known
 MAX_LINE_GAP = 50.0         # m between two stretches of one line: a row of parked cars
 IN_LINE_ACROSS = 0.08       # m from that line
+IN_LINE_AT_END, IN_LINE_DRIFT = 0.03, 0.01   # m, and m per m from the nearer end: less where a gap begins or ends
 IN_LINE_GRADE = 0.01        # m per m to the nearer end that the bottom may differ besides HEIGHT_TOLERANCE
 MAX_HEIGHT_RATIO = 1.6      # of the height of a piece over that of the curb before and after it
 MIN_PIECE_LENGTH = 0.5      # m
@@ -31,8 +41,8 @@ MIN_PIECE_STEPS = 3
 
 
 def with_pieces_in_line(kept: Sequence[tuple[int, float, float]], chains: Sequence[StepChain], steps: CurbSteps,
-                        to_plan: Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]) -> list[tuple[int, float, float]]:
-    """The chosen intervals and, between them, the pieces of other chains that lie in their line.
+                        to_plan: Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]) -> list[np.ndarray]:
+    """The steps of the chosen intervals and, between them, the pieces of curb that lie in their line.
 
     Parameters
     ----------
@@ -43,95 +53,99 @@ def with_pieces_in_line(kept: Sequence[tuple[int, float, float]], chains: Sequen
 
     Returns
     -------
-    list like `kept`, in order along the road
+    list of (K,) indices into the steps, by station, one for every interval and piece, in order along the road
     """
-    members = [_between(steps, chains[chain].steps, a - 1e-9, b + 1e-9) for chain, a, b in kept]
-    chosen = np.concatenate(members) if members else np.empty(0, np.int64)
-    order = np.argsort(steps.s[chosen], kind="stable")
-    by_station = steps.s[chosen[order]]
-    gaps = [(a, b) for (_, _, a), (_, b, _) in zip(kept[:-1], kept[1:]) if 2 * MIN_PIECE_LENGTH <= b - a <= MAX_LINE_GAP]
-    found = list(kept)
-    for (a, b), some in zip(gaps, chains_beside(gaps, chains)):
+    found = [_between(steps, chains[chain].steps, a - 1e-9, b + 1e-9) for chain, a, b in kept]
+    if not found:
+        return []
+    chosen, others = StepsByStation(steps[np.concatenate(found)]), StepsByStation(steps)
+    for (_, _, a), (_, b, _) in zip(kept[:-1], kept[1:]):
+        if not MAX_JOINED_GAP < b - a <= MAX_LINE_GAP:
+            continue
         check_cancelled()
-        before, after = (steps[chosen[np.sort(order[stretch_of(by_station, *ends)])]]
-                         for ends in ((a - LINE_FIT_LENGTH, a + 1e-9), (b - 1e-9, b + LINE_FIT_LENGTH)))
-        pieces = pieces_between(before, after, chains, steps, to_plan, some)
-        found += [(piece.chain, piece.start, piece.end) for piece in side_by_side(pieces)]
-    return sorted(found, key=lambda part: part[1:])
-
-
-def chains_beside(gaps: Sequence[tuple[float, float]], chains: Sequence[StepChain]) -> list[list[int]]:
-    """Numbers, ascending, of the chains that lie along each gap between two stations, m; some that lie a hair beside it are among them."""
-    found: list[list[int]] = [[] for _ in gaps]
-    first, last = np.array(gaps, float).reshape(-1, 2).T
-    starts, ends = (np.array([getattr(chain, name) for chain in chains], float) for name in ("start", "end"))
-    for gap, chain in overlapping_pairs(first, last, starts, ends):
-        for g, c in zip(gap.tolist(), chain.tolist()):
-            found[g].append(c)
-    return [sorted(some) for some in found]
+        before, after = (chosen.steps[chosen.rows(*ends)] for ends in ((a - LINE_FIT_LENGTH, a + 1e-9), (b - 1e-9, b + LINE_FIT_LENGTH)))
+        found += [piece.steps for piece in pieces_between(before, after, others, to_plan)]
+    return sorted(found, key=lambda members: float(steps.s[members[0]]))
 
 
 def _between(steps, members, start, end):
     return members[(steps.s[members] >= start) & (steps.s[members] <= end)]
 
 
-@dataclass(frozen=True, order=True)
-class PieceInLine:
-    """A piece of a chain on the line across a gap; the better ones sort first.
+class StepsByStation:
+    """CurbSteps of one side, of which those between two stations are looked up."""
 
-    weak : is its chain too weak for a curb by itself?
+    def __init__(self, steps: CurbSteps):
+        self.steps = steps
+        self._order = np.argsort(steps.s, kind="stable")
+        self._station = steps.s[self._order]
+
+    def rows(self, start: float, end: float) -> np.ndarray:
+        """(K,) indices, by station, of the steps between two stations, m."""
+        return self._order[stretch_of(self._station, start, end)]
+
+
+@dataclass(frozen=True)
+class PieceInLine:
+    """A piece of curb on the line across a gap.
+
+    steps : (K,) indices of its steps, by station
     off : m, greatest distance from the line
-    chain, start, end : number of the chain, and the stations between which the piece lies, m
+    start, end : m, first and last station
     """
 
-    weak: bool
+    steps: np.ndarray
     off: float
-    chain: int
     start: float
     end: float
 
 
-def pieces_between(before: CurbSteps, after: CurbSteps, chains: Sequence[StepChain], steps: CurbSteps,
-                   to_plan: Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]], some: Sequence[int]) -> list[PieceInLine]:
-    """The pieces of chains that lie on the line between two runs of curb.
+def pieces_between(before: CurbSteps, after: CurbSteps, others: StepsByStation,
+                   to_plan: Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]) -> list[PieceInLine]:
+    """The pieces of curb on the line between two runs of curb.
 
     Parameters
     ----------
     before, after : CurbSteps on both sides of the gap, or any rows with `s`, `u`, `h` and `height`; not empty
-    chains : list of StepChain
-    steps : CurbSteps to which they refer
+    others : the steps that may lie between
     to_plan : function, stations and outward offsets in m -> x and y in m
-    some : numbers of the chains that are looked at, those of `chains_beside`
+
+    Returns
+    -------
+    list of PieceInLine
     """
-    if not some:
-        return []
     a, b = before.s.max(), after.s.min()
+    rows, steps = others.rows(a + 1e-6, b - 1e-6), others.steps
+    if len(rows) < MIN_PIECE_STEPS:
+        return []
     line = GapLine(np.array(to_plan(before.s, before.u)), np.array(to_plan(after.s, after.u)))
     (s0, h0, height0), (s1, h1, height1) = ([np.median(v) for v in (end.s, end.h, end.height)] for end in (before, after))
-    pieces = []
-    for number, chain in ((number, chains[number]) for number in some):
-        if chain.end < a + MIN_PIECE_LENGTH or chain.start > b - MIN_PIECE_LENGTH:
-            continue
-        members = _between(steps, chain.steps, a + 1e-6, b - 1e-6)
-        if len(members) < MIN_PIECE_STEPS or np.ptp(steps.s[members]) < MIN_PIECE_LENGTH:
-            continue
-        s = steps.s[members]
-        share = (s - s0) / (s1 - s0)
-        off = np.abs(line.off(*to_plan(s, steps.u[members]))).max()
-        up = np.abs(steps.h[members] - h0 - share * (h1 - h0)) - IN_LINE_GRADE * np.minimum(s - a, b - s)
-        ratio = np.median(steps.height[members] / (height0 + share * (height1 - height0)))
-        if off <= IN_LINE_ACROSS and up.max() <= HEIGHT_TOLERANCE and 1 / MAX_HEIGHT_RATIO <= ratio <= MAX_HEIGHT_RATIO:
-            pieces.append(PieceInLine(chain.weak, float(off), number, float(s[0]), float(s[-1])))
-    return pieces
+    s = steps.s[rows]
+    share = (s - s0) / (s1 - s0)
+    off = line.off(*to_plan(s, steps.u[rows]))
+    up, from_end = np.abs(steps.h[rows] - h0 - share * (h1 - h0)), np.minimum(s - a, b - s)
+    across = np.minimum(IN_LINE_AT_END + IN_LINE_DRIFT * from_end, IN_LINE_ACROSS)
+    near = np.flatnonzero((np.abs(off) <= across) & (up <= HEIGHT_TOLERANCE + IN_LINE_GRADE * from_end))
+    if not len(near):
+        return []
+    # of the steps on one profile the one nearest to the line
+    near = near[np.lexsort((np.abs(off[near]), steps.profile[rows[near]]))]
+    near = near[np.r_[True, np.diff(steps.profile[rows[near]]) > 0]]
+    parted = (np.diff(s[near]) > MAX_LINK_LENGTH) | (np.abs(np.diff(off[near])) > LINK_TOLERANCE)
+    runs = [run[seen_stretch(steps.profile[rows[run]])] for run in np.split(near, np.flatnonzero(parted) + 1)]
+    return [PieceInLine(rows[run], float(np.abs(off[run]).max()), float(s[run[0]]), float(s[run[-1]])) for run in runs
+            if len(run) >= MIN_PIECE_STEPS and np.ptp(s[run]) >= MIN_PIECE_LENGTH
+            and _is_curb(steps[rows[run]], off[run], across[run].min(), height0 + share[run] * (height1 - height0))]
 
 
-def side_by_side(pieces: Iterable[PieceInLine]) -> list[PieceInLine]:
-    """Of pieces beside each other one that is not weak, and the one nearest to the line."""
-    chosen: list[PieceInLine] = []
-    for piece in sorted(pieces):
-        if all(piece.end < other.start or piece.start > other.end for other in chosen):
-            chosen.append(piece)
-    return chosen
+def _is_curb(piece, off, across, height):
+    """Is a run of steps near a line a piece of the curb of that line? `off` : m, from the line; `across` : m that it may lead away from it."""
+    ratio = np.median(piece.height / height)
+    s = piece.s - piece.s.mean()
+    turn, scanner_noise = s @ off / (s @ s), np.median(piece.scanner_noise)
+    return bool(1 / MAX_HEIGHT_RATIO <= ratio <= MAX_HEIGHT_RATIO and abs(turn) * np.ptp(s) <= across
+                and np.std(off - turn * s) <= MAX_CHAIN_SCATTER + scanner_noise and np.mean(piece.behind >= 2) >= 0.5
+                and np.median(piece.noise) <= max(MAX_ROAD_ROUGHNESS, 2 * scanner_noise))
 
 
 class GapLine:

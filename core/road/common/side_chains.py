@@ -25,10 +25,9 @@ class SideChains:
     chains: list[StepChain]
     block_points: Callable[[CurbSteps, int], list[dict]]
 
-    def points(self, chain: int, start: float, end: float, number: int) -> list[dict]:
-        """Curb points of the steps of a chain between two stations, m; they get the number."""
-        members = self.chains[chain].steps
-        return self.block_points(self.steps[members[(self.steps.s[members] >= start) & (self.steps.s[members] <= end)]], number)
+    def points(self, members: np.ndarray, number: int) -> list[dict]:
+        """Curb points of the steps with the (K,) indices, by station, of one line; they get the number."""
+        return self.block_points(self.steps[members], number)
 
     def support_along(self, s: np.ndarray, u: np.ndarray, skew: np.ndarray) -> np.ndarray:
         """Laser points that show a step on a line.

@@ -59,7 +59,6 @@ class StepChain:
     steps : (K,) indices into the CurbSteps, sorted by station
     start, end : m, first and last station
     low, sloped : is it lower, or less steep, than what is taken for a curb wherever it is seen?
-    weak : does it scatter too much for a curb by itself, but not for a piece of one in line with others?
     """
 
     steps: np.ndarray
@@ -67,7 +66,6 @@ class StepChain:
     end: float
     low: bool = False
     sloped: bool = False
-    weak: bool = False
 
 
 def link_steps(steps: CurbSteps, profile_width: float) -> np.ndarray:
@@ -146,7 +144,7 @@ def curb_chains(steps: CurbSteps, label: np.ndarray, profile_width: float, limit
 
     Returns
     -------
-    list of StepChain, sorted by start; weak ones are no curb unless something else says so
+    list of StepChain, sorted by start
     """
     if not len(steps):
         return []
@@ -174,11 +172,8 @@ def curb_chains(steps: CurbSteps, label: np.ndarray, profile_width: float, limit
         if not (low or sloped) or limits.automatic and limits.faint(height, slope, noise, len(members), scatter):
             chains.append(found)
         elif limits.automatic and limits.faint(height, slope, noise, len(members), scatter / WEAK_SCATTER_FACTOR):
-            found.weak = True
             weak.append(found)
-    for chain in _continuing(chains, weak, steps):
-        chain.weak = False
-    return sorted([*chains, *weak], key=lambda c: (c.start, c.end))
+    return sorted([*chains, *_continuing(chains, weak, steps)], key=lambda c: (c.start, c.end))
 
 
 def _continuing(chains, weak, steps):
@@ -217,7 +212,7 @@ def select_along_road(chains: Sequence[StepChain], steps: CurbSteps,
 
     Parameters
     ----------
-    chains : list of StepChain of one side, of which weak ones are left out
+    chains : list of StepChain of one side
     steps : CurbSteps to which they refer
     near : function, station in m -> outward offset of the outermost track on that side, m
 
@@ -227,9 +222,8 @@ def select_along_road(chains: Sequence[StepChain], steps: CurbSteps,
     """
     places = [(steps.s[c.steps], steps.u[c.steps], steps.h[c.steps]) for c in chains]
     starts, ends = np.array([c.start for c in chains]), np.array([c.end for c in chains])
-    strong = np.array([not c.weak for c in chains], bool)
-    cuts = np.unique(np.r_[starts[strong], ends[strong]])
-    waiting = np.flatnonzero(strong)[np.argsort(-starts[strong], kind="stable")].tolist()   # the next to begin is the last
+    cuts = np.unique(np.r_[starts, ends])
+    waiting = np.argsort(-starts, kind="stable").tolist()   # the next to begin is the last
     active: list[int] = []                 # chains beside the road at a place, by number, and
     continued: list[int] = []              # those that a path ends on which may be continued: few, however long the road is
     tips = np.array([_end_directions(steps, c.steps) for c in chains]).reshape(-1, 2)
@@ -279,7 +273,7 @@ def _continued(selected, chains, steps):
     To the selection a long gap allows a larger jump: that a curb goes on before the jump must not speak against the curb.
     """
     chosen = {chain for chain, _, _ in selected}
-    free = [number for number in sorted(range(len(chains)), key=lambda k: chains[k].start) if number not in chosen and not chains[number].weak]
+    free = [number for number in sorted(range(len(chains)), key=lambda k: chains[k].start) if number not in chosen]
     for onward in (True, False):
         for number in free if onward else free[::-1]:
             own = chains[number]
@@ -359,6 +353,20 @@ def _chain_scatter(s, u):
     """Median distance of the steps of a chain from the chord of their neighbours, m."""
     f = (s[1:-1] - s[:-2]) / np.maximum(s[2:] - s[:-2], 1e-6)
     return np.median(np.abs(u[1:-1] - u[:-2] - f * (u[2:] - u[:-2])))
+
+
+def seen_stretch(profile: np.ndarray) -> slice:
+    """The rows of a run of steps in which it is seen densely enough: all, or those whose profiles exceed MIN_CHAIN_DENSITY by most.
+
+    Parameters
+    ----------
+    profile : (N,) int, ascending, numbers of the profiles
+    """
+    excess = np.arange(len(profile)) - MIN_CHAIN_DENSITY * (profile - profile[0])
+    if excess[-1] + 1 >= MIN_CHAIN_DENSITY:
+        return slice(None)
+    last = int(np.argmax(excess - np.minimum.accumulate(excess)))
+    return slice(int(np.argmin(excess[:last + 1])), last + 1)
 
 
 def _merged(path):

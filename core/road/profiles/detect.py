@@ -226,7 +226,7 @@ def _points_of_side(survey, road, side, known, occlusion):
     track = OutermostTrack(frame, road, sign)
     selected = drop_short_curbs(select_along_road(chains, steps, track), chains, steps)
     selected = with_pieces_in_line(selected, chains, steps, lambda s, u: frame.road(road).to_map(s, sign * u))
-    rows = [row for number, part in enumerate(selected) for row in known.points(*part, number)]
+    rows = [row for number, part in enumerate(selected) for row in known.points(part, number)]
     measured = np.array([(r["s"], r["u"], r["h"]) for r in rows]).reshape(-1, 3)
     rows += hidden_points(measured, occlusion, track)
     rows.sort(key=lambda r: r["s"])

@@ -276,7 +276,7 @@ def _points_of_side(source, road, side, known, occlusion):
     track = OutermostTrack(frame, road, sign)
     stretches = drop_short_curbs(select_along_road(chains, corners, track), chains, corners)
     stretches = with_pieces_in_line(stretches, chains, corners, lambda s, u: frame.road(road).to_map(s, sign * u))
-    rows = [row for number, part in enumerate(stretches) for row in known.points(*part, number)]
+    rows = [row for number, part in enumerate(stretches) for row in known.points(part, number)]
     bottoms = np.array([(r["s"], r["u"], r["h"]) for r in rows if r["fields"]["part"] == "bottom"]).reshape(-1, 3)
     rows += [{**r, "fields": dict(r["fields"], part="bottom")} for r in hidden_points(bottoms, occlusion, track)]
     rows.sort(key=lambda r: (r["s"], r["fields"]["part"]))

@@ -124,14 +124,14 @@ def chains_along(pieces):
     return steps, chains, [(k, chains[k].start, chains[k].end) for k in range(2 * pieces)]
 
 
-def test_between_two_pieces_of_curb_those_chains_are_looked_at_that_lie_there(monkeypatch):
-    count, plain = [0], in_line._between
+def test_between_two_pieces_of_curb_those_steps_are_looked_at_that_lie_there(monkeypatch):
+    count, plain = [0], in_line.GapLine.off
 
-    def counted(steps, members, *ends):
-        count[0] += len(members)
-        return plain(steps, members, *ends)
+    def counted(line, x, y):
+        count[0] += len(x)
+        return plain(line, x, y)
 
-    monkeypatch.setattr(in_line, "_between", counted)
+    monkeypatch.setattr(in_line.GapLine, "off", counted)
 
     def pieces_in_line(pieces):
         steps, chains, kept = chains_along(pieces)

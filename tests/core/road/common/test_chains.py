@@ -19,7 +19,7 @@ def curbs(*chains, height=0.04, limits=AUTOMATIC):
     u = 3.5 + aside + 0.5 * scatter * (-1.0) ** np.rint(s / 0.25)
     steps = CurbSteps(profile=np.rint(s / 0.25).astype(int), s=s, u=u, h=0 * s, skew=0 * s, height=height * ones, run=0 * s,
                       noise=0.003 * ones, scanner_noise=0.003 * ones, support=50 * ones, behind=20 * ones)
-    return [(chain.start, chain.end) for chain in curb_chains(steps, label, 0.25, limits) if not chain.weak]
+    return [(chain.start, chain.end) for chain in curb_chains(steps, label, 0.25, limits)]
 
 
 def test_a_low_curb_that_scatters_more_is_one_where_it_continues_another():

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from lanewright.core.road.common.corners import CurbSteps
 from lanewright.core.road.common.in_line import with_pieces_in_line
-from lanewright.core.road.common.tracking import StepChain, select_along_road
+from lanewright.core.road.common.tracking import StepChain
 
 RADIUS = 120.0   # m, of the bend of the street
 
@@ -27,27 +27,60 @@ def on_a_bend(s, u):
 
 
 def chosen(steps, chains):
-    return with_pieces_in_line([(0, 0.0, 19.75), (2, 45.0, 59.75)], chains, steps, on_a_bend)
+    """(first, last station) of the stretches that are curb where the two longer ones were chosen."""
+    found = with_pieces_in_line([(0, 0.0, 19.75), (len(chains) - 1, 45.0, 59.75)], chains, steps, on_a_bend)
+    return [(float(steps.s[members[0]]), float(steps.s[members[-1]])) for members in found]
+
+
+ENDS = [(0.0, 19.75), (45.0, 59.75)]
+
+
+def with_piece(start, end):
+    return [ENDS[0], (start, end), ENDS[1]]
 
 
 def test_a_piece_between_parked_cars_in_line_with_the_curb_is_the_curb():
-    assert [part[0] for part in chosen(*street_with_a_piece())] == [0, 1, 2]
+    assert chosen(*street_with_a_piece()) == with_piece(30.0, 31.25)
 
 
 @pytest.mark.parametrize("other", [dict(aside=-0.3), dict(above=0.25), dict(height=0.20), dict(piece=(30.0, 30.3))],
                          ids=["the foot of a wheel", "a bumper", "a high step", "two profiles"])
 def test_what_is_not_in_line_with_the_curb_is_something_else(other):
-    assert [part[0] for part in chosen(*street_with_a_piece(**other))] == [0, 2]
+    assert chosen(*street_with_a_piece(**other)) == ENDS
 
 
-def test_a_piece_that_scatters_too_much_by_itself_is_the_curb_where_it_lies_in_line():
+def test_a_piece_is_the_curb_whether_its_steps_were_linked_to_a_chain_or_not():
     steps, chains = street_with_a_piece()
-    chains[1].weak = True
-    assert [part[0] for part in chosen(steps, chains)] == [0, 1, 2]
-    assert 1 not in [part[0] for part in select_along_road(chains, steps, lambda s: 0 * s)]
+    assert chosen(steps, [chains[0], chains[2]]) == with_piece(30.0, 31.25)
+
+
+def test_of_steps_that_are_far_between_at_its_end_the_piece_has_the_dense_stretch_alone():
+    steps, chains = street_with_a_piece(piece=(30.0, 34.0))
+    seen = (steps.s < 30.6) | (steps.s >= 45) | np.isin(steps.s, [31.5, 32.5])
+    steps.s[~seen] += 1000.0
+    assert chosen(steps, chains) == with_piece(30.0, 30.5)
+
+
+def test_near_the_end_of_a_gap_a_piece_keeps_to_the_line_more_closely_than_far_from_it():
+    # 6 cm aside
+    assert chosen(*street_with_a_piece(aside=0.06, piece=(30.0, 31.5))) == with_piece(30.0, 31.25)
+    assert chosen(*street_with_a_piece(aside=0.06, piece=(20.5, 22.0))) == ENDS
+
+
+def test_a_step_that_leads_across_the_line_is_no_piece_of_it():
+    steps, chains = street_with_a_piece(piece=(30.0, 34.0))
+    own = chains[1].steps
+    steps.u[own] += 0.06 * (steps.s[own] - 32.0)
+    assert chosen(steps, chains) == ENDS
+
+
+def test_nothing_is_looked_for_where_points_are_joined_anyway():
+    steps, chains = street_with_a_piece()
+    kept = [(0, 0.0, 19.75), (1, 22.0, 31.25)]
+    assert len(with_pieces_in_line(kept, chains, steps, on_a_bend)) == 2
 
 
 def test_nothing_is_added_before_the_first_or_behind_the_last_stretch():
     steps, chains = street_with_a_piece()
-    assert with_pieces_in_line([(0, 0.0, 19.75)], chains, steps, on_a_bend) == [(0, 0.0, 19.75)]
+    assert [len(members) for members in with_pieces_in_line([(0, 0.0, 19.75)], chains, steps, on_a_bend)] == [80]
     assert with_pieces_in_line([], chains, steps, on_a_bend) == []
