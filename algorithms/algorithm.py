@@ -102,7 +102,8 @@ class Algorithm:
     def add_point_clouds(self):
         self.add(PointCloudsSpec("POINT_CLOUDS", tr("Point clouds"),
                                  tr("LAS, LAZ or COPC files of one survey, or a folder that holds them, or names with wildcards "
-                                    "(/data/B12/tile_*.laz). Files may overlap and come in any order.")))
+                                    "(/data/B12/tile_*.laz). Files may overlap and come in any order. Withheld points and noise "
+                                    "(classes 7 and 18) are left out.")))
 
     def add_trajectory(self, optional=False, without=""):
         text = tr(

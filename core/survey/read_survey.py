@@ -114,6 +114,8 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     total = sum(file.count for file in files)
     if not store.count:
         raise RoadExtractionError(_no_overlap(files, frame, reader, settings.corridor))
+    if reader.excluded:
+        progress.info(f"{reader.excluded:,} of {total:,} points were left out: they are withheld or classified as noise (LAS classes 7 and 18).")
     if reader.unplaced_time:
         progress.warn(f"{reader.unplaced_time:,} of {total:,} points were left out: their gps_time is missing or lies outside the "
                       "trajectory's.")
@@ -300,6 +302,9 @@ def _what_to_try(low, high, x, y, crs, trajectory_crs, reach):
 
 
 def _no_overlap(files, frame, reader, corridor):
+    if reader.excluded == sum(file.count for file in files):
+        return ("All points are withheld or classified as noise (LAS classes 7 and 18), which are left out. Give the cloud as it was before its "
+                "classification, or with these classes corrected.")
     if reader.unplaced_time:
         starts, ends = [p.time[0] for p in frame.passes], [p.time[-1] for p in frame.passes]
         times = f"{min(starts):.1f} s to {max(ends):.1f} s"

@@ -190,8 +190,8 @@
         </message>
         <message>
             <location filename="../../algorithms/algorithm.py" />
-            <source>LAS, LAZ or COPC files of one survey, or a folder that holds them, or names with wildcards (/data/B12/tile_*.laz). Files may overlap and come in any order.</source>
-            <translation>LAS-, LAZ- oder COPC-Dateien einer Vermessung, ein Ordner, in dem sie liegen, oder Namen mit Platzhaltern (/data/B12/tile_*.laz). Dateien dürfen sich überlappen und in beliebiger Reihenfolge kommen.</translation>
+            <source>LAS, LAZ or COPC files of one survey, or a folder that holds them, or names with wildcards (/data/B12/tile_*.laz). Files may overlap and come in any order. Withheld points and noise (classes 7 and 18) are left out.</source>
+            <translation>LAS-, LAZ- oder COPC-Dateien einer Vermessung, ein Ordner, in dem sie liegen, oder Namen mit Platzhaltern (/data/B12/tile_*.laz). Dateien dürfen sich überlappen und in beliebiger Reihenfolge kommen. Zurückgehaltene Punkte (withheld) und Rauschen (Klassen 7 und 18) bleiben weg.</translation>
         </message>
         <message>
             <location filename="../../algorithms/algorithm.py" />

@@ -14,6 +14,7 @@ from ..las.luminance import luminance
 from ..las.scale import LasAxis
 from ..las.scanners import EVER, times_by_value
 from ..las.time_slots import TimeSlots
+from ..las.validity import valid_points
 from ..store.columns import Columns
 from ..store.records import COORDINATE_SCALE, SURVEY_POINT, beside_road, fill_units, point_dtype, road_of, to_units
 from ..trajectory.time_systems import SECONDS_PER_WEEK
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
     from ..frame.road_frame import RoadFrame
     from ..store.section_store import PartitionedPoints, SectionStore
 
-DECODED_LAYERS = ("z", "intensity", "point_source_id", "gps_time", "flags")  # LAZ layers that are decoded
+DECODED_LAYERS = ("z", "intensity", "point_source_id", "gps_time", "flags", "classification")  # LAZ layers that are decoded
 KEPT_ABOVE_ROAD, KEPT_BELOW_ROAD = 3.5, 4.0  # m: vehicles that hide a curb above the road, ditches below it
 # m stored beyond these limits: the height of the road is rough while reading and exact when points are returned,
 # so that the points returned do not depend on the order of the files
@@ -43,17 +44,20 @@ class BlockSummary:
     scanners : {LAS field: {value: (first time, last time, count)}}
     darkest, brightest : lowest and highest intensity
     without_time : number of points at a time of no pass
+    excluded : number of points that are withheld or classified as noise
     """
 
     scanners: dict[str, dict[int, tuple[float, float, int]]] = field(default_factory=dict)
     darkest: int = 65535
     brightest: int = 0
     without_time: int = 0
+    excluded: int = 0
 
     def join(self, other: BlockSummary) -> None:
         """Add what another block contributes."""
         self.darkest, self.brightest = min(self.darkest, other.darkest), max(self.brightest, other.brightest)
         self.without_time += other.without_time
+        self.excluded += other.excluded
         for name, times in other.scanners.items():
             self._note(name, times)
 
@@ -191,7 +195,9 @@ class BlockProjector:
         flagged = _flagged(piece)
         columns = self._columns(piece, names, flagged, buffers)
         found.add(columns, names, self._span)
-        usable = _not_withheld(piece, names) if flagged else None
+        usable = valid_points(piece)
+        if usable is not None:
+            found.excluded += len(usable) - int(np.count_nonzero(usable))
         for axis, name in zip(axes, "xyz"):
             columns[name], there = axis.units(piece.array, buffers)
             usable = _both(usable, there)
@@ -275,7 +281,7 @@ class BlockProjector:
         return passes.view(np.uint16), inside, self._lost(found)
 
     def _lost(self, passes):
-        if not self.has_time or passes.strides[0] == 0 and passes[0] >= 0:
+        if not self.has_time or not len(passes) or passes.strides[0] == 0 and passes[0] >= 0:
             return 0
         return int(np.count_nonzero(passes < 0))
 
@@ -306,12 +312,6 @@ def _flagged(piece):
     """Whether any point has a flag or a scanner channel: LAS 1.4 keeps them in one byte, and most clouds have none."""
     raw = piece.array
     return "classification_flags" not in raw.dtype.names or bool(raw["classification_flags"].max())
-
-
-def _not_withheld(piece, names):
-    """(N,) bool of the points that are not withheld, None where none is."""
-    withheld = np.asarray(piece["withheld"]) if "withheld" in names else None
-    return withheld == 0 if withheld is not None and withheld.any() else None
 
 
 def _both(one, other):

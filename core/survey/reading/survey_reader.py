@@ -49,6 +49,7 @@ class SurveyReader:
     census : ScannerCensus
     darkest, brightest : lowest and highest intensity
     unplaced_time : number of points at a time of no pass
+    excluded : number of points that are withheld or classified as noise
     heights : {pass number: metres from the trajectory down to the road}
     uneven : see `HeightHistogram.uneven`
     slots : TimeSlots of the points sampled, to tell scanners apart that no field distinguishes
@@ -57,7 +58,7 @@ class SurveyReader:
 
     def __init__(self, frame: RoadFrame, store: SectionStore, choice: PointChoice):
         self.frame, self.store, self.choice = frame, store, choice
-        self.census, self.darkest, self.brightest, self.unplaced_time = ScannerCensus(), 65535, 0, 0
+        self.census, self.darkest, self.brightest, self.unplaced_time, self.excluded = ScannerCensus(), 65535, 0, 0, 0
         self.slots = TimeSlots(1)
         self._blocks: BlockReader
         # both are created once the rough height of the road is known; until then parts of blocks wait
@@ -159,6 +160,7 @@ class SurveyReader:
     def _hear(self, found):
         self.darkest, self.brightest = min(self.darkest, found.darkest), max(self.brightest, found.brightest)
         self.unplaced_time += found.without_time
+        self.excluded += found.excluded
         for name, times in found.scanners.items():
             self.census.take(name, times)
 

@@ -92,13 +92,18 @@ def test_points_that_are_all_equal_make_no_road(cloud, mapped):
 
 def test_points_astray_spikes_below_the_road_withheld_and_noise_points_change_nothing(sample, cloud, mapped):
     """A scanner's clock jumps, and some points land kilometres away; wet asphalt and windows give multipath."""
-    astray, spikes, withheld = (np.arange(len(cloud)) % each == first for each, first in ((997, 0), (211, 1), (50, 2)))
+    astray, spikes, withheld, noise = (np.arange(len(cloud)) % each == first for each, first in ((997, 0), (211, 1), (50, 2), (50, 3)))
     z = np.asarray(cloud.z)
-    cloud.z = np.where(withheld, z + 0.3, np.where(spikes, z - 10.0, z))
-    cloud.withheld = withheld
+    cloud.z = np.where(withheld | noise, z + 0.3, np.where(spikes, z - 10.0, z))
+    cloud.withheld, cloud.classification = withheld, np.where(noise, np.where(np.arange(len(cloud)) % 100 == 3, 7, 18), 0)
     cloud.X[astray] = 2_000_000_000
     cloud.Z[np.flatnonzero(astray)[::2]] = -2_000_000_000
     assert_right(sample, mapped(cloud))
+
+
+def test_a_cloud_of_noise_alone_is_refused(cloud, mapped):
+    cloud.classification = np.full(len(cloud), 7)
+    assert "classified as noise" in refusal(lambda: mapped(cloud))
 
 
 def test_a_tile_given_under_two_names_is_the_same_street(sample, whole, cloud, mapped):

@@ -14,9 +14,10 @@ from ...las.parallel_reader import ParallelCloudReader
 from ...las.reader import POINTS_PER_BLOCK, CloudHeader
 from ...las.scanners import ScannerCensus, numbers_by_value, times_by_value
 from ...las.time_slots import TimeSlots
+from ...las.validity import valid_points
 from ...trajectory.time_systems import SECONDS_PER_WEEK, wrapped_week
 
-SAMPLED_LAYERS = ("z", "point_source_id", "gps_time", "flags")  # LAZ layers that are decoded
+SAMPLED_LAYERS = ("z", "point_source_id", "gps_time", "flags", "classification")  # LAZ layers that are decoded
 MAX_SAMPLES = 6_000_000   # points held in memory: 250 MB while they are sorted
 MAX_GAP_IN_DRIVE = 1.0    # s without points end a drive
 UNKNOWN_SCANNER = 255     # number of a point whose scanner is not known
@@ -136,8 +137,9 @@ def _sample(block, slots, origin):
     first = np.flatnonzero(np.asarray(block["return_number"]) <= 1)
     # without times neighbours in the file stay together no better than others
     first = first[slots.kept(time[first])] if len(time) and time.min() < time.max() else first[::slots.stride]
-    if "withheld" in names:
-        first = first[np.asarray(block["withheld"])[first] == 0]
+    valid = valid_points(block)
+    if valid is not None:
+        first = first[valid[first]]
     place = np.stack([raw[name][first] * scale + (offset - start)
                       for name, scale, offset, start in zip("XYZ", block.scales, block.offsets, origin)], axis=1)
     time = time[first]
