@@ -10,6 +10,7 @@ import numpy as np
 
 from ...execution.phase import Executor, Recipe
 from ...execution.threads import THREADS
+from ..frame.sigma_along import SigmaAlong
 from .column_overlay import ColumnOverlay
 from .point_subset import PointSubset
 from .records import ROAD_POINT, Points, join_columns, point_dtype
@@ -27,7 +28,7 @@ class RoadPoints:
     crs : WKT, "" where unknown
     has_corrected, has_cluster, has_spacing : whether the columns `corrected`, `cluster` and `spacing` hold values
     moves : PassCorrections, the shifts of the passes against the coordinates that were measured; None where there are none
-    pass_sigma : {road number: m}, as in RoadFrame
+    pass_sigma : {road number: SigmaAlong}, as in RoadFrame
     survey : Survey whose points these are, None where they are their own
     """
 
@@ -38,7 +39,7 @@ class RoadPoints:
     has_cluster: bool = False
     moves: Any = None
     has_spacing: bool = False
-    pass_sigma: dict[int, float] = field(default_factory=dict)
+    pass_sigma: dict[int, SigmaAlong] = field(default_factory=dict)
     survey: Any = field(default=None, repr=False)
 
     @property
