@@ -11,6 +11,7 @@ import numpy as np
 from ..common.progress import Progress
 from ..countries.catalogue import country
 from ..markings.cross_section.confidence import confidence_of
+from ..markings.cross_section.evidence import point_spacing
 from ..markings.cross_section.roads import EstimatedRoad, estimate_roads
 from ..markings.cross_section.sections import STATION_STEP, CrossSections, sections_of_edges, sections_of_lines, sections_of_pavement
 from ..markings.lines.painted_lines import PaintedLines
@@ -26,7 +27,6 @@ from .lane_areas import lane_areas, make_lanes
 from .lane_track import LANE_STATUS, LaneTrack, connect
 from .lanes import estimated_lanes
 from .lanes_layer import Lanes
-from .point_spacing import point_spacing
 from .settings import DrivingSettings
 from .tapers import laid_out
 from .uncertainty import lane_sigma

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 BORDER_SHARE = 0.13            # of the RMS distance of a border's paint from its curve, that the border is off by
 USUAL_SCATTER = 0.010          # m, of paint about its curve, where no border says it
-PLACE_SIGMA = 0.001            # m, of a painted border, however many points show it
+BORDER_SIGMA = 0.001           # m, of a painted border, however many points show it
 SPACING_SHARE = 0.03           # of the spacing of the points, that a painted border is off by
 USUAL_SPACING = 0.03           # m, where there are no points to say it
 GAP_SHARE = 0.002              # m per m to the next place where a border is painted, or, without borders, where the lane is measured
@@ -85,7 +85,7 @@ def _mean_square_of_borders(track, known, paint, spacing):
     mean = np.where(told, square, 0.0).sum(axis=0) / np.maximum(told.sum(axis=0), 1)
     usual = np.median(mean[told.any(axis=0)]) if told.any() else USUAL_SCATTER**2
     scatter = np.where(told, square, np.where(told.any(axis=0), mean, usual))
-    seen = PLACE_SIGMA**2 + (SPACING_SHARE * spacing) ** 2 + BORDER_SHARE**2 * scatter
+    seen = BORDER_SIGMA**2 + (SPACING_SHARE * spacing) ** 2 + BORDER_SHARE**2 * scatter
     off = np.where(hatched, HATCHING_SIGMA**2, seen + (GAP_SHARE * away) ** 2)
     share = np.where(bounding.sum(axis=0) == 1, np.where(bounding, OWN_BORDER, FAR_BORDER), BETWEEN_BORDERS)
     share = np.where(track.offset & bounding.any(axis=0), bounding / np.maximum(bounding.sum(axis=0), 1), share)

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ...execution.phase import Executor, Recipe
 from ...execution.threads import THREADS
-from ..frame.sigma_along import SigmaAlong
 from .column_overlay import ColumnOverlay
 from .point_subset import PointSubset
 from .records import ROAD_POINT, Points, join_columns, point_dtype
 from .section_store import SectionStore
+
+if TYPE_CHECKING:
+    from ..frame.sigma_along import SigmaAlong
 
 
 @dataclass

@@ -48,8 +48,7 @@ def test_the_accuracy_that_the_trajectory_is_told_to_have_is_that_of_every_road(
     trajectory, _, path = street
     assert open_survey([path], trajectory).frame.pass_sigma == {}
     assert open_survey([path], trajectory, SurveySettings(trajectory_sigma=0.02)).frame.pass_sigma == {0: SigmaAlong.everywhere(0.02)}
-    told = replace(trajectory, sigma_across=0.03)
-    assert open_survey([path], told).frame.pass_sigma == {0: SigmaAlong.everywhere(0.03)}
+    assert open_survey([path], told := replace(trajectory, sigma_across=0.03)).frame.pass_sigma == {0: SigmaAlong.everywhere(0.03)}
     assert open_survey([path], told, SurveySettings(trajectory_sigma=0.02)).frame.pass_sigma == {0: SigmaAlong.everywhere(0.02)}
     with pytest.raises(RoadExtractionError, match="The accuracy of the trajectory"):
         SurveySettings(trajectory_sigma=-0.02)
