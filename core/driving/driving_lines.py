@@ -11,6 +11,7 @@ import numpy as np
 from ..common.progress import Progress
 from ..countries.catalogue import country
 from ..markings.cross_section.confidence import confidence_of
+from ..markings.cross_section.evidence import point_spacing
 from ..markings.cross_section.roads import EstimatedRoad, estimate_roads
 from ..markings.cross_section.sections import STATION_STEP, CrossSections, sections_of_edges, sections_of_lines, sections_of_pavement
 from ..markings.lines.painted_lines import PaintedLines
@@ -89,8 +90,10 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
             progress.warn("Neither the marking lines nor road points have heights; the trajectory's are used.")
             heights = [frame.track_height(number, s[t.first:t.last + 1]) for t in tracks]
         courses = lane_courses(tracks, s, frame.roads[number], alignment)
+        passes = np.nan_to_num(frame.passes_sigma(number, s))
+        spacing = None if road_points is None else point_spacing(road_points, number, s)
         for lane, (track, course, elements, z) in enumerate(zip(tracks, courses, alignment, heights), start=1):
-            sigma = lane_sigma(track, course, frame.roads[number], one, paint, frame.pass_sigma.get(number, 0.0))
+            sigma = lane_sigma(track, course, frame.roads[number], one, paint, passes[track.first:track.last + 1], spacing)
             rows += [dict(row, road=number, lane=lane) for row in _lane_pieces(track, track.direction, course, elements, one.lines, z, sigma)]
             arcs += [dict(row, road=number, lane=lane) for row in _lane_curves(track.direction, elements)]
             part.report(0.8 + 0.1 * lane / len(tracks))

@@ -2,8 +2,9 @@
 
 What adds up as squares: how well the borders of the lane are placed, and how well the line follows the lane.
 
-A painted border is off by a share of the scatter of its paint about its curve: most of that averages out along the curve, and how much is left
-was found on simulated streets with truth (docs/accuracy.md). More is added with the distance to its next paint, where it is bridged. The border of
+A painted border is found to a millimetre however many points show it, and worse with the spacing of the points; and it is off by a share of
+the scatter of its paint about its curve, most of which averages out along the curve. How much these are was found on simulated streets with truth
+(docs/accuracy.md). More is added with the distance to its next paint, where it is bridged. The border of
 a hatched area is known as well as the outline of its bars. Between two borders the middle takes half of the error of each; where two lanes lie
 between them with nothing painted in the middle of the road, it takes three quarters of one and one quarter of the other. Beside one border alone
 it takes all of it, and what the width of lanes is off by.
@@ -35,6 +36,9 @@ if TYPE_CHECKING:
 
 BORDER_SHARE = 0.13            # of the RMS distance of a border's paint from its curve, that the border is off by
 USUAL_SCATTER = 0.010          # m, of paint about its curve, where no border says it
+BORDER_SIGMA = 0.001           # m, of a painted border, however many points show it
+SPACING_SHARE = 0.03           # of the spacing of the points, that a painted border is off by
+USUAL_SPACING = 0.03           # m, where there are no points to say it
 GAP_SHARE = 0.002              # m per m to the next place where a border is painted, or, without borders, where the lane is measured
 HATCHING_SIGMA = 0.03          # m, of a hatched area's border: outlines are of image cells, and its line's breadth is not known
 WIDTH_SIGMA = 0.007            # m, of the middle of a lane beside one border alone: half of what its width is off by
@@ -46,7 +50,8 @@ CURVATURE_SIGMA = 1.0          # m, of the Gaussian that smooths heading and cur
 CURVATURE_WINDOW = 10.0        # m along the lane, of the RMS of the change of curvature
 
 
-def lane_sigma(track: LaneTrack, course: Course, road: Road, known: EstimatedRoad, paint: dict[int, float], passes: float = 0.0) -> np.ndarray:
+def lane_sigma(track: LaneTrack, course: Course, road: Road, known: EstimatedRoad, paint: dict[int, float], passes: np.ndarray | float = 0.0,
+               spacing: np.ndarray | None = None) -> np.ndarray:
     """One sigma across a driving line at each place of its lane.
 
     Parameters
@@ -56,18 +61,21 @@ def lane_sigma(track: LaneTrack, course: Course, road: Road, known: EstimatedRoa
     road : Road
     known : EstimatedRoad of the road's lines, on whose stations the track runs, and of its boundaries, between which it lies
     paint : {number of a line: m, RMS distance of its paint from its curve}
-    passes : m, one sigma of the middle of the passes, see `RoadFrame.pass_sigma`
+    passes : m, one sigma of the middle of the passes, see `RoadFrame.pass_sigma`: one for all, or (N,)
+    spacing : (K,) m between points at the stations of `known`, NaN where unknown; None if nothing says it
 
     Returns
     -------
     (N,) m
     """
     lines = known.lines
-    return np.sqrt(_mean_square_of_borders(track, known, paint) + _mean_square_misfit(track, course, road, lines)
+    apart = np.full(len(track), np.nan) if spacing is None else spacing[track.first:track.last + 1]
+    apart = np.where(np.isnan(apart), USUAL_SPACING, apart)
+    return np.sqrt(_mean_square_of_borders(track, known, paint, apart) + _mean_square_misfit(track, course, road, lines)
                    + _mean_square_bias(track, course, lines) + passes**2)
 
 
-def _mean_square_of_borders(track, known, paint):
+def _mean_square_of_borders(track, known, paint, spacing):
     """(N,) m², of the middle of a lane from what its borders are off by."""
     lines, made_of = known.lines, np.append(known.boundaries.made_of, OUTSIDE)
     painted, square, away = (np.stack(both) for both in zip(*(_border(track, lines, paint, rows) for rows in (track.left, track.right))))
@@ -77,7 +85,8 @@ def _mean_square_of_borders(track, known, paint):
     mean = np.where(told, square, 0.0).sum(axis=0) / np.maximum(told.sum(axis=0), 1)
     usual = np.median(mean[told.any(axis=0)]) if told.any() else USUAL_SCATTER**2
     scatter = np.where(told, square, np.where(told.any(axis=0), mean, usual))
-    off = np.where(hatched, HATCHING_SIGMA**2, BORDER_SHARE**2 * scatter + (GAP_SHARE * away) ** 2)
+    seen = BORDER_SIGMA**2 + (SPACING_SHARE * spacing) ** 2 + BORDER_SHARE**2 * scatter
+    off = np.where(hatched, HATCHING_SIGMA**2, seen + (GAP_SHARE * away) ** 2)
     share = np.where(bounding.sum(axis=0) == 1, np.where(bounding, OWN_BORDER, FAR_BORDER), BETWEEN_BORDERS)
     share = np.where(track.offset & bounding.any(axis=0), bounding / np.maximum(bounding.sum(axis=0), 1), share)
     measured = track.status == MEASURED

@@ -16,6 +16,7 @@ from .adjustment.adjust import adjust_passes
 from .clock_check import check_clock
 from .frame.build import build_frame
 from .frame.road import CORRIDOR
+from .frame.sigma_along import SigmaAlong
 from .las.copies import distinct_rows, may_overlap
 from .las.luminance import check_coloured, without_intensity
 from .las.parallel_reader import ParallelCloudReader
@@ -162,7 +163,7 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     if across := settings.trajectory_sigma or trajectory.sigma_across:
         # what passes differ by is part of the same error
         differ = survey.frame.pass_sigma
-        survey.frame.pass_sigma = {road: max(differ.get(road, 0.0), across) for road in range(len(frame.roads))}
+        survey.frame.pass_sigma = {road: differ.get(road, SigmaAlong.everywhere(0.0)).at_least(across) for road in range(len(frame.roads))}
     if shared is not None:
         survey.keep(shared.ordered)
     return survey

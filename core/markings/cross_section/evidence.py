@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
 
 import numpy as np
-from scipy.ndimage import binary_closing
+from scipy.ndimage import binary_closing, median_filter
 
 from ...execution.phase import Phase
 from ...survey.store.records import COORDINATE_SCALE
@@ -26,6 +26,7 @@ BINS = int(round(2 * FAR / BIN))
 CARRIAGEWAY_DISTANCE = 40.0  # m between the tracks on two carriageways of one road at most
 OWN_ROAD = 6.0         # m: what runs nearer is on this road
 PASS_SPACING = 20      # stations, between the places of a pass at most
+SECTIONS_ALIKE = 3   # sections of points whose median spacing is taken: one in which the road begins or ends holds fewer points
 STOP_REACH = 5.0    # m before and after a stop line where its lanes are still its lanes
 
 _known: WeakKeyDictionary[Any, dict[Any, Any]] = WeakKeyDictionary()   # stores of road points -> what `surface_coverage` found
@@ -153,6 +154,31 @@ def _surface_coverage(points, road, first, count):
     with np.errstate(invalid="ignore", divide="ignore"):
         ends = (1e-3 * total / number).T * np.array([[1.0], [-1.0]])
     return covered, ends
+
+
+def point_spacing(road_points: RoadPoints, road: int, s: np.ndarray) -> np.ndarray:
+    """Spacing of the road points at stations, the side of the square of surface that holds one of them.
+
+    Parameters
+    ----------
+    road_points : RoadPoints
+    road : number
+    s : (K,) m, the grid stations of the road's lines
+
+    Returns
+    -------
+    (K,) m; NaN where it is not known
+    """
+    numbers, length = np.array(road_points.sections(road)), road_points.store.section_length
+    left, right = surface_coverage(road_points, road, s)[1]
+    known = np.isfinite(left - right)
+    if not len(numbers) or not known.any():
+        return np.full(len(s), np.nan)
+    middles = (numbers + 0.5) * length
+    width = np.maximum(np.interp(middles, s[known], (left - right)[known]), 1.0)
+    count = np.array([road_points.store.size(road, number) for number in numbers.tolist()])
+    side = np.sqrt(width * length / np.maximum(count, 1))
+    return np.interp(s, middles, median_filter(side, SECTIONS_ALIKE, mode="mirror"))
 
 
 def seen_in_stretch(points: RoadPoints, stretch: Stretch, first: int, count: int) -> list[tuple[int, np.ndarray, np.ndarray, np.ndarray]]:

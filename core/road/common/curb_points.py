@@ -138,7 +138,11 @@ def curb_points_to_features(points: CurbPoints, frame: RoadFrame) -> Features:
     """
     places = shapely.points(points.map_places(frame))
     columns = {name: getattr(points, attribute).tolist() for attribute, name in CURB_POINT_FIELDS.items()}
-    columns[PASS_SIGMA.name] = [frame.pass_sigma.get(road) for road in points.road.tolist()]
+    sigma = np.full(len(points), np.nan)
+    for road in frame.pass_sigma:
+        own = points.road == road
+        sigma[own] = frame.passes_sigma(road, points.station[own])
+    columns[PASS_SIGMA.name] = sigma.tolist()
     rows = [{name: known(value) for name, value in zip(columns, row)} for row in zip(*columns.values())]
     return Features("PointZ", list(CURB_POINTS), list(places), rows, points.crs)
 

@@ -44,7 +44,7 @@ def curb_return_lines(curb_points: CurbPoints, frame: RoadFrame) -> dict[int, li
 
 
 def draw_curb_returns(edges: list[EdgePiece], road: int, lines: list[tuple[CurbPoints, np.ndarray]], number: int,
-                      passes: float = 0.0) -> int:
+                      frame: RoadFrame | None = None) -> int:
     """Add the edges of corners, side streets and islands of one road.
 
     A corner begins with the vertex at which the main edge ends, so that the two touch.
@@ -55,7 +55,7 @@ def draw_curb_returns(edges: list[EdgePiece], road: int, lines: list[tuple[CurbP
     road : number of the road
     lines : of this road, from `curb_return_lines`
     number : of the first line
-    passes : m, one sigma of the middle of the passes
+    frame : RoadFrame, which says how far the middle of the passes may be off; None if nothing does
 
     Returns
     -------
@@ -79,6 +79,7 @@ def draw_curb_returns(edges: list[EdgePiece], road: int, lines: list[tuple[CurbP
             vertices[-1] = vertices[0]
         vertices[0], vertices[-1] = vertices[0] if first is None else first, vertices[-1] if last is None else last
         vertices = vertices[np.r_[True, np.hypot(*np.diff(vertices[:, :2], axis=0).T) > 0]]
+        passes = 0.0 if frame is None else float(np.sqrt(np.mean(np.nan_to_num(frame.passes_sigma(road, points.station)) ** 2)))
         edges.append(EdgePiece(vertices, road, points.side[0], "measured", number, float(points.station.min()), float(points.station.max()),
                                float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum()), float(np.median(points.height)),
                                float(np.sqrt(np.mean(residual**2))), kind=kind,

@@ -87,7 +87,7 @@ def fit_road_edges(curb_points: CurbPoints, frame: RoadFrame, settings: EdgeSett
                 lines += 1
             if settings.fallback_width:
                 lines = _draw_fallback(of_road, frame, road, side, drawn, settings.fallback_width, lines)
-        lines = draw_curb_returns(of_road, road.number, returns.get(road.number, []), lines, frame.pass_sigma.get(road.number, 0.0))
+        lines = draw_curb_returns(of_road, road.number, returns.get(road.number, []), lines, frame)
         found += of_road
     found += dropped_corners(found, frame, lines)
     edges = joined_pieces(found, frame, curb_points.crs)
@@ -274,10 +274,11 @@ def _draw(found, frame, road, side, piece, number, led_across):
         a, b = t[i], t[j]
         along = np.linspace(a, b, max(int(np.ceil((b - a) / EDGE_VERTEX_SPACING)), 1) + 1)
         vertices, rows = curve.at(along), points[i:j + 1]
+        passes = np.nan_to_num(frame.passes_sigma(road, np.interp(along, t, points["s"])))
         found.append(EdgePiece(vertices, road, side, "bridged" if bridged[i] else "measured", number, float(rows["s"][0]),
                                float(rows["s"][-1]), float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum()),
                                float(np.median(rows["height"])), float(np.sqrt(np.mean(residual[i:j + 1] ** 2))),
-                               sigma=edge_sigma(along, t, residual, points["support"], passes=frame.pass_sigma.get(road, 0.0))))
+                               sigma=edge_sigma(along, t, residual, points["support"], passes=passes)))
     return float(points["s"][0]), float(points["s"][-1])
 
 

@@ -40,7 +40,7 @@ CURB_RETURN = EdgeUncertainty(foot=0.0045, spacing=0.0, scatter=1.5, end=0.006, 
 
 
 def edge_sigma(at: np.ndarray, places: np.ndarray, residual: np.ndarray, support: np.ndarray | None = None,
-               shares: EdgeUncertainty = MAIN_EDGE, passes: float = 0.0) -> float:
+               shares: EdgeUncertainty = MAIN_EDGE, passes: np.ndarray | float = 0.0) -> float:
     """One sigma across a piece of an edge, the mean over places along it: its worst places do not speak for all.
 
     Parameters
@@ -50,7 +50,7 @@ def edge_sigma(at: np.ndarray, places: np.ndarray, residual: np.ndarray, support
     residual : (N,) m, distances of the curb points from the line
     support : (N,) laser points of each; below 1, or None, where that is unknown
     shares : EdgeUncertainty
-    passes : m, one sigma of the middle of the passes, see `RoadFrame.pass_sigma`
+    passes : m, one sigma of the middle of the passes, see `RoadFrame.pass_sigma`; one for all or (K,)
 
     Returns
     -------

@@ -327,7 +327,8 @@ def boundary_lines(corners: CurbPoints, frame: RoadFrame, max_gap: float, progre
             hidden = np.sort(own.station[own.status == "occluded"])
             for part in ("bottom", "top"):
                 for points, status in _pieces(_points(own[own.part == part], frame), hidden, max_gap):
-                    _draw(pieces, points, status, frame.pass_sigma.get(road.number, 0.0), road=road.number, side=side, part=part, chain=number)
+                    passes = np.nan_to_num(frame.passes_sigma(road.number, points["s"]))
+                    _draw(pieces, points, status, passes, road=road.number, side=side, part=part, chain=number)
                     number += 1
     lines = joined_pieces(pieces, frame, corners.crs)
     length = {part: lines.length[lines.part == part].sum() for part in ("bottom", "top")}
@@ -371,4 +372,5 @@ def _draw(pieces, points, status, passes, **fields):
         pieces.append(EdgePiece(vertices, status=str(status[i]), station=float(rows["s"][0]), end=float(rows["s"][-1]),
                                 length=float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum()), height=float(np.median(rows["height"])),
                                 rmse=float(np.sqrt(np.mean(curve.residual[i:j + 1] ** 2))),
-                                sigma=edge_sigma(along, curve.t, curve.residual, points["support"], passes=passes), **fields))
+                                sigma=edge_sigma(along, curve.t, curve.residual, points["support"], passes=np.interp(along, curve.t, passes)),
+                                **fields))

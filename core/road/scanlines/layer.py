@@ -100,7 +100,8 @@ def add_to_layer(spool: LineSpool, lines: Scanlines, frame: RoadFrame, road: int
     lines = simplified_lines(lines, simplify)
     x, y, z = frame.to_map(road, np.repeat(lines.station, np.diff(lines.first)), lines.d, lines.z)
     spool.add(np.c_[x, y, z, lines.intensity], lines.first, road=road, station_m=np.round(lines.station, 4), length_m=np.round(length, 3),
-              interval_m=interval, scanner=lines.scanner, pass_sig_m=frame.pass_sigma.get(road), **{"pass": lines.pass_number})
+              interval_m=interval, scanner=lines.scanner, pass_sig_m=frame.passes_sigma(road, lines.station) if road in frame.pass_sigma else None,
+              **{"pass": lines.pass_number})
 
 
 def line_lengths(lines: Scanlines) -> np.ndarray:

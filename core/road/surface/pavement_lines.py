@@ -182,16 +182,16 @@ def _drawn(frame, road, side, carriageway, grown, runs):
             pieces.append(("bridged", stations[runs[k - 1][1] - 1], stations[a]))
         pieces.append(("measured", stations[a], stations[b - 1]))
     found = []
-    passes = frame.pass_sigma.get(road, 0.0)
     for status, start, end in pieces:
         s = np.linspace(start, end, max(int(np.ceil((end - start) / EDGE_VERTEX_SPACING)), 1) + 1)
         d = splev(s, curve) if status == "measured" else np.interp(s, [start, end], splev([start, end], curve))
         vertices = np.c_[frame.to_map(road, s, d, _height(carriageway, s, d))]
         near = stretch_of(stations[rows], start, end)
+        passes = np.nan_to_num(frame.passes_sigma(road, s))
         rmse = float(np.sqrt(np.mean(residual[near] ** 2)))
         length = float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum())
         found.append(EdgePiece(vertices, road, side, status, -1, float(start), float(end), length, rmse=rmse,
-                               what="pavement", sigma=float(np.sqrt(np.mean(sigma[near] ** 2) + rmse**2 + passes**2))))
+                               what="pavement", sigma=float(np.sqrt(np.mean(sigma[near] ** 2) + rmse**2 + np.mean(passes**2)))))
     return found
 
 

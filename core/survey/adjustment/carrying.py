@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..frame.sigma_along import SigmaAlong
 from ..store.records import to_units
 from .corrections import CORRECTION_STEP, PassCorrections
 
@@ -46,7 +47,8 @@ def continued_corrections(frame: RoadFrame, moves: PassCorrections, compared: li
             return PassCorrections(by_pass)
         by_pass.update(found)
         for number in found:
-            frame.pass_sigma.setdefault(frame.passes[number].road, _moved_across(frame, PassCorrections(by_pass), frame.passes[number]))
+            across = _moved_across(frame, PassCorrections(by_pass), frame.passes[number])
+            frame.pass_sigma.setdefault(frame.passes[number].road, SigmaAlong.everywhere(across))
 
 
 def _moved_across(frame, moves, p):

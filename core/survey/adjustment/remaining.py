@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from .corrections import PassCorrections
 
 MAX_REMAINING = 0.02   # m in plan that two passes may still differ by: less than a marking's edge is blurred by
+MAX_CHANGE = 0.04      # m to the next window that a correction changes by: navigation drifts more slowly, so a pass jumped somewhere between
 MOST_NAMED = 12        # places that a message names
 
 
@@ -33,7 +34,9 @@ def remaining_places(offsets: list[PassOffsets], corrections: dict[int, tuple[np
         rest = np.zeros(len(pair.stations))
         for axis in PLAN_AXES:
             # what is unknown does not remain: it is bridged by what is known around it
-            rest = np.hypot(rest, np.nan_to_num(getattr(pair, axis) - _applied(pair, corrections, axis)))
+            applied = _applied(pair, corrections, axis)
+            left = np.abs(np.nan_to_num(getattr(pair, axis) - applied))
+            rest = np.hypot(rest, np.maximum(left, _evened_out(pair.stations, applied)))
         for station, metres in (*zip(pair.stations[rest > MAX_REMAINING], rest[rest > MAX_REMAINING]), *((station, np.inf) for station in pair.far)):
             places[float(station)] = max(places.get(float(station), 0.0), float(metres))
     return _stretches(places)
@@ -65,6 +68,15 @@ def places_of_one_drive(passes: list[Pass], offsets: list[PassOffsets], correcti
         for station, metres in zip(*(values[(away > POOLING_SIGMA) & (moved > MAX_REMAINING)].tolist() for values in (stations, moved))):
             places[station] = max(places.get(station, 0.0), metres)
     return _stretches(places)
+
+
+def _evened_out(stations, applied):
+    """(N,) m of a jump that remain in the windows it lies between, as corrections change evenly from one to the next; 0 where there is none."""
+    found = np.zeros(len(stations))
+    change = np.abs(np.diff(applied))
+    for k in np.flatnonzero((change > MAX_CHANGE) & (np.diff(stations) < 1.5 * WINDOW_LENGTH)).tolist():
+        found[k:k + 2] = np.maximum(found[k:k + 2], change[k] / 2)
+    return found
 
 
 def _stretches(places):

@@ -12,6 +12,7 @@ import numpy as np
 
 from .passes import Pass
 from .road import CORRIDOR, Road
+from .sigma_along import SigmaAlong
 
 MAX_POINT_DISTANCE = 200.0    # m from the track: exceeds the widest corridor and the extension at the ends of a road
 
@@ -26,7 +27,7 @@ class RoadFrame:
     crs : WKT, "" where unknown
     has_time : whether points are assigned to passes by their time
     notes : remarks on the trajectory, for the log
-    pass_sigma : {road number: m}, one sigma across of the middle of its passes, by what they differ or
+    pass_sigma : {road number: SigmaAlong}, one sigma across of the middle of its passes, by what they differ or
         by the accuracy of the trajectory where it was told, whichever is more; without entry where both are unknown
     """
 
@@ -36,7 +37,7 @@ class RoadFrame:
     crs: str = ""
     has_time: bool = True
     notes: Sequence[str] = ()
-    pass_sigma: dict[int, float] = field(default_factory=dict)
+    pass_sigma: dict[int, SigmaAlong] = field(default_factory=dict)
 
     def road(self, number: int) -> Road:
         """The road of a number."""
@@ -45,6 +46,11 @@ class RoadFrame:
     def passes_of(self, road: int) -> list[Pass]:
         """The passes over a road."""
         return [p for p in self.passes if p.road == road]
+
+    def passes_sigma(self, road: int, s: np.ndarray) -> np.ndarray:
+        """(N,) m, one sigma across of the middle of the passes at (N,) stations of a road; NaN where it is not known."""
+        along = self.pass_sigma.get(road)
+        return np.full(np.shape(s), np.nan) if along is None else along.at(s)
 
     @property
     def farthest(self) -> float:

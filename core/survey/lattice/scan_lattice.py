@@ -30,6 +30,7 @@ ROTATION_SAMPLE_LENGTH = 30.0  # m of road about each: scan lines are oblique, a
 MIN_WINDOW_POINTS = 200        # points of a scanner in a window
 MIN_DISTINCT_TIMES = 0.7       # share of the points; if more share their times, the times do not give the order on the line
 MAX_POINT_STEP = 0.5           # m across, median between successive points of a line
+SAME_PLACE_STEP = 0.1          # m across, median of successive points that lie on one line, in whatever order
 MIN_ONE_WAY_SHARE = 0.75       # of the steps from point to point that go the same way across
 MEDIAN_TIME_STRIDE = 15        # every n-th point is enough for the median time of a sample
 TIME_SORT_TICK = 2.0**-22      # s: finer than the resolution of any clock
@@ -37,6 +38,13 @@ TURNS_PER_BIN = 10             # turns whose points give one phase
 PHASE_STRETCH = 20.0           # m of road processed at a time
 MAX_POINTS_PER_TURN = 40       # that are used for the phase; more do not improve it
 MIN_AXIS_HEIGHT = 1.5          # m above the road: seen from lower, the angles of road points hardly change
+# why a scanner has no regular lines
+COARSE_TIMES = "neighbouring points share one time and so have no order"
+AT_ONCE = "points at one time lie far apart as those of many beams do or where times are very coarse"
+DISORDER = "the times do not give the order of the points on a line"
+TO_AND_FRO = "points that follow each other in time lie to and fro over the road as those of many beams do or of several scanners without a field"
+TOO_THIN = "the points of a line lie too far apart as in a thinned cloud"
+NO_TURNING = "no mirror is seen to turn steadily"
 LINE_SECTORS = 36              # of a turn, in each of which lines are counted
 MAX_MOUNTING_POINTS = 10_000   # points of a window that are used for the mounting of a scanner
 MOUNTING_DIRECTIONS = 360      # about the trajectory, for which the mounting of a scanner is estimated
@@ -49,12 +57,12 @@ class ScanLattice:
     Attributes
     ----------
     mirror_phases : {(pass number, scanner): MirrorPhase}
-    without : (pass number, scanner) that have no regular scan lines
+    without : (pass number, scanner) that have no regular scan lines, and why
     notes : sentences for the user about these
     """
 
     mirror_phases: dict[tuple[int, int], MirrorPhase] = field(default_factory=dict)
-    without: list[tuple[int, int]] = field(default_factory=list)
+    without: dict[tuple[int, int], str] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
 
 
@@ -84,12 +92,12 @@ def find_lattice(survey: Any, rotation_frequency: float = 0.0, progress: Progres
         for key, windows in samples.items():
             rotation = _rotation(windows, rotation_frequency)
             if rotation is None:
-                lattice.without.append(key)
+                lattice.without[key] = _why_none(windows)
             else:
                 rotations[key] = rotation
         found = _mirror_phases(survey, road, rotations, samples, progress.part(i / len(roads), (i + 1) / len(roads)))
         lattice.mirror_phases.update(found)
-        lattice.without += [key for key in rotations if key not in found]
+        lattice.without.update({key: NO_TURNING for key in rotations if key not in found})
     _report_lattice(lattice, progress)
     return lattice
 
@@ -104,8 +112,9 @@ def _report_lattice(lattice, progress):
                              "of each scanner); scanlines are made of the points near each section plane.")
         progress.warn(lattice.notes[-1])
     if missing:
-        note = (f"There are no regular scan lines in {len(missing)} of {len(found) + len(missing)} run(s) of a scanner "
-                "(a scanner with many beams, a thinned cloud, or times too coarse); there scanlines are made of the points near each section plane.")
+        why = ", ".join(sorted(set(missing.values())))
+        note = (f"There are no regular scan lines in {len(missing)} of {len(found) + len(missing)} run(s) of a scanner ({why}); "
+                "there scanlines are made of the points near each section plane.")
         lattice.notes.append(note)
         progress.warn(note)
 
@@ -233,12 +242,38 @@ def _rotation(windows, given):
 
 def _on_lines(windows):
     """Whether successive points have different times and lie side by side, mostly one way, as on a scan line."""
+    distinct, step, one_way = _steps(windows)
+    return bool(distinct >= MIN_DISTINCT_TIMES and step < MAX_POINT_STEP and one_way > MIN_ONE_WAY_SHARE)
+
+
+def _steps(windows):
+    """Share of points with a time of their own, median m across from point to point in time, and share of these steps that go the same way.
+
+    The last two are infinite and 0 for too few steps.
+    """
     later = np.concatenate([np.diff(w.time) > 0 for w in windows])
     steps = np.concatenate([np.diff(w.offset) for w in windows])[later]
-    if len(steps) < MIN_WINDOW_POINTS or np.mean(later) < MIN_DISTINCT_TIMES:
-        return False
-    onward = np.mean(steps > 0)
-    return bool(np.median(np.abs(steps)) < MAX_POINT_STEP and max(onward, 1 - onward) > MIN_ONE_WAY_SHARE)
+    if len(steps) < MIN_WINDOW_POINTS:
+        return float(np.mean(later)), np.inf, 0.0
+    onward = float(np.mean(steps > 0))
+    return float(np.mean(later)), float(np.median(np.abs(steps))), max(onward, 1 - onward)
+
+
+def _spread_at_once(window):
+    """(K,) m across between the outermost points of each time that several share."""
+    first = np.r_[0, np.flatnonzero(np.diff(window.time)) + 1]
+    spread = np.maximum.reduceat(window.offset, first) - np.minimum.reduceat(window.offset, first)
+    return spread[np.diff(np.r_[first, len(window.time)]) > 1]
+
+
+def _why_none(windows):
+    """What the points of a scanner without regular lines show of the reason."""
+    distinct, step, one_way = _steps(windows)
+    if distinct < MIN_DISTINCT_TIMES:
+        return COARSE_TIMES if np.median(np.concatenate([_spread_at_once(w) for w in windows])) < MAX_POINT_STEP else AT_ONCE
+    if one_way <= MIN_ONE_WAY_SHARE:
+        return DISORDER if step < SAME_PLACE_STEP else TO_AND_FRO
+    return TOO_THIN if step >= MAX_POINT_STEP else NO_TURNING
 
 
 def _mirror_phases(survey, road, rotations, samples, progress):

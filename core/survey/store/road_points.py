@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,6 +14,9 @@ from .column_overlay import ColumnOverlay
 from .point_subset import PointSubset
 from .records import ROAD_POINT, Points, join_columns, point_dtype
 from .section_store import SectionStore
+
+if TYPE_CHECKING:
+    from ..frame.sigma_along import SigmaAlong
 
 
 @dataclass
@@ -27,7 +30,7 @@ class RoadPoints:
     crs : WKT, "" where unknown
     has_corrected, has_cluster, has_spacing : whether the columns `corrected`, `cluster` and `spacing` hold values
     moves : PassCorrections, the shifts of the passes against the coordinates that were measured; None where there are none
-    pass_sigma : {road number: m}, as in RoadFrame
+    pass_sigma : {road number: SigmaAlong}, as in RoadFrame
     survey : Survey whose points these are, None where they are their own
     """
 
@@ -38,7 +41,7 @@ class RoadPoints:
     has_cluster: bool = False
     moves: Any = None
     has_spacing: bool = False
-    pass_sigma: dict[int, float] = field(default_factory=dict)
+    pass_sigma: dict[int, SigmaAlong] = field(default_factory=dict)
     survey: Any = field(default=None, repr=False)
 
     @property

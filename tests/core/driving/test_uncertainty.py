@@ -4,8 +4,12 @@ import numpy as np
 import pytest
 from lanewright.core.common.features import Features
 from lanewright.core.common.schemas import MARKINGS
+from lanewright.core.survey.frame.sigma_along import SigmaAlong
 from lined_streets import HEIGHT, Street
+from painted_streets import road_points, street
 from shapely.geometry import Polygon
+
+BORDER = np.hypot(0.001, 0.03 * 0.03)   # m, of a painted border whose paint does not scatter, where nothing says how far apart the points lie
 
 
 def sigmas(lines, **wanted):
@@ -41,7 +45,7 @@ def test_a_bridge_is_worse_than_what_it_joins():
 def test_what_passes_differ_by_is_in_it():
     street = two_lanes(again=(1.75,))
     before = sigmas(street.lanes()[0], status="measured")
-    street.frame.pass_sigma[0] = 0.04
+    street.frame.pass_sigma[0] = SigmaAlong.everywhere(0.04)
     after = sigmas(street.lanes()[0], status="measured")
     np.testing.assert_allclose(after, np.hypot(before, 0.04), atol=1e-4)
     assert before[0] == pytest.approx(before[1], rel=0.5)
@@ -54,7 +58,7 @@ def test_it_grows_with_the_scatter_of_the_paint_about_the_lines_of_the_lane(scat
     for row in street.lines.rows:
         row["rmse_m"] = scatter
     told = sigmas(street.lanes()[0], status="measured")
-    assert told[0] == pytest.approx(0.13 / np.sqrt(2.0) * scatter, abs=3e-4), "half of the error of each of two borders"
+    assert told[0] == pytest.approx(np.hypot(0.13 * scatter, BORDER) / np.sqrt(2.0), abs=3e-4), "half of the error of each of two borders"
     assert (told[0] > usual[0]) == (scatter > 0.010), "where nothing is known of the paint it is taken to scatter by a centimetre"
 
 
@@ -64,7 +68,7 @@ def test_a_lane_that_was_measured_nowhere_is_as_sure_as_the_borders_that_hold_it
         street.paint(offset, kind="edge", line=line)
     lines, _ = street.lanes()
     assert len(lines.rows) == 2 and {row["status"] for row in lines.rows} == {"inferred"}
-    np.testing.assert_allclose(sigmas(lines), 0.13 * np.hypot(0.75, 0.25) * 0.010, atol=3e-4)
+    np.testing.assert_allclose(sigmas(lines), np.hypot(0.13 * 0.010, BORDER) * np.hypot(0.75, 0.25), atol=3e-4)
 
 
 def test_the_farther_the_next_paint_of_a_border_the_less_sure_the_lane():
@@ -108,3 +112,14 @@ def test_where_the_curvature_changes_it_is_worse():
             street.paint(lead(offset), 5.0, 115.0, kind="edge" if k != 1 else "centre", line=k + 1)
         told.append(max(sigmas(street.lanes()[0], status="measured")))
     assert (0.8 * 1.28 * 0.0019) ** 2 < told[1] ** 2 - told[0] ** 2 < (2.0 * 1.28 * 0.0019) ** 2
+
+
+def test_the_farther_apart_the_points_the_less_sure_the_lane():
+    told = {}
+    for density in (2500, 100, 25):
+        lanes = two_lanes()
+        points = road_points(street(lanes.frame, length=120.0, left=5.0, right=-5.0, density=density), lanes.frame)
+        told[density] = np.array(sigmas(lanes.lanes(road_points=points)[0], status="measured"))
+    apart = {density: np.sqrt(values**2 - told[2500]**2) for density, values in told.items()}
+    np.testing.assert_allclose(apart[100], 0.03 * np.sqrt(0.10**2 - 0.02**2) / np.sqrt(2.0), rtol=0.15)
+    np.testing.assert_allclose(apart[25], 0.03 * np.sqrt(0.20**2 - 0.02**2) / np.sqrt(2.0), rtol=0.15)

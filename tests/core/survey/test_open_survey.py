@@ -9,6 +9,7 @@ import pytest
 from drives import EAST, NORTH, ahead, bend, chain, contents, drive, joined, surveyed_points, write_cloud
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.progress import Progress
+from lanewright.core.survey.frame.sigma_along import SigmaAlong
 from lanewright.core.survey.open_survey import SurveySettings, open_survey
 from lanewright.core.survey.read_survey import section_length
 from lanewright.core.survey.trajectory.trajectory import Trajectory
@@ -46,10 +47,9 @@ def test_the_sensor_stands_as_high_above_the_road_as_it_was_mounted(street):
 def test_the_accuracy_that_the_trajectory_is_told_to_have_is_that_of_every_road(street):
     trajectory, _, path = street
     assert open_survey([path], trajectory).frame.pass_sigma == {}
-    assert open_survey([path], trajectory, SurveySettings(trajectory_sigma=0.02)).frame.pass_sigma == {0: 0.02}
-    told = replace(trajectory, sigma_across=0.03)
-    assert open_survey([path], told).frame.pass_sigma == {0: 0.03}
-    assert open_survey([path], told, SurveySettings(trajectory_sigma=0.02)).frame.pass_sigma == {0: 0.02}
+    assert open_survey([path], trajectory, SurveySettings(trajectory_sigma=0.02)).frame.pass_sigma == {0: SigmaAlong.everywhere(0.02)}
+    assert open_survey([path], told := replace(trajectory, sigma_across=0.03)).frame.pass_sigma == {0: SigmaAlong.everywhere(0.03)}
+    assert open_survey([path], told, SurveySettings(trajectory_sigma=0.02)).frame.pass_sigma == {0: SigmaAlong.everywhere(0.02)}
     with pytest.raises(RoadExtractionError, match="The accuracy of the trajectory"):
         SurveySettings(trajectory_sigma=-0.02)
 

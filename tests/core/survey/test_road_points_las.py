@@ -5,6 +5,7 @@ import pytest
 from drives import write_cloud
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.survey.adjustment.corrections import CORRECTION_STEP, PassCorrections
+from lanewright.core.survey.frame.sigma_along import SigmaAlong
 from lanewright.core.survey.road_points_las import read_road_points, write_road_points
 from lanewright.core.survey.store.records import ROAD_POINT, to_units
 from lanewright.core.survey.store.road_points import RoadPoints
@@ -45,7 +46,7 @@ def test_every_column_comes_back_to_the_bit(tmp_path, suffix, corrected, cluster
     assert list(tmp_path.iterdir()) == [tmp_path / f"road{suffix}"], "nothing unfinished is left"
 
 
-@pytest.mark.parametrize("sigma", [{}, {0: 0.0123, 3: 0.002}])
+@pytest.mark.parametrize("sigma", [{}, {0: SigmaAlong((5.0, 12.5), (0.0625, 0.03125)), 3: SigmaAlong.everywhere(0.015625)}])
 def test_what_passes_differ_by_goes_with_the_points(tmp_path, sigma):
     written = road_points(count=50)
     written.pass_sigma = sigma

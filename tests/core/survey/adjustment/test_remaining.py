@@ -29,6 +29,14 @@ def test_an_offset_that_jumps_is_named_where_it_jumps():
     assert "90 to 110 m (up to 21.3 cm remain)" in said and "Road 2" in said
 
 
+def test_a_jump_that_the_corrections_follow_is_named_where_it_is_as_it_is_evened_out_over_ten_metres():
+    offsets = apart(np.where(STATIONS > 150.0, 0.16, 0.0))
+    (start, end, metres), = remaining_places(offsets, solve_corrections(offsets))
+    assert (start, end) == (140.0, 160.0) and 0.05 < metres < 0.09
+    slow = apart(0.0015 * STATIONS)
+    assert remaining_places(slow, solve_corrections(slow)) == [], "a drift of 15 mm in 10 m is none"
+
+
 def test_where_they_lie_too_far_apart_is_said_by_place():
     places = remaining_places(apart(NOTHING, far=(25.0, 35.0, 105.0)), {})
     assert places == [(20.0, 40.0, np.inf), (100.0, 110.0, np.inf)]

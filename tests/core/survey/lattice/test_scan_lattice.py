@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from lanewright.core.common.progress import Progress
-from lanewright.core.survey.lattice.scan_lattice import find_lattice
+from lanewright.core.survey.lattice.scan_lattice import COARSE_TIMES, DISORDER, find_lattice
 from scanned_streets import START, TUNNEL, Cloud, driven, scanned, survey_of
 
 
@@ -109,13 +109,19 @@ def test_a_spinning_scanner_with_many_beams_has_no_scan_lines():
             told.append(text)
 
     lattice = find_lattice(survey_of(Cloud(time, x, y, z, np.zeros(len(x)), np.zeros(len(x)))), progress=Log())
-    assert lattice.mirror_phases == {} and lattice.without == [(0, 0)]
-    assert len(told) == 1 and "no regular scan lines" in told[0]
+    assert lattice.mirror_phases == {} and list(lattice.without) == [(0, 0)]
+    assert len(told) == 1 and "no regular scan lines" in told[0] and "many beams" in told[0]
 
 
 def test_times_too_coarse_for_the_order_of_points_are_no_lattice():
-    assert find_lattice(survey_of(scanned(rounded=2e-5))).without == [(0, 0)]
-    assert find_lattice(survey_of(scanned(rounded=1e-5))).without == []
+    assert find_lattice(survey_of(scanned(rounded=2e-5))).without == {(0, 0): COARSE_TIMES}
+    assert find_lattice(survey_of(scanned(rounded=1e-5))).without == {}
+
+
+def test_times_that_mix_up_the_points_of_a_line_are_named_and_no_head_of_many_beams_is():
+    cloud = scanned()
+    cloud.time += np.random.default_rng(1).normal(0.0, 3e-5, len(cloud.time))
+    assert find_lattice(survey_of(cloud)).without == {(0, 0): DISORDER}
 
 
 def test_without_times_there_are_no_lines_to_tell():
