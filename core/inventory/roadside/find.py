@@ -31,6 +31,7 @@ ROADSIDE_WINDOW = 20.0            # m of road looked at at a time; results do no
 ROADSIDE_MARGIN = 4.0      # m before and after it, for the ground
 FURTHER = 2.0            # m beyond the reach that are read, for the ground
 INSIDE_EDGE = 0.20       # m inside the carriageway's edge from which things count as beside it
+ABOUT_POLE = 1.0         # m farther inside that are looked at, for a pole stands free and the corner of a vehicle does not
 BEYOND_TRACK = 2.0       # m from the track that count as carriageway where no layer says where it ends
 MAX_EDGE_GAP = 30.0      # m along the road over which an edge is taken to go on
 EDGE_LOOK_UP = 5.0          # m along the road between the places where the edge is looked up
@@ -186,16 +187,20 @@ def _look(survey, road, start, edges, settings):
     middle = np.array([start + 0.5 * ROADSIDE_WINDOW])
     found, poles = {}, []
     slices = int(round(start / UPRIGHT_SLICE)), int(round((start + ROADSIDE_WINDOW) / UPRIGHT_SLICE))
+    at = (np.arange(*slices) + 0.5) * UPRIGHT_SLICE
     for side in (1, -1):
         beyond = side * (d - edges.of(side, s))
-        beside = np.flatnonzero((beyond > -INSIDE_EDGE) & (beyond < settings.reach) & np.isfinite(above))
-        poles += find_poles(s[beside], d[beside], above[beside], (z - above)[beside], (start, start + ROADSIDE_WINDOW), settings.min_pole_height)
+        known = (beyond < settings.reach) & np.isfinite(above)
+        about = np.flatnonzero(known & (beyond > -INSIDE_EDGE - ABOUT_POLE))
+        upright = find_poles(s[about], d[about], above[about], (z - above)[about], (start, start + ROADSIDE_WINDOW), settings.min_pole_height)
+        poles += [pole for pole in upright if side * (pole.d - float(edges.of(side, np.array(pole.s)))) > -INSIDE_EDGE]
+        beside = np.flatnonzero(known & (beyond > -INSIDE_EDGE))
         own = beside[(s[beside] >= start) & (s[beside] < start + ROADSIDE_WINDOW)]
         nearest = int(survey.frame.nearest_pass(road, middle, edges.of(side, middle))[0])
         track = float(survey.frame.passes[nearest].at_station(middle)[0][0])
         seen = own[number[own] == nearest] if (number[own] == nearest).any() else own
-        found["line", side] = find_uprights(s[seen], d[seen], above[seen], (z - above)[seen], slices, side,
-                                            (track, survey.sensor_height.get(nearest, DEFAULT_SENSOR_HEIGHT)), settings.min_height)
+        eye = survey.road_height(road, at) + survey.sensor_height.get(nearest, DEFAULT_SENSOR_HEIGHT)
+        found["line", side] = find_uprights(s[seen], d[seen], above[seen], (z - above)[seen], slices, side, (track, eye), settings.min_height)
         if edges.known:
             found["gutter", side] = find_gutters(survey, road, start, int(round(ROADSIDE_WINDOW / SLICE_LENGTH)), side, partial(edges.of, side))
     return found, sorted(poles, key=lambda pole: (pole.s, pole.d))

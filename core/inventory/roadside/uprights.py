@@ -11,7 +11,8 @@ from ...common.rows import Rows
 UPRIGHT_SLICE = 0.5              # m along the road
 UPRIGHT_CELL = 0.10              # m across
 HEIGHT_BIN = 0.10        # m
-LOW_BINS = 25            # height bins that tell the kind of a line: up to 2.5 m
+LOW_BINS = 25            # height bins in which things stand: up to 2.5 m
+TOP_BIN, TOP_BINS = 0.05, 16   # m and number of the bins below the top that tell the kind of a line
 FIRST_BIN = 2            # bins below it (0.2 m) hold grass and curbs
 REACH_CELLS = 1          # cells on either side that belong to the same upright
 BODY_CELLS = 3           # cells on either side whose points describe it
@@ -32,7 +33,7 @@ class Uprights(Rows):
     slice : (N,) int, number of the slice, counted from station 0
     d, ground : (N,) m, offset of the face, and local z of the ground at its foot
     top, foot : (N,) m above the ground
-    bins : (N, LOW_BINS) bool, which height bins are occupied
+    below_top : (N, TOP_BINS) number of points in bins counted down from the top
     thickness : (N,) m across between the 10 % and 90 % quantile of its points
     batter : (N,) m across per m of height, positive where it leans away from the road
     points, behind : (N,) number of points on it, and of those seen through it
@@ -43,7 +44,7 @@ class Uprights(Rows):
     ground: np.ndarray
     top: np.ndarray
     foot: np.ndarray
-    bins: np.ndarray
+    below_top: np.ndarray
     thickness: np.ndarray
     batter: np.ndarray
     points: np.ndarray
@@ -59,11 +60,11 @@ class Uprights(Rows):
     def none() -> Uprights:
         """No uprights."""
         empty = np.empty(0)
-        return Uprights(np.empty(0, np.int64), *(empty,) * 4, np.empty((0, LOW_BINS), bool), *(empty,) * 4)
+        return Uprights(np.empty(0, np.int64), *(empty,) * 4, np.empty((0, TOP_BINS)), *(empty,) * 4)
 
 
 def find_uprights(s: np.ndarray, d: np.ndarray, above: np.ndarray, ground: np.ndarray, slices: tuple[int, int], side: int,
-                  eye: tuple[float, float], min_height: float) -> Uprights:
+                  eye: tuple[float, np.ndarray], min_height: float) -> Uprights:
     """Uprights of one side of a stretch of road.
 
     Parameters
@@ -72,7 +73,7 @@ def find_uprights(s: np.ndarray, d: np.ndarray, above: np.ndarray, ground: np.nd
     above, ground : (N,) m, heights above the ground, and local z of it
     slices : (first, last + 1) numbers of the slices
     side : 1 left, -1 right
-    eye : (offset, height above the road) of the scanner, m
+    eye : offset of the scanner, m, and its local z at the middle of every slice
     min_height : m of the top
     """
     if not len(s):
@@ -127,9 +128,9 @@ def _described(at, own, u, above, everything, first, side, eye):
     at, tops, count = at[has], tops[has], count[has]
     own, n = (np.cumsum(has) - 1)[own], len(at)
     start = np.cumsum(count) - count
-    low = above < TALL
-    bins = np.zeros((n, LOW_BINS), bool)
-    bins[own[low], np.minimum((above[low] / HEIGHT_BIN).astype(np.int64), LOW_BINS - 1)] = True
+    down = np.maximum((tops[own] - above) / TOP_BIN, 0.0).astype(np.int64)
+    high = down < TOP_BINS
+    below_top = np.bincount(own[high] * TOP_BINS + down[high], minlength=n * TOP_BINS).reshape(n, TOP_BINS).astype(float)
     foot = above[start]
     by_u = np.lexsort((u, own))
     ordered = u[by_u]
@@ -139,8 +140,8 @@ def _described(at, own, u, above, everything, first, side, eye):
     batter = np.bincount(own, du * dh, n) / np.maximum(np.bincount(own, dh * dh, n), 1e-6)
     i, all_u, all_above, all_ground = everything
     ground = _ground_at(at, middle, i, all_u, all_ground)
-    behind = _behind(at, middle, tops, i, all_u, all_above, side * eye[0], eye[1])
-    return Uprights(at[:, 0] + first, side * middle, ground, tops, foot, bins, farthest - nearest, batter, count.astype(float), behind)
+    behind = _behind(at, middle, ground + tops, i, all_u, all_above + all_ground, side * eye[0], eye[1][at[:, 0]])
+    return Uprights(at[:, 0] + first, side * middle, ground, tops, foot, below_top, farthest - nearest, batter, count.astype(float), behind)
 
 
 def _contiguous_top(own, above, n):
@@ -176,10 +177,11 @@ def _ground_at(at, middle, i, u, ground):
     return ground[order[place]]
 
 
-def _behind(at, middle, tops, i, u, above, eye_u, eye_height):
-    """(N,) points seen behind uprights, below the line of sight over their tops."""
+def _behind(at, middle, tops, i, u, z, eye_u, eye):
+    """(N,) points seen behind uprights, below the line of sight over their tops; tops, points and the eye have local z, for the ground behind
+    may lie higher or lower."""
     order = np.lexsort((u, i))
-    i, u, above = i[order], u[order], above[order]
+    i, u, z = i[order], u[order], z[order]
     key = i * 1e4 + u
     first = np.searchsorted(key, at[:, 0] * 1e4 + middle + BEHIND[0])
     last = np.searchsorted(key, at[:, 0] * 1e4 + middle + BEHIND[1])
@@ -187,7 +189,7 @@ def _behind(at, middle, tops, i, u, above, eye_u, eye_height):
     owner = np.repeat(np.arange(len(at)), count)
     index = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count) + np.repeat(first, count)
     beyond = u[index] - middle[owner]
-    distance = np.maximum(middle - eye_u, 0.5)[owner]
-    sight = tops[owner] - (eye_height - tops[owner]) * beyond / distance
-    through = above[index] < np.minimum(sight - SIGHT_MARGIN, tops[owner] - TOP_DEPTH)
+    fall = (eye - tops) / np.maximum(middle - eye_u, 0.5)
+    sight = tops[owner] - fall[owner] * beyond
+    through = z[index] < np.minimum(sight - SIGHT_MARGIN, tops[owner] - TOP_DEPTH)
     return np.bincount(owner[through], minlength=len(at)).astype(float)
