@@ -31,6 +31,7 @@ ROADSIDE_WINDOW = 20.0            # m of road looked at at a time; results do no
 ROADSIDE_MARGIN = 4.0      # m before and after it, for the ground
 FURTHER = 2.0            # m beyond the reach that are read, for the ground
 INSIDE_EDGE = 0.20       # m inside the carriageway's edge from which things count as beside it
+LEAST_ACROSS = 0.5       # m across between a scanner and what stands beside the road
 ABOUT_POLE = 1.0         # m farther inside that are looked at, for a pole stands free and the corner of a vehicle does not
 BEYOND_TRACK = 2.0       # m from the track that count as carriageway where no layer says where it ends
 MAX_EDGE_GAP = 30.0      # m along the road over which an edge is taken to go on
@@ -172,6 +173,16 @@ def _down(d):
     return float(np.floor(d / GROUND_CELL) * GROUND_CELL)
 
 
+def _sight(survey, road, number, s, d, h, time, side):
+    """(N,) m that the lines of sight to points of a pass rise for each m across towards the road: in a bend they run askew to what stands there."""
+    driven, line = survey.frame.passes[number], survey.frame.road(road)
+    x, y = line.to_map(s, d)
+    eye_x, eye_y = driven.at(time, "x", "y") if survey.frame.has_time else line.to_map(s, driven.at_station(s)[0])
+    heading = line.heading(s)
+    across = side * ((eye_x - x) * np.sin(heading) - (eye_y - y) * np.cos(heading))
+    return (survey.sensor_height.get(number, DEFAULT_SENSOR_HEIGHT) - h) / np.maximum(across, LEAST_ACROSS)
+
+
 def _look(survey, road, start, edges, settings):
     """({(what, side): Uprights}, list of Pole) of one window."""
     wide = start - ROADSIDE_MARGIN, start + ROADSIDE_WINDOW + ROADSIDE_MARGIN
@@ -180,14 +191,13 @@ def _look(survey, road, start, edges, settings):
     near = np.flatnonzero((d > edges.of(-1, s) - settings.reach - FURTHER) & (d < edges.of(1, s) + settings.reach + FURTHER))
     if not len(near):
         return {}, []
-    s, d, z, number = s[near], d[near], z[near], points.pass_number[near]
+    s, d, z, number, time = s[near], d[near], z[near], points.pass_number[near], points.time[near]
     h = z - survey.road_height(road, s)
     ground = local_ground(s, d, h, wide[0], int(round(wide[1] - wide[0])), (_down(d.min()), float(d.max()) + 1e-3))
     above = h - ground.at(s, d)
     middle = np.array([start + 0.5 * ROADSIDE_WINDOW])
     found, poles = {}, []
     slices = int(round(start / UPRIGHT_SLICE)), int(round((start + ROADSIDE_WINDOW) / UPRIGHT_SLICE))
-    at = (np.arange(*slices) + 0.5) * UPRIGHT_SLICE
     for side in (1, -1):
         beyond = side * (d - edges.of(side, s))
         known = (beyond < settings.reach) & np.isfinite(above)
@@ -197,10 +207,9 @@ def _look(survey, road, start, edges, settings):
         beside = np.flatnonzero(known & (beyond > -INSIDE_EDGE))
         own = beside[(s[beside] >= start) & (s[beside] < start + ROADSIDE_WINDOW)]
         nearest = int(survey.frame.nearest_pass(road, middle, edges.of(side, middle))[0])
-        track = float(survey.frame.passes[nearest].at_station(middle)[0][0])
         seen = own[number[own] == nearest] if (number[own] == nearest).any() else own
-        eye = survey.road_height(road, at) + survey.sensor_height.get(nearest, DEFAULT_SENSOR_HEIGHT)
-        found["line", side] = find_uprights(s[seen], d[seen], above[seen], (z - above)[seen], slices, side, (track, eye), settings.min_height)
+        sight = _sight(survey, road, nearest, s[seen], d[seen], h[seen], time[seen], side)
+        found["line", side] = find_uprights(s[seen], d[seen], above[seen], (z - above)[seen], slices, side, sight, settings.min_height)
         if edges.known:
             found["gutter", side] = find_gutters(survey, road, start, int(round(ROADSIDE_WINDOW / SLICE_LENGTH)), side, partial(edges.of, side))
     return found, sorted(poles, key=lambda pole: (pole.s, pole.d))

@@ -60,8 +60,9 @@ def _is_rail(members, top, through):
     """Whether there is a beam with free height below, above the ground or another beam, or ropes that leave much of the height free."""
     points = members.below_top.sum(axis=0)
     beam, end = (int(round(depth / TOP_BIN)) for depth in BEAM)
-    solid = float(np.median(points[:beam]))
-    is_beam = solid > 0 and points[:beam].min() > 0.5 * solid and points[beam + 1:end].min() < BEAM_GAP * solid
+    # a W beam has a fold that few pulses reach: every tenth of a metre counts, not every bin
+    filled = points[:beam].reshape(-1, 2).mean(axis=1)
+    is_beam = filled.min() > 0.5 * filled.mean() and points[end - 2:end].min() < BEAM_GAP * filled.mean()
     return is_beam or through > OPEN_FENCE and float(np.median(members.foot)) > FREE_BELOW * top
 
 
