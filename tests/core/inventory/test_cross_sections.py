@@ -79,6 +79,14 @@ def test_too_much_noise_gives_no_rut_depths_and_says_so():
     assert not np.isfinite([part.ruts for section in sections.sections for part in section.parts]).any()
 
 
+def test_limits_that_no_lane_can_keep_are_refused_with_both_numbers():
+    with pytest.raises(RoadExtractionError, match="least crossfall is 6 %, the greatest 2 %"):
+        CrossSectionSettings(min_crossfall=6.0, max_crossfall=2.0)
+    with pytest.raises(RoadExtractionError, match="in the rules of germany"):
+        CrossSectionSettings(max_crossfall=1.0, country="germany")
+    assert CrossSectionSettings(max_crossfall=1.0).limits().max_crossfall == 1.0
+
+
 @pytest.mark.parametrize("north", [False, True])
 def test_widths_grades_and_curbs_whatever_way_the_road_runs(north):
     layers = BorderLayers(edges_of(north=north), markings_of(north=north))

@@ -101,6 +101,18 @@ def test_a_rock_face_that_hides_what_lies_behind_it_is_one_wall():
     assert wall.kind == "wall" and wall.chain.length > 0.95 * 78
 
 
+@pytest.mark.parametrize("radius, grade", [(18.0, 0.0), (18.0, 0.09)])
+def test_a_low_wall_on_the_inner_side_of_a_hairpin_is_a_wall(radius, grade):
+    """A broad upper side and the ground behind are seen over it."""
+    def behind(rng):
+        x, y, over = rng.uniform(0, 60, 60_000), rng.uniform(4.7, 4.95, 60_000), rng.random(60_000) < 0.6
+        return x, np.where(over, y, 4.7), np.where(over, 1.0, rng.uniform(0.0, 1.0, 60_000)) + BESIDE
+
+    survey = measured_road(above=behind, grade=grade, radius=radius, reach=8.0, density=800.0, hides=hidden_by((Thing("wall", 4.7, 0, 60, 1.0),)))
+    lines = [line for line in found_in(survey, edges_of(radius=radius)).lines if line.kind != "gutter"]
+    assert [line.kind for line in lines] == ["wall"] and np.median(lines[0].chain.top) == pytest.approx(1.0, abs=0.1)
+
+
 def test_a_low_wall_before_a_house_is_a_wall_and_no_fence():
     """The house is seen over the wall, not through it."""
     survey, edges = road_with((Thing("wall", 6.0, 10, 100, 0.9), Thing("building", 6.9)))
