@@ -62,7 +62,7 @@ def _is_rail(members, top, through):
     beam, end = (int(round(depth / TOP_BIN)) for depth in BEAM)
     # a W beam has a fold that few pulses reach: every tenth of a metre counts, not every bin
     filled = points[:beam].reshape(-1, 2).mean(axis=1)
-    is_beam = filled.min() > 0.5 * filled.mean() and points[end - 2:end].min() < BEAM_GAP * filled.mean()
+    is_beam = filled.min() > 0.5 * filled.mean() and points[end - 2:end].mean() < BEAM_GAP * filled.mean()
     return is_beam or through > OPEN_FENCE and float(np.median(members.foot)) > FREE_BELOW * top
 
 
