@@ -20,10 +20,21 @@ def add_borders(algorithm, *helps):
 
 
 def survey_with_borders(call, progress, above_road):
-    """The survey, with points up to `above_road` metres above the road, and the BorderLayers, which lie on its roads."""
+    """The survey, with points up to `above_road` metres above the road, and the BorderLayers, which lie on its roads and in its CRS.
+
+    A layer without features, as a step before may have found nothing, counts as not given.
+    """
     from ...core.inventory.borders import BorderLayers
+    from ...core.io.crs import check_same_crs
 
     layers = {name: call.features(name, schema, geometry) for name, (_, schema, geometry) in BORDER_LAYERS.items()}
+    for name, features in layers.items():
+        if features is not None and not len(features):
+            progress.warn(tr("{label} holds no features and is not used.").format(label=call.label(name)))
+            layers[name] = None
     survey = open_survey_of(call, progress, above_road=above_road)
+    for name, features in layers.items():
+        if features is not None:
+            check_same_crs(features.crs, survey.crs, call.label(name))
     check_layers_on_roads(call, layers, survey.frame)
     return survey, BorderLayers(*layers.values())

@@ -35,7 +35,8 @@ QUIET_PROFILE = 0.0015       # m of noise under the straight edge at which no mo
 MAX_RUT_CORRECTION = 0.005   # m of noise under the straight edge beyond which a rut depth says nothing
 UNCHECKED_ROLL = np.tan(np.radians(0.05))  # m/m: what boresight and navigation of a mapping system leave, where opposite passes do not tell
 CHECKED_ROLL = 0.0003        # m/m: the same where they do, see height_errors.TILT_SIGMA
-STEEPEST_MIDDLE = 0.15       # m/m that the carriageway's middle may run askew to the driven line
+STEEPEST_MIDDLE = 0.15       # m/m that the carriageway may run askew to the driven line
+LEAST_STRETCHED = 0.3        # m along a strip for each m of station, where a bend is tightest
 
 
 @dataclass(frozen=True)
@@ -205,7 +206,7 @@ def _section(survey, road, s, borders, errors, interval, stretch):
     whole = _plane(grid, heights, carriageway)
     if whole is None:
         return None, 0
-    heading = _heading(survey, borders, road, s)
+    heading = _heading(survey, borders, road, s, carriageway)
     level = _level(grid, heights, carriageway)
     clearances = _clearances(survey, road, s, interval, (grid.d, level), [carriageway, *lanes])
     noisy, parts = 0, []
@@ -221,9 +222,9 @@ def _section(survey, road, s, borders, errors, interval, stretch):
             depths = rut_depths(grid.d, profiles, (strip.right, strip.left), (carriageway.right + BORDER_MARGIN,
                                 carriageway.left - BORDER_MARGIN), noise)
             ruts = _median(depths[0]), _median(depths[1])
+        across, along = (np.nan, np.nan) if plane is None or seen < MIN_SURFACE_SEEN else _falls(survey, road, s, grid, plane, strip, heading)
         parts.append(StripMeasures(
-            strip, *((plane.across, float(np.hypot(plane.sigma, rolled)), plane.along + grid.slope) if plane is not None and seen >= MIN_SURFACE_SEEN
-                     else (np.nan,) * 3), ruts,
+            strip, across, np.nan if plane is None or np.isnan(across) else float(np.hypot(plane.sigma, rolled)), along, ruts,
             _curbs(grid.d, level, strip) if not strip.lane else (np.nan, np.nan), clearance, seen))
     inside = (grid.d > carriageway.right - READ_BESIDE) & (grid.d < carriageway.left + READ_BESIDE)
     z = level[inside] + grid.line(np.array([s]))[0]
@@ -323,13 +324,30 @@ def _curbs(d, profile, strip):
     return found[0], found[1]
 
 
-def _heading(survey, borders, road, s):
-    """Tangent of the angle between the carriageway's middle and the reference line."""
-    found = [borders.at(road, s + side * STRETCH / 4) for side in (1, -1)]
-    ahead, behind = (np.nan if one is None else 0.5 * (one[0].right + one[0].left) for one in found)
-    askew = float(ahead - behind) / (STRETCH / 2)
-    # where an edge begins or ends the middle jumps, and nothing turns
-    return askew if abs(askew) < STEEPEST_MIDDLE else 0.0
+def _heading(survey, borders, road, s, carriageway):
+    """Tangent of the angle between the carriageway and the reference line: what most of its borders and those of its lanes move across."""
+    places = s + STRETCH * np.array([-0.5, -0.25, 0.0, 0.25, 0.5])
+    known = [(at, np.unique([d for strip in [found[0], *found[1]] for d in (strip.right, strip.left)]))
+             for at, found in ((at, borders.at(road, float(at))) for at in places) if found is not None]
+    (first, before), (last, after) = known[0], known[-1]
+    across = (after[np.abs(after[:, None] - before).argmin(axis=0)] - before) / max(last - first, 1e-9)
+    # where a border begins or ends another one is nearest, and nothing turns
+    askew = across[np.abs(across) < STEEPEST_MIDDLE]
+    return float(np.median(askew)) / _stretched(survey, road, s, carriageway) if len(askew) else 0.0
+
+
+def _stretched(survey, road, s, strip):
+    """m along a strip's middle for each m of station: less on the inner side of a bend, more on the outer one."""
+    line = survey.frame.road(road)
+    bend = line.curvature(np.clip(s + STRETCH * np.linspace(-0.5, 0.5, 11), 0.0, line.length))
+    return max(1.0 - 0.5 * (strip.right + strip.left) * float(np.mean(bend)), LEAST_STRETCHED)
+
+
+def _falls(survey, road, s, grid, plane, strip, heading):
+    """(fall to the right, climb) of a strip, m/m, across and along the carriageway, which may run askew to the driven line."""
+    along = (plane.along + grid.slope) / _stretched(survey, road, s, strip)
+    length = float(np.hypot(1.0, heading))
+    return (plane.across - heading * along) / length, (along + heading * plane.across) / length
 
 
 def _say(found: RoadSections, progress: Progress) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ..common.errors import RoadExtractionError
 from ..common.setting import check_limits, setting
 from ..countries.catalogue import country
 from ..countries.model import SectionLimits
@@ -34,7 +35,12 @@ class CrossSectionSettings:
 
     def __post_init__(self) -> None:
         check_limits(self)
-        country(self.country)
+        limits = self.limits()
+        if limits.min_crossfall is not None and limits.max_crossfall is not None and limits.min_crossfall > limits.max_crossfall:
+            least, most = ("" if given else f" in the rules of {self.country}" for given in (self.min_crossfall, self.max_crossfall))
+            raise RoadExtractionError(
+                f"The least crossfall is {limits.min_crossfall:g} %{least}, the greatest {limits.max_crossfall:g} %{most}: no lane can keep both. "
+                "Set both limits so that the least is below the greatest.")
 
     def limits(self) -> SectionLimits:
         """The limits that hold: the user's own, else the country's; None where neither has one."""

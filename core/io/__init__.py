@@ -6,7 +6,7 @@ In: text tables, tiled GeoTIFFs, CRS definitions. Out: arrays with their metadat
 from ..lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "crs": ("check_metric", "check_projected", "crs_note", "horizontal_part", "parse_crs", "same_crs", "unit_note"),
+    "crs": ("check_metric", "check_projected", "check_same_crs", "crs_note", "horizontal_part", "parse_crs", "same_crs", "unit_note"),
     "gdal_errors": ("gdal_exceptions",),
     "geotiff": ("IntensityImage", "filled_tiles", "new_geotiff", "write_display_image"),
     "text_table": ("NumberTable", "read_number_table"),

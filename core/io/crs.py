@@ -179,6 +179,25 @@ def same_crs(a: Any, b: Any) -> bool:
     return bool(first) and first == second
 
 
+def check_same_crs(own: str, other: str, label: str) -> None:
+    """Refuse a layer in another CRS than the point clouds; one whose CRS is not known is taken to be in theirs.
+
+    Parameters
+    ----------
+    own, other : WKT or "EPSG:n" of the layer and of the point clouds, "" where unknown
+    label : name of the layer, as at the beginning of a sentence
+
+    Raises
+    ------
+    RoadExtractionError
+        If they differ.
+    """
+    layer, clouds = parse_crs(own), parse_crs(other)
+    if layer is not None and clouds is not None and not same_crs(layer, clouds):
+        raise RoadExtractionError(f"{label} is in {horizontal_part(layer).name}, the point clouds are in {horizontal_part(clouds).name}. "
+                                  "Reproject the layer to their CRS and run again.")
+
+
 def _projection(crs):
     """The projection and its parameters by name, without what is only said about them; empty where PROJ has no words for it."""
     words = crs.to_dict()

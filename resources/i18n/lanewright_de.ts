@@ -2489,6 +2489,11 @@
             <translation>Länge aller Linien außer Rinnen (m)</translation>
         </message>
         <message>
+            <location filename="../../algorithms/inventory/survey_with_borders.py" />
+            <source>{label} holds no features and is not used.</source>
+            <translation>{label} enthält keine Objekte und wird nicht verwendet.</translation>
+        </message>
+        <message>
             <location filename="../../algorithms/markings/cluster_markings.py" />
             <source>Cluster markings</source>
             <translation>Markierungen zusammenfassen</translation>

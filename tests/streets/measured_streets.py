@@ -20,12 +20,14 @@ WHEEL_PATHS = 0.9  # m from the middle of a lane
 
 @dataclass(frozen=True)
 class Drive:
-    """One pass: 1 along the road or -1 against it, m of its track left of the middle, roll error in m/m, error in height in m."""
+    """One pass: 1 along the road or -1 against it, m of its track left of the middle, roll error in m/m, error in height in m, and m that the
+    track lies farther left at the end of the road than at its beginning."""
 
     direction: int = 1
     offset: float = -1.75
     roll: float = 0.0
     up: float = 0.0
+    shift: float = 0.0
 
 
 def surface(d, crossfall=0.025, crown=True, rut=0.0, lanes=(-1.75, 1.75), curb=0.12):
@@ -38,9 +40,17 @@ def surface(d, crossfall=0.025, crown=True, rut=0.0, lanes=(-1.75, 1.75), curb=0
     return z + np.where(np.abs(d) > HALF, curb, 0.0)
 
 
+def on_map(x, y, north=False, radius=0.0):
+    """Map coordinates of places x along and y left of the middle of the road."""
+    if radius:
+        turn = x / radius
+        x, y = (radius - y) * np.sin(turn), radius - (radius - y) * np.cos(turn)
+    return (EAST - y, NORTH + x) if north else (EAST + x, NORTH + y)
+
+
 def measured_road(drives=(Drive(),), scanners=((0.0, 0.0),), length=60.0, density=1500.0, noise=0.004, grade=0.03, reach=6.0, seed=11,
-                  above=None, hides=None, north=False, **road):
-    """A Survey of a straight road.
+                  above=None, hides=None, north=False, radius=0.0, **road):
+    """A Survey of a road, straight or in a bend to the left of a radius in m about its middle.
 
     scanners : (step in m, tilt in m/m) of each on its vehicle, the tilt positive where it measures its left side too high; the third, if
         given, is its turn about the vertical, in m that a point is placed too far ahead for each m that it lies to the left
@@ -54,12 +64,13 @@ def measured_road(drives=(Drive(),), scanners=((0.0, 0.0),), length=60.0, densit
     for number, drive in enumerate(drives):
         x = step if drive.direction > 0 else step[::-1]
         time = 1000.0 * (number + 1) + np.arange(len(x)) * 0.025
-        rows.append(np.stack([time, x, np.full(len(x), drive.offset), grade * x + SENSOR + GROUND]))
+        rows.append(np.stack([time, x, drive.offset + drive.shift * x / length, grade * x + SENSOR + GROUND]))
         for scanner, (up, tilt, *turn) in enumerate(scanners):
             count = int(density * np.pi * SENSOR * length / len(scanners))
             across = SENSOR * np.tan(rng.uniform(-np.pi / 2, np.pi / 2, count))
             ahead = np.cumsum(rng.standard_exponential(count))  # strewn evenly, in order, from the first metre to the last
-            px, py = (ahead - ahead[0]) / (ahead[-1] - ahead[0]) * length, drive.offset + across
+            px = (ahead - ahead[0]) / (ahead[-1] - ahead[0]) * length
+            py = drive.offset + drive.shift * px / length + across
             kept = np.abs(py) < reach
             px, py, across = px[kept], py[kept], across[kept]
             pz = surface(py, **road) + grade * px
@@ -74,7 +85,7 @@ def measured_road(drives=(Drive(),), scanners=((0.0, 0.0),), length=60.0, densit
             parts.append((number, scanner, np.interp(px, x[:: drive.direction], time[:: drive.direction]), px, py, pz + GROUND))
 
     def placed(x, y):
-        return (EAST - y, NORTH + x) if north else (EAST + x, NORTH + y)
+        return on_map(x, y, north, radius)
 
     time, x, y, z = np.concatenate(rows, axis=1)
     frame = build_frame(Trajectory(time, *placed(x, y), z))
@@ -96,15 +107,16 @@ def measured_road(drives=(Drive(),), scanners=((0.0, 0.0),), length=60.0, densit
     return Survey([], frame, store, "", {p.number: SENSOR for p in frame.passes}, field, list(range(len(scanners))), True, True, above_road=12.0)
 
 
-def edges_of(length=60.0, half=HALF, north=False):
+def edges_of(length=60.0, half=HALF, north=False, radius=0.0):
     """ROAD_EDGES of the road."""
     return _lines(ROAD_EDGES, [(d, dict(side="left" if d > 0 else "right", status="measured", kind="main", part="bottom")) for d in (half, -half)],
-                  length, north)
+                  length, north, radius)
 
 
-def markings_of(length=60.0, offsets=(-3.25, 0.0, 3.25), north=False):
+def markings_of(length=60.0, offsets=(-3.25, 0.0, 3.25), north=False, radius=0.0):
     """MARKING_LINES of the road."""
-    return _lines(MARKING_LINES, [(d, dict(line=k, kind="lane", status="measured")) for k, d in enumerate(offsets)], length, north)
+    return _lines(MARKING_LINES, [(d, dict(line=k, kind="lane", status="measured")) for k, d in enumerate(offsets)], length, north,
+                  radius)
 
 
 def lanes_of(length=60.0, strips=((-3.5, -3.0, "shoulder", 0), (-3.0, 0.0, "driving", 1), (0.0, 3.4, "driving", -1))):
@@ -119,9 +131,9 @@ def lanes_of(length=60.0, strips=((-3.5, -3.0, "shoulder", 0), (-3.0, 0.0, "driv
     return found
 
 
-def _lines(schema, lines, length, north):
+def _lines(schema, lines, length, north, radius):
     found = Features("LineStringZ", schema)
+    x = np.linspace(0.0, length, int(length) + 1 if radius else 2)
     for d, row in lines:
-        ends = [(0.0, d), (length, d)]
-        found.add(shapely.linestrings([((EAST - y, NORTH + x) if north else (EAST + x, NORTH + y)) + (GROUND,) for x, y in ends]), road=0, **row)
+        found.add(shapely.linestrings(np.stack([*on_map(x, d + 0 * x, north, radius), GROUND + 0 * x], axis=1)), road=0, **row)
     return found

@@ -13,13 +13,14 @@ SOLID = ("barrier", "wall", "hedge", "building", "cars")
 
 @dataclass(frozen=True)
 class Thing:
-    """A thing along the road: its kind, offset of its face from the middle of the road, and stations."""
+    """A thing along the road: its kind, offset of its face from the middle of the road, and stations; a rail may have the form double or ropes."""
 
     kind: str
     offset: float
     start: float = 0.0
     end: float = LENGTH
     height: float = 0.0
+    form: str = ""
 
     @property
     def side(self):
@@ -39,7 +40,9 @@ def points_of(thing, rng, density=FACE):
         # a beam of 0.31 m with a wave, on posts every 2 m
         post = (np.abs((x - thing.start) % 2.0 - 1.0) < 0.05) & (z < top - 0.31)
         back = np.where(post, 0.12, 0.04 + 0.04 * np.cos(2 * np.pi * (z - top) / 0.155))
-        kept = (z > top - 0.31) | post
+        low_beam = (z > top - 0.75) & (z < top - 0.44)
+        ropes = (np.abs((top - z) % 0.13) < 0.02) & (z > top - 0.45)
+        kept = post | (ropes if thing.form == "ropes" else (z > top - 0.31) | (low_beam if thing.form == "double" else False))
     elif thing.kind == "barrier":
         # New Jersey section: foot, slope of 55 degrees, steep upper part, top
         back = np.interp(z, [0.0, 0.08, 0.33, top], [0.0, 0.0, 0.18, 0.23])

@@ -31,6 +31,8 @@ ROADSIDE_WINDOW = 20.0            # m of road looked at at a time; results do no
 ROADSIDE_MARGIN = 4.0      # m before and after it, for the ground
 FURTHER = 2.0            # m beyond the reach that are read, for the ground
 INSIDE_EDGE = 0.20       # m inside the carriageway's edge from which things count as beside it
+LEAST_ACROSS = 0.5       # m across between a scanner and what stands beside the road
+ABOUT_POLE = 1.0         # m farther inside that are looked at, for a pole stands free and the corner of a vehicle does not
 BEYOND_TRACK = 2.0       # m from the track that count as carriageway where no layer says where it ends
 MAX_EDGE_GAP = 30.0      # m along the road over which an edge is taken to go on
 EDGE_LOOK_UP = 5.0          # m along the road between the places where the edge is looked up
@@ -171,6 +173,16 @@ def _down(d):
     return float(np.floor(d / GROUND_CELL) * GROUND_CELL)
 
 
+def _sight(survey, road, number, s, d, h, time, side):
+    """(N,) m that the lines of sight to points of a pass rise for each m across towards the road: in a bend they run askew to what stands there."""
+    driven, line = survey.frame.passes[number], survey.frame.road(road)
+    x, y = line.to_map(s, d)
+    eye_x, eye_y = driven.at(time, "x", "y") if survey.frame.has_time else line.to_map(s, driven.at_station(s)[0])
+    heading = line.heading(s)
+    across = side * ((eye_x - x) * np.sin(heading) - (eye_y - y) * np.cos(heading))
+    return (survey.sensor_height.get(number, DEFAULT_SENSOR_HEIGHT) - h) / np.maximum(across, LEAST_ACROSS)
+
+
 def _look(survey, road, start, edges, settings):
     """({(what, side): Uprights}, list of Pole) of one window."""
     wide = start - ROADSIDE_MARGIN, start + ROADSIDE_WINDOW + ROADSIDE_MARGIN
@@ -179,7 +191,7 @@ def _look(survey, road, start, edges, settings):
     near = np.flatnonzero((d > edges.of(-1, s) - settings.reach - FURTHER) & (d < edges.of(1, s) + settings.reach + FURTHER))
     if not len(near):
         return {}, []
-    s, d, z, number = s[near], d[near], z[near], points.pass_number[near]
+    s, d, z, number, time = s[near], d[near], z[near], points.pass_number[near], points.time[near]
     h = z - survey.road_height(road, s)
     ground = local_ground(s, d, h, wide[0], int(round(wide[1] - wide[0])), (_down(d.min()), float(d.max()) + 1e-3))
     above = h - ground.at(s, d)
@@ -188,14 +200,16 @@ def _look(survey, road, start, edges, settings):
     slices = int(round(start / UPRIGHT_SLICE)), int(round((start + ROADSIDE_WINDOW) / UPRIGHT_SLICE))
     for side in (1, -1):
         beyond = side * (d - edges.of(side, s))
-        beside = np.flatnonzero((beyond > -INSIDE_EDGE) & (beyond < settings.reach) & np.isfinite(above))
-        poles += find_poles(s[beside], d[beside], above[beside], (z - above)[beside], (start, start + ROADSIDE_WINDOW), settings.min_pole_height)
+        known = (beyond < settings.reach) & np.isfinite(above)
+        about = np.flatnonzero(known & (beyond > -INSIDE_EDGE - ABOUT_POLE))
+        upright = find_poles(s[about], d[about], above[about], (z - above)[about], (start, start + ROADSIDE_WINDOW), settings.min_pole_height)
+        poles += [pole for pole in upright if side * (pole.d - float(edges.of(side, np.array(pole.s)))) > -INSIDE_EDGE]
+        beside = np.flatnonzero(known & (beyond > -INSIDE_EDGE))
         own = beside[(s[beside] >= start) & (s[beside] < start + ROADSIDE_WINDOW)]
         nearest = int(survey.frame.nearest_pass(road, middle, edges.of(side, middle))[0])
-        track = float(survey.frame.passes[nearest].at_station(middle)[0][0])
         seen = own[number[own] == nearest] if (number[own] == nearest).any() else own
-        found["line", side] = find_uprights(s[seen], d[seen], above[seen], (z - above)[seen], slices, side,
-                                            (track, survey.sensor_height.get(nearest, DEFAULT_SENSOR_HEIGHT)), settings.min_height)
+        sight = _sight(survey, road, nearest, s[seen], d[seen], h[seen], time[seen], side)
+        found["line", side] = find_uprights(s[seen], d[seen], above[seen], (z - above)[seen], slices, side, sight, settings.min_height)
         if edges.known:
             found["gutter", side] = find_gutters(survey, road, start, int(round(ROADSIDE_WINDOW / SLICE_LENGTH)), side, partial(edges.of, side))
     return found, sorted(poles, key=lambda pole: (pole.s, pole.d))

@@ -62,7 +62,8 @@ def local_ground(s: np.ndarray, d: np.ndarray, h: np.ndarray, start: float, slic
     first, count = first[solid], count[solid]
     low = np.full((slices, columns), np.nan)
     low.flat[place[first]] = h[first + np.rint(GROUND_SHARE * (count - 1)).astype(np.int64)]
-    low = _without_rims(_filled(low))
+    filled = _filled(low)
+    low = _let_down(filled, _rims(low) | _rims(filled))
     known = np.isfinite(low)
     if not known.any():
         return LocalGround(start, offsets[0], low)
@@ -71,7 +72,8 @@ def local_ground(s: np.ndarray, d: np.ndarray, h: np.ndarray, start: float, slic
     cells = int(round(STANDING_WIDTH / GROUND_CELL)) | 1
     smooth = median_filter(np.where(known, level, 1e3), size=(3, 1), mode="nearest")
     opened = grey_opening(np.where(smooth > 500.0, level.clip(max=1e3), smooth), size=(1, cells), mode="nearest")
-    return LocalGround(start, offsets[0], np.where(known & (opened < 500.0), opened, np.nan))
+    ground = np.where(known & (opened < 500.0), opened, np.nan)
+    return LocalGround(start, offsets[0], _let_down(ground, smooth - ground > RIM_STEP))
 
 
 def _filled(low):
@@ -83,8 +85,24 @@ def _filled(low):
     return np.where(np.isnan(low), np.fmin(left, right), low)
 
 
-def _without_rims(low):
-    """Heights without narrow tops beyond which nothing was seen, as of a wall that hides what lies behind it."""
+def _let_down(low, standing):
+    """Heights where what stands has that of the ground beside it; the cells beside it may hold the foot of its face, and are let down too."""
+    beside = np.pad(standing, ((0, 0), (1, 1)))
+    standing = (standing | beside[:, :-2] | beside[:, 2:]) & np.isfinite(low)
+    return np.where(standing, _continued(np.where(standing, np.nan, low), STANDING_WIDTH), low)
+
+
+def _continued(low, reach):
+    """Gaps across take the height of the nearest cell within `reach` (m), of two as near the lower one."""
+    low = low.copy()
+    for _ in range(int(round(reach / GROUND_CELL))):
+        beside = np.pad(low, ((0, 0), (1, 1)), constant_values=np.nan)
+        low = np.where(np.isnan(low), np.fmin(beside[:, :-2], beside[:, 2:]), low)
+    return low
+
+
+def _rims(low):
+    """(I, J) narrow tops beyond which nothing was seen, as of a wall that hides what lies behind it."""
     rows, columns = low.shape
     cells = np.column_stack([np.full(rows, np.nan), low]).ravel()   # a gap between the rows
     known = np.isfinite(cells)
@@ -99,4 +117,4 @@ def _without_rims(low):
     before, after = np.maximum(first - 1, 0), np.minimum(last + 1, len(cells) - 1)
     rim = up[before] & unseen[after] | down[last] & unseen[before]
     standing = rim & known[first] & ((last - first + 1) * GROUND_CELL < STANDING_WIDTH)
-    return np.where(standing[group], np.nan, cells).reshape(rows, columns + 1)[:, 1:]
+    return standing[group].reshape(rows, columns + 1)[:, 1:]

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..straight_edge import smoothed
 from ..surface_grid import CROSS_CELL, SLICE_LENGTH, SurfaceGrid, surface_grid
-from .uprights import LOW_BINS, UPRIGHT_SLICE, Uprights
+from .uprights import TOP_BINS, UPRIGHT_SLICE, Uprights
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -50,13 +50,15 @@ def find_gutters(survey: Survey, road: int, start: float, slices: int, side: int
     low, place = lowest[rows, j], u[rows, j]
     beyond = u - place[:, None]
     outer, inner = (_highest(profile, (beyond * way > 0) & (beyond * way < reach)) for way, reach in ((1, OUTER_REACH), (-1, INNER_REACH)))
-    found = np.flatnonzero(np.isfinite(low) & (outer - low > OUTER_RISE) & (inner - low > INNER_RISE))
+    # water stays where the ground rises outward from the lowest point on: a verge that falls on is none
+    falls_on = np.where((beyond > 0) & (beyond < OUTER_REACH) & np.isfinite(profile), profile, np.inf).min(axis=1) < low
+    found = np.flatnonzero(np.isfinite(low) & (outer - low > OUTER_RISE) & (inner - low > INNER_RISE) & ~falls_on)
     # a slice of the surface holds several of those along which lines are followed
     times = int(round(SLICE_LENGTH / UPRIGHT_SLICE))
     found = np.repeat(found, times)
     number = np.floor(s[found] / SLICE_LENGTH).astype(np.int64) * times + np.tile(np.arange(times), len(found) // times)
     zero = np.zeros(len(found))
-    return Uprights(number, grid.d[j[found]], low[found] + grid.line(s[found]), (outer - low)[found], zero, np.zeros((len(found), LOW_BINS), bool),
+    return Uprights(number, grid.d[j[found]], low[found] + grid.line(s[found]), (outer - low)[found], zero, np.zeros((len(found), TOP_BINS)),
                     zero, zero, zero + 1.0, zero)
 
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from .chains import Chain
-from .uprights import FIRST_BIN, TALL
+from .uprights import TALL, TOP_BIN
 
 BUILDING_TOP = 4.2           # m: what rises higher is a building
 RAIL_TOP = 0.55, 1.15        # m: tops of guard rails, with tolerance for the ground (EN 1317 systems: 0.70 to 1.00 m)
-BEAM_BINS = 4                # height bins from the lower edge of a beam to its top: 0.31 m (EN 1317, W beam) that bins may cut
-MIN_FILLED_BEAM = 0.55       # share of slices with points in the beam
-OF_BEAM = 0.7                # of the most filled bin, what still belongs to the beam
+BEAM = 0.20, 0.40            # m below the top: to the first a beam fills everything, before the second it ends (EN 1317: 0.31 m, W beam)
+BEAM_GAP = 0.35              # of the points of the beam, what fewer remain in a free bin below it: posts
+FREE_BELOW = 0.45            # share of the height that is free below ropes or pipes of a rail
 BARRIER_TOP = 0.6, 1.35      # m: tops of concrete barriers
 MIN_BATTER = 0.08            # m per m by which the face of a barrier leans back
 BARRIER_DEPTH = 0.30         # m of thickness of its face at most
@@ -44,7 +44,7 @@ def kind_of(chain: Chain) -> str | None:
         return "wall" if through < SEEN_THROUGH_TALL else None
     built = chain.wobble < MAX_WOBBLE
     # the beams of a rail are straight: in a bend its line has a kink at every post or so
-    if (built or chain.roughness < MAX_WOBBLE) and thickness < THIN_LINE and RAIL_TOP[0] < top < RAIL_TOP[1] and _is_beam(members.bins.mean(axis=0)):
+    if (built or chain.roughness < MAX_WOBBLE) and thickness < THIN_LINE and RAIL_TOP[0] < top < RAIL_TOP[1] and _is_rail(members, top, through):
         return "guard_rail"
     if thickness > ROUGH_HEDGE and through < OPEN_HEDGE:
         is_barrier = built and BARRIER_TOP[0] < top < BARRIER_TOP[1] and batter > MIN_BATTER and thickness < BARRIER_DEPTH and through < SEEN_THROUGH
@@ -56,10 +56,14 @@ def kind_of(chain: Chain) -> str | None:
     return None if not built else "fence" if through > SEEN_THROUGH else "wall"
 
 
-def _is_beam(filled):
-    """Whether points fill a band no higher than a beam, with free height below."""
-    own = np.flatnonzero(filled > OF_BEAM * filled.max())
-    return filled.max() > MIN_FILLED_BEAM and own[0] > FIRST_BIN and own[-1] - own[0] < BEAM_BINS
+def _is_rail(members, top, through):
+    """Whether there is a beam with free height below, above the ground or another beam, or ropes that leave much of the height free."""
+    points = members.below_top.sum(axis=0)
+    beam, end = (int(round(depth / TOP_BIN)) for depth in BEAM)
+    # a W beam has a fold that few pulses reach: every tenth of a metre counts, not every bin
+    filled = points[:beam].reshape(-1, 2).mean(axis=1)
+    is_beam = filled.min() > 0.5 * filled.mean() and points[end - 2:end].mean() < BEAM_GAP * filled.mean()
+    return is_beam or through > OPEN_FENCE and float(np.median(members.foot)) > FREE_BELOW * top
 
 
 def _restless(tops):

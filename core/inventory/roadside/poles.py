@@ -10,14 +10,20 @@ from scipy import ndimage
 POLE_CELL = 0.10          # m, of the plan
 POLE_BIN = 0.25           # m of height
 SHAFT = 0.5, 2.0          # m above the ground where a shaft stands free of grass and, mostly, of branches
-MIN_SHAFT_FILLED = 0.6    # share of the height bins of the shaft with points
+MIN_SHAFT_FILLED = 0.6    # share of the height bins of the shaft with points, in every cell of it or beside
 MAX_FOOTPRINT = 0.8       # m of a shaft
 MIN_POLE_POINTS = 20      # on the shaft
 MAX_CIRCLE_MISS = 0.06           # m, median distance of a shaft's points from its circle
 MIN_DIAMETER = 0.03       # m, what a circle may be
+SLENDER = 5.0             # times as high as thick at least: people, bushes and the ends of cars are stouter
+AS_LOW_AS_CARS = 2.0      # m: what is lower stands free, or it is the edge of a vehicle
+FREE_ABOUT = 0.15, 0.60   # m from its shaft, between which little else stands
+MAX_BESIDE = 0.5          # points there for each on the shaft
+WIDER_LEVEL = 1.5         # times the spread of the narrower levels of a shaft, beyond which a level holds a plate or leaves
 HEAD_REACH = 1.5          # m about a shaft in which its head is looked for
 MAX_POLE_GAP = 4          # bins of POLE_BIN without points, beyond which something else begins
-CROWN_SPREAD = 0.6        # m, standard deviation across of what lies above a trunk's shaft
+HEAD_CELL = 0.20          # m, of the plan: what is not linked to the shaft by such cells stands behind it
+CROWN_SPREAD = 0.45       # m, standard deviation across of what lies above a trunk's shaft
 TRUNK_DIAMETER = 0.12     # m at least
 PLATE = 0.12, 0.9         # m, standard deviation across of a sign's head (a plate of 0.4 to 3 m); less is a pole
 PLATE_THICKNESS = 0.06    # m, standard deviation of a sign's head through its plate
@@ -60,7 +66,9 @@ def find_poles(s: np.ndarray, d: np.ndarray, above: np.ndarray, ground: np.ndarr
     levels = int(round((SHAFT[1] - SHAFT[0]) / POLE_BIN))
     filled = np.zeros((int(i.max()) + 1, int(j.max()) + 1, levels), bool)
     filled[i, j, np.minimum(k, levels - 1)] = True
-    label, count = ndimage.label(filled.any(axis=2), np.ones((3, 3)))
+    # a plate or a branch beside the shaft fills some of the levels alone
+    levels_about = ndimage.maximum_filter(filled, size=(3, 3, 1)).mean(axis=2)
+    label, _ = ndimage.label(filled.any(axis=2) & (levels_about >= MIN_SHAFT_FILLED), np.ones((3, 3)))
     found = []
     for number, box in enumerate(ndimage.find_objects(label), 1):
         size = [(side.stop - side.start) * POLE_CELL for side in box]
@@ -75,6 +83,7 @@ def find_poles(s: np.ndarray, d: np.ndarray, above: np.ndarray, ground: np.ndarr
 
 def _pole(rows, s, d, above, ground, min_height):
     """The Pole of a shaft's points; None where it is none."""
+    rows = rows[_narrow(s[rows], d[rows], above[rows])]
     if len(rows) < MIN_POLE_POINTS:
         return None
     place = np.c_[s[rows], d[rows]]
@@ -85,11 +94,38 @@ def _pole(rows, s, d, above, ground, min_height):
     near = np.flatnonzero((np.abs(s - centre[0]) < HEAD_REACH) & (np.abs(d - centre[1]) < HEAD_REACH))
     ring = np.hypot(s[near] - centre[0], d[near] - centre[1])
     height = _top(above[near][ring < max(2 * radius, 0.25)])
-    if height < min_height:
+    if height < max(min_height, SLENDER * 2 * radius):
+        return None
+    beside = (above[near] > SHAFT[0]) & (above[near] < height) & (ring > radius + FREE_ABOUT[0]) & (ring < radius + FREE_ABOUT[1])
+    if height < AS_LOW_AS_CARS and beside.sum() > MAX_BESIDE * len(rows):
         return None
     head = near[(above[near] > SHAFT[1] - 0.5) & (above[near] < height + HEAD_REACH) & (ring < HEAD_REACH) & (ring > 2 * radius)]
-    kind = _head_kind(np.c_[s[head], d[head]], 2 * radius)
+    kind = _head_kind(_linked(np.c_[s[head], d[head]] - centre, radius), 2 * radius)
     return Pole(kind, float(centre[0]), float(centre[1]), float(np.median(ground[rows])), float(max(2 * radius, MIN_DIAMETER)), float(height))
+
+
+def _narrow(s, d, above):
+    """(N,) bool, which points of a shaft lie at levels where it is as narrow as it mostly is."""
+    level = np.floor((above - SHAFT[0]) / POLE_BIN).astype(np.int64)
+    count = np.bincount(level)
+    n = np.maximum(count, 1)
+    spread = np.sqrt(sum(np.maximum(np.bincount(level, v * v) / n - (np.bincount(level, v) / n) ** 2, 0.0) for v in (s - s.mean(), d - d.mean())))
+    narrow = np.quantile(spread[count > 1], 0.25) if (count > 1).any() else 0.0
+    return (spread <= WIDER_LEVEL * narrow + 0.01)[level]
+
+
+def _linked(head, radius):
+    """Those of (N, 2) places about a shaft that hang together with it."""
+    if not len(head):
+        return head
+    middle = int(np.ceil(HEAD_REACH / HEAD_CELL)) + 1
+    cell = np.floor(head / HEAD_CELL + 0.5).astype(np.int64) + middle
+    filled = np.zeros((2 * middle + 1,) * 2, bool)
+    filled[cell[:, 0], cell[:, 1]] = True
+    own = int(np.ceil(radius / HEAD_CELL))
+    filled[middle - own:middle + own + 1, middle - own:middle + own + 1] = True
+    label, _ = ndimage.label(filled, np.ones((3, 3)))
+    return head[label[cell[:, 0], cell[:, 1]] == label[middle, middle]]
 
 
 def _head_kind(head, diameter):

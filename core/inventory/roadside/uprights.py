@@ -11,7 +11,8 @@ from ...common.rows import Rows
 UPRIGHT_SLICE = 0.5              # m along the road
 UPRIGHT_CELL = 0.10              # m across
 HEIGHT_BIN = 0.10        # m
-LOW_BINS = 25            # height bins that tell the kind of a line: up to 2.5 m
+LOW_BINS = 25            # height bins in which things stand: up to 2.5 m
+TOP_BIN, TOP_BINS = 0.05, 16   # m and number of the bins below the top that tell the kind of a line
 FIRST_BIN = 2            # bins below it (0.2 m) hold grass and curbs
 REACH_CELLS = 1          # cells on either side that belong to the same upright
 BODY_CELLS = 3           # cells on either side whose points describe it
@@ -20,6 +21,8 @@ TOP_SHARE = 0.97         # quantile of heights that is its top: ghosts lie highe
 TALL = 2.3               # m: what reaches higher is measured up to the height that was read
 TALL_BIN = 0.25          # m, bins of tall things
 MAX_LOW_GAP, MAX_TALL_GAP = 2, 5  # unoccupied bins of TALL_BIN, below and above TALL, beyond which something else begins
+UPPER_SIDE = 0.05        # m below its top that the upper side of a thing reaches down to
+MIN_FACE_POINTS = 3      # below that
 SIGHT_MARGIN = 0.10      # m below the line of sight over the top, from which a point was seen through the thing
 TOP_DEPTH = 0.30         # m below the top that a thing's own upper side may lie behind its face
 BEHIND = 0.30, 3.0       # m behind it where points seen through it are counted
@@ -32,7 +35,7 @@ class Uprights(Rows):
     slice : (N,) int, number of the slice, counted from station 0
     d, ground : (N,) m, offset of the face, and local z of the ground at its foot
     top, foot : (N,) m above the ground
-    bins : (N, LOW_BINS) bool, which height bins are occupied
+    below_top : (N, TOP_BINS) number of points in bins counted down from the top
     thickness : (N,) m across between the 10 % and 90 % quantile of its points
     batter : (N,) m across per m of height, positive where it leans away from the road
     points, behind : (N,) number of points on it, and of those seen through it
@@ -43,7 +46,7 @@ class Uprights(Rows):
     ground: np.ndarray
     top: np.ndarray
     foot: np.ndarray
-    bins: np.ndarray
+    below_top: np.ndarray
     thickness: np.ndarray
     batter: np.ndarray
     points: np.ndarray
@@ -59,11 +62,11 @@ class Uprights(Rows):
     def none() -> Uprights:
         """No uprights."""
         empty = np.empty(0)
-        return Uprights(np.empty(0, np.int64), *(empty,) * 4, np.empty((0, LOW_BINS), bool), *(empty,) * 4)
+        return Uprights(np.empty(0, np.int64), *(empty,) * 4, np.empty((0, TOP_BINS)), *(empty,) * 4)
 
 
 def find_uprights(s: np.ndarray, d: np.ndarray, above: np.ndarray, ground: np.ndarray, slices: tuple[int, int], side: int,
-                  eye: tuple[float, float], min_height: float) -> Uprights:
+                  sight: np.ndarray, min_height: float) -> Uprights:
     """Uprights of one side of a stretch of road.
 
     Parameters
@@ -72,7 +75,7 @@ def find_uprights(s: np.ndarray, d: np.ndarray, above: np.ndarray, ground: np.nd
     above, ground : (N,) m, heights above the ground, and local z of it
     slices : (first, last + 1) numbers of the slices
     side : 1 left, -1 right
-    eye : (offset, height above the road) of the scanner, m
+    sight : (N,) m that the line of sight to a point rises for each m across towards the road
     min_height : m of the top
     """
     if not len(s):
@@ -110,10 +113,10 @@ def find_uprights(s: np.ndarray, d: np.ndarray, above: np.ndarray, ground: np.nd
     body, own = body[own >= 0], own[own >= 0]
     if not len(body):
         return Uprights.none()
-    return _described(at, own, u[body], above[body], (i[inside], u[inside], above[inside], ground[inside]), slices[0], side, eye)
+    return _described(at, own, u[body], above[body], (i[inside], u[inside], above[inside], ground[inside], sight[inside]), slices[0], side)
 
 
-def _described(at, own, u, above, everything, first, side, eye):
+def _described(at, own, u, above, everything, first, side):
     """Uprights at (slice, cell), with `own` the upright that every point of a body belongs to."""
     n = len(at)
     order = np.lexsort((above, own))
@@ -127,20 +130,26 @@ def _described(at, own, u, above, everything, first, side, eye):
     at, tops, count = at[has], tops[has], count[has]
     own, n = (np.cumsum(has) - 1)[own], len(at)
     start = np.cumsum(count) - count
-    low = above < TALL
-    bins = np.zeros((n, LOW_BINS), bool)
-    bins[own[low], np.minimum((above[low] / HEIGHT_BIN).astype(np.int64), LOW_BINS - 1)] = True
+    down = np.maximum((tops[own] - above) / TOP_BIN, 0.0).astype(np.int64)
+    high = down < TOP_BINS
+    below_top = np.bincount(own[high] * TOP_BINS + down[high], minlength=n * TOP_BINS).reshape(n, TOP_BINS).astype(float)
     foot = above[start]
+    # the face alone tells how it stands: of a low wall most points lie on its top
+    face = tops[own] - above > UPPER_SIDE
+    face |= (np.bincount(own[face], minlength=n) < MIN_FACE_POINTS)[own]
+    own, u, above = own[face], u[face], above[face]
+    on_face = np.bincount(own, minlength=n)
+    start = np.cumsum(on_face) - on_face
     by_u = np.lexsort((u, own))
     ordered = u[by_u]
-    nearest, middle, farthest = (ordered[start + np.rint(share * (count - 1)).astype(np.int64)] for share in (0.1, 0.5, 0.9))
-    mean_u, mean_h = (np.bincount(own, values, n) / count for values in (u, above))
+    nearest, middle, farthest = (ordered[start + np.rint(share * (on_face - 1)).astype(np.int64)] for share in (0.1, 0.5, 0.9))
+    mean_u, mean_h = (np.bincount(own, values, n) / on_face for values in (u, above))
     du, dh = u - mean_u[own], above - mean_h[own]
     batter = np.bincount(own, du * dh, n) / np.maximum(np.bincount(own, dh * dh, n), 1e-6)
-    i, all_u, all_above, all_ground = everything
+    i, all_u, all_above, all_ground, all_sight = everything
     ground = _ground_at(at, middle, i, all_u, all_ground)
-    behind = _behind(at, middle, tops, i, all_u, all_above, side * eye[0], eye[1])
-    return Uprights(at[:, 0] + first, side * middle, ground, tops, foot, bins, farthest - nearest, batter, count.astype(float), behind)
+    behind = _behind(at, middle, ground + tops, i, all_u, all_above + all_ground, all_sight)
+    return Uprights(at[:, 0] + first, side * middle, ground, tops, foot, below_top, farthest - nearest, batter, count.astype(float), behind)
 
 
 def _contiguous_top(own, above, n):
@@ -176,18 +185,17 @@ def _ground_at(at, middle, i, u, ground):
     return ground[order[place]]
 
 
-def _behind(at, middle, tops, i, u, above, eye_u, eye_height):
-    """(N,) points seen behind uprights, below the line of sight over their tops."""
+def _behind(at, middle, tops, i, u, z, sight):
+    """(N,) points seen behind uprights, below the line of sight over their tops; tops and points have local z, for the ground behind may lie
+    higher or lower."""
     order = np.lexsort((u, i))
-    i, u, above = i[order], u[order], above[order]
+    i, u, z, sight = i[order], u[order], z[order], sight[order]
     key = i * 1e4 + u
     first = np.searchsorted(key, at[:, 0] * 1e4 + middle + BEHIND[0])
     last = np.searchsorted(key, at[:, 0] * 1e4 + middle + BEHIND[1])
     count = np.maximum(last - first, 0)
     owner = np.repeat(np.arange(len(at)), count)
     index = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count) + np.repeat(first, count)
-    beyond = u[index] - middle[owner]
-    distance = np.maximum(middle - eye_u, 0.5)[owner]
-    sight = tops[owner] - (eye_height - tops[owner]) * beyond / distance
-    through = above[index] < np.minimum(sight - SIGHT_MARGIN, tops[owner] - TOP_DEPTH)
+    passed = z[index] + sight[index] * (u[index] - middle[owner])   # where the pulse passed the upright
+    through = (passed < tops[owner] - SIGHT_MARGIN) & (z[index] < tops[owner] - TOP_DEPTH)
     return np.bincount(owner[through], minlength=len(at)).astype(float)

@@ -79,6 +79,14 @@ def test_too_much_noise_gives_no_rut_depths_and_says_so():
     assert not np.isfinite([part.ruts for section in sections.sections for part in section.parts]).any()
 
 
+def test_limits_that_no_lane_can_keep_are_refused_with_both_numbers():
+    with pytest.raises(RoadExtractionError, match="least crossfall is 6 %, the greatest 2 %"):
+        CrossSectionSettings(min_crossfall=6.0, max_crossfall=2.0)
+    with pytest.raises(RoadExtractionError, match="in the rules of germany"):
+        CrossSectionSettings(max_crossfall=1.0, country="germany")
+    assert CrossSectionSettings(max_crossfall=1.0).limits().max_crossfall == 1.0
+
+
 @pytest.mark.parametrize("north", [False, True])
 def test_widths_grades_and_curbs_whatever_way_the_road_runs(north):
     layers = BorderLayers(edges_of(north=north), markings_of(north=north))
@@ -87,6 +95,25 @@ def test_widths_grades_and_curbs_whatever_way_the_road_runs(north):
     off = np.abs(column(whole, "width_m", "grade_pct", "curb_l_m", "curb_r_m") - [2 * HALF, 4.5, 0.14, 0.14])
     assert (off < [0.02, 0.05, 0.01, 0.01]).all()
     np.testing.assert_allclose(column(rows_of(survey, "lane", layers), "width_m"), 3.25, atol=0.02)
+
+
+@pytest.mark.parametrize("radius", [15.0, 40.0])
+def test_the_grade_of_a_bend_is_that_of_each_lane_along_its_own_middle(radius):
+    """10 % along the middle of the road: the inner lane climbs as much on a shorter way."""
+    survey = measured_road(drives=(Drive(1, -1.75), Drive(-1, 1.75)), grade=0.10, radius=radius)
+    layers = BorderLayers(edges_of(radius=radius), markings_of(radius=radius))
+    whole, rows = ([row for row in rows_of(survey, part, layers) if 5.0 < row["station_m"] < 55.0] for part in ("carriageway", "lane"))
+    assert np.abs(column(whole, "grade_pct") - 10.0).max() < 0.1
+    inner = np.array([[row["lane"] == 2] for row in rows])
+    true = np.where(inner, 10.0 / (1.0 - 1.625 / radius), 10.0 / (1.0 + 1.625 / radius))
+    assert np.abs(column(rows, "grade_pct") - true).max() < 0.1
+
+
+@pytest.mark.parametrize("grade", [0.0, 0.08, -0.08])
+def test_a_vehicle_that_changes_lanes_on_a_hill_measures_crossfall_across_the_road(grade):
+    rows = rows_of(measured_road(drives=(Drive(1, -1.75, shift=3.5),), grade=grade, crown=False, crossfall=0.03))
+    assert np.abs(column(rows, "crossf_pct", "grade_pct") - [3.0, 100 * grade]).max() < 0.1
+    assert np.abs(column(rows, "width_m") - 3.25).max() < 0.02
 
 
 def test_curbs_are_measured_at_road_edges_that_may_be_curbs_alone():

@@ -11,10 +11,10 @@ from lanewright.core.inventory.roadside.divide import things_of
 from lanewright.core.inventory.roadside.find import find_roadside
 from lanewright.core.inventory.roadside.layers import roadside_to_features
 from lanewright.core.inventory.roadside.settings import RoadsideSettings
-from lanewright.core.inventory.roadside.uprights import LOW_BINS, Uprights
+from lanewright.core.inventory.roadside.uprights import TOP_BINS, Uprights
 from lanewright.core.report.roadside import roadside_report
 from measured_streets import GROUND, Drive, edges_of, measured_road
-from roadside_streets import BESIDE, HEIGHTS, LENGTH, Thing, points_of, road_with
+from roadside_streets import BESIDE, HEIGHTS, LENGTH, Thing, hidden_by, points_of, road_with
 
 KINDS = ("guard_rail", "barrier", "wall", "fence", "hedge")
 # rails and barriers at the edge, walls, fences and hedges behind verge or sidewalk, with gaps between them
@@ -61,11 +61,62 @@ def test_offset_height_and_foot_of_a_line(kind):
     assert rows[0]["station_m"] == pytest.approx(10.0, abs=1.0) and rows[0]["end_m"] == pytest.approx(100.0, abs=1.0)
 
 
+@pytest.mark.parametrize("form, top", [("double", 1.0), ("ropes", 0.95)])
+def test_rails_of_two_beams_or_of_ropes_are_guard_rails(form, top):
+    survey, edges = road_with((Thing("guard_rail", 4.7, 10, 100, top, form),))
+    (rail,) = [line for line in found_in(survey, edges).lines if line.kind != "gutter"]
+    assert rail.kind == "guard_rail" and rail.chain.length > 85 and np.median(rail.chain.top) == pytest.approx(top, abs=0.1)
+
+
+@pytest.mark.parametrize("offset", [4.3, 4.4, 4.45])
+def test_a_barrier_before_a_slope_keeps_its_height(offset):
+    """The ground that is seen beyond the barrier lies higher than that before it."""
+    def bank(rng):
+        x, y = rng.uniform(0, LENGTH, 150_000), rng.uniform(5.5, 10.0, 150_000)
+        return x, y, BESIDE + 0.5 * (y - 5.5)
+
+    barrier = Thing("barrier", offset, 10, 100)
+
+    def above(rng):
+        return tuple(np.concatenate(parts) for parts in zip(points_of(barrier, rng), bank(rng)))
+
+    survey = measured_road(length=LENGTH, density=800.0, reach=8.0, above=above, hides=hidden_by((barrier,)))
+    (line,) = [line for line in found_in(survey, edges_of(LENGTH)).lines if line.kind != "gutter"]
+    assert line.kind == "barrier" and np.median(line.chain.top) == pytest.approx(HEIGHTS["barrier"], abs=0.1)
+
+
 def test_lines_run_along_the_foot_on_the_ground():
     survey, edges = road_with((Thing("wall", 5.0, 10, 100),), grade=0.05)
     line = next(g for g, row in roadside_to_features(found_in(survey, edges))[0] if row["kind"] == "wall")
     x, z = np.array(line.coords)[:, 0] - 500_000.0, np.array(line.coords)[:, 2]
     assert np.abs(z - (GROUND + BESIDE + 0.05 * x)).max() < 0.1
+
+
+def test_a_rock_face_that_hides_what_lies_behind_it_is_one_wall():
+    """Blasted rock: every 3 m it stands back or out, and its top lies at 2.6 to 5 m."""
+    rng = np.random.default_rng(4)
+    rock = tuple(Thing("wall", rng.uniform(5.0, 5.5), start, start + 3.0, rng.uniform(2.6, 5.0)) for start in range(12, 90, 3))
+    survey, edges = road_with(rock)
+    (wall,) = [line for line in found_in(survey, edges).lines if line.kind != "gutter"]
+    assert wall.kind == "wall" and wall.chain.length > 0.95 * 78
+
+
+@pytest.mark.parametrize("radius, grade", [(18.0, 0.0), (18.0, 0.09)])
+def test_a_low_wall_on_the_inner_side_of_a_hairpin_is_a_wall(radius, grade):
+    """A broad upper side and the ground behind are seen over it."""
+    def behind(rng):
+        x, y, over = rng.uniform(0, 60, 60_000), rng.uniform(4.7, 4.95, 60_000), rng.random(60_000) < 0.6
+        return x, np.where(over, y, 4.7), np.where(over, 1.0, rng.uniform(0.0, 1.0, 60_000)) + BESIDE
+
+    survey = measured_road(above=behind, grade=grade, radius=radius, reach=8.0, density=800.0, hides=hidden_by((Thing("wall", 4.7, 0, 60, 1.0),)))
+    lines = [line for line in found_in(survey, edges_of(radius=radius)).lines if line.kind != "gutter"]
+    assert [line.kind for line in lines] == ["wall"] and np.median(lines[0].chain.top) == pytest.approx(1.0, abs=0.1)
+
+
+def test_a_low_wall_before_a_house_is_a_wall_and_no_fence():
+    """The house is seen over the wall, not through it."""
+    survey, edges = road_with((Thing("wall", 6.0, 10, 100, 0.9), Thing("building", 6.9)))
+    assert [line.kind for line in found_in(survey, edges).lines if line.kind != "gutter"] == ["wall"]
 
 
 def test_a_line_has_a_vertex_in_every_interval():
@@ -85,10 +136,10 @@ def test_nothing_is_invented_on_an_empty_road_or_among_cars_and_buildings():
 def rail_of(d, thickness=0.05):
     """Uprights of a guard rail at (N,) offsets."""
     n = len(d)
-    bins = np.zeros((n, LOW_BINS), bool)
-    bins[:, 5:8] = True
+    below_top = np.zeros((n, TOP_BINS))
+    below_top[:, :6] = 30.0
     ones = np.ones(n)
-    return Uprights(np.arange(n), d, 0 * ones, 0.78 * ones, 0.5 * ones, bins, thickness * ones, 0 * ones, 200 * ones, 150 * ones)
+    return Uprights(np.arange(n), d, 0 * ones, 0.78 * ones, 0.5 * ones, below_top, thickness * ones, 0 * ones, 200 * ones, 150 * ones)
 
 
 def test_a_rail_in_a_hairpin_runs_straight_from_kink_to_kink():
@@ -139,6 +190,27 @@ def test_poles_signs_and_trunks_with_diameter_and_height():
         assert np.hypot(east[0] - 500_000.0 - x, north[0] - 5_400_000.0 - y) < 0.1
         assert pole.diameter == pytest.approx(diameter, abs=0.05)
         assert pole.kind == "trunk" or pole.height == pytest.approx(height, abs=0.15)
+
+
+def test_a_plate_as_low_as_a_wall_and_a_wall_behind_a_pole_leave_each_what_it_is():
+    """The lower edge of the plate is at 1.6 m; the walls stand 1.1 m behind the shafts and are higher than 2 m."""
+    poles = ((20.0, 5.0, 0.06, 2.2, 0.6), (40.0, -5.0, 0.10, 4.0), (60.0, 5.0, 0.40, 6.0))
+    survey, edges = road_with((Thing("wall", 6.1, 5, 100, 3.5), Thing("wall", -6.1, 5, 100, 3.5)), poles)
+    found = sorted(found_in(survey, edges).poles[0], key=lambda pole: pole.s)
+    assert [pole.kind for pole in found] == ["sign", "pole", "pole"]
+    assert [pole.diameter for pole in found] == pytest.approx([0.06, 0.10, 0.40], abs=0.04)
+
+
+def test_people_and_bushes_are_no_poles():
+    """They are as high as low poles, but stout."""
+    people = tuple((10.0 + 3.0 * k, 5.0 + 0.2 * (k % 3), 0.45, 1.6 + 0.05 * (k % 5)) for k in range(12))
+    survey, edges = road_with((), people)
+    assert not found_in(survey, edges).poles[0]
+
+
+def test_a_verge_that_falls_on_to_the_foot_of_a_barrier_is_no_gutter():
+    survey, edges = road_with((Thing("barrier", 3.95, 10, 110), ), curb=-0.02)
+    assert not [line for line in found_in(survey, edges).lines if line.kind == "gutter" and line.chain.side > 0]
 
 
 def test_windows_of_another_length_give_the_same(monkeypatch):
