@@ -24,6 +24,8 @@ def survey_with_borders(call, progress, above_road):
 
     A layer without features, as a step before may have found nothing, counts as not given.
     """
+    from shapely import get_coordinates
+
     from ...core.inventory.borders import BorderLayers
     from ...core.io.crs import check_same_crs
 
@@ -35,6 +37,6 @@ def survey_with_borders(call, progress, above_road):
     survey = open_survey_of(call, progress, above_road=above_road)
     for name, features in layers.items():
         if features is not None:
-            check_same_crs(features.crs, survey.crs, call.label(name))
+            check_same_crs(features.crs, survey.crs, get_coordinates(features.geometries[0])[0], call.label(name))
     check_layers_on_roads(call, layers, survey.frame)
     return survey, BorderLayers(*layers.values())

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from pyproj import CRS
 
 SUSPICIOUS_SENSOR_HEIGHT = 5.0, 15.0  # m: higher than any survey vehicle; 1.5 to 4.5 m expressed in feet
+SAME_PLACE = 0.01                     # m between coordinates of one place in two CRS that are none other for a map
 
 
 def parse_crs(text: str | None) -> CRS | None:
@@ -179,12 +180,15 @@ def same_crs(a: Any, b: Any) -> bool:
     return bool(first) and first == second
 
 
-def check_same_crs(own: str, other: str, label: str) -> None:
+def check_same_crs(own: str, other: str, place: tuple[float, float], label: str) -> None:
     """Refuse a layer in another CRS than the point clouds; one whose CRS is not known is taken to be in theirs.
+
+    Two that give the place of the layer the same coordinates, such as UTM zone 32 of ETRS89 and of WGS 84, are no others.
 
     Parameters
     ----------
     own, other : WKT or "EPSG:n" of the layer and of the point clouds, "" where unknown
+    place : (x, y) in the layer
     label : name of the layer, as at the beginning of a sentence
 
     Raises
@@ -192,10 +196,15 @@ def check_same_crs(own: str, other: str, label: str) -> None:
     RoadExtractionError
         If they differ.
     """
+    from pyproj import Transformer
+
     layer, clouds = parse_crs(own), parse_crs(other)
-    if layer is not None and clouds is not None and not same_crs(layer, clouds):
-        raise RoadExtractionError(f"{label} is in {horizontal_part(layer).name}, the point clouds are in {horizontal_part(clouds).name}. "
-                                  "Reproject the layer to their CRS and run again.")
+    if layer is None or clouds is None or same_crs(layer, clouds):
+        return
+    layer, clouds = horizontal_part(layer), horizontal_part(clouds)
+    moved = Transformer.from_crs(layer, clouds, always_xy=True).transform(*place)
+    if not np.hypot(moved[0] - place[0], moved[1] - place[1]) < SAME_PLACE:
+        raise RoadExtractionError(f"{label} is in {layer.name}, the point clouds are in {clouds.name}. Reproject the layer to their CRS and run again.")
 
 
 def _projection(crs):
