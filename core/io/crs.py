@@ -204,7 +204,8 @@ def check_same_crs(own: str, other: str, place: tuple[float, float], label: str)
     layer, clouds = horizontal_part(layer), horizontal_part(clouds)
     moved = Transformer.from_crs(layer, clouds, always_xy=True).transform(*place)
     if not np.hypot(moved[0] - place[0], moved[1] - place[1]) < SAME_PLACE:
-        raise RoadExtractionError(f"{label} is in {layer.name}, the point clouds are in {clouds.name}. Reproject the layer to their CRS and run again.")
+        raise RoadExtractionError(f"{label} is in {layer.name}, the point clouds are in {clouds.name}. "
+                                  "Reproject the layer to their CRS and run again.")
 
 
 def _projection(crs):
