@@ -131,6 +131,9 @@ def _estimated(files, scanner_field, wkt, progress):
         return _by_density(samples, tracks, wkt)
     if found is None:
         found = _adjusted(samples, tracks, scanners, progress.part(TRACKED, 1.0))
+        if found.usual > MAX_RAY_MISFIT:
+            # tilted heads of many beams turn, too, but no mirror's rays explain their returns
+            refuse_handheld(tracks, [])
         return _of_rays(samples, tracks, scanners, found, wkt)
     result = _of_rays(samples, tracks, scanners, found, wkt)
     result.notes.append("The points are of two scanners that no field tells apart; they were told apart by where their scan lines lead.")

@@ -7,6 +7,8 @@ import pytest
 from drives import EAST, NORTH, write_cloud
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.survey.estimation.estimate import MAX_SIGMA, estimate_trajectory
+from lanewright.core.survey.estimation.kinds import refuse_handheld
+from lanewright.core.survey.estimation.rough.first_track import FirstTrack
 from lanewright.core.survey.estimation.rough.samples import rounding_of
 from mirror_drives import START, Mirror, mirror_drive, section, swaying
 from scipy.interpolate import PchipInterpolator
@@ -219,6 +221,19 @@ def test_a_handheld_cloud_is_refused_by_name(tmp_path):
     path = write_cloud(tmp_path / "walk.las", x + EAST, y + NORTH, 100.0 + rng.normal(0, 0.02, len(x)), time)
     with pytest.raises(RoadExtractionError, match="handheld"):
         estimate_trajectory([path])
+
+
+def test_walking_pace_is_told_over_seconds_since_the_first_track_swings_from_window_to_window():
+    rng = np.random.default_rng(1)
+    time = np.arange(0.05, 30.0, 0.1)
+
+    def track(speed):
+        foot = np.column_stack([speed * time, 0.2 * rng.standard_normal(len(time)), np.zeros(len(time))])
+        return FirstTrack(time, foot, np.zeros(len(time)), np.full(len(time), 100), np.full(len(time), 5.0))
+
+    with pytest.raises(RoadExtractionError, match="handheld"):
+        refuse_handheld([track(1.2)], [])
+    refuse_handheld([track(5.0)], [])
 
 
 def test_too_few_points_are_refused(tmp_path, street):
