@@ -180,7 +180,9 @@ def _drawn(frame, road, side, carriageway, grown, runs):
     for k, (a, b) in enumerate(runs):
         if k:
             pieces.append(("bridged", stations[runs[k - 1][1] - 1], stations[a]))
-        pieces.append(("measured", stations[a], stations[b - 1]))
+        # a single row between two gaps is a place where bridges meet, without a length to draw
+        if b - a > 1:
+            pieces.append(("measured", stations[a], stations[b - 1]))
     found = []
     for status, start, end in pieces:
         s = np.linspace(start, end, max(int(np.ceil((end - start) / EDGE_VERTEX_SPACING)), 1) + 1)

@@ -41,6 +41,7 @@ class Returns:
     time : (N,) s
     place : (N, 3) m
     scanner : (N,)
+    tick : s to which the times are rounded; 0 where they are exact
     """
 
     interval: np.ndarray
@@ -48,9 +49,10 @@ class Returns:
     time: np.ndarray
     place: np.ndarray
     scanner: np.ndarray
+    tick: float = 0.0
 
     def __getitem__(self, which: np.ndarray) -> Returns:
-        return Returns(*(getattr(self, name)[which] for name in ("interval", "share", "time", "place", "scanner")))
+        return Returns(self.interval[which], self.share[which], self.time[which], self.place[which], self.scanner[which], self.tick)
 
 
 @dataclass
@@ -86,11 +88,11 @@ def adjust_poses(poses: Poses, guess: Poses, crossfall: np.ndarray, returns: Ret
     progress : Progress
     """
     for number in range(ADJUSTMENT_ROUNDS):
-        equations, misfit, count = _equations(poses, guess, crossfall, returns, noise, progress)
+        equations, misfit, by_rounding, count = _equations(poses, guess, crossfall, returns, noise, progress)
         change, common, covariance, follow = equations.solve()
         poses = poses.changed(change, common.reshape(-1, MOUNTING))
         with np.errstate(invalid="ignore"):
-            calm = np.fmin(noise, np.maximum(NOISE_OF_MISFIT * misfit, LEAST_NOISE))
+            calm = np.fmin(noise, np.maximum(NOISE_OF_MISFIT * np.sqrt(np.maximum(misfit**2 - by_rounding**2, 0.0)), LEAST_NOISE))
         settled = np.nanmax(noise / calm) < SETTLED and np.abs(change[:, :3]).max() < CONVERGED
         noise = calm
         progress.report((number + 1) / ADJUSTMENT_ROUNDS)
@@ -104,18 +106,21 @@ def adjust_poses(poses: Poses, guess: Poses, crossfall: np.ndarray, returns: Ret
 
 
 def _equations(poses, guess, crossfall, returns, noise, progress):
-    """BandedEquations at the poses, and (K, S) misfits and counts of each interval and scanner."""
+    """BandedEquations at the poses, and (K, S) misfits, what of them the times' rounding explains, and counts of each interval and scanner."""
     knots, columns = poses.control.shape
     equations = BandedEquations(knots, columns, MOUNTING * poses.scanners)
-    total, count = np.zeros((knots, poses.scanners)), np.zeros((knots, poses.scanners))
+    total, count, known = (np.zeros((knots, poses.scanners)) for _ in range(3))
+    turned = 2 * np.pi * np.abs(poses.rate) * returns.tick / np.sqrt(12.0)
     cuts = np.searchsorted(returns.interval, np.arange(0, knots + BLOCK_INTERVALS, BLOCK_INTERVALS))
     for first, last in zip(cuts[:-1], cuts[1:]):
         if first == last:
             continue
         own = slice(first, last)
         interval, share, scanner = returns.interval[own], returns.share[own], returns.scanner[own]
-        found = misfits(poses, interval, share, returns.time[own], returns.place[own], scanner)
-        variance = noise[interval, scanner] ** 2 + (ANGLE_NOISE * found.range) ** 2
+        rounded = turned[scanner]
+        uncertain = (noise[interval, scanner], rounded) if returns.tick else None
+        found = misfits(poses, interval, share, returns.time[own], returns.place[own], scanner, uncertain)
+        variance = noise[interval, scanner] ** 2 + (ANGLE_NOISE**2 + rounded**2) * found.range**2
         weight = (found.range > MIN_RANGE) / variance / (1.0 + found.off**2 / variance / OUTLIER_SIGMAS**2)
         weights = spline_weights(share)
         starts = np.flatnonzero(np.r_[True, np.diff(interval) > 0, True])
@@ -125,15 +130,17 @@ def _equations(poses, guess, crossfall, returns, noise, progress):
         size = np.where(found.range > MIN_RANGE, np.minimum(np.abs(found.off).max(axis=0), MAX_COUNTED_MISFIT), MAX_COUNTED_MISFIT)
         np.add.at(total, (interval, scanner), size)
         np.add.at(count, (interval, scanner), 1)
+        np.add.at(known, (interval, scanner), np.minimum(rounded * np.abs(found.range), MAX_COUNTED_MISFIT))
         progress.check_cancelled()
     _add_motion(equations, poses, crossfall)
     _add_mounting(equations, poses, guess)
     with np.errstate(invalid="ignore"):
-        return equations, total / count, count
+        return equations, total / count, MEAN_OF_SIGMA * known / count, count
 
 
 MAX_COUNTED_MISFIT = 0.3   # m: a ghost counts no more than this
 NOISE_OF_MISFIT = 1.5      # noise against the mean misfit of an interval
+MEAN_OF_SIGMA = 0.8        # mean size of errors against their standard deviation
 SETTLED = 1.1              # factor by which the noise still falls
 
 

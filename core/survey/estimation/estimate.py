@@ -23,11 +23,11 @@ from .kinds import refuse_airborne, refuse_handheld, refuse_terrestrial
 from .poses import YAW, Poses
 from .rough.first_track import FirstTrack, first_track
 from .rough.ridge import FIRST_HEIGHT, ridge_of
-from .rough.samples import MAX_GAP_IN_DRIVE, UNKNOWN_SCANNER, Samples, read_samples
+from .rough.samples import MAX_GAP_IN_DRIVE, UNKNOWN_SCANNER, Samples, read_samples, rounding_of
 from .turning_head import HEAD_HEIGHT, HEAD_HEIGHT_SIGMA, turning_heads
 
 ROW_SPACING = 0.02         # s between the positions written: a third of a metre on a motorway
-MAX_SIGMA = 0.3            # m: a position that is known less well is not written
+MAX_SIGMA = 0.15           # m: a position that is known less well is not written; errors of twice that happen
 LEAST_SIGMA = 0.002        # m: what calibration leaves, however many returns agree
 DENSITY_SIGMA, DENSITY_HEIGHT_SIGMA = 0.5, 0.3   # m, of a track by density alone
 READ, TRACKED = 0.4, 0.55  # of the work
@@ -131,6 +131,9 @@ def _estimated(files, scanner_field, wkt, progress):
         return _by_density(samples, tracks, wkt)
     if found is None:
         found = _adjusted(samples, tracks, scanners, progress.part(TRACKED, 1.0))
+        if found.usual > MAX_RAY_MISFIT:
+            # tilted heads of many beams turn, too, but no mirror's rays explain their returns
+            refuse_handheld(tracks, [])
         return _of_rays(samples, tracks, scanners, found, wkt)
     result = _of_rays(samples, tracks, scanners, found, wkt)
     result.notes.append("The points are of two scanners that no field tells apart; they were told apart by where their scan lines lead.")
@@ -207,7 +210,8 @@ def _returns(samples: Samples, poses: Poses, scanners: list[Spinning]) -> Return
         thinned = rank % -(-np.bincount(ordered)[ordered] // PER_INTERVAL) == 0
         rows = np.sort(by_key[thinned & (scanner[by_key] >= 0)])
         parts.append((interval[rows], share[rows], samples.time[drive][rows], samples.place[drive][rows], scanner[rows]))
-    return Returns(*(np.concatenate(column) for column in zip(*parts)))
+    interval, share, time, place, scanner = (np.concatenate(column) for column in zip(*parts))
+    return Returns(interval, share, time, place, scanner, rounding_of(samples.time, samples.start))
 
 
 def _of_rays(samples, tracks, scanners, found, crs):

@@ -7,11 +7,12 @@ from scipy.ndimage import median_filter
 
 from ...common.errors import RoadExtractionError
 from .first_poses import Spinning
-from .rough.first_track import FirstTrack
+from .rough.first_track import WINDOW, FirstTrack
 
 FARTHEST_MEDIAN = 15.0     # m: half of what a vehicle on a road sees at a time is nearer; an aircraft's swath is wider
 MIN_PATH = 5.0           # m between the outermost places: less is no drive
 WALKING_PACE = 2.0       # m/s: nobody surveys a road by car at that pace all the time
+PACE_TIME = 3.0          # s over which a pace is told
 STEADY_PLACES = 7        # of some tenths of a second together: fewer than half of them may be wrong
 MIN_STANDING_TIME = 2.0  # s of measuring before standing still means anything
 
@@ -69,7 +70,9 @@ def refuse_handheld(tracks: list[FirstTrack], scanners: list[Spinning]) -> None:
     """
     if scanners:
         return
-    pace = np.concatenate([np.hypot(*np.gradient(track.foot[:, :2], track.time, axis=0).T) for track in tracks if len(track.time) > 1])
+    # between places PACE_TIME apart: the track swings from window to window by more than anybody walks meanwhile
+    apart = round(PACE_TIME / WINDOW)
+    pace = np.concatenate([np.hypot(*(track.foot[apart:, :2] - track.foot[:-apart, :2]).T) / PACE_TIME for track in tracks])
     if len(pace) and np.quantile(pace, 0.9) < WALKING_PACE:
         raise RoadExtractionError(
             f"This looks like a handheld or backpack survey: it moved at {np.median(pace):.1f} m/s, at walking pace, and no mirror turns steadily "

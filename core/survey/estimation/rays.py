@@ -28,7 +28,8 @@ class Misfits:
     range: np.ndarray
 
 
-def misfits(poses: Poses, interval: np.ndarray, share: np.ndarray, time: np.ndarray, place: np.ndarray, scanner: np.ndarray) -> Misfits:
+def misfits(poses: Poses, interval: np.ndarray, share: np.ndarray, time: np.ndarray, place: np.ndarray, scanner: np.ndarray,
+            noise: tuple[np.ndarray, np.ndarray] | None = None) -> Misfits:
     """The Misfits of returns.
 
     Parameters
@@ -38,6 +39,7 @@ def misfits(poses: Poses, interval: np.ndarray, share: np.ndarray, time: np.ndar
     time : (N,) s
     place : (N, 3) m
     scanner : (N,) numbers
+    noise : (N,) m of the returns' places and (N,) radians of the rays' directions; None where the directions are exact
     """
     values = poses.at(interval, share)
     ahead, left, up = vehicle_axes(values[:, ROLL], values[:, PITCH], values[:, YAW])
@@ -46,10 +48,16 @@ def misfits(poses: Poses, interval: np.ndarray, share: np.ndarray, time: np.ndar
     normal, across, upright = (axes[scanner] for axes in poses.scan_planes())
     rows = np.arange(len(time))
     angle = 2 * np.pi * poses.rate[scanner] * time + values[rows, POSE + scanner]
-    cos, sin = np.cos(angle)[:, None], np.sin(angle)[:, None]
-    reach = (seen * (cos * across + sin * upright)).sum(axis=1)
-    sides = (normal, cos * upright - sin * across)
-    off = np.stack([(seen * side).sum(axis=1) for side in sides])
+    along, above = (seen * across).sum(axis=1), (seen * upright).sum(axis=1)
+    reach, beside = along * np.cos(angle) + above * np.sin(angle), above * np.cos(angle) - along * np.sin(angle)
+    if noise is not None:
+        # where the direction is uncertain, the return lies somewhere between it and the direction in which it is seen; taken by the ray
+        # alone, returns that all lie far ahead would draw the scanner towards them
+        turned = (noise[1] * reach) ** 2
+        angle = angle + np.arctan2(beside, reach) * turned / (noise[0] ** 2 + turned)
+    cos, sin = np.cos(angle), np.sin(angle)
+    sides = (normal, cos[:, None] * upright - sin[:, None] * across)
+    off = np.stack([(seen * normal).sum(axis=1), beside])
     by_pose = np.zeros((2, len(time), values.shape[1]))
     by_mounting = np.zeros((2, len(time), MOUNTING * poses.scanners))
     level_right = np.stack([np.sin(values[:, YAW]), -np.cos(values[:, YAW]), np.zeros(len(time))], axis=1)
@@ -66,5 +74,5 @@ def misfits(poses: Poses, interval: np.ndarray, share: np.ndarray, time: np.ndar
         by_mounting[k, rows, first + 1] = (torque * across).sum(axis=1)
         for j in range(3):
             by_mounting[k, rows, first + 2 + j] = -side[:, j]
-    by_pose[1, rows, POSE + scanner] = -reach
+    by_pose[1, rows, POSE + scanner] = -(along * cos + above * sin)
     return Misfits(off, by_pose, by_mounting, reach)

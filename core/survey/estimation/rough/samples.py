@@ -23,6 +23,10 @@ MAX_GAP_IN_DRIVE = 1.0    # s without points end a drive
 UNKNOWN_SCANNER = 255     # number of a point whose scanner is not known
 MIN_DRIVE_SAMPLES = 2000  # a drive with fewer is not estimated
 MIN_DRIVE_TIME = 1.0      # s: points at one wrong time, however many, are no drive
+ROUNDINGS = tuple(sorted((*(10.0**-k for k in range(2, 7)), *(2.0**-k for k in range(6, 20))), reverse=True))   # s, of decimals and of bits
+MIN_ROUNDED_SHARE = 0.99  # of the times are multiples of what they are rounded to
+ROUNDED_TOLERANCE = 0.25 # of it, which the precision of large times may leave
+MAX_ROUNDING_SAMPLES = 100_000
 COLUMN_OF_FIELD = {"point_source_id": 0, "scanner_channel": 1}
 
 
@@ -128,6 +132,22 @@ def samples_of(time: np.ndarray, place: np.ndarray, scanner: np.ndarray, origin:
         time, place, scanner = time[kept], place[kept], scanner[kept]
     return Samples(time - start, place, scanner, start, origin, True, [slice(a, b) for a, b in zip(ends[:-1], ends[1:])],
                    (total - ends[-1]) * stride)
+
+
+def rounding_of(time: np.ndarray, start: float) -> float:
+    """What times are rounded to, s; 0 where that is no power of ten or two.
+
+    Parameters
+    ----------
+    time : (N,) s since `start`
+    start : s
+    """
+    some = time[::max(len(time) // MAX_ROUNDING_SAMPLES, 1)] + start
+    for tick in ROUNDINGS:
+        steps = some / tick
+        if np.mean(np.abs(steps - np.rint(steps)) <= ROUNDED_TOLERANCE) >= MIN_ROUNDED_SHARE:
+            return tick
+    return 0.0
 
 
 def _sample(block, slots, origin):

@@ -7,6 +7,7 @@ from lanewright.core.common.features import Features
 from lanewright.core.common.schemas import ROAD_EDGES
 from lanewright.core.road.edges.fit import EdgeSettings
 from lanewright.core.road.edges.road_edges import EdgePiece, edges_from_features, edges_to_features, joined_pieces
+from lanewright.core.road.surface import pavement_lines
 from lanewright.core.road.surface.extract import extract_road_surface
 from lanewright.core.road.surface.pavement_lines import AGREEING_LENGTH, with_pavement_edges
 from lanewright.core.survey.frame.build import build_frame
@@ -209,6 +210,19 @@ def test_behind_a_vehicle_it_is_bridged_too_where_a_curb_begins_soon_after():
     edges = with_pavement_edges(survey, edges_from_features(curb, survey.frame))
     drawn = [places for (_, places), what in zip(on_map(edges, survey), edges.what) if what == "pavement" and places[0, 1] > 0]
     assert max(places[:, 0].max() for places in drawn) == pytest.approx(curb_from - 5.0, abs=0.5), "as far as the curb is led on"
+
+
+def test_a_single_row_seen_between_two_vehicles_joins_their_bridges(plain, monkeypatch):
+    lines_of = pavement_lines._lines
+
+    def with_gaps(*args):
+        return [[(a, 100), (110, 111), (120, b)] for (a, b), in lines_of(*args)]
+
+    monkeypatch.setattr(pavement_lines, "_lines", with_gaps)
+    edges = found(plain[0])
+    assert edges.length.min() > 0.0
+    assert edges.status[edges.side == "left"].tolist() == ["measured", "bridged", "bridged", "measured"]
+    assert len(edges.densified(plain[0].frame)) == len(edges)
 
 
 def behind_a_lorry(half=half_of, **settings):

@@ -7,6 +7,9 @@ import pytest
 from drives import EAST, NORTH, write_cloud
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.survey.estimation.estimate import MAX_SIGMA, estimate_trajectory
+from lanewright.core.survey.estimation.kinds import refuse_handheld
+from lanewright.core.survey.estimation.rough.first_track import FirstTrack
+from lanewright.core.survey.estimation.rough.samples import rounding_of
 from mirror_drives import START, Mirror, mirror_drive, section, swaying
 from scipy.interpolate import PchipInterpolator
 
@@ -85,6 +88,25 @@ def test_the_uncertainty_grows_where_few_points_are(tmp_path, street):
 def test_a_thinned_cloud_gives_the_same_trajectory(tmp_path, street, keep):
     chosen = np.random.default_rng(1).random(len(street.time)) < 1 / keep
     close(street, estimate_trajectory([street.write(tmp_path / "thin.las", chosen)]))
+
+
+@pytest.mark.parametrize("tick", [1e-5, 1e-4, 2.0**-11])
+def test_rounded_times_do_not_draw_the_scanner_to_what_it_sees_from_far(tmp_path, tick):
+    drive = mirror_drive([replace(mirror, rate=200.0) for mirror in BUTTERFLY], seconds=8.0)
+    # as at the end of a survey: what lies beyond the street is not in the cloud, and the last seconds see it from ahead of its end
+    drive.time, inside = np.round(drive.time / tick) * tick, drive.place[:, 0] < 65.0
+    found = estimate_trajectory([drive.write(tmp_path / "cloud.las", inside)])
+    ahead, left, up = drive.errors(found.trajectory)
+    assert np.sqrt(np.mean(left**2)) < 0.05 and np.sqrt(np.mean(up**2)) < 0.03
+    assert np.abs(np.stack([left, up])).max() < 0.3
+    assert np.mean(np.hypot(ahead, left) < 3 * found.sigma + 0.01) > 0.95
+
+
+def test_times_that_are_not_rounded_are_taken_as_exact():
+    rng = np.random.default_rng(1)
+    time = np.sort(rng.uniform(0.0, 10.0, 5000))
+    assert rounding_of(time, 3e8) == 0.0
+    assert rounding_of(np.round(time, 4), 3e8) == 1e-4 and rounding_of(np.round(time * 2**11) / 2**11, 3e8) == 2.0**-11
 
 
 def test_files_may_come_in_any_order_and_the_points_too(tmp_path, street):
@@ -199,6 +221,19 @@ def test_a_handheld_cloud_is_refused_by_name(tmp_path):
     path = write_cloud(tmp_path / "walk.las", x + EAST, y + NORTH, 100.0 + rng.normal(0, 0.02, len(x)), time)
     with pytest.raises(RoadExtractionError, match="handheld"):
         estimate_trajectory([path])
+
+
+def test_walking_pace_is_told_over_seconds_since_the_first_track_swings_from_window_to_window():
+    rng = np.random.default_rng(1)
+    time = np.arange(0.05, 30.0, 0.1)
+
+    def track(speed):
+        foot = np.column_stack([speed * time, 0.2 * rng.standard_normal(len(time)), np.zeros(len(time))])
+        return FirstTrack(time, foot, np.zeros(len(time)), np.full(len(time), 100), np.full(len(time), 5.0))
+
+    with pytest.raises(RoadExtractionError, match="handheld"):
+        refuse_handheld([track(1.2)], [])
+    refuse_handheld([track(5.0)], [])
 
 
 def test_too_few_points_are_refused(tmp_path, street):
