@@ -35,7 +35,8 @@ class Roadside(Algorithm):
     SUMMARY = "Finds guard rails, concrete barriers, walls, fences, hedges and gutters as lines, and poles, signs and tree trunks as points."
     HELP = ("What repeats along the road at a steady offset and height is a line; its kind follows from its section: a beam with free height "
             "below, a face that leans back, an upright plane, something that is seen through, something rough. "
-            "Buildings and rows of parked cars are none.\n\n"
+            "Buildings and rows of parked cars are none. Where a scanner sees hardly higher than it rides, as heads of many beams do, "
+            "what is as high as it is left out: it may be a house front.\n\n"
             "Only what stands outside the carriageway counts: give the road edges, or the layers of lines or lanes. Gutters are the lowest points "
             "along an edge that the road falls to; the higher side of a road has none.")
     TAGS = ("guard rail", "barrier", "noise wall", "fence", "hedge", "pole", "sign", "tree", "asset", "street furniture")

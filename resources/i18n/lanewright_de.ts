@@ -2330,8 +2330,8 @@
         </message>
         <message>
             <location filename="../../algorithms/inventory/roadside.py" />
-            <source>What repeats along the road at a steady offset and height is a line; its kind follows from its section: a beam with free height below, a face that leans back, an upright plane, something that is seen through, something rough. Buildings and rows of parked cars are none.</source>
-            <translation>Was sich längs der Straße in gleichem Abstand und gleicher Höhe wiederholt, ist eine Linie; ihre Art folgt aus ihrem Querschnitt: ein Holm mit freiem Raum darunter, eine zurückgeneigte Fläche, eine senkrechte Ebene, etwas Durchsichtiges, etwas Raues. Gebäude und Reihen geparkter Autos sind keine.</translation>
+            <source>What repeats along the road at a steady offset and height is a line; its kind follows from its section: a beam with free height below, a face that leans back, an upright plane, something that is seen through, something rough. Buildings and rows of parked cars are none. Where a scanner sees hardly higher than it rides, as heads of many beams do, what is as high as it is left out: it may be a house front.</source>
+            <translation>Was sich längs der Straße in gleichem Abstand und gleicher Höhe wiederholt, ist eine Linie; ihre Art folgt aus ihrem Querschnitt: ein Holm mit freiem Raum darunter, eine zurückgeneigte Fläche, eine senkrechte Ebene, etwas Durchsichtiges, etwas Raues. Gebäude und Reihen geparkter Autos sind keine. Wo ein Scanner kaum höher sieht, als er fährt, wie Köpfe mit vielen Strahlen, bleibt weg, was so hoch ist wie er: Es kann eine Hausfront sein.</translation>
         </message>
         <message>
             <location filename="../../algorithms/inventory/roadside.py" />

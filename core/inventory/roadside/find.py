@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -11,7 +11,6 @@ import numpy as np
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ...countries.catalogue import country
-from ...survey.reading.sensor_height import DEFAULT_SENSOR_HEIGHT
 from ..borders import BorderLayers, RoadBorders
 from ..surface_grid import SLICE_LENGTH
 from .chains import Chain, find_chains
@@ -22,6 +21,7 @@ from .poles import Pole, find_poles
 from .settings import RoadsideSettings
 from .shared import told_once
 from .uprights import UPRIGHT_SLICE, Uprights, find_uprights
+from .view import level_views, lines_of_sight
 
 if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame
@@ -111,6 +111,8 @@ def find_roadside(survey: Survey, layers: BorderLayers = BorderLayers(), setting
     """
     borders = RoadBorders(layers, survey.frame, country(settings.country))
     found = Roadside([], {}, {}, survey.frame, survey.crs, settings)
+    level = level_views(survey)
+    unknown = 0.0
     roads = survey.store.roads()
     for k, road in enumerate(roads):
         edges = found.edges[road] = _edges_of(survey, road, borders)
@@ -120,7 +122,7 @@ def find_roadside(survey: Survey, layers: BorderLayers = BorderLayers(), setting
         windows = np.arange(np.floor(first / ROADSIDE_WINDOW), np.ceil(last / ROADSIDE_WINDOW))
 
         def look(window, road=road, edges=edges):
-            return _look(survey, road, window * ROADSIDE_WINDOW, edges, settings)
+            return _look(survey, road, window * ROADSIDE_WINDOW, edges, settings, level)
 
         for uprights, poles in ordered_map(look, windows.tolist(), progress.part(k / len(roads), (k + 1) / len(roads))):
             found.poles[road] += poles
@@ -128,8 +130,12 @@ def find_roadside(survey: Survey, layers: BorderLayers = BorderLayers(), setting
                 parts.setdefault(key, []).append(some)
         for (what, side), some in sorted(parts.items()):
             for chain in find_chains(Uprights.joined(some), road, side, settings.max_gap, settings.min_length):
+                unknown += chain.length * float(chain.members.above_view.mean() > 0.5)
                 for kind, part in [("gutter", chain)] if what == "gutter" else things_of(chain, settings.min_length):
                     found.lines.append(SideLine(kind, part, float(np.median(part.members.foot)), edges.beyond(side, part.s, part.d)))
+    if unknown:
+        found.notes.append(f"{unknown:.0f} m of what stands beside the road are as high as the scanner, which sees hardly higher, as heads of many "
+                           "beams do. They are left out, for house fronts look the same to it.")
     found.lines, found.poles = told_once(found)
     found.lines.sort(key=lambda line: (line.chain.road, -line.chain.side, float(line.chain.s[0])))
     _report(found, progress)
@@ -173,17 +179,15 @@ def _down(d):
     return float(np.floor(d / GROUND_CELL) * GROUND_CELL)
 
 
-def _sight(survey, road, number, s, d, h, time, side):
-    """(N,) m that the lines of sight to points of a pass rise for each m across towards the road: in a bend they run askew to what stands there."""
-    driven, line = survey.frame.passes[number], survey.frame.road(road)
-    x, y = line.to_map(s, d)
-    eye_x, eye_y = driven.at(time, "x", "y") if survey.frame.has_time else line.to_map(s, driven.at_station(s)[0])
-    heading = line.heading(s)
-    across = side * ((eye_x - x) * np.sin(heading) - (eye_y - y) * np.cos(heading))
-    return (survey.sensor_height.get(number, DEFAULT_SENSOR_HEIGHT) - h) / np.maximum(across, LEAST_ACROSS)
+def _above_view(survey, road, uprights, height):
+    """(N,) bool, whether uprights are as high as the scanner, m above the road, whose view is level; None is one that sees all round."""
+    if height is None:
+        return np.zeros(len(uprights), bool)
+    s = (uprights.slice + 0.5) * UPRIGHT_SLICE
+    return uprights.ground + uprights.top - survey.road_height(road, s) > height
 
 
-def _look(survey, road, start, edges, settings):
+def _look(survey, road, start, edges, settings, level):
     """({(what, side): Uprights}, list of Pole) of one window."""
     wide = start - ROADSIDE_MARGIN, start + ROADSIDE_WINDOW + ROADSIDE_MARGIN
     points = survey.window(road, *wide)
@@ -208,8 +212,10 @@ def _look(survey, road, start, edges, settings):
         own = beside[(s[beside] >= start) & (s[beside] < start + ROADSIDE_WINDOW)]
         nearest = int(survey.frame.nearest_pass(road, middle, edges.of(side, middle))[0])
         seen = own[number[own] == nearest] if (number[own] == nearest).any() else own
-        sight = _sight(survey, road, nearest, s[seen], d[seen], h[seen], time[seen], side)
-        found["line", side] = find_uprights(s[seen], d[seen], above[seen], (z - above)[seen], slices, side, sight, settings.min_height)
+        across, up = lines_of_sight(survey, road, nearest, s[seen], d[seen], h[seen], time[seen])
+        sight = up / np.maximum(-side * across[1], LEAST_ACROSS)
+        uprights = find_uprights(s[seen], d[seen], above[seen], (z - above)[seen], slices, side, sight, settings.min_height)
+        found["line", side] = replace(uprights, above_view=_above_view(survey, road, uprights, level.get(nearest)))
         if edges.known:
             found["gutter", side] = find_gutters(survey, road, start, int(round(ROADSIDE_WINDOW / SLICE_LENGTH)), side, partial(edges.of, side))
     return found, sorted(poles, key=lambda pole: (pole.s, pole.d))

@@ -30,13 +30,13 @@ CAR_HALF = 4                 # slices
 
 
 def kind_of(chain: Chain) -> str | None:
-    """guard_rail, barrier, wall, fence or hedge; None for what is none of them: buildings, rows of parked cars, embankments."""
+    """guard_rail, barrier, wall, fence or hedge; None for what is none of them, or may be none: buildings, rows of parked cars, embankments."""
     members = chain.members
     top = float(np.median(chain.top))
     tall = top > TALL
     batter, thickness = float(np.median(members.batter)), float(np.median(members.thickness))
     through = float(members.behind.sum() / max(members.points.sum(), 1.0))
-    if np.median(members.points) < MIN_UPRIGHT_POINTS:
+    if np.median(members.points) < MIN_UPRIGHT_POINTS or members.above_view.mean() > 0.5:
         return None
     if top > BUILDING_TOP or abs(batter) > MAX_BATTER or through > SCATTERED or not tall and _restless(members.top):
         return None

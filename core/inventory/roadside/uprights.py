@@ -39,6 +39,7 @@ class Uprights(Rows):
     thickness : (N,) m across between the 10 % and 90 % quantile of its points
     batter : (N,) m across per m of height, positive where it leans away from the road
     points, behind : (N,) number of points on it, and of those seen through it
+    above_view : (N,) bool, may it be higher than what the scanner saw of it?
     """
 
     slice: np.ndarray
@@ -51,6 +52,7 @@ class Uprights(Rows):
     batter: np.ndarray
     points: np.ndarray
     behind: np.ndarray
+    above_view: np.ndarray
 
     @staticmethod
     def joined(parts: list[Uprights]) -> Uprights:
@@ -62,7 +64,7 @@ class Uprights(Rows):
     def none() -> Uprights:
         """No uprights."""
         empty = np.empty(0)
-        return Uprights(np.empty(0, np.int64), *(empty,) * 4, np.empty((0, TOP_BINS)), *(empty,) * 4)
+        return Uprights(np.empty(0, np.int64), *(empty,) * 4, np.empty((0, TOP_BINS)), *(empty,) * 4, np.empty(0, bool))
 
 
 def find_uprights(s: np.ndarray, d: np.ndarray, above: np.ndarray, ground: np.ndarray, slices: tuple[int, int], side: int,
@@ -149,7 +151,8 @@ def _described(at, own, u, above, everything, first, side):
     i, all_u, all_above, all_ground, all_sight = everything
     ground = _ground_at(at, middle, i, all_u, all_ground)
     behind = _behind(at, middle, ground + tops, i, all_u, all_above + all_ground, all_sight)
-    return Uprights(at[:, 0] + first, side * middle, ground, tops, foot, below_top, farthest - nearest, batter, count.astype(float), behind)
+    return Uprights(at[:, 0] + first, side * middle, ground, tops, foot, below_top, farthest - nearest, batter, count.astype(float), behind,
+                    np.zeros(n, bool))
 
 
 def _contiguous_top(own, above, n):

@@ -13,7 +13,7 @@ from lanewright.core.inventory.roadside.layers import roadside_to_features
 from lanewright.core.inventory.roadside.settings import RoadsideSettings
 from lanewright.core.inventory.roadside.uprights import TOP_BINS, Uprights
 from lanewright.core.report.roadside import roadside_report
-from measured_streets import GROUND, Drive, edges_of, measured_road
+from measured_streets import GROUND, SENSOR, Drive, edges_of, measured_road
 from roadside_streets import BESIDE, HEIGHTS, LENGTH, Thing, hidden_by, points_of, road_with
 
 KINDS = ("guard_rail", "barrier", "wall", "fence", "hedge")
@@ -119,6 +119,21 @@ def test_a_low_wall_before_a_house_is_a_wall_and_no_fence():
     assert [line.kind for line in found_in(survey, edges).lines if line.kind != "gutter"] == ["wall"]
 
 
+def test_a_face_as_high_as_a_scanner_that_sees_hardly_higher_is_left_out_and_said_to_be():
+    """The lower 2.6 m of a house front with climbers look like a hedge; a low wall beside it is known for what it is."""
+    front, low = Thing("hedge", 8.0, 10, 100, SENSOR + 0.2), Thing("wall", -7.0, 10, 100, 0.9)
+    survey, edges = road_with((front, low))
+    found = found_in(survey, edges)
+    assert [line.kind for line in found.lines if line.kind != "gutter"] == ["wall"]
+    assert any("as high as the scanner" in note for note in found.notes)
+
+
+def test_the_same_face_is_a_hedge_to_a_scanner_that_sees_higher_things():
+    survey, edges = road_with((Thing("hedge", 8.0, 10, 100, SENSOR + 0.2), Thing("building", -8.0)))
+    found = found_in(survey, edges)
+    assert [line.kind for line in found.lines if line.kind != "gutter"] in (["hedge"], ["wall"]) and not found.notes
+
+
 def test_a_line_has_a_vertex_in_every_interval():
     survey, edges = road_with((Thing("wall", 5.0, 10, 100),))
     for interval in (5.0, 20.0):
@@ -139,7 +154,7 @@ def rail_of(d, thickness=0.05):
     below_top = np.zeros((n, TOP_BINS))
     below_top[:, :6] = 30.0
     ones = np.ones(n)
-    return Uprights(np.arange(n), d, 0 * ones, 0.78 * ones, 0.5 * ones, below_top, thickness * ones, 0 * ones, 200 * ones, 150 * ones)
+    return Uprights(np.arange(n), d, 0 * ones, 0.78 * ones, 0.5 * ones, below_top, thickness * ones, 0 * ones, 200 * ones, 150 * ones, ones < 0)
 
 
 def test_a_rail_in_a_hairpin_runs_straight_from_kink_to_kink():
