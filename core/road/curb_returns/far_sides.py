@@ -16,6 +16,8 @@ from .steps import PlanSteps, line_directions, points_about
 EDGE_REACH = 0.25             # m either way of the last raised cell within which the edge of the top lies
 EDGE_HALF_LENGTH = 0.15       # m either way along the edge of the points that show it
 MIN_EDGE_POINTS = 4           # of the top
+MAX_EDGE_SPACING = 0.15       # m across between points of the top: the edge lies up to that much beyond the outermost
+SPACING_DEPTH = 0.40          # m of the top from its edge inward in which that is looked for
 MIN_TOP_SHARE = 0.6           # share of the height of the island's near side that its top has
 SEEN_STEP_DISTANCE = 0.4      # m from a step that was seen, within which nothing is hidden
 MIN_ISLAND_WIDTH = 0.4        # m
@@ -50,7 +52,18 @@ def far_sides(raster: GroundRaster, steps: PlanSteps, behind: GroundBehind) -> P
     edge = np.full(len(x), np.inf)
     np.minimum.at(edge, owner.take(top), u.take(top))
     count = np.bincount(owner.take(top), minlength=len(x))
-    good = in_line & (count >= MIN_EDGE_POINTS)
+    good = in_line & (count >= MIN_EDGE_POINTS) & (_largest_gap(owner, u - edge.take(owner), h - bottom.take(owner), own.height) <= MAX_EDGE_SPACING)
     edge = np.where(good, edge, 0.0)
     found = PlanSteps(x + edge * nx, y + edge * ny, nx, ny, bottom, own.height, np.zeros(len(x)), np.zeros(len(x)), count, count)
     return found[good]
+
+
+def _largest_gap(owner, inward, above, height):
+    """(K,) m, the largest gap across between points of the tops of K islands, from the outermost point inward; `height` : (K,) m of their near sides."""
+    top = np.flatnonzero((above >= MIN_TOP_SHARE * height.take(owner)) & (inward >= 0.0) & (inward < SPACING_DEPTH))
+    owner, inward = np.r_[owner.take(top), np.arange(len(height))], np.r_[inward.take(top), np.full(len(height), SPACING_DEPTH)]
+    order = np.lexsort((inward, owner))
+    owner, inward = owner[order], inward[order]
+    gap = np.zeros(len(height))
+    np.maximum.at(gap, owner[1:], np.where(np.diff(owner) == 0, np.diff(inward), 0.0))
+    return gap
