@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from pyproj import CRS
 
 SUSPICIOUS_SENSOR_HEIGHT = 5.0, 15.0  # m: higher than any survey vehicle; 1.5 to 4.5 m expressed in feet
-SAME_PLACE = 0.01                     # m between coordinates of one place in two CRS that are none other for a map
+SAME_COORDINATES = 0.01                     # m between coordinates of one place in two CRS that are none other for a map
 
 
 def parse_crs(text: str | None) -> CRS | None:
@@ -203,7 +203,7 @@ def check_same_crs(own: str, other: str, place: tuple[float, float], label: str)
         return
     layer, clouds = horizontal_part(layer), horizontal_part(clouds)
     moved = Transformer.from_crs(layer, clouds, always_xy=True).transform(*place)
-    if not np.hypot(moved[0] - place[0], moved[1] - place[1]) < SAME_PLACE:
+    if not np.hypot(moved[0] - place[0], moved[1] - place[1]) < SAME_COORDINATES:
         raise RoadExtractionError(f"{label} is in {layer.name}, the point clouds are in {clouds.name}. "
                                   "Reproject the layer to their CRS and run again.")
 

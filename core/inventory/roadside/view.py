@@ -11,7 +11,7 @@ from ...survey.reading.sensor_height import DEFAULT_SENSOR_HEIGHT
 if TYPE_CHECKING:
     from ...survey.open_survey import Survey
 
-SAMPLE_LENGTH, SAMPLES = 4.0, 25   # m of road, and number, of the windows of each road in which the highest view is looked for
+VIEW_SAMPLE_LENGTH, VIEW_SAMPLES = 4.0, 25   # m of road, and number, of the windows of each road in which the highest view is looked for
 LEAST_RANGE = 3.0          # m from the scanner: nearer, a centimetre turns the line of sight too much
 HIGHEST_SHARE = 0.999      # of the lines of sight by their slope: single points astray lie above
 LEVEL_VIEW = 0.10          # m per m: heads of many beams see up to 0.03 (+2 degrees, Velodyne HDL-64E), and the vehicle tilts; mirrors see all round
@@ -55,8 +55,8 @@ def level_views(survey: Survey) -> dict[int, float]:
     slopes: dict[int, list[np.ndarray]] = {}
     for road in survey.store.roads():
         first, last = survey.store.span(road)
-        for start in np.linspace(first, max(last - SAMPLE_LENGTH, first), SAMPLES):
-            points = survey.window(road, start, start + SAMPLE_LENGTH)
+        for start in np.linspace(first, max(last - VIEW_SAMPLE_LENGTH, first), VIEW_SAMPLES):
+            points = survey.window(road, start, start + VIEW_SAMPLE_LENGTH)
             h = points.z - survey.road_height(road, points.s)
             for number in np.unique(points.pass_number).tolist():
                 own = points.pass_number == number
