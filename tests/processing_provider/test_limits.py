@@ -19,6 +19,7 @@ BESIDE = {
     ("PeakSettings", "gap"): {"profile_length": 0.02},
     ("MarkingLineSettings", "max_gap"): {"max_bridge": 200.0},
     ("MarkingLineSettings", "max_bridge"): {"max_gap": 0.1},
+    ("CrossSectionSettings", "min_crossfall"): {"max_crossfall": 20.0},
 }
 
 

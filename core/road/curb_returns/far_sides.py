@@ -59,7 +59,7 @@ def far_sides(raster: GroundRaster, steps: PlanSteps, behind: GroundBehind) -> P
 
 
 def _largest_gap(owner, inward, above, height):
-    """(K,) m, the largest gap across between points of the tops of K islands, from the outermost point inward; `height` : (K,) m of their near sides."""
+    """(K,) m, the largest gap across between points of the tops of K islands, from the outermost inward; `height` : (K,) m of their near sides."""
     top = np.flatnonzero((above >= MIN_TOP_SHARE * height.take(owner)) & (inward >= 0.0) & (inward < SPACING_DEPTH))
     owner, inward = np.r_[owner.take(top), np.arange(len(height))], np.r_[inward.take(top), np.full(len(height), SPACING_DEPTH)]
     order = np.lexsort((inward, owner))
