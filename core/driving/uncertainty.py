@@ -2,7 +2,7 @@
 
 What adds up as squares: how well the borders of the lane are placed, and how well the line follows the lane.
 
-A painted border is found to a millimetre however many points show it, and worse with the spacing of the points; and it is off by a share of
+A painted border is found to half a millimetre however many points show it, and worse with the spacing of the points; and it is off by a share of
 the scatter of its paint about its curve, most of which averages out along the curve. How much these are was found on simulated streets with truth
 (docs/accuracy.md). More is added with the distance to its next paint, where it is bridged. The border of
 a hatched area is known as well as the outline of its bars. Between two borders the middle takes half of the error of each; where two lanes lie
@@ -36,8 +36,8 @@ if TYPE_CHECKING:
 
 BORDER_SHARE = 0.13            # of the RMS distance of a border's paint from its curve, that the border is off by
 USUAL_SCATTER = 0.010          # m, of paint about its curve, where no border says it
-BORDER_SIGMA = 0.001           # m, of a painted border, however many points show it
-SPACING_SHARE = 0.03           # of the spacing of the points, that a painted border is off by
+BORDER_SIGMA = 0.0005          # m, of a painted border, however many points show it
+SPACING_SHARE = 0.02           # of the spacing of the points, that a painted border is off by
 USUAL_SPACING = 0.03           # m, where there are no points to say it
 GAP_SHARE = 0.002              # m per m to the next place where a border is painted, or, without borders, where the lane is measured
 HATCHING_SIGMA = 0.03          # m, of a hatched area's border: outlines are of image cells, and its line's breadth is not known

@@ -35,7 +35,7 @@ class EdgeUncertainty:
     gap: float
 
 
-MAIN_EDGE = EdgeUncertainty(foot=0.0015, spacing=0.085, scatter=0.5, end=0.002, gap=0.0005)
+MAIN_EDGE = EdgeUncertainty(foot=0.0014, spacing=0.08, scatter=0.47, end=0.002, gap=0.0005)
 CURB_RETURN = EdgeUncertainty(foot=0.0045, spacing=0.0, scatter=1.5, end=0.006, gap=0.0005)   # found in plan, from fewer points
 
 
