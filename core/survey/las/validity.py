@@ -14,6 +14,12 @@ import numpy as np
 NOISE_CLASSES = 7, 18
 
 
+def flagged(block: laspy.ScaleAwarePointRecord) -> bool:
+    """Whether any point of a block has a flag or a scanner channel: LAS 1.4 keeps them in one byte, and most clouds have none."""
+    raw = block.array
+    return "classification_flags" not in raw.dtype.names or bool(raw["classification_flags"].max(initial=0))
+
+
 def valid_points(block: laspy.ScaleAwarePointRecord) -> np.ndarray | None:
     """Which points of a block are neither withheld nor classified as noise: (N,) bool, None for all.
 
@@ -21,10 +27,8 @@ def valid_points(block: laspy.ScaleAwarePointRecord) -> np.ndarray | None:
     ----------
     block : laspy point record of N points, of whose LAZ layers `flags` and `classification` are decoded
     """
-    raw = block.array
-    # LAS 1.4 keeps the flags in one byte, which in most clouds is 0 throughout
-    flags_there = "classification_flags" not in raw.dtype.names or bool(raw["classification_flags"].max(initial=0))
-    withheld = np.asarray(block["withheld"]) != 0 if flags_there and "withheld" in block.point_format.dimension_names else np.zeros(1, bool)
+    there = flagged(block) and "withheld" in block.point_format.dimension_names
+    withheld = np.asarray(block["withheld"]) != 0 if there else np.zeros(1, bool)
     classes = np.asarray(block["classification"])
     low, high = NOISE_CLASSES
     noise = (classes == low) | (classes == high)

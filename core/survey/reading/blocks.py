@@ -14,7 +14,7 @@ from ..las.luminance import luminance
 from ..las.scale import LasAxis
 from ..las.scanners import EVER, times_by_value
 from ..las.time_slots import TimeSlots
-from ..las.validity import valid_points
+from ..las.validity import flagged, valid_points
 from ..store.columns import Columns
 from ..store.records import COORDINATE_SCALE, SURVEY_POINT, beside_road, fill_units, point_dtype, road_of, to_units
 from ..trajectory.time_systems import SECONDS_PER_WEEK
@@ -192,8 +192,7 @@ class BlockProjector:
 
     def _piece(self, piece, names, axes, found, ground):
         buffers = self._scratch.of(len(piece))
-        flagged = _flagged(piece)
-        columns = self._columns(piece, names, flagged, buffers)
+        columns = self._columns(piece, names, buffers)
         found.add(columns, names, self._span)
         usable = valid_points(piece)
         if usable is not None:
@@ -249,7 +248,7 @@ class BlockProjector:
         found = np.unique(road)
         return [(number, None if len(found) == 1 else road == number) for number in found.tolist() if number >= 0]
 
-    def _columns(self, piece, names, flagged, buffers):
+    def _columns(self, piece, names, buffers):
         """Columns copied from the file: time, intensity, source, returns, scanner."""
         raw = piece.array
         columns = {name: buffers(name, SURVEY_POINT[name]) for name in ("time", "intensity", "source", "returns")}
@@ -259,7 +258,7 @@ class BlockProjector:
         columns["intensity"][:] = luminance(piece) if self.choice.coloured else raw["intensity"]
         columns["source"][:] = raw["point_source_id"]
         columns["scanner"] = np.broadcast_to(np.uint8(0), len(raw))
-        if "scanner_channel" in names and flagged:
+        if "scanner_channel" in names and flagged(piece):
             columns["scanner"] = np.asarray(piece["scanner_channel"])
         # LAS 1.4 stores both numbers in this way
         columns["returns"][:] = raw["bit_fields"] if "scanner_channel" in names else _returns(piece)
@@ -306,12 +305,6 @@ def unwrap_week(time: np.ndarray) -> np.ndarray:
 def _returns(block):
     """(N,) return number + 16 * number of returns."""
     return np.asarray(block["return_number"]) | (np.asarray(block["number_of_returns"]) << 4)
-
-
-def _flagged(piece):
-    """Whether any point has a flag or a scanner channel: LAS 1.4 keeps them in one byte, and most clouds have none."""
-    raw = piece.array
-    return "classification_flags" not in raw.dtype.names or bool(raw["classification_flags"].max())
 
 
 def _both(one, other):
