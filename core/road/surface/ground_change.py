@@ -11,7 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import median_filter, uniform_filter1d
+from scipy.ndimage import median_filter
 
 from ...common.memory import by_rows
 from ...common.parallel import check_cancelled
@@ -39,7 +39,7 @@ MIN_AGREEING_SHARE = 0.7     # of the cells ahead that must show the change
 PROFILES_PER_BATCH = 64      # profiles compared at a time; their windows take some megabytes
 COMPARED_CELLS = 10          # either side of a step of brightness: 1 m, of which paint covers less than half
 BRIGHTER = np.log(1.5)       # step of the logarithm of brightness; asphalt of another age differs by less
-LASTING_SHARE = 1.0 / 3.0    # of the step by which the ground right before the limit is still brighter: it falls off with range
+LASTING_SHARE = 1.0 / 3.0    # of the median step by which the ground right before the limit is still brighter: it falls off with range
 LASTING_PROFILES = 31        # 2 m apart, of which most must show it: patches of asphalt are shorter
 AGREEING_PROFILES = 5        # whose median place of the step counts
 
@@ -206,9 +206,11 @@ def other_ground_begins(brightness: np.ndarray, track: np.ndarray, limit: np.nda
     -------
     (P,) cells; NaN where there is no such ground
     """
-    begins = by_rows(lambda some: _brighter_from(brightness[some], track[some], limit[some]), len(brightness))
+    begins, step, still = by_rows(lambda some: _brighter_from(brightness[some], track[some], limit[some]), len(brightness)).T
     there = begins >= 0
-    lasting = there & (uniform_filter1d(there.astype(float), LASTING_PROFILES, mode="nearest") > 0.5)
+    # a single profile tells little of how far the ground goes on: strips have dark patches and fade with range
+    about = _profiles_about(len(there))
+    lasting = there & (there[about].mean(1) > 0.5) & (known_median(still[about], 1) >= LASTING_SHARE * known_median(step[about], 1))
     if not lasting.any():
         return np.full(len(begins), np.nan)
     known = np.flatnonzero(there)
@@ -216,8 +218,18 @@ def other_ground_begins(brightness: np.ndarray, track: np.ndarray, limit: np.nda
     return np.where(lasting, place, np.nan)
 
 
+def _profiles_about(count):
+    """(P, LASTING_PROFILES) int, the profiles nearest to each one; at an end of the road as many on the other side."""
+    several = min(LASTING_PROFILES, count)
+    first = np.clip(np.arange(count) - several // 2, 0, count - several)
+    return first[:, None] + np.arange(several)
+
+
 def _brighter_from(brightness, track, limit):
-    """(P,) int, the cell of each profile by itself from which on the ground is brighter as far as the limit; -1 where there is none."""
+    """(P, 3) of each profile by itself: the cell from which on the ground is brighter, or -1, by how much, and by how much still at the limit.
+
+    The latter two are logarithms; NaN where nothing is brighter.
+    """
     count = brightness.shape[1]
     level = np.log(np.maximum(brightness, 1.0))
     padded = np.pad(level, ((0, 0), (COMPARED_CELLS, COMPARED_CELLS)), constant_values=np.nan)
@@ -231,5 +243,5 @@ def _brighter_from(brightness, track, limit):
     rows, begins = np.arange(len(step)), step.argmax(axis=1)
     last = beside[rows, np.clip(np.rint(limit).astype(np.int64), 0, count)]
     there = step[rows, begins] >= BRIGHTER
-    there[there] = last[there] - inner[rows[there], begins[there]] >= LASTING_SHARE * step[rows[there], begins[there]]
-    return np.where(there, begins, -1)
+    still = np.where(there, last - inner[rows, begins], np.nan)
+    return np.c_[np.where(there, begins, -1), np.where(there, step[rows, begins], np.nan), still]
