@@ -30,7 +30,8 @@ if TYPE_CHECKING:
     from .measured_ground import MeasuredGround
 
 AGREEING_LENGTH = 7.0       # m of road of which most must show the edge
-MIN_PAVEMENT_LENGTH = 10.0  # m of a line: rows are averages of 7 m, so a shorter one is a single observation
+MIN_PAVEMENT_LENGTH = 10.0  # m of a line and of the curb beside it: rows are averages of 7 m, so what is shorter is a single observation
+MIN_OWN_LENGTH = 0.5 * AGREEING_LENGTH  # m of a line without that curb: which rows begin it is no better known
 MAX_ROW_JUMP = 0.5          # m across from one row to the next at which a line ends: a street joins
 MAX_BRIDGED_SKEW = 0.15     # m across per m along of a gap, beside MAX_EDGE_JUMP: tapers widen by 1 in 10 and less
 MAX_LINE_MISS = 0.2         # m, of single rows from one even bend through both sides of a gap that is longer than `max_gap`
@@ -98,7 +99,8 @@ def pavement_pieces(frame: RoadFrame, road: int, carriageway: Carriageway, edges
         known: dict[tuple[tuple[int, int], ...], tuple[list[EdgePiece], np.ndarray]] = {}   # lines drawn so far, and where they cross curbs
         while True:
             likely = rows & grown.likely
-            lines = [tuple(runs) for runs in _lines(rows & agreeing, likely, likely | rows & grown.hidden, grown.offset, places, max_gap)]
+            possible = likely | rows & grown.hidden
+            lines = [tuple(runs) for runs in _lines(rows & agreeing, agreeing & (rows | ~free), likely, possible, grown.offset, places, max_gap)]
             for runs in lines:
                 if runs not in known:
                     check_cancelled()
@@ -136,12 +138,13 @@ def _crossings(piece, curb_lines):
     return np.interp(along[inside], away, np.linspace(piece.station, piece.end, len(away)))
 
 
-def _lines(shown, likely, possible, offset, places, max_gap):
-    """[[(first, last + 1), …], …] rows of runs that are joined to lines; what lies between the runs of a line is bridged."""
+def _lines(shown, confirmed, likely, possible, offset, places, max_gap):
+    """[[(first, last + 1), …], …] rows of runs that are joined to lines; what lies between the runs of a line is bridged.
+
+    `confirmed` : (R,) bool, rows that show the edge, those where a curb goes on from it included
+    """
     broken = np.abs(np.diff(offset)) > MAX_ROW_JUMP
-    cuts = np.flatnonzero((shown[1:] != shown[:-1]) | broken) + 1
-    bounds = np.r_[0, cuts, len(shown)]
-    runs = [(int(a), int(b)) for a, b in zip(bounds[:-1], bounds[1:]) if shown[a]]
+    runs = _runs(shown, broken)
     lines: list[list[tuple[int, int]]] = []
     for run in runs:
         last = lines[-1][-1] if lines else (0, -len(offset))
@@ -153,7 +156,21 @@ def _lines(shown, likely, possible, offset, places, max_gap):
             lines[-1][-1] = (last[0], run[1])
         else:
             lines[-1].append(run)
-    return [line for line in lines if sum(b - a for a, b in line) * ROW_LENGTH >= MIN_PAVEMENT_LENGTH]
+    seen = np.array(_runs(confirmed, broken)).reshape(-1, 2)
+
+    def long_enough(line):
+        first, end = line[0][0], line[-1][1]
+        begin, stop = seen[np.searchsorted(seen[:, 0], first, "right") - 1, 0], seen[np.searchsorted(seen[:, 1], end), 1]
+        own = sum(b - a for a, b in line)
+        return own * ROW_LENGTH >= MIN_OWN_LENGTH and (own + first - begin + stop - end) * ROW_LENGTH >= MIN_PAVEMENT_LENGTH
+
+    return [line for line in lines if long_enough(line)]
+
+
+def _runs(rows, broken):
+    """[(first, last + 1), …] of rows, ended also where the edge jumps."""
+    bounds = np.r_[0, np.flatnonzero((rows[1:] != rows[:-1]) | broken) + 1, len(rows)]
+    return [(int(a), int(b)) for a, b in zip(bounds[:-1], bounds[1:]) if rows[a]]
 
 
 def _go_on(offset, gap, max_gap):

@@ -314,8 +314,29 @@ def test_the_road_ends_where_a_flush_sidewalk_twice_as_bright_begins(falloff):
     assert max(covered(edges, survey, side, half=wide, within=1.0) for side in (1, -1)) == 0.0
 
 
+def test_a_flush_bicycle_path_is_no_road_where_its_far_side_is_as_dark_as_the_road():
+    """Along 24 m of the street, the outer half of the path is no brighter than asphalt."""
+    path = np.vectorize(lambda s, d: 1.0 if abs(d) < HALF or (18 < s < 42 and abs(d) > HALF + 1.3) else 2.0)
+    survey = street(half=wide, grey_of=path)
+    edges = found(survey)
+    assert min(covered(edges, survey, side) for side in (1, -1)) >= 0.9
+
+
+def test_a_short_edge_is_drawn_where_a_curb_goes_on_from_it(plain):
+    """Up to 5 m before the curb, where the curb's line is continued."""
+    survey = plain[0]
+    curb = EdgePiece(np.c_[[8.0 + EAST, 59.0 + EAST], [NORTH + HALF] * 2, [100.0] * 2], 0, "left", "measured", 0, 8.0, 59.0, 51.0)
+    drawn = with_pavement_edges(survey, joined_pieces([curb], survey.frame))
+    left = [places[:, 0] for (_, places), side, what in zip(on_map(drawn, survey), drawn.side, drawn.what) if (side, what) == ("left", "pavement")]
+    assert len(left) == 1 and (left[0].min(), left[0].max()) == pytest.approx((-4.5, 3.0), abs=1.0)
+
+
 def bright_strip(s, d):
     return np.where((np.abs(d) > 1.5) & (np.abs(d) < 1.9), 4.0, 1.0)   # a double line
+
+
+def older_lane(s, d):
+    return np.where((np.abs(d) > 1.0) & (np.abs(d) < 2.4), 2.0, 1.0)
 
 
 def dark_patch(s, d):
@@ -330,7 +351,7 @@ def rises(s, d):
     return np.exp(0.12 * np.abs(d))     # a scanner that sees less of what is near
 
 
-@pytest.mark.parametrize("grey_of", [bright_strip, dark_patch, falls_off, rises])
+@pytest.mark.parametrize("grey_of", [bright_strip, older_lane, dark_patch, falls_off, rises])
 def test_paint_a_patch_and_the_range_are_no_other_ground(grey_of):
     survey = street(half=wide, grey_of=grey_of)
     edges = found(survey)
