@@ -26,6 +26,9 @@ HALF_BORDER = 0.06     # m from the outside of its border line to the middle: ha
 OUTSIDE_PAINT = CELL_SIZE / 2   # m: outlines are of whole cells, of which paint reaches into the outermost ones by half on average
 SHORTEST_AREA = 5.0    # m
 BORDER_LINE_REACH = 0.5  # m between the ends of bars and the middle of the border line that they lead to: gap, and half of a broad line
+MAX_TIP = 20.0         # m from the last bar to where the borders meet
+MAX_TIP_GAP = 2.0      # m of border that is not seen
+TIP_COURSE = 4.0       # m of border that give its course
 
 
 def hatched_places(markings: MarkingObjects, frame: RoadFrame, road: int, s: np.ndarray) -> np.ndarray | None:
@@ -52,7 +55,8 @@ def hatched_places(markings: MarkingObjects, frame: RoadFrame, road: int, s: np.
 def borders_of_hatching(markings: MarkingObjects, frame: RoadFrame, road: int, s: np.ndarray) -> RowTable:
     """The outer borders of hatched areas: nobody drives between them, and they bound the lanes beside.
 
-    A border is the middle of the line that is painted along the ends of the bars; where there is none, the ends themselves.
+    A border is the middle of the line that is painted along the ends of the bars; where there is none, the ends themselves. Where the area narrows
+    to a tip, too narrow for bars, the borders go on along their lines to where these meet.
 
     Parameters
     ----------
@@ -63,13 +67,13 @@ def borders_of_hatching(markings: MarkingObjects, frame: RoadFrame, road: int, s
 
     Returns
     -------
-    RowTable (2 G, K) of metres, the left and the right border of each of G areas, NaN where it is not
+    RowTable (2 G, K) of metres, the left and the right border of each of G areas and of tips of them, NaN where it is not
     """
     here = markings.road == road
     bars, lines = ([shape for shape in shapely.force_2d(markings.outlines.polygons()[here & kind]) if not shape.is_empty]
                    for kind in (markings.kind == "hatch", np.isin(markings.kind.astype(str), LINE_KINDS)))
     areas = shapely.get_parts(shapely.union_all(shapely.buffer(bars, BAR_REACH))) if bars else np.empty(0, object)
-    bars_of, lines_of = (_meeting(areas, shapes) for shapes in (bars, lines))
+    bars_of, lines_of = _meeting(areas, bars), _meeting(shapely.buffer(areas, MAX_TIP), lines)
     found = []
     for k in range(len(areas)):
         first, reach = _reach([bars[j] for j in bars_of[k]], frame, road, s)
@@ -82,13 +86,49 @@ def borders_of_hatching(markings: MarkingObjects, frame: RoadFrame, road: int, s
             outer = grey_closing(np.where(np.isfinite(reach[side]), sign * reach[side], -FAR),
                                  size=int(2 * BAR_REACH / STATION_STEP) + 1, mode="nearest")
             borders[side] = sign * (outer - OUTSIDE_PAINT - HALF_BORDER)
-        for j in lines_of[k]:
-            begin, along = _reach([lines[j]], frame, road, s)
-            low, high = max(begin, first), min(begin + along.shape[1], first + reach.shape[1])
+        beside = [(begin, along.mean(axis=0)) for begin, along in (_reach([lines[j]], frame, road, s) for j in lines_of[k])]
+        for begin, middle in beside:
+            low, high = max(begin, first), min(begin + len(middle), first + reach.shape[1])
             if low < high:
-                _follow(borders[:, low - first:high - first], along[:, low - begin:high - begin].mean(axis=0))
-        found += [(first, border) for border in borders]
+                _follow(borders[:, low - first:high - first], middle[low - begin:high - begin])
+        before, behind = _tip(borders[:, ::-1], first, -1, beside), _tip(borders, first + reach.shape[1] - 1, 1, beside)
+        for begin, rows in ((first - before.shape[1], before[:, ::-1]), (first, borders), (first + reach.shape[1], behind)):
+            if rows.size:
+                found += [(begin, border) for border in rows]
     return RowTable.of_rows(found, len(s))
+
+
+def _tip(borders, last, step, lines):
+    """Where both borders go on along lines behind the last bar and come nearer to each other: (2, N) m.
+
+    `borders` : (2, M) m, those beside the bars, up to the station of the number `last`; `step` : 1 or -1, the way that stations are counted on;
+    `lines` : (number of the first station, (L,) m of its middle) of the lines about the area
+    """
+    course, count = int(TIP_COURSE / STATION_STEP), int(MAX_TIP / STATION_STEP)
+    table = np.full((len(lines), course + count), np.nan)
+    for row, (begin, middle) in zip(table, lines):
+        at = (begin + np.arange(len(middle)) - last) * step + course - 1
+        inside = (at >= 0) & (at < len(row))
+        row[at[inside]] = middle[inside]
+    found = np.full((2, course + count), np.nan)
+    found[:, max(course - borders.shape[1], 0):course] = borders[:, -course:]
+    for border in found:
+        known = course
+        for k in range(course, course + count):
+            before = np.arange(known - course, known)
+            before = before[np.isfinite(border[before])]
+            if k - known > MAX_TIP_GAP / STATION_STEP or len(before) < 2:
+                break
+            slope, level = np.polyfit(before - k, border[before], 1)
+            off = np.abs(table[:, k] - level)
+            if np.isfinite(off).any() and np.nanmin(off) <= BORDER_LINE_REACH:
+                border[k] = table[np.nanargmin(off), k]
+                border[known:k] = np.interp(np.arange(known, k), [known - 1, k], border[[known - 1, k]])
+                known = k + 1
+    width = found[0] - found[1]
+    narrowing = (width[course:] > 0) & (np.diff(width[course - 1:]) <= 0)
+    end = course + (len(narrowing) if narrowing.all() else int(np.argmin(narrowing)))
+    return found[:, course:end]
 
 
 def _meeting(areas, shapes):
