@@ -9,7 +9,7 @@ import numpy as np
 from scipy.ndimage import median_filter
 
 from ...common.groups import linked_groups, members_of
-from .gaps import END_UPRIGHTS, LEAST_GAP, Gaps, gaps_between
+from .gaps import END_UPRIGHTS, TOLD_GAP, Gaps, gaps_between
 from .uprights import UPRIGHT_SLICE, Uprights
 
 STEADY_OFFSET, STEADY_PER_SLICE = 0.30, 0.02   # m across from one slice to a later one, and more for each slice between
@@ -67,11 +67,11 @@ class Chain:
     def pieces(self) -> list[tuple[str, Chain]]:
         """Its measured pieces and, between them, of status bridged and from the last upright before to the first after it, what was not seen of it;
         where it is seen to be open there is none."""
-        gaps = np.flatnonzero(np.diff(self.members.slice) > LEAST_GAP)
+        gaps = np.flatnonzero(np.diff(self.members.slice) > TOLD_GAP)
         found = []
         for first, last in zip([0, *(gaps + 1)], [*gaps, len(self.d) - 1]):
             found.append(("measured", self.part(np.arange(first, last + 1))))
-            if last < len(self.d) - 1 and self.empty[last] < LEAST_GAP:
+            if last < len(self.d) - 1 and self.empty[last] < TOLD_GAP:
                 found.append(("bridged", self.part(np.arange(last, last + 2))))
         return found
 
@@ -143,7 +143,7 @@ def _filled(rows, slices, hidden, empty, min_length):
     seen = count - int(hidden[:-1].sum())
     if count * UPRIGHT_SLICE >= min_length and len(rows) >= MIN_CHAIN_FILLED * max(seen, min_length / UPRIGHT_SLICE):
         return [rows]
-    cuts = np.flatnonzero(empty[:-1] >= LEAST_GAP) + 1
+    cuts = np.flatnonzero(empty[:-1] >= TOLD_GAP) + 1
     if not len(cuts):
         return []
     parts = zip(*(np.split(values, cuts) for values in (rows, slices, hidden, empty)))

@@ -10,7 +10,7 @@ import numpy as np
 from ...common.rows import Rows
 from .uprights import BEHIND, FIRST_BIN, HEIGHT_BIN, SIGHT_MARGIN, UPRIGHT_SLICE, Uprights
 
-LEAST_GAP = 3            # slices (1.5 m) without an upright of a gap that is told; shorter ones belong to the line
+TOLD_GAP = 3             # slices (1.5 m) without an upright of a gap that is told; shorter ones belong to the line
 END_UPRIGHTS = 3         # at the end of a piece, whose median offset and heights count
 MIN_PASSED = 3           # pulses seen through a slice of a gap, from which it may be open
 EXPECTED, FEWER = 10.0, 0.25  # pulses that would have met the thing there, from which it is open where at most this share did
@@ -45,7 +45,7 @@ class Gaps(Rows):
     @property
     def covered(self) -> np.ndarray:
         """(G,) bool, whether the gap is hidden, as far as one can tell."""
-        return (self.empty < LEAST_GAP) & (self.hidden >= MIN_HIDDEN * (self.last - self.first + 1))
+        return (self.empty < TOLD_GAP) & (self.hidden >= MIN_HIDDEN * (self.last - self.first + 1))
 
 
 def gaps_between(uprights: Uprights, ends: list[np.ndarray], begins: list[np.ndarray]) -> Gaps:

@@ -17,7 +17,7 @@ GROUND_JUMP = 0.10        # m of height between two layers
 MIN_GROUND_POINTS = 3     # of a lowest layer, with those as high in the slices before and after it
 UNSEEN_REACH = 1.0        # m across a gap in the ground that is bridged
 FOOT_REACH = 0.4          # m across from a face, within which the ground lies at its foot
-SHADOW_REACH = 3          # slices along within which the foot of a face is seen that a shadow hides
+SHADOW_SLICES = 3          # slices along within which the foot of a face is seen that a shadow hides
 RIM_STEP = 0.3            # m of height within a cell from which it holds a face; between neighbouring cells, from which the higher one stands on the
 #                           ground, where nothing was seen beyond it
 
@@ -106,7 +106,7 @@ def _feet_in_shadow(low, least):
     with np.errstate(invalid="ignore"):
         shadowed = np.isnan(right) & ~(left - low < RIM_STEP) | np.isnan(left) & ~(right - low < RIM_STEP)
     seen = np.where(np.isnan(low), np.inf, np.where(shadowed, least, low))
-    foot = minimum_filter1d(seen, 2 * SHADOW_REACH + 1, axis=0, mode="constant", cval=np.inf)
+    foot = minimum_filter1d(seen, 2 * SHADOW_SLICES + 1, axis=0, mode="constant", cval=np.inf)
     return np.where(shadowed & (low - foot > GROUND_JUMP), foot, low)
 
 

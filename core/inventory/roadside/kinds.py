@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from .chains import Chain
-from .gaps import LEAST_GAP
+from .gaps import TOLD_GAP
 from .uprights import TALL, TOP_BIN
 
-BUILDING_TOP, LOW_SHARE = 4.2, 0.25  # m: what rises higher is a building; share of a rock face, whose top goes up and down, that does not
+BUILDING_TOP, LOW_ROCK = 4.2, 0.25  # m: what rises higher is a building; share of a rock face, whose top goes up and down, that does not
 RAIL_TOP = 0.55, 1.15        # m: tops of guard rails, with tolerance for the ground (EN 1317 systems: 0.70 to 1.00 m)
 BEAM = 0.20, 0.40            # m below the top: to the first a beam fills everything, before the second it ends (EN 1317: 0.31 m, W beam)
 BEAM_GAP = 0.35              # of the points of the beam, what fewer remain in a free bin below it: posts
@@ -26,7 +26,7 @@ THICK_HEDGE, ROUGH_HEDGE = 0.08, 0.015  # m of thickness, and across from one po
 THIN_LINE = 0.20                  # m of thickness of rails and fences at most
 MAX_BATTER = 0.35            # m per m: more is an embankment
 MIN_UPRIGHT_POINTS = 5, 3    # on an upright, median; on one of a straight line
-STRAIGHT = 0.02              # m of roughness of such a line
+STRAIGHT_LINE = 0.02         # m of roughness of such a line
 MAX_WOBBLE = 0.06            # m, of everything that is built
 STEADY_TOP, STEADY_SHARE = 0.30, 0.75  # m of change of the top over a car's half length, kept by this share: cars go up and down more
 CAR_HALF = 4                 # slices
@@ -41,11 +41,11 @@ def kind_of(chain: Chain) -> str | None:
     tall = top > TALL
     batter, thickness = float(np.median(members.batter)), float(np.median(members.thickness))
     through = float(members.behind.sum() / max(members.points.sum(), 1.0))
-    if np.median(members.points) < MIN_UPRIGHT_POINTS[chain.roughness < STRAIGHT] or members.above_view.mean() > 0.5:
+    if np.median(members.points) < MIN_UPRIGHT_POINTS[chain.roughness < STRAIGHT_LINE] or members.above_view.mean() > 0.5:
         return None
     if _is_row(chain):
         return None
-    if np.quantile(chain.top, LOW_SHARE) > BUILDING_TOP or abs(batter) > MAX_BATTER or through > SCATTERED or not tall and _restless(members.top):
+    if np.quantile(chain.top, LOW_ROCK) > BUILDING_TOP or abs(batter) > MAX_BATTER or through > SCATTERED or not tall and _restless(members.top):
         return None
     if tall:
         return "wall" if through < SEEN_THROUGH_TALL else None
@@ -75,7 +75,7 @@ def _is_rail(members, top, through):
 def _is_row(chain):
     """Whether short gaps again and again show what lies beyond, as between parked cars, or most of it is hidden."""
     slices = chain.members.slice[-1] - chain.members.slice[0] + 1
-    short = chain.empty[:-1] < LEAST_GAP
+    short = chain.empty[:-1] < TOLD_GAP
     return chain.empty[:-1][short].sum() > MAX_EMPTY * slices or len(chain.members) < LEAST_MEASURED * slices
 
 
