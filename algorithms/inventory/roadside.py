@@ -24,7 +24,8 @@ ROADSIDE_SETTINGS = (
     SettingSpec("MIN_HEIGHT", ROADSIDE_OF, "min_height", tr("Lowest line (m)"),
                 tr("Lower finds low walls, but also high grass and steps."), advanced=True),
     SettingSpec("MAX_GAP", ROADSIDE_OF, "max_gap", tr("Longest gap bridged (m)"),
-                tr("Longer joins lines that something hides for a while; shorter cuts them at every gate."), advanced=True),
+                tr("Longer joins what follows in line; shorter tells more lines apart. What vehicles hide is bridged up to 12 m whatever this is, "
+                   "and an opening of 1.5 m or more through which the scanner saw is left open."), advanced=True),
     SettingSpec("MIN_POLE_HEIGHT", ROADSIDE_OF, "min_pole_height", tr("Lowest pole, sign or trunk (m)"),
                 tr("Lower finds bollards and delineator posts, but also people."), advanced=True),
 )
@@ -37,6 +38,9 @@ class Roadside(Algorithm):
             "below, a face that leans back, an upright plane, something that is seen through, something rough. "
             "Buildings and rows of parked cars are none. Where a scanner sees hardly higher than it rides, as heads of many beams do, "
             "what is as high as it is left out: it may be a house front.\n\n"
+            "Status says which pieces of a line were measured. Where something stands before it, as parked cars before a wall, and what is seen "
+            "of it on both sides agrees in offset and height, it is one line, and the piece between them is bridged. Where the scanner saw through a "
+            "gap, as through a gate or a driveway, nothing is drawn.\n\n"
             "Only what stands outside the carriageway counts: give the road edges, or the layers of lines or lanes. Gutters are the lowest points "
             "along an edge that the road falls to; the higher side of a road has none.")
     TAGS = ("guard rail", "barrier", "noise wall", "fence", "hedge", "pole", "sign", "tree", "asset", "street furniture")
@@ -51,7 +55,8 @@ class Roadside(Algorithm):
                     tr("The same, with shoulders and parking strips."))
         self.add_settings(ROADSIDE_SETTINGS)
         self.add_settings(READING_SETTINGS)
-        self.add_sink("OUTPUT", tr("Roadside"), tr("Lines along the foot, on the ground."), fields=ROADSIDE, geometry="LineStringZ")
+        self.add_sink("OUTPUT", tr("Roadside"), tr("Pieces of lines along the foot, on the ground; those of one line have its number."),
+                      fields=ROADSIDE, geometry="LineStringZ")
         self.add_sink("OBJECTS", tr("Poles, signs and trunks"), fields=ROADSIDE_OBJECTS, geometry="PointZ", optional=True)
         self.add_report()
         self.add_number("LENGTH", tr("Length of all lines but gutters (m)"))

@@ -90,7 +90,8 @@ CROSS_SECTIONS = [ROAD, Field("section", int, "Section"), STATION, Field("part",
                   Field("clear_m", float, "Clearance above (m)"), Field("seen_pct", float, "Surface seen (%)"),
                   Field("exceeds", str, "Limits not kept")]
 EDGE_DISTANCE = Field("edge_m", float, "Distance from the carriageway's edge (m)")
-ROADSIDE = [ROAD, SIDE, Field("kind", str, "Kind (guard_rail/barrier/wall/fence/hedge/gutter)"), STATION, END, OFFSET, EDGE_DISTANCE,
+ROADSIDE = [ROAD, SIDE, Field("line", int, "Line"), Field("kind", str, "Kind (guard_rail/barrier/wall/fence/hedge/gutter)"), STATUS, STATION, END,
+            OFFSET, EDGE_DISTANCE,
             Field("height_m", float, "Height of its top above the ground, of a gutter its depth (m)"),
             Field("foot_m", float, "Height of its lower edge above the ground (m)"), LENGTH]
 ROADSIDE_OBJECTS = [ROAD, SIDE, Field("kind", str, "Kind (pole/sign/trunk)"), STATION, OFFSET, EDGE_DISTANCE,

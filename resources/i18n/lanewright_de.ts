@@ -2335,6 +2335,11 @@
         </message>
         <message>
             <location filename="../../algorithms/inventory/roadside.py" />
+            <source>Status says which pieces of a line were measured. Where something stands before it, as parked cars before a wall, and what is seen of it on both sides agrees in offset and height, it is one line, and the piece between them is bridged. Where the scanner saw through a gap, as through a gate or a driveway, nothing is drawn.</source>
+            <translation>Status sagt, welche Stücke einer Linie gemessen sind. Wo etwas davor steht, wie parkende Autos vor einer Mauer, und das, was auf beiden Seiten von ihr zu sehen ist, in Versatz und Höhe übereinstimmt, ist es eine Linie, und das Stück dazwischen ist überbrückt. Wo der Scanner durch eine Lücke sah, wie durch ein Tor oder eine Einfahrt, wird nichts gezeichnet.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/roadside.py" />
             <source>Only what stands outside the carriageway counts: give the road edges, or the layers of lines or lanes. Gutters are the lowest points along an edge that the road falls to; the higher side of a road has none.</source>
             <translation>Nur was außerhalb der Fahrbahn steht, zählt: Geben Sie die Fahrbahnränder an oder die Layer der Linien oder Fahrstreifen. Rinnen sind die tiefsten Punkte längs eines Randes, zu dem die Straße fällt; die höhere Seite einer Straße hat keine.</translation>
         </message>
@@ -2440,8 +2445,8 @@
         </message>
         <message>
             <location filename="../../algorithms/inventory/roadside.py" />
-            <source>Longer joins lines that something hides for a while; shorter cuts them at every gate.</source>
-            <translation>Länger verbindet Linien, die etwas ein Stück weit verdeckt; kürzer trennt sie an jedem Tor.</translation>
+            <source>Longer joins what follows in line; shorter tells more lines apart. What vehicles hide is bridged up to 12 m whatever this is, and an opening of 1.5 m or more through which the scanner saw is left open.</source>
+            <translation>Länger verbindet, was in einer Flucht aufeinander folgt; kürzer unterscheidet mehr Linien. Was Fahrzeuge verdecken, wird bis 12 m überbrückt, gleich was hier steht, und eine Öffnung ab 1,5 m, durch die der Scanner sah, bleibt offen.</translation>
         </message>
         <message>
             <location filename="../../algorithms/inventory/roadside.py" />
@@ -2475,8 +2480,8 @@
         </message>
         <message>
             <location filename="../../algorithms/inventory/roadside.py" />
-            <source>Lines along the foot, on the ground.</source>
-            <translation>Linien längs des Fußes, auf dem Boden.</translation>
+            <source>Pieces of lines along the foot, on the ground; those of one line have its number.</source>
+            <translation>Stücke von Linien längs des Fußes, auf dem Gelände; die einer Linie haben deren Nummer.</translation>
         </message>
         <message>
             <location filename="../../algorithms/inventory/roadside.py" />

@@ -97,12 +97,23 @@ def hidden_by(things):
     return hides
 
 
-def road_with(things, poles=(), drives=(Drive(1, -1.75),), density=800.0, face=FACE, noise=0.005, seed=5, **road):
-    """(Survey, ROAD_EDGES) of a road of LENGTH with things beside it; `poles` are arguments of `pole_points` but for the generator."""
+def vans(offset, length=3.5, every=6.0, start=0.0, end=LENGTH, apart=0.0):
+    """Vehicles that are parked beside the road, whose sides lie up to `apart` nearer to it or farther from it."""
+    rng = np.random.default_rng(3)
+    return tuple(Thing("wall", offset + rng.uniform(-apart, apart), x, x + length, 1.7) for x in np.arange(start, end, every))
+
+
+def road_with(things, poles=(), drives=(Drive(1, -1.75),), density=800.0, face=FACE, noise=0.005, seed=5, steepest=np.inf, **road):
+    """(Survey, ROAD_EDGES) of a road of LENGTH with things beside it; `poles` are arguments of `pole_points` but for the generator, `steepest` the
+    slope down (m/m) beyond which the scanner sees nothing."""
     def above(rng):
         parts = [points_of(thing, rng, face) for thing in things] + [pole_points(*pole[:4], rng, *pole[4:]) for pole in poles]
         return tuple(np.concatenate(v) for v in zip(*parts)) if parts else (np.empty(0),) * 3
 
-    survey = measured_road(drives, length=LENGTH, density=density, noise=noise, reach=14.0, above=above, hides=hidden_by(things), seed=seed,
-                           **road)
+    behind = hidden_by(things)
+
+    def hides(eye, x, y, z):
+        return behind(eye, x, y, z) | (SENSOR - z > steepest * np.abs(y - eye))
+
+    survey = measured_road(drives, length=LENGTH, density=density, noise=noise, reach=14.0, above=above, hides=hides, seed=seed, **road)
     return survey, edges_of(LENGTH)

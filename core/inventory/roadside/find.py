@@ -15,6 +15,7 @@ from ..borders import BorderLayers, RoadBorders
 from ..surface_grid import SLICE_LENGTH
 from .chains import Chain, find_chains
 from .divide import things_of
+from .gaps import gaps_by_window, judged, pulses_at
 from .ground import GROUND_CELL, local_ground
 from .gutters import find_gutters
 from .poles import Pole, find_poles
@@ -28,12 +29,13 @@ if TYPE_CHECKING:
     from ...survey.survey import Survey
 
 ROADSIDE_WINDOW = 20.0            # m of road looked at at a time; results do not depend on it
-ROADSIDE_MARGIN = 4.0      # m before and after it, for the ground
+ROADSIDE_MARGIN = 5.0      # m before and after it, for the ground
 FURTHER = 2.0            # m beyond the reach that are read, for the ground
 INSIDE_EDGE = 0.20       # m inside the carriageway's edge from which things count as beside it
 LEAST_ACROSS = 0.5       # m across between a scanner and what stands beside the road
 ABOUT_POLE = 1.0         # m farther inside that are looked at, for a pole stands free and the corner of a vehicle does not
 BEYOND_TRACK = 2.0       # m from the track that count as carriageway where no layer says where it ends
+BEFORE_EDGE = 3.0        # m inside the carriageway's edge where what hides things beside the road stands: parked vehicles
 MAX_EDGE_GAP = 30.0      # m along the road over which an edge is taken to go on
 EDGE_LOOK_UP = 5.0          # m along the road between the places where the edge is looked up
 
@@ -129,7 +131,8 @@ def find_roadside(survey: Survey, layers: BorderLayers = BorderLayers(), setting
             for key, some in uprights.items():
                 parts.setdefault(key, []).append(some)
         for (what, side), some in sorted(parts.items()):
-            for chain in find_chains(Uprights.joined(some), road, side, settings.max_gap, settings.min_length):
+            into = partial(_look_into, survey, road, side, edges, settings.reach) if what == "line" else None
+            for chain in find_chains(Uprights.joined(some), road, side, settings.max_gap, settings.min_length, into):
                 unknown += chain.length * float(chain.members.above_view.mean() > 0.5)
                 for kind, part in [("gutter", chain)] if what == "gutter" else things_of(chain, settings.min_length):
                     found.lines.append(SideLine(kind, part, float(np.median(part.members.foot)), edges.beyond(side, part.s, part.d)))
@@ -146,7 +149,7 @@ def _report(found: Roadside, progress: Progress) -> None:
     """Log what was found, and what was missing for it."""
     lengths: dict[str, float] = {}
     for line in found.lines:
-        lengths[line.kind] = lengths.get(line.kind, 0.0) + line.chain.length
+        lengths[line.kind] = lengths.get(line.kind, 0.0) + sum(piece.length for _, piece in line.chain.pieces())
     told = ", ".join(f"{length:.0f} m of {kind.replace('_', ' ')}" for kind, length in sorted(lengths.items())) or "no lines"
     progress.info(f"Beside the road: {told}; {sum(map(len, found.poles.values()))} poles, signs and trunks.")
     if not any(edges.known for edges in found.edges.values()):
@@ -187,6 +190,34 @@ def _above_view(survey, road, uprights, height):
     return uprights.ground + uprights.top - survey.road_height(road, s) > height
 
 
+def _seen(survey, road, start, side, edges, number, rows):
+    """(number of the pass that drove nearest to a side of a window, those of the rows that it measured; all where it measured none)."""
+    middle = np.array([start + 0.5 * ROADSIDE_WINDOW])
+    nearest = int(survey.frame.nearest_pass(road, middle, edges.of(side, middle))[0])
+    own = rows[number[rows] == nearest]
+    return nearest, own if len(own) else rows
+
+
+def _look_into(survey, road, side, edges, reach, gaps):
+    """Gaps of a side of a road with what the pulses tell of them that reached them, or would have."""
+    base = survey.road_height(road, np.stack([gaps.first - 0.5, gaps.last + 1.5], axis=1).ravel() * UPRIGHT_SLICE).reshape(-1, 2)
+    above = replace(gaps, low=gaps.low - base, high=gaps.high - base)
+
+    windows = gaps_by_window(gaps, ROADSIDE_WINDOW)
+
+    def look(window):
+        start = window * ROADSIDE_WINDOW
+        points = survey.window(road, start, start + ROADSIDE_WINDOW)
+        beyond = side * (points.d - edges.of(side, points.s))
+        number, own = _seen(survey, road, start, side, edges, points.pass_number, np.flatnonzero((beyond > -BEFORE_EDGE) & (beyond < reach)))
+        s, d = points.s[own], points.d[own]
+        h = points.z[own] - survey.road_height(road, s)
+        sight = lines_of_sight(survey, road, number, s, d, h, points.time[own])
+        return windows[window], pulses_at(above[windows[window]], side, s, d, h, *sight)
+
+    return judged(gaps, ordered_map(look, sorted(windows)))
+
+
 def _look(survey, road, start, edges, settings, level):
     """({(what, side): Uprights}, list of Pole) of one window."""
     wide = start - ROADSIDE_MARGIN, start + ROADSIDE_WINDOW + ROADSIDE_MARGIN
@@ -199,7 +230,6 @@ def _look(survey, road, start, edges, settings, level):
     h = z - survey.road_height(road, s)
     ground = local_ground(s, d, h, wide[0], int(round(wide[1] - wide[0])), (_down(d.min()), float(d.max()) + 1e-3))
     above = h - ground.at(s, d)
-    middle = np.array([start + 0.5 * ROADSIDE_WINDOW])
     found, poles = {}, []
     slices = int(round(start / UPRIGHT_SLICE)), int(round((start + ROADSIDE_WINDOW) / UPRIGHT_SLICE))
     for side in (1, -1):
@@ -210,8 +240,7 @@ def _look(survey, road, start, edges, settings, level):
         poles += [pole for pole in upright if side * (pole.d - float(edges.of(side, np.array(pole.s)))) > -INSIDE_EDGE]
         beside = np.flatnonzero(known & (beyond > -INSIDE_EDGE))
         own = beside[(s[beside] >= start) & (s[beside] < start + ROADSIDE_WINDOW)]
-        nearest = int(survey.frame.nearest_pass(road, middle, edges.of(side, middle))[0])
-        seen = own[number[own] == nearest] if (number[own] == nearest).any() else own
+        nearest, seen = _seen(survey, road, start, side, edges, number, own)
         across, up = lines_of_sight(survey, road, nearest, s[seen], d[seen], h[seen], time[seen])
         sight = up / np.maximum(-side * across[1], LEAST_ACROSS)
         uprights = find_uprights(s[seen], d[seen], above[seen], (z - above)[seen], slices, side, sight, settings.min_height)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import grey_opening, median_filter
+from scipy.ndimage import grey_opening, median_filter, minimum_filter1d
 
 from ...common.order_statistics import order_by
 from ...road.common.pseudo_scanlines import lowest_layers
@@ -14,9 +14,12 @@ GROUND_SLICE, GROUND_CELL = 1.0, 0.20   # m along and across
 STANDING_WIDTH = 2.5      # m: narrower humps of the lowest layer stand on the ground (parked cars, hedges)
 GROUND_SHARE = 0.1        # quantile of the lowest layer: at the foot of a wall it reaches up the face
 GROUND_JUMP = 0.10        # m of height between two layers
-MIN_GROUND_POINTS = 3     # of a lowest layer
+MIN_GROUND_POINTS = 3     # of a lowest layer, with those as high in the slices before and after it
 UNSEEN_REACH = 1.0        # m across a gap in the ground that is bridged
-RIM_STEP = 0.3            # m of height between neighbouring cells from which the higher one stands on the ground, where nothing was seen beyond it
+FOOT_REACH = 0.4          # m across from a face, within which the ground lies at its foot
+SHADOW_SLICES = 3          # slices along within which the foot of a face is seen that a shadow hides
+RIM_STEP = 0.3            # m of height within a cell from which it holds a face; between neighbouring cells, from which the higher one stands on the
+#                           ground, where nothing was seen beyond it
 
 
 @dataclass(frozen=True)
@@ -58,10 +61,14 @@ def local_ground(s: np.ndarray, d: np.ndarray, h: np.ndarray, start: float, slic
     order = order_by(np.rint((h + 100.0) * 1e3).astype(np.int32), place)
     place, h = place[order], h[order]
     _, first, count = lowest_layers(place, h, GROUND_JUMP)
-    solid = count >= MIN_GROUND_POINTS
+    solid = _supported(place[first], h[first], count, (slices, columns))
     first, count = first[solid], count[solid]
-    low = np.full((slices, columns), np.nan)
+    low, least = np.full((2, slices, columns), np.nan)
     low.flat[place[first]] = h[first + np.rint(GROUND_SHARE * (count - 1)).astype(np.int64)]
+    least.flat[place[first]] = h[first + np.minimum(count, MIN_GROUND_POINTS) - 1]
+    face = np.zeros((slices, columns), bool)
+    face.flat[place[first]] = h[first + count - 1] - h[first] > RIM_STEP
+    low = _feet_in_shadow(_feet_beside(low, face), least)
     filled = _filled(low)
     low = _let_down(filled, _rims(low) | _rims(filled))
     known = np.isfinite(low)
@@ -74,6 +81,33 @@ def local_ground(s: np.ndarray, d: np.ndarray, h: np.ndarray, start: float, slic
     opened = grey_opening(np.where(smooth > 500.0, level.clip(max=1e3), smooth), size=(1, cells), mode="nearest")
     ground = np.where(known & (opened < 500.0), opened, np.nan)
     return LocalGround(start, offsets[0], _let_down(ground, smooth - ground > RIM_STEP))
+
+
+def _supported(place, height, count, shape):
+    """(L,) bool, which lowest layers have enough points together with those of the slices before and after at their height."""
+    number, lowest = np.zeros(shape), np.full(shape, np.nan)
+    number.flat[place], lowest.flat[place] = count, height
+    number, lowest = np.pad(number, ((1, 1), (0, 0))), np.pad(lowest, ((1, 1), (0, 0)), constant_values=np.nan)
+    support = number[1:-1].copy()
+    for beside in (slice(None, -2), slice(2, None)):
+        support += np.where(np.abs(lowest[beside] - lowest[1:-1]) < GROUND_JUMP, number[beside], 0.0)
+    return support.flat[place] >= MIN_GROUND_POINTS
+
+
+def _feet_beside(low, face):
+    """Heights where the foot of a face is no higher than the ground beside it."""
+    return np.where(face, np.fmin(low, _continued(np.where(face, np.nan, low), FOOT_REACH)), low)
+
+
+def _feet_in_shadow(low, least):
+    """Heights where the foot of a face that a shadow hides, as of a parked car, is the least that nearby slices see of it."""
+    beside = np.pad(low, ((0, 0), (1, 1)), constant_values=np.nan)
+    right, left = beside[:, :-2], beside[:, 2:]
+    with np.errstate(invalid="ignore"):
+        shadowed = np.isnan(right) & ~(left - low < RIM_STEP) | np.isnan(left) & ~(right - low < RIM_STEP)
+    seen = np.where(np.isnan(low), np.inf, np.where(shadowed, least, low))
+    foot = minimum_filter1d(seen, 2 * SHADOW_SLICES + 1, axis=0, mode="constant", cval=np.inf)
+    return np.where(shadowed & (low - foot > GROUND_JUMP), foot, low)
 
 
 def _filled(low):

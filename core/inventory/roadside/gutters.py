@@ -59,7 +59,7 @@ def find_gutters(survey: Survey, road: int, start: float, slices: int, side: int
     number = np.floor(s[found] / SLICE_LENGTH).astype(np.int64) * times + np.tile(np.arange(times), len(found) // times)
     zero = np.zeros(len(found))
     return Uprights(number, grid.d[j[found]], low[found] + grid.line(s[found]), (outer - low)[found], zero, np.zeros((len(found), TOP_BINS)),
-                    zero, zero, zero + 1.0, zero, zero > 0)
+                    zero, zero, zero + 1.0, zero, zero > 0, zero)
 
 
 def _mean(grid: SurfaceGrid) -> np.ndarray:

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from .chains import Chain
+from .gaps import TOLD_GAP
 from .uprights import TALL, TOP_BIN
 
-BUILDING_TOP = 4.2           # m: what rises higher is a building
+BUILDING_TOP, LOW_ROCK = 4.2, 0.25  # m: what rises higher is a building; share of a rock face, whose top goes up and down, that does not
 RAIL_TOP = 0.55, 1.15        # m: tops of guard rails, with tolerance for the ground (EN 1317 systems: 0.70 to 1.00 m)
 BEAM = 0.20, 0.40            # m below the top: to the first a beam fills everything, before the second it ends (EN 1317: 0.31 m, W beam)
 BEAM_GAP = 0.35              # of the points of the beam, what fewer remain in a free bin below it: posts
@@ -20,13 +21,17 @@ OPEN_FENCE = 0.45                  # points seen behind, for each on it, from wh
 SEEN_THROUGH = 0.12          # the same, from which a thin thing is no wall
 SEEN_THROUGH_TALL = 0.3      # the same of what is TALL: rock stands back here and there
 SCATTERED = 8.0                # the same, from which there is nothing but scattered points
-ROUGH_HEDGE = 0.08           # m of thickness from which a solid line is a hedge: a wall's face is plane
+THICK_HEDGE, ROUGH_HEDGE = 0.08, 0.015  # m of thickness, and across from one point to the next higher one, from which a solid line is a hedge:
+#                              the face of a wall is plane, that of a fence on a wall is plane and thick
 THIN_LINE = 0.20                  # m of thickness of rails and fences at most
 MAX_BATTER = 0.35            # m per m: more is an embankment
-MIN_UPRIGHT_POINTS = 5               # on an upright, median
+MIN_UPRIGHT_POINTS = 5, 3    # on an upright, median; on one of a straight line
+STRAIGHT_LINE = 0.02         # m of roughness of such a line
 MAX_WOBBLE = 0.06            # m, of everything that is built
 STEADY_TOP, STEADY_SHARE = 0.30, 0.75  # m of change of the top over a car's half length, kept by this share: cars go up and down more
 CAR_HALF = 4                 # slices
+MAX_EMPTY = 0.08             # share of a line's length that is open in short gaps: a row of cars has as many of them as cars
+LEAST_MEASURED = 0.3         # share of its length that was measured
 
 
 def kind_of(chain: Chain) -> str | None:
@@ -36,9 +41,11 @@ def kind_of(chain: Chain) -> str | None:
     tall = top > TALL
     batter, thickness = float(np.median(members.batter)), float(np.median(members.thickness))
     through = float(members.behind.sum() / max(members.points.sum(), 1.0))
-    if np.median(members.points) < MIN_UPRIGHT_POINTS or members.above_view.mean() > 0.5:
+    if np.median(members.points) < MIN_UPRIGHT_POINTS[chain.roughness < STRAIGHT_LINE] or members.above_view.mean() > 0.5:
         return None
-    if top > BUILDING_TOP or abs(batter) > MAX_BATTER or through > SCATTERED or not tall and _restless(members.top):
+    if _is_row(chain):
+        return None
+    if np.quantile(chain.top, LOW_ROCK) > BUILDING_TOP or abs(batter) > MAX_BATTER or through > SCATTERED or not tall and _restless(members.top):
         return None
     if tall:
         return "wall" if through < SEEN_THROUGH_TALL else None
@@ -46,14 +53,13 @@ def kind_of(chain: Chain) -> str | None:
     # the beams of a rail are straight: in a bend its line has a kink at every post or so
     if (built or chain.roughness < MAX_WOBBLE) and thickness < THIN_LINE and RAIL_TOP[0] < top < RAIL_TOP[1] and _is_rail(members, top, through):
         return "guard_rail"
-    if thickness > ROUGH_HEDGE and through < OPEN_HEDGE:
-        is_barrier = built and BARRIER_TOP[0] < top < BARRIER_TOP[1] and batter > MIN_BATTER and thickness < BARRIER_DEPTH and through < SEEN_THROUGH
-        return "barrier" if is_barrier else "hedge"
-    if through > OPEN_FENCE:
-        return "fence" if built and thickness < THIN_LINE else None
-    if built and BARRIER_TOP[0] < top < BARRIER_TOP[1] and batter > MIN_BATTER:
+    if built and BARRIER_TOP[0] < top < BARRIER_TOP[1] and batter > MIN_BATTER and thickness < BARRIER_DEPTH and through < SEEN_THROUGH:
         return "barrier"
-    return None if not built else "fence" if through > SEEN_THROUGH else "wall"
+    if thickness > THICK_HEDGE and np.median(members.rough) > ROUGH_HEDGE and through < OPEN_HEDGE:
+        return "hedge"
+    if not built or through > OPEN_FENCE and thickness > THIN_LINE:
+        return None
+    return "fence" if through > SEEN_THROUGH else "wall"
 
 
 def _is_rail(members, top, through):
@@ -64,6 +70,13 @@ def _is_rail(members, top, through):
     filled = points[:beam].reshape(-1, 2).mean(axis=1)
     is_beam = filled.min() > 0.5 * filled.mean() and points[end - 2:end].mean() < BEAM_GAP * filled.mean()
     return is_beam or through > OPEN_FENCE and float(np.median(members.foot)) > FREE_BELOW * top
+
+
+def _is_row(chain):
+    """Whether short gaps again and again show what lies beyond, as between parked cars, or most of it is hidden."""
+    slices = chain.members.slice[-1] - chain.members.slice[0] + 1
+    short = chain.empty[:-1] < TOLD_GAP
+    return chain.empty[:-1][short].sum() > MAX_EMPTY * slices or len(chain.members) < LEAST_MEASURED * slices
 
 
 def _restless(tops):

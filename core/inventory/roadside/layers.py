@@ -19,15 +19,18 @@ ON_GROUND = (FIRST_BIN + 1) * HEIGHT_BIN  # m: what is seen from here down stand
 
 
 def roadside_to_features(found: Roadside) -> tuple[Features, Features]:
-    """The layers ROADSIDE (lines with Z along the foot, on the ground) and ROADSIDE_OBJECTS (points on the ground)."""
+    """The layers ROADSIDE (the pieces of lines with Z along the foot, on the ground) and ROADSIDE_OBJECTS (points on the ground)."""
     lines, points = Features("LineStringZ", ROADSIDE, crs=found.crs), Features("PointZ", ROADSIDE_OBJECTS, crs=found.crs)
-    for line in found.lines:
-        chain = line.chain
-        places = np.stack(found.frame.to_map(chain.road, chain.s, chain.d, chain.ground), axis=1)
-        shape = shapely.linestrings(places[_vertices(chain.s, places, found.settings.interval)])
-        lines.add(shape, road=chain.road, side=_side(chain.side), kind=line.kind, station_m=float(chain.s[0]), end_m=float(chain.s[-1]),
-                  offset_m=float(np.median(chain.d)), edge_m=_known(line.from_edge), height_m=float(np.median(chain.top)),
-                  foot_m=line.foot if line.foot > ON_GROUND else 0.0, length_m=float(shapely.length(shape)))
+    for number, line in enumerate(found.lines):
+        road, side, top = line.chain.road, line.chain.side, float(np.median(line.chain.top))
+        for status, piece in line.chain.pieces():
+            places = np.stack(found.frame.to_map(road, piece.s, piece.d, piece.ground), axis=1)
+            if len(places) < 2:  # the slice of a single upright
+                continue
+            shape = shapely.linestrings(places[_vertices(piece.s, places, found.settings.interval)])
+            lines.add(shape, road=road, side=_side(side), line=number, kind=line.kind, status=status, station_m=float(piece.s[0]),
+                      end_m=float(piece.s[-1]), offset_m=float(np.median(piece.d)), edge_m=_known(found.edges[road].beyond(side, piece.s, piece.d)),
+                      height_m=top, foot_m=line.foot if line.foot > ON_GROUND else 0.0, length_m=float(shapely.length(shape)))
     for road, poles in found.poles.items():
         for pole in poles:
             x, y, z = found.frame.to_map(road, np.array([pole.s]), np.array([pole.d]), np.array([pole.z]))

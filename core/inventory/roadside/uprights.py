@@ -40,6 +40,7 @@ class Uprights(Rows):
     batter : (N,) m across per m of height, positive where it leans away from the road
     points, behind : (N,) number of points on it, and of those seen through it
     above_view : (N,) bool, may it be higher than what the scanner saw of it?
+    rough : (N,) m across between two points of its face of which one is next above the other, median
     """
 
     slice: np.ndarray
@@ -53,6 +54,7 @@ class Uprights(Rows):
     points: np.ndarray
     behind: np.ndarray
     above_view: np.ndarray
+    rough: np.ndarray
 
     @staticmethod
     def joined(parts: list[Uprights]) -> Uprights:
@@ -64,7 +66,7 @@ class Uprights(Rows):
     def none() -> Uprights:
         """No uprights."""
         empty = np.empty(0)
-        return Uprights(np.empty(0, np.int64), *(empty,) * 4, np.empty((0, TOP_BINS)), *(empty,) * 4, np.empty(0, bool))
+        return Uprights(np.empty(0, np.int64), *(empty,) * 4, np.empty((0, TOP_BINS)), *(empty,) * 4, np.empty(0, bool), empty)
 
 
 def find_uprights(s: np.ndarray, d: np.ndarray, above: np.ndarray, ground: np.ndarray, slices: tuple[int, int], side: int,
@@ -152,7 +154,18 @@ def _described(at, own, u, above, everything, first, side):
     ground = _ground_at(at, middle, i, all_u, all_ground)
     behind = _behind(at, middle, ground + tops, i, all_u, all_above + all_ground, all_sight)
     return Uprights(at[:, 0] + first, side * middle, ground, tops, foot, below_top, farthest - nearest, batter, count.astype(float), behind,
-                    np.zeros(n, bool))
+                    np.zeros(n, bool), _rough(own, u, n))
+
+
+def _rough(own, u, n):
+    """(N,) m: median step across from one point of an upright to the next higher one; points in order of their owner and height."""
+    step, owner = np.abs(np.diff(u)), own[1:]
+    same = np.diff(own) == 0
+    step, owner = step[same], owner[same]
+    order = np.lexsort((step, owner))
+    count = np.bincount(owner, minlength=n)
+    middle = np.cumsum(count) - count + count // 2
+    return np.where(count > 0, step[order][np.minimum(middle, max(len(step) - 1, 0))], 0.0) if len(step) else np.zeros(n)
 
 
 def _contiguous_top(own, above, n):

@@ -1,4 +1,4 @@
-"""What the scanners could see: lines of sight, and whether their view ends a little above the horizon, as that of a many-beam head does."""
+"""What the scanners could see: lines of sight, and whether their view ends a little above and below the horizon, as that of a many-beam head does."""
 
 from __future__ import annotations
 
@@ -13,8 +13,9 @@ if TYPE_CHECKING:
 
 VIEW_SAMPLE_LENGTH, VIEW_SAMPLES = 4.0, 25   # m of road, and number, of the windows of each road in which the highest view is looked for
 LEAST_RANGE = 3.0          # m from the scanner: nearer, a centimetre turns the line of sight too much
-HIGHEST_SHARE = 0.999      # of the lines of sight by their slope: single points astray lie above
+HIGHEST_SHARE = 0.999      # of the lines of sight by their slope: single points astray lie above, and as few below the steepest
 LEVEL_VIEW = 0.10          # m per m: heads of many beams see up to 0.03 (+2 degrees, Velodyne HDL-64E), and the vehicle tilts; mirrors see all round
+STEEPEST_VIEW = 0.70       # m per m down: such heads see 0.46 (-25 degrees) or 0.58 (-30), mirrors 0.9 and more beside the vehicle
 
 
 def lines_of_sight(survey: Survey, road: int, number: int, s: np.ndarray, d: np.ndarray, h: np.ndarray,
@@ -44,6 +45,9 @@ def lines_of_sight(survey: Survey, road: int, number: int, s: np.ndarray, d: np.
 def level_views(survey: Survey) -> dict[int, float]:
     """The passes whose scanner sees hardly higher than it rides, so that it does not show how high anything is that is as high.
 
+    In open country nothing stands that a mirror could see above it. That its view ends is told by the ground beside the vehicle, which only a
+    mirror sees; without times, which tell where the scanner was, nothing high is taken for a view that ends.
+
     Parameters
     ----------
     survey : Survey
@@ -53,6 +57,7 @@ def level_views(survey: Survey) -> dict[int, float]:
     {number of the pass: m above the road, height of its scanner}
     """
     slopes: dict[int, list[np.ndarray]] = {}
+    far: dict[int, list[np.ndarray]] = {}
     for road in survey.store.roads():
         first, last = survey.store.span(road)
         for start in np.linspace(first, max(last - VIEW_SAMPLE_LENGTH, first), VIEW_SAMPLES):
@@ -62,7 +67,15 @@ def level_views(survey: Survey) -> dict[int, float]:
                 own = points.pass_number == number
                 across, up = lines_of_sight(survey, road, number, points.s[own], points.d[own], h[own], points.time[own])
                 away = np.hypot(*across)
-                slopes.setdefault(number, []).append((-up / np.maximum(away, 1e-3))[away > LEAST_RANGE])
-    found = {number: np.concatenate(parts) for number, parts in slopes.items()}
-    return {number: float(survey.sensor_height.get(number, DEFAULT_SENSOR_HEIGHT)) for number, slope in found.items()
-            if len(slope) and np.quantile(slope, HIGHEST_SHARE) < LEVEL_VIEW}
+                slope = -up / np.maximum(away, 1e-3)
+                slopes.setdefault(number, []).append(slope)
+                far.setdefault(number, []).append(slope[away > LEAST_RANGE])
+    return {number: float(survey.sensor_height.get(number, DEFAULT_SENSOR_HEIGHT)) for number in slopes if _is_level(
+        np.concatenate(far[number]), np.concatenate(slopes[number]), survey.frame.has_time)}
+
+
+def _is_level(far, all_slopes, has_time):
+    """Whether slopes of lines of sight to what is far, and to everything, end a little above and below the horizon."""
+    if not len(far) or np.quantile(far, HIGHEST_SHARE) >= LEVEL_VIEW:
+        return False
+    return not has_time or np.quantile(all_slopes, 1.0 - HIGHEST_SHARE) > -STEEPEST_VIEW

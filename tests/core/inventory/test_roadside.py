@@ -14,7 +14,7 @@ from lanewright.core.inventory.roadside.settings import RoadsideSettings
 from lanewright.core.inventory.roadside.uprights import TOP_BINS, Uprights
 from lanewright.core.report.roadside import roadside_report
 from measured_streets import GROUND, SENSOR, Drive, edges_of, measured_road
-from roadside_streets import BESIDE, HEIGHTS, LENGTH, Thing, hidden_by, points_of, road_with
+from roadside_streets import BESIDE, HEIGHTS, LENGTH, Thing, hidden_by, points_of, road_with, vans
 
 KINDS = ("guard_rail", "barrier", "wall", "fence", "hedge")
 # rails and barriers at the edge, walls, fences and hedges behind verge or sidewalk, with gaps between them
@@ -119,19 +119,82 @@ def test_a_low_wall_before_a_house_is_a_wall_and_no_fence():
     assert [line.kind for line in found_in(survey, edges).lines if line.kind != "gutter"] == ["wall"]
 
 
+HEAD = 0.47  # m per m down: the lowest beam of a head of 64
+
+
 def test_a_face_as_high_as_a_scanner_that_sees_hardly_higher_is_left_out_and_said_to_be():
     """The lower 2.6 m of a house front with climbers look like a hedge; a low wall beside it is known for what it is."""
     front, low = Thing("hedge", 8.0, 10, 100, SENSOR + 0.2), Thing("wall", -7.0, 10, 100, 0.9)
-    survey, edges = road_with((front, low))
+    survey, edges = road_with((front, low), steepest=HEAD)
     found = found_in(survey, edges)
     assert [line.kind for line in found.lines if line.kind != "gutter"] == ["wall"]
     assert any("as high as the scanner" in note for note in found.notes)
 
 
-def test_the_same_face_is_a_hedge_to_a_scanner_that_sees_higher_things():
-    survey, edges = road_with((Thing("hedge", 8.0, 10, 100, SENSOR + 0.2), Thing("building", -8.0)))
+@pytest.mark.parametrize("others, steepest", [((), np.inf), ((Thing("building", -8.0),), HEAD)])
+def test_a_face_as_high_as_the_scanner_is_told_where_the_scanner_sees_farther(others, steepest):
+    """In open country nothing is higher, but the scanner sees the ground beside the vehicle, as mirrors do; or it sees a house."""
+    survey, edges = road_with((Thing("wall", 7.5, 10, 100, SENSOR + 0.2), *others), steepest=steepest)
     found = found_in(survey, edges)
-    assert [line.kind for line in found.lines if line.kind != "gutter"] in (["hedge"], ["wall"]) and not found.notes
+    assert [line.kind for line in found.lines if line.kind != "gutter"] == ["wall"] and not found.notes
+
+
+def pieces_of(survey, edges):
+    """[(kind, status, station, end)] of all pieces but gutters."""
+    rows = roadside_to_features(found_in(survey, edges))[0].rows
+    return [(row["kind"], row["status"], row["station_m"], row["end_m"]) for row in rows if row["kind"] != "gutter"]
+
+
+def test_a_wall_behind_parked_vehicles_is_one_wall_and_bridged_where_they_hide_it():
+    survey, edges = road_with((Thing("wall", 7.5, 10, 100, 0.8), *vans(4.3)))
+    (wall,) = [line for line in found_in(survey, edges).lines if line.kind != "gutter"]
+    assert wall.kind == "wall" and wall.chain.s[0] < 14 and wall.chain.s[-1] > 94
+    assert np.median(wall.chain.top) == pytest.approx(0.8, abs=0.08)
+    pieces = pieces_of(survey, edges)
+    assert {status for _, status, *_ in pieces} == {"measured", "bridged"}
+    for _, status, start, end in pieces:
+        # stations count from the first point of the track
+        hidden = (np.arange(start + 0.5, end, 0.25) % 6.0 < 3.5).mean()
+        assert hidden > 0.7 if status == "bridged" else hidden < 0.3
+
+
+def test_what_ends_behind_parked_vehicles_is_not_bridged_where_one_sees_past_them():
+    survey, edges = road_with((Thing("wall", 7.5, 5, 46, 0.8), Thing("wall", 7.5, 74, 116, 0.8), *vans(4.3)))
+    assert all(end < 52 or start > 68 for _, _, start, end in pieces_of(survey, edges))
+    assert sum(end - start for _, _, start, end in pieces_of(survey, edges)) > 68
+
+
+def test_a_driveway_through_a_hedge_is_left_open():
+    survey, edges = road_with((Thing("hedge", 6.0, 10, 50), Thing("hedge", 6.0, 52.8, 100)))
+    pieces = pieces_of(survey, edges)
+    assert [(kind, status) for kind, status, *_ in pieces] == [("hedge", "measured")] * 2
+    assert pieces[0][3] == pytest.approx(50.0, abs=0.5) and pieces[1][2] == pytest.approx(52.8, abs=0.5)
+
+
+def test_a_row_of_cars_parked_across_is_no_line():
+    survey, edges = road_with(vans(4.4, 1.8, 2.6, apart=0.25))
+    assert not pieces_of(survey, edges)
+
+
+def test_a_fence_on_a_low_wall_is_no_hedge():
+    survey, edges = road_with((Thing("wall", 6.0, 10, 100, 0.5), Thing("fence", 6.12, 10, 100, 1.4)))
+    assert {kind for kind, *_ in pieces_of(survey, edges)} == {"fence"}
+
+
+def test_the_flat_ground_above_a_retaining_wall_is_no_line():
+    """Few pulses graze it."""
+    def terrace(rng):
+        x, y = rng.uniform(0, LENGTH, 3000), rng.uniform(5.2, 11.0, 3000)
+        return x, y, np.full(3000, 0.8 + BESIDE)
+
+    wall = Thing("wall", 5.2, 0, LENGTH, 0.8)
+
+    def above(rng):
+        return tuple(np.concatenate(parts) for parts in zip(points_of(wall, rng), terrace(rng)))
+
+    survey = measured_road(length=LENGTH, density=800.0, reach=5.2, above=above)
+    (line,) = [line for line in found_in(survey, edges_of(LENGTH)).lines if line.kind != "gutter"]
+    assert line.kind == "wall" and np.median(line.chain.top) == pytest.approx(0.8, abs=0.08)
 
 
 def test_a_line_has_a_vertex_in_every_interval():
@@ -154,7 +217,8 @@ def rail_of(d, thickness=0.05):
     below_top = np.zeros((n, TOP_BINS))
     below_top[:, :6] = 30.0
     ones = np.ones(n)
-    return Uprights(np.arange(n), d, 0 * ones, 0.78 * ones, 0.5 * ones, below_top, thickness * ones, 0 * ones, 200 * ones, 150 * ones, ones < 0)
+    return Uprights(np.arange(n), d, 0 * ones, 0.78 * ones, 0.5 * ones, below_top, thickness * ones, 0 * ones, 200 * ones, 150 * ones, ones < 0,
+                    0 * ones)
 
 
 def test_a_rail_in_a_hairpin_runs_straight_from_kink_to_kink():
