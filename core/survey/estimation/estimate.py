@@ -18,7 +18,7 @@ from .adjustment import PER_INTERVAL, Adjusted, Returns
 from .first_poses import Spinning, first_poses, known_intervals, spinning_scanners
 from .growth import MAX_UNEXPLAINED, grown_poses
 from .head_height import head_heights
-from .interleaved import ScannerSplitter, line_directions, lines_of_each, steps_of, told_apart
+from .interleaved import ScannerSplitter, scan_line_directions, lines_of_each, steps_of, told_apart
 from .kinds import (
     MAX_ACCELERATION,
     refuse_airborne,
@@ -138,7 +138,7 @@ def _estimated(files, scanner_field, wkt, progress):
 
 
 def _of_mirrors(samples, tracks, scanners, wkt, progress):
-    """The trajectory by the rays of mirrors: of the scanners that a field tells apart or, where those rays explain too little, that the scan lines do."""
+    """The trajectory by the rays of the scanners that a field tells apart or, where those explain too little, that the scan lines do."""
     found = None
     if by_field := samples.scanners > 1 and _all_take_part(samples, scanners):
         found = _adjusted(samples, tracks, scanners, progress)
@@ -196,7 +196,7 @@ def separated(samples: Samples, tracks: list[FirstTrack], progress: Progress = P
     The samples with their scanners, these, and the poses; None where the points are of one scanner, or cannot be told apart
     """
     steps = [steps_of(samples.place[drive], track, samples.time[drive]) for drive, track in zip(samples.drives, tracks)]
-    ways = line_directions(np.concatenate([direction for _, direction in steps]))
+    ways = scan_line_directions(np.concatenate([direction for _, direction in steps]))
     if len(ways) < 2:
         return None
     scanner = np.full(len(samples), UNKNOWN_SCANNER, np.uint8)

@@ -20,9 +20,9 @@ NEAR_TRACK = 8.0         # m from the track
 GROUND_BAND_OF_LINES = 0.4   # m either side of the ground
 DIRECTIONS = 90          # of half a turn, in which steps are counted
 BLURRED = 2              # directions either side that are counted together
-MIN_STEP_SHARE = 0.05    # of the steps of the most frequent direction, that others need
+# share of the steps of the most frequent direction that another one needs, and how often what is usual of a direction
+CLEAR_DIRECTIONS = (0.3, 3.0), (0.05, 10.0)   # as many as the first, or few but clear
 MIN_APART = 10           # directions between two: 20 degrees
-MIN_CLEARNESS = 10.0     # of every one against what is usual of a direction
 MAX_DIRECTIONS = 4       # scanners of a vehicle
 MIN_STEPS = 2000         # steps that a judgement needs
 DIRECTION_TOLERANCE = 4       # directions off its own that a step may lead
@@ -64,7 +64,7 @@ def steps_of(place: np.ndarray, track: FirstTrack, time: np.ndarray) -> tuple[np
     return np.concatenate(rows), np.concatenate(directions)
 
 
-def line_directions(direction: np.ndarray) -> list[int]:
+def scan_line_directions(direction: np.ndarray) -> list[int]:
     """The directions in which steps lead, the most frequent first; one where the points are of one scanner, none where they lead anywhere.
 
     Parameters
@@ -75,7 +75,8 @@ def line_directions(direction: np.ndarray) -> list[int]:
         return []
     alone = np.bincount(direction, minlength=DIRECTIONS).astype(float)
     count = np.sum([np.roll(alone, shift) for shift in range(-BLURRED, BLURRED + 1)], axis=0)
-    needed = max(MIN_STEP_SHARE * float(count.max()), MIN_CLEARNESS * float(np.median(count)))
+    most, usual = float(count.max()), float(np.median(count))
+    needed = min(max(share * most, clearness * usual) for share, clearness in CLEAR_DIRECTIONS)
     found: list[int] = []
     while len(found) < MAX_DIRECTIONS:
         best = int(np.argmax(count))
@@ -98,7 +99,7 @@ def lines_of_each(direction: np.ndarray, row: np.ndarray, size: int, ways: list[
     ----------
     direction, row : (M,) as of `steps_of`
     size : number of points
-    ways : the directions of the scanners, of `line_directions`
+    ways : the directions of the scanners, of `scan_line_directions`
     """
     votes = np.stack([np.bincount(row[_apart(direction, one) <= DIRECTION_TOLERANCE], minlength=size) for one in ways])
     first = votes.argmax(axis=0)

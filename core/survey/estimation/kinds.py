@@ -17,7 +17,7 @@ PLACE_RADIUS = 15.0        # m: half of what lies in either is nearer to its mid
 SPLIT_ROUNDS = 5
 MAX_ROAD_REACH = 8.0       # m: half of the points are nearer where the road under the vehicle is among them
 MAX_ACCELERATION = 8.0     # m/s^2, which road vehicles reach in an emergency stop
-STEADY_SHARE = 0.9         # of a track that keeps below it, if a vehicle drove it
+DRIVABLE_SHARE = 0.9         # of a track that keeps below it, if a vehicle drove it
 MIN_PATH = 5.0           # m between the outermost places: less is no drive
 WALKING_PACE = 2.0       # m/s: nobody surveys a road by car at that pace all the time
 PACE_TIME = 3.0          # s over which a pace is told
@@ -52,8 +52,8 @@ def refuse_clocks_that_overlap(samples: Samples, tracks: list[FirstTrack]) -> No
     apart = np.concatenate([_places_apart(samples.time[drive], samples.place[drive, :2], track) for drive, track in zip(samples.drives, tracks)])
     if len(apart) and np.mean(np.isfinite(apart)) > 0.5:
         raise RoadExtractionError(
-            f"At most times the points lie in two places {np.nanmedian(apart):.0f} m apart: these are drives whose clocks overlap, as seconds of the day "
-            "or of the week do on other days. Estimate the trajectory of each drive by itself, from its own files.")
+            f"At most times the points lie in two places {np.nanmedian(apart):.0f} m apart: these are drives whose clocks overlap, as seconds of "
+            "the day or of the week do on other days. Estimate the trajectory of each drive by itself, from its own files.")
 
 
 def _places_apart(time, flat, track):
@@ -87,7 +87,7 @@ def usual_acceleration(tracks: list[np.ndarray], spacing: float) -> float:
     tracks : (N, 2 or more) m each, at times `spacing` (s) apart
     """
     bends = np.concatenate([np.hypot(*np.diff(track[:, :2], 2, axis=0).T) for track in tracks])
-    return float(np.quantile(bends, STEADY_SHARE)) / spacing**2 if len(bends) else 0.0
+    return float(np.quantile(bends, DRIVABLE_SHARE)) / spacing**2 if len(bends) else 0.0
 
 
 def refuse_without_road(tracks: list[FirstTrack]) -> None:
