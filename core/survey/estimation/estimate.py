@@ -18,7 +18,7 @@ from .adjustment import PER_INTERVAL, Adjusted, Returns
 from .first_poses import Spinning, first_poses, known_intervals, spinning_scanners
 from .growth import MAX_UNEXPLAINED, grown_poses
 from .head_height import head_heights
-from .interleaved import ScannerSplitter, scan_line_directions, lines_of_each, steps_of, told_apart
+from .interleaved import ScannerSplitter, lines_of_each, scan_line_directions, steps_of, told_apart
 from .kinds import (
     MAX_ACCELERATION,
     refuse_airborne,
