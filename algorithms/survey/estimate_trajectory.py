@@ -31,7 +31,8 @@ class EstimateTrajectory(Algorithm):
         "the direction of its time. Their height above the road is that from which every beam has one elevation, on whatever it falls; where too "
         "little stands beside the road to tell it, it is a usual one, known to 0.5 m, and the log says so.\n\n"
         "Without gps_time, or where no mirror is seen to turn, the track follows the density of the points: it is rough, half a metre "
-        "off and with a height known to 0.3 m, and says so. Airborne, terrestrial and handheld clouds are refused."
+        "off and with a height known to 0.3 m, and says so. Airborne, terrestrial and handheld clouds are refused, and so "
+        "are those that lack the road under the vehicle and files of drives whose clocks overlap."
     )
     TAGS = ("trajectory", "no trajectory", "scanner position", "rotating mirror", "gps time")
 

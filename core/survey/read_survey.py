@@ -39,7 +39,6 @@ SECTION_POINTS = 250_000      # points of a section, about, and
 SECTION_LENGTHS = SECTION_LENGTH, 10.0, 25.0   # m that it may be long
 PARTS_PROGRESS = 0.85        # of reading, where the points are put in order afterwards
 LOWEST_SENSOR = 0.5          # m above the road: no scanner rides lower, but lines and places drawn on the road lie within
-TOLD_APART = "The points are of two scanners that no field tells apart; they were told apart by where their scan lines lead."
 FEET = 0.3048, 1200 / 3937   # m, of the international foot and of that of surveys in the United States
 
 
@@ -196,8 +195,9 @@ def _sampled(files, reader, has_time, progress):
 
 
 def _tell_scanners_apart(survey, time, place, stride, progress):
-    """Where the points of one scanner, as it seems, are those of two by their scan lines, let the survey tell them apart."""
+    """Where the points of one scanner, as it seems, are those of several by their scan lines, let the survey tell them apart."""
     from .estimation.estimate import splitter_of
+    from .estimation.interleaved import told_apart
     from .estimation.rough.samples import samples_of
 
     if not len(time) or time.min() == time.max():
@@ -205,8 +205,8 @@ def _tell_scanners_apart(survey, time, place, stride, progress):
     samples = samples_of(time, place * COORDINATE_SCALE, np.zeros(len(time), np.uint8), np.zeros(3), stride)
     survey.splitter = splitter_of(samples, progress)
     if survey.splitter is not None:
-        survey.scanners = [0, 1]
-        progress.info(TOLD_APART)
+        survey.scanners = list(range(survey.splitter.poses.scanners))
+        progress.info(told_apart(len(survey.scanners)))
 
 
 def match_clocks(files: list[CloudHeader], trajectory: Trajectory, settings: SurveySettings,

@@ -3985,8 +3985,8 @@
         </message>
         <message>
             <location filename="../../algorithms/survey/estimate_trajectory.py" />
-            <source>Without gps_time, or where no mirror is seen to turn, the track follows the density of the points: it is rough, half a metre off and with a height known to 0.3 m, and says so. Airborne, terrestrial and handheld clouds are refused.</source>
-            <translation>Ohne gps_time, oder wo kein Spiegel zu erkennen ist, der sich dreht, folgt die Spur der Punktdichte: Sie ist grob, einen halben Meter ungenau und in der Höhe auf 0,3 m bekannt, und es wird gesagt. Wolken aus der Luft, vom Stativ und aus der Hand werden abgelehnt.</translation>
+            <source>Without gps_time, or where no mirror is seen to turn, the track follows the density of the points: it is rough, half a metre off and with a height known to 0.3 m, and says so. Airborne, terrestrial and handheld clouds are refused, and so are those that lack the road under the vehicle and files of drives whose clocks overlap.</source>
+            <translation>Ohne gps_time, oder wo kein Spiegel zu erkennen ist, der sich dreht, folgt die Spur der Punktdichte: Sie ist grob, einen halben Meter ungenau und in der Höhe auf 0,3 m bekannt, und es wird gesagt. Wolken aus der Luft, vom Stativ und aus der Hand werden abgelehnt, ebenso solche, denen die Straße unter dem Fahrzeug fehlt, und Dateien von Fahrten, deren Uhren sich überschneiden.</translation>
         </message>
         <message>
             <location filename="../../algorithms/survey/estimate_trajectory.py" />
@@ -4455,8 +4455,8 @@
         </message>
         <message>
             <location filename="../../algorithms/survey_input.py" />
-            <source>Automatic takes scanner_channel where it is used and point_source_id where it interleaves in time; where no field tells them apart, two scanners are told apart by their scan lines. Name one when the report counts the wrong number of scanners.</source>
-            <translation>Automatisch nimmt scanner_channel, wo es benutzt wird, und point_source_id, wo es zeitlich verschränkt ist; wo kein Feld sie unterscheidet, werden zwei Scanner an ihren Scanzeilen unterschieden. Ein Feld angeben, wenn der Bericht die falsche Zahl von Scannern nennt.</translation>
+            <source>Automatic takes scanner_channel where it is used and point_source_id where it interleaves in time; where no field tells them apart, they are told apart by their scan lines. Name one when the report counts the wrong number of scanners.</source>
+            <translation>Automatisch nimmt scanner_channel, wo es benutzt wird, und point_source_id, wo es zeitlich verschränkt ist; wo kein Feld sie unterscheidet, werden sie an ihren Scanzeilen unterschieden. Ein Feld angeben, wenn der Bericht die falsche Zahl von Scannern nennt.</translation>
         </message>
         <message>
             <location filename="../../algorithms/survey_input.py" />

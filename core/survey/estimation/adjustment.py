@@ -61,6 +61,7 @@ class Adjusted:
 
     poses : Poses
     usual : m, median of the misfits
+    unexplained : m, median of what the rounding of the times does not explain of them
     misfit : (K, S) m, mean misfit of each interval and scanner; NaN without returns
     noise : (K, S) m, by which returns were weighted
     place_covariance : (K, 3, 3) m^2 of each control value's place; includes what the mounting leaves open
@@ -69,6 +70,7 @@ class Adjusted:
 
     poses: Poses
     usual: float
+    unexplained: float
     misfit: np.ndarray
     noise: np.ndarray
     place_covariance: np.ndarray
@@ -102,7 +104,8 @@ def adjust_poses(poses: Poses, guess: Poses, crossfall: np.ndarray, returns: Ret
     own = equations.variances()[:, :3, :3]
     place = own + np.einsum("kia,ab,kjb->kij", by_mounting, covariance, by_mounting)
     usual = float(np.median(misfit[count > 0]))
-    return Adjusted(poses, usual, misfit, noise, place, np.sqrt(np.diag(covariance)).reshape(-1, MOUNTING))
+    unexplained = float(np.median(np.maximum(misfit - MOST_OF_MEAN * by_rounding, 0.0)[count > 0]))
+    return Adjusted(poses, usual, unexplained, misfit, noise, place, np.sqrt(np.diag(covariance)).reshape(-1, MOUNTING))
 
 
 def _equations(poses, guess, crossfall, returns, noise, progress):
@@ -141,6 +144,7 @@ def _equations(poses, guess, crossfall, returns, noise, progress):
 MAX_COUNTED_MISFIT = 0.3   # m: a ghost counts no more than this
 NOISE_OF_MISFIT = 1.5      # noise against the mean misfit of an interval
 MEAN_OF_SIGMA = 0.8        # mean size of errors against their standard deviation
+MOST_OF_MEAN = 1.25        # that rounding explains, of its mean: an interval's returns lie at uneven distances
 SETTLED = 1.1              # factor by which the noise still falls
 
 

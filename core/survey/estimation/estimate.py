@@ -16,11 +16,19 @@ from ..las.reader import read_headers
 from ..trajectory.trajectory import Trajectory
 from .adjustment import PER_INTERVAL, Adjusted, Returns
 from .first_poses import Spinning, first_poses, known_intervals, spinning_scanners
-from .growth import MAX_RAY_MISFIT, grown_poses
+from .growth import MAX_UNEXPLAINED, grown_poses
 from .head_height import head_heights
-from .interleaved import ScannerSplitter, lines_of_two, steps_of, two_directions
-from .kinds import refuse_airborne, refuse_handheld, refuse_terrestrial
-from .poses import YAW, Poses
+from .interleaved import ScannerSplitter, lines_of_each, scan_line_directions, steps_of, told_apart
+from .kinds import (
+    MAX_ACCELERATION,
+    refuse_airborne,
+    refuse_clocks_that_overlap,
+    refuse_handheld,
+    refuse_terrestrial,
+    refuse_without_road,
+    usual_acceleration,
+)
+from .poses import KNOT_SPACING, YAW, Poses
 from .rough.first_track import FirstTrack, first_track
 from .rough.ridge import FIRST_HEIGHT, ridge_of
 from .rough.samples import MAX_GAP_IN_DRIVE, UNKNOWN_SCANNER, Samples, read_samples, rounding_of
@@ -31,6 +39,8 @@ MAX_SIGMA = 0.15           # m: a position that is known less well is not writte
 LEAST_SIGMA = 0.002        # m: what calibration leaves, however many returns agree
 DENSITY_SIGMA, DENSITY_HEIGHT_SIGMA = 0.5, 0.3   # m, of a track by density alone
 READ, TRACKED = 0.4, 0.55  # of the work
+MIN_TAKING_PART = 0.95     # of the points are of scanners that turn, where a field tells them apart
+SHARE_OF_UNEXPLAINED = 0.4 # of what returns lie off the rays, in the uncertainty of the place
 WAYS = {"rays": "the rays of the mirrors", "turns": "the turns of a many-beam head", "density": "the density of the points, which is rough"}
 
 
@@ -115,6 +125,7 @@ def _estimated(files, scanner_field, wkt, progress):
     for number, drive in enumerate(samples.drives):
         tracks.append(first_track(samples.time[drive], samples.place[drive]))
         progress.report(READ + (TRACKED - READ) * (number + 1) / len(samples.drives))
+    refuse_clocks_that_overlap(samples, tracks)
     refuse_airborne(tracks)
     heads = turning_heads(samples, tracks)
     if heads is not None:
@@ -123,21 +134,47 @@ def _estimated(files, scanner_field, wkt, progress):
         return _of_heads(samples, tracks, heads, wkt)
     scanners = spinning_scanners(samples, tracks)
     refuse_terrestrial(tracks, [fixes.place for one in scanners for fixes in one.fixes])
+    return _of_mirrors(samples, tracks, scanners, wkt, progress.part(TRACKED, 1.0))
+
+
+def _of_mirrors(samples, tracks, scanners, wkt, progress):
+    """The trajectory by the rays of the scanners that a field tells apart or, where those explain too little, that the scan lines do."""
     found = None
-    if samples.scanners == 1 and (both := separated(samples, tracks, progress.part(TRACKED, 1.0))) is not None:
-        samples, scanners, found = both
-    refuse_handheld(tracks, scanners)
-    if not scanners:
-        return _by_density(samples, tracks, wkt)
-    if found is None:
-        found = _adjusted(samples, tracks, scanners, progress.part(TRACKED, 1.0))
-        if found.usual > MAX_RAY_MISFIT:
-            # tilted heads of many beams turn, too, but no mirror's rays explain their returns
-            refuse_handheld(tracks, [])
+    if by_field := samples.scanners > 1 and _all_take_part(samples, scanners):
+        found = _adjusted(samples, tracks, scanners, progress)
+    if found is None or found.unexplained > MAX_UNEXPLAINED:
+        # a field may have numbered tiles or files
+        if (apart := separated(samples, tracks, progress)) is not None:
+            result = _of_rays(apart[0], tracks, *apart[1:], wkt)
+            result.notes.append(told_apart(len(apart[1])))
+            return result
+        if not by_field:
+            refuse_handheld(tracks, scanners)
+            found = _adjusted(samples, tracks, scanners, progress) if scanners else None
+    if found is not None and found.unexplained <= MAX_UNEXPLAINED:
         return _of_rays(samples, tracks, scanners, found, wkt)
+    refuse_handheld(tracks, [])
+    if found is None or not _could_be_driven(found):
+        refuse_without_road(tracks)
+        return _by_density(samples, tracks, wkt)
+    # tilted heads of many beams turn, too, and the mean of their beams is nearly the ray of a mirror
     result = _of_rays(samples, tracks, scanners, found, wkt)
-    result.notes.append("The points are of two scanners that no field tells apart; they were told apart by where their scan lines lead.")
+    result.sigma, result.sigma_height = (np.maximum(sigma, SHARE_OF_UNEXPLAINED * found.unexplained) for sigma in (result.sigma, result.sigma_height))
+    result.notes.append(f"Returns lie {found.unexplained:.2f} m off the rays of a mirror (median), as those of tilted heads of many beams do: the "
+                        "trajectory is less certain than where they keep to them.")
     return result
+
+
+def _could_be_driven(found):
+    """Whether a vehicle can have moved as the poses say."""
+    tracks = [found.poses.control[drive.first:drive.first + drive.count, :2] for drive in found.poses.drives]
+    return usual_acceleration(tracks, KNOT_SPACING) <= MAX_ACCELERATION
+
+
+def _all_take_part(samples, scanners):
+    """Whether nearly all points are of scanners whose mirrors turn."""
+    taking = np.isin(samples.scanner, [one.number for one in scanners])
+    return np.count_nonzero(taking) >= MIN_TAKING_PART * len(samples)
 
 
 def _adjusted(samples, tracks, scanners, progress):
@@ -146,11 +183,11 @@ def _adjusted(samples, tracks, scanners, progress):
 
 
 def separated(samples: Samples, tracks: list[FirstTrack], progress: Progress = Progress()) -> tuple[Samples, list[Spinning], Adjusted] | None:
-    """Two scanners that no field tells apart.
+    """Scanners that no field tells apart.
 
     Parameters
     ----------
-    samples : Samples of one scanner, as it seems
+    samples : Samples, whose own numbers of scanners do not count
     tracks : FirstTrack of each drive
     progress : Progress
 
@@ -159,29 +196,30 @@ def separated(samples: Samples, tracks: list[FirstTrack], progress: Progress = P
     The samples with their scanners, these, and the poses; None where the points are of one scanner, or cannot be told apart
     """
     steps = [steps_of(samples.place[drive], track, samples.time[drive]) for drive, track in zip(samples.drives, tracks)]
-    both = two_directions(np.concatenate([direction for _, direction in steps]))
-    if both is None:
+    ways = scan_line_directions(np.concatenate([direction for _, direction in steps]))
+    if len(ways) < 2:
         return None
     scanner = np.full(len(samples), UNKNOWN_SCANNER, np.uint8)
     for drive, (row, direction) in zip(samples.drives, steps):
-        number = lines_of_two(direction, row, drive.stop - drive.start, both)
+        number = lines_of_each(direction, row, drive.stop - drive.start, ways)
         scanner[drive] = np.where(number < 0, UNKNOWN_SCANNER, number)
-    two = replace(samples, scanner=scanner)
-    scanners = spinning_scanners(two, tracks)
+    apart = replace(samples, scanner=scanner)
+    scanners = spinning_scanners(apart, tracks)
     if len(scanners) < 2:
         return None
-    found = _adjusted(two, tracks, scanners, progress.part(0.0, 0.6))
-    if found.usual > MAX_RAY_MISFIT:
+    found = _adjusted(apart, tracks, scanners, progress.part(0.0, 0.6))
+    if found.unexplained > MAX_UNEXPLAINED:
         return None
     # the rays tell the other points apart, too, and the few that were wrong
     splitter = ScannerSplitter(found.poses, 0.0, np.zeros(3))
-    two = replace(samples, scanner=splitter.numbers(samples.time, samples.place))
-    found = grown_poses(found.poses, np.isfinite(found.misfit), _returns(two, found.poses, scanners), progress.part(0.6, 1.0))
-    return two, scanners, found
+    apart = replace(samples, scanner=splitter.numbers(samples.time, samples.place))
+    scanners = [replace(one, number=number) for number, one in enumerate(scanners)]
+    found = grown_poses(found.poses, np.isfinite(found.misfit), _returns(apart, found.poses, scanners), progress.part(0.6, 1.0))
+    return (apart, scanners, found) if found.unexplained <= MAX_UNEXPLAINED else None
 
 
 def splitter_of(samples: Samples, progress: Progress = Progress()) -> ScannerSplitter | None:
-    """What tells two scanners apart whose points no field distinguishes; None where there is one, or they cannot be told apart.
+    """What tells scanners apart whose points no field distinguishes; None where there is one, or they cannot be told apart.
 
     Parameters
     ----------

@@ -17,6 +17,7 @@ MAX_GROWTHS = 12
 GROWTH_STRIDE = 3     # every n-th return is enough while growing
 MAX_TRIES = 4         # of an interval: with longer known motion beside it, it may come right after failing
 MAX_RAY_MISFIT = 0.03     # m: an interval of a scanner whose returns lie farther off the rays is not understood
+MAX_UNEXPLAINED = 0.05    # m: where returns usually lie farther off, the rays are not those of these scanners
 MAX_TIMES_USUAL = 10.0  # times the usual misfit, where that is larger
 POSE_STIFFNESS, PHASE_STIFFNESS = 10.0, 1e3   # of the curves by which they are carried on
 

@@ -1,7 +1,7 @@
-"""Two scanners that no field tells apart, told apart by where their scan lines lead.
+"""Scanners that no field tells apart, told apart by where their scan lines lead.
 
 Seen from the vehicle, the lines of one scanner run in one direction over the road. Points that follow each other in time and lie
-side by side show it; two scanners whose planes are turned differently give two directions.
+side by side show it; scanners whose planes are turned differently give as many directions.
 """
 
 from __future__ import annotations
@@ -14,17 +14,23 @@ from .poses import Poses
 from .rays import MIN_RANGE, misfits
 from .rough.first_track import FirstTrack
 
-FOLLOWERS = 4            # points after a point, to which its line may lead
+FOLLOWERS = 8            # points after a point, to which its line may lead: beside a scanner of many pulses those of another come seldom
 NEAREST_STEP, FARTHEST_STEP = 0.02, 1.5   # m of them apart: nearer, noise turns the direction, farther it is another line
 NEAR_TRACK = 8.0         # m from the track
 GROUND_BAND_OF_LINES = 0.4   # m either side of the ground
 DIRECTIONS = 90          # of half a turn, in which steps are counted
 BLURRED = 2              # directions either side that are counted together
-MIN_SECOND_SHARE = 0.3   # of the steps of the most frequent direction, that the second one needs
-MIN_APART = 10           # directions between the two: 20 degrees
-MIN_CLEARNESS = 3.0      # of the second one against what is usual of a direction
+# share of the steps of the most frequent direction that another one needs, and how often what is usual of a direction
+CLEAR_DIRECTIONS = (0.3, 3.0), (0.05, 10.0)   # as many as the first, or few but clear
+MIN_APART = 10           # directions between two: 20 degrees
+MAX_DIRECTIONS = 4       # scanners of a vehicle
 MIN_STEPS = 2000         # steps that a judgement needs
 DIRECTION_TOLERANCE = 4       # directions off its own that a step may lead
+
+
+def told_apart(scanners: int) -> str:
+    """What the user is told about so many scanners that no field tells apart."""
+    return f"The points are of {scanners} scanners that no field tells apart; they were told apart by where their scan lines lead."
 
 
 def steps_of(place: np.ndarray, track: FirstTrack, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -53,50 +59,59 @@ def steps_of(place: np.ndarray, track: FirstTrack, time: np.ndarray) -> tuple[np
         size = np.hypot(*step.T)
         used = (size > NEAREST_STEP) & (size < FARTHEST_STEP)
         angle = np.arctan2(step[used, 1], step[used, 0]) - heading[a[used]]
-        rows.append(a[used])
-        directions.append(np.floor(angle % np.pi / np.pi * DIRECTIONS).astype(np.int64) % DIRECTIONS)
+        rows.append(a[used].astype(np.int32))
+        directions.append(np.floor(angle % np.pi / np.pi * DIRECTIONS).astype(np.int16) % DIRECTIONS)
     return np.concatenate(rows), np.concatenate(directions)
 
 
-def two_directions(direction: np.ndarray) -> tuple[int, int] | None:
-    """The two directions in which steps lead; None where they lead in one, or in all.
+def scan_line_directions(direction: np.ndarray) -> list[int]:
+    """The directions in which steps lead, the most frequent first; one where the points are of one scanner, none where they lead anywhere.
 
     Parameters
     ----------
     direction : (M,) as of `steps_of`
     """
     if len(direction) < MIN_STEPS:
-        return None
+        return []
     alone = np.bincount(direction, minlength=DIRECTIONS).astype(float)
     count = np.sum([np.roll(alone, shift) for shift in range(-BLURRED, BLURRED + 1)], axis=0)
-    first = int(np.argmax(count))
-    apart = np.abs((np.arange(DIRECTIONS) - first + DIRECTIONS // 2) % DIRECTIONS - DIRECTIONS // 2)
-    second = int(np.argmax(np.where(apart >= MIN_APART, count, -1.0)))
-    clear = count[second] >= max(MIN_SECOND_SHARE * count[first], MIN_CLEARNESS * float(np.median(count)))
-    return (first, second) if clear else None
+    most, usual = float(count.max()), float(np.median(count))
+    needed = min(max(share * most, clearness * usual) for share, clearness in CLEAR_DIRECTIONS)
+    found: list[int] = []
+    while len(found) < MAX_DIRECTIONS:
+        best = int(np.argmax(count))
+        if count[best] < needed:
+            break
+        found.append(best)
+        count[_apart(np.arange(DIRECTIONS), best) < MIN_APART] = -1.0
+    return found
 
 
-def lines_of_two(direction: np.ndarray, row: np.ndarray, size: int, both: tuple[int, int]) -> np.ndarray:
+def _apart(direction, one):
+    """Directions from one to others, either way round."""
+    return np.abs((direction - one + DIRECTIONS // 2) % DIRECTIONS - DIRECTIONS // 2)
+
+
+def lines_of_each(direction: np.ndarray, row: np.ndarray, size: int, ways: list[int]) -> np.ndarray:
     """(size,) number of the scanner of every point, -1 where its steps do not tell.
 
     Parameters
     ----------
     direction, row : (M,) as of `steps_of`
     size : number of points
-    both : the two directions
+    ways : the directions of the scanners, of `scan_line_directions`
     """
-    votes = np.zeros((2, size))
-    for number, one in enumerate(both):
-        off = np.abs((direction - one + DIRECTIONS // 2) % DIRECTIONS - DIRECTIONS // 2)
-        votes[number] = np.bincount(row[off <= DIRECTION_TOLERANCE], minlength=size)
-    return np.where(votes[0] > votes[1], 0, np.where(votes[1] > votes[0], 1, -1))
+    votes = np.stack([np.bincount(row[_apart(direction, one) <= DIRECTION_TOLERANCE], minlength=size) for one in ways])
+    first = votes.argmax(axis=0)
+    most = votes.max(axis=0)
+    return np.where((votes == most).sum(axis=0) == 1, first, -1)
 
 
 @dataclass(frozen=True)
 class ScannerSplitter:
-    """Tells by the rays which of two scanners measured a point.
+    """Tells by the rays which of several scanners measured a point.
 
-    poses : Poses of both
+    poses : Poses with all of them
     start : s of time 0 of the poses
     origin : (3,) map coordinates of their places
     """

@@ -27,7 +27,7 @@ class Finishing:
     sensor_height : {pass number: metres from the trajectory down to the road}
     scanner_field : LAS field that identifies the scanners, None if there is one
     scanners : values of that field, see `ScannerCensus.choose`
-    splitter : tells two scanners apart that no field distinguishes; None where there is no need
+    splitter : tells scanners apart that no field distinguishes; None where there is no need
     above_road : metres above the road up to which points are kept
     """
 

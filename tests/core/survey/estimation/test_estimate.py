@@ -134,6 +134,14 @@ def test_points_at_wrong_times_are_no_drive(tmp_path, street):
     close(street, found)
 
 
+def test_where_returns_keep_to_no_rays_the_uncertainty_and_a_note_say_so(tmp_path, street):
+    place = street.place + np.random.default_rng(1).normal(0.0, 0.1, street.place.shape)
+    found = estimate_trajectory([replace(street, place=place).write(tmp_path / "cloud.las")])
+    assert found.method == "rays" and any("off the rays" in note for note in found.notes)
+    ahead, left, up = street.errors(found.trajectory)
+    assert np.mean(np.hypot(ahead, left) <= 3 * found.sigma) > 0.95 and np.mean(np.abs(up) <= 3 * found.sigma_height) > 0.95
+
+
 def test_a_gap_in_time_makes_two_drives(tmp_path):
     drive = mirror_drive(BUTTERFLY, seconds=14.0)
     since = drive.time - START
@@ -234,6 +242,23 @@ def test_walking_pace_is_told_over_seconds_since_the_first_track_swings_from_win
     with pytest.raises(RoadExtractionError, match="handheld"):
         refuse_handheld([track(1.2)], [])
     refuse_handheld([track(5.0)], [])
+
+
+def test_two_drives_whose_clocks_overlap_are_refused_by_name(tmp_path, street):
+    """Seconds of the day, on two days, on streets 150 m apart."""
+    paths = [replace(street, place=street.place + [0.0, beside, 0.0]).write(tmp_path / f"{beside}.las") for beside in (0, 150)]
+    with pytest.raises(RoadExtractionError, match="two places 150 m apart.*clocks overlap"):
+        estimate_trajectory(paths)
+
+
+def test_a_wet_road_that_is_missing_from_the_cloud_gives_no_track(tmp_path):
+    """Facades 9 m away on either side, some of them missing, are seen; of the ground next to nothing is."""
+    street = mirror_drive([Mirror(45.0, -20.0), Mirror(-45.0, -20.0)], corners=section(wall=(9.0, 8.0)))
+    x, y, z = street.place.T
+    facade = (np.abs(y) > 8.9) & ((x // 12 * 7 + (y > 0) * 3) % 5 > 1)
+    kept = facade | (np.random.default_rng(1).random(len(x)) < 0.02)
+    with pytest.raises(RoadExtractionError, match="density does not show the way"):
+        estimate_trajectory([street.write(tmp_path / "cloud.las", kept, merged=True)])
 
 
 def test_too_few_points_are_refused(tmp_path, street):
