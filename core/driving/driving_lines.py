@@ -90,7 +90,7 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
             progress.warn("Neither the marking lines nor road points have heights; the trajectory's are used.")
             heights = [frame.track_height(number, s[t.first:t.last + 1]) for t in tracks]
         courses = lane_courses(tracks, s, frame.roads[number], alignment)
-        passes = np.nan_to_num(frame.passes_sigma(number, s))
+        passes = frame.passes_sigma(number, s)
         spacing = None if road_points is None else point_spacing(road_points, number, s)
         for lane, (track, course, elements, z) in enumerate(zip(tracks, courses, alignment, heights), start=1):
             sigma = lane_sigma(track, course, frame.roads[number], one, paint, passes[track.first:track.last + 1], spacing)
