@@ -83,7 +83,7 @@ def draw_curb_returns(edges: list[EdgePiece], road: int, lines: list[tuple[CurbP
         edges.append(EdgePiece(vertices, road, points.side[0], "measured", number, float(points.station.min()), float(points.station.max()),
                                float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum()), float(np.median(points.height)),
                                float(np.sqrt(np.mean(residual**2))), kind=kind,
-                               sigma=edge_sigma(along, along, residual, shares=CURB_RETURN, passes=passes)))
+                               sigma=float(edge_sigma(along, along, residual, shares=CURB_RETURN, passes=passes).mean())))
         number += 1
     return number
 

@@ -40,12 +40,12 @@ CURB_RETURN = EdgeUncertainty(foot=0.0045, spacing=0.0, scatter=1.5, end=0.006, 
 
 
 def edge_sigma(at: np.ndarray, places: np.ndarray, residual: np.ndarray, support: np.ndarray | None = None,
-               shares: EdgeUncertainty = MAIN_EDGE, passes: np.ndarray | float = 0.0) -> float:
-    """One sigma across a piece of an edge, the mean over places along it: its worst places do not speak for all.
+               shares: EdgeUncertainty = MAIN_EDGE, passes: np.ndarray | float = 0.0) -> np.ndarray:
+    """One sigma across an edge at places along it.
 
     Parameters
     ----------
-    at : (K,) m along the line, where the piece is looked at
+    at : (K,) m along the line, where it is looked at
     places : (N,) m along the line of all its curb points, rising
     residual : (N,) m, distances of the curb points from the line
     support : (N,) laser points of each; below 1, or None, where that is unknown
@@ -54,7 +54,7 @@ def edge_sigma(at: np.ndarray, places: np.ndarray, residual: np.ndarray, support
 
     Returns
     -------
-    float, m
+    (K,) m
     """
     first, last = np.searchsorted(places, at - SCATTER_REACH), np.searchsorted(places, at + SCATTER_REACH, side="right")
     # of a line as long as the road, only the points about the piece
@@ -67,4 +67,4 @@ def edge_sigma(at: np.ndarray, places: np.ndarray, residual: np.ndarray, support
     end = np.clip(np.minimum(at - places[0], places[-1] - at), 0.0, None)
     variance = (shares.foot**2 + shares.spacing**2 * spacing + shares.scatter**2 * scatter + shares.end**2 * np.exp(-end / END_LENGTH)
                 + (shares.gap * gap) ** 2 + passes**2)
-    return float(np.sqrt(variance).mean())
+    return np.sqrt(variance)

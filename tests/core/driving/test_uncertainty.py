@@ -51,6 +51,15 @@ def test_what_passes_differ_by_is_in_it():
     assert before[0] == pytest.approx(before[1], rel=0.5)
 
 
+def test_a_driving_line_is_cut_where_its_passes_begin_to_differ_by_centimetres():
+    street = two_lanes(again=(1.75,))
+    street.frame.pass_sigma[0] = SigmaAlong((0.0, 60.0, 60.1, 120.0), (0.0, 0.0, 0.05, 0.05))
+    rows = sorted((row for row in street.lanes()[0].rows if row["lane"] == 1), key=lambda row: row["station_m"])
+    assert [row["sigma_m"] for row in rows] == pytest.approx([0.002, 0.05], abs=0.006)
+    assert rows[0]["end_m"] == rows[1]["station_m"] == pytest.approx(60.0, abs=5.0)
+    assert {row["status"] for row in rows} == {"measured"}
+
+
 @pytest.mark.parametrize("scatter", [0.005, 0.015, 0.04])
 def test_it_grows_with_the_scatter_of_the_paint_about_the_lines_of_the_lane(scatter):
     street = two_lanes()
