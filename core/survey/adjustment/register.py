@@ -22,6 +22,7 @@ from .corrections import CORRECTION_STEP
 AXES = "along", "left", "up"
 PLAN_AXES = AXES[:2]
 MIN_COUPLED_OFFSET = 0.02   # m along or across, less than which shifts the other by less than the noise of an offset
+MUCH_LARGER = 2.0           # times: bars 27° off the road and more, moved across, look moved along by less
 CHANNELS = "steps", "paint"
 CHANNEL_SCALE = {"steps": 1e4, "paint": 64.0}  # units per m, and per standard deviation of intensity
 WINDOW_LENGTH = CORRECTION_STEP          # m of road compared at a time, counted from station 0
@@ -142,7 +143,8 @@ def pass_offsets(survey: Any, road: int, progress: Progress = Progress()) -> lis
     """Offsets between the passes over a road, each with the next one there.
 
     Oblique bars, as of hatched areas, look moved along where they were moved across, and the other way round. So where passes lie apart, the
-    larger of the two offsets is taken out before the other is measured, and then, if that is large too, the other way round.
+    offsets along one axis are taken out before those along the other are measured, and then the other way round. Lines along the road show what
+    is across alone, so offsets along come first only where they are much the larger.
 
     Parameters
     ----------
@@ -157,32 +159,35 @@ def pass_offsets(survey: Any, road: int, progress: Progress = Progress()) -> lis
     start, end = survey.store.span(road)
     windows = [number for number in range(int(np.floor(start / WINDOW_LENGTH)), int(np.ceil(end / WINDOW_LENGTH)))
                if _several_passes(survey.frame.passes_of(road), number * WINDOW_LENGTH, (number + 1) * WINDOW_LENGTH)]
-    found = _remaining_offsets(survey, road, windows, [], progress.part(0.0, 1.0 / 3.0))
-    larger, smaller = sorted(PLAN_AXES, key=lambda axis: _usual_size(found, axis), reverse=True)
-    for k, (taken, measured) in enumerate(((larger, smaller), (smaller, larger)), start=1):
-        if _usual_size(found, taken) <= MIN_COUPLED_OFFSET:
-            break
-        moved = [replace(pair, **{axis: pair.everywhere(axis) if axis == taken else np.zeros(len(pair.stations)) for axis in PLAN_AXES})
-                 for pair in found]
-        again = _remaining_offsets(survey, road, windows, moved, progress.part(k / 3.0, (k + 1) / 3.0))
-        found = [replace(before, **{measured: getattr(now, measured)}) for before, now in zip(found, again)]
+    seen = _seen(survey, road, windows, {}, progress.part(0.0, 1.0 / 3.0))
+    found = [_combine_windows(pair, evidence) for pair, evidence in sorted(seen.items())]
+    along, left = (_mean_size(found, axis) for axis in PLAN_AXES)
+    order = PLAN_AXES if along > MUCH_LARGER * left else PLAN_AXES[::-1]
+    for k, (taken, measured) in enumerate((order, order[::-1]), start=1):
+        moves = {(pair.one, pair.other): {int(station // WINDOW_LENGTH): (metres, 0.0) if taken == "along" else (0.0, metres)
+                                          for station, metres in zip(pair.stations, pair.everywhere(taken)) if abs(metres) > MIN_COUPLED_OFFSET}
+                 for pair in found}
+        if apart := sorted({number for places in moves.values() for number in places}):
+            again = _seen(survey, road, apart, moves, progress.part(k / 3.0, (k + 1) / 3.0))
+            of_window = {pair: {row[0]: row for row in rows} for pair, rows in again.items()}
+            there = {pair: [of_window.get(pair, {}).get(row[0], row) for row in rows] for pair, rows in seen.items()}
+            found = [replace(before, **{measured: getattr(_combine_windows(pair, evidence), measured)})
+                     for before, (pair, evidence) in zip(found, sorted(there.items()))]
     return found
 
 
-def _usual_size(offsets, axis):
-    """Median distance of passes along an axis, m, of the pair that is farthest apart."""
-    return max((float(np.median(np.abs(pair.everywhere(axis)))) for pair in offsets), default=0.0)
+def _mean_size(offsets, axis):
+    """Mean distance of passes along an axis, m, of the pair that is farthest apart."""
+    return max((float(np.mean(np.abs(pair.everywhere(axis)))) for pair in offsets), default=0.0)
 
 
-def _remaining_offsets(survey, road, windows, taken, progress):
-    """PassOffsets of each pair of passes, measured after the second of a pair was moved by the offsets `taken`, if any."""
-    moves = {(pair.one, pair.other): {int(station // WINDOW_LENGTH): move for station, *move in zip(pair.stations, pair.along, pair.left)}
-             for pair in taken}
+def _seen(survey, road, windows, moves, progress):
+    """{(one, other): [(window, *evidence)]} of pairs of passes after the second of a pair was moved; `moves` as in `_window_evidence`."""
     seen: dict[tuple[int, int], list] = {}
     for number, found in zip(windows, ordered_map(lambda number: _window_evidence(survey, road, number, moves), windows, progress)):
         for pair, evidence in found.items():
             seen.setdefault(pair, []).append((number, *evidence))
-    return [_combine_windows(pair, evidence) for pair, evidence in sorted(seen.items())]
+    return seen
 
 
 def _several_passes(passes, start, end):

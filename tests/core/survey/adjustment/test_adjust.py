@@ -121,6 +121,16 @@ def test_oblique_bars_of_a_hatched_area_do_not_turn_an_offset_across_into_one_al
         np.testing.assert_allclose(found[np.isfinite(found)], true, atol=0.015)
 
 
+def test_where_a_drive_jumps_aside_before_a_hatched_area_its_bars_make_it_none_along():
+    """Less than half of the road is driven apart, and half of that is hatched."""
+    hatched = lambda x, y: (x > 60.0) & (np.mod(x - 1.5 * y, 3.0) < 0.6) & (np.abs(y) < 1.2) | (np.abs(np.abs(y) - 2.8) < 0.08)  # noqa: E731
+    survey = twice(left=lambda x: np.where(x > 50.0, 0.16, 0.0), paint=hatched, section=FLAT)
+    offsets, = pass_offsets(survey, 0)
+    beyond = offsets.stations > 60.0
+    np.testing.assert_allclose(offsets.left[beyond], -0.16, atol=0.015)
+    assert np.isfinite(offsets.along[beyond]).any() and np.nanmax(np.abs(offsets.along)) < 0.02
+
+
 def test_a_bare_plain_tells_nothing_of_the_place():
     survey = twice(left=0.05, section=FLAT)
     offsets, = pass_offsets(survey, 0)
