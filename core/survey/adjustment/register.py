@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d
+from scipy.ndimage import gaussian_filter1d, maximum_filter1d, minimum_filter1d
 
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
@@ -35,6 +35,7 @@ HEIGHT_BLUR_CELLS = 3               # cells over which heights are averaged
 DETREND_CELLS = 51            # cells: variations over more than a metre are neither curbs nor paint
 MAX_STEP, MAX_CONTRAST = 0.05, 4.0  # m of height, and standard deviations of intensity, at which cells are clipped
 MAX_CORRELATION = 0.999           # at which the correlation is clipped
+FACE_CELLS, FACE_HEIGHT = 9, 0.03  # cells along a row, and m between the highest and the lowest of them, that show a face such as a curb's
 FLAT_STEP = 0.01           # m: the height offset is measured on cells flatter than this
 MIN_SHARED_CELLS = 300           # cells that two passes must share in a window
 CORRELATED_CELLS = 6.0            # neighbouring cells whose errors are correlated
@@ -76,7 +77,8 @@ class _Strips:
     """One pass in one window: rows of cells of height and intensity without their slow variations.
 
     heights, steps : (rows, cells) float32, m, NaN where unknown; offsets are measured along a row
-    paint : (rows, cells) float32, intensity in units of its robust standard deviation, NaN where unknown
+    paint : (rows, cells) float32, intensity in units of its robust standard deviation, NaN where unknown and at faces, of whose brightness each
+        drive sees another side
     """
 
     def __init__(self, fine, coarse, h, intensity, shape):
@@ -93,10 +95,17 @@ class _Strips:
 
         self.heights = means(h, HEIGHT_BLUR_CELLS)
         self.steps = np.clip(_detrended(self.heights), -MAX_STEP, MAX_STEP)
-        paint = _detrended(means(intensity, 1))
+        paint = _detrended(np.where(_at_faces(self.heights), np.float32(np.nan), means(intensity, 1)))
         known = np.isfinite(paint)
         spread = float(np.median(np.abs(paint[known]))) / 0.6745 if known.any() else 0.0
         self.paint = np.clip(paint / max(spread, 1e-6), -MAX_CONTRAST, MAX_CONTRAST)
+
+
+def _at_faces(heights):
+    """(rows, cells) bool, whether heights differ by FACE_HEIGHT within FACE_CELLS; unknown ones do not."""
+    known, far = np.isfinite(heights), np.float32(1e3)
+    return (maximum_filter1d(np.where(known, heights, -far), FACE_CELLS, axis=1)
+            - minimum_filter1d(np.where(known, heights, far), FACE_CELLS, axis=1)) > FACE_HEIGHT
 
 
 def _detrended(values):
