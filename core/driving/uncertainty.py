@@ -13,8 +13,8 @@ The line is off by most of what the places of its lane lie beside it on average 
 passes it. Where the curvature changes, as from a straight into a hairpin bend, places and line are as good as an arc over some metres, which lies
 beside the lane. What passes differ by that were laid on each other comes last.
 
-A piece of a line says the mean along it, and a line is cut where it changes much. It holds against the points of the survey: what they are off as a whole, with their trajectory, is in it
-only where the accuracy of the trajectory was told, since one pass does not show it.
+A piece of a line says the mean along it, and a line is cut where it changes much. It holds against the points of the survey: what they are off
+as a whole, with their trajectory, is in it only where the accuracy of the trajectory was told, since one pass does not show it.
 """
 
 from __future__ import annotations

@@ -58,15 +58,16 @@ class EdgePiece:
 
     def cut_by_sigma(self) -> list[EdgePiece]:
         """The pieces of which one sigma speaks, the mean along them: the worst places of a piece do not speak for all."""
-        if np.ndim(self.sigma) == 0:
+        sigma = np.asarray(self.sigma, float)
+        if sigma.ndim == 0:
             return [self]
         along = np.append(0.0, np.cumsum(np.hypot(*np.diff(self.vertices[:, :2], axis=0).T)))
-        if not len(cuts := cuts_where_it_changes(along, self.sigma)):
-            return [replace(self, sigma=float(self.sigma.mean()))]
+        if not len(cuts := cuts_where_it_changes(along, sigma)):
+            return [replace(self, sigma=float(sigma.mean()))]
         bounds = [0, *cuts.tolist(), len(along) - 1]
         stations = np.interp(along[bounds], along[[0, -1]], [self.station, self.end]).tolist()
         return [replace(self, vertices=self.vertices[a:b + 1], station=stations[k], end=stations[k + 1], length=float(along[b] - along[a]),
-                        sigma=float(self.sigma[a:b + 1].mean())) for k, (a, b) in enumerate(zip(bounds[:-1], bounds[1:]))]
+                        sigma=float(sigma[a:b + 1].mean())) for k, (a, b) in enumerate(zip(bounds[:-1], bounds[1:]))]
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ difference in height to millimetres. Across they tell nothing: of a guard rail e
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -54,7 +55,8 @@ def compare_carriageways(survey: Any, progress: Progress = Progress()) -> None:
     progress : Progress, for the messages
     """
     for pair in roads_beside(survey.frame):
-        found = pair._replace(up=np.array(list(ordered_map(lambda k, pair=pair: _height_apart(survey, pair, k), range(len(pair.stations))))))
+        up = ordered_map(partial(_height_apart, survey, pair), range(len(pair.stations)))
+        found = pair._replace(up=np.array(list(up)))
         said, warns = said_of_carriageways(found)
         (progress.warn if warns else progress.info)(said)
 
@@ -62,10 +64,10 @@ def compare_carriageways(survey: Any, progress: Progress = Progress()) -> None:
 def roads_beside(frame: Any) -> list[Beside]:
     """Pairs of roads that run beside each other for SHORTEST and more on one level; `up` is not known yet."""
     tracks = [shapely.linestrings(np.c_[p.x, p.y]) for p in frame.passes]
-    near = np.transpose(shapely.STRtree(tracks).query(tracks, predicate="dwithin", distance=FARTHEST)) if len(frame.roads) > 1 else []
+    near = shapely.STRtree(tracks).query(tracks, predicate="dwithin", distance=FARTHEST).T
     roads = np.array([p.road for p in frame.passes])
     found = []
-    for one, other in sorted({(int(a), int(b)) for a, b in roads[near] if a < b} if len(near) else ()):
+    for one, other in sorted({(int(a), int(b)) for a, b in roads[near] if a < b}):
         spans = np.array([p.span for p in frame.passes_of(one)])
         s = np.arange(np.floor(spans.min() / CORRECTION_STEP), np.ceil(spans.max() / CORRECTION_STEP)) * CORRECTION_STEP + CORRECTION_STEP / 2
         x, y = frame.road(one).to_map(s, np.zeros(len(s)))
@@ -118,5 +120,6 @@ def said_of_carriageways(pair: Beside) -> tuple[str, bool]:
                 f"{named_places(stretches_of(dict(zip(pair.stations[far].tolist(), np.abs(pair.up[far]).tolist()))), 'by up to {:.1f} cm')}. "
                 "They stay as they were measured, and nothing that both see shows how far they lie apart across: adjust the trajectories of the "
                 "drives to each other, or measure control points on both, if these centimetres matter.", True)
-    height = f"in height they agree within {100 * np.abs(pair.up[known]).max():.1f} cm" if known.any() else "nothing that both see shows their heights"
-    return f"{where}: {height}; how far they lie apart across is not known.", False
+    if not known.any():
+        return f"{where}: nothing that both see shows how far they lie apart.", False
+    return (f"{where}: in height they agree within {100 * np.abs(pair.up[known]).max():.1f} cm; how far they lie apart across is not known.", False)

@@ -18,7 +18,8 @@ def test_a_regular_curb_seen_without_scatter_is_as_good_as_its_foot_is_found():
 def test_a_tenth_of_the_points_makes_it_four_times_as_uncertain():
     many, few = (edge_sigma(MIDDLE, PLACES, EXACT, np.full(len(PLACES), count)).mean() for count in (200, 20))
     assert few**2 - MAIN_EDGE.foot**2 == pytest.approx(10**1.3 * (many**2 - MAIN_EDGE.foot**2), rel=0.01)
-    np.testing.assert_array_equal(edge_sigma(MIDDLE, PLACES, EXACT, np.full(len(PLACES), -1)), edge_sigma(MIDDLE, PLACES, EXACT), "unknown counts add nothing")
+    unknown = edge_sigma(MIDDLE, PLACES, EXACT, np.full(len(PLACES), -1))
+    np.testing.assert_array_equal(unknown, edge_sigma(MIDDLE, PLACES, EXACT), "unknown counts add nothing")
 
 
 def test_curb_points_that_scatter_make_it_uncertain_there_and_not_fifty_metres_on():
