@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 STRETCH = 10.0         # m of road of which the mean is kept, and the least that is told apart on a line
-TOLD_APART = 2.0       # times the uncertainty of the stretch beside it, and
+CUT_FACTOR = 2.0       # times the uncertainty of the stretch beside it, and
 LEAST_CHANGE = 0.010   # m more or less, that a stretch of a line is cut off for
 
 
@@ -50,7 +50,7 @@ def cuts_where_it_changes(along: np.ndarray, sigma: np.ndarray) -> np.ndarray:
     """Where a line is cut so that one number tells how uncertain each of its stretches is.
 
     From stretches of STRETCH on, those beside each other become one that differ least, weighted by their lengths (Ward), until every two differ by
-    TOLD_APART times and LEAST_CHANGE.
+    CUT_FACTOR times and LEAST_CHANGE.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def cuts_where_it_changes(along: np.ndarray, sigma: np.ndarray) -> np.ndarray:
     mean = np.add.reduceat(sigma, begin) / size
     while len(begin) > 1:
         change = np.abs(np.diff(mean))
-        apart = (change >= LEAST_CHANGE) & (np.maximum(mean[1:], mean[:-1]) >= TOLD_APART * np.minimum(mean[1:], mean[:-1]))
+        apart = (change >= LEAST_CHANGE) & (np.maximum(mean[1:], mean[:-1]) >= CUT_FACTOR * np.minimum(mean[1:], mean[:-1]))
         if apart.all():
             break
         k = int(np.argmin(np.where(apart, np.inf, size[1:] * size[:-1] / (size[1:] + size[:-1]) * change**2)))
