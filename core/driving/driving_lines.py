@@ -17,6 +17,7 @@ from ..markings.cross_section.sections import STATION_STEP, CrossSections, secti
 from ..markings.lines.painted_lines import PaintedLines
 from ..markings.objects.marking_objects import MarkingObjects
 from ..road.edges.road_edges import RoadEdges
+from ..survey.frame.sigma_along import cuts_where_it_changes
 from .alignment import Element, lane_elements
 from .centreline import Course, element_of, lane_courses, status_pieces, without_short_status
 from .connectors import RoadLanes, connectors_between_roads
@@ -59,7 +60,7 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
     Returns
     -------
     lines : DrivingLines. Lanes are numbered from 1 on every road by where they begin, from right to left. A lane is cut
-        into pieces by `status`; pieces of one lane touch
+        into pieces by `status`, and where its uncertainty changes much; pieces of one lane touch
     elements : CurveElements of every lane
     lanes : Lanes, the areas of the same pieces, and connectors between them where the vehicle drove on without lines
     """
@@ -90,7 +91,7 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
             progress.warn("Neither the marking lines nor road points have heights; the trajectory's are used.")
             heights = [frame.track_height(number, s[t.first:t.last + 1]) for t in tracks]
         courses = lane_courses(tracks, s, frame.roads[number], alignment)
-        passes = np.nan_to_num(frame.passes_sigma(number, s))
+        passes = frame.passes_sigma(number, s)
         spacing = None if road_points is None else point_spacing(road_points, number, s)
         for lane, (track, course, elements, z) in enumerate(zip(tracks, courses, alignment, heights), start=1):
             sigma = lane_sigma(track, course, frame.roads[number], one, paint, passes[track.first:track.last + 1], spacing)
@@ -133,11 +134,11 @@ def _shown(boundaries):
 
 def _lane_pieces(track: LaneTrack, way: int, course: Course, elements: list[Element], road_lines: CrossSections,
                  z: np.ndarray, sigma: np.ndarray) -> Iterator[dict[str, Any]]:
-    """The pieces of one lane by status, in order of station."""
+    """The pieces of one lane by status and uncertainty, in order of station."""
     s = road_lines.s
     grid = s[track.first:track.last + 1]
     status = without_short_status(track.status)
-    for code, start, end in status_pieces(status, track.first, s):
+    for code, start, end in _cut_by_sigma(status_pieces(status, track.first, s), grid, sigma):
         rows = slice(np.searchsorted(grid, start), np.searchsorted(grid, end) + 1)
         x, y, at = _between(course, start, end, code_first=start == grid[0], code_last=end == grid[-1])
         if len(x) < 2:
@@ -150,6 +151,14 @@ def _lane_pieces(track: LaneTrack, way: int, course: Course, elements: list[Elem
             curve=element.arc if element is not None else course.curve, rmse=course.rmse,
             sigma=sigma[rows].mean(), station=start, end=end,
             offset=np.median(track.d[rows]), width=np.median(track.width[rows]), places=places[::-1] if way < 0 else places)
+
+
+def _cut_by_sigma(pieces, grid, sigma):
+    """(status, start station, end station) of pieces that are cut where the uncertainty along the lane changes much."""
+    for code, start, end in pieces:
+        rows = slice(np.searchsorted(grid, start), np.searchsorted(grid, end) + 1)
+        bounds = [start, *grid[rows][cuts_where_it_changes(grid[rows], sigma[rows])].tolist(), end]
+        yield from ((code, first, last) for first, last in zip(bounds[:-1], bounds[1:]))
 
 
 def _patterns(track, rows, way, lines):

@@ -2,19 +2,19 @@
 
 What adds up as squares: how well the borders of the lane are placed, and how well the line follows the lane.
 
-A painted border is found to half a millimetre however many points show it, and worse with the spacing of the points; and it is off by a share of
+A painted border is found to a millimetre however many points show it, and worse with the spacing of the points; and it is off by a share of
 the scatter of its paint about its curve, most of which averages out along the curve. How much these are was found on simulated streets with truth
-(docs/accuracy.md). More is added with the distance to its next paint, where it is bridged. The border of
-a hatched area is known as well as the outline of its bars. Between two borders the middle takes half of the error of each; where two lanes lie
+(docs/accuracy.md). More is added with the distance to its next paint, where it is bridged. The border of a hatched area is known as well as the
+outline of its bars. Between two borders the middle takes half of the error of each; where two lanes lie
 between them with nothing painted in the middle of the road, it takes three quarters of one and one quarter of the other. Beside one border alone
 it takes all of it, and what the width of lanes is off by.
 
-The line is off by as much as the places of its lane lie beside it on average over some metres: the borders show the lane there and the line passes
-it. Where the curvature changes, as from a straight into a hairpin bend, places and line are as good as an arc over some metres, which lies beside
-the lane. What passes differ by that were laid on each other comes last.
+The line is off by most of what the places of its lane lie beside it on average over some metres: the borders show the lane there and the line
+passes it. Where the curvature changes, as from a straight into a hairpin bend, places and line are as good as an arc over some metres, which lies
+beside the lane. What passes differ by that were laid on each other comes last.
 
-A piece of a line says the mean along it. It holds against the points of the survey: what they are off as a whole, with their trajectory, is in it
-only where the accuracy of the trajectory was told, since one pass does not show it.
+A piece of a line says the mean along it, and a line is cut where it changes much. It holds against the points of the survey: what they are off
+as a whole, with their trajectory, is in it only where the accuracy of the trajectory was told, since one pass does not show it.
 """
 
 from __future__ import annotations
@@ -36,16 +36,18 @@ if TYPE_CHECKING:
 
 BORDER_SHARE = 0.13            # of the RMS distance of a border's paint from its curve, that the border is off by
 USUAL_SCATTER = 0.010          # m, of paint about its curve, where no border says it
-BORDER_SIGMA = 0.0005          # m, of a painted border, however many points show it
-SPACING_SHARE = 0.02           # of the spacing of the points, that a painted border is off by
+BORDER_SIGMA = 0.0008          # m, of a painted border, however many points show it
+SPACING_SHARE = 0.028          # of the spacing of the points, that a painted border is off by
 USUAL_SPACING = 0.03           # m, where there are no points to say it
-GAP_SHARE = 0.002              # m per m to the next place where a border is painted, or, without borders, where the lane is measured
+GAP_SHARE = 0.003              # m per m to the next place where a border is painted, or, without borders, where the lane is measured
 HATCHING_SIGMA = 0.03          # m, of a hatched area's border: outlines are of image cells, and its line's breadth is not known
 WIDTH_SIGMA = 0.007            # m, of the middle of a lane beside one border alone: half of what its width is off by
 BETWEEN_BORDERS, OWN_BORDER, FAR_BORDER = 0.5, 0.75, 0.25   # of the error of a border, that the middle of a lane is off by
 MAX_GAP_DISTANCE = 50.0        # m, beyond which a painted place says nothing
 MISFIT_WINDOW = 2.5            # m along the lane, over which its places are averaged
-ARC_REACH = 3.7                # m, either way, over which the line is as good as an arc
+MISFIT_SHARE = 0.8             # of the RMS of what they lie beside the line over
+MISFIT_REACH = 5.0             # m either way: where the line passes what was measured, which of the two is off is open, and so is how far beyond
+ARC_REACH = 3.9                # m, either way, over which the line is as good as an arc
 CURVATURE_SIGMA = 1.0          # m, of the Gaussian that smooths heading and curvature
 CURVATURE_WINDOW = 10.0        # m along the lane, of the RMS of the change of curvature
 
@@ -96,10 +98,11 @@ def _mean_square_of_borders(track, known, paint, spacing):
 
 
 def _mean_square_misfit(track, course, road, lines):
-    """(N,) m², of the smooth line from the mean of the lane's places over MISFIT_WINDOW."""
+    """(N,) m², of the smooth line from the mean of the lane's places over MISFIT_WINDOW, over MISFIT_REACH either way."""
     s = lines.s[track.first:track.last + 1]
     drawn = road.locate(np.interp(s, course.s, course.x), np.interp(s, course.s, course.y), s)[1]
-    return uniform_filter1d(np.nan_to_num(drawn - track.d), int(MISFIT_WINDOW / STATION_STEP), mode="nearest") ** 2
+    beside = uniform_filter1d(np.nan_to_num(drawn - track.d), int(MISFIT_WINDOW / STATION_STEP), mode="nearest")
+    return MISFIT_SHARE**2 * uniform_filter1d(beside**2, int(2 * MISFIT_REACH / STATION_STEP), mode="nearest")
 
 
 def _mean_square_bias(track, course, lines):

@@ -13,6 +13,7 @@ from ..common.progress import Progress
 from ..execution.phase import Executor
 from ..io.crs import check_projected, crs_note, parse_crs, unit_note
 from .adjustment.adjust import adjust_passes
+from .adjustment.beside import compare_carriageways
 from .clock_check import check_clock
 from .frame.build import build_frame
 from .frame.road import CORRIDOR
@@ -158,6 +159,8 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
             for file in shared.ordered.iterdir():
                 file.unlink()
             survey.put_in_order(shared.ordered, shared.ordering, progress.part(1.0, 1.0))
+    if settings.fit_passes and has_time and len(frame.roads) > 1:
+        compare_carriageways(survey, progress.part(1.0, 1.0))
     # what the user says overrules what lies beside the trajectory
     if across := settings.trajectory_sigma or trajectory.sigma_across:
         # what passes differ by is part of the same error

@@ -131,7 +131,7 @@ def lines_to_features(lines: PaintedLines, frame: RoadFrame) -> Features:
             status=lines.status[k], curve=curve.kind, radius_m=float(curve.radius) if curve.kind == "circle" else None,
             rmse_m=_known(fitted.rmse[k]), station_m=float(fitted.station[k]), end_m=float(fitted.end[k]),
             offset_m=_known(fitted.offset[k]), length_m=float(geometry.length), width_m=float(fitted.width[k]),
-            pass_sig_m=_known(frame.passes_sigma(int(lines.course.road[k]), np.array([fitted.station[k], fitted.end[k]])).mean()),
+            pass_sig_m=_known(frame.passes_sigma(int(lines.course.road[k]), np.array([fitted.station[k], fitted.end[k]]), np.nan).mean()),
             params=f'{numbers}, {json.dumps({"from": round(first, 4), "to": round(last, 4)})[1:]}')
     return layer
 

@@ -141,7 +141,7 @@ def curb_points_to_features(points: CurbPoints, frame: RoadFrame) -> Features:
     sigma = np.full(len(points), np.nan)
     for road in frame.pass_sigma:
         own = points.road == road
-        sigma[own] = frame.passes_sigma(road, points.station[own])
+        sigma[own] = frame.passes_sigma(road, points.station[own], np.nan)
     columns[PASS_SIGMA.name] = sigma.tolist()
     rows = [{name: known(value) for name, value in zip(columns, row)} for row in zip(*columns.values())]
     return Features("PointZ", list(CURB_POINTS), list(places), rows, points.crs)

@@ -79,11 +79,11 @@ def draw_curb_returns(edges: list[EdgePiece], road: int, lines: list[tuple[CurbP
             vertices[-1] = vertices[0]
         vertices[0], vertices[-1] = vertices[0] if first is None else first, vertices[-1] if last is None else last
         vertices = vertices[np.r_[True, np.hypot(*np.diff(vertices[:, :2], axis=0).T) > 0]]
-        passes = 0.0 if frame is None else float(np.sqrt(np.mean(np.nan_to_num(frame.passes_sigma(road, points.station)) ** 2)))
+        passes = 0.0 if frame is None else float(np.sqrt(np.mean(frame.passes_sigma(road, points.station) ** 2)))
         edges.append(EdgePiece(vertices, road, points.side[0], "measured", number, float(points.station.min()), float(points.station.max()),
                                float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum()), float(np.median(points.height)),
                                float(np.sqrt(np.mean(residual**2))), kind=kind,
-                               sigma=edge_sigma(along, along, residual, shares=CURB_RETURN, passes=passes)))
+                               sigma=float(edge_sigma(along, along, residual, shares=CURB_RETURN, passes=passes).mean())))
         number += 1
     return number
 

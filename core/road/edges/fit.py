@@ -274,7 +274,7 @@ def _draw(found, frame, road, side, piece, number, led_across):
         a, b = t[i], t[j]
         along = np.linspace(a, b, max(int(np.ceil((b - a) / EDGE_VERTEX_SPACING)), 1) + 1)
         vertices, rows = curve.at(along), points[i:j + 1]
-        passes = np.nan_to_num(frame.passes_sigma(road, np.interp(along, t, points["s"])))
+        passes = frame.passes_sigma(road, np.interp(along, t, points["s"]))
         found.append(EdgePiece(vertices, road, side, "bridged" if bridged[i] else "measured", number, float(rows["s"][0]),
                                float(rows["s"][-1]), float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum()),
                                float(np.median(rows["height"])), float(np.sqrt(np.mean(residual[i:j + 1] ** 2))),

@@ -17,6 +17,7 @@ from ...common.features import Features
 from ...common.schemas import NEAREST_PASS, ROAD_EDGES
 from ...survey.frame.frame_lines import FrameLines, line_parts, lines_in_frame
 from ...survey.frame.placement import COORDINATE_DECIMALS, as_written, known
+from ...survey.frame.sigma_along import cuts_where_it_changes
 
 if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame
@@ -35,7 +36,8 @@ class EdgePiece:
     road : number
     side, status, part, kind, what : as in RoadEdges
     chain : number of the line; its pieces share it
-    station, end, height, length, rmse, sigma : metres, as in RoadEdges
+    station, end, height, length, rmse : metres, as in RoadEdges
+    sigma : m, as in RoadEdges; or (V,) at every vertex, and the piece is cut where it changes
     """
 
     vertices: np.ndarray
@@ -52,7 +54,20 @@ class EdgePiece:
     kind: str = "main"
     what: str = "curb"
     agree: float = np.nan
-    sigma: float = np.nan
+    sigma: np.ndarray | float = np.nan
+
+    def cut_by_sigma(self) -> list[EdgePiece]:
+        """The pieces of which one sigma speaks, the mean along them: the worst places of a piece do not speak for all."""
+        sigma = np.asarray(self.sigma, float)
+        if sigma.ndim == 0:
+            return [self]
+        along = np.append(0.0, np.cumsum(np.hypot(*np.diff(self.vertices[:, :2], axis=0).T)))
+        if not len(cuts := cuts_where_it_changes(along, sigma)):
+            return [replace(self, sigma=float(sigma.mean()))]
+        bounds = [0, *cuts.tolist(), len(along) - 1]
+        stations = np.interp(along[bounds], along[[0, -1]], [self.station, self.end]).tolist()
+        return [replace(self, vertices=self.vertices[a:b + 1], station=stations[k], end=stations[k + 1], length=float(along[b] - along[a]),
+                        sigma=float(sigma[a:b + 1].mean())) for k, (a, b) in enumerate(zip(bounds[:-1], bounds[1:]))]
 
 
 @dataclass(frozen=True)
@@ -151,8 +166,9 @@ def joined_pieces(pieces: Sequence[EdgePiece], frame: RoadFrame, crs: str = "") 
     """Pieces as RoadEdges in the same order.
 
     The pass that drove nearest is that of the middle vertex. Numbers are rounded to EDGE_DECIMALS and vertices to 0.1 mm,
-    as the layer holds them.
+    as the layer holds them. A piece is cut where its uncertainty changes much.
     """
+    pieces = [part for piece in pieces for part in piece.cut_by_sigma()]
     x, y, z = as_written(frame, *np.concatenate([piece.vertices for piece in pieces] or [np.empty((0, 3))]).T)
     start = np.append(0, np.cumsum([len(piece.vertices) for piece in pieces], dtype=int))
     course = FrameLines.at(frame, np.array([piece.road for piece in pieces], int), start, x, y, z)

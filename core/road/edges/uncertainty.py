@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 SCATTER_REACH = 10.0    # m along the line, either way, over which the scatter of curb points is taken
+POINTS_POWER = 1.3      # more than 1: where points are few, they also lie less regularly on the curb
 END_LENGTH = 5.0        # m from its end at which the uncertainty of a line's end has fallen to 1/e in square
 
 
@@ -22,8 +23,8 @@ class EdgeUncertainty:
     """The shares of an edge's uncertainty.
 
     foot : m, of a curb's foot, however many points are on it
-    spacing : m, of the foot by a single laser point; with N points it is found sqrt(N) times better
-    scatter : of the RMS of residuals of curb points
+    spacing : m, of the foot by a single laser point; its square falls with N points as N**-POINTS_POWER
+    scatter : of the RMS of residuals of curb points; more than 1, as a line follows errors that go on over metres and shows less of them
     end : m, at the end of a line
     gap : m per m to the nearest curb point
     """
@@ -35,17 +36,17 @@ class EdgeUncertainty:
     gap: float
 
 
-MAIN_EDGE = EdgeUncertainty(foot=0.0014, spacing=0.08, scatter=0.47, end=0.002, gap=0.0005)
-CURB_RETURN = EdgeUncertainty(foot=0.0045, spacing=0.0, scatter=1.5, end=0.006, gap=0.0005)   # found in plan, from fewer points
+MAIN_EDGE = EdgeUncertainty(foot=0.0014, spacing=0.10, scatter=1.2, end=0.0015, gap=0.0005)
+CURB_RETURN = EdgeUncertainty(foot=0.0075, spacing=0.0, scatter=1.5, end=0.006, gap=0.0005)   # found in plan, from fewer points
 
 
 def edge_sigma(at: np.ndarray, places: np.ndarray, residual: np.ndarray, support: np.ndarray | None = None,
-               shares: EdgeUncertainty = MAIN_EDGE, passes: np.ndarray | float = 0.0) -> float:
-    """One sigma across a piece of an edge, the mean over places along it: its worst places do not speak for all.
+               shares: EdgeUncertainty = MAIN_EDGE, passes: np.ndarray | float = 0.0) -> np.ndarray:
+    """One sigma across an edge at places along it.
 
     Parameters
     ----------
-    at : (K,) m along the line, where the piece is looked at
+    at : (K,) m along the line, where it is looked at
     places : (N,) m along the line of all its curb points, rising
     residual : (N,) m, distances of the curb points from the line
     support : (N,) laser points of each; below 1, or None, where that is unknown
@@ -54,7 +55,7 @@ def edge_sigma(at: np.ndarray, places: np.ndarray, residual: np.ndarray, support
 
     Returns
     -------
-    float, m
+    (K,) m
     """
     first, last = np.searchsorted(places, at - SCATTER_REACH), np.searchsorted(places, at + SCATTER_REACH, side="right")
     # of a line as long as the road, only the points about the piece
@@ -65,6 +66,6 @@ def edge_sigma(at: np.ndarray, places: np.ndarray, residual: np.ndarray, support
     k = np.clip(np.searchsorted(places, at), 1, len(places) - 1)
     gap = np.clip(np.minimum(at - places[k - 1], places[k] - at), 0.0, None)
     end = np.clip(np.minimum(at - places[0], places[-1] - at), 0.0, None)
-    variance = (shares.foot**2 + shares.spacing**2 * spacing + shares.scatter**2 * scatter + shares.end**2 * np.exp(-end / END_LENGTH)
+    variance = (shares.foot**2 + shares.spacing**2 * spacing**POINTS_POWER + shares.scatter**2 * scatter + shares.end**2 * np.exp(-end / END_LENGTH)
                 + (shares.gap * gap) ** 2 + passes**2)
-    return float(np.sqrt(variance).mean())
+    return np.sqrt(variance)

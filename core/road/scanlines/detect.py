@@ -327,7 +327,7 @@ def boundary_lines(corners: CurbPoints, frame: RoadFrame, max_gap: float, progre
             hidden = np.sort(own.station[own.status == "occluded"])
             for part in ("bottom", "top"):
                 for points, status in _pieces(_points(own[own.part == part], frame), hidden, max_gap):
-                    passes = np.nan_to_num(frame.passes_sigma(road.number, points["s"]))
+                    passes = frame.passes_sigma(road.number, points["s"])
                     _draw(pieces, points, status, passes, road=road.number, side=side, part=part, chain=number)
                     number += 1
     lines = joined_pieces(pieces, frame, corners.crs)

@@ -206,7 +206,7 @@ def _drawn(frame, road, side, carriageway, grown, runs):
         d = splev(s, curve) if status == "measured" else np.interp(s, [start, end], splev([start, end], curve))
         vertices = np.c_[frame.to_map(road, s, d, _height(carriageway, s, d))]
         near = stretch_of(stations[rows], start, end)
-        passes = np.nan_to_num(frame.passes_sigma(road, s))
+        passes = frame.passes_sigma(road, s)
         rmse = float(np.sqrt(np.mean(residual[near] ** 2)))
         length = float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum())
         found.append(EdgePiece(vertices, road, side, status, -1, float(start), float(end), length, rmse=rmse,

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d
+from scipy.ndimage import gaussian_filter1d, maximum_filter1d, minimum_filter1d
 
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
@@ -22,6 +22,7 @@ from .corrections import CORRECTION_STEP
 AXES = "along", "left", "up"
 PLAN_AXES = AXES[:2]
 MIN_COUPLED_OFFSET = 0.02   # m along or across, less than which shifts the other by less than the noise of an offset
+MUCH_LARGER = 2.0           # times: bars 27° off the road and more, moved across, look moved along by less
 CHANNELS = "steps", "paint"
 CHANNEL_SCALE = {"steps": 1e4, "paint": 64.0}  # units per m, and per standard deviation of intensity
 WINDOW_LENGTH = CORRECTION_STEP          # m of road compared at a time, counted from station 0
@@ -34,6 +35,7 @@ HEIGHT_BLUR_CELLS = 3               # cells over which heights are averaged
 DETREND_CELLS = 51            # cells: variations over more than a metre are neither curbs nor paint
 MAX_STEP, MAX_CONTRAST = 0.05, 4.0  # m of height, and standard deviations of intensity, at which cells are clipped
 MAX_CORRELATION = 0.999           # at which the correlation is clipped
+FACE_CELLS, FACE_HEIGHT = 9, 0.03  # cells along a row, and m between the highest and the lowest of them, that show a face such as a curb's
 FLAT_STEP = 0.01           # m: the height offset is measured on cells flatter than this
 MIN_SHARED_CELLS = 300           # cells that two passes must share in a window
 CORRELATED_CELLS = 6.0            # neighbouring cells whose errors are correlated
@@ -75,7 +77,8 @@ class _Strips:
     """One pass in one window: rows of cells of height and intensity without their slow variations.
 
     heights, steps : (rows, cells) float32, m, NaN where unknown; offsets are measured along a row
-    paint : (rows, cells) float32, intensity in units of its robust standard deviation, NaN where unknown
+    paint : (rows, cells) float32, intensity in units of its robust standard deviation, NaN where unknown and at faces, of whose brightness each
+        drive sees another side
     """
 
     def __init__(self, fine, coarse, h, intensity, shape):
@@ -92,10 +95,17 @@ class _Strips:
 
         self.heights = means(h, HEIGHT_BLUR_CELLS)
         self.steps = np.clip(_detrended(self.heights), -MAX_STEP, MAX_STEP)
-        paint = _detrended(means(intensity, 1))
+        paint = _detrended(np.where(_at_faces(self.heights), np.float32(np.nan), means(intensity, 1)))
         known = np.isfinite(paint)
         spread = float(np.median(np.abs(paint[known]))) / 0.6745 if known.any() else 0.0
         self.paint = np.clip(paint / max(spread, 1e-6), -MAX_CONTRAST, MAX_CONTRAST)
+
+
+def _at_faces(heights):
+    """(rows, cells) bool, whether heights differ by FACE_HEIGHT within FACE_CELLS; unknown ones do not."""
+    known, far = np.isfinite(heights), np.float32(1e3)
+    return (maximum_filter1d(np.where(known, heights, -far), FACE_CELLS, axis=1)
+            - minimum_filter1d(np.where(known, heights, far), FACE_CELLS, axis=1)) > FACE_HEIGHT
 
 
 def _detrended(values):
@@ -142,7 +152,8 @@ def pass_offsets(survey: Any, road: int, progress: Progress = Progress()) -> lis
     """Offsets between the passes over a road, each with the next one there.
 
     Oblique bars, as of hatched areas, look moved along where they were moved across, and the other way round. So where passes lie apart, the
-    larger of the two offsets is taken out before the other is measured, and then, if that is large too, the other way round.
+    offsets along one axis are taken out before those along the other are measured, and then the other way round. Lines along the road show what
+    is across alone, so offsets along come first only where they are much the larger.
 
     Parameters
     ----------
@@ -157,32 +168,35 @@ def pass_offsets(survey: Any, road: int, progress: Progress = Progress()) -> lis
     start, end = survey.store.span(road)
     windows = [number for number in range(int(np.floor(start / WINDOW_LENGTH)), int(np.ceil(end / WINDOW_LENGTH)))
                if _several_passes(survey.frame.passes_of(road), number * WINDOW_LENGTH, (number + 1) * WINDOW_LENGTH)]
-    found = _remaining_offsets(survey, road, windows, [], progress.part(0.0, 1.0 / 3.0))
-    larger, smaller = sorted(PLAN_AXES, key=lambda axis: _usual_size(found, axis), reverse=True)
-    for k, (taken, measured) in enumerate(((larger, smaller), (smaller, larger)), start=1):
-        if _usual_size(found, taken) <= MIN_COUPLED_OFFSET:
-            break
-        moved = [replace(pair, **{axis: pair.everywhere(axis) if axis == taken else np.zeros(len(pair.stations)) for axis in PLAN_AXES})
-                 for pair in found]
-        again = _remaining_offsets(survey, road, windows, moved, progress.part(k / 3.0, (k + 1) / 3.0))
-        found = [replace(before, **{measured: getattr(now, measured)}) for before, now in zip(found, again)]
+    seen = _seen(survey, road, windows, {}, progress.part(0.0, 1.0 / 3.0))
+    found = [_combine_windows(pair, evidence) for pair, evidence in sorted(seen.items())]
+    along, left = (_mean_size(found, axis) for axis in PLAN_AXES)
+    order = PLAN_AXES if along > MUCH_LARGER * left else PLAN_AXES[::-1]
+    for k, (taken, measured) in enumerate((order, order[::-1]), start=1):
+        moves = {(pair.one, pair.other): {int(station // WINDOW_LENGTH): (metres, 0.0) if taken == "along" else (0.0, metres)
+                                          for station, metres in zip(pair.stations, pair.everywhere(taken)) if abs(metres) > MIN_COUPLED_OFFSET}
+                 for pair in found}
+        if apart := sorted({number for places in moves.values() for number in places}):
+            again = _seen(survey, road, apart, moves, progress.part(k / 3.0, (k + 1) / 3.0))
+            of_window = {pair: {row[0]: row for row in rows} for pair, rows in again.items()}
+            there = {pair: [of_window.get(pair, {}).get(row[0], row) for row in rows] for pair, rows in seen.items()}
+            found = [replace(before, **{measured: getattr(_combine_windows(pair, evidence), measured)})
+                     for before, (pair, evidence) in zip(found, sorted(there.items()))]
     return found
 
 
-def _usual_size(offsets, axis):
-    """Median distance of passes along an axis, m, of the pair that is farthest apart."""
-    return max((float(np.median(np.abs(pair.everywhere(axis)))) for pair in offsets), default=0.0)
+def _mean_size(offsets, axis):
+    """Mean distance of passes along an axis, m, of the pair that is farthest apart."""
+    return max((float(np.mean(np.abs(pair.everywhere(axis)))) for pair in offsets), default=0.0)
 
 
-def _remaining_offsets(survey, road, windows, taken, progress):
-    """PassOffsets of each pair of passes, measured after the second of a pair was moved by the offsets `taken`, if any."""
-    moves = {(pair.one, pair.other): {int(station // WINDOW_LENGTH): move for station, *move in zip(pair.stations, pair.along, pair.left)}
-             for pair in taken}
+def _seen(survey, road, windows, moves, progress):
+    """{(one, other): [(window, *evidence)]} of pairs of passes after the second of a pair was moved; `moves` as in `_window_evidence`."""
     seen: dict[tuple[int, int], list] = {}
     for number, found in zip(windows, ordered_map(lambda number: _window_evidence(survey, road, number, moves), windows, progress)):
         for pair, evidence in found.items():
             seen.setdefault(pair, []).append((number, *evidence))
-    return [_combine_windows(pair, evidence) for pair, evidence in sorted(seen.items())]
+    return seen
 
 
 def _several_passes(passes, start, end):

@@ -39,7 +39,7 @@ def remaining_places(offsets: list[PassOffsets], corrections: dict[int, tuple[np
             rest = np.hypot(rest, np.maximum(left, _evened_out(pair.stations, applied)))
         for station, metres in (*zip(pair.stations[rest > MAX_REMAINING], rest[rest > MAX_REMAINING]), *((station, np.inf) for station in pair.far)):
             places[float(station)] = max(places.get(float(station), 0.0), float(metres))
-    return _stretches(places)
+    return stretches_of(places)
 
 
 def places_of_one_drive(passes: list[Pass], offsets: list[PassOffsets], corrections: PassCorrections) -> list[tuple[float, float, float]]:
@@ -67,7 +67,7 @@ def places_of_one_drive(passes: list[Pass], offsets: list[PassOffsets], correcti
         moved = np.hypot(*corrections.metres(p.number, stations)[:2])
         for station, metres in zip(*(values[(away > POOLING_SIGMA) & (moved > MAX_REMAINING)].tolist() for values in (stations, moved))):
             places[station] = max(places.get(station, 0.0), metres)
-    return _stretches(places)
+    return stretches_of(places)
 
 
 def _evened_out(stations, applied):
@@ -79,7 +79,7 @@ def _evened_out(stations, applied):
     return found
 
 
-def _stretches(places):
+def stretches_of(places: dict[float, float]) -> list[tuple[float, float, float]]:
     """[(start, end, largest metres)] of {middle of a window: metres}, windows that touch in one; infinite ones apart from the others."""
     found: list[tuple[float, float, float]] = []
     for station, metres in sorted(places.items()):
@@ -115,9 +115,13 @@ def said_of_one_drive(road: int, places: list[tuple[float, float, float]]) -> st
     """The warning about places where one drive alone was moved; "" where there is none."""
     if not places:
         return ""
-    named = ", ".join(f"{start:.0f} to {end:.0f} m (by up to {100 * metres:.1f} cm)" for start, end, metres in places[:MOST_NAMED])
-    return (f"Road {road}: one drive alone shows what lies at {named}{_further(places)}. It was moved there as where it last lay beside the "
-            "others, and nothing shows how well that fits: measure a control point there if these centimetres matter.")
+    return (f"Road {road}: one drive alone shows what lies at {named_places(places, 'by up to {:.1f} cm')}. It was moved there as where it last "
+            "lay beside the others, and nothing shows how well that fits: measure a control point there if these centimetres matter.")
+
+
+def named_places(places: list[tuple[float, float, float]], size: str) -> str:
+    """Places by station with what is said of their metres in cm, those beyond MOST_NAMED as a number."""
+    return ", ".join(f"{start:.0f} to {end:.0f} m ({size.format(100 * metres)})" for start, end, metres in places[:MOST_NAMED]) + _further(places)
 
 
 def _further(places):

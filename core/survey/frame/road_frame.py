@@ -47,10 +47,10 @@ class RoadFrame:
         """The passes over a road."""
         return [p for p in self.passes if p.road == road]
 
-    def passes_sigma(self, road: int, s: np.ndarray) -> np.ndarray:
-        """(N,) m, one sigma across of the middle of the passes at (N,) stations of a road; NaN where it is not known."""
+    def passes_sigma(self, road: int, s: np.ndarray, unknown: float = 0.0) -> np.ndarray:
+        """(N,) m, one sigma across of the middle of the passes at (N,) stations of a road; `unknown` where nothing says it."""
         along = self.pass_sigma.get(road)
-        return np.full(np.shape(s), np.nan) if along is None else along.at(s)
+        return np.full(np.shape(s), unknown) if along is None else along.at(s)
 
     @property
     def farthest(self) -> float:

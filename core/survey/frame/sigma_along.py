@@ -6,7 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-STRETCH = 10.0   # m of road of which the mean is kept
+STRETCH = 10.0         # m of road of which the mean is kept, and the least that is told apart on a line
+CUT_FACTOR = 2.0       # times the uncertainty of the stretch beside it, and
+LEAST_CHANGE = 0.010   # m more or less, that a stretch of a line is cut off for
 
 
 @dataclass(frozen=True)
@@ -42,3 +44,36 @@ class SigmaAlong:
     def at_least(self, metres: float) -> SigmaAlong:
         """The same, nowhere less than some metres."""
         return SigmaAlong(self.stations, tuple(max(own, float(metres)) for own in self.metres))
+
+
+def cuts_where_it_changes(along: np.ndarray, sigma: np.ndarray) -> np.ndarray:
+    """Where a line is cut so that one number tells how uncertain each of its stretches is.
+
+    From stretches of STRETCH on, those beside each other become one that differ least, weighted by their lengths (Ward), until every two differ by
+    CUT_FACTOR times and LEAST_CHANGE.
+
+    Parameters
+    ----------
+    along : (N,) m along the line, rising
+    sigma : (N,) m, one sigma there
+
+    Returns
+    -------
+    (K,) rows that begin a stretch, without the first; empty where one number tells it
+    """
+    count = int((along[-1] - along[0]) / STRETCH) if len(along) else 0
+    if count < 2 or np.ptp(sigma) < LEAST_CHANGE:
+        return np.empty(0, int)
+    begin = np.unique(np.searchsorted(along, along[0] + (along[-1] - along[0]) * np.arange(count) / count))
+    size = np.diff(np.append(begin, len(along))).astype(float)
+    mean = np.add.reduceat(sigma, begin) / size
+    while len(begin) > 1:
+        change = np.abs(np.diff(mean))
+        apart = (change >= LEAST_CHANGE) & (np.maximum(mean[1:], mean[:-1]) >= CUT_FACTOR * np.minimum(mean[1:], mean[:-1]))
+        if apart.all():
+            break
+        k = int(np.argmin(np.where(apart, np.inf, size[1:] * size[:-1] / (size[1:] + size[:-1]) * change**2)))
+        mean[k] = np.average(mean[k:k + 2], weights=size[k:k + 2])
+        size[k] += size[k + 1]
+        mean, size, begin = (np.delete(values, k + 1) for values in (mean, size, begin))
+    return begin[1:]

@@ -9,7 +9,7 @@ from lined_streets import HEIGHT, Street
 from painted_streets import road_points, street
 from shapely.geometry import Polygon
 
-BORDER = np.hypot(0.0005, 0.02 * 0.03)   # m, of a painted border whose paint does not scatter, where nothing says how far apart the points lie
+BORDER = np.hypot(0.0008, 0.028 * 0.03)   # m, of a painted border whose paint does not scatter, where nothing says how far apart the points lie
 
 
 def sigmas(lines, **wanted):
@@ -49,6 +49,15 @@ def test_what_passes_differ_by_is_in_it():
     after = sigmas(street.lanes()[0], status="measured")
     np.testing.assert_allclose(after, np.hypot(before, 0.04), atol=1e-4)
     assert before[0] == pytest.approx(before[1], rel=0.5)
+
+
+def test_a_driving_line_is_cut_where_its_passes_begin_to_differ_by_centimetres():
+    street = two_lanes(again=(1.75,))
+    street.frame.pass_sigma[0] = SigmaAlong((0.0, 60.0, 60.1, 120.0), (0.0, 0.0, 0.05, 0.05))
+    rows = sorted((row for row in street.lanes()[0].rows if row["lane"] == 1), key=lambda row: row["station_m"])
+    assert [row["sigma_m"] for row in rows] == pytest.approx([0.002, 0.05], abs=0.006)
+    assert rows[0]["end_m"] == rows[1]["station_m"] == pytest.approx(60.0, abs=5.0)
+    assert {row["status"] for row in rows} == {"measured"}
 
 
 @pytest.mark.parametrize("scatter", [0.005, 0.015, 0.04])
@@ -121,5 +130,5 @@ def test_the_farther_apart_the_points_the_less_sure_the_lane():
         points = road_points(street(lanes.frame, length=120.0, left=5.0, right=-5.0, density=density), lanes.frame)
         told[density] = np.array(sigmas(lanes.lanes(road_points=points)[0], status="measured"))
     apart = {density: np.sqrt(values**2 - told[2500]**2) for density, values in told.items()}
-    np.testing.assert_allclose(apart[100], 0.02 * np.sqrt(0.10**2 - 0.02**2) / np.sqrt(2.0), rtol=0.15)
-    np.testing.assert_allclose(apart[25], 0.02 * np.sqrt(0.20**2 - 0.02**2) / np.sqrt(2.0), rtol=0.15)
+    np.testing.assert_allclose(apart[100], 0.028 * np.sqrt(0.10**2 - 0.02**2) / np.sqrt(2.0), rtol=0.15)
+    np.testing.assert_allclose(apart[25], 0.028 * np.sqrt(0.20**2 - 0.02**2) / np.sqrt(2.0), rtol=0.15)

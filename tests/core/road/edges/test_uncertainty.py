@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from lanewright.core.road.edges.road_edges import EdgePiece
 from lanewright.core.road.edges.uncertainty import CURB_RETURN, MAIN_EDGE, edge_sigma
 
 PLACES = np.arange(0.0, 100.5, 0.5)
@@ -10,20 +11,21 @@ EXACT = np.zeros(len(PLACES))
 
 
 def test_a_regular_curb_seen_without_scatter_is_as_good_as_its_foot_is_found():
-    assert edge_sigma(MIDDLE, PLACES, EXACT) == pytest.approx(MAIN_EDGE.foot, rel=0.02)
-    assert edge_sigma(MIDDLE, PLACES, EXACT, shares=CURB_RETURN) == pytest.approx(CURB_RETURN.foot, rel=0.02)
+    np.testing.assert_allclose(edge_sigma(MIDDLE, PLACES, EXACT), MAIN_EDGE.foot, rtol=0.02)
+    np.testing.assert_allclose(edge_sigma(MIDDLE, PLACES, EXACT, shares=CURB_RETURN), CURB_RETURN.foot, rtol=0.02)
 
 
-def test_a_tenth_of_the_points_makes_it_three_times_as_uncertain():
-    many, few = (edge_sigma(MIDDLE, PLACES, EXACT, np.full(len(PLACES), count)) for count in (200, 20))
-    assert few**2 - MAIN_EDGE.foot**2 == pytest.approx(10 * (many**2 - MAIN_EDGE.foot**2), rel=0.01)
-    assert edge_sigma(MIDDLE, PLACES, EXACT, np.full(len(PLACES), -1)) == edge_sigma(MIDDLE, PLACES, EXACT), "unknown counts add nothing"
+def test_a_tenth_of_the_points_makes_it_four_times_as_uncertain():
+    many, few = (edge_sigma(MIDDLE, PLACES, EXACT, np.full(len(PLACES), count)).mean() for count in (200, 20))
+    assert few**2 - MAIN_EDGE.foot**2 == pytest.approx(10**1.3 * (many**2 - MAIN_EDGE.foot**2), rel=0.01)
+    unknown = edge_sigma(MIDDLE, PLACES, EXACT, np.full(len(PLACES), -1))
+    np.testing.assert_array_equal(unknown, edge_sigma(MIDDLE, PLACES, EXACT), "unknown counts add nothing")
 
 
 def test_curb_points_that_scatter_make_it_uncertain_there_and_not_fifty_metres_on():
     rough = np.where(PLACES < 30.0, 0.020, 0.0)
-    assert edge_sigma(np.arange(5.0, 20.0), PLACES, rough) > 0.009
-    assert edge_sigma(np.arange(80.0, 90.0), PLACES, rough) < 0.003
+    assert edge_sigma(np.arange(5.0, 20.0), PLACES, rough).mean() > 0.009
+    assert edge_sigma(np.arange(80.0, 90.0), PLACES, rough).mean() < 0.003
 
 
 def test_the_middle_of_a_long_gap_is_worse_than_its_ends():
@@ -33,16 +35,34 @@ def test_the_middle_of_a_long_gap_is_worse_than_its_ends():
 
 
 def test_the_end_of_an_edge_is_worse_than_its_middle():
-    assert edge_sigma(np.array([0.0]), PLACES, EXACT) > 1.5 * edge_sigma(np.array([50.0]), PLACES, EXACT)
+    assert edge_sigma(np.array([0.0]), PLACES, EXACT) > 1.3 * edge_sigma(np.array([50.0]), PLACES, EXACT)
 
 
 def test_passes_that_differ_add_as_squares():
     alone = edge_sigma(MIDDLE, PLACES, EXACT)
-    assert edge_sigma(MIDDLE, PLACES, EXACT, passes=0.04) == pytest.approx(np.hypot(alone, 0.04))
+    np.testing.assert_allclose(edge_sigma(MIDDLE, PLACES, EXACT, passes=0.04), np.hypot(alone, 0.04))
 
 
-def test_a_few_bad_places_do_not_speak_for_the_whole_line():
-    one_bad = np.where(np.abs(PLACES - 50.0) < 2.0, 0.05, 0.001)
-    whole = edge_sigma(PLACES, PLACES, one_bad)
-    each = [edge_sigma(np.array([station]), PLACES, one_bad) for station in PLACES]
-    assert whole == pytest.approx(np.mean(each)) and whole < np.sqrt(np.mean(np.square(each)))
+def piece(sigma):
+    """An edge of a hundred metres with this sigma at every vertex."""
+    vertices = np.c_[PLACES, np.zeros(len(PLACES)), np.zeros(len(PLACES))]
+    return EdgePiece(vertices, 0, "left", "measured", 0, 1000.0, 1000.0 + PLACES[-1], PLACES[-1], sigma=sigma)
+
+
+def test_a_few_bad_places_do_not_speak_for_the_whole_edge():
+    each = edge_sigma(PLACES, PLACES, np.where(np.abs(PLACES - 50.0) < 2.0, 0.012, 0.001))
+    (whole,) = piece(each).cut_by_sigma()
+    assert whole.sigma == pytest.approx(np.mean(each)) and whole.sigma < np.sqrt(np.mean(np.square(each)))
+
+
+def test_an_edge_is_cut_where_passes_begin_to_differ_by_centimetres_and_its_pieces_touch():
+    first, second = piece(np.where(PLACES < 63.0, 0.003, 0.057)).cut_by_sigma()
+    assert (first.sigma, second.sigma) == pytest.approx((0.003, 0.057), abs=0.006)
+    assert first.end == second.station == pytest.approx(1063.0, abs=5.0) and second.end == 1100.0
+    np.testing.assert_array_equal(first.vertices[-1], second.vertices[0])
+    assert first.length + second.length == pytest.approx(100.0)
+
+
+def test_an_edge_that_is_uncertain_by_millimetres_more_or_less_is_one_piece():
+    (whole,) = piece(np.where(PLACES < 63.0, 0.001, 0.009)).cut_by_sigma()
+    assert whole.length == 100.0

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from lanewright.core.common.progress import Progress
 from lanewright.core.survey.adjustment.adjust import adjust_passes, solve_corrections
-from lanewright.core.survey.adjustment.register import PassOffsets, pass_offsets
+from lanewright.core.survey.adjustment.register import PassOffsets, _Strips, pass_offsets
 from scanned_streets import driven, scanned, survey_of
 
 FLAT = ((-20.0, 0.0), (20.0, 0.0))
@@ -119,6 +119,26 @@ def test_oblique_bars_of_a_hatched_area_do_not_turn_an_offset_across_into_one_al
     for found, true in ((offsets.along, -east), (offsets.left, -left)):
         assert np.isfinite(found).sum() >= 4
         np.testing.assert_allclose(found[np.isfinite(found)], true, atol=0.015)
+
+
+def test_where_a_drive_jumps_aside_before_a_hatched_area_its_bars_make_it_none_along():
+    """Less than half of the road is driven apart, and half of that is hatched."""
+    hatched = lambda x, y: (x > 60.0) & (np.mod(x - 1.5 * y, 3.0) < 0.6) & (np.abs(y) < 1.2) | (np.abs(np.abs(y) - 2.8) < 0.08)  # noqa: E731
+    survey = twice(left=lambda x: np.where(x > 50.0, 0.16, 0.0), paint=hatched, section=FLAT)
+    offsets, = pass_offsets(survey, 0)
+    beyond = offsets.stations > 60.0
+    np.testing.assert_allclose(offsets.left[beyond], -0.16, atol=0.015)
+    assert np.isfinite(offsets.along[beyond]).any() and np.nanmax(np.abs(offsets.along)) < 0.02
+
+
+def test_the_brightness_of_a_curb_face_is_no_paint_and_a_line_half_a_metre_beside_it_is():
+    across = np.tile(np.arange(0.005, 6.0, 0.01), 20)
+    along = np.repeat(np.arange(20) * 0.25 + 0.1, 600)
+    height, light = np.where(across > 3.0, 0.12, 0.0), np.where(np.abs(across - 3.0) < 0.04, 9000.0, 3000.0) + np.where(
+        np.abs(across - 2.5) < 0.06, 5000.0, 0.0) + 100.0 * np.random.default_rng(1).standard_normal(len(across))
+    paint = _Strips(across, along, height, light, (20, 300)).paint
+    assert np.isnan(paint[:, 148:152]).all() and np.isfinite(paint[:, 100:140]).all() and np.isfinite(paint[:, 160:]).all()
+    assert paint[:, 123:127].min() > 2.0
 
 
 def test_a_bare_plain_tells_nothing_of_the_place():
