@@ -41,7 +41,8 @@ COMPARED_CELLS = 10          # either side of a step of brightness: 1 m, of whic
 BRIGHTER = np.log(1.5)       # step of the logarithm of brightness; asphalt of another age differs by less
 LASTING_SHARE = 1.0 / 3.0    # of the median step by which the ground right before the limit is still brighter: it falls off with range
 LASTING_PROFILES = 31        # 2 m apart, of which most must show it: patches of asphalt are shorter
-AGREEING_PROFILES = 5        # whose median place of the step counts
+AGREEING_PROFILES = 5        # whose median place of the step counts,
+MAX_STRIP_SHIFT = 5          # cells from it to the step of a profile of the same strip: half of what is compared
 
 
 @dataclass
@@ -191,7 +192,7 @@ def _lines(at, values, known):
     return mean - slope * middle, slope
 
 
-def other_ground_begins(brightness: np.ndarray, track: np.ndarray, limit: np.ndarray) -> np.ndarray:
+def other_ground_begins(brightness: np.ndarray, stations: np.ndarray, track: np.ndarray, limit: np.ndarray) -> np.ndarray:
     """Where brighter ground begins between the vehicle and the limit of the road, and goes on as far as that.
 
     A narrower strip along the limit than `pavement_limits` searches is left to it.
@@ -199,6 +200,7 @@ def other_ground_begins(brightness: np.ndarray, track: np.ndarray, limit: np.nda
     Parameters
     ----------
     brightness : (P, K) counts, profiles of cells outward
+    stations : (P,) m, ascending
     track : (P,) cells, not necessarily whole, of the vehicle's track
     limit : (P,) cells, not necessarily whole, at which the ground changes
 
@@ -208,14 +210,24 @@ def other_ground_begins(brightness: np.ndarray, track: np.ndarray, limit: np.nda
     """
     begins, step, still = by_rows(lambda some: _brighter_from(brightness[some], track[some], limit[some]), len(brightness)).T
     there = begins >= 0
-    # a single profile tells little of how far the ground goes on: strips have dark patches and fade with range
-    about = _profiles_about(len(there))
-    lasting = there & (there[about].mean(1) > 0.5) & (known_median(still[about], 1) >= LASTING_SHARE * known_median(step[about], 1))
-    if not lasting.any():
+    holds = np.flatnonzero(there & (still >= LASTING_SHARE * step))
+    if not len(holds):
         return np.full(len(begins), np.nan)
-    known = np.flatnonzero(there)
-    place = median_filter(np.interp(np.arange(len(begins)), known, begins[known]), AGREEING_PROFILES, mode="nearest")
+    # a single profile tells little of how far a strip goes on, which has dark patches and fades with range, but where it begins
+    place = median_filter(np.interp(np.arange(len(begins)), holds, begins[holds]), AGREEING_PROFILES, mode="nearest")
+    alike = there & (np.abs(begins - place) <= MAX_STRIP_SHIFT)
+    lasting = np.zeros(len(begins), bool)
+    for first, end in zip(*_stretches(stations)):
+        about = first + _profiles_about(end - first)
+        some = np.where(alike, still - LASTING_SHARE * step, np.nan)[about]
+        lasting[first:end] = alike[first:end] & (alike[about].sum(1) > 0.5 * LASTING_PROFILES) & (known_median(some, 1) >= 0.0)
     return np.where(lasting, place, np.nan)
+
+
+def _stretches(stations):
+    """First and last + 1 profiles of stretches without gaps."""
+    cuts = np.flatnonzero(np.diff(stations) > 1.5 * np.diff(stations).min(initial=np.inf)) + 1
+    return np.r_[0, cuts], np.r_[cuts, len(stations)]
 
 
 def _profiles_about(count):

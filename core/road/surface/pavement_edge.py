@@ -167,7 +167,7 @@ def grown_limit(profiles: SurfaceProfiles, cells: GroundCells, height: np.ndarra
     # at the last cell, nothing beyond it was looked for
     blind = np.pad(halves.blind(), ((0, 0), (0, 1)))[np.arange(len(changes)), changes]
     changes = np.interp(pooled.stations, pooled.stations[known], _agreed(changes[known], blind[known], len(rows.offsets)))
-    other = other_ground_begins(pooled.brightness, (beside - rows.offsets[0]) / PROFILE_COLUMN, changes)
+    other = other_ground_begins(pooled.brightness, pooled.stations, (beside - rows.offsets[0]) / PROFILE_COLUMN, changes)
     changes = np.interp(rows.stations, pooled.stations, np.where(np.isfinite(other), other, changes))
     found = pavement_limits(rows, changes)
     outward = np.interp(stations, rows.stations, rows.offsets[0] + (found.cell - 0.5) * PROFILE_COLUMN)
