@@ -39,8 +39,8 @@ class Roadside(Algorithm):
             "Buildings and rows of parked cars are none. Where a scanner sees hardly higher than it rides, as heads of many beams do, "
             "what is as high as it is left out: it may be a house front.\n\n"
             "Status says which pieces of a line were measured. Where something stands before it, as parked cars before a wall, and what is seen "
-            "of it on both sides agrees in offset and height, it is one line, and the piece between them is bridged. Where the scanner saw through a "
-            "gap, as through a gate or a driveway, nothing is drawn.\n\n"
+            "of it on both sides agrees in offset and height, it is one line, and the piece between them is bridged and drawn paler. Where the "
+            "scanner saw through a gap, as through a gate or a driveway, nothing is drawn.\n\n"
             "Only what stands outside the carriageway counts: give the road edges, or the layers of lines or lanes. Gutters are the lowest points "
             "along an edge that the road falls to; the higher side of a road has none.")
     TAGS = ("guard rail", "barrier", "noise wall", "fence", "hedge", "pole", "sign", "tree", "asset", "street furniture")

@@ -2335,8 +2335,8 @@
         </message>
         <message>
             <location filename="../../algorithms/inventory/roadside.py" />
-            <source>Status says which pieces of a line were measured. Where something stands before it, as parked cars before a wall, and what is seen of it on both sides agrees in offset and height, it is one line, and the piece between them is bridged. Where the scanner saw through a gap, as through a gate or a driveway, nothing is drawn.</source>
-            <translation>Status sagt, welche Stücke einer Linie gemessen sind. Wo etwas davor steht, wie parkende Autos vor einer Mauer, und das, was auf beiden Seiten von ihr zu sehen ist, in Versatz und Höhe übereinstimmt, ist es eine Linie, und das Stück dazwischen ist überbrückt. Wo der Scanner durch eine Lücke sah, wie durch ein Tor oder eine Einfahrt, wird nichts gezeichnet.</translation>
+            <source>Status says which pieces of a line were measured. Where something stands before it, as parked cars before a wall, and what is seen of it on both sides agrees in offset and height, it is one line, and the piece between them is bridged and drawn paler. Where the scanner saw through a gap, as through a gate or a driveway, nothing is drawn.</source>
+            <translation>Status sagt, welche Stücke einer Linie gemessen sind. Wo etwas davor steht, wie parkende Autos vor einer Mauer, und das, was auf beiden Seiten von ihr zu sehen ist, in Versatz und Höhe übereinstimmt, ist es eine Linie, und das Stück dazwischen ist überbrückt und blasser gezeichnet. Wo der Scanner durch eine Lücke sah, wie durch ein Tor oder eine Einfahrt, wird nichts gezeichnet.</translation>
         </message>
         <message>
             <location filename="../../algorithms/inventory/roadside.py" />

@@ -14,7 +14,13 @@
         <data_defined_properties>
           <Option type="Map">
             <Option value="" type="QString" name="name"/>
-            <Option name="properties"/>
+            <Option type="Map" name="properties">
+              <Option type="Map" name="alpha">
+                <Option value="true" type="bool" name="active"/>
+                <Option value="if(&quot;status&quot; = 'bridged', 40, 100)" type="QString" name="expression"/>
+                <Option value="3" type="int" name="type"/>
+              </Option>
+            </Option>
             <Option value="collection" type="QString" name="type"/>
           </Option>
         </data_defined_properties>
@@ -61,7 +67,13 @@
         <data_defined_properties>
           <Option type="Map">
             <Option value="" type="QString" name="name"/>
-            <Option name="properties"/>
+            <Option type="Map" name="properties">
+              <Option type="Map" name="alpha">
+                <Option value="true" type="bool" name="active"/>
+                <Option value="if(&quot;status&quot; = 'bridged', 40, 100)" type="QString" name="expression"/>
+                <Option value="3" type="int" name="type"/>
+              </Option>
+            </Option>
             <Option value="collection" type="QString" name="type"/>
           </Option>
         </data_defined_properties>
@@ -108,7 +120,13 @@
         <data_defined_properties>
           <Option type="Map">
             <Option value="" type="QString" name="name"/>
-            <Option name="properties"/>
+            <Option type="Map" name="properties">
+              <Option type="Map" name="alpha">
+                <Option value="true" type="bool" name="active"/>
+                <Option value="if(&quot;status&quot; = 'bridged', 40, 100)" type="QString" name="expression"/>
+                <Option value="3" type="int" name="type"/>
+              </Option>
+            </Option>
             <Option value="collection" type="QString" name="type"/>
           </Option>
         </data_defined_properties>
@@ -155,7 +173,13 @@
         <data_defined_properties>
           <Option type="Map">
             <Option value="" type="QString" name="name"/>
-            <Option name="properties"/>
+            <Option type="Map" name="properties">
+              <Option type="Map" name="alpha">
+                <Option value="true" type="bool" name="active"/>
+                <Option value="if(&quot;status&quot; = 'bridged', 40, 100)" type="QString" name="expression"/>
+                <Option value="3" type="int" name="type"/>
+              </Option>
+            </Option>
             <Option value="collection" type="QString" name="type"/>
           </Option>
         </data_defined_properties>
@@ -202,7 +226,13 @@
         <data_defined_properties>
           <Option type="Map">
             <Option value="" type="QString" name="name"/>
-            <Option name="properties"/>
+            <Option type="Map" name="properties">
+              <Option type="Map" name="alpha">
+                <Option value="true" type="bool" name="active"/>
+                <Option value="if(&quot;status&quot; = 'bridged', 40, 100)" type="QString" name="expression"/>
+                <Option value="3" type="int" name="type"/>
+              </Option>
+            </Option>
             <Option value="collection" type="QString" name="type"/>
           </Option>
         </data_defined_properties>
@@ -249,7 +279,13 @@
         <data_defined_properties>
           <Option type="Map">
             <Option value="" type="QString" name="name"/>
-            <Option name="properties"/>
+            <Option type="Map" name="properties">
+              <Option type="Map" name="alpha">
+                <Option value="true" type="bool" name="active"/>
+                <Option value="if(&quot;status&quot; = 'bridged', 40, 100)" type="QString" name="expression"/>
+                <Option value="3" type="int" name="type"/>
+              </Option>
+            </Option>
             <Option value="collection" type="QString" name="type"/>
           </Option>
         </data_defined_properties>

@@ -22,7 +22,16 @@ from lanewright.processing_provider.results.runs import Run
 from lanewright.processing_provider.styling import LOOKS, STYLES, Styler, apply_style, style_on_load
 from lanewright.processing_provider.texts import install_translator, remove_translator
 from osgeo import gdal
-from qgis.core import QgsExpression, QgsProcessingContext, QgsProject, QgsRasterLayer, QgsRasterMinMaxOrigin, QgsRenderContext, QgsVectorLayer
+from qgis.core import (
+    QgsExpression,
+    QgsProcessingContext,
+    QgsProject,
+    QgsRasterLayer,
+    QgsRasterMinMaxOrigin,
+    QgsRenderContext,
+    QgsSymbol,
+    QgsVectorLayer,
+)
 
 KINDS = {
     "ROAD_EDGES": ("LineStringZ", ROAD_EDGES),
@@ -83,6 +92,15 @@ def test_edges_of_the_pavement_look_unlike_curbs(qgis_app):
     apply_style(layer, STYLES / "road_edges.qml")
     colours = {drawn.value(): drawn.symbol().color().name() for drawn in layer.renderer().categories()}
     assert colours["pavement measured"] == colours["pavement bridged"] not in {colours["left measured"], colours["right measured"]}
+
+
+def test_what_was_bridged_beside_the_road_is_paler_than_what_was_measured(qgis_app):
+    layer = layer_of("LineStringZ", ROADSIDE)
+    apply_style(layer, STYLES / "roadside.qml")
+    for drawn in layer.renderer().categories():
+        opacity = drawn.symbol().dataDefinedProperties().property(QgsSymbol.Property.Opacity).asExpression()
+        shown = [QgsExpression(opacity.replace('"status"', f"'{status}'")).evaluate() for status in ("bridged", "measured")]
+        assert 20 <= shown[0] < shown[1] == 100, drawn.label()
 
 
 def test_every_type_of_lane_has_a_look_of_its_own(qgis_app):
