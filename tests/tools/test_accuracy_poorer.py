@@ -74,12 +74,27 @@ def test_lines_within_their_sigma_are_counted_and_far_ones_are_not():
     assert percent(found, "edges_sigma") == 50 and percent(found, "lanes_sigma") == 100
 
 
-def test_the_page_says_what_each_lack_costs_and_which_share_lies_within_sigma():
-    whole = {"curbs": (90.0, 100.0), "lanes": (98.0, 100.0), "edges_sigma": (70.0, 100.0)}
-    given = [{"name": "one", "kind": "simulated", "points": 1000, "streets": {"as surveyed": whole},
-              "poorer": {"one point in 4": {"curbs": (80.0, 100.0)}, "points without time": {"refused": "No road."}}}]
-    text = poorer_section(given)
-    assert "| one point in 4 | -10.0 | – | – | – | lost | – | – | – |" in text and "| points without time | no map: No road. |" in text
+WHOLE = {"curbs": (90.0, 100.0), "lanes": (98.0, 100.0), "edges_sigma": (70.0, 100.0)}
+
+
+def street(name, **poorer):
+    return {"name": name, "kind": "simulated", "points": 1000, "streets": {"as surveyed": WHOLE}, "poorer": poorer}
+
+
+def test_the_page_says_of_each_street_what_a_lack_costs():
+    text = poorer_section([street("one", thin={"curbs": (80.0, 100.0)}, timeless={"refused": "No road."})])
+    assert "| survey | as surveyed | thin | timeless |" in text
+    assert "| one (simulated) | 90.0 | -10.0 | no map |" in text and "| one (simulated) | 98.0 | lost | no map |" in text
+    assert "Markings" not in text and "All, by length" not in text
+    assert poorer_section([{"streets": {"as surveyed": WHOLE}}]) == ""
+
+
+def test_the_page_pools_streets_by_length_and_counts_those_without_a_map():
+    text = poorer_section([street("one", thin={"curbs": (80.0, 100.0), "lanes": (98.0, 100.0)}), street("two", thin={"refused": "No road."})])
+    assert "| thin (no map of 1) | -10.0 | – | – | – | · |" in text
+
+
+def test_the_page_says_which_share_lies_within_sigma():
+    given = [street("one")]
     assert "| one (simulated) | 70.0 | – |" in sigma_section(given)
-    assert poorer_section([{"streets": {"as surveyed": whole}}]) == ""
     assert sigma_section([{"name": "", "kind": "", "streets": {"as surveyed": {}}}]) == ""

@@ -1,33 +1,63 @@
 """The sections of the page on surveys that lack something, and on how honest the uncertainty of lines is."""
 
-from .streets import percent, pooled
+from .streets import harmonic, percent, pooled
 from .streets_page import CHANGED, change, scores
 from .tables import number, table
 
+BY_SURVEY = {
+    "Curbs and edges of the pavement": lambda found: percent(pooled([{"edges": found[name]} for name in ("curbs", "pavement") if name in found]), "edges"),
+    "Markings, F1": lambda found: harmonic(found, "paint", "paint_right"),
+    "Driving lines, 15 cm": lambda found: percent(found, "lanes"),
+}
+
 
 def poorer_section(figures):
-    """The change of each figure when something lacks, a table for each survey that was judged so."""
-    parts = []
-    for f in figures:
-        if f.get("poorer") and "refused" not in f["streets"]["as surveyed"]:
-            whole = scores(f["streets"]["as surveyed"])
-            rows = [["**as surveyed**", *(number(value) for value in whole)]]
-            for name, found in f["poorer"].items():
-                cells = [f"no map: {found['refused']}", *[""] * (len(CHANGED) - 1)] if "refused" in found else [
-                    "lost" if after is None and before is not None else change(before, after) for before, after in zip(whole, scores(found))]
-                rows.append([name, *cells])
-            parts.append(f"{f['name']} ({f['kind']}), {f['points']:,} points:\n\n" + table(["", *CHANGED], rows))
-    if not parts:
+    """The change of each figure when something lacks, over all surveys that were judged so and of each."""
+    figures = [f for f in figures if f.get("poorer") and "refused" not in f["streets"]["as surveyed"]]
+    if not figures:
         return ""
+    lacks = list(dict.fromkeys(name for f in figures for name in f["poorer"]))
+    parts = [_over_all(figures, lacks)] if len(figures) > 1 else []
+    for title, score in BY_SURVEY.items():
+        rows = [[_label(f), number(score(f["streets"]["as surveyed"])), *(_change(f, name, score) for name in lacks)]
+                for f in figures if score(f["streets"]["as surveyed"]) is not None]
+        if rows:
+            parts.append(f"{title}:\n\n" + table(["survey", "as surveyed", *lacks], rows))
     return ("## Surveys that lack something\n\nThe same surveys with fewer points, coarse coordinates, 8-bit intensity, without time, or with "
             "colours in place of intensity (made photographs: paint on asphalt with noise, 3 cm beside the points, a third of the street in "
-            "shadow; *Intensity from* is then `rgb`). The first row of a table is in per cent, the others are the change in points; “lost” "
-            "stands where nothing of the kind was drawn any more.\n\n" + "\n\n".join(parts))
+            "shadow; *Intensity from* is then `rgb`). What is as surveyed is in per cent, the others are the change in points; “lost” "
+            "stands where nothing of the kind was drawn any more, “no map” where the survey was refused.\n\n" + "\n\n".join(parts))
+
+
+def _over_all(figures, lacks):
+    """The table of all figures, pooled over the surveys by length."""
+    rows = [["**as surveyed**", *(number(value) for value in scores(pooled([f["streets"]["as surveyed"] for f in figures])))]]
+    for name in lacks:
+        pairs = [(f["streets"]["as surveyed"], f["poorer"][name]) for f in figures if "refused" not in f["poorer"].get(name, {"refused": ""})]
+        refused = sum("refused" in f["poorer"].get(name, ()) for f in figures)
+        before, after = (scores(pooled([pair[k] for pair in pairs])) for k in (0, 1))
+        rows.append([name + (f" (no map of {refused})" if refused else ""), *map(change, before, after)])
+    return "All, by length:\n\n" + table(["", *CHANGED], rows)
+
+
+def _change(figure, name, score):
+    """The cell of one survey that lacks one thing."""
+    found = figure["poorer"].get(name)
+    if found is None:
+        return "–"
+    if "refused" in found:
+        return "no map"
+    before, after = score(figure["streets"]["as surveyed"]), score(found)
+    return "lost" if after is None else change(before, after)
+
+
+def _label(figure):
+    return f"{figure['name']} ({figure['kind']})"
 
 
 def sigma_section(figures):
     """Which share of the places of edges and driving lines lies within the uncertainty that their line says."""
-    judged = [(f"{f['name']} ({f['kind']})", f["streets"]["as surveyed"]) for f in figures]
+    judged = [(_label(f), f["streets"]["as surveyed"]) for f in figures]
     judged = [(name, found) for name, found in judged if "edges_sigma" in found or "lanes_sigma" in found]
     if not judged:
         return ""

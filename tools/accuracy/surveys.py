@@ -44,7 +44,6 @@ OTHERS = {
     "outskirts": (SampleSettings(scene="outskirts"), "two lanes between gardens and a pasture, rail, barrier, walls, fences, hedge, two passes"),
     "cycle lanes": (SampleSettings(scene="cycle-lanes"), "two lanes with the word BUS, two cycle lanes with bicycles, two passes"),
 }
-POORER_SAMPLES = "street", "urban"   # also judged with something lacking
 CELL, SEEN = 0.04, 3   # m; cells about a point of road that count as seen
 
 
@@ -178,7 +177,7 @@ def _make_sample(folder, settings, text, steps=True):
     write_layers(folder / "truth.gpkg", dict(boundaries=sample.truth_boundaries, markings=sample.truth_markings,
                                              driving_lines=sample.truth_driving_lines, surface=sample.truth_surface, lanes=sample.truth_lanes,
                                              roadside=sample.truth_roadside))
-    about = dict(kind="simulated", text=f"{settings.length:g} m, {text}", steps=steps, poorer=folder.name in POORER_SAMPLES)
+    about = dict(kind="simulated", text=f"{settings.length:g} m, {text}", steps=steps, poorer=True)
     (folder / "about.json").write_text(json.dumps(about))
 
 
