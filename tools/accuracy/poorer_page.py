@@ -4,8 +4,14 @@ from .streets import harmonic, percent, pooled
 from .streets_page import CHANGED, change, scores
 from .tables import number, table
 
+
+def _boundaries(found):
+    """The share of all edges of the road that was found, curbs or not."""
+    return percent(pooled([{"edges": found[name]} for name in ("curbs", "pavement") if name in found]), "edges")
+
+
 BY_SURVEY = {
-    "Curbs and edges of the pavement": lambda found: percent(pooled([{"edges": found[name]} for name in ("curbs", "pavement") if name in found]), "edges"),
+    "Curbs and edges of the pavement": _boundaries,
     "Markings, F1": lambda found: harmonic(found, "paint", "paint_right"),
     "Driving lines, 15 cm": lambda found: percent(found, "lanes"),
 }
