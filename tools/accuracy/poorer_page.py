@@ -31,7 +31,8 @@ def poorer_section(figures):
             parts.append(f"{title}:\n\n" + table(["survey", "as surveyed", *lacks], rows))
     return ("## Surveys that lack something\n\nThe same surveys with fewer points, coarse coordinates, 8-bit intensity, without time, or with "
             "colours in place of intensity (made photographs: paint on asphalt with noise, 3 cm beside the points, a third of the street in "
-            "shadow; *Intensity from* is then `rgb`). What is as surveyed is in per cent, the others are the change in points; “lost” "
+            "shadow, and all other ground as grey as asphalt, so that only its form shows where pavement ends; *Intensity from* is then "
+            "`rgb`). What is as surveyed is in per cent, the others are the change in points; “lost” "
             "stands where nothing of the kind was drawn any more, “no map” where the survey was refused.\n\n" + "\n\n".join(parts))
 
 
