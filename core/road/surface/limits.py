@@ -7,12 +7,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...common.runs import stretch_of
+from ..edges.fit import MAX_EDGE_JUMP
 
 if TYPE_CHECKING:
     from ..edges.road_edges import RoadEdges
 
 MAX_OPENING = 30.0       # m of missing edge that is closed by a straight line
 EDGE_CONTINUATION = 5.0  # m by which the offset of an edge holds before its first and after its last vertex
+MAX_BRIDGED_SKEW = 0.15  # m across per m along of a gap, beside MAX_EDGE_JUMP: tapers widen by 1 in 10 and less
 
 
 def edge_offsets(edges: RoadEdges | None, road: int, stations: np.ndarray) -> dict[str, tuple[np.ndarray, np.ndarray]]:
@@ -28,7 +30,8 @@ def edge_offsets(edges: RoadEdges | None, road: int, stations: np.ndarray) -> di
     -------
     dict of side (left, right) to (offset, measured): `offset` is (N,) m, NaN where there is no edge;
     `measured` is (N,) bool, True where a measured or bridged edge gives the offset. It is False for inferred
-    edges and for closed openings. Edges of the pavement count where there is no curb.
+    edges and for closed openings. Edges of the pavement count where there is no curb; short openings between them, and beside
+    curbs, are closed too.
     """
     found = {}
     for side, sign in (("left", 1.0), ("right", -1.0)):
@@ -47,7 +50,7 @@ def edge_offsets(edges: RoadEdges | None, road: int, stations: np.ndarray) -> di
             take = np.isnan(offset[beside])
             offset[beside][take] = np.interp(stations[beside][take], s, d)
             measured[beside][take] = True
-        found[side] = offset, measured
+        found[side] = _closed(stations, offset), measured
     return found
 
 
@@ -71,6 +74,18 @@ def _lines_of(edges, road, side, wanted):
         order = np.argsort(s, kind="stable")
         if len(s) > 1:
             yield s[order], d[order], edges.status[k]
+
+
+def _closed(stations, offset):
+    """Offsets with openings closed that the edges before and after them reach across: each holds for EDGE_CONTINUATION beyond its end."""
+    known = np.flatnonzero(np.isfinite(offset))
+    before, after = known[:-1], known[1:]
+    length, shift = stations[after] - stations[before], np.abs(offset[after] - offset[before])
+    reached = np.r_[False, (length <= 2 * EDGE_CONTINUATION) & (shift <= MAX_EDGE_JUMP + MAX_BRIDGED_SKEW * length), False]
+    if not reached.any():
+        return offset
+    inside = np.isnan(offset) & reached[np.searchsorted(stations[known], stations)]
+    return np.where(inside, np.interp(stations, stations[known], offset[known]), offset)
 
 
 def _continued(stations, offset):

@@ -22,7 +22,7 @@ from ..edges.fit import EDGE_VERTEX_SPACING, IN_LINE_GAP_FACTOR, MAX_EDGE_JUMP, 
 from ..edges.road_edges import EdgePiece, RoadEdges
 from .extract import Carriageway, SurfaceSettings, find_carriageway
 from .ground_grid import COLUMN_WIDTH, ROW_LENGTH
-from .limits import edge_offsets
+from .limits import MAX_BRIDGED_SKEW, edge_offsets
 
 if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame
@@ -33,7 +33,6 @@ AGREEING_LENGTH = 7.0       # m of road of which most must show the edge
 MIN_PAVEMENT_LENGTH = 10.0  # m of a line and of the curb beside it: rows are averages of 7 m, so what is shorter is a single observation
 MIN_OWN_LENGTH = 0.5 * AGREEING_LENGTH  # m of a line without that curb: which rows begin it is no better known
 MAX_ROW_JUMP = 0.5          # m across from one row to the next at which a line ends: a street joins
-MAX_BRIDGED_SKEW = 0.15     # m across per m along of a gap, beside MAX_EDGE_JUMP: tapers widen by 1 in 10 and less
 MAX_LINE_MISS = 0.2         # m, of single rows from one even bend through both sides of a gap that is longer than `max_gap`
 MEETING_LENGTH = 0.5        # m at the end of a line in which it may meet a curb
 MIN_LIKELY_SHARE = 0.5      # of a gap in which the edge is rather there than not, for the line to go on as measured

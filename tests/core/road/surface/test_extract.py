@@ -302,6 +302,21 @@ def test_across_a_driveway_the_road_keeps_its_line():
     assert 3.9 < width_seen(points, 28, 32)[1] < 4.01
 
 
+@pytest.mark.parametrize("opening, after, reach", [
+    ((27, 33), 4.0, 4.0),     # each edge holds for 5 m beyond its end
+    ((15, 45), 4.0, 7.0),     # nobody saw an edge there: the ground decides
+    ((27, 33), 7.0, 7.0),     # the second is the far side of a path, and no edge that the first one goes on as
+])
+def test_where_the_pavement_is_flush_with_a_path_the_road_keeps_its_line_between_two_edges_a_few_metres_apart(opening, after, reach):
+    ground = survey(lambda s, d: np.where(d > 7, 0.12, curbs()(s, np.minimum(d, 0))))
+    edges = road_edges(left=())
+    for piece, offset in (((0, opening[0]), 4.0), ((opening[1], LENGTH), after)):
+        part = road_edges(left=(piece,), right=(), half_width=offset)
+        edges.add(part.geometries[0], **{**part.rows[0], "edge": "pavement"})
+    points, _ = taken(ground, edges)
+    assert width_seen(points, opening[0] + 2, opening[1] - 2)[1] == pytest.approx(reach, abs=0.2)
+
+
 def test_every_point_says_how_far_the_road_reaches_on_its_side():
     points, _ = taken(survey(lambda s, d: np.where((d > 4) | (d < -4), 0.12, 0.0)), road_edges())
     inner = points[(points.s > 5) & (points.s < 55)]
