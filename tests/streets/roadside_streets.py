@@ -13,7 +13,8 @@ SOLID = ("barrier", "wall", "hedge", "building", "cars")
 
 @dataclass(frozen=True)
 class Thing:
-    """A thing along the road: its kind, offset of its face from the middle of the road, and stations; a rail may have the form double or ropes."""
+    """A thing along the road: its kind, offset of its face from the middle of the road, and stations; a rail may have the form double or ropes, a hedge
+    that of loose leaves, between which one sees deep into it."""
 
     kind: str
     offset: float
@@ -50,8 +51,8 @@ def points_of(thing, rng, density=FACE):
     elif thing.kind == "fence":
         kept = rng.random(count) < 0.35
     elif thing.kind == "hedge":
-        back = np.abs(rng.normal(0.0, 0.10, count))
-        kept = np.ones(count, bool)
+        back = rng.exponential(0.4, count) if thing.form == "loose" else np.abs(rng.normal(0.0, 0.10, count))
+        kept = back < 0.9
         over = rng.random(count) < 0.3
         z, back = np.where(over, top + rng.normal(0.0, 0.05, count), z), np.where(over, rng.uniform(0.0, 0.8, count), back)
     elif thing.kind == "cars":

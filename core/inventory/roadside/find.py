@@ -15,6 +15,7 @@ from ..borders import BorderLayers, RoadBorders
 from ..surface_grid import SLICE_LENGTH
 from .chains import Chain, find_chains
 from .divide import things_of
+from .faces import along_faces
 from .gaps import gaps_by_window, judged, pulses_at
 from .ground import GROUND_CELL, local_ground
 from .gutters import find_gutters
@@ -132,10 +133,14 @@ def find_roadside(survey: Survey, layers: BorderLayers = BorderLayers(), setting
                 parts.setdefault(key, []).append(some)
         for (what, side), some in sorted(parts.items()):
             into = partial(_look_into, survey, road, side, edges, settings.reach) if what == "line" else None
-            for chain in find_chains(Uprights.joined(some), road, side, settings.max_gap, settings.min_length, into):
-                unknown += chain.length * float(chain.members.above_view.mean() > 0.5)
-                for kind, part in [("gutter", chain)] if what == "gutter" else things_of(chain, settings.min_length):
-                    found.lines.append(SideLine(kind, part, float(np.median(part.members.foot)), edges.beyond(side, part.s, part.d)))
+            chains = find_chains(Uprights.joined(some), road, side, settings.max_gap, settings.min_length, into)
+            unknown += sum(chain.length for chain in chains if chain.members.above_view.mean() > 0.5)
+            if what == "gutter":
+                things = [("gutter", chain) for chain in chains]
+            else:
+                things = along_faces([thing for chain in chains for thing in things_of(chain, settings.min_length)])
+            for kind, part in things:
+                found.lines.append(SideLine(kind, part, float(np.median(part.members.foot)), edges.beyond(side, part.s, part.d)))
     if unknown:
         found.notes.append(f"{unknown:.0f} m of what stands beside the road are as high as the scanner, which sees hardly higher, as heads of many "
                            "beams do. They are left out, for house fronts look the same to it.")

@@ -83,9 +83,11 @@ def find_poles(s: np.ndarray, d: np.ndarray, above: np.ndarray, ground: np.ndarr
 
 def _pole(rows, s, d, above, ground, min_height):
     """The Pole of a shaft's points; None where it is none."""
+    foot = float(above[rows].min())
     rows = rows[_narrow(s[rows], d[rows], above[rows])]
     if len(rows) < MIN_POLE_POINTS:
         return None
+    stands = float(above[rows].min()) < foot + POLE_BIN
     place = np.c_[s[rows], d[rows]]
     centre, radius = _circle(place)
     miss = np.abs(np.hypot(*(place - centre).T) - radius)
@@ -94,7 +96,8 @@ def _pole(rows, s, d, above, ground, min_height):
     near = np.flatnonzero((np.abs(s - centre[0]) < HEAD_REACH) & (np.abs(d - centre[1]) < HEAD_REACH))
     ring = np.hypot(s[near] - centre[0], d[near] - centre[1])
     height = _top(above[near][ring < max(2 * radius, 0.25)])
-    if height < max(min_height, SLENDER * 2 * radius):
+    # people are slender at the head alone
+    if height < max(min_height, SLENDER * 2 * radius) or height < AS_LOW_AS_CARS and not stands:
         return None
     beside = (above[near] > SHAFT[0]) & (above[near] < height) & (ring > radius + FREE_ABOUT[0]) & (ring < radius + FREE_ABOUT[1])
     if height < AS_LOW_AS_CARS and beside.sum() > MAX_BESIDE * len(rows):

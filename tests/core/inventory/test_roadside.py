@@ -10,11 +10,12 @@ from lanewright.core.inventory.roadside.chains import find_chains
 from lanewright.core.inventory.roadside.divide import things_of
 from lanewright.core.inventory.roadside.find import find_roadside
 from lanewright.core.inventory.roadside.layers import roadside_to_features
+from lanewright.core.inventory.roadside.poles import find_poles
 from lanewright.core.inventory.roadside.settings import RoadsideSettings
 from lanewright.core.inventory.roadside.uprights import TOP_BINS, Uprights
 from lanewright.core.report.roadside import roadside_report
 from measured_streets import GROUND, SENSOR, Drive, edges_of, measured_road
-from roadside_streets import BESIDE, HEIGHTS, LENGTH, Thing, hidden_by, points_of, road_with, vans
+from roadside_streets import BESIDE, HEIGHTS, LENGTH, Thing, hidden_by, points_of, pole_points, road_with, vans
 
 KINDS = ("guard_rail", "barrier", "wall", "fence", "hedge")
 # rails and barriers at the edge, walls, fences and hedges behind verge or sidewalk, with gaps between them
@@ -171,6 +172,15 @@ def test_a_driveway_through_a_hedge_is_left_open():
     assert pieces[0][3] == pytest.approx(50.0, abs=0.5) and pieces[1][2] == pytest.approx(52.8, abs=0.5)
 
 
+@pytest.mark.parametrize("face, seed", [(150.0, 1), (300.0, 5), (500.0, 2), (500.0, 4)])
+def test_a_hedge_into_which_one_sees_is_one_line_along_its_face(face, seed):
+    survey, edges = road_with((Thing("hedge", 5.8, 10, 110, form="loose"),), seed=seed, face=face)
+    line, = (line for line in found_in(survey, edges).lines if line.kind != "gutter")
+    assert line.kind == "hedge" and line.chain.length == pytest.approx(100.0, abs=1.5)
+    assert line.chain.d.max() < 5.8 + 1.75 + 0.45   # counted from the driven line
+    assert [status for status, _ in line.chain.pieces()] == ["measured"]
+
+
 def test_a_row_of_cars_parked_across_is_no_line():
     survey, edges = road_with(vans(4.4, 1.8, 2.6, apart=0.25))
     assert not pieces_of(survey, edges)
@@ -285,6 +295,15 @@ def test_people_and_bushes_are_no_poles():
     people = tuple((10.0 + 3.0 * k, 5.0 + 0.2 * (k % 3), 0.45, 1.6 + 0.05 * (k % 5)) for k in range(12))
     survey, edges = road_with((), people)
     assert not found_in(survey, edges).poles[0]
+
+
+def test_a_person_whose_head_is_slender_is_no_pole_and_a_bollard_of_that_height_is():
+    rng = np.random.default_rng(1)
+    body, head, bollard = (pole_points(20.0, 5.0, *size, rng) for size in ((0.44, 1.45), (0.20, 1.85), (0.12, 1.85)))
+    person = [np.concatenate([b, h[head[2] - BESIDE > 1.45]]) for b, h in zip(body, head)]
+    for (x, y, z), heights in ((person, []), (bollard, [1.85])):
+        found = find_poles(x, y, z - BESIDE, 0 * z, (0.0, 40.0), RoadsideSettings.min_pole_height)
+        assert [pole.height for pole in found] == pytest.approx(heights, abs=0.1)
 
 
 def test_a_verge_that_falls_on_to_the_foot_of_a_barrier_is_no_gutter():
