@@ -33,7 +33,7 @@ END = Field("end_m", float, "End station (m)")
 
 CURB_POINTS = [ROAD, NEAREST_PASS, SIDE, STATUS, STATION, OFFSET, HEIGHT, PART,
                CURB_KIND, Field("chain", int, "Chain along the curb"), Field("along_m", float, "Distance along the chain (m)"),
-               Field("residual_m", float, "Residual (m)"),
+               Field("residual_m", float, "Residual (m)"), SIGMA,
                Field("support", int, "Supporting points"), PASS_SIGMA]
 ROAD_EDGES = [ROAD, NEAREST_PASS, SIDE, STATUS, STATION, END, HEIGHT, PART, AGREE, LENGTH, RMSE, SIGMA,
               CURB_KIND, EDGE, Field("chain", int, "Chain along the curb")]

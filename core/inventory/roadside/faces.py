@@ -1,4 +1,4 @@
-"""What is thick and loose, as a hedge, shows uprights on its face and inside it, and may be followed along either: it is told once, along its face."""
+"""What is thick and loose, as a hedge, shows uprights on its face and inside it, and may be followed along either: it counts once, along its face."""
 
 from __future__ import annotations
 

@@ -14,16 +14,17 @@ import numpy as np
 import shapely
 
 from ...common.features import Features
-from ...common.schemas import CURB_POINTS, NEAREST_PASS, PASS_SIGMA
+from ...common.schemas import CURB_POINTS, NEAREST_PASS, PASS_SIGMA, SIGMA
 from ...survey.frame.placement import COORDINATE_DECIMALS, as_written, known
 
 if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame
 
 UNKNOWN_OF_CURB = dict(road=-1, nearest_pass=-1, side="", status="", part="bottom", kind="main", station=np.nan, offset=np.nan, height=np.nan,
-               chain=-1, along=np.nan, residual=np.nan, support=-1)
+               chain=-1, along=np.nan, residual=np.nan, sigma=np.nan, support=-1)
 CURB_POINT_FIELDS = dict(road="road", nearest_pass=NEAREST_PASS.name, side="side", status="status", station="station_m", offset="offset_m",
-                         height="height_m", part="part", kind="kind", chain="chain", along="along_m", residual="residual_m", support="support")
+                         height="height_m", part="part", kind="kind", chain="chain", along="along_m", residual="residual_m",
+                         sigma=SIGMA.name, support="support")
 
 
 @dataclass(frozen=True)
@@ -40,6 +41,7 @@ class CurbPoints:
     chain : (N,) int, the points of one curb share it; -1 where unknown
     along : (N,) metres along the chain, of points that are not of a main curb; else NaN
     residual : (N,) metres, scatter of the measurements about the curb; NaN where unknown
+    sigma : (N,) metres, one sigma across that the points of a line fitted as a whole share; NaN where each was seen by itself
     support : (N,) int, number of laser points; -1 where unknown
     x, y, z : (N,) local metres, as the layer holds them
     crs : WKT, "" where unknown
@@ -57,6 +59,7 @@ class CurbPoints:
     chain: np.ndarray
     along: np.ndarray
     residual: np.ndarray
+    sigma: np.ndarray
     support: np.ndarray
     x: np.ndarray
     y: np.ndarray

@@ -10,12 +10,13 @@ where they no longer show half of the curb's height.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from ...survey.frame.reference_line import NODE_SPACING
 from ...survey.store.records import road_of
+from ..common.corners import FACE_LOWER_SHARE, FACE_PRIOR, FACE_UPPER_SHARE
 from ..common.curb_limits import SIGNIFICANT_SIGMAS
 from ..common.decimation import POINTS_PER_LEVEL_CELL_IN_PLAN, PointDecimation
 from ..common.sides import expected_height
@@ -31,7 +32,7 @@ MAX_BEYOND_LENGTH = 40.0      # m that it is led on: the ground of the survey re
 MAX_DROPPED_LENGTH = 6.0      # m from its end that it may be dropped: a pedestrian crossing
 TRAIL_LENGTH = 6.0            # m of known curb whose direction it keeps
 GROUND_HALF_WIDTH = 0.8       # m on either side of the points that show the levels
-CURB_HALF_WIDTH = 0.03        # m about the curb in which a point is on neither level
+CURB_HALF_WIDTH = 0.03        # m about the curb in which a point is on neither level, but anywhere between them
 MIN_SIDE_POINTS = 3           # along LED_LENGTH on either side
 MIN_HEIGHT_SHARE, MAX_HEIGHT_SHARE = 0.5, 1.5   # of the height that the curb is known to have
 MIN_LEVEL_SHARE = 0.75        # of the points on either side that are nearer to their own level than to the other
@@ -44,6 +45,11 @@ MAX_RESIDUAL = 3.0            # sigmas beyond which a point counts no more: obje
 # What is known beforehand: sigmas of the bottom's height at the end (m), of grade (m per m), height (m), crossfall (m per m) and bend (1/m)
 BOTTOM_SIGMA, GRADE_SIGMA, RISE_SIGMA, CROSSFALL_SIGMA, ARC_BEND_SIGMA = 0.02, 0.03, 0.03, 0.04, 0.005
 LEAST_STEPS = 8               # of the known curb, which are independent
+NO_OTHER_ARCS = np.zeros((3, 1))
+# Arcs that are weighed: those about the best, by steps (m) at three places, then by shares of what they spread
+SPREAD_STEP, SPREAD_STEP_SIGMAS, LEAST_SPREAD_STEP, SPREAD_ROUNDS = 0.03, 0.8, 0.002, 3
+SPREAD_GRID = np.stack(np.meshgrid(*3 * [np.arange(-3.0, 4.0)], indexing="ij"), axis=-1).reshape(-1, 3)
+Arc = tuple[float, float, float]
 # Shifts (m), turns (radians) and bends (1/m) of the arcs that are tried: first straight ones, then some about the best, and farther out about
 # the arc so far.
 FIRST_ARCS = np.arange(-0.06, 0.061, 0.03), np.radians(np.arange(-5.0, 5.01, 0.5)), np.zeros(1)
@@ -78,14 +84,20 @@ class CurbEnd:
 @dataclass
 class CurbCourse:
     """An arc: shift (m), turn (radians) and bend (1/m), positive uphill; `levels`: bottom (m), grade, height (m), crossfall; from and to (m) it was
-    seen; points on either side, and their scatter (m)."""
+    seen; points on either side, and their scatter (m); `spread`: (3, 3) covariance of the arc."""
 
-    arc: tuple[float, float, float]
+    arc: Arc
     levels: np.ndarray
     start: float
     end: float
     support: tuple[int, int]
     scatter: float
+    spread: np.ndarray = field(default_factory=lambda: np.zeros((3, 3)))
+
+    def sigma(self, t: np.ndarray) -> np.ndarray:
+        """(N,) m, one sigma across at (N,) m along."""
+        powers = np.stack([np.ones_like(t), t, 0.5 * t * t], axis=1)
+        return np.sqrt(np.einsum("ni,ij,nj->n", powers, self.spread, powers))
 
 
 def with_curbs_beyond(curbs: Sequence[CurbReturn], decimation: PointDecimation, road: int, known: KnownPlaces) -> list[CurbReturn]:
@@ -213,8 +225,35 @@ def led_beyond(t: np.ndarray, u: np.ndarray, z: np.ndarray, end: CurbEnd) -> Cur
                 break
             course, about, length = longer, longer.arc, length + GROWTH
         if course is not None:
-            return course
+            return _surest(t, u, z, end, course, start + length - GROWTH)
     return None
+
+
+def _surest(t, u, z, end, course, stop):
+    """The course along the mean of all arcs that explain the points up to `stop`, each with its likelihood, and how far these spread.
+
+    Where the last return on the street and the first one behind the curb lie far apart, any arc between them explains both: the best
+    of them is a matter of chance, and how far apart the returns are is how uncertain the place is.
+    """
+    ground = _Ground.about(t, u, z, end, course.start, stop, course.arc)
+    if ground is None:
+        return course
+    at = np.linspace(course.start, course.end, 3)
+    # arcs by what they are aside at the beginning, in the middle and at the end
+    to_arc = np.linalg.inv(np.stack([np.ones(3), at, 0.5 * at * at], axis=1))
+    mean, axes = _aside(np.array([course.arc]), at)[0], SPREAD_STEP * np.eye(3)
+    for _ in range(SPREAD_ROUNDS):
+        aside = mean + SPREAD_GRID @ axes.T
+        cost = ground.explained(aside @ to_arc.T)[0]
+        weight = np.exp(-0.5 * (cost - cost.min()))
+        weight /= weight.sum()
+        mean = weight @ aside
+        spread = (aside - mean).T @ ((aside - mean) * weight[:, None])
+        size, direction = np.linalg.eigh(spread)
+        axes = direction * np.maximum(SPREAD_STEP_SIGMAS * np.sqrt(np.maximum(size, 0.0)), LEAST_SPREAD_STEP)
+    shift, turn, bend = (to_arc @ (mean + ground.foot(to_arc @ mean))).tolist()
+    found = _fitted(t, u, z, end, course.start, stop, (shift, turn, bend), NO_OTHER_ARCS)
+    return replace(found or course, spread=to_arc @ spread @ to_arc.T)
 
 
 def _best_arc(t, u, z, end, start, stop, about, arcs):
@@ -225,21 +264,70 @@ def _best_arc(t, u, z, end, start, stop, about, arcs):
 
 def _best_levels(t, u, z, end, start, stop, about, arcs):
     """The same with what belongs to it: levels, their prior weights, t and z of the points, their design, v across from it, and which count."""
-    own = (t >= start) & (t < stop)
-    t, u, z = t[own], u[own], z[own] - end.z
-    if len(t) < 2 * MIN_SIDE_POINTS:
+    ground = _Ground.about(t, u, z, end, start, stop, about)
+    if ground is None:
         return None
-    shift, turn, bend = (v.ravel() + middle for v, middle in zip(np.meshgrid(*arcs, indexing="ij"), about))
-    v = u - (shift[:, None] + turn[:, None] * t + 0.5 * bend[:, None] * t * t)
-    near = (np.abs(v) < GROUND_HALF_WIDTH) & (np.abs(v) > CURB_HALF_WIDTH)
-    design = np.stack([np.ones_like(v), np.broadcast_to(t, v.shape), (v > 0).astype(float), v], axis=2)
-    prior = np.array([BOTTOM_SIGMA + 0.01 * start, GRADE_SIGMA, RISE_SIGMA, CROSSFALL_SIGMA])**-2.0
-    levels, cost = _robust_fit(design, z, near, prior, np.array([0.0, 0.0, end.height, 0.0]))
-    at, aside, _ = end.trail
-    off = (aside - (shift[:, None] + turn[:, None] * at + 0.5 * bend[:, None] * at * at)) / PLACE_SIGMA
-    cost = cost + (off**2).mean(axis=1) * min(len(at), LEAST_STEPS) + (bend / ARC_BEND_SIGMA)**2
+    tried = np.stack([v.ravel() + middle for v, middle in zip(np.meshgrid(*arcs, indexing="ij"), about)], axis=1)
+    cost, levels, design, v = ground.explained(tried)
     k = int(np.argmin(cost))
-    return (float(shift[k]), float(turn[k]), float(bend[k])), levels[k], prior, t, z, design[k], v[k], near[k]
+    near = np.abs(v[k]) > CURB_HALF_WIDTH
+    return (float(tried[k, 0]), float(tried[k, 1]), float(tried[k, 2])), levels[k], ground.prior, ground.t, ground.z, design[k], v[k], near
+
+
+@dataclass
+class _Ground:
+    """Points about an arc from the end of a curb: t, u, z in m from there; `prior`: weights of what is known of the levels beforehand.
+
+    All arcs near that one are compared on the same points: one that had more of them than another would seem to explain more.
+    """
+
+    t: np.ndarray
+    u: np.ndarray
+    z: np.ndarray
+    end: CurbEnd
+    prior: np.ndarray
+
+    @staticmethod
+    def about(t: np.ndarray, u: np.ndarray, z: np.ndarray, end: CurbEnd, start: float, stop: float, arc: Arc) -> _Ground | None:
+        """The points between two distances; None where there are too few."""
+        own = np.flatnonzero((t >= start) & (t < stop) & (np.abs(u - _aside(np.array([arc]), t)[0]) < GROUND_HALF_WIDTH))
+        if len(own) < 2 * MIN_SIDE_POINTS:
+            return None
+        prior = np.array([BOTTOM_SIGMA + 0.01 * start, GRADE_SIGMA, RISE_SIGMA, CROSSFALL_SIGMA])**-2.0
+        return _Ground(t[own], u[own], z[own] - end.z, end, prior)
+
+    def explained(self, arcs: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """How well (C, 3) arcs explain points and known curb.
+
+        Returns (C,) sums of squares of what both differ from them, in sigmas, (C, 4) levels, their (C, N, 4) design and (C, N) m across.
+        """
+        t, z, end = self.t, self.z, self.end
+        v = self.u - _aside(arcs, t)
+        on_level = np.abs(v) > CURB_HALF_WIDTH
+        design = np.stack([np.ones_like(v), np.broadcast_to(t, v.shape), (v > 0).astype(float), v], axis=2)
+        levels, residual = _robust_fit(design, z, on_level, self.prior, np.array([0.0, 0.0, end.height, 0.0]))
+        low, height = residual + design[:, :, 2] * levels[:, 2:3] / POINT_HEIGHT_SIGMA, levels[:, 2:3] / POINT_HEIGHT_SIGMA
+        # the curb itself is as high as either level, or anywhere between them
+        residual = np.where(on_level, residual, low - np.clip(low, 0.0, np.maximum(height, 0.0)))
+        at, aside, _ = end.trail
+        off = (aside - _aside(arcs, at)) / PLACE_SIGMA
+        return _cost(residual) + (off**2).mean(axis=1) * min(len(at), LEAST_STEPS) + (arcs[:, 2] / ARC_BEND_SIGMA)**2, levels, design, v
+
+    def foot(self, arc: np.ndarray) -> float:
+        """How far uphill from an arc, m, the foot of the curb is that leans where the points on it are; 0 where there are few."""
+        _, (levels,), (design,), (v,) = self.explained(arc[None])
+        rise = self.z - design[:, [0, 1, 3]] @ levels[[0, 1, 3]]
+        face = (np.abs(v) <= CURB_HALF_WIDTH) & (rise > FACE_LOWER_SHARE * levels[2]) & (rise < FACE_UPPER_SHARE * levels[2])
+        if face.sum() < MIN_SIDE_POINTS:
+            return 0.0
+        v, rise = v[face], rise[face]
+        off = rise - rise.mean()
+        return float(v.mean() - (v @ off) / (off @ off + face.sum() * FACE_PRIOR) * rise.mean())
+
+
+def _aside(arcs, t):
+    """(C, N) m uphill, of (C, 3) arcs at (N,) m along."""
+    return arcs[:, :1] + arcs[:, 1:2] * t + 0.5 * arcs[:, 2:] * t * t
 
 
 def _fitted(t, u, z, end, start, stop, about, arcs):
@@ -260,8 +348,8 @@ def _fitted(t, u, z, end, start, stop, about, arcs):
     if not MIN_HEIGHT_SHARE * end.height <= rise <= MAX_HEIGHT_SHARE * end.height or apart < MIN_LEVEL_SHARE:
         return None
     # a slope, however steep, must explain the last points worse
-    slope = _robust_fit(design[None, seen][:, :, [0, 1, 3]], z[seen], np.ones((1, seen.sum()), bool), np.full(3, 1e-6), np.zeros(3))[1][0]
-    step = _robust_fit(design[None, seen], z[seen], np.ones((1, seen.sum()), bool), prior, levels)[1][0]
+    slope = _cost(_robust_fit(design[None, seen][:, :, [0, 1, 3]], z[seen], np.ones((1, seen.sum()), bool), np.full(3, 1e-6), np.zeros(3))[1])[0]
+    step = _cost(_robust_fit(design[None, seen], z[seen], np.ones((1, seen.sum()), bool), prior, levels)[1])[0]
     if slope - step < SIGNIFICANT_SIGMAS**2:
         return None
     residual = z[seen] - design[seen] @ levels
@@ -269,7 +357,7 @@ def _fitted(t, u, z, end, start, stop, about, arcs):
 
 
 def _robust_fit(design, z, used, prior, expected):
-    """(C, P) parameters of each of C designs (C, N, P), and (C,) sums of squares of what (N,) heights differ from them, in sigmas, cut off."""
+    """(C, P) parameters of each of C designs (C, N, P), and (C, N) sigmas that heights differ from them; `used` : (C, N) bool."""
     weight = used.astype(float)
     for _ in range(3):
         normal = np.einsum("ck,cki,ckj->cij", weight, design, design, optimize=True) / POINT_HEIGHT_SIGMA**2 + np.diag(prior)
@@ -277,8 +365,12 @@ def _robust_fit(design, z, used, prior, expected):
         found = np.linalg.solve(normal, right[:, :, None])[:, :, 0]
         residual = (z - np.einsum("cki,ci->ck", design, found)) / POINT_HEIGHT_SIGMA
         weight = used / (1.0 + (residual / MAX_RESIDUAL)**2)
-    # a point that counts must pay: else the arc with the fewest points would be the best
-    return found, np.where(used, np.minimum(residual**2, MAX_RESIDUAL**2) - 0.5 * MAX_RESIDUAL**2, 0.0).sum(axis=1)
+    return found, residual
+
+
+def _cost(residual):
+    """(C,) sums of squares of (C, N) differences in sigmas, cut off."""
+    return np.minimum(residual**2, MAX_RESIDUAL**2).sum(axis=1)
 
 
 def _led(course, end, curb, at_tail, survey, road, line):
@@ -301,7 +393,7 @@ def _led(course, end, curb, at_tail, survey, road, line):
                       np.full(count, low), np.full(count, high))
     # in order, uphill on the right
     order = np.arange(count) if at_tail else np.arange(count)[::-1]
-    return CurbReturn(steps[order], s[order], d[order], curb.side, "side_street")
+    return CurbReturn(steps[order], s[order], d[order], curb.side, "side_street", sigma=course.sigma(t)[order])
 
 
 def _distinct(found, met):

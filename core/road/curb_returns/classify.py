@@ -58,6 +58,7 @@ class CurbReturn:
     side : "left" or "right"
     kind : "main" (a piece of main curb that profiles missed), "corner", "side_street" or "island"
     closed : does it go all around an island?
+    sigma : (N,) m, one sigma across that the steps share, of a line that was fitted as a whole; None of steps that were seen one by one
     """
 
     steps: PlanSteps
@@ -66,6 +67,7 @@ class CurbReturn:
     side: str
     kind: str
     closed: bool = False
+    sigma: np.ndarray | None = None
 
 
 def is_curb_like(chain: PlanStepChain, steps: PlanSteps, scanner_noise: np.ndarray, settings: CurbSettings) -> bool:

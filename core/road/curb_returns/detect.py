@@ -107,7 +107,7 @@ def _points_of(survey, road, curb, chain):
     along = np.r_[0.0, np.cumsum(np.hypot(np.diff(steps.x), np.diff(steps.y)))]
     return curb_points_at(frame, road, (steps.x + frame.origin[0], steps.y + frame.origin[1], z), side=curb.side, status="measured",
                           station=curb.s, offset=curb.d, height=np.round(steps.height, 4), kind=curb.kind, chain=chain,
-                          along=np.round(along, 3), support=steps.support)
+                          along=np.round(along, 3), support=steps.support, sigma=np.nan if curb.sigma is None else np.round(curb.sigma, 4))
 
 
 def find_curb_returns(decimation: PointDecimation, road: int, main: Mapping[str, np.ndarray], settings: CurbSettings,

@@ -73,17 +73,22 @@ def draw_curb_returns(edges: list[EdgePiece], road: int, lines: list[tuple[CurbP
         # the main edge's own end is a place of the curve, so that an arc stays one where the curb was not seen for a metre
         places = np.concatenate([*(v[None] for v in (first,) if v is not None), places, *(v[None] for v in (last,) if v is not None)])
         vertices, residual = _drawn(places)
-        along = _chord_length(*places.T[:2])
+        along, shared = _chord_length(*places.T[:2]), np.nan_to_num(points.sigma)
+        shared = np.concatenate([*(shared[:1] for v in (first,) if v is not None), shared, *(shared[-1:] for v in (last,) if v is not None)])
         vertices = np.round(vertices, COORDINATE_DECIMALS)
         if closed:
             vertices[-1] = vertices[0]
         vertices[0], vertices[-1] = vertices[0] if first is None else first, vertices[-1] if last is None else last
         vertices = vertices[np.r_[True, np.hypot(*np.diff(vertices[:, :2], axis=0).T) > 0]]
         passes = 0.0 if frame is None else float(np.sqrt(np.mean(frame.passes_sigma(road, points.station) ** 2)))
+        sigma = edge_sigma(along, along, residual, shares=CURB_RETURN, passes=passes, shared=shared)
+        # where the returns thin out a line is cut; elsewhere one number speaks for all of it
+        at = _chord_length(*vertices.T[:2])
+        sigma = np.interp(at * along[-1] / at[-1], along, sigma) if shared.any() else float(sigma.mean())
         edges.append(EdgePiece(vertices, road, points.side[0], "measured", number, float(points.station.min()), float(points.station.max()),
                                float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum()), float(np.median(points.height)),
                                float(np.sqrt(np.mean(residual**2))), kind=kind,
-                               sigma=float(edge_sigma(along, along, residual, shares=CURB_RETURN, passes=passes).mean())))
+                               sigma=sigma))
         number += 1
     return number
 

@@ -1,9 +1,10 @@
 """How uncertain the place of a road edge is: one sigma across it.
 
-Five things add up as squares: how well the foot of a curb is found at all, and how much better with more points on it; curb points scatter
-about the line, and their errors go on over metres; towards its ends a line is held from one side only; and passes that were driven apart
-and laid on each other agree on a middle of which nobody knows how far off it is. The shares were found on simulated streets with truth
-(docs/accuracy.md). It holds against the points of the survey: what they are off as a whole, with their trajectory, is in it only where the
+Six things add up as squares: how well the foot of a curb is found at all, and how much better with more points on it; curb points scatter
+about the line, and their errors go on over metres; towards its ends a line is held from one side only; passes that were driven apart
+and laid on each other agree on a middle of which nobody knows how far off it is; and where a line was fitted as a whole to few laser points,
+its curb points are off together by what the fit says. The shares were found on simulated streets with truth (docs/accuracy.md).
+It holds against the points of the survey: what they are off as a whole, with their trajectory, is in it only where the
 accuracy of the trajectory was told, since one pass does not show it.
 """
 
@@ -41,7 +42,8 @@ CURB_RETURN = EdgeUncertainty(foot=0.0075, spacing=0.0, scatter=1.5, end=0.006, 
 
 
 def edge_sigma(at: np.ndarray, places: np.ndarray, residual: np.ndarray, support: np.ndarray | None = None,
-               shares: EdgeUncertainty = MAIN_EDGE, passes: np.ndarray | float = 0.0) -> np.ndarray:
+               shares: EdgeUncertainty = MAIN_EDGE, passes: np.ndarray | float = 0.0,
+               shared: np.ndarray | float = 0.0) -> np.ndarray:
     """One sigma across an edge at places along it.
 
     Parameters
@@ -52,6 +54,8 @@ def edge_sigma(at: np.ndarray, places: np.ndarray, residual: np.ndarray, support
     support : (N,) laser points of each; below 1, or None, where that is unknown
     shares : EdgeUncertainty
     passes : m, one sigma of the middle of the passes, see `RoadFrame.pass_sigma`; one for all or (K,)
+    shared : m, one sigma that neighbouring curb points share, as those of a line that was fitted as a whole: they do not scatter about
+        it; one for all or (K,)
 
     Returns
     -------
@@ -67,5 +71,5 @@ def edge_sigma(at: np.ndarray, places: np.ndarray, residual: np.ndarray, support
     gap = np.clip(np.minimum(at - places[k - 1], places[k] - at), 0.0, None)
     end = np.clip(np.minimum(at - places[0], places[-1] - at), 0.0, None)
     variance = (shares.foot**2 + shares.spacing**2 * spacing**POINTS_POWER + shares.scatter**2 * scatter + shares.end**2 * np.exp(-end / END_LENGTH)
-                + (shares.gap * gap) ** 2 + passes**2)
+                + (shares.gap * gap) ** 2 + passes**2 + shared**2)
     return np.sqrt(variance)

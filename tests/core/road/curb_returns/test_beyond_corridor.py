@@ -1,6 +1,7 @@
 """Curbs of side streets that lead on beyond the corridor, where a metre of curb holds a few points."""
 
 import numpy as np
+import pytest
 from lanewright.core.road.curb_returns.beyond_corridor import CurbEnd, led_beyond
 
 HEIGHT = 0.13
@@ -30,11 +31,27 @@ def test_an_arm_of_a_crossing_is_known_to_forty_five_metres():
     assert abs(off) < 0.08 and abs(found.levels[2] - HEIGHT) < 0.015 and abs(found.levels[1] - 0.01) < 0.003
 
 
-def test_an_arm_may_bend_evenly():
-    found = led_beyond(*arm(bend=0.005), end_of())
-    t = np.linspace(0.0, found.end, 20)
-    off = found.arc[0] + found.arc[1] * t + 0.5 * found.arc[2] * t**2 - 0.0025 * t**2
-    assert found.end > 14.0 and np.abs(off).max() < 0.1
+def off_the_curb(bend, seed):
+    """Every metre how far the course of a bent arm lies off, and its sigma, m."""
+    found = led_beyond(*arm(bend=bend, seed=seed), end_of())
+    t = np.arange(found.start, found.end)
+    return found.arc[0] + found.arc[1] * t + 0.5 * (found.arc[2] - bend) * t**2, found.sigma(t)
+
+
+@pytest.mark.parametrize("bend", [-0.005, 0.0, 0.0025, 0.005])
+def test_an_arm_may_bend_evenly_and_its_course_says_how_uncertain_it_is(bend):
+    arms = [off_the_curb(bend, seed) for seed in range(1, 11)]
+    off, sigma = (np.concatenate(values) for values in zip(*arms))
+    assert np.median([len(along) for along, _ in arms]) > 14
+    assert np.median([np.abs(along).max() for along, _ in arms]) < 0.07
+    assert np.mean(np.abs(off) < sigma) > 0.4 and np.mean(np.abs(off) < 3 * sigma) > 0.9
+
+
+def test_the_fewer_returns_an_arm_has_the_less_sure_is_its_course():
+    t, u, z = arm()
+    dense, thin = led_beyond(t, u, z, end_of()), led_beyond(t[::3], u[::3], z[::3], end_of())
+    at = np.array([5.0, 10.0])
+    assert (thin.sigma(at) > 1.2 * dense.sigma(at)).all() and (dense.sigma(at) > 0.005).all()
 
 
 def test_a_curb_goes_on_behind_a_crossing_where_it_is_dropped():
