@@ -47,7 +47,8 @@ def _joined(one, other):
     members, empty = members[order], empty[order]
     # an opening of the one that the other fills is none
     empty = np.minimum(empty, np.diff(members.slice, append=members.slice[-1] + 1) - 1)
-    return Chain(one.road, one.side, members, *smoothed(members), empty)
+    d, ground, top = smoothed(members)
+    return Chain(one.road, one.side, members, d, ground, top, empty)
 
 
 def _behind(chain, face, equal):

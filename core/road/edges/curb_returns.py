@@ -84,7 +84,7 @@ def draw_curb_returns(edges: list[EdgePiece], road: int, lines: list[tuple[CurbP
         sigma = edge_sigma(along, along, residual, shares=CURB_RETURN, passes=passes, shared=shared)
         # where the returns thin out a line is cut; elsewhere one number speaks for all of it
         at = _chord_length(*vertices.T[:2])
-        sigma = np.interp(at * along[-1] / at[-1], along, sigma) if shared.any() else float(sigma.mean())
+        sigma = np.interp(at * along[-1] / at[-1], along, sigma) if shared.any() else np.full(len(at), sigma.mean())
         edges.append(EdgePiece(vertices, road, points.side[0], "measured", number, float(points.station.min()), float(points.station.max()),
                                float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum()), float(np.median(points.height)),
                                float(np.sqrt(np.mean(residual**2))), kind=kind,
