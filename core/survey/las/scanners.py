@@ -19,6 +19,8 @@ EVER = (-np.inf, np.inf)      # s
 class ScannerCensus:
     """Counts and time spans of scanner_channel and point_source_id, gathered while reading.
 
+    In a cloud without times stations along the road stand in their place: scanners measure the same stretches of it, files and tiles do not.
+
     spans : {LAS field: {value: (first time, last time, count)}}
     """
 
@@ -41,8 +43,8 @@ class ScannerCensus:
         """The LAS field that identifies the scanners.
 
         This is `scanner_channel` if it has more than one value, else `point_source_id` if it has 2 to 32 values that
-        overlap in time. LAS defines the latter as a flight line or file number; some exporters count frames in it, others
-        number every recording of every scanner.
+        overlap in time, or along the road where there are no times. LAS defines the latter as a flight line or file number;
+        some exporters count frames in it, others number every recording of every scanner.
 
         Parameters
         ----------

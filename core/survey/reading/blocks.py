@@ -61,20 +61,24 @@ class BlockSummary:
         for name, times in other.scanners.items():
             self._note(name, times)
 
-    def add(self, columns: dict[str, np.ndarray], names: set[str], span: tuple[float, float] = EVER) -> None:
-        """Count points of the block.
+    def add(self, columns: dict[str, np.ndarray]) -> None:
+        """Count points of the block, of which `columns` has (N,) intensity."""
+        self.darkest = min(self.darkest, int(columns["intensity"].min()))
+        self.brightest = max(self.brightest, int(columns["intensity"].max()))
+
+    def add_scanners(self, columns: dict[str, np.ndarray], names: set[str], at: np.ndarray, span: tuple[float, float] = EVER) -> None:
+        """Count points by the fields that may tell scanners apart.
 
         Parameters
         ----------
-        columns : (N,) intensity, source, scanner and time
+        columns : (N,) source and scanner
         names : LAS fields that the file has
+        at : (N,) s, their times; m, their stations where there are none
         span : s, (first, last) time of the drive: points at other times say nothing of the scanners
         """
-        self.darkest = min(self.darkest, int(columns["intensity"].min()))
-        self.brightest = max(self.brightest, int(columns["intensity"].max()))
         for name, key in zip(SCANNER_FIELDS, ("source", "scanner")):
             if name in names:
-                self._note(name, times_by_value(columns[key], columns["time"], span))
+                self._note(name, times_by_value(columns[key], at, span))
 
     def _note(self, name, times):
         seen = self.scanners.setdefault(name, {})
@@ -193,7 +197,7 @@ class BlockProjector:
     def _piece(self, piece, names, axes, found, ground):
         buffers = self._scratch.of(len(piece))
         columns = self._columns(piece, names, buffers)
-        found.add(columns, names, self._span)
+        found.add(columns)
         usable = valid_points(piece)
         if usable is not None:
             found.excluded += len(usable) - int(np.count_nonzero(usable))
@@ -203,6 +207,7 @@ class BlockProjector:
         columns["s"], columns["d"] = buffers("s", np.int32), buffers("d", np.int32)
         columns["pass_number"], inside, lost = self._placed(columns, usable)
         found.without_time += lost
+        self._add_scanners(columns, names, inside, found)
         if inside is not None:
             # points outside get a valid station of this piece
             columns["s"][~inside] = columns["s"][inside.argmax()] if inside.any() else 0
@@ -217,6 +222,14 @@ class BlockProjector:
                 own = _both(own, None if near.all() else near)
             if own is None or own.any():
                 yield number, points, own
+
+    def _add_scanners(self, columns, names, inside, found):
+        """Scanners measure together: at the same times, or without times along the same stretches of road."""
+        if self.has_time:
+            found.add_scanners(columns, names, columns["time"], self._span)
+        else:
+            own = slice(None) if inside is None else inside
+            found.add_scanners({key: columns[key][own] for key in ("source", "scanner")}, names, columns["s"][own] * COORDINATE_SCALE)
 
     def _beyond(self, columns, points, inside, ground):
         """As `read`, the ground beyond the corridor that the vehicle saw about as high as its road."""
