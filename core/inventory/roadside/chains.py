@@ -102,11 +102,11 @@ def find_chains(uprights: Uprights, road: int, side: int, max_gap: float, min_le
     for rows in _groups(uprights, pairs):
         for own in _filled(rows, uprights.slice[rows], hidden[rows], empty[rows], min_length):
             members = uprights[own]
-            found.append(Chain(road, side, members, *smoothed(members), empty[own]))
+            found.append(Chain(road, side, members, *along_the_chain(members), empty[own]))
     return found
 
 
-def smoothed(members: Uprights) -> list[np.ndarray]:
+def along_the_chain(members: Uprights) -> list[np.ndarray]:
     """Offsets, ground and tops of a chain's uprights, (N,) m each, smoothed along it."""
     return [median_filter(values, SMOOTHED_SLICES, mode="nearest") for values in (members.d, members.ground, members.top)]
 
