@@ -106,9 +106,10 @@ def find_chains(uprights: Uprights, road: int, side: int, max_gap: float, min_le
     return found
 
 
-def along_the_chain(members: Uprights) -> list[np.ndarray]:
+def along_the_chain(members: Uprights) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Offsets, ground and tops of a chain's uprights, (N,) m each, smoothed along it."""
-    return [median_filter(values, SMOOTHED_SLICES, mode="nearest") for values in (members.d, members.ground, members.top)]
+    d, ground, top = (median_filter(values, SMOOTHED_SLICES, mode="nearest") for values in (members.d, members.ground, members.top))
+    return d, ground, top
 
 
 def _groups(uprights, pairs):
