@@ -130,7 +130,7 @@ def _estimated(files, scanner_field, wkt, progress):
     heads = turning_heads(samples, tracks)
     if heads is not None:
         refuse_terrestrial(tracks, [head.place for head in heads])
-        refuse_handheld(tracks, [])
+        refuse_handheld(tracks, [], heads)
         return _of_heads(samples, tracks, heads, wkt)
     scanners = spinning_scanners(samples, tracks)
     refuse_terrestrial(tracks, [fixes.place for one in scanners for fixes in one.fixes])

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
 import numpy as np
 from scipy.ndimage import median_filter
 
@@ -9,6 +12,9 @@ from ...common.errors import RoadExtractionError
 from .first_poses import Spinning
 from .rough.first_track import MIN_WINDOW_SAMPLES, WINDOW, FirstTrack
 from .rough.samples import Samples
+
+if TYPE_CHECKING:
+    from .turning_head import HeadTrack
 
 FARTHEST_MEDIAN = 15.0     # m: half of what a vehicle on a road sees at a time is nearer; an aircraft's swath is wider
 MIN_SHARE_ELSEWHERE = 0.1  # of the points of a moment that lie in another place, where two drives have the same times
@@ -135,8 +141,14 @@ def refuse_terrestrial(tracks: list[FirstTrack], places: list[np.ndarray]) -> No
             "estimated for clouds measured while driving; give those, or the scanner's position as a trajectory where a map is wanted from here.")
 
 
-def refuse_handheld(tracks: list[FirstTrack], scanners: list[Spinning]) -> None:
+def refuse_handheld(tracks: list[FirstTrack], scanners: list[Spinning], heads: Sequence[HeadTrack] = ()) -> None:
     """Refuse a cloud measured at walking pace by a scanner without a steadily mounted mirror.
+
+    Parameters
+    ----------
+    tracks : FirstTrack of each drive
+    scanners : whose mirrors turn steadily; where there is one, nobody carries it
+    heads : of many beams; their places are sharper than the first track
 
     Raises
     ------
@@ -145,10 +157,24 @@ def refuse_handheld(tracks: list[FirstTrack], scanners: list[Spinning]) -> None:
     """
     if scanners:
         return
-    # between places PACE_TIME apart: the track swings from window to window by more than anybody walks meanwhile
-    apart = round(PACE_TIME / WINDOW)
-    pace = np.concatenate([np.hypot(*(track.foot[apart:, :2] - track.foot[:-apart, :2]).T) / PACE_TIME for track in tracks])
-    if len(pace) and np.quantile(pace, 0.9) < WALKING_PACE:
+    if heads:
+        # a vehicle may stand most of the time, but where it drives, it is faster than anybody walks
+        pace = np.concatenate([_paces_of(head) for head in heads])
+        walks = len(pace) > 0 and pace.max() < WALKING_PACE
+    else:
+        # between places PACE_TIME apart: the track swings from window to window by more than anybody walks meanwhile
+        apart = round(PACE_TIME / WINDOW)
+        pace = np.concatenate([np.hypot(*(track.foot[apart:, :2] - track.foot[:-apart, :2]).T) / PACE_TIME for track in tracks])
+        walks = len(pace) > 0 and np.quantile(pace, 0.9) < WALKING_PACE
+    if walks:
         raise RoadExtractionError(
             f"This looks like a handheld or backpack survey: it moved at {np.median(pace):.1f} m/s, at walking pace, and no mirror turns steadily "
             "in it. A trajectory is estimated for scanners on vehicles; give the trajectory that the scanner's own program has computed.")
+
+
+def _paces_of(head):
+    """m/s over PACE_TIME, from the places of a head without single wrong ones."""
+    place = median_filter(head.place, (STEADY_PLACES, 1), mode="nearest")
+    start = np.flatnonzero(head.time <= head.time[-1] - PACE_TIME)
+    end = np.searchsorted(head.time, head.time[start] + PACE_TIME)
+    return np.hypot(*(place[end] - place[start]).T) / (head.time[end] - head.time[start])

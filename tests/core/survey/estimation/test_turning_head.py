@@ -5,6 +5,9 @@ import pytest
 from drives import EAST, NORTH, write_cloud
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.survey.estimation.estimate import estimate_trajectory
+from lanewright.core.survey.estimation.kinds import refuse_handheld
+from lanewright.core.survey.estimation.rough.first_track import FirstTrack
+from lanewright.core.survey.estimation.turning_head import HeadTrack
 
 TURN, SPEED, HEIGHT, HALF, RADIUS = 0.1, 8.0, 1.8, 9.0, 60.0   # s, m/s; m: the head, the walls beside the street, its bend
 START = 318_204_000.0
@@ -54,6 +57,21 @@ def test_the_place_of_the_head_comes_back_within_centimetres(tmp_path, by_turn, 
 def test_one_carried_at_walking_pace_is_refused_by_name(tmp_path):
     with pytest.raises(RoadExtractionError, match="handheld or backpack"):
         estimate_trajectory([spun_cloud(tmp_path / "cloud.las", False, seconds=12.0, speed=1.2)])
+
+
+def test_walking_pace_is_told_from_the_places_of_the_head_where_the_density_of_the_points_swings():
+    time = np.arange(0.05, 30.0, TURN)
+    rng = np.random.default_rng(2)
+
+    def head(speed):
+        place = np.column_stack([np.minimum(speed * time, speed * 12.0), 0.02 * rng.standard_normal(len(time))])
+        return HeadTrack(time, place, 0 * time, 0 * time, 0 * place, 0.01, 10.0)
+
+    foot = np.column_stack([6.0 * rng.standard_normal((len(time), 2)), 0 * time])
+    swinging = [FirstTrack(time, foot, 0 * time, np.full(len(time), 100), np.full(len(time), 5.0))]
+    with pytest.raises(RoadExtractionError, match="handheld or backpack"):
+        refuse_handheld(swinging, [], [head(1.2)])
+    refuse_handheld(swinging, [], [head(6.0)])   # which drives for 12 s and then stands
 
 
 def test_where_nothing_stands_up_the_height_is_a_usual_one_and_it_says_so(tmp_path):
