@@ -13,8 +13,8 @@ SOLID = ("barrier", "wall", "hedge", "building", "cars")
 
 @dataclass(frozen=True)
 class Thing:
-    """A thing along the road: its kind, offset of its face from the middle of the road, and stations; a rail may have the form double or
-    ropes, a hedge that of loose leaves, between which one sees deep into it."""
+    """A thing along the road: its kind, offset of its face from the middle of the road, and stations; a rail may have the form double or ropes,
+    a hedge that of loose leaves, between which one sees deep into it."""
 
     kind: str
     offset: float

@@ -102,12 +102,11 @@ def find_chains(uprights: Uprights, road: int, side: int, max_gap: float, min_le
     for rows in _groups(uprights, pairs):
         for own in _filled(rows, uprights.slice[rows], hidden[rows], empty[rows], min_length):
             members = uprights[own]
-            d, ground, top = smoothed(members)
-            found.append(Chain(road, side, members, d, ground, top, empty[own]))
+            found.append(Chain(road, side, members, *along_the_chain(members), empty[own]))
     return found
 
 
-def smoothed(members: Uprights) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def along_the_chain(members: Uprights) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Offsets, ground and tops of a chain's uprights, (N,) m each, smoothed along it."""
     d, ground, top = (median_filter(values, SMOOTHED_SLICES, mode="nearest") for values in (members.d, members.ground, members.top))
     return d, ground, top

@@ -1,10 +1,10 @@
-"""What is thick and loose, as a hedge, shows uprights on its face and inside it, and may be followed along either: it counts once, along its face."""
+"""What is thick and loose, as a hedge, shows uprights on its face and inside it, and may be followed along either: it is told once, by its face."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from .chains import Chain, smoothed
+from .chains import Chain, along_the_chain
 from .shared import SAME_THING
 from .uprights import Uprights
 
@@ -47,8 +47,7 @@ def _joined(one, other):
     members, empty = members[order], empty[order]
     # an opening of the one that the other fills is none
     empty = np.minimum(empty, np.diff(members.slice, append=members.slice[-1] + 1) - 1)
-    d, ground, top = smoothed(members)
-    return Chain(one.road, one.side, members, d, ground, top, empty)
+    return Chain(one.road, one.side, members, *along_the_chain(members), empty)
 
 
 def _behind(chain, face, equal):

@@ -16,12 +16,22 @@ import numpy as np
 
 from ...survey.frame.reference_line import NODE_SPACING
 from ...survey.store.records import road_of
-from ..common.corners import FACE_LOWER_SHARE, FACE_PRIOR, FACE_UPPER_SHARE
 from ..common.curb_limits import SIGNIFICANT_SIGMAS
 from ..common.decimation import POINTS_PER_LEVEL_CELL_IN_PLAN, PointDecimation
 from ..common.sides import expected_height
 from .classify import CurbReturn
 from .faint import LED_LENGTH, MAX_LAYER_HEIGHT
+from .ground.arc_ground import (
+    CURB_HALF_WIDTH,
+    GROUND_HALF_WIDTH,
+    MIN_SIDE_POINTS,
+    Arc,
+    CurbEnd,
+    GroundAboutArc,
+    aside_of_arcs,
+    cost_of_arcs,
+    levels_of_arcs,
+)
 from .main_curbs import KnownPlaces
 from .steps import PlanSteps
 from .tracking import LINE_DIRECTION_LENGTH
@@ -31,54 +41,21 @@ MAX_CORRIDOR_DISTANCE = 15.0  # m straight on from its end within which such a c
 MAX_BEYOND_LENGTH = 40.0      # m that it is led on: the ground of the survey reaches no farther
 MAX_DROPPED_LENGTH = 6.0      # m from its end that it may be dropped: a pedestrian crossing
 TRAIL_LENGTH = 6.0            # m of known curb whose direction it keeps
-GROUND_HALF_WIDTH = 0.8       # m on either side of the points that show the levels
-CURB_HALF_WIDTH = 0.03        # m about the curb in which a point is on neither level, but anywhere between them
-MIN_SIDE_POINTS = 3           # along LED_LENGTH on either side
 MIN_HEIGHT_SHARE, MAX_HEIGHT_SHARE = 0.5, 1.5   # of the height that the curb is known to have
 MIN_LEVEL_SHARE = 0.75        # of the points on either side that are nearer to their own level than to the other
 GROWTH = 1.0                  # m by which the fitted length grows
 KNOWN_CURB_DISTANCE = 0.25    # m within which a curb is one that is known already
 STEP_SPACING = 0.5            # m between the places that are returned
 CELL_ALONG, CELL_ACROSS = 0.5, 0.1    # m, cells in which dense points are averaged: their errors are alike
-POINT_HEIGHT_SIGMA, PLACE_SIGMA = 0.015, 0.03   # m, of a point about its level, and of a step of the known curb about its course
-MAX_RESIDUAL = 3.0            # sigmas beyond which a point counts no more: objects, plants
-# What is known beforehand: sigmas of the bottom's height at the end (m), of grade (m per m), height (m), crossfall (m per m) and bend (1/m)
-BOTTOM_SIGMA, GRADE_SIGMA, RISE_SIGMA, CROSSFALL_SIGMA, ARC_BEND_SIGMA = 0.02, 0.03, 0.03, 0.04, 0.005
-LEAST_STEPS = 8               # of the known curb, which are independent
 NO_OTHER_ARCS = np.zeros((3, 1))
 # Arcs that are weighed: those about the best, by steps (m) at three places, then by shares of what they spread
 SPREAD_STEP, SPREAD_STEP_SIGMAS, LEAST_SPREAD_STEP, SPREAD_ROUNDS = 0.03, 0.8, 0.002, 3
 SPREAD_GRID = np.stack(np.meshgrid(*3 * [np.arange(-3.0, 4.0)], indexing="ij"), axis=-1).reshape(-1, 3)
-Arc = tuple[float, float, float]
 # Shifts (m), turns (radians) and bends (1/m) of the arcs that are tried: first straight ones, then some about the best, and farther out about
 # the arc so far.
 FIRST_ARCS = np.arange(-0.06, 0.061, 0.03), np.radians(np.arange(-5.0, 5.01, 0.5)), np.zeros(1)
 FINER_ARCS = np.arange(-0.02, 0.021, 0.02), np.radians(np.arange(-0.4, 0.41, 0.2)), np.arange(-0.02, 0.0201, 0.004)
 FARTHER_ARCS = np.arange(-0.02, 0.021, 0.02), np.radians(np.arange(-0.3, 0.31, 0.15)), np.arange(-0.004, 0.0041, 0.002)
-
-
-@dataclass
-class CurbEnd:
-    """The end of a curb: place and height of its bottom (local m), unit vector out of it, its side uphill (1: on the right, else -1), its
-    height (m), and (3, N) its steps near the end: metres along and uphill from there, and height."""
-
-    x: float
-    y: float
-    z: float
-    tx: float
-    ty: float
-    uphill: float
-    height: float
-    trail: np.ndarray
-
-    def ahead(self, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Places t metres straight on."""
-        return self.x + t * self.tx, self.y + t * self.ty
-
-    def beside(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Metres along and uphill."""
-        dx, dy = x - self.x, y - self.y
-        return dx * self.tx + dy * self.ty, self.uphill * (dx * self.ty - dy * self.tx)
 
 
 @dataclass
@@ -235,13 +212,13 @@ def _surest(t, u, z, end, course, stop):
     Where the last return on the street and the first one behind the curb lie far apart, any arc between them explains both: the best
     of them is a matter of chance, and how far apart the returns are is how uncertain the place is.
     """
-    ground = _Ground.about(t, u, z, end, course.start, stop, course.arc)
+    ground = GroundAboutArc.about(t, u, z, end, course.start, stop, course.arc)
     if ground is None:
         return course
     at = np.linspace(course.start, course.end, 3)
     # arcs by what they are aside at the beginning, in the middle and at the end
     to_arc = np.linalg.inv(np.stack([np.ones(3), at, 0.5 * at * at], axis=1))
-    mean, axes = _aside(np.array([course.arc]), at)[0], SPREAD_STEP * np.eye(3)
+    mean, axes = aside_of_arcs(np.array([course.arc]), at)[0], SPREAD_STEP * np.eye(3)
     for _ in range(SPREAD_ROUNDS):
         aside = mean + SPREAD_GRID @ axes.T
         cost = ground.explained(aside @ to_arc.T)[0]
@@ -264,7 +241,7 @@ def _best_arc(t, u, z, end, start, stop, about, arcs):
 
 def _best_levels(t, u, z, end, start, stop, about, arcs):
     """The same with what belongs to it: levels, their prior weights, t and z of the points, their design, v across from it, and which count."""
-    ground = _Ground.about(t, u, z, end, start, stop, about)
+    ground = GroundAboutArc.about(t, u, z, end, start, stop, about)
     if ground is None:
         return None
     tried = np.stack([v.ravel() + middle for v, middle in zip(np.meshgrid(*arcs, indexing="ij"), about)], axis=1)
@@ -272,62 +249,6 @@ def _best_levels(t, u, z, end, start, stop, about, arcs):
     k = int(np.argmin(cost))
     near = np.abs(v[k]) > CURB_HALF_WIDTH
     return (float(tried[k, 0]), float(tried[k, 1]), float(tried[k, 2])), levels[k], ground.prior, ground.t, ground.z, design[k], v[k], near
-
-
-@dataclass
-class _Ground:
-    """Points about an arc from the end of a curb: t, u, z in m from there; `prior`: weights of what is known of the levels beforehand.
-
-    All arcs near that one are compared on the same points: one that had more of them than another would seem to explain more.
-    """
-
-    t: np.ndarray
-    u: np.ndarray
-    z: np.ndarray
-    end: CurbEnd
-    prior: np.ndarray
-
-    @staticmethod
-    def about(t: np.ndarray, u: np.ndarray, z: np.ndarray, end: CurbEnd, start: float, stop: float, arc: Arc) -> _Ground | None:
-        """The points between two distances; None where there are too few."""
-        own = np.flatnonzero((t >= start) & (t < stop) & (np.abs(u - _aside(np.array([arc]), t)[0]) < GROUND_HALF_WIDTH))
-        if len(own) < 2 * MIN_SIDE_POINTS:
-            return None
-        prior = np.array([BOTTOM_SIGMA + 0.01 * start, GRADE_SIGMA, RISE_SIGMA, CROSSFALL_SIGMA])**-2.0
-        return _Ground(t[own], u[own], z[own] - end.z, end, prior)
-
-    def explained(self, arcs: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """How well (C, 3) arcs explain points and known curb.
-
-        Returns (C,) sums of squares of what both differ from them, in sigmas, (C, 4) levels, their (C, N, 4) design and (C, N) m across.
-        """
-        t, z, end = self.t, self.z, self.end
-        v = self.u - _aside(arcs, t)
-        on_level = np.abs(v) > CURB_HALF_WIDTH
-        design = np.stack([np.ones_like(v), np.broadcast_to(t, v.shape), (v > 0).astype(float), v], axis=2)
-        levels, residual = _robust_fit(design, z, on_level, self.prior, np.array([0.0, 0.0, end.height, 0.0]))
-        low, height = residual + design[:, :, 2] * levels[:, 2:3] / POINT_HEIGHT_SIGMA, levels[:, 2:3] / POINT_HEIGHT_SIGMA
-        # the curb itself is as high as either level, or anywhere between them
-        residual = np.where(on_level, residual, low - np.clip(low, 0.0, np.maximum(height, 0.0)))
-        at, aside, _ = end.trail
-        off = (aside - _aside(arcs, at)) / PLACE_SIGMA
-        return _cost(residual) + (off**2).mean(axis=1) * min(len(at), LEAST_STEPS) + (arcs[:, 2] / ARC_BEND_SIGMA)**2, levels, design, v
-
-    def foot(self, arc: np.ndarray) -> float:
-        """How far uphill from an arc, m, the foot of the curb is that leans where the points on it are; 0 where there are few."""
-        _, (levels,), (design,), (v,) = self.explained(arc[None])
-        rise = self.z - design[:, [0, 1, 3]] @ levels[[0, 1, 3]]
-        face = (np.abs(v) <= CURB_HALF_WIDTH) & (rise > FACE_LOWER_SHARE * levels[2]) & (rise < FACE_UPPER_SHARE * levels[2])
-        if face.sum() < MIN_SIDE_POINTS:
-            return 0.0
-        v, rise = v[face], rise[face]
-        off = rise - rise.mean()
-        return float(v.mean() - (v @ off) / (off @ off + face.sum() * FACE_PRIOR) * rise.mean())
-
-
-def _aside(arcs, t):
-    """(C, N) m uphill, of (C, 3) arcs at (N,) m along."""
-    return arcs[:, :1] + arcs[:, 1:2] * t + 0.5 * arcs[:, 2:] * t * t
 
 
 def _fitted(t, u, z, end, start, stop, about, arcs):
@@ -348,29 +269,13 @@ def _fitted(t, u, z, end, start, stop, about, arcs):
     if not MIN_HEIGHT_SHARE * end.height <= rise <= MAX_HEIGHT_SHARE * end.height or apart < MIN_LEVEL_SHARE:
         return None
     # a slope, however steep, must explain the last points worse
-    slope = _cost(_robust_fit(design[None, seen][:, :, [0, 1, 3]], z[seen], np.ones((1, seen.sum()), bool), np.full(3, 1e-6), np.zeros(3))[1])[0]
-    step = _cost(_robust_fit(design[None, seen], z[seen], np.ones((1, seen.sum()), bool), prior, levels)[1])[0]
+    every = np.ones((1, seen.sum()), bool)
+    slope = cost_of_arcs(levels_of_arcs(design[None, seen][:, :, [0, 1, 3]], z[seen], every, np.full(3, 1e-6), np.zeros(3))[1])[0]
+    step = cost_of_arcs(levels_of_arcs(design[None, seen], z[seen], every, prior, levels)[1])[0]
     if slope - step < SIGNIFICANT_SIGMAS**2:
         return None
     residual = z[seen] - design[seen] @ levels
     return CurbCourse(arc, levels, start, reach, (int(low.sum()), int(high.sum())), float(np.median(np.abs(residual)) / 0.6745))
-
-
-def _robust_fit(design, z, used, prior, expected):
-    """(C, P) parameters of each of C designs (C, N, P), and (C, N) sigmas that heights differ from them; `used` : (C, N) bool."""
-    weight = used.astype(float)
-    for _ in range(3):
-        normal = np.einsum("ck,cki,ckj->cij", weight, design, design, optimize=True) / POINT_HEIGHT_SIGMA**2 + np.diag(prior)
-        right = np.einsum("ck,cki,k->ci", weight, design, z, optimize=True) / POINT_HEIGHT_SIGMA**2 + prior * expected
-        found = np.linalg.solve(normal, right[:, :, None])[:, :, 0]
-        residual = (z - np.einsum("cki,ci->ck", design, found)) / POINT_HEIGHT_SIGMA
-        weight = used / (1.0 + (residual / MAX_RESIDUAL)**2)
-    return found, residual
-
-
-def _cost(residual):
-    """(C,) sums of squares of (C, N) differences in sigmas, cut off."""
-    return np.minimum(residual**2, MAX_RESIDUAL**2).sum(axis=1)
 
 
 def _led(course, end, curb, at_tail, survey, road, line):

@@ -158,14 +158,6 @@ def test_a_scanner_channel_tells_the_scanners_apart(street, tmp_path):
     np.testing.assert_array_equal(np.unique(contents(survey)["scanner"]), [0, 1])
 
 
-def test_without_times_sources_along_the_same_road_are_scanners_and_tiles_of_it_are_not(street, tmp_path):
-    trajectory, (x, y, z, time), _ = street
-    scanners, tiles = np.arange(len(x)) % 2 + 1, 1 + (time > np.median(time))
-    for source, found in ((scanners, ("point_source_id", [1, 2])), (tiles, (None, [0]))):
-        survey = open_survey([write_cloud(tmp_path / "timeless.laz", x, y, z, crs=CRS, source=source)], trajectory)
-        assert not survey.has_time and (survey.scanner_field, survey.scanners) == found
-
-
 @pytest.mark.parametrize("cloud_crs, says", [
     ("EPSG:4326", "geographic"), ("EPSG:2263", "foot"), ("EPSG:32632+6360", "heights in US survey foot.*convert the heights")])
 def test_a_cloud_that_is_not_in_metres_is_refused(street, tmp_path, cloud_crs, says):
