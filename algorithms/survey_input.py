@@ -17,8 +17,9 @@ SURVEY_SETTINGS = (
     ),
     SettingSpec(
         "SCANNER_FIELD", SURVEY, "scanner_field", tr("Field that tells the scanners apart"),
-        tr("Automatic takes scanner_channel where it is used and point_source_id where it interleaves in time; where no field "
-           "tells them apart, they are told apart by their scan lines. Name one when the report counts the wrong number of scanners."),
+        tr("Automatic takes scanner_channel where it is used and point_source_id where it interleaves in time, or along the road where the "
+           "points have no times; where no field tells them apart, they are told apart by their scan lines. Name one when the report counts "
+           "the wrong number of scanners."),
         choices=("automatic", "scanner_channel", "point_source_id"), advanced=True,
     ),
     SettingSpec(

@@ -4455,8 +4455,8 @@
         </message>
         <message>
             <location filename="../../algorithms/survey_input.py" />
-            <source>Automatic takes scanner_channel where it is used and point_source_id where it interleaves in time; where no field tells them apart, they are told apart by their scan lines. Name one when the report counts the wrong number of scanners.</source>
-            <translation>Automatisch nimmt scanner_channel, wo es benutzt wird, und point_source_id, wo es zeitlich verschränkt ist; wo kein Feld sie unterscheidet, werden sie an ihren Scanzeilen unterschieden. Ein Feld angeben, wenn der Bericht die falsche Zahl von Scannern nennt.</translation>
+            <source>Automatic takes scanner_channel where it is used and point_source_id where it interleaves in time, or along the road where the points have no times; where no field tells them apart, they are told apart by their scan lines. Name one when the report counts the wrong number of scanners.</source>
+            <translation>Automatisch nimmt scanner_channel, wo es benutzt wird, und point_source_id, wo es zeitlich verschränkt ist oder, bei Punkten ohne Zeiten, entlang der Straße; wo kein Feld sie unterscheidet, werden sie an ihren Scanzeilen unterschieden. Ein Feld angeben, wenn der Bericht die falsche Zahl von Scannern nennt.</translation>
         </message>
         <message>
             <location filename="../../algorithms/survey_input.py" />

@@ -5,7 +5,7 @@ from .ablations import ABLATIONS
 from .poorer_page import poorer_section, sigma_section
 from .roadside import roadside_section
 from .streets_page import evidence_section, otherwise_section, streets_section
-from .tables import mean, number, table, triple
+from .tables import label, mean, number, table, triple
 
 STAGES = {"Road surface": ("survey", "curbs", "edges", "surface"), "Marking extraction": ("intensity", "image", "markings"),
           "Outlier removal": ("outliers",), "Clustering": ("clusters",), "Lines": ("lines", "driving")}
@@ -20,15 +20,11 @@ def page(figures, samples):
     return "\n\n".join(section for section in sections if section) + "\n"
 
 
-def _label(figure):
-    return f"{figure['name']} ({figure['kind']})"
-
-
 def _intro(figures, samples):
     what = ("`make accuracy` makes the sample scenes anew, runs every method over them and writes this page. The surveys are "
             "**simulated**: figures on them say how the methods compare and what a change does, not what they reach on your road."
             if samples else "`make accuracy SURVEYS=folder` ran every method over the surveys of a folder and wrote this page.")
-    rows = [[_label(f), f["text"] or "–", f"{f['points']:,}"] for f in figures]
+    rows = [[label(f), f["text"] or "–", f"{f['points']:,}"] for f in figures]
     return "\n\n".join((
         "# Accuracy", what,
         "Beside our figures stand those of the two papers that the methods come from, measured by their authors on other, real roads: "
@@ -47,7 +43,7 @@ def _intro(figures, samples):
 
 
 def _road_points(figures):
-    rows = [[_label(f), f"{f['points']:,}", f"{f['road_points']:,}", number(100 * f["road_points"] / f["points"])] for f in figures]
+    rows = [[label(f), f"{f['points']:,}", f"{f['road_points']:,}", number(100 * f["road_points"] / f["points"])] for f in figures]
     rows += [[f"thesis, data set {k}", f"{raw:,}", f"{road:,}", number(100 * road / raw)]
              for k, (raw, road) in enumerate(published.ROAD_POINTS, start=1)]
     return "## Points left by surface extraction (thesis, table 4.2)\n\n" + table(["survey", "points", "road points", "kept (%)"], rows)
@@ -65,8 +61,8 @@ def _cells(figures):
     head = ["", *(f"{size} cm" for size in sizes)]
     rows = []
     for f in figures:
-        rows.append([f"{_label(f)}: image (MB)", *(number(f["cells"][size]["megabytes"], 2) for size in sizes)])
-        rows.append([f"{_label(f)}: F1 of the markings", *(number(f["cells"][size]["tolerant"]["f1"]) for size in sizes)])
+        rows.append([f"{label(f)}: image (MB)", *(number(f["cells"][size]["megabytes"], 2) for size in sizes)])
+        rows.append([f"{label(f)}: F1 of the markings", *(number(f["cells"][size]["tolerant"]["f1"]) for size in sizes)])
     rows.append(["thesis: image (MB)", *(number(published.IMAGE_SIZE[size], 2) for size in sizes)])
     return ("## Resolution of the intensity image (thesis, tables 4.3 and 4.4)\n\nOur images are 32-bit and compressed. The thesis "
             "chose 4 cm because the smallest markings are still seen there; so do we.\n\n" + table(head, rows))
@@ -92,7 +88,7 @@ def _seconds(figures):
     rows.append(["Whole, seconds per million points", *(number(sum(f["seconds"].values()) / f["points"] * 1e6) for f in figures),
                  number(sum(published.SECONDS["Whole"]) / sum(raw for raw, _ in published.ROAD_POINTS) * 1e6)])
     return ("## Seconds (thesis, table 4.12)\n\nThe surface includes reading the survey. The thesis's column is the mean of its six data "
-            "sets (i5-6400, C++ with PCL).\n\n" + table(["stage", *(_label(f) for f in figures), "thesis"], rows))
+            "sets (i5-6400, C++ with PCL).\n\n" + table(["stage", *(label(f) for f in figures), "thesis"], rows))
 
 
 def _markings(figures):
@@ -102,7 +98,7 @@ def _markings(figures):
     rows = []
     for f in figures:
         found = f["whole"]["markings"]
-        rows.append([_label(f), triple(found["tolerant"]), triple(found["strict"])])
+        rows.append([label(f), triple(found["tolerant"]), triple(found["strict"])])
     for k, row in enumerate(published.MARKINGS, start=1):
         name = f"thesis, data set {k}" if k <= 6 else "thesis, mean"
         rows.append([name, " / ".join(number(value) for value in row), "–"])
@@ -119,7 +115,7 @@ def _methods(figures):
     rows = []
     for f in figures:
         for kind, text in (("mask", "as extracted"), ("polygons", "after our clustering")):
-            rows.append([f"{_label(f)}, {text}", *(triple(f["methods"][m][kind]["tolerant"]) for m in methods)])
+            rows.append([f"{label(f)}, {text}", *(triple(f["methods"][m][kind]["tolerant"]) for m in methods)])
     best = []
     for kind, text in (("mask", "as extracted"), ("polygons", "after our clustering")):
         f1 = {m: mean([f["methods"][m][kind]["tolerant"]["f1"] for f in figures]) or 0.0 for m in methods}
@@ -149,7 +145,7 @@ def _driving(figures):
     for f in figures:
         found = f["whole"]["driving"]
         cells = [f"{number(found['recall'][w])} / {number(found['miscoding'][w])}" for w in published.DRIVING]
-        rows.append([_label(f), *cells, number(found["rmse_cm"])])
+        rows.append([label(f), *cells, number(found["rmse_cm"])])
     for k in (0, 1):
         rows.append([f"thesis, line {k + 1}", *(f"{number(v[k][0])} / {number(v[k][1])}" for v in published.DRIVING.values()), "–"])
     return ("## Driving lines (thesis, table 4.15)\n\nRecall / miscoding by buffer. Recall is the share of the true line within the distance "
@@ -172,10 +168,10 @@ def _boundaries(figures):
                     at = found[side]["10"]
                     spread = [found[side][t]["f1"] for t in ("5", "20")]
                     rmse = [found["rmse_cm"], found["height_rmse_cm"]] if side == "total" else [None, None]
-                    rows.append([f"{_label(f)}, {method}", side, *(number(at[n]) for n in ("precision", "recall", "f1")),
+                    rows.append([f"{label(f)}, {method}", side, *(number(at[n]) for n in ("precision", "recall", "f1")),
                                  *(number(v) for v in spread), " / ".join(number(v) for v in rmse) if side == "total" else ""])
         if silent:
-            notes.append(f"{_label(f)} has no curbs; intervals in which a line was drawn all the same: {', '.join(silent)}.")
+            notes.append(f"{label(f)} has no curbs; intervals in which a line was drawn all the same: {', '.join(silent)}.")
     if not rows and not notes:
         return ""
     for name, row in published.BOUNDARIES.items():

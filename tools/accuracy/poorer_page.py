@@ -1,8 +1,8 @@
 """The sections of the page on surveys that lack something, and on how honest the uncertainty of lines is."""
 
 from .streets import harmonic, percent, pooled
-from .streets_page import CHANGED, change, scores
-from .tables import number, table
+from .streets_page import CHANGED, change, changes_row, scores
+from .tables import label, number, table
 
 
 def _boundaries(found):
@@ -25,7 +25,7 @@ def poorer_section(figures):
     lacks = list(dict.fromkeys(name for f in figures for name in f["poorer"]))
     parts = [_over_all(figures, lacks)] if len(figures) > 1 else []
     for title, score in BY_SURVEY.items():
-        rows = [[_label(f), number(score(f["streets"]["as surveyed"])), *(_change(f, name, score) for name in lacks)]
+        rows = [[label(f), number(score(f["streets"]["as surveyed"])), *(_change(f, name, score) for name in lacks)]
                 for f in figures if score(f["streets"]["as surveyed"]) is not None]
         if rows:
             parts.append(f"{title}:\n\n" + table(["survey", "as surveyed", *lacks], rows))
@@ -39,11 +39,7 @@ def poorer_section(figures):
 def _over_all(figures, lacks):
     """The table of all figures, pooled over the surveys by length."""
     rows = [["**as surveyed**", *(number(value) for value in scores(pooled([f["streets"]["as surveyed"] for f in figures])))]]
-    for name in lacks:
-        pairs = [(f["streets"]["as surveyed"], f["poorer"][name]) for f in figures if "refused" not in f["poorer"].get(name, {"refused": ""})]
-        refused = sum("refused" in f["poorer"].get(name, ()) for f in figures)
-        before, after = (scores(pooled([pair[k] for pair in pairs])) for k in (0, 1))
-        rows.append([name + (f" (no map of {refused})" if refused else ""), *map(change, before, after)])
+    rows += [changes_row(name, [(f["streets"]["as surveyed"], f["poorer"][name]) for f in figures if name in f["poorer"]]) for name in lacks]
     return "All, by length:\n\n" + table(["", *CHANGED], rows)
 
 
@@ -58,13 +54,9 @@ def _change(figure, name, score):
     return "lost" if after is None else change(before, after)
 
 
-def _label(figure):
-    return f"{figure['name']} ({figure['kind']})"
-
-
 def sigma_section(figures):
     """Which share of the places of edges and driving lines lies within the uncertainty that their line says."""
-    judged = [(_label(f), f["streets"]["as surveyed"]) for f in figures]
+    judged = [(label(f), f["streets"]["as surveyed"]) for f in figures]
     judged = [(name, found) for name, found in judged if "edges_sigma" in found or "lanes_sigma" in found]
     if not judged:
         return ""

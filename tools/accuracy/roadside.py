@@ -7,7 +7,7 @@ from lanewright.core.survey.open_survey import SurveySettings, open_survey
 from lanewright.core.survey.trajectory.reader import read_trajectory
 
 from .streets import STEP, distance, percent, pooled, sampled
-from .tables import number, table
+from .tables import label, number, table
 
 KINDS = ("guard_rail", "barrier", "wall", "fence", "hedge")
 BESIDE = 0.30  # m between a line and the true face of the same kind
@@ -54,7 +54,7 @@ def judged_roadside(truth, rows):
 
 def roadside_section(figures):
     """The table of all surveys whose truth says what runs beside the road."""
-    judged = [(f"{f['name']} ({f['kind']})", f["streets"]["as surveyed"]) for f in figures if "roadside" in f.get("has", ())]
+    judged = [(label(f), f["streets"]["as surveyed"]) for f in figures if "roadside" in f.get("has", ())]
     judged = [(name, found) for name, found in judged if "refused" not in found]
     if not judged:
         return ""

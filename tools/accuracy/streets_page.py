@@ -2,7 +2,7 @@
 
 from .evidence import BINS, EVIDENCE
 from .streets import STEP, harmonic, percent, pooled
-from .tables import number, table
+from .tables import label, number, table
 
 HEAD = ("survey", "curbs", "corners, islands", "pavement edges", "drawn edges right", "markings F1", "driving lines 5 / 15 cm",
         "driven lanes 5 / 15 cm", "miscoding", "directions right")
@@ -25,10 +25,10 @@ def streets_section(figures):
     for f in figures:
         found = f["streets"]["as surveyed"]
         if "refused" in found:
-            rows.append([f"{f['name']} ({f['kind']})", f"no map: {found['refused']}", *[""] * (len(HEAD) - 2)])
+            rows.append([label(f), f"no map: {found['refused']}", *[""] * (len(HEAD) - 2)])
         else:
             made.append(found)
-            rows.append([f"{f['name']} ({f['kind']})", *_row(found)])
+            rows.append([label(f), *_row(found)])
     if len(made) > 1:
         rows.append(["**all, by length**", *_row(pooled(made))])
     return ("## Streets of every kind\n\nThe road map as one call makes it. Boundaries by length: the share of the true curbs within 10 cm of a "
@@ -49,20 +49,22 @@ def otherwise_section(figures):
     figures = given
     rows = []
     for name in names:
-        pairs = [(f["streets"]["as surveyed"], f["streets"][name]) for f in figures if name in f["streets"]]
-        refused = sum("refused" in after for _, after in pairs)
-        pairs = [(before, after) for before, after in pairs if "refused" not in before and "refused" not in after]
-        before, after = (scores(pooled([pair[k] for pair in pairs])) for k in (0, 1))
-        cells = [change(b, a) for b, a in zip(before, after)]
-        if name == "driven the other way":
-            cells[-1] = "–"
-        rows.append([name + (f" (no map of {refused})" if refused else ""), *cells])
+        row = changes_row(name, [(f["streets"]["as surveyed"], f["streets"][name]) for f in figures if name in f["streets"]])
+        rows.append(row if name != "driven the other way" else [*row[:-1], "–"])
     whole = scores(pooled([f["streets"]["as surveyed"] for f in figures if "refused" not in f["streets"]["as surveyed"]]))
     return ("## The same streets surveyed otherwise\n\nEach survey is also mirrored, which makes left-hand traffic of right-hand traffic, "
             "turned, driven the other way and thinned to every second point; the maps are changed back and judged by the same truth. The "
             "first row is pooled over all surveys by length, the others are the change in points. Driven the other way, arrows point "
             f"against the traffic, so directions are not compared.{some}\n\n"
             + table(["", *CHANGED], [["**as surveyed**", *(number(value) for value in whole)], *rows]))
+
+
+def changes_row(name, pairs):
+    """The row of what changes in (figures before, figures after) of several surveys, pooled by length; those without a map are counted."""
+    refused = sum("refused" in after for _, after in pairs)
+    pairs = [pair for pair in pairs if not any("refused" in figures for figures in pair)]
+    before, after = (scores(pooled([pair[k] for pair in pairs])) for k in (0, 1))
+    return [name + (f" (no map of {refused})" if refused else ""), *map(change, before, after)]
 
 
 def scores(figures):

@@ -7,6 +7,11 @@ def table(head, rows, words=1):
     return "\n".join("| " + " | ".join(str(cell) for cell in line) + " |" for line in lines)
 
 
+def label(figures):
+    """The name of a survey and whether it is simulated or real."""
+    return f"{figures['name']} ({figures['kind']})"
+
+
 def number(value, digits=1):
     return "–" if value is None else f"{value:,.{digits}f}"
 
