@@ -10,5 +10,5 @@ __getattr__, __all__ = public(__name__, {
     "gdal_errors": ("gdal_exceptions",),
     "geotiff": ("IntensityImage", "filled_tiles", "new_geotiff", "write_display_image"),
     "text_table": ("NumberTable", "read_number_table"),
-    "unfinished": ("unfinished_path",),
+    "unfinished": ("finish_file", "unfinished_path"),
 })
