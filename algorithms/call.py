@@ -158,10 +158,11 @@ class Call:
 
         from ..core.io.crs import parse_crs, same_crs
         from ..core.io.gdal_errors import gdal_exceptions
+        from ..core.io.local_files import open_raster
 
         path = self.raster(name)
         with gdal_exceptions():
-            own = gdal.Open(path).GetProjection()
+            own = open_raster(path).GetProjection()
         if not own or not crs or same_crs(parse_crs(own), parse_crs(crs)):
             return path
         target = self.scratch_file(f"{name.lower()}.vrt")

@@ -9,6 +9,8 @@ from ..algorithms import parameters as specs
 from ..algorithms.call import Call
 from ..algorithms.destinations import destination_path
 from ..core.common.errors import RoadExtractionError
+from ..core.io.gdal_errors import gdal_exceptions
+from ..core.io.local_files import open_raster
 from .gdal_module import check_gdal
 from .layer_files import DRIVERS, LayerFile, file_and_table, first_table, write_layer
 from .measured_lines import check_format
@@ -72,12 +74,11 @@ class FileCall(Call):
             return LayerFile(value, label), "", ""
         existing_raster(path, label)
         check_gdal(f"{label} ({name}) is a raster")
-        from osgeo import gdal
-
-        dataset = gdal.OpenEx(path, gdal.OF_RASTER)
-        if dataset is None:  # a vector format of another ending
+        try:
+            with gdal_exceptions():
+                return None, path, open_raster(path).GetProjection()
+        except RoadExtractionError:  # a vector format of another ending
             return LayerFile(value, label), "", ""
-        return None, path, dataset.GetProjection()
 
     def rows_where(self, name, source):
         condition = self.string(name)

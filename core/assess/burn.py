@@ -9,6 +9,7 @@ import numpy as np
 import shapely
 
 from ..io.gdal_errors import gdal_exceptions
+from ..io.local_files import open_raster
 
 BURN_TILE = 2048  # cells, side of a tile
 
@@ -66,7 +67,7 @@ class DataMask:
     def __init__(self, path: str) -> None:
         from osgeo import gdal
 
-        self._raster = gdal.Open(str(path))
+        self._raster = open_raster(path)
         self._inverse = gdal.InvGeoTransform(self._raster.GetGeoTransform())
 
     @gdal_exceptions()

@@ -10,5 +10,6 @@ __getattr__, __all__ = public(__name__, {
     "gdal_errors": ("gdal_exceptions",),
     "geotiff": ("IntensityImage", "filled_tiles", "new_geotiff", "write_display_image"),
     "text_table": ("NumberTable", "read_number_table"),
+    "local_files": ("check_local", "offline", "open_raster", "open_vector"),
     "unfinished": ("finish_file", "unfinished_path"),
 })
