@@ -65,7 +65,7 @@ def _lines(path):
             named = named or bare[labelled.end():].strip()
         elif not lines and not named and (CRS_CODE.match(bare) or bare == line.strip() and _is_named_crs(bare)):
             named = bare
-        elif bare and (bare == line.strip() or (not lines and _delimiter([bare]) != " " and names_columns(re.split("[;\t,]", bare), 2))):
+        elif bare and (bare == line.strip() or (not lines and _delimiter([bare]) != " " and names_columns(re.split("[;\t,]", bare), 3))):
             lines.append(bare)  # a header may be written as a comment
     return lines, named
 

@@ -207,9 +207,10 @@ def guess_columns(rows: Sequence[Sequence[Any]], image: SourceImage, what: str) 
     """
     width = min(len(row) for row in rows)
     values = np.array([[as_number(field) for field in row[:width]] for row in rows])
-    words = [k for k in range(width) if not np.isfinite(values[:, k]).any() and not all(str(row[k]).strip().lower() in ("nan", "-", "") for row in rows)]
+    texts = [{str(row[k]).strip() for row in rows} for k in range(width)]
+    words = [k for k in range(width) if not np.isfinite(values[:, k]).any() and not texts[k] <= {"nan", "NaN", "-", ""}]
     numeric = [k for k in range(width) if k not in words]
-    files = [k for k in words if any(IMAGE_FILE.search(str(row[k]).strip()) for row in rows)]
+    files = [k for k in words if any(map(IMAGE_FILE.search, texts[k]))]
     labels = [k for k in words if k not in files] or [k + 1 for k in files if k + 1 not in numeric and any(len(row) > k + 1 for row in rows)]
     fits = []
     for start, order in product((0, 1), NUMBER_ORDERS):  # a point's number may come first
