@@ -256,7 +256,7 @@ def _chunk_damage(file, first, end, record):
 
 
 def _layer_damage(file, first, record, table):
-    """What is wrong with the lengths of the layers, which each chunk states after its first, uncompressed point, and with its own number of points."""
+    """What is wrong with the lengths of the layers, which each chunk states after its first, uncompressed point, or with its points."""
     raw = sum(_item_sizes(record))
     layers = sum(LAYERS_OF_ITEM.get(kind, size) for kind, size in zip(_item_types(record), _item_sizes(record)))
     head = raw + 4 + 4 * layers  # the number of points, and the lengths

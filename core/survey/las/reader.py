@@ -13,7 +13,7 @@ import numpy as np
 from ...common.errors import Cancelled, RoadExtractionError
 from ...common.parallel import check_cancelled
 from .guard import find_damage, places_here_and_there, points_per_chunk, with_points_of_chunks
-from .mending import MendedHeader, mend, opened
+from .mending import mend, opened
 from .records_of_file import HeaderFields
 
 POINTS_PER_BLOCK = 400_000  # points decoded at a time
