@@ -19,7 +19,7 @@ import numpy as np
 from .records_of_file import EVLR_HEADER_SIZE, VLR_HEADER_SIZE, HeaderFields, Record, base_size, extra_bytes_described, readable_extra_bytes
 
 SAMPLED_RECORDS = 1000     # of those behind the last point that a header states, to see whether they are points too
-BOX_GROWTH, LEAST_REACH = 10.0, 1000.0   # a road goes on where the points stated end: so many times their extent, and so many metres, beyond it
+BOX_GROWTH, LEAST_BOX_REACH = 10.0, 1000.0   # a road goes on where the points stated end: so many times their extent, and so many metres, beyond it
 COUNT_AT, LONG_COUNT_AT, RECORD_SIZE_AT, POINTS_AT, EVLR_COUNT_AT = 107, 247, 105, 96, 243
 
 
@@ -195,7 +195,7 @@ def _are_points(file, fields, first, end, rest):
     if first:
         stated = sampled_places(file, fields, 0, first) * fields.scales + fields.offsets
         low, high = stated.min(axis=0), stated.max(axis=0)
-        reach = BOX_GROWTH * (high - low).max() + LEAST_REACH
+        reach = BOX_GROWTH * (high - low).max() + LEAST_BOX_REACH
         low, high = low - reach, high + reach
     elif not (np.isfinite([low, high]).all() and (low < high).any()):
         return not rest
