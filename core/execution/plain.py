@@ -23,7 +23,7 @@ from .phase import name_of, named
 # of each), the bytes of the arrays. An .npz, whose arrays have headers and checksums of their own, takes nine times as long to write
 # and read
 FORMAT = b"LWplain2"
-CHECK, TEXT_LENGTH = struct.Struct("<I"), struct.Struct("<q")
+CHECKSUM, TEXT_LENGTH = struct.Struct("<I"), struct.Struct("<q")
 CHECKED_AT_ONCE = 1 << 20   # bytes, which fit the processor's cache
 
 
@@ -58,7 +58,7 @@ def write_plain(path: Path, value: Any, unfinished_in: Path | None = None) -> No
     unfinished = (unfinished_in or path.parent) / f"{path.stem}.{uuid4().hex}.part{path.suffix}"
     try:
         with open(unfinished, "wb") as file:
-            file.write(FORMAT + CHECK.pack(check) + head)
+            file.write(FORMAT + CHECKSUM.pack(check) + head)
             for row in rows:
                 file.write(row)
         os.replace(unfinished, path)
@@ -81,7 +81,7 @@ def read_plain(path: Path) -> Any:
     with open(path, "rb") as file:
         if file.read(len(FORMAT)) != FORMAT:
             raise OSError(f"{path} is no file of ours")
-        _read_bytes(file, CHECK.size)
+        _read_bytes(file, CHECKSUM.size)
         (length,) = TEXT_LENGTH.unpack(_read_bytes(file, TEXT_LENGTH.size))
         tree, layouts = json.loads(_read_bytes(file, length))
         arrays = {f"a{k}": _read_array(file, *layout) for k, layout in enumerate(layouts)}
@@ -94,7 +94,7 @@ def is_whole(path: Path) -> bool:
         with open(path, "rb") as file:
             if file.read(len(FORMAT)) != FORMAT:
                 return False
-            (check,) = CHECK.unpack(_read_bytes(file, CHECK.size))
+            (check,) = CHECKSUM.unpack(_read_bytes(file, CHECKSUM.size))
             return checksum(file) == check
     except OSError:
         return False

@@ -1,5 +1,7 @@
 """Whatever a file says, no server is asked for it."""
 
+from contextlib import suppress
+
 import pytest
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.io.gdal_errors import gdal_exceptions
@@ -52,5 +54,6 @@ def test_other_threads_may_still_ask(tmp_path):
         pass
     assert gdal.GetThreadLocalConfigOption("GDAL_HTTP_PROXY") is None
     with listening() as (url, asked):
-        gdal.OpenEx(f"/vsicurl/{url}/image.tif", gdal.OF_RASTER)
+        with suppress(RuntimeError):
+            gdal.OpenEx(f"/vsicurl/{url}/image.tif", gdal.OF_RASTER)
         assert asked
