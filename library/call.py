@@ -8,6 +8,7 @@ from pathlib import Path
 from ..algorithms import parameters as specs
 from ..algorithms.call import Call
 from ..algorithms.destinations import destination_path
+from ..algorithms.provenance import provenance_now
 from ..core.common.errors import RoadExtractionError
 from ..core.io.gdal_errors import gdal_exceptions
 from ..core.io.local_files import open_raster
@@ -112,7 +113,9 @@ class FileCall(Call):
 
     def finish(self, numbers):
         """Write the layers beside their destinations, then give all results their names."""
+        provenance = provenance_now(self.algorithm.ID, self.values())
         for name, features in self._layers:
+            features.description = provenance.sentence(self.algorithm.LOOKS.get(name, name))
             value = self.destination(name)
             path, table = destination_path(value), file_and_table(value)[1]
             unfinished = self._layer_files.begin_copy(path) if table else self._layer_files.begin(path)

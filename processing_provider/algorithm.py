@@ -11,7 +11,6 @@ from qgis.PyQt.QtGui import QIcon
 from ..algorithms.call import run
 from ..algorithms.catalogue import toolbox_number
 from ..algorithms.parameters import TrajectorySpec, choice_refused, number_refused
-from ..algorithms.trajectory_source import trajectory_path
 from ..core.common.errors import Cancelled, RoadExtractionError
 from ..core.io.local_files import offline
 from .call import QgisCall
@@ -86,6 +85,9 @@ class LanewrightAlgorithm(QgsProcessingAlgorithm):
         return (not missing, missing)
 
     def checkParameterValues(self, parameters, context):
+        missing = missing_packages()
+        if missing:
+            return False, missing
         try:
             check_files(self, parameters, context)
         except RoadExtractionError as error:
@@ -151,6 +153,8 @@ def out_of_range(definitions, parameters):
 
 def no_trajectory(declaration, parameters):
     """What may be given where a file is there and no trajectory; QGIS itself says that it is not found."""
+    from ..algorithms.trajectory_source import trajectory_path
+
     for spec in declaration.inputs():
         value = parameters.get(spec.name)
         if isinstance(spec, TrajectorySpec) and isinstance(value, str) and os.path.isfile(value) and trajectory_path(value) is None \
@@ -166,6 +170,8 @@ def accept_trajectory_file(declaration, parameters, context):
     Such a file passes as an empty stand-in layer; whether it is there and can be
     read is said by the reader, in its own words.
     """
+    from ..algorithms.trajectory_source import trajectory_path
+
     accepted = dict(parameters)
     for spec in declaration.inputs():
         if isinstance(spec, TrajectorySpec) and trajectory_path(parameters.get(spec.name)) is not None:
