@@ -1,7 +1,5 @@
 """Tables of one GeoPackage put into another that stays where it is, since programs have it open."""
 
-from osgeo import gdal
-
 from ..core.common.errors import RoadExtractionError
 from ..core.io.gdal_errors import gdal_exceptions
 from .texts import tr
@@ -21,6 +19,8 @@ def add_tables(written, path):
     RoadExtractionError
         If another program keeps the database locked, or there is no room; then the tables of before stand.
     """
+    from osgeo import gdal
+
     try:
         with gdal_exceptions():
             target = gdal.OpenEx(str(path), gdal.OF_VECTOR | gdal.OF_UPDATE)
