@@ -122,7 +122,8 @@ def driving_lines_to_features(lines: DrivingLines, frame: RoadFrame) -> Features
         places = lines.vertices[lines.start[k]:lines.start[k + 1]] + frame.origin
         layer.add(shapely.linestrings(places), road=int(lines.road[k]), lane=int(lines.lane[k]), kind="lane", pattern=lines.pattern[k],
                   direction=int(lines.direction[k]), source=lines.source[k], status=lines.status[k], confidence=float(lines.confidence[k]),
-                  other=lines.other[k] or None, curve=curve.kind, radius_m=float(curve.radius) if np.isfinite(curve.radius) else None, rmse_m=float(lines.rmse[k]),
+                  other=lines.other[k] or None, curve=curve.kind,
+                  radius_m=float(curve.radius) if np.isfinite(curve.radius) else None, rmse_m=float(lines.rmse[k]),
                   sigma_m=round(float(lines.sigma[k]), 4), station_m=float(lines.station[k]), end_m=float(lines.end[k]),
                   offset_m=float(lines.offset[k]), length_m=_length(places), width_m=float(lines.width[k]), params=functions[id(curve)])
     return layer

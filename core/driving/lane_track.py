@@ -133,7 +133,7 @@ class LaneTrack:
         return np.where(self.in_doubt(weights), np.minimum(found, weights.most_in_doubt), found)
 
     def other(self, rows: slice, weights: EstimateWeights = EstimateWeights()) -> str:
-        """The second reading of part of the lane as JSON, "" where there is none: nats by which it is less probable, and the lanes that then lie there."""
+        """The second reading of part of the lane as JSON, "" where there is none: nats by which it is less probable, and its lanes there."""
         if not self.in_doubt(weights)[rows].any():
             return ""
         readings = []
@@ -195,11 +195,11 @@ def _between(a, b, d, width):
     sure = (np.full(len(d), BRIDGED_TRUST * min(before[-1], after[0])) for before, after in ends)
     directed = np.full(len(d), min(a.directed[-1], b.directed[0]))
     # what leads from one to the other is moved as far as either, and as doubtful
-    share = np.arange(1, len(d) + 1) / (len(d) + 1)
-    aside = a.aside[-1] + (b.aside[0] - a.aside[-1]) * share
+    aside = a.aside[-1] + (b.aside[0] - a.aside[-1]) * np.arange(1, len(d) + 1) / (len(d) + 1)
     second = np.full(len(d), None, object)
     second[:] = [min((one for one in (a.second[-1], b.second[0]) if one is not None), key=lambda one: one.nats, default=None)] * len(d)
-    return LaneTrack(a.last + 1, d, width, np.full(len(d), BRIDGED), np.ones(len(d), bool), *[nothing] * 4, *sure, directed, a.direction, second, aside)
+    return LaneTrack(a.last + 1, d, width, np.full(len(d), BRIDGED), np.ones(len(d), bool), *[nothing] * 4, *sure, directed, a.direction, second,
+                     aside)
 
 
 def connect(tracks: list[LaneTrack], lines: CrossSections, most_bridged: float, most_inferred: float, shown: np.ndarray) -> list[LaneTrack]:

@@ -110,7 +110,8 @@ def lanes_to_features(lanes: Lanes, origin: Any = LEVEL_ORIGIN) -> Features:
             lane_id=lanes.lane_id[k], type=lanes.type[k], direction=int(lanes.direction[k]), left_line=lanes.left_line[k],
             right_line=lanes.right_line[k], left_kind=lanes.left_kind[k], right_kind=lanes.right_kind[k], left_patt=lanes.left_pattern[k],
             right_patt=lanes.right_pattern[k], successors=",".join(lanes.successors[k]), status=lanes.status[k],
-            confidence=float(lanes.confidence[k]), other=lanes.other[k] or None, station_m=float(lanes.station[k]), end_m=float(lanes.end[k]), width_m=float(widths[k]),
+            confidence=float(lanes.confidence[k]), other=lanes.other[k] or None,
+            station_m=float(lanes.station[k]), end_m=float(lanes.end[k]), width_m=float(widths[k]),
             length_m=float(lengths[k]))
     return layer
 

@@ -214,7 +214,8 @@ def _lane_spans(estimate, part):
     seconds = [min((one for one in both if one is not None), key=lambda one: one.nats, default=None) for both in zip(
         _second_readings(estimate, lanes, own, way, part), _second_places(estimate, lanes, strips, own, way))]
     k = 0
-    for i, m, end, number, first in zip(*(values[best].tolist() for values in (strips.interval, strips.left, strips.right, strips.number, strips.first))):
+    of_best = (values[best].tolist() for values in (strips.interval, strips.left, strips.right, strips.number, strips.first))
+    for i, m, end, number, first in zip(*of_best):
         # what the borders of its lanes separate, from left to right
         uses = [CENTRE_LINE if inner == first else LANE_LINE for inner in range(number + 1)]
         uses[0], uses[-1] = borders[i - part.start, [m, end]].tolist()
@@ -318,7 +319,8 @@ def _second_readings(estimate, lanes, own, way, part):
             found.append(None)
             continue
         there = beside[(slot[beside] == second) & (np.abs(d[beside] - lanes.d[row]) < (width[beside] + lanes.width[row]) / 2 - SAME_LANE)]
-        found.append(Reading(max(float(of_place[second] - least), 0.0), tuple(zip(d[there].tolist(), width[there].tolist(), direction[there].tolist()))))
+        second_lanes = tuple(zip(d[there].tolist(), width[there].tolist(), direction[there].tolist()))
+        found.append(Reading(max(float(of_place[second] - least), 0.0), second_lanes))
     return found
 
 
@@ -340,7 +342,8 @@ def _second_places(estimate, lanes, strips, own, way):
     driven = estimate.evidence.driven[:, at]
     with np.errstate(invalid="ignore"):
         inside = np.abs(driven - d) < shared / 2
-        off = [np.where(inside, np.minimum(0.5 * ((driven - middle) / w.driven_sigma) ** 2, w.driven_astride), 0.0).sum(0) for middle in (d, lanes.d[own])]
+        off = [np.where(inside, np.minimum(0.5 * ((driven - middle) / w.driven_sigma) ** 2, w.driven_astride), 0.0).sum(0)
+               for middle in (d, lanes.d[own])]
     behind = nats[0] - nats[1] + off[0] - off[1]
     return [Reading(max(float(behind[k]), 0.0), ((float(d[k]), float(shared[k]), int(way[k])),)) if open_room[k] and np.isfinite(behind[k]) else None
             for k in range(len(own))]
