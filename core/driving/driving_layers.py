@@ -40,7 +40,7 @@ class DrivingLines:
     vertices : (V, 3) local metres in the direction of travel, one piece after the other
     start : (P + 1,) int, first vertex of each piece, and V
     crs : WKT, "" where unknown
-    other : (P,) str objects, the second reading as JSON, see `LaneTrack.other`; "" where there is none
+    other : (P,) str objects, the second reading as JSON, see `LaneTrack.said`; "" where there is none
     """
 
     road: np.ndarray

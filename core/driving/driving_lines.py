@@ -145,7 +145,7 @@ def _lane_pieces(track: LaneTrack, way: int, course: Course, elements: list[Elem
         element = element_of(elements, start, end)
         yield dict(
             pattern=_patterns(track, rows, way, road_lines), direction=way, source="offset" if track.offset[rows].mean() > 0.5 else "pair",
-            status=LANE_STATUS[code], confidence=float(track.confidence[rows].mean()), other=track.other(rows),
+            status=LANE_STATUS[code], **track.said(rows),
             curve=element.arc if element is not None else course.curve, rmse=course.rmse,
             sigma=sigma[rows].mean(), station=start, end=end,
             offset=np.median(track.d[rows]), width=np.median(track.width[rows]), places=places[::-1] if way < 0 else places)

@@ -79,8 +79,7 @@ def _area(road, curbs, track, part, z, frame, number):
     if track.direction < 0:
         sides, about = [side[::-1] for side in sides[::-1]], about[::-1]
     return dict(road=number, type="driving", direction=track.direction, left=sides[0], right=sides[1], about=about,
-                confidence=float(track.confidence[part].mean()), other=track.other(part),
-                station=float(s[0]), end=float(s[-1]), first=float(d[0]), last=float(d[-1]),
+                **track.said(part), station=float(s[0]), end=float(s[-1]), first=float(d[0]), last=float(d[-1]),
                 width=float(np.median(track.width[part])))
 
 

@@ -132,10 +132,17 @@ class LaneTrack:
         found = confidence_of(self.confidence, self.directed, weights)
         return np.where(self.in_doubt(weights), np.minimum(found, weights.most_in_doubt), found)
 
-    def other(self, rows: slice, weights: EstimateWeights = EstimateWeights()) -> str:
-        """The second reading of part of the lane as JSON, "" where there is none: nats by which it is less probable, and its lanes there."""
-        if not self.in_doubt(weights)[rows].any():
-            return ""
+    def said(self, rows: slice, weights: EstimateWeights = EstimateWeights()) -> dict[str, Any]:
+        """The confidence of part of the lane, and `other`, its second reading as JSON where most of the part is in doubt, else "".
+
+        The JSON holds the nats by which that reading is less probable, and the lanes that then lie there.
+        """
+        confidence = float(self.confidence[rows].mean())
+        if 2 * np.count_nonzero(self.in_doubt(weights)[rows]) <= len(self.d[rows]):
+            return dict(confidence=confidence, other="")
+        return dict(confidence=min(confidence, weights.most_in_doubt), other=self._other(rows, weights))
+
+    def _other(self, rows, weights):
         readings = []
         for own, d, width, aside in zip(self.second[rows], self.d[rows], self.width[rows], self.aside[rows]):
             if abs(aside) > SAME_LANE:

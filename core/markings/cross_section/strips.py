@@ -104,8 +104,8 @@ def _unused(asphalt, cost, enough=ASPHALT_OF_A_LANE[1]):
     return cost / (1 + np.exp(-(asphalt - enough) / ASPHALT_SOFTNESS))
 
 
-def width_cost(width, usual, w):
-    """Nats of a lane of some width, against one of the usual width: most lanes of a road are alike, some as on other roads, few are odd."""
+def width_cost(width: np.ndarray, usual: float, w: EstimateWeights) -> np.ndarray:
+    """Nats of a lane of some width, m, against one of the usual width: most lanes of a road are alike, some as on other roads, few are odd."""
     own = np.exp(-0.5 * ((width - usual) / w.width_sigma) ** 2)
     other = np.exp(-0.5 * ((width - NEUTRAL.usual_lane) / OTHER_SIGMA) ** 2)
     share = (1 - w.other_width - w.odd_width) * own + w.other_width * other + w.odd_width
