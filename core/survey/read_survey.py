@@ -11,7 +11,9 @@ import numpy as np
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from ..execution.phase import Executor
-from ..io.crs import check_projected, crs_note, parse_crs, unit_note
+from ..io.cloud_crs import check_projected, crs_note, unit_note
+from ..io.crs import parse_crs
+from ..io.units import as_in_file
 from .adjustment.adjust import adjust_passes
 from .adjustment.beside import compare_carriageways
 from .clock_check import check_clock
@@ -87,6 +89,9 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     crs = check_projected(files, settings.crs, trajectory.crs)
     if note := crs_note(files, settings.crs, crs):
         progress.warn(note)
+    if not (units := as_in_file(crs)[1]).metric:
+        progress.info(f"The survey is in {parse_crs(crs).name}. It is worked on in metres (x and y times {units.across:.9g}, heights times "
+                      f"{units.up:.9g}), and the results are written in its own CRS.")
     trajectory = reproject_trajectory(trajectory, crs)
     refuse_standstill(trajectory)
     trajectory, time_note, has_time, week_ends = match_clocks(files, trajectory, settings, progress)
@@ -292,11 +297,11 @@ def _runs_through(low, high, x, y, reach):
 def _what_to_try(low, high, x, y, crs, trajectory_crs, reach):
     """The advice of the error message, where cloud and trajectory do not overlap."""
     if _runs_through(low, high, y, x, reach):
-        return "The trajectory's x and y are exchanged: name its columns the other way round, or swap them."
-    if any(_runs_through(low * foot, high * foot, x, y, reach) for foot in FEET):
-        return "The cloud's coordinates are the trajectory's in feet: convert the cloud to metres, in a metric CRS, and run again."
-    if any(_runs_through(low, high, x * foot, y * foot, reach) for foot in FEET):
-        return "The trajectory's coordinates are the cloud's in feet: convert the trajectory to metres, in a metric CRS, and run again."
+        return ("In one of them x and y are exchanged: where the trajectory's x is its easting or it is in longitude and latitude, export the cloud "
+                "with the easting as x; otherwise name the trajectory's columns the other way round, or swap them.")
+    if any(_runs_through(low * foot, high * foot, x, y, reach) or _runs_through(low, high, x * foot, y * foot, reach) for foot in FEET):
+        return ("They differ by the length of a foot: one is in feet, the other in metres. Give each the CRS that its coordinates are in: Import "
+                "trajectory gives the trajectory its own, and the parameter CRS is that of clouds that carry none.")
     if (np.abs(high[:2]) <= 180).all() and (np.abs(low[:2]) <= 180).all() and (high - low)[:2].max() < 1.0:
         return "The cloud's coordinates look like degrees: reproject it to a projected CRS, such as the UTM zone of the survey."
     if trajectory_crs:

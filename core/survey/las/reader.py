@@ -12,6 +12,8 @@ import numpy as np
 
 from ...common.errors import Cancelled, RoadExtractionError
 from ...common.parallel import check_cancelled
+from ...io.units import METRES, FileUnits, in_metres
+from .crs_records import crs_of_records
 from .guard import find_damage, points_per_chunk
 
 POINTS_PER_BLOCK = 400_000  # points decoded at a time
@@ -34,11 +36,13 @@ class CloudHeader:
     count : points
     minimum, maximum : (3,) map coordinates
     scales : (3,) metres
-    crs : WKT, "" where the file has none
+    crs : WKT, metric, "" where the file has none
     has_time, has_channel : whether the points have gps_time and a scanner channel
     adjusted_time : whether gps_time is adjusted standard GPS time (global encoding bit 0), not seconds of the GPS week
     chunk : points that are compressed together; 1 in a LAS file, 0 where the number varies
     has_colour : whether the points have red, green and blue
+    units : of the coordinates in the file; all others here are in metres
+    crs_problem : why what the file says about its coordinates is not used, "" for nothing
     """
 
     path: str
@@ -54,10 +58,13 @@ class CloudHeader:
     adjusted_time: bool
     chunk: int = 0
     has_colour: bool = False
+    units: FileUnits = METRES
+    crs_problem: str = ""
 
 
-def open_cloud(path: str | os.PathLike[str], layers: Iterable[str] | None = None, checked: bool = False, sparse: bool = False) -> Any:
-    """Open a LAS, LAZ or COPC file with laspy.
+def open_cloud(path: str | os.PathLike[str], layers: Iterable[str] | None = None, checked: bool = False, sparse: bool = False,
+               units: FileUnits = METRES) -> Any:
+    """Open a LAS, LAZ or COPC file with laspy, its coordinates in metres.
 
     Parameters
     ----------
@@ -65,10 +72,11 @@ def open_cloud(path: str | os.PathLike[str], layers: Iterable[str] | None = None
     layers : names of the layers of a LAZ 1.4 file that are decoded beside x, y and the return numbers ("z", "intensity" ...); all by default
     checked : the file was checked for damage before
     sparse : few points are read here and there: a chunk is decoded no further than they lie in it, by one thread
+    units : of its coordinates, where it does not state them by its CRS
 
     Returns
     -------
-    laspy.LasReader
+    laspy.LasReader, whose header has scales, offsets and bounds in metres
 
     Raises
     ------
@@ -85,12 +93,27 @@ def open_cloud(path: str | os.PathLike[str], layers: Iterable[str] | None = None
     if not checked and (damage := find_damage(path)):
         raise RoadExtractionError(f"{path} is damaged or cut off: {damage}. Copy or export the file again.")
     try:
-        return laspy.open(path, decompression_selection=layer_selection(layers), laz_backend=laspy.LazBackend.Lazrs if sparse else None)
+        reader = laspy.open(path, decompression_selection=layer_selection(layers), laz_backend=laspy.LazBackend.Lazrs if sparse else None)
+        _to_metres(reader.header, in_metres(crs)[1] if (crs := cloud_crs(reader.header)) else units)
+        return reader
     except BaseException as problem:  # laspy's decoders raise many types for a damaged file, some of them not Exceptions
         if isinstance(problem, NOT_FILE_ERRORS):
             raise
         raise RoadExtractionError(
             f"{path} cannot be read as a LAS/LAZ file ({problem}). It may be damaged or cut off; copy or export it again.") from problem
+
+
+def cloud_crs(header: Any) -> str:
+    """WKT, metric, of the CRS that a laspy header states; "" where there is none that is understood and does not contradict itself."""
+    crs, problem = crs_of_records(header)
+    return "" if problem else in_metres(crs)[0]
+
+
+def _to_metres(header, units):
+    """Bring what a header says about coordinates from the units of its file to metres."""
+    if not units.metric:
+        header.scales, header.offsets, header.mins, header.maxs = (
+            units.in_metres(numbers) for numbers in (header.scales, header.offsets, header.mins, header.maxs))
 
 
 def layer_selection(layers: Iterable[str] | None) -> Any:
@@ -105,16 +128,24 @@ def layer_selection(layers: Iterable[str] | None) -> Any:
     return selection
 
 
-def read_header(path: str | os.PathLike[str]) -> CloudHeader:
+def read_header(path: str | os.PathLike[str], given: str = "") -> CloudHeader:
     """The header of a file; bounds that its header does not give are computed from the points.
+
+    Parameters
+    ----------
+    path : of the file
+    given : WKT of the CRS, where the file states none
 
     Raises
     ------
     RoadExtractionError
         If the file is missing, is not LAS or LAZ, or cannot be read.
     """
-    with open_cloud(path) as reader:
+    units = in_metres(given)[1]
+    with open_cloud(path, units=units) as reader:
         header = reader.header
+        crs, (_, problem) = cloud_crs(header), crs_of_records(header)
+        units = in_metres(crs)[1] if crs else units
         names = set(header.point_format.dimension_names)
         if not ((np.abs(header.scales) < MAX_HEADER_SCALE).all() and (np.abs(header.offsets) < MAX_HEADER_OFFSET).all() and np.all(header.scales)):
             raise RoadExtractionError(
@@ -124,40 +155,34 @@ def read_header(path: str | os.PathLike[str]) -> CloudHeader:
         reach = 2.0**31 * np.abs(header.scales)  # of coordinates stored as 32-bit integers
         plausible = (header.offsets - reach <= low) & (low <= high) & (high <= header.offsets + reach)
         if count > 1 and not (plausible.all() and (low < high).any()):
-            low, high = _bounds_of_points(path)  # the program that wrote the file left them empty
+            low, high = _bounds_of_points(path, units)  # the program that wrote the file left them empty
         return CloudHeader(
             str(path), str(header.version), header.point_format.id, count,
             tuple(map(float, low)), tuple(map(float, high)), tuple(map(float, header.scales)),
-            _crs_of(header), "gps_time" in names, "scanner_channel" in names,
-            bool(header.global_encoding.gps_time_type.value), points_per_chunk(path), "red" in names)
+            crs, "gps_time" in names, "scanner_channel" in names,
+            bool(header.global_encoding.gps_time_type.value), points_per_chunk(path), "red" in names, units, problem)
 
 
 def _listed(numbers):
     return ", ".join(f"{number:g}" for number in numbers)
 
 
-def _bounds_of_points(path):
+def _bounds_of_points(path, units):
     """Least and largest coordinates of the points, (3,) each."""
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
-    for block in read_blocks(path):
+    for block in read_blocks(path, units=units):
         places = np.stack([np.asarray(block[name], float) for name in "xyz"])
         low, high = np.minimum(low, places.min(axis=1)), np.maximum(high, places.max(axis=1))
     return low, high
 
 
-def _crs_of(header):
-    """WKT of the file's CRS from its WKT or GeoKeys records; "" where there is none or it is not understood."""
-    try:
-        crs = header.parse_crs()
-    except MemoryError:
-        raise
-    except Exception:  # an unreadable CRS record counts as no CRS: the user is then asked for one
-        return ""
-    return "" if crs is None else crs.to_wkt()
-
-
-def read_headers(paths: Iterable[str | os.PathLike[str]]) -> list[CloudHeader]:
+def read_headers(paths: Iterable[str | os.PathLike[str]], given: str = "") -> list[CloudHeader]:
     """The headers of several files, in the order given; a file that is given twice, by whatever path, is read once.
+
+    Parameters
+    ----------
+    paths : of the files
+    given : WKT of the CRS of those that state none
 
     Raises
     ------
@@ -170,21 +195,22 @@ def read_headers(paths: Iterable[str | os.PathLike[str]]) -> list[CloudHeader]:
     unique = list(by_real_path.values())
     if not unique:
         raise RoadExtractionError("No point cloud was given. Choose one or more LAS, LAZ or COPC files.")
-    files = [read_header(path) for path in unique]
+    files = [read_header(path, given) for path in unique]
     if not sum(file.count for file in files):
         named = f"The file {unique[0]} holds" if len(files) == 1 else f"The files {', '.join(unique[:3])} hold"
         raise RoadExtractionError(f"{named} no points. Check the export of the survey.")
     return files
 
 
-def read_blocks(path: str | os.PathLike[str], size: int = POINTS_PER_BLOCK, layers: Sequence[str] | None = None) -> Iterator[Any]:
+def read_blocks(path: str | os.PathLike[str], size: int = POINTS_PER_BLOCK, layers: Sequence[str] | None = None,
+                units: FileUnits = METRES) -> Iterator[Any]:
     """Yield the points of a file in blocks.
 
     Parameters
     ----------
     path : of the file
     size : points of a block
-    layers : as in `open_cloud`
+    layers, units : as in `open_cloud`
 
     Returns
     -------
@@ -195,7 +221,7 @@ def read_blocks(path: str | os.PathLike[str], size: int = POINTS_PER_BLOCK, laye
     RoadExtractionError
         If the file ends early or is damaged.
     """
-    with open_cloud(path, layers) as reader:
+    with open_cloud(path, layers, units=units) as reader:
         promised, read = reader.header.point_count, 0
         while read < promised:
             check_cancelled()
