@@ -224,7 +224,9 @@ def in_file_units(features):
     import shapely
 
     moved = [one if one is None else shapely.transform(one, units.in_file, include_z=True) for one in features.geometries]
-    return replace(features, geometries=moved, crs=wkt)
+    on_map = [field.name for field in features.schema if field.on_map]
+    rows = [{**row, **{name: row[name] / units.across for name in on_map if row.get(name) is not None}} for row in features.rows]
+    return replace(features, geometries=moved, rows=rows, crs=wkt)
 
 
 class MeasuredInFileUnits:

@@ -9,7 +9,7 @@ import numpy as np
 import shapely
 
 from ..io.gdal_errors import gdal_exceptions
-from ..io.units import place_of_raster, place_raster
+from ..io.units import NO_PLACE, place_of_raster, place_raster
 
 BURN_TILE = 2048  # cells, side of a tile
 
@@ -68,7 +68,7 @@ class DataMask:
         from osgeo import gdal
 
         self._raster = gdal.Open(str(path))
-        self._inverse = gdal.InvGeoTransform(place_of_raster(self._raster)[0])
+        self._inverse = gdal.InvGeoTransform(place_of_raster(self._raster)[0] or NO_PLACE)
 
     @gdal_exceptions()
     def burn(self, bounds: tuple[float, float, float, float], shape: tuple[int, int]) -> np.ndarray:

@@ -10,7 +10,7 @@ import numpy as np
 from ..common.errors import RoadExtractionError
 from .crs import check_metric, horizontal_part, parse_crs, same_crs
 from .crs_place import check_place
-from .units import as_in_file, in_metres
+from .units import as_in_file, in_metres, unit_names
 
 SUSPICIOUS_SENSOR_HEIGHT = 5.0, 15.0  # m: higher than any survey vehicle; 1.5 to 4.5 m expressed in feet
 
@@ -104,9 +104,9 @@ def crs_note(files: Sequence[Any], given: str, crs: str) -> str:
     notes += [f"What {file.path} says about its coordinates was not used, but the parameter CRS: {file.crs_problem}."
               for file in files if file.crs_problem][:1]
     if (units := as_in_file(crs)[1]).across != units.up:
-        axes = parse_crs(as_in_file(crs)[0]).axis_info
-        notes.append(f"The point cloud says that the unit of its heights is the {axes[-1].unit_name}, and that of its x and y the "
-                     f"{axes[0].unit_name}: what is not in metres was converted.")
+        across, *_, up = unit_names(as_in_file(crs)[0])
+        notes.append(f"The point cloud says that the unit of its heights is the {up}, and that of its x and y the {across}: what is not in "
+                     "metres was converted.")
     return " ".join(note for note in notes if note)
 
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 # what a GeoPackage calls the CRS of a layer that carries none; without it GDAL writes an undefined geographic one
 UNDEFINED_CARTESIAN = 'LOCAL_CS["Undefined Cartesian SRS",UNIT["metre",1]]'
-SAME_PLACE = 2.0                            # m between a place in two realisations of one datum, such as NAD 83 and WGS 84
+SAME_DATUM = 2.0                            # m between a place in two realisations of one datum, such as NAD 83 and WGS 84
 SAME_COORDINATES = 0.01                     # m between coordinates of one place in two CRS that are none other for a map
 
 
@@ -42,6 +42,12 @@ def parse_crs(text: str | None) -> CRS | None:
         return CRS.from_user_input(text)
     except CRSError as problem:
         raise RoadExtractionError(f"The CRS {text[:60]!r} is not understood ({problem}). Give it as EPSG:number.") from problem
+
+
+def crs_name(wkt: str) -> str:
+    """What the horizontal part of a CRS is called; "" where it is not known."""
+    crs = horizontal_part(parse_crs(wkt))
+    return "" if crs is None else str(crs.name)
 
 
 def horizontal_part(crs: Any) -> Any:

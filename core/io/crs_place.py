@@ -15,8 +15,8 @@ from .units import as_in_file
 
 # Official grids for measuring keep within it where they are used: UTM zone 33, used in all of Norway, and Lambert-93 come to 4 per mille
 MAX_SCALE_ERROR = 0.005
-STEP = 50.0                     # m on the map over which the scale is measured
-MAX_BESIDE = 8.0                # degrees: official surveys lie outside the area of their CRS too, of UTM zone 33 in Norway by 7.5
+SCALE_STEP = 50.0                     # m on the map over which the scale is measured
+MAX_OUTSIDE_AREA = 8.0                # degrees: official surveys lie outside the area of their CRS too, of UTM zone 33 in Norway by 7.5
 MIN_EXCHANGED = 1.0             # degrees outside, from which on x and y may be exchanged; a survey beyond a border lies nearer
 MAX_LOCAL = 1e5                 # m: local coordinates, and those without their leading digits, are smaller
 
@@ -58,11 +58,11 @@ def place_on_ground(crs: Any, x: float, y: float) -> MapPlace:
 
     datum = crs.geodetic_crs
     to_radians = datum.axis_info[0].unit_conversion_factor
-    steps = STEP * np.array([(0, 0), (1, 0), (0, 1), (1, 1)])
+    steps = SCALE_STEP * np.array([(0, 0), (1, 0), (0, 1), (1, 1)])
     u, v = (np.asarray(found) * to_radians for found in Transformer.from_crs(crs, datum, always_xy=True).transform(*(steps + (x, y)).T))
     if not np.isfinite([u, v]).all():
         return MapPlace(np.nan, np.nan, np.nan)
-    along_x, along_y, diagonal = np.array(crs.get_geod().inv(*([end[0]] * 3 for end in (u, v)), u[1:], v[1:], radians=True)[2]) / STEP
+    along_x, along_y, diagonal = np.array(crs.get_geod().inv(*([end[0]] * 3 for end in (u, v)), u[1:], v[1:], radians=True)[2]) / SCALE_STEP
     mixed = (diagonal**2 - along_x**2 - along_y**2) / 2
     ground = np.sqrt(np.linalg.eigvalsh([[along_x**2, mixed], [mixed, along_y**2]]).clip(1e-12))
     scale = max(1 / ground, key=lambda one: abs(np.log(one)))
@@ -101,12 +101,12 @@ def check_place(wkt: str, place: tuple[float, float], what: str) -> str:
         turned = place_on_ground(crs, y, x)
         if turned.true_to_scale and _beside(turned, area) == 0:
             raise RoadExtractionError(
-                f"{what} has x and y exchanged: x is about {x:.0f} and y about {y:.0f}, and in its CRS {crs.name} only the place with y as the easting "
-                f"lies in the area of this CRS ({_named(area)}). Export it with the easting as x and the northing as y, and run again.")
+                f"{what} has x and y exchanged: x is about {x:.0f} and y about {y:.0f}, and in its CRS {crs.name} only the place with y as the "
+                f"easting lies in the area of this CRS ({_named(area)}). Export it with the easting as x and the northing as y, and run again.")
     where = f", at {_degrees(there)}, outside the area of this CRS ({_named(area)})" if beside > MIN_EXCHANGED and area else ""
-    if beside > MAX_BESIDE and max(abs(x), abs(y)) < MAX_LOCAL:
-        return (f"{what} says that it is in {crs.name}, but its coordinates (about {x:.0f}, {y:.0f}) are those of a local system, or lack their leading "
-                "digits. They are taken as metres as they are; the results lie elsewhere on a map until the coordinates are complete.")
+    if beside > MAX_OUTSIDE_AREA and max(abs(x), abs(y)) < MAX_LOCAL:
+        return (f"{what} says that it is in {crs.name}, but its coordinates (about {x:.0f}, {y:.0f}) are those of a local system, or lack their "
+                "leading digits. They are taken as metres as they are; the results lie elsewhere on a map until the coordinates are complete.")
     if not there.true_to_scale:
         lengths = (f"Lengths in it are {there.scale:.3f} times those on the ground" if there.scale == there.scale
                    else f"It has no place with x about {x:.0f} and y about {y:.0f}")
@@ -114,7 +114,7 @@ def check_place(wkt: str, place: tuple[float, float], what: str) -> str:
         raise RoadExtractionError(
             f"{what} is in {crs.name}{where}. {lengths}{'' if where or there.scale != there.scale else f' at {_degrees(there)}'}, and roads are "
             f"measured in metres on the ground. Reproject cloud and trajectory to a CRS that is made for their place{zone} or correct the CRS.")
-    if beside > MAX_BESIDE:
+    if beside > MAX_OUTSIDE_AREA:
         return (f"{what} lies{where.replace('this CRS', 'its CRS ' + crs.name, 1).replace(',', '', 1)}: if the survey was not made there, its CRS is "
                 "wrong, and the results carry it.")
     return ""

@@ -8,17 +8,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from ..common.errors import RoadExtractionError
 from .crs import horizontal_part, parse_crs
 
-if TYPE_CHECKING:
-    from pyproj import CRS
-
 MARK = "Metric form of "        # begins the remark, before the WKT of the file's CRS
+NO_PLACE = (0.0, 1.0, 0.0, 0.0, 0.0, 1.0)   # of a raster without georeferencing, as GDAL gives it
 SAME_UNIT = 1e-9                # relative, between units that are written with other digits; two definitions of the foot differ by 2e-6
 
 
@@ -38,12 +36,12 @@ class FileUnits:
         """Whether the numbers of the file are those that are worked with."""
         return self == METRES
 
-    def in_metres(self, places: np.ndarray) -> np.ndarray:
-        """(N, 2), (N, 3) or (3,) coordinates of a file in metres."""
+    def in_metres(self, places: Any) -> np.ndarray:
+        """(..., 2) or (..., 3) coordinates of a file in metres."""
         return np.asarray(places) * np.array([self.across, self.across, self.up])[:np.shape(places)[-1]]
 
-    def in_file(self, places: np.ndarray) -> np.ndarray:
-        """(N, 2), (N, 3) or (3,) metres as coordinates of a file."""
+    def in_file(self, places: Any) -> np.ndarray:
+        """(..., 2) or (..., 3) metres as coordinates of a file."""
         return np.asarray(places) / np.array([self.across, self.across, self.up])[:np.shape(places)[-1]]
 
     def geotransform(self, numbers: Any, to_file: bool = False) -> tuple[float, ...]:
@@ -113,6 +111,12 @@ def place_raster(dataset: Any, geotransform: Any, crs: str) -> None:
     dataset.SetGeoTransform(units.geotransform(geotransform, to_file=True))
     if wkt:
         dataset.SetProjection(wkt)
+
+
+def unit_names(wkt: str) -> list[str]:
+    """The names of the units of x, y and, where a CRS says it, z."""
+    crs = parse_crs(wkt)
+    return [] if crs is None else [axis.unit_name for axis in crs.axis_info]
 
 
 def plane_wkt(wkt: str) -> str:

@@ -109,7 +109,7 @@ def control_points(names: Sequence[Any] | None, rows: Sequence[Sequence[Any]], i
     roles = _roles(usable, where)
     pixel, line = _in_the_image(table["pixel"][known], table["line"][known], roles != DISABLED, image, what)
     crs, units = in_metres(crs)
-    easting, northing, height = (table[key][known] * unit for key, unit in (("easting", units.across), ("northing", units.across), ("height", units.up)))
+    easting, northing, height = units.in_metres(np.stack([table[key][known] for key in ("easting", "northing", "height")], axis=1)).T
     return ControlPoints(pixel, line, easting, northing, height, _names(usable, where.get("name")), roles, crs, int((~known).sum()))
 
 

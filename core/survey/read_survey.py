@@ -12,7 +12,7 @@ from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from ..execution.phase import Executor
 from ..io.cloud_crs import check_projected, crs_note, unit_note
-from ..io.crs import parse_crs
+from ..io.crs import crs_name
 from ..io.units import as_in_file
 from .adjustment.adjust import adjust_passes
 from .adjustment.beside import compare_carriageways
@@ -90,7 +90,7 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     if note := crs_note(files, settings.crs, crs):
         progress.warn(note)
     if not (units := as_in_file(crs)[1]).metric:
-        progress.info(f"The survey is in {parse_crs(crs).name}. It is worked on in metres (x and y times {units.across:.9g}, heights times "
+        progress.info(f"The survey is in {crs_name(crs)}. It is worked on in metres (x and y times {units.across:.9g}, heights times "
                       f"{units.up:.9g}), and the results are written in its own CRS.")
     trajectory = reproject_trajectory(trajectory, crs)
     refuse_standstill(trajectory)
@@ -299,14 +299,19 @@ def _what_to_try(low, high, x, y, crs, trajectory_crs, reach):
     if _runs_through(low, high, y, x, reach):
         return ("In one of them x and y are exchanged: where the trajectory's x is its easting or it is in longitude and latitude, export the cloud "
                 "with the easting as x; otherwise name the trajectory's columns the other way round, or swap them.")
-    if any(_runs_through(low * foot, high * foot, x, y, reach) or _runs_through(low, high, x * foot, y * foot, reach) for foot in FEET):
-        return ("They differ by the length of a foot: one is in feet, the other in metres. Give each the CRS that its coordinates are in: Import "
-                "trajectory gives the trajectory its own, and the parameter CRS is that of clouds that carry none.")
+    if any(_runs_through(low * foot, high * foot, x, y, reach) for foot in FEET):
+        if not as_in_file(crs)[1].metric:
+            return "The trajectory was taken to be in feet like the cloud, and seems to be in metres: give it its own CRS, as Import trajectory does."
+        return ("The cloud's coordinates are the trajectory's in feet: give each the CRS that it is in (the parameter CRS is that of clouds that "
+                "carry none), or convert the cloud to metres.")
+    if any(_runs_through(low, high, x * foot, y * foot, reach) for foot in FEET):
+        return ("The trajectory's coordinates are the cloud's in feet: give it the CRS in feet that it is in, as Import trajectory does, or convert "
+                "it to metres.")
     if (np.abs(high[:2]) <= 180).all() and (np.abs(low[:2]) <= 180).all() and (high - low)[:2].max() < 1.0:
         return "The cloud's coordinates look like degrees: reproject it to a projected CRS, such as the UTM zone of the survey."
     if trajectory_crs:
-        return f"Both were taken to be in {parse_crs(crs).name}. Check that they belong to one survey, and the CRS of the trajectory."
-    cloud = f"The cloud is in {parse_crs(crs).name}, the trajectory" if crs else "The trajectory"
+        return f"Both were taken to be in {crs_name(crs)}. Check that they belong to one survey, and the CRS of the trajectory."
+    cloud = f"The cloud is in {crs_name(crs)}, the trajectory" if crs else "The trajectory"
     return f"{cloud} carries no CRS. Give it the one its coordinates are in (Import trajectory does), and check that both belong to one survey."
 
 

@@ -33,8 +33,8 @@ REQUIRED_FIELDS = ("road", "pass", "station_m", "offset_m", "half_width")
 def write_road_points(road_points: RoadPoints, path: str | Path, progress: Progress = Progress()) -> None:
     """Write road points as LAS 1.4, class 11, in road order; a failed run leaves no file.
 
-    Coordinates are written as measured, in the units of the survey's own CRS. The scale is 0.1 mm, of 1 mm beyond 214 km from the origin and of 1 cm beyond
-    2,147 km. Corrections of passes are written beside them and applied again on reading.
+    Coordinates are written as measured, in the units of the survey's own CRS; in metres with a scale of 0.1 mm, of 1 mm beyond 214 km from
+    the origin and of 1 cm beyond 2,147 km. Corrections of passes are written beside them and applied again on reading.
 
     Parameters
     ----------

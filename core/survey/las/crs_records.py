@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
-from ...io.crs import SAME_PLACE, horizontal_part, moved_by
+from ...io.crs import SAME_DATUM, horizontal_part, moved_by
 from ...io.units import SAME_UNIT
 
 if TYPE_CHECKING:
@@ -53,8 +53,8 @@ def _stated(text, keys, doubles, place):
     if _of_heights(written):
         written, vertical = plane, written
     if written is None:
-        return "", problem or (f"only the CRS of its heights is known ({vertical.name})" if vertical.axis_info[0].unit_conversion_factor != 1.0 else "")
-    if plane is not None and moved_by(plane, horizontal_part(written), place) > SAME_PLACE:
+        return "", problem or ("" if _same_unit(vertical, 1.0) else f"only the CRS of its heights is known ({vertical.name})")
+    if plane is not None and moved_by(plane, horizontal_part(written), place) > SAME_DATUM:
         problem = problem or f"its WKT says {horizontal_part(written).name}, its GeoKeys say {plane.name}"
     own = written.sub_crs_list[-1] if written.is_compound else None
     if own is not None and vertical is not None and not _same_unit(own, vertical.axis_info[0].unit_conversion_factor):

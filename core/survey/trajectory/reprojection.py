@@ -51,8 +51,8 @@ def reproject_trajectory(trajectory: Trajectory, target_wkt: str) -> Trajectory:
     check_metric(target, "The target of the trajectory")
     if not horizontal_part(source).is_geographic:
         check_metric(source, "The trajectory")
-    source, target_wkt = horizontal_part(source), plane_wkt(target_wkt)
-    target = parse_crs(target_wkt)
+    target_wkt = plane_wkt(target_wkt)
+    source, target = (horizontal_part(crs) for crs in (source, parse_crs(target_wkt)))
     try:
         transformer = Transformer.from_crs(source, target, always_xy=True)
         x, y = transformer.transform(trajectory.x, trajectory.y)
@@ -78,8 +78,8 @@ def taken_to_be_in(trajectory: Trajectory, wkt: str) -> Trajectory:
     """
     crs, (x, y, z), left = lengths_in_metres(wkt, (trajectory.x, trajectory.y, trajectory.z), trajectory.stated_units, "The trajectory")
     if left:
-        raise RoadExtractionError("The trajectory gives positions in feet, and neither it nor the point cloud carries a CRS. Give the CRS in feet that "
-                                  "they are in: Import trajectory takes that of the trajectory, the parameter CRS that of the cloud.")
+        raise RoadExtractionError("The trajectory gives positions in feet, and neither it nor the point cloud carries a CRS. Give the CRS in feet "
+                                  "that they are in: Import trajectory takes that of the trajectory, the parameter CRS that of the cloud.")
     moved = x is not trajectory.x or z is not trajectory.z
     return replace(trajectory, x=x, y=y, z=z, crs=crs, stated_units=()) if moved else replace(trajectory, stated_units=())
 
@@ -114,8 +114,8 @@ def lengths_in_metres(crs: str, places: tuple[np.ndarray, np.ndarray, np.ndarray
     for role, unit in (("x", units.across), ("y", units.across), ("z", units.up)):
         if known.get(role) == "feet" and unit == 1.0:
             if role != "z":
-                raise RoadExtractionError(f"{label} gives positions in feet, and its CRS {horizontal_part(parse_crs(crs)).name} is not in feet. Give the "
-                                          "CRS in feet that they are in: Import trajectory takes it.")
+                raise RoadExtractionError(f"{label} gives positions in feet, and its CRS {horizontal_part(parse_crs(crs)).name} is not in feet. "
+                                          "Give the CRS in feet that they are in: Import trajectory takes it.")
             unit = FOOT
         factors.append(1.0 if known.get(role) == "metres" else unit)
     return wkt, tuple(values if factor == 1.0 else values * factor for values, factor in zip(places, factors)), ()
