@@ -55,7 +55,7 @@ class Extent:
         RoadExtractionError
             If a header cannot be read or the CRS is unsuitable, as in `open_survey`.
         """
-        files = read_headers(paths, crs or trajectory.crs)
+        files = read_headers(paths, given=crs or trajectory.crs)
         trajectory = reproject_trajectory(trajectory, check_projected(files, crs, trajectory.crs))
         held = [file for file in files if file.count]
         points = sum(file.count for file in held)

@@ -145,7 +145,8 @@ class DoubtDock(QDockWidget):
             self._zoom(self.place)
             self.shown.emit(self.place)
 
-    def _fill(self):
+    def _fill(self, chosen=0):
+        """List the pieces of the place; the buttons are about one of them, until the user selects more."""
         place = self.place
         self.list.clear()
         if place is None:
@@ -155,14 +156,14 @@ class DoubtDock(QDockWidget):
                 at=self.at + 1, count=len(self.places), road=place.road, station=place.station))
             for piece in place.pieces:
                 self.list.addItem(piece.text + self._decision(piece))
-            self.list.selectAll()
+            self.list.setCurrentRow(chosen)
         self._selected()
         self._tell()
 
     def _decision(self, piece):
         """What was decided about a piece and not yet run, for its line in the list."""
-        found = [correction_at(layer, piece.line, self.place.crs, piece.target) for layer in corrections_layers(QgsProject.instance())[:1]]
-        return f"\n  → {WORDS['action'].get(found[0]['action'], found[0]['action'])}" if found and found[0] is not None else ""
+        found = None if self.layer is None else correction_at(self.layer, piece.line, self.place.crs, piece.target)
+        return "" if found is None else f"\n  → {WORDS['action'].get(found['action'], found['action'])}"
 
     def _zoom(self, place):
         canvas = self.iface.mapCanvas()
@@ -236,7 +237,7 @@ class DoubtDock(QDockWidget):
             return None
 
     def decide(self, action: str) -> None:
-        """Accept or delete what is selected, and go on when all of this place is decided."""
+        """Accept or delete what is selected, and go on to the next piece that is not decided, here or at the next place."""
         pieces, place = self.chosen, self.place
         layer = self._layer_to_write(place.crs) if pieces else None
         if layer is None:
@@ -245,9 +246,11 @@ class DoubtDock(QDockWidget):
             add_correction(layer, piece.line, place.crs, action=action, target=piece.target, road=piece.road, station_m=piece.station,
                            offset_m=piece.offset, note=self.note.text() or None)
         self.note.clear()
-        whole = len(pieces) == len(place.pieces)
-        self._fill()
-        if whole and len(self.places) > 1:
+        last = max(place.pieces.index(piece) for piece in pieces)
+        count = len(place.pieces)
+        left = [row % count for row in range(last + 1, last + 1 + count) if not self._decision(place.pieces[row % count])]
+        self._fill(left[0] if left else last)
+        if not left and len(self.places) > 1:
             self.go(self.group)
 
     def begin_draw(self, target: str) -> None:

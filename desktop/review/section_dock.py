@@ -111,6 +111,7 @@ class SectionDock(QDockWidget):
         self.section, self.group = section, group
         self.show()
         self._draw_line()
+        self._stop_reading()  # what is under way belongs to the place before
         clouds = clouds_of(group)
         if not clouds:
             self._draw(tr("The point clouds of this road map are not known: it was not made by Road map in this project."))
@@ -123,15 +124,18 @@ class SectionDock(QDockWidget):
     # -- points -------------------------------------------------------------------------------------
 
     def _read(self, clouds):
-        """Read the points about the section in the background; a newer wish cancels an older one."""
-        if self.task is not None:
-            self.task.cancel()
+        """Read the points about the section in the background."""
         self.view.show_section(np.empty((0, 3)), [], tr("Reading points…"))
         place = (clouds, self.section.x, self.section.y)
         task = QgsTask.fromFunction(tr("Points of a cross-section"), _points, clouds, place[1], place[2],
                                     on_finished=lambda error, found=None: self._ready(task, place, error, found))
         self.task = task  # QGIS keeps no reference
         QgsApplication.taskManager().addTask(task)
+
+    def _stop_reading(self):
+        if self.task is not None:
+            self.task.cancel()
+        self.task = None
 
     def _ready(self, task, place, error, found):
         if task is not self.task:

@@ -69,7 +69,8 @@ def test_a_layer_without_a_crs_is_cartesian_in_a_geopackage_and_never_geographic
     assert LayerFile(path, "Layer").crs == ""
 
 
-@pytest.mark.parametrize("crs, across, up", [("EPSG:2263", 1200 / 3937, 1200 / 3937), ("EPSG:2263+5703", 1200 / 3937, 1.0), ("EPSG:2222", 0.3048, 0.3048)])
+@pytest.mark.parametrize("crs, across, up", [
+    ("EPSG:2263", 1200 / 3937, 1200 / 3937), ("EPSG:2263+5703", 1200 / 3937, 1.0), ("EPSG:2222", 0.3048, 0.3048)])
 @pytest.mark.parametrize("suffix", ["gpkg", "fgb", "shp"])
 def test_a_layer_of_a_survey_in_feet_is_stored_in_feet_and_read_in_metres(tmp_path, suffix, crs, across, up):
     wkt = in_metres(parse_crs(crs).to_wkt())[0]
@@ -96,7 +97,8 @@ def test_measures_of_lines_in_feet_stay_as_they_are(tmp_path):
 
 def test_every_kind_of_geometry_is_scaled():
     square = shapely.polygons([(0, 0, 1), (4, 0, 1), (4, 4, 1), (0, 0, 1)], holes=[[(2, 1, 1), (3, 1, 1), (3, 2, 1), (2, 1, 1)]])
-    for one in (square, shapely.multipolygons([square, square]), shapely.multilinestrings([[(0, 0), (1, 2)], [(3, 4), (5, 6)]]), shapely.points(1, 2)):
+    lines = shapely.multilinestrings([[(0, 0), (1, 2)], [(3, 4), (5, 6)]])
+    for one in (square, shapely.multipolygons([square, square]), lines, shapely.points(1, 2)):
         wkb = shapely.to_wkb(one, output_dimension=3, flavor="iso")
         found = shapely.from_wkb(scaled_wkb(wkb, 2.0, 3.0))
         expected = shapely.get_coordinates(one, include_z=True) * (2.0, 2.0, 3.0)

@@ -30,7 +30,7 @@ def points_near(paths: Iterable[str | os.PathLike[str]], x: float, y: float, rad
     RoadExtractionError
         If a file is missing or cannot be read.
     """
-    files = read_headers(paths)
+    files = read_headers(paths, progress.warn)
     units = files[0].units   # of the map, in which the results of these clouds are
     x, y = units.in_metres((x, y))
     files = [file for file in files if file.count and file.minimum[0] <= x + radius and file.maximum[0] >= x - radius

@@ -14,11 +14,14 @@ from ...common.errors import Cancelled, RoadExtractionError
 from ...common.parallel import check_cancelled
 from ...io.units import METRES, FileUnits, in_metres
 from .crs_records import crs_of_records
-from .guard import find_damage, points_per_chunk
+from .guard import find_damage, places_here_and_there, points_per_chunk, with_points_of_chunks
+from .mending import mend, opened
+from .records_of_file import HeaderFields
 
 POINTS_PER_BLOCK = 400_000  # points decoded at a time
 CLOUD_SUFFIXES = (".las", ".laz")
 MAX_HEADER_SCALE, MAX_HEADER_OFFSET = 1e3, 1e12  # m, of coordinates stored as integers; beyond them no place on earth is described
+BOUNDS_TOLERANCE = 0.01      # m: bounds are often rounded to centimetres
 NOT_FILE_ERRORS = (KeyboardInterrupt, SystemExit, GeneratorExit, Cancelled, MemoryError)  # they say nothing about the file
 
 ReadResult = TypeVar("ReadResult")
@@ -41,6 +44,7 @@ class CloudHeader:
     adjusted_time : whether gps_time is adjusted standard GPS time (global encoding bit 0), not seconds of the GPS week
     chunk : points that are compressed together; 1 in a LAS file, 0 where the number varies
     has_colour : whether the points have red, green and blue
+    notes : sentences about what the header states otherwise than the file shows
     units : of the coordinates in the file; all others here are in metres
     crs_problem : why what the file says about its coordinates is not used, "" for nothing
     """
@@ -58,11 +62,12 @@ class CloudHeader:
     adjusted_time: bool
     chunk: int = 0
     has_colour: bool = False
+    notes: tuple[str, ...] = ()
     units: FileUnits = METRES
     crs_problem: str = ""
 
 
-def open_cloud(path: str | os.PathLike[str], layers: Iterable[str] | None = None, checked: bool = False, sparse: bool = False,
+def open_cloud(path: str | os.PathLike[str], layers: Iterable[str] | None = None, known: CloudHeader | None = None, sparse: bool = False,
                units: FileUnits = METRES) -> Any:
     """Open a LAS, LAZ or COPC file with laspy, its coordinates in metres.
 
@@ -70,7 +75,7 @@ def open_cloud(path: str | os.PathLike[str], layers: Iterable[str] | None = None
     ----------
     path : of the file
     layers : names of the layers of a LAZ 1.4 file that are decoded beside x, y and the return numbers ("z", "intensity" ...); all by default
-    checked : the file was checked for damage before
+    known : the file's header, where it was read and checked for damage before
     sparse : few points are read here and there: a chunk is decoded no further than they lie in it, by one thread
     units : of its coordinates, where it does not state them by its CRS
 
@@ -83,24 +88,9 @@ def open_cloud(path: str | os.PathLike[str], layers: Iterable[str] | None = None
     RoadExtractionError
         If the file is missing, is not a LAS or LAZ file, is damaged, or cannot be read.
     """
-    import laspy
-
-    path = str(path)
-    if not Path(path).exists():
-        raise RoadExtractionError(f"There is no file {path}. Check the path of the point cloud.")
-    if not path.lower().endswith(CLOUD_SUFFIXES):
-        raise RoadExtractionError(f"{path} is not a LAS or LAZ file. Lanewright reads .las, .laz and .copc.laz; convert other formats first.")
-    if not checked and (damage := find_damage(path)):
-        raise RoadExtractionError(f"{path} is damaged or cut off: {damage}. Copy or export the file again.")
-    try:
-        reader = laspy.open(path, decompression_selection=layer_selection(layers), laz_backend=laspy.LazBackend.Lazrs if sparse else None)
-        _to_metres(reader.header, in_metres(crs)[1] if (crs := cloud_crs(reader.header)) else units)
-        return reader
-    except BaseException as problem:  # laspy's decoders raise many types for a damaged file, some of them not Exceptions
-        if isinstance(problem, NOT_FILE_ERRORS):
-            raise
-        raise RoadExtractionError(
-            f"{path} cannot be read as a LAS/LAZ file ({problem}). It may be damaged or cut off; copy or export it again.") from problem
+    reader = _open(path, _mended(path) if known is None else _as_known(path, known), layers, sparse)
+    _to_metres(reader.header, _stated_units(reader.header, units) if known is None else known.units)
+    return reader
 
 
 def cloud_crs(header: Any) -> str:
@@ -109,11 +99,58 @@ def cloud_crs(header: Any) -> str:
     return "" if problem else in_metres(crs)[0]
 
 
+def _stated_units(header, otherwise):
+    """The FileUnits of the CRS that a header states, and `otherwise` where it states none."""
+    crs = cloud_crs(header)
+    return in_metres(crs)[1] if crs else otherwise
+
+
 def _to_metres(header, units):
     """Bring what a header says about coordinates from the units of its file to metres."""
     if not units.metric:
         header.scales, header.offsets, header.mins, header.maxs = (
             units.in_metres(numbers) for numbers in (header.scales, header.offsets, header.mins, header.maxs))
+
+
+def _mended(path):
+    """What is read in place of some bytes of a file, which is checked for damage.
+
+    Raises
+    ------
+    RoadExtractionError
+        As `open_cloud`.
+    """
+    path = str(path)
+    if not Path(path).exists():
+        raise RoadExtractionError(f"There is no file {path}. Check the path of the point cloud.")
+    if not path.lower().endswith(CLOUD_SUFFIXES):
+        raise RoadExtractionError(f"{path} is not a LAS or LAZ file. Lanewright reads .las, .laz and .copc.laz; convert other formats first.")
+    mended = mend(path)
+    if damage := find_damage(path, mended):
+        raise RoadExtractionError(f"{path} is damaged or cut off: {damage}. Copy or export the file again.")
+    return with_points_of_chunks(path, mended)
+
+
+def _as_known(path, known):
+    """The same of a file whose points were counted."""
+    mended = mend(path)
+    with opened(path, mended) as file:
+        fields = HeaderFields.read(file)
+    return mended if fields is None or fields.count == known.count else mended.with_count(fields, known.count)
+
+
+def _open(path, mended, layers, sparse=False):
+    """laspy.LasReader of a file that is read as it was mended."""
+    import laspy
+
+    try:
+        return laspy.open(opened(path, mended) if mended.patches else str(path), decompression_selection=layer_selection(layers),
+                          laz_backend=laspy.LazBackend.Lazrs if sparse else None)
+    except BaseException as problem:  # laspy's decoders raise many types for a damaged file, some of them not Exceptions
+        if isinstance(problem, NOT_FILE_ERRORS):
+            raise
+        raise RoadExtractionError(
+            f"{path} cannot be read as a LAS/LAZ file ({problem}). It may be damaged or cut off; copy or export it again.") from problem
 
 
 def layer_selection(layers: Iterable[str] | None) -> Any:
@@ -129,7 +166,7 @@ def layer_selection(layers: Iterable[str] | None) -> Any:
 
 
 def read_header(path: str | os.PathLike[str], given: str = "") -> CloudHeader:
-    """The header of a file; bounds that its header does not give are computed from the points.
+    """The header of a file; bounds that it does not give, or outside of which points lie, are computed from the points.
 
     Parameters
     ----------
@@ -141,26 +178,34 @@ def read_header(path: str | os.PathLike[str], given: str = "") -> CloudHeader:
     RoadExtractionError
         If the file is missing, is not LAS or LAZ, or cannot be read.
     """
-    units = in_metres(given)[1]
-    with open_cloud(path, units=units) as reader:
+    mended = _mended(path)
+    with _open(path, mended, None) as reader:
         header = reader.header
-        crs, (_, problem) = cloud_crs(header), crs_of_records(header)
-        units = in_metres(crs)[1] if crs else units
         names = set(header.point_format.dimension_names)
         if not ((np.abs(header.scales) < MAX_HEADER_SCALE).all() and (np.abs(header.offsets) < MAX_HEADER_OFFSET).all() and np.all(header.scales)):
             raise RoadExtractionError(
-                f"{path} is damaged: its header says scales of {_listed(header.scales)} and offsets of {_listed(header.offsets)}, with which "
-                "points have no coordinates. Export the file again.")
-        count, low, high = int(header.point_count), header.mins, header.maxs
-        reach = 2.0**31 * np.abs(header.scales)  # of coordinates stored as 32-bit integers
-        plausible = (header.offsets - reach <= low) & (low <= high) & (high <= header.offsets + reach)
-        if count > 1 and not (plausible.all() and (low < high).any()):
-            low, high = _bounds_of_points(path, units)  # the program that wrote the file left them empty
+                f"{path} gives its points no coordinates: its header says scales of {_listed(header.scales)} and offsets of "
+                f"{_listed(header.offsets)}. Export the file again, with a scale such as 0.001 m.")
+        count, units, bounds_hold = int(header.point_count), _stated_units(header, in_metres(given)[1]), _bounds_hold(path, mended, header)
+        _to_metres(header, units)
+        low, high = _bounds_of_points(path, units) if count > 1 and not bounds_hold else (header.mins, header.maxs)
         return CloudHeader(
             str(path), str(header.version), header.point_format.id, count,
             tuple(map(float, low)), tuple(map(float, high)), tuple(map(float, header.scales)),
-            crs, "gps_time" in names, "scanner_channel" in names,
-            bool(header.global_encoding.gps_time_type.value), points_per_chunk(path), "red" in names, units, problem)
+            cloud_crs(header), "gps_time" in names, "scanner_channel" in names,
+            bool(header.global_encoding.gps_time_type.value), points_per_chunk(path), "red" in names,
+            tuple(f"{path}: {note}." for note in mended.notes), units, crs_of_records(header)[1])
+
+
+def _bounds_hold(path, mended, header):
+    """Whether the bounds that a header states are some, can be, and hold the points at which it is looked."""
+    low, high = header.mins, header.maxs
+    reach = 2.0**31 * np.abs(header.scales)  # of coordinates stored as 32-bit integers
+    plausible = (header.offsets - reach <= low) & (low <= high) & (high <= header.offsets + reach)
+    if not (plausible.all() and (low < high).any()):
+        return False
+    places, margin = places_here_and_there(path, mended), np.abs(header.scales) + BOUNDS_TOLERANCE
+    return bool(((places >= low - margin) & (places <= high + margin)).all())
 
 
 def _listed(numbers):
@@ -176,12 +221,14 @@ def _bounds_of_points(path, units):
     return low, high
 
 
-def read_headers(paths: Iterable[str | os.PathLike[str]], given: str = "") -> list[CloudHeader]:
+def read_headers(paths: Iterable[str | os.PathLike[str]], warn: Callable[[str], None] | None = None,
+                 given: str = "") -> list[CloudHeader]:
     """The headers of several files, in the order given; a file that is given twice, by whatever path, is read once.
 
     Parameters
     ----------
     paths : of the files
+    warn : is told what headers state otherwise than their files show
     given : WKT of the CRS of those that state none
 
     Raises
@@ -199,6 +246,8 @@ def read_headers(paths: Iterable[str | os.PathLike[str]], given: str = "") -> li
     if not sum(file.count for file in files):
         named = f"The file {unique[0]} holds" if len(files) == 1 else f"The files {', '.join(unique[:3])} hold"
         raise RoadExtractionError(f"{named} no points. Check the export of the survey.")
+    for note in (note for file in files for note in file.notes if warn is not None):
+        warn(note)
     return files
 
 

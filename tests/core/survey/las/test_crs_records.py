@@ -35,7 +35,7 @@ def cloud(path, place, keys=(), wkt="", doubles=()):
 
 
 def units_of(path, given=""):
-    files = read_headers([path], given)
+    files = read_headers([path], given=given)
     crs = check_projected(files, given)
     return files[0].units.across, files[0].units.up, crs_note(files, given, crs)
 
@@ -96,7 +96,7 @@ def test_files_that_say_one_thing_twice_are_read_without_a_word(tmp_path, keys, 
 def test_a_cloud_without_a_crs_has_the_units_of_the_one_given(tmp_path):
     path = cloud(tmp_path / "cloud.las", NEW_YORK)
     assert units_of(path, "EPSG:2263")[:2] == pytest.approx((FOOT, FOOT))
-    assert read_headers([path], "EPSG:2263")[0].minimum[0] == pytest.approx(laspy.read(path).x.min() * FOOT)
+    assert read_headers([path], given="EPSG:2263")[0].minimum[0] == pytest.approx(laspy.read(path).x.min() * FOOT)
 
 
 @pytest.mark.parametrize("wkt, says", [("EPSG:4978", "geocentric"), ("EPSG:4326", "geographic"), ("EPSG:3857", "1.478")])
