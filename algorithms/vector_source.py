@@ -2,8 +2,6 @@
 
 from dataclasses import replace
 
-import numpy as np
-
 from ..core.common.errors import RoadExtractionError
 from ..core.common.features import Features
 from .texts import tr
@@ -149,6 +147,8 @@ def _measured_parts(wkb, label):
 
 def vertices_of(wkb):
     """(V, 4) x, y, z and m of all vertices of points or lines, in one part or many; NaN where there is no z or m."""
+    import numpy as np
+
     found = []
     _read_vertices(wkb, 0, found)
     return np.concatenate(found) if found else np.empty((0, 4))
@@ -156,6 +156,8 @@ def vertices_of(wkb):
 
 def _read_vertices(wkb, at, found):
     """Append the vertices of the geometry that begins at a byte; the byte where it ends."""
+    import numpy as np
+
     base, has_z, has_m = _type_of(wkb, at)
     at += 5
     if base in (4, 5):
@@ -189,6 +191,8 @@ def scaled_wkb(wkb, across, up):
 
 def _scale(data, at, across, up):
     """Scale the vertices of the geometry that begins at a byte; the byte where it ends."""
+    import numpy as np
+
     base, has_z, has_m = _type_of(data, at)
     at += 5
     if base > 3:
