@@ -40,14 +40,14 @@ def read_trajectory_source(source, crs="", heights_needed=True):
         )
     if not heights_needed and not np.isfinite(columns.get("z", np.nan)).any():
         columns["z"] = np.zeros(len(next(iter(columns.values()))))
-    return trajectory_from_columns(columns, crs or source.crs, label=source.label)
+    return trajectory_from_columns(columns, crs or source.stored_crs, label=source.label)
 
 
 def _line_columns(source):
     """Vertices in drawing order; M, where there is one, is the time."""
     import numpy as np
 
-    rows = [vertices_of(wkb) for wkb, _ in source.rows(measures=True) if wkb is not None]
+    rows = [vertices_of(wkb) for wkb, _ in source.stored_rows(measures=True) if wkb is not None]
     x, y, z, time = np.concatenate([np.empty((0, 4)), *rows]).T
     return {"x": x, "y": y, **({"z": z} if source.has_z else {}), **({"time": time} if source.has_m else {})}
 
@@ -61,7 +61,7 @@ def _point_columns(source):
         names.pop(role, None)
     index = {role: source.names.index(name) for role, name in names.items()}
     places, fields = [np.empty((0, 4))], {role: [] for role in names}
-    for wkb, values in source.rows():
+    for wkb, values in source.stored_rows():
         if wkb is None:
             continue
         places.append(vertices_of(wkb)[:1])
@@ -84,7 +84,7 @@ def _table_columns(source):
                 label=source.label, names=", ".join(source.names), missing=", ".join(missing))
         )
     index = [source.names.index(name) for name in names.values()]
-    rows = [[_number(values[k]) for k in index] for _, values in source.rows()]
+    rows = [[_number(values[k]) for k in index] for _, values in source.stored_rows()]
     return dict(zip(names, np.array(rows, float).reshape(-1, len(names)).T))
 
 

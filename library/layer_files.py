@@ -7,7 +7,7 @@ import re
 from contextlib import contextmanager
 from pathlib import Path
 
-from ..algorithms.vector_source import LINE, POINT, POLYGON, TABLE, UNKNOWN, VectorSource, plain_value
+from ..algorithms.vector_source import LINE, POINT, POLYGON, TABLE, UNKNOWN, VectorSource, crs_to_write, plain_value
 from ..core.common.errors import RoadExtractionError
 from ..core.io.local_files import OFFLINE, VECTOR_DRIVERS, check_crs_of_geojson
 from . import measured_lines
@@ -67,7 +67,7 @@ class LayerFile(VectorSource):
                 self.table = layer.name
                 self.names = list(layer.schema["properties"])
                 geometry = layer.schema["geometry"]
-                self.crs = _crs_text(layer.crs_wkt)
+                self.stored_crs = _crs_text(layer.crs_wkt)
                 if layer.driver == "GeoJSON":
                     self._check_crs()
         except (FionaError, FionaValueError, ValueError, OSError) as problem:
@@ -84,7 +84,7 @@ class LayerFile(VectorSource):
         with fiona.open(self.path, layer=self.table, NATIVE_DATA="YES") as layer:
             check_crs_of_geojson(self.path, layer.tags(ns="NATIVE_DATA").get("NATIVE_DATA"))
 
-    def rows(self, measures=False, check_validity=True):
+    def stored_rows(self, measures=False, check_validity=True):
         import shapely
         from shapely.geometry import shape
 
@@ -164,8 +164,8 @@ def write_layer(path, table, features, check_cancelled):
     schema = {"geometry": GEOMETRIES[features.geometry_type],
               "properties": {field.name: COLUMN_TYPES[field.type] for field in features.schema}}
     options = {"layer": table or Path(path).stem, "description": features.description} if driver == "GPKG" else {}
-    if features.crs:
-        options["crs_wkt"] = features.crs
+    if wkt := crs_to_write(features, driver):
+        options["crs_wkt"] = wkt
     try:
         with fiona.open(path, "w", driver=driver, schema=schema, encoding="utf-8", **options) as layer:
             layer.writerecords(_records_of(features, check_cancelled))

@@ -16,6 +16,7 @@ from qgis.core import (
 from ..algorithms.call import Call, existing_file
 from ..algorithms.destinations import at_path, destination_path
 from ..algorithms.parameters import RasterOutput
+from ..algorithms.vector_source import crs_to_write
 from ..core.common.errors import RoadExtractionError
 from .database import add_tables
 from .embedded_style import embed_style
@@ -76,13 +77,15 @@ class QgisCall(Call):
 
     def crs(self, name="CRS"):
         """WKT, or "" where none was chosen; refuses a CRS that QGIS does not know, which it would pass over."""
+        from ..core.io.units import in_metres
+
         crs = self.processing.parameterAsCrs(self.parameters, name, self.context)
         given = self.parameters.get(name)
         if isinstance(given, str) and given and not crs.isValid():
             raise RoadExtractionError(
                 tr("{label}: the CRS {given} is not known. Give it as EPSG:number.").format(label=self.label(name), given=given)
             )
-        return crs_text(crs)
+        return in_metres(crs_text(crs))[0]
 
     def raster(self, name):
         given = self.parameters.get(name)
@@ -185,7 +188,8 @@ class QgisCall(Call):
         value = self.destination(name)
         path = destination_path(value)
         fields = qgis_fields(features.schema, with_aliases=keeps_aliases(path))
-        crs = QgsCoordinateReferenceSystem.fromWkt(features.crs) if features.crs else QgsCoordinateReferenceSystem()
+        wkt = crs_to_write(features, QgsVectorFileWriter.driverForExtension(path.suffix) if path else "")
+        crs = QgsCoordinateReferenceSystem.fromWkt(wkt) if wkt else QgsCoordinateReferenceSystem()
         parameters, unfinished, file = self.parameters, "", ""
         if path is not None:
             unfinished = str(self._layer_files.begin(path))
