@@ -19,7 +19,6 @@ from .parameters import settings_class
 from .progress import CountedWarnings
 from .provenance import provenance_now, sign_file
 from .texts import tr
-from .trajectory_source import read_trajectory_source, trajectory_path
 from .vector_source import read_features
 
 
@@ -138,6 +137,8 @@ class Call:
 
     def trajectory(self, name="TRAJECTORY", crs="", heights_needed=True, columns=""):
         """The trajectory as the core takes it, from a layer, a table or a file; `crs` and the `columns` of a file overrule what it says."""
+        from .trajectory_source import read_trajectory_source, trajectory_path
+
         path = trajectory_path(self.parameters.get(name))
         if path is not None:
             from ..core.survey.trajectory.reader import read_trajectory

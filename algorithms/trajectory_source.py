@@ -2,8 +2,6 @@
 
 from pathlib import Path
 
-import numpy as np
-
 from ..core.common.errors import RoadExtractionError
 from .texts import tr
 from .vector_source import LINE, POINT, vertices_of
@@ -25,6 +23,8 @@ def read_trajectory_source(source, crs="", heights_needed=True):
 
     Without heights, where none are needed, all are 0.
     """
+    import numpy as np
+
     from ..core.survey.trajectory.reader import trajectory_from_columns, trajectory_from_rows
 
     if source.kind == LINE:
@@ -58,6 +58,8 @@ def _refuse_empty(source, count):
 
 def _line_columns(source):
     """Vertices in drawing order; M, where there is one, is the time."""
+    import numpy as np
+
     rows = [vertices_of(wkb) for wkb, _ in source.rows(measures=True) if wkb is not None]
     x, y, z, time = np.concatenate([np.empty((0, 4)), *rows]).T
     return {"x": x, "y": y, **({"z": z} if source.has_z else {}), **({"time": time} if source.has_m else {})}
@@ -68,6 +70,7 @@ def trajectory_features(trajectory, **further):
 
     `further` columns, name to (N,) values, belong to an estimated trajectory.
     """
+    import numpy as np
     import shapely
 
     from ..core.common.features import Features
@@ -92,6 +95,8 @@ def trajectory_features(trajectory, **further):
 
 def _road_pass_station(trajectory):
     """(road, pass, station) of every row; None in stretches too short to be a pass."""
+    import numpy as np
+
     from ..core.survey.frame.build import build_frame
 
     found = [(None, None, None)] * len(trajectory)

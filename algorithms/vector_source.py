@@ -1,7 +1,5 @@
 """Vector layers as the algorithms read them, whatever program opens them."""
 
-import numpy as np
-
 from ..core.common.errors import RoadExtractionError
 from ..core.common.features import Features
 from .texts import tr
@@ -133,6 +131,8 @@ def _measured_parts(wkb, label):
 
 def vertices_of(wkb):
     """(V, 4) x, y, z and m of all vertices of points or lines, in one part or many; NaN where there is no z or m."""
+    import numpy as np
+
     found = []
     _read_vertices(wkb, 0, found)
     return np.concatenate(found) if found else np.empty((0, 4))
@@ -140,6 +140,8 @@ def vertices_of(wkb):
 
 def _read_vertices(wkb, at, found):
     """Append the vertices of the geometry that begins at a byte; the byte where it ends."""
+    import numpy as np
+
     base, has_z, has_m = _type_of(wkb, at)
     at += 5
     if base in (4, 5):

@@ -145,7 +145,7 @@ def write_layer(path, table, features, check_cancelled):
     driver = DRIVERS[Path(path).suffix.lower().lstrip(".")]
     schema = {"geometry": GEOMETRIES[features.geometry_type],
               "properties": {field.name: COLUMN_TYPES[field.type] for field in features.schema}}
-    options = {"layer": table or Path(path).stem} if driver == "GPKG" else {}
+    options = {"layer": table or Path(path).stem, "description": features.description} if driver == "GPKG" else {}
     if features.crs:
         options["crs_wkt"] = features.crs
     try:

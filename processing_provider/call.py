@@ -8,6 +8,7 @@ from qgis.core import (
     QgsProcessingException,
     QgsProcessingOutputLayerDefinition,
     QgsRasterLayer,
+    QgsVariantUtils,
     QgsVectorFileWriter,
 )
 
@@ -165,17 +166,20 @@ class QgisCall(Call):
         replaced.forget()
         provenance = self.commit_files()
         schemas = {name: features.schema for name, features in self._layers}
-        run = run_of(self.algorithm.ID, self.surveyed(), self.algorithm.WHOLE_MAP, self.context, self.values())
+        run = run_of(provenance, self.surveyed(), self.algorithm.WHOLE_MAP, self.context)
         for name, dest in self._results.items():
             note_report(dest)
             look = self.algorithm.LOOKS.get(name, name)
             embed_style(look, dest, self.label(name), schemas.get(name, ()), provenance)
-            style_on_load(look, dest, self.label(name), self.context, schemas.get(name, ()), run, provenance)
+            style_on_load(look, dest, self.label(name), self.context, schemas.get(name, ()), run)
         return {**self._results, **numbers}
 
     def values(self):
-        return {definition.name(): definition.valueAsJsonObject(self.parameters.get(definition.name(), definition.defaultValue()), self.context)
-                for definition in self.processing.parameterDefinitions() if not definition.isDestination()}
+        given = {definition: self.parameters.get(definition.name(), definition.defaultValue())
+                 for definition in self.processing.parameterDefinitions() if not definition.isDestination()}
+        # a batch gives a NULL of QGIS for what was left empty
+        return {definition.name(): None if QgsVariantUtils.isNull(value) else definition.valueAsJsonObject(value, self.context)
+                for definition, value in given.items()}
 
     def _write(self, name, features):
         fields = qgis_fields(features.schema, with_aliases=keeps_aliases(destination_path(self.destination(name))))

@@ -37,6 +37,7 @@ class Features:
     geometries : list of shapely geometries with Z in map coordinates (None in a table)
     rows : list of dict, field name to value; a missing name is NULL
     crs : WKT, "" where unknown
+    description : what made the layer, which a GeoPackage keeps
     """
 
     geometry_type: str
@@ -44,6 +45,7 @@ class Features:
     geometries: list[Any] = field(default_factory=list)
     rows: list[dict[str, Any]] = field(default_factory=list)
     crs: str = ""
+    description: str = ""
 
     def add(self, geometry: Any, **row: Any) -> None:
         """Append a feature with its field values."""

@@ -103,7 +103,7 @@ def inspect_survey(paths: Sequence[str | Path], trajectory: Trajectory | None = 
         If a file is missing, damaged, or all are empty.
     """
     copies: list[str] = []
-    files = without_copies(read_headers(paths), copies.append)
+    files = without_copies(read_headers(paths, copies.append), copies.append)
     wkt = next((file.crs for file in files if file.crs), "") or crs
     counter = _Counter(files, settings, _usable(trajectory, wkt))
     total, done = sum(file.count for file in files), 0

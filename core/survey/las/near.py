@@ -30,7 +30,7 @@ def points_near(paths: Iterable[str | os.PathLike[str]], x: float, y: float, rad
     RoadExtractionError
         If a file is missing or cannot be read.
     """
-    files = [file for file in read_headers(paths) if file.count and file.minimum[0] <= x + radius and file.maximum[0] >= x - radius
+    files = [file for file in read_headers(paths, progress.warn) if file.count and file.minimum[0] <= x + radius and file.maximum[0] >= x - radius
              and file.minimum[1] <= y + radius and file.maximum[1] >= y - radius]
     total, read = sum(file.count for file in files), 0
     found = [np.empty((0, 4))]

@@ -12,11 +12,14 @@ import numpy as np
 
 from ...common.errors import Cancelled, RoadExtractionError
 from ...common.parallel import check_cancelled
-from .guard import find_damage, points_per_chunk
+from .guard import find_damage, places_here_and_there, points_per_chunk, with_points_of_chunks
+from .mending import mend, opened
+from .records_of_file import HeaderFields
 
 POINTS_PER_BLOCK = 400_000  # points decoded at a time
 CLOUD_SUFFIXES = (".las", ".laz")
 MAX_HEADER_SCALE, MAX_HEADER_OFFSET = 1e3, 1e12  # m, of coordinates stored as integers; beyond them no place on earth is described
+BOUNDS_TOLERANCE = 0.01      # m: bounds are often rounded to centimetres
 NOT_FILE_ERRORS = (KeyboardInterrupt, SystemExit, GeneratorExit, Cancelled, MemoryError)  # they say nothing about the file
 
 ReadResult = TypeVar("ReadResult")
@@ -39,6 +42,7 @@ class CloudHeader:
     adjusted_time : whether gps_time is adjusted standard GPS time (global encoding bit 0), not seconds of the GPS week
     chunk : points that are compressed together; 1 in a LAS file, 0 where the number varies
     has_colour : whether the points have red, green and blue
+    notes : sentences about what the header states otherwise than the file shows
     """
 
     path: str
@@ -54,16 +58,17 @@ class CloudHeader:
     adjusted_time: bool
     chunk: int = 0
     has_colour: bool = False
+    notes: tuple[str, ...] = ()
 
 
-def open_cloud(path: str | os.PathLike[str], layers: Iterable[str] | None = None, checked: bool = False, sparse: bool = False) -> Any:
+def open_cloud(path: str | os.PathLike[str], layers: Iterable[str] | None = None, known: CloudHeader | None = None, sparse: bool = False) -> Any:
     """Open a LAS, LAZ or COPC file with laspy.
 
     Parameters
     ----------
     path : of the file
     layers : names of the layers of a LAZ 1.4 file that are decoded beside x, y and the return numbers ("z", "intensity" ...); all by default
-    checked : the file was checked for damage before
+    known : the file's header, where it was read and checked for damage before
     sparse : few points are read here and there: a chunk is decoded no further than they lie in it, by one thread
 
     Returns
@@ -75,17 +80,43 @@ def open_cloud(path: str | os.PathLike[str], layers: Iterable[str] | None = None
     RoadExtractionError
         If the file is missing, is not a LAS or LAZ file, is damaged, or cannot be read.
     """
-    import laspy
+    return _open(path, _mended(path) if known is None else _as_known(path, known), layers, sparse)
 
+
+def _mended(path):
+    """What is read in place of some bytes of a file, which is checked for damage.
+
+    Raises
+    ------
+    RoadExtractionError
+        As `open_cloud`.
+    """
     path = str(path)
     if not Path(path).exists():
         raise RoadExtractionError(f"There is no file {path}. Check the path of the point cloud.")
     if not path.lower().endswith(CLOUD_SUFFIXES):
         raise RoadExtractionError(f"{path} is not a LAS or LAZ file. Lanewright reads .las, .laz and .copc.laz; convert other formats first.")
-    if not checked and (damage := find_damage(path)):
+    mended = mend(path)
+    if damage := find_damage(path, mended):
         raise RoadExtractionError(f"{path} is damaged or cut off: {damage}. Copy or export the file again.")
+    return with_points_of_chunks(path, mended)
+
+
+def _as_known(path, known):
+    """The same of a file whose points were counted."""
+    mended = mend(path)
+    with opened(path, mended) as file:
+        fields = HeaderFields.read(file)
+    return mended if fields is None or fields.count == known.count else mended.with_count(fields, known.count)
+
+
+def _open(path, mended, layers, sparse=False):
+    """laspy.LasReader of a file that is read as it was mended."""
+    import laspy
+
     try:
-        return laspy.open(path, decompression_selection=layer_selection(layers), laz_backend=laspy.LazBackend.Lazrs if sparse else None)
+        return laspy.open(opened(path, mended) if mended.patches else str(path), decompression_selection=layer_selection(layers),
+                          laz_backend=laspy.LazBackend.Lazrs if sparse else None)
     except BaseException as problem:  # laspy's decoders raise many types for a damaged file, some of them not Exceptions
         if isinstance(problem, NOT_FILE_ERRORS):
             raise
@@ -106,30 +137,41 @@ def layer_selection(layers: Iterable[str] | None) -> Any:
 
 
 def read_header(path: str | os.PathLike[str]) -> CloudHeader:
-    """The header of a file; bounds that its header does not give are computed from the points.
+    """The header of a file; bounds that it does not give, or outside of which points lie, are computed from the points.
 
     Raises
     ------
     RoadExtractionError
         If the file is missing, is not LAS or LAZ, or cannot be read.
     """
-    with open_cloud(path) as reader:
+    mended = _mended(path)
+    with _open(path, mended, None) as reader:
         header = reader.header
         names = set(header.point_format.dimension_names)
         if not ((np.abs(header.scales) < MAX_HEADER_SCALE).all() and (np.abs(header.offsets) < MAX_HEADER_OFFSET).all() and np.all(header.scales)):
             raise RoadExtractionError(
-                f"{path} is damaged: its header says scales of {_listed(header.scales)} and offsets of {_listed(header.offsets)}, with which "
-                "points have no coordinates. Export the file again.")
+                f"{path} gives its points no coordinates: its header says scales of {_listed(header.scales)} and offsets of "
+                f"{_listed(header.offsets)}. Export the file again, with a scale such as 0.001 m.")
         count, low, high = int(header.point_count), header.mins, header.maxs
-        reach = 2.0**31 * np.abs(header.scales)  # of coordinates stored as 32-bit integers
-        plausible = (header.offsets - reach <= low) & (low <= high) & (high <= header.offsets + reach)
-        if count > 1 and not (plausible.all() and (low < high).any()):
-            low, high = _bounds_of_points(path)  # the program that wrote the file left them empty
+        if count > 1 and not _bounds_hold(path, mended, header):
+            low, high = _bounds_of_points(path)
         return CloudHeader(
             str(path), str(header.version), header.point_format.id, count,
             tuple(map(float, low)), tuple(map(float, high)), tuple(map(float, header.scales)),
             _crs_of(header), "gps_time" in names, "scanner_channel" in names,
-            bool(header.global_encoding.gps_time_type.value), points_per_chunk(path), "red" in names)
+            bool(header.global_encoding.gps_time_type.value), points_per_chunk(path), "red" in names,
+            tuple(f"{path}: {note}." for note in mended.notes))
+
+
+def _bounds_hold(path, mended, header):
+    """Whether the bounds that a header states are some, can be, and hold the points at which it is looked."""
+    low, high = header.mins, header.maxs
+    reach = 2.0**31 * np.abs(header.scales)  # of coordinates stored as 32-bit integers
+    plausible = (header.offsets - reach <= low) & (low <= high) & (high <= header.offsets + reach)
+    if not (plausible.all() and (low < high).any()):
+        return False
+    places, margin = places_here_and_there(path, mended), np.abs(header.scales) + BOUNDS_TOLERANCE
+    return bool(((places >= low - margin) & (places <= high + margin)).all())
 
 
 def _listed(numbers):
@@ -156,8 +198,13 @@ def _crs_of(header):
     return "" if crs is None else crs.to_wkt()
 
 
-def read_headers(paths: Iterable[str | os.PathLike[str]]) -> list[CloudHeader]:
+def read_headers(paths: Iterable[str | os.PathLike[str]], warn: Callable[[str], None] | None = None) -> list[CloudHeader]:
     """The headers of several files, in the order given; a file that is given twice, by whatever path, is read once.
+
+    Parameters
+    ----------
+    paths : of the files
+    warn : is told what headers state otherwise than their files show
 
     Raises
     ------
@@ -174,6 +221,8 @@ def read_headers(paths: Iterable[str | os.PathLike[str]]) -> list[CloudHeader]:
     if not sum(file.count for file in files):
         named = f"The file {unique[0]} holds" if len(files) == 1 else f"The files {', '.join(unique[:3])} hold"
         raise RoadExtractionError(f"{named} no points. Check the export of the survey.")
+    for note in (note for file in files for note in file.notes if warn is not None):
+        warn(note)
     return files
 
 
