@@ -32,9 +32,9 @@ def read_trajectory_source(source, crs="", heights_needed=True):
         _refuse_empty(source, len(columns["x"]))
         if not heights_needed and not np.isfinite(columns.get("z", np.nan)).any():
             columns["z"] = np.zeros(len(columns["x"]))
-        return trajectory_from_columns(columns, crs or source.crs, label=source.label)
+        return trajectory_from_columns(columns, crs or source.stored_crs, label=source.label)
     rows, places = [], [np.empty((0, 4))]
-    for wkb, values in source.rows():
+    for wkb, values in source.stored_rows():
         if source.kind == POINT:
             if wkb is None:
                 continue
@@ -46,7 +46,7 @@ def read_trajectory_source(source, crs="", heights_needed=True):
         given["x"], given["y"], z, _ = np.concatenate(places).T
         if source.has_z:
             given["z"] = z
-    return trajectory_from_rows(source.names, rows, given, crs or source.crs, source.label, heights_needed)
+    return trajectory_from_rows(source.names, rows, given, crs or source.stored_crs, source.label, heights_needed)
 
 
 def _refuse_empty(source, count):
@@ -60,7 +60,7 @@ def _line_columns(source):
     """Vertices in drawing order; M, where there is one, is the time."""
     import numpy as np
 
-    rows = [vertices_of(wkb) for wkb, _ in source.rows(measures=True) if wkb is not None]
+    rows = [vertices_of(wkb) for wkb, _ in source.stored_rows(measures=True) if wkb is not None]
     x, y, z, time = np.concatenate([np.empty((0, 4)), *rows]).T
     return {"x": x, "y": y, **({"z": z} if source.has_z else {}), **({"time": time} if source.has_m else {})}
 

@@ -55,10 +55,11 @@ class FileCall(Call):
 
     def crs(self, name="CRS"):
         from ..core.io.crs import parse_crs
+        from ..core.io.units import in_metres
 
         given = self._value(name)
         try:
-            return parse_crs(given).to_wkt() if given else ""
+            return in_metres(parse_crs(given).to_wkt())[0] if given else ""
         except RoadExtractionError as problem:
             raise RoadExtractionError(f"{self.label(name)}: the CRS {given} is not known. Give it as EPSG:number.") from problem
 

@@ -92,9 +92,9 @@ class QgisSource(VectorSource):
         kind = layer.wkbType()
         self.kind = KINDS[QgsWkbTypes.geometryType(kind)]
         self.has_z, self.has_m = QgsWkbTypes.hasZ(kind), QgsWkbTypes.hasM(kind)
-        self.crs = crs_text(layer.sourceCrs() if hasattr(layer, "sourceCrs") else layer.crs())
+        self.stored_crs = crs_text(layer.sourceCrs() if hasattr(layer, "sourceCrs") else layer.crs())
 
-    def rows(self, measures=False, check_validity=True):
+    def stored_rows(self, measures=False, check_validity=True):
         features = self.layer.getFeatures() if check_validity or not isinstance(self.layer, QgsProcessingFeatureSource) else \
             self.layer.getFeatures(QgsFeatureRequest(), Qgis.ProcessingFeatureSourceFlag.SkipGeometryValidityChecks)
         for feature in features:

@@ -20,7 +20,7 @@ from .columns import listed, stated_angle_unit
 from .drive_checks import HEADING_TOLERANCE, METRES_PER_DEGREE, angle_between, driven_course, geographic_unit
 from .meaning import meaning_of, values_by_role
 from .receiver_logs import columns_of_records
-from .reprojection import reproject_trajectory
+from .reprojection import lengths_in_metres, reproject_trajectory
 from .table_columns import columns_of, columns_of_rows
 from .trajectory import MAX_VEHICLE_SPEED, Trajectory
 
@@ -66,17 +66,18 @@ def read_trajectory(path: str | os.PathLike[str], crs: str = "", target_crs: str
 
 
 def trajectory_from_columns(columns: Mapping[str, Any], crs: str = "", angle_unit: str = "", label: str = "The trajectory",
-                            notes: Sequence[str] = ()) -> Trajectory:
+                            notes: Sequence[str] = (), stated_units: Sequence[tuple[str, str]] = ()) -> Trajectory:
     """A trajectory from columns of numbers, such as those of a layer.
 
     Parameters
     ----------
     columns : {role: (N,) array}; roles are time, x, y, z, roll, pitch, heading,
         and lon, lat instead of x, y. Without `time` the positions are in driving order
-    crs : WKT or "EPSG:n" of x, y; "" where unknown
+    crs : WKT or "EPSG:n" of x, y, in its units; "" where unknown
     angle_unit : "degrees" or "radians"; "" recognises it
     label : the source, for messages
     notes : of the Trajectory so far
+    stated_units : (role, "metres" or "feet") of x, y and z where their columns state a unit
 
     Returns
     -------
@@ -99,8 +100,9 @@ def trajectory_from_columns(columns: Mapping[str, Any], crs: str = "", angle_uni
     if time is None or not has_time:
         time = np.arange(len(x), dtype=float)
         remarks.append(f"{label} has no time; its positions are used in file order.")
+    crs, (x, y, z), stated_units = lengths_in_metres(crs, (x, y, columns["z"]), stated_units, label)
     roll, pitch, heading = _angles(columns, x, y, crs, angle_unit, remarks)
-    return Trajectory(time, x, y, columns["z"], roll, pitch, heading, crs=crs, has_time=has_time, notes=tuple(remarks))
+    return Trajectory(time, x, y, z, roll, pitch, heading, crs=crs, has_time=has_time, notes=tuple(remarks), stated_units=tuple(stated_units))
 
 
 def trajectory_from_rows(titles: Sequence[str], rows: Sequence[Sequence[object]], given: Mapping[str, Any], crs: str = "",
@@ -149,19 +151,18 @@ def _read_text(path, crs, columns_given):
     _check_complete(path, columns, meaning.place)
     stated = [columns[meaning.place[role]].unit.name for role in ("heading", "roll", "pitch") if role in meaning.place]
     unit = next((name for name in stated if name in ("degrees", "radians")), "") or stated_angle_unit(table.preamble)
-    _refuse_feet(path, columns, meaning.place, table.preamble)
     if table.dropped:
         notes.append(f"{table.dropped} lines of {path.name} had another number of columns than {table.values.shape[1]} and were left out.")
     crs = crs or _stated_crs(path, table.preamble, "x" in meaning.place, notes)
-    return _from_table(columns, meaning, {}, {}, crs, unit, path.name, notes)
+    return _from_table(columns, meaning, {}, {}, crs, unit, path.name, notes, table.preamble)
 
 
-def _from_table(columns, meaning, given, defaults, crs, angle_unit, label, notes):
+def _from_table(columns, meaning, given, defaults, crs, angle_unit, label, notes, preamble=()):
     """The trajectory of columns whose meaning is known."""
     found = {**given, **values_by_role(columns, meaning, label, notes)}
     if "z" not in found or not np.isfinite(found["z"]).any():
         found.update(defaults)
-    trajectory = trajectory_from_columns(found, crs, angle_unit, label, notes)
+    trajectory = trajectory_from_columns(found, crs, angle_unit, label, notes, _stated_lengths(columns, meaning.place, preamble))
     if "time" in meaning.place and not columns[meaning.place["time"]].unit.name and not columns[meaning.place["time"]].is_text:
         trajectory = _in_seconds(trajectory, label)
     return trajectory
@@ -205,13 +206,11 @@ def _check_complete(source, columns, place, heights_needed=True):
             "say which is which in Columns of Import trajectory.")
 
 
-def _refuse_feet(path, columns, place, preamble):
-    """Refuse positions in feet."""
-    text = " ".join(preamble).lower()
-    in_feet = [role for role in ("x", "y", "z") if role in place and columns[place[role]].unit.name == "feet"]
-    if in_feet or re.search(r"(position|height|distance|coordinates?)s? in (us )?(survey )?(feet|foot|ft)\b", text):
-        raise RoadExtractionError(
-            f"{path} gives positions in feet. Lanewright works in metres: export the trajectory in a metric CRS and run again.")
+def _stated_lengths(columns, place, preamble):
+    """(role, "feet" or "metres") of the coordinates whose columns, or the lines above the table, state a unit."""
+    in_feet = re.search(r"(position|height|distance|coordinates?)s? in (us )?(survey )?(feet|foot|ft)\b", " ".join(preamble).lower())
+    stated = {role: columns[place[role]].unit.name or ("feet" if in_feet else "") for role in ("x", "y", "z") if role in place}
+    return [(role, unit) for role, unit in stated.items() if unit in ("feet", "metres")]
 
 
 def _plane_coordinates(columns, time, crs, label, notes):
