@@ -15,7 +15,7 @@ from ...io.text_table import read_number_table
 from .columns import ROLES, listed
 from .drive_checks import METRES_PER_DEGREE
 from .meaning import TOLD_CLOCKS, Meaning, meaning_of
-from .table_columns import CHECKED_ROWS, TableColumn, columns_of, first_row
+from .table_columns import CHECKED_ROWS, TableColumn, first_row, titled_columns
 from .trajectory import Trajectory
 from .unnamed_columns import MIN_MAP_COORDINATE, columns_from_numbers
 from .written_values import hold_times
@@ -99,7 +99,7 @@ def columns_of_table(path: str | os.PathLike[str], columns: str = "", rows: int 
     RoadExtractionError
         If the file holds no table of numbers.
     """
-    found, unmatched = columns_of(read_number_table(path))
+    found, unmatched = titled_columns(read_number_table(path))
     problem, meaning = "", Meaning({})
     try:
         meaning = meaning_of_table(found, unmatched, Path(path), columns)
@@ -118,7 +118,7 @@ def meaning_of_table(columns: Sequence[TableColumn], unmatched: Sequence[str] | 
 
     Parameters
     ----------
-    columns, unmatched : as `columns_of` gives them
+    columns, unmatched : as `titled_columns` gives them
     path : of the file
     assigned : as `assigned_columns` takes it; "" where nothing was assigned
 

@@ -21,7 +21,7 @@ from .drive_checks import HEADING_TOLERANCE, METRES_PER_DEGREE, angle_between, d
 from .meaning import meaning_of, values_by_role
 from .receiver_logs import columns_of_records
 from .reprojection import lengths_in_metres, reproject_trajectory
-from .table_columns import columns_of, columns_of_rows
+from .table_columns import columns_of_rows, titled_columns
 from .trajectory import MAX_VEHICLE_SPEED, Trajectory
 
 SBET_DOUBLES = 17  # time, lat, lon, height, 3 velocities, roll, pitch, heading, wander angle, 6 more
@@ -145,7 +145,7 @@ def _read_text(path, crs, columns_given):
             raise RoadExtractionError(f"{path} is a log or a track, whose columns are known. Leave Columns empty.")
         return _from_table(records, meaning_of(records, path.name), {}, {}, crs, "degrees", path.name, [])
     table = read_number_table(path)
-    columns, unmatched = columns_of(table)
+    columns, unmatched = titled_columns(table)
     meaning = meaning_of_table(columns, unmatched, path, columns_given)
     notes = list(meaning.notes)
     _check_complete(path, columns, meaning.place)

@@ -42,7 +42,7 @@ class TableColumn:
         return bool(self.first) and self.is_text
 
 
-def columns_of(table: NumberTable) -> tuple[list[TableColumn], list[str] | None]:
+def titled_columns(table: NumberTable) -> tuple[list[TableColumn], list[str] | None]:
     """The columns of a table with the names above it.
 
     Returns
