@@ -47,7 +47,7 @@ class ParallelCloudReader:
         """
         for number, first, count in self.ranges(files, size):
             if _in_one_piece(files[number], size):
-                for points in read_blocks(files[number].path, size, self._layers):
+                for points in read_blocks(files[number].path, size, self._layers, files[number].units):
                     yield partial(_identity, points)
             else:
                 yield partial(self._load, files[number], first, count)
@@ -71,7 +71,7 @@ class ParallelCloudReader:
     def points(self, file: CloudHeader, first: int, count: int, size: int) -> Iterator[Any]:
         """Yield the points of a range, as of `ranges` with the same size, as laspy point records; the next may overwrite one."""
         if _in_one_piece(file, size):
-            yield from read_blocks(file.path, size, self._layers)
+            yield from read_blocks(file.path, size, self._layers, file.units)
         else:
             yield self._load(file, first, count)
 
@@ -93,7 +93,7 @@ class ParallelCloudReader:
         """laspy's header of a file and, where it is compressed, its LASzip record, first byte and (C, 2) points and bytes of its chunks."""
         found = self._layouts.get(file.path)
         if found is None:
-            with open_cloud(file.path, self._layers, checked=True) as reader:
+            with open_cloud(file.path, self._layers, known=file) as reader:
                 header = reader.header
             chunks = None
             if header.are_points_compressed:
@@ -112,7 +112,7 @@ class ParallelCloudReader:
         if file.chunk:
             starts = np.linspace(0, max(file.count - POINTS_PER_TIME_SAMPLE, 0), TIME_SAMPLES).astype(int)
             starts[:-1] -= starts[:-1] % file.chunk   # a chunk is decoded from its start on
-            loads = [partial(self._read_points, file.path, int(start), POINTS_PER_TIME_SAMPLE) for start in np.unique(starts)]
+            loads = [partial(self._read_points, file, int(start), POINTS_PER_TIME_SAMPLE) for start in np.unique(starts)]
         else:
             header, chunks = self._layout(file)
             loads = [partial(self._read_chunks, file.path, header, *run) for run in _chunk_runs(file, 1, chunks)]
@@ -120,8 +120,8 @@ class ParallelCloudReader:
         for load in loads:
             yield np.array(load()["gps_time"], float)
 
-    def _read_points(self, path, first, count):
-        return read_points(self._reader(path), path, first, count)
+    def _read_points(self, file, first, count):
+        return read_points(self._reader(file), file.path, first, count)
 
     def _read_chunks(self, path, header, record, place, first, table):
         """The points of chunks that begin at a byte; `table` has (points, bytes) of each."""
@@ -162,13 +162,13 @@ class ParallelCloudReader:
             buffer = self._buffers.bytes = np.empty(size, np.uint8)
         return buffer[:size]
 
-    def _reader(self, path):
-        thread = threading.get_ident()
+    def _reader(self, file):
+        path, thread = file.path, threading.get_ident()
         opened, reader = self._readers.get(thread, ("", None))
         if opened != path:
             if reader is not None:
                 reader.close()
-            reader = open_cloud(path, self._layers, checked=True, sparse=True)
+            reader = open_cloud(path, self._layers, known=file, sparse=True)
             self._readers[thread] = path, reader
         return reader
 
