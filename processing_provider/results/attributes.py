@@ -27,7 +27,8 @@ WORDS = {
     "use": {"keep": tr("marking"), "other": tr("other paint")},
     "source": {"pair": tr("between two lines"), "offset": tr("beside one line"), "drawn": tr("drawn by hand")},
     "turn": {"left": tr("left"), "right": tr("right")},
-    "action": {"accept": tr("accept"), "delete": tr("delete"), "move": tr("move"), "draw": tr("draw")},
+    "action": {"accept": tr("accept"), "delete": tr("delete"), "move": tr("move"), "draw": tr("draw"),
+               "take": tr("take the second reading")},
     "target": {"edge": tr("road edge"), "marking": tr("marking"), "lane": tr("lane")},
     "outcome": {"correct": tr("correct"), "missed": tr("missed"), "false": tr("false"), "excluded": tr("excluded")},
 }
