@@ -18,12 +18,14 @@ class Field:
     type : int, float or str
     alias : the name spelled out, with its unit
     needed : False where a layer that is read may lack it, such as one that an earlier version wrote; its values are None then
+    on_map : True for a map coordinate, which is written in the units of the layer's CRS
     """
 
     name: str
     type: type
     alias: str = ""
     needed: bool = True
+    on_map: bool = False
 
 
 @dataclass
