@@ -15,7 +15,8 @@ WARNING = ("The points are too few to find curbs along 30 m, where none was draw
 
 
 def piece(start, end, y=0.0, **row):
-    return f"LINESTRING Z ({start} {y} 100, {end} {y} 100)", dict(road=0, station_m=float(start), end_m=float(end), length_m=float(end - start), **row)
+    place = dict(road=0, station_m=float(start), end_m=float(end), length_m=float(end - start))
+    return f"LINESTRING Z ({start} {y} 100, {end} {y} 100)", {**place, **row}
 
 
 def street(project, *warnings):
