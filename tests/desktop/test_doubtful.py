@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import pytest
-from lanewright.core.common.places import RoadPlace, places_in
+from lanewright.core.common.messages import RoadPlace, places_in
 from lanewright.core.common.schemas import DRIVING_LINES, LANES, PASSES, ROAD_EDGES, ROAD_SURFACE
 from lanewright.desktop.review.doubtful import doubts_of
 from lanewright.processing_provider.results.road_maps import road_maps

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ...common.places import RoadPlace
+from ...common.messages import RoadPlace
 from .ground_grid import GroundCells
 
 if TYPE_CHECKING:
