@@ -19,8 +19,7 @@ from .parameters import settings_class
 from .progress import CountedWarnings
 from .provenance import provenance_now, sign_file
 from .texts import tr
-from .trajectory_source import read_trajectory_source, trajectory_path
-from .vector_source import read_features
+from .vector_source import in_file_units, read_features
 
 
 class Call:
@@ -138,6 +137,8 @@ class Call:
 
     def trajectory(self, name="TRAJECTORY", crs="", heights_needed=True, columns=""):
         """The trajectory as the core takes it, from a layer, a table or a file; `crs` and the `columns` of a file overrule what it says."""
+        from .trajectory_source import read_trajectory_source, trajectory_path
+
         path = trajectory_path(self.parameters.get(name))
         if path is not None:
             from ..core.survey.trajectory.reader import read_trajectory
@@ -158,10 +159,11 @@ class Call:
 
         from ..core.io.crs import parse_crs, same_crs
         from ..core.io.gdal_errors import gdal_exceptions
+        from ..core.io.units import place_of_raster
 
         path = self.raster(name)
         with gdal_exceptions():
-            own = gdal.Open(path).GetProjection()
+            own = place_of_raster(gdal.Open(path))[1]
         if not own or not crs or same_crs(parse_crs(own), parse_crs(crs)):
             return path
         target = self.scratch_file(f"{name.lower()}.vrt")
@@ -246,7 +248,7 @@ class Call:
     def layer(self, name, features):
         """Remember a vector result; it is written in `finish`, when nothing can fail any more."""
         if self.wants(name):
-            self._layers.append((name, features))
+            self._layers.append((name, in_file_units(features)))
 
     def values(self):
         """What the user gave or left at its default for every input, in types that JSON has."""

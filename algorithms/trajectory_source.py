@@ -1,8 +1,7 @@
 """The trajectory from whatever the user has: a layer, a table, or the file itself."""
 
+import math
 from pathlib import Path
-
-import numpy as np
 
 from ..core.common.errors import RoadExtractionError
 from .texts import tr
@@ -25,6 +24,8 @@ def read_trajectory_source(source, crs="", heights_needed=True):
 
     Without heights, where none are needed, all are 0.
     """
+    import numpy as np
+
     from ..core.survey.trajectory.reader import trajectory_from_columns
 
     if source.kind == LINE:
@@ -39,24 +40,28 @@ def read_trajectory_source(source, crs="", heights_needed=True):
         )
     if not heights_needed and not np.isfinite(columns.get("z", np.nan)).any():
         columns["z"] = np.zeros(len(next(iter(columns.values()))))
-    return trajectory_from_columns(columns, crs or source.crs, label=source.label)
+    return trajectory_from_columns(columns, crs or source.stored_crs, label=source.label)
 
 
 def _line_columns(source):
     """Vertices in drawing order; M, where there is one, is the time."""
-    rows = [vertices_of(wkb) for wkb, _ in source.rows(measures=True) if wkb is not None]
+    import numpy as np
+
+    rows = [vertices_of(wkb) for wkb, _ in source.stored_rows(measures=True) if wkb is not None]
     x, y, z, time = np.concatenate([np.empty((0, 4)), *rows]).T
     return {"x": x, "y": y, **({"z": z} if source.has_z else {}), **({"time": time} if source.has_m else {})}
 
 
 def _point_columns(source):
     """Places from the geometry (the height too, where it has one), the rest from fields."""
+    import numpy as np
+
     names = _roles(source)
     for role in ("x", "y", "lon", "lat", *(("z",) if source.has_z else ())):
         names.pop(role, None)
     index = {role: source.names.index(name) for role, name in names.items()}
     places, fields = [np.empty((0, 4))], {role: [] for role in names}
-    for wkb, values in source.rows():
+    for wkb, values in source.stored_rows():
         if wkb is None:
             continue
         places.append(vertices_of(wkb)[:1])
@@ -68,6 +73,8 @@ def _point_columns(source):
 
 
 def _table_columns(source):
+    import numpy as np
+
     names = _roles(source)
     missing = [role for role, other in (("x", "lon"), ("y", "lat"), ("z", "z")) if role not in names and other not in names]
     if missing:
@@ -77,7 +84,7 @@ def _table_columns(source):
                 label=source.label, names=", ".join(source.names), missing=", ".join(missing))
         )
     index = [source.names.index(name) for name in names.values()]
-    rows = [[_number(values[k]) for k in index] for _, values in source.rows()]
+    rows = [[_number(values[k]) for k in index] for _, values in source.stored_rows()]
     return dict(zip(names, np.array(rows, float).reshape(-1, len(names)).T))
 
 
@@ -92,7 +99,7 @@ def _number(value):
     try:
         return float(value)
     except (TypeError, ValueError):
-        return np.nan
+        return math.nan
 
 
 def trajectory_features(trajectory, **further):
@@ -100,6 +107,7 @@ def trajectory_features(trajectory, **further):
 
     `further` columns, name to (N,) values, belong to an estimated trajectory.
     """
+    import numpy as np
     import shapely
 
     from ..core.common.features import Features
@@ -124,6 +132,8 @@ def trajectory_features(trajectory, **further):
 
 def _road_pass_station(trajectory):
     """(road, pass, station) of every row; None in stretches too short to be a pass."""
+    import numpy as np
+
     from ..core.survey.frame.build import build_frame
 
     found = [(None, None, None)] * len(trajectory)

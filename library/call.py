@@ -10,6 +10,7 @@ from pathlib import Path
 from ..algorithms import parameters as specs
 from ..algorithms.call import Call
 from ..algorithms.destinations import destination_path, files_of
+from ..algorithms.provenance import provenance_now
 from ..core.common.errors import RoadExtractionError
 from .gdal_module import check_gdal
 from .layer_files import DRIVERS, LayerFile, file_and_table, first_table, write_layer
@@ -54,10 +55,11 @@ class FileCall(Call):
 
     def crs(self, name="CRS"):
         from ..core.io.crs import parse_crs
+        from ..core.io.units import in_metres
 
         given = self._value(name)
         try:
-            return parse_crs(given).to_wkt() if given else ""
+            return in_metres(parse_crs(given).to_wkt())[0] if given else ""
         except RoadExtractionError as problem:
             raise RoadExtractionError(f"{self.label(name)}: the CRS {given} is not known. Give it as EPSG:number.") from problem
 
@@ -114,7 +116,9 @@ class FileCall(Call):
 
     def finish(self, numbers):
         """Write the layers beside their destinations, then give all results their names."""
+        provenance = provenance_now(self.algorithm.ID, self.values())
         for name, features in self._layers:
+            features.description = provenance.sentence(self.algorithm.LOOKS.get(name, name))
             value = self.destination(name)
             path, table = destination_path(value).absolute(), file_and_table(value)[1]
             write_layer(str(self._unfinished(path, table)), table, features, self._progress.check_cancelled)

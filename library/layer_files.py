@@ -7,7 +7,7 @@ import re
 from contextlib import contextmanager
 from pathlib import Path
 
-from ..algorithms.vector_source import LINE, POINT, POLYGON, TABLE, UNKNOWN, VectorSource, plain_value
+from ..algorithms.vector_source import LINE, POINT, POLYGON, TABLE, UNKNOWN, VectorSource, crs_to_write, plain_value
 from ..core.common.errors import RoadExtractionError
 from . import measured_lines
 
@@ -54,7 +54,7 @@ class LayerFile(VectorSource):
                 self.table = layer.name
                 self.names = list(layer.schema["properties"])
                 geometry = layer.schema["geometry"]
-                self.crs = _crs_text(layer.crs_wkt)
+                self.stored_crs = _crs_text(layer.crs_wkt)
         except (FionaError, FionaValueError, ValueError, OSError) as problem:
             raise RoadExtractionError(f"{label}: {value} cannot be read as a vector layer ({problem}).") from problem
         plain = geometry.replace("3D ", "").replace("Multi", "")
@@ -63,7 +63,7 @@ class LayerFile(VectorSource):
         # fiona leaves measures out
         self.has_m = self.kind == LINE and self.has_z and measured_lines.may_have_measures(self.path, self.table)
 
-    def rows(self, measures=False, check_validity=True):
+    def stored_rows(self, measures=False, check_validity=True):
         import shapely
         from shapely.geometry import shape
 
@@ -145,9 +145,9 @@ def write_layer(path, table, features, check_cancelled):
     driver = DRIVERS[Path(path).suffix.lower().lstrip(".")]
     schema = {"geometry": GEOMETRIES[features.geometry_type],
               "properties": {field.name: COLUMN_TYPES[field.type] for field in features.schema}}
-    options = {"layer": table or Path(path).stem} if driver == "GPKG" else {}
-    if features.crs:
-        options["crs_wkt"] = features.crs
+    options = {"layer": table or Path(path).stem, "description": features.description} if driver == "GPKG" else {}
+    if wkt := crs_to_write(features, driver):
+        options["crs_wkt"] = wkt
     try:
         with fiona.open(path, "w", driver=driver, schema=schema, encoding="utf-8", **options) as layer:
             layer.writerecords(_records_of(features, check_cancelled))

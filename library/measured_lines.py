@@ -7,7 +7,7 @@ from contextlib import closing
 from importlib.util import find_spec
 from pathlib import Path
 
-from ..algorithms.vector_source import plain_value
+from ..algorithms.vector_source import crs_to_write, plain_value
 from ..core.common.errors import RoadExtractionError
 from .gdal_module import check_gdal
 
@@ -64,9 +64,9 @@ def write(path, table, features, check_cancelled):
     types = {int: ogr.OFTInteger64, float: ogr.OFTReal, str: ogr.OFTString}
     with gdal_exceptions():
         crs = None
-        if features.crs:
+        if wkt := crs_to_write(features, DRIVERS[suffix]):
             crs = osr.SpatialReference()
-            crs.SetFromUserInput(features.crs)
+            crs.SetFromUserInput(wkt)
             crs.SetAxisMappingStrategy(osr.OAMS_TRADITIONAL_GIS_ORDER)
         dataset = gdal.OpenEx(path, gdal.OF_VECTOR | gdal.OF_UPDATE) if Path(path).exists() else \
             ogr.GetDriverByName(DRIVERS[suffix]).CreateDataSource(path)

@@ -10,7 +10,6 @@ from qgis.PyQt.QtGui import QIcon
 from ..algorithms.call import run
 from ..algorithms.catalogue import toolbox_number
 from ..algorithms.parameters import TrajectorySpec, choice_refused, number_refused
-from ..algorithms.trajectory_source import trajectory_path
 from ..core.common.errors import Cancelled, RoadExtractionError
 from .call import QgisCall
 from .dependencies import missing_packages
@@ -83,6 +82,9 @@ class LanewrightAlgorithm(QgsProcessingAlgorithm):
         return (not missing, missing)
 
     def checkParameterValues(self, parameters, context):
+        missing = missing_packages()
+        if missing:
+            return False, missing
         fine, said = super().checkParameterValues(accept_trajectory_file(self.declaration, parameters, context), context)
         return fine, said if fine else \
             out_of_range(self.parameterDefinitions(), parameters) or no_trajectory(self.declaration, parameters) or said
@@ -133,6 +135,8 @@ def out_of_range(definitions, parameters):
 
 def no_trajectory(declaration, parameters):
     """What may be given where a file is there and no trajectory; QGIS itself says that it is not found."""
+    from ..algorithms.trajectory_source import trajectory_path
+
     for spec in declaration.inputs():
         value = parameters.get(spec.name)
         if isinstance(spec, TrajectorySpec) and isinstance(value, str) and os.path.isfile(value) and trajectory_path(value) is None \
@@ -148,6 +152,8 @@ def accept_trajectory_file(declaration, parameters, context):
     Such a file passes as an empty stand-in layer; whether it is there and can be
     read is said by the reader, in its own words.
     """
+    from ..algorithms.trajectory_source import trajectory_path
+
     accepted = dict(parameters)
     for spec in declaration.inputs():
         if isinstance(spec, TrajectorySpec) and trajectory_path(parameters.get(spec.name)) is not None:

@@ -8,12 +8,14 @@ from qgis.core import (
     QgsProcessingException,
     QgsProcessingOutputLayerDefinition,
     QgsRasterLayer,
+    QgsVariantUtils,
     QgsVectorFileWriter,
 )
 
 from ..algorithms.call import Call, existing_file
 from ..algorithms.destinations import ReplacedFiles, destination_path
 from ..algorithms.parameters import RasterOutput
+from ..algorithms.vector_source import crs_to_write
 from ..core.common.errors import RoadExtractionError
 from .embedded_style import embed_style
 from .input_files import close_database, input_files, layer_file, written_over
@@ -73,13 +75,15 @@ class QgisCall(Call):
 
     def crs(self, name="CRS"):
         """WKT, or "" where none was chosen; refuses a CRS that QGIS does not know, which it would pass over."""
+        from ..core.io.units import in_metres
+
         crs = self.processing.parameterAsCrs(self.parameters, name, self.context)
         given = self.parameters.get(name)
         if isinstance(given, str) and given and not crs.isValid():
             raise RoadExtractionError(
                 tr("{label}: the CRS {given} is not known. Give it as EPSG:number.").format(label=self.label(name), given=given)
             )
-        return crs_text(crs)
+        return in_metres(crs_text(crs))[0]
 
     def raster(self, name):
         given = self.parameters.get(name)
@@ -165,21 +169,26 @@ class QgisCall(Call):
         replaced.forget()
         provenance = self.commit_files()
         schemas = {name: features.schema for name, features in self._layers}
-        run = run_of(self.algorithm.ID, self.surveyed(), self.algorithm.WHOLE_MAP, self.context, self.values())
+        run = run_of(provenance, self.surveyed(), self.algorithm.WHOLE_MAP, self.context)
         for name, dest in self._results.items():
             note_report(dest)
             look = self.algorithm.LOOKS.get(name, name)
             embed_style(look, dest, self.label(name), schemas.get(name, ()), provenance)
-            style_on_load(look, dest, self.label(name), self.context, schemas.get(name, ()), run, provenance)
+            style_on_load(look, dest, self.label(name), self.context, schemas.get(name, ()), run)
         return {**self._results, **numbers}
 
     def values(self):
-        return {definition.name(): definition.valueAsJsonObject(self.parameters.get(definition.name(), definition.defaultValue()), self.context)
-                for definition in self.processing.parameterDefinitions() if not definition.isDestination()}
+        given = {definition: self.parameters.get(definition.name(), definition.defaultValue())
+                 for definition in self.processing.parameterDefinitions() if not definition.isDestination()}
+        # a batch gives a NULL of QGIS for what was left empty
+        return {definition.name(): None if QgsVariantUtils.isNull(value) else definition.valueAsJsonObject(value, self.context)
+                for definition, value in given.items()}
 
     def _write(self, name, features):
-        fields = qgis_fields(features.schema, with_aliases=keeps_aliases(destination_path(self.destination(name))))
-        crs = QgsCoordinateReferenceSystem.fromWkt(features.crs) if features.crs else QgsCoordinateReferenceSystem()
+        path = destination_path(self.destination(name))
+        fields = qgis_fields(features.schema, with_aliases=keeps_aliases(path))
+        wkt = crs_to_write(features, QgsVectorFileWriter.driverForExtension(path.suffix) if path else "")
+        crs = QgsCoordinateReferenceSystem.fromWkt(wkt) if wkt else QgsCoordinateReferenceSystem()
         sink, dest = self.processing.parameterAsSink(
             self.parameters, name, self.context, fields, WKB_TYPES[features.geometry_type], crs
         )

@@ -15,6 +15,7 @@ from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from .gdal_errors import gdal_exceptions
 from .unfinished import unfinished_path
+from .units import place_of_raster, place_raster
 
 GEOTIFF_TILE = 512          # px, side of a tile of the file, and of the parts that are processed at a time
 NODATA = -9999.0            # value of pixels without data
@@ -58,14 +59,13 @@ class IntensityImage:
             If the file is missing, not a raster, rotated, has no square pixels, or is in degrees.
         """
         dataset = _open_raster(path)
-        transform = dataset.GetGeoTransform(can_return_null=True)
+        transform, crs = place_of_raster(dataset)
         if transform is None:
             raise RoadExtractionError(f"{path} is an image without georeferencing. Give the intensity image written by “Intensity image”.")
         if transform[2] or transform[4] or abs(transform[1] + transform[5]) > 1e-6 * abs(transform[1]) or transform[1] <= 0:
             raise RoadExtractionError(
                 f"{path} has pixels of {transform[1]:g} by {-transform[5]:g} map units or is rotated. "
                 "An intensity image has square pixels and north up: make it again with “Intensity image”.")
-        crs = dataset.GetProjection() or ""
         reference = dataset.GetSpatialRef()
         if reference is not None and reference.IsGeographic():
             raise RoadExtractionError(
@@ -250,9 +250,7 @@ class NewGeoTiff:
         self._type = gdal.GDT_Byte if byte else gdal.GDT_Float32
         self._dtype = np.dtype(np.uint8 if byte else np.float32)
         self._dataset = gdal.GetDriverByName("GTiff").Create(str(path), width, height, 1, self._type, options)
-        self._dataset.SetGeoTransform(geotransform)
-        if crs:
-            self._dataset.SetProjection(crs)
+        place_raster(self._dataset, geotransform, crs)
         self._dataset.GetRasterBand(1).SetNoDataValue(nodata)
 
     @gdal_exceptions()

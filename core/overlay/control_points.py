@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 
 from ..common.errors import RoadExtractionError
+from ..io.units import in_metres
 from .source_image import SourceImage
 
 MAX_DEPARTURE = 0.1  # of the image's size: what a tilted camera over hilly ground differs from an image that is turned and scaled
@@ -89,7 +90,7 @@ def control_points(names: Sequence[Any] | None, rows: Sequence[Sequence[Any]], i
     rows : of texts or numbers
     image : SourceImage that the points belong to
     what : name of the table for error messages
-    crs : WKT of the map coordinates, "" where unknown
+    crs : WKT of the map coordinates in the table, "" where unknown
 
     Returns
     -------
@@ -113,7 +114,8 @@ def control_points(names: Sequence[Any] | None, rows: Sequence[Sequence[Any]], i
     usable = [row for row, good in zip(rows, known) if good]
     roles = _roles(usable, where)
     pixel, line = _in_the_image(table["pixel"][known], table["line"][known], roles != DISABLED, image, what)
-    easting, northing, height = (table[key][known] for key in ("easting", "northing", "height"))
+    crs, units = in_metres(crs)
+    easting, northing, height = units.in_metres(np.stack([table[key][known] for key in ("easting", "northing", "height")], axis=1)).T
     return ControlPoints(pixel, line, easting, northing, height, _names(usable, where.get("name")), roles, crs, int((~known).sum()))
 
 

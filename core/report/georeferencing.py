@@ -10,6 +10,7 @@ from ..common.texts import told, tr
 from ..common.words import word
 from ..io.crs import horizontal_part, parse_crs
 from ..io.gdal_errors import gdal_exceptions
+from ..io.units import NO_PLACE, place_of_raster
 from ..lazy import cv2
 from ..overlay.control_points import CHECK, CONTROL, DISABLED
 from ..overlay.warp import drawn_area, output_grid
@@ -166,5 +167,5 @@ def _reduced_copy(path):
         values = 255.0 * (values - low) / max(float(high - low), 1e-9)
     canvas = np.full((height, width, 3), 28, np.uint8)
     canvas[drawn] = np.clip(np.rint(values[drawn]), 0, 255).astype(np.uint8)
-    x0, size, _, y0, _, _ = dataset.GetGeoTransform()
+    x0, size, _, y0, _, _ = place_of_raster(dataset)[0] or NO_PLACE
     return canvas, width / (dataset.RasterXSize * size), (x0, y0)

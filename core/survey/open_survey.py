@@ -46,7 +46,7 @@ def open_survey(paths: Sequence[str | Path], trajectory: Trajectory, settings: S
     work, cluster = execution.work, cluster_for(execution, progress)
     executor: Executor = cluster or THREADS
     try:
-        files = without_copies(read_headers(paths, progress.warn), progress.warn)
+        files = without_copies(read_headers(paths, progress.warn, settings.crs or trajectory.crs), progress.warn)
         executor = executor_for(sum(file.count for file in files), execution, progress, cluster)
         read = files, trajectory, settings
         survey = _kept_survey(work, executor, read, progress) if work else _survey_of_run(executor, read, progress)

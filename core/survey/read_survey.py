@@ -11,7 +11,9 @@ import numpy as np
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from ..execution.phase import Executor
-from ..io.crs import check_projected, crs_note, parse_crs, unit_note
+from ..io.cloud_crs import check_projected, crs_note, unit_note
+from ..io.crs import crs_name
+from ..io.units import as_in_file
 from .adjustment.adjust import adjust_passes
 from .adjustment.beside import compare_carriageways
 from .clock_check import check_clock
@@ -88,6 +90,9 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     crs = check_projected(files, settings.crs, trajectory.crs)
     if note := crs_note(files, settings.crs, crs):
         progress.warn(note)
+    if not (units := as_in_file(crs)[1]).metric:
+        progress.info(f"The survey is in {crs_name(crs)}. It is worked on in metres (x and y times {units.across:.9g}, heights times "
+                      f"{units.up:.9g}), and the results are written in its own CRS.")
     trajectory = reproject_trajectory(trajectory, crs)
     refuse_standstill(trajectory)
     trajectory, time_note, has_time, week_ends = match_clocks(files, trajectory, settings, progress)
@@ -298,16 +303,21 @@ def _runs_through(low, high, x, y, reach):
 def _what_to_try(low, high, x, y, crs, trajectory_crs, reach):
     """The advice of the error message, where cloud and trajectory do not overlap."""
     if _runs_through(low, high, y, x, reach):
-        return "The trajectory's x and y are exchanged: name its columns the other way round, or swap them."
+        return ("In one of them x and y are exchanged: where the trajectory's x is its easting or it is in longitude and latitude, export the cloud "
+                "with the easting as x; otherwise name the trajectory's columns the other way round, or swap them.")
     if any(_runs_through(low * foot, high * foot, x, y, reach) for foot in FEET):
-        return "The cloud's coordinates are the trajectory's in feet: convert the cloud to metres, in a metric CRS, and run again."
+        if not as_in_file(crs)[1].metric:
+            return "The trajectory was taken to be in feet like the cloud, and seems to be in metres: give it its own CRS, as Import trajectory does."
+        return ("The cloud's coordinates are the trajectory's in feet: give each the CRS that it is in (the parameter CRS is that of clouds that "
+                "carry none), or convert the cloud to metres.")
     if any(_runs_through(low, high, x * foot, y * foot, reach) for foot in FEET):
-        return "The trajectory's coordinates are the cloud's in feet: convert the trajectory to metres, in a metric CRS, and run again."
+        return ("The trajectory's coordinates are the cloud's in feet: give it the CRS in feet that it is in, as Import trajectory does, or convert "
+                "it to metres.")
     if (np.abs(high[:2]) <= 180).all() and (np.abs(low[:2]) <= 180).all() and (high - low)[:2].max() < 1.0:
         return "The cloud's coordinates look like degrees: reproject it to a projected CRS, such as the UTM zone of the survey."
     if trajectory_crs:
-        return f"Both were taken to be in {parse_crs(crs).name}. Check that they belong to one survey, and the CRS of the trajectory."
-    cloud = f"The cloud is in {parse_crs(crs).name}, the trajectory" if crs else "The trajectory"
+        return f"Both were taken to be in {crs_name(crs)}. Check that they belong to one survey, and the CRS of the trajectory."
+    cloud = f"The cloud is in {crs_name(crs)}, the trajectory" if crs else "The trajectory"
     return f"{cloud} carries no CRS. Give it the one its coordinates are in (Import trajectory does), and check that both belong to one survey."
 
 

@@ -38,7 +38,7 @@ from qgis.PyQt.QtWidgets import (
 )
 
 from ...core.common.errors import RoadExtractionError
-from ...processing_provider.results.layer_tree import OUTPUT
+from ...processing_provider.results.road_maps import runs_of
 from ...processing_provider.texts import tr
 from .image_pairs import GAP, GREEN, RED, SIDE, ImagePairs, pair_text
 from .two_points_dialog import TwoPointsDialog
@@ -133,9 +133,11 @@ class PairsDialog(QDialog):
 
     def _prefer_intensity(self):
         """Choose the intensity image of the last road map, where there is one."""
-        for layer in QgsProject.instance().mapLayers().values():
-            if layer.customProperty(OUTPUT) == "INTENSITY_IMAGE" or "intensity" in Path(layer.source()).stem.lower():
-                self.intensity.setLayer(layer)
+        ours = (run.layer("INTENSITY_IMAGE") for run in runs_of(QgsProject.instance()))
+        called = (layer for layer in QgsProject.instance().mapLayers().values() if "intensity" in Path(layer.source()).stem.lower())
+        likely = next((layer for layer in (*ours, *called) if layer is not None), None)
+        if likely is not None:
+            self.intensity.setLayer(likely)
 
     # -- images -----------------------------------------------------------------------------------
 

@@ -8,6 +8,7 @@ from lanewright.core.common.schemas import DRIVING_LINES, LANES, ROAD_EDGES
 from lanewright.desktop.review.corrections_layer import corrections_layers
 from lanewright.desktop.review.doubt_dock import DoubtDock
 from lanewright.processing_provider.layers import QgisSource
+from lanewright.processing_provider.results.road_maps import road_maps
 from qgis.core import QgsGeometry, QgsPointXY, QgsProject, QgsRectangle
 from qgis.gui import QgsMapCanvas, QgsMessageBar
 from qgis.PyQt.QtWidgets import QMainWindow
@@ -40,7 +41,7 @@ def window(qgis_app):
 @pytest.fixture
 def at_first(window, tmp_path):
     window.ask_for_file = lambda: str(tmp_path / "corrections.gpkg")
-    window.go(QgsProject.instance().layerTreeRoot().findGroup("B12, 8:00"))
+    window.go(road_maps(QgsProject.instance())[0])
     return window
 
 
@@ -57,11 +58,11 @@ def test_it_says_where_it_is_and_what_is_doubtful_there_and_shows_it(at_first):
 
 
 def test_it_goes_forward_and_back_and_begins_again_after_the_last(at_first):
-    at_first.go(at_first.group)
+    at_first.go(at_first.road_map)
     assert at_first.place.station == 80
-    at_first.go(at_first.group, -1)
+    at_first.go(at_first.road_map, -1)
     assert at_first.place.station == 10
-    at_first.go(at_first.group, -1)
+    at_first.go(at_first.road_map, -1)
     assert at_first.place.station == 80
 
 
@@ -79,7 +80,7 @@ def test_delete_takes_one_piece_and_the_next_piece_waits_to_be_decided(at_first)
     assert [(action, target) for action, target, *_ in corrections()] == [("delete", "edge")]
     assert at_first.place.station == 10 and "→ delete" in at_first.list.item(0).text() and "→" not in at_first.list.item(1).text()
     assert [piece.target for piece in at_first.chosen] == ["lane"]
-    at_first.go(at_first.group)
+    at_first.go(at_first.road_map)
     assert len(at_first.chosen) == 1
 
 

@@ -4,9 +4,11 @@ import math
 
 import numpy as np
 import pytest
-from lanewright.desktop.layout.layout_dialog import LayoutDialog, credit_of, road_map_groups, shown_layers
+from lanewright.core.common.schemas import DRIVING_LINES, ROAD_EDGES
+from lanewright.desktop.layout.layout_dialog import LayoutDialog, credit_of, shown_layers
 from lanewright.desktop.layout.map_layout import MARGIN, SCALES, road_map_layout
 from lanewright.desktop.menu import unused_name
+from lanewright.processing_provider.results.road_maps import road_maps
 from qgis.core import (
     QgsCategorizedSymbolRenderer,
     QgsCoordinateReferenceSystem,
@@ -24,6 +26,7 @@ from qgis.core import (
 )
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtGui import QImage
+from road_map_layers import added
 
 
 def street(project, angle=0.0):
@@ -124,24 +127,16 @@ def test_a_layer_below_is_drawn_last_and_is_not_in_the_legend(project):
     assert len(item(layout, QgsLayoutItemLegend).model().rootGroup().findLayers()) == 1
 
 
-def test_only_groups_with_a_road_map_are_offered(project):
-    """The group of a georeferenced image, and one of the user's own, are none."""
-    for name, fields in (("Lanewright – A", "field=road:integer&field=station_m:double"), ("Lanewright – image", "field=point:string"),
-                         ("Mine", "field=road:integer&field=station_m:double")):
-        layer = QgsVectorLayer(f"LineString?crs=EPSG:32650&{fields}", "lines", "memory")
-        project.addMapLayer(layer, False)
-        project.layerTreeRoot().addGroup(name).addLayer(layer)
-    assert [group.name() for group in road_map_groups(project)] == ["Lanewright – A"]
+def lines_of_a_map(project):
+    return [added(project, output, schema, ("LINESTRING Z (0 0 100, 40 0 100)", dict(road=0)))
+            for output, schema in (("ROAD_EDGES", ROAD_EDGES), ("DRIVING_LINES", DRIVING_LINES))]
 
 
 def test_layers_that_are_switched_off_are_not_printed(project):
-    group = project.layerTreeRoot().addGroup("Lanewright – A")
-    for _ in range(2):
-        layer = QgsVectorLayer("LineString?crs=EPSG:32650&field=road:integer&field=station_m:double", "lines", "memory")
-        project.addMapLayer(layer, False)
-        group.addLayer(layer)
-    group.findLayers()[0].setItemVisibilityChecked(False)
-    assert shown_layers(group) == [group.findLayers()[1].layer()]
+    edges, lanes = lines_of_a_map(project)
+    project.layerTreeRoot().findLayer(lanes.id()).setItemVisibilityChecked(False)
+    road_map, = road_maps(project)
+    assert shown_layers(road_map, project) == [edges] and shown_layers(road_map, project, hidden=True) == [lanes, edges]
 
 
 def test_the_scale_bar_is_a_part_of_the_page(project):
@@ -170,16 +165,13 @@ def web_map(project, source="type=xyz&url=http://127.0.0.1:9/{z}/{x}/{y}.png&zma
 
 
 def test_the_web_map_that_is_seen_is_offered_first_with_its_credit(project):
-    group = project.layerTreeRoot().addGroup("Lanewright – A")
-    layer = QgsVectorLayer("LineString?crs=EPSG:32650&field=road:integer&field=station_m:double", "lines", "memory")
-    project.addMapLayer(layer, False)
-    group.addLayer(layer)
+    lines_of_a_map(project)
     hidden, seen = web_map(project, name="Hidden"), web_map(project)
     project.layerTreeRoot().findLayer(hidden.id()).setItemVisibilityChecked(False)
     metadata = seen.metadata()
     metadata.setRights(["© The survey office"])
     seen.setMetadata(metadata)
-    dialog = LayoutDialog(project, [group])
+    dialog = LayoutDialog(project, road_maps(project))
     assert [dialog.below.itemText(row) for row in range(1, dialog.below.count())] == ["Web map", "Hidden"]
     assert dialog.choice["below"] == [seen] and dialog.choice["credit"] == "© The survey office"
     dialog.below.setCurrentIndex(0)

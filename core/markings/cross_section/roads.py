@@ -110,7 +110,10 @@ def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_widt
     # names that decide the side are not made from the same evidence
     named = min(unnamed, key=lambda first: unnamed[first]) != best
     behind = np.inf if len(sides) == 1 or named else once[-best] - once[best]
-    used = tuple(first for first in sides if first == best or behind < SURE_SIDE)
+    opposite = np.inf if len(sides) == 1 or named else weights.left_hand * -best + sum(
+        (found[-best][number].unnamed_total - estimate.unnamed_total) * min(1.0, weights.repeats / max(float(estimate.candidates.length.sum()), 1.0))
+        for number, estimate in found[best].items())
+    used = tuple(first for first in sides if first == best or behind < SURE_SIDE or opposite < weights.doubt)
     width = usual_width if width_asked else _usual_width(known, found[best], usual_width)
     # the road's own width tells lanes better than that of a country
     if width != usual_width:
@@ -120,7 +123,8 @@ def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_widt
         if named:
             estimate = replace(estimate, unnamed=np.full(len(estimate.choice), -1))
         elif len(used) > 1:
-            estimate = replace(estimate, other=found[-best][number], behind=behind)
+            other = found[-best][number]
+            estimate = replace(estimate, other=other if behind < SURE_SIDE else None, behind=behind, opposite=other, opposite_behind=opposite)
         roads[number] = EstimatedRoad(lines[number], known[number][0], estimate)
     return RoadEstimates(roads, "right" if best < 0 else "left", behind >= SURE_SIDE, width, against)
 

@@ -47,7 +47,7 @@ class ParallelCloudReader:
         """
         for number, first, count in self.ranges(files, size):
             if _in_one_piece(files[number], size):
-                for points in read_blocks(files[number].path, size, self._layers):
+                for points in read_blocks(files[number].path, size, self._layers, files[number].units):
                     yield partial(_identity, points)
             else:
                 yield partial(self._load, files[number], first, count)
@@ -71,7 +71,7 @@ class ParallelCloudReader:
     def points(self, file: CloudHeader, first: int, count: int, size: int) -> Iterator[Any]:
         """Yield the points of a range, as of `ranges` with the same size, as laspy point records; the next may overwrite one."""
         if _in_one_piece(file, size):
-            yield from read_blocks(file.path, size, self._layers)
+            yield from read_blocks(file.path, size, self._layers, file.units)
         else:
             yield self._load(file, first, count)
 

@@ -18,7 +18,7 @@ from .accuracy_file import accuracy_across
 from .assigned_columns import place_of_roles
 from .columns import ROLES, find_header, stated_angle_unit
 from .drive_checks import HEADING_TOLERANCE, METRES_PER_DEGREE, angle_between, driven_course, geographic_unit
-from .reprojection import reproject_trajectory
+from .reprojection import lengths_in_metres, reproject_trajectory
 from .trajectory import Trajectory
 
 SBET_DOUBLES = 17  # time, lat, lon, height, 3 velocities, roll, pitch, heading, wander angle, 6 more
@@ -63,17 +63,18 @@ def read_trajectory(path: str | os.PathLike[str], crs: str = "", target_crs: str
 
 
 def trajectory_from_columns(columns: Mapping[str, Any], crs: str = "", angle_unit: str = "", label: str = "The trajectory",
-                            notes: Sequence[str] = ()) -> Trajectory:
+                            notes: Sequence[str] = (), stated_units: Sequence[tuple[str, str]] = ()) -> Trajectory:
     """A trajectory from columns of numbers, such as those of a layer.
 
     Parameters
     ----------
     columns : {role: (N,) array}; roles are time, x, y, z, roll, pitch, heading,
         and lon, lat instead of x, y. Without `time` the positions are in driving order
-    crs : WKT or "EPSG:n" of x, y; "" where unknown
+    crs : WKT or "EPSG:n" of x, y, in its units; "" where unknown
     angle_unit : "degrees" or "radians"; "" recognises it
     label : the source, for messages
     notes : of the Trajectory so far
+    stated_units : (role, "metres" or "feet") of x, y and z where their columns state a unit
 
     Returns
     -------
@@ -96,8 +97,9 @@ def trajectory_from_columns(columns: Mapping[str, Any], crs: str = "", angle_uni
     if time is None or not has_time:
         time = np.arange(len(x), dtype=float)
         remarks.append(f"{label} has no time; its positions are used in file order.")
+    crs, (x, y, z), stated_units = lengths_in_metres(crs, (x, y, columns["z"]), stated_units, label)
     roll, pitch, heading = _angles(columns, x, y, crs, angle_unit, remarks)
-    return Trajectory(time, x, y, columns["z"], roll, pitch, heading, crs=crs, has_time=has_time, notes=tuple(remarks))
+    return Trajectory(time, x, y, z, roll, pitch, heading, crs=crs, has_time=has_time, notes=tuple(remarks), stated_units=tuple(stated_units))
 
 
 def _read_text(path, crs, columns):
@@ -111,7 +113,6 @@ def _read_text(path, crs, columns):
         _check_complete(path, names or [f"column {k + 1}" for k in range(count)], place, table.first_row)
         stated = [units[place[role]] for role in ("heading", "roll", "pitch") if role in place and units[place[role]]]
         unit = stated[0] if stated else stated_angle_unit(table.preamble)
-        _refuse_feet(path, units, place, table.preamble)
     else:
         unit = stated_angle_unit(table.preamble)
         notes.append(f"{path.name} has no line of names; recognised by the numbers: "
@@ -124,7 +125,7 @@ def _read_text(path, crs, columns):
     if "lon" in place and units[place["lon"]] == "radians":
         found["lon"], found["lat"] = np.degrees(found["lon"]), np.degrees(found["lat"])
     crs = crs or _stated_crs(path, table.preamble, "x" in found, notes)
-    return trajectory_from_columns(found, crs, unit, path.name, notes)
+    return trajectory_from_columns(found, crs, unit, path.name, notes, _stated_lengths(units, place, table.preamble))
 
 
 def _stated_crs(path, preamble, projected, notes):
@@ -150,13 +151,11 @@ def _check_complete(path, names, place, first_row):
             "needed, since UTC differs from them by leap seconds: export the trajectory with GPS time in seconds.")
 
 
-def _refuse_feet(path, units, place, preamble):
-    """Refuse positions in feet."""
-    text = " ".join(preamble).lower()
-    in_feet = [role for role in ("x", "y", "z") if role in place and units[place[role]] == "feet"]
-    if in_feet or re.search(r"(position|height|distance|coordinates?)s? in (us )?(survey )?(feet|foot|ft)\b", text):
-        raise RoadExtractionError(
-            f"{path} gives positions in feet. Lanewright works in metres: export the trajectory in a metric CRS and run again.")
+def _stated_lengths(units, place, preamble):
+    """(role, "feet" or "metres") of the coordinates whose columns, or the lines above the table, state a unit."""
+    in_feet = re.search(r"(position|height|distance|coordinates?)s? in (us )?(survey )?(feet|foot|ft)\b", " ".join(preamble).lower())
+    stated = {role: units[place[role]] or ("feet" if in_feet else "") for role in ("x", "y", "z") if role in place}
+    return [(role, unit) for role, unit in stated.items() if unit in ("feet", "metres")]
 
 
 def _plane_coordinates(columns, time, crs, label, notes):
