@@ -79,15 +79,15 @@ def signed_by(path: str | os.PathLike[str]) -> Provenance | None:
     """The provenance that `sign_file` wrote into a GeoTIFF; None where a file is none, or not ours."""
     if Path(path).suffix.lower() not in (".tif", ".tiff") or not Path(path).is_file():
         return None
-    from osgeo import gdal
-
+    from ..core.common.errors import RoadExtractionError
     from ..core.io.gdal_errors import gdal_exceptions
+    from ..core.io.local_files import open_raster
 
-    with gdal_exceptions():
-        try:
-            tags = gdal.OpenEx(str(path), gdal.OF_RASTER).GetMetadata()
-        except RuntimeError:
-            return None
+    try:
+        with gdal_exceptions():
+            tags = open_raster(path).GetMetadata()
+    except RoadExtractionError:
+        return None
     texts = [tags.get(f"LANEWRIGHT_{name}") for name in ("ALGORITHM", "VERSION", "PARAMETERS", "TIME")]
     return _read(*texts) if all(texts) else None
 

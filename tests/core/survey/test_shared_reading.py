@@ -190,6 +190,29 @@ def test_a_work_folder_keeps_the_points_in_order_and_nothing_that_was_on_the_way
     assert heard.says("read by an earlier run")
 
 
+def zeros(path):
+    """A power failure: what was written last has not come to the disk."""
+    content = path.read_bytes()
+    path.write_bytes(content[:-64] + bytes(64))
+
+
+@pytest.mark.parametrize("pattern", ["survey-*/survey.plain", "survey-*/points-*.bin"])
+def test_points_that_a_power_failure_damaged_are_read_again(street, by_threads, tmp_path, pattern):
+    work = tmp_path / "work"
+    assert opened(street, work_folder=str(work)) == by_threads
+    zeros(next(work.glob(pattern)))
+    assert opened(street, work_folder=str(work)) == by_threads
+
+
+def test_of_a_reading_that_a_power_failure_ended_damaged_parts_are_not_used(street, by_threads, tmp_path):
+    work = tmp_path / "work"
+    with pytest.raises(Cancelled):
+        opened(street, progress=StopsReading(work, 3), work_folder=str(work))
+    for path in work.glob("*.parts/points/points-*.bin"):
+        zeros(path)
+    assert opened(street, work_folder=str(work)) == by_threads
+
+
 def test_another_run_that_was_quicker_is_believed(street, by_threads, tmp_path, monkeypatch):
     work = str(tmp_path / "work")
     own = opening.read_survey
