@@ -22,8 +22,7 @@ from .frame.build import build_frame
 from .frame.road import CORRIDOR
 from .frame.sigma_along import SigmaAlong
 from .las.copies import distinct_rows, may_overlap
-from .las.intensity_source import intensity_source_of
-from .las.luminance import check_coloured, without_intensity
+from .las.intensity_source import check_coloured, intensity_source_of, without_intensity
 from .las.parallel_reader import ParallelCloudReader
 from .las.reader import CloudHeader
 from .las.samples import coarse_coordinates, sample_files
