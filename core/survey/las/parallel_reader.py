@@ -14,7 +14,7 @@ from .reader import CloudHeader, layer_selection, open_cloud, read_blocks, read_
 
 MAX_BLOCKS_PER_CHUNK = 4   # larger chunks are not decoded as a whole: the points are read one block after the other
 MOST_LAYOUTS = 64          # files whose header and chunks are remembered
-SAMPLES = 5                # places in a file at which points are looked at
+SAMPLED_PLACES = 5                # places in a file at which points are looked at
 POINTS_PER_SAMPLE = 1000
 
 
@@ -115,13 +115,13 @@ class ParallelCloudReader:
         """Yield a few points at several places of a file, its first and last among them, as laspy point records; the next may overwrite one."""
         loads: list[Callable[[], Any]]
         if file.chunk:
-            starts = np.linspace(0, max(file.count - POINTS_PER_SAMPLE, 0), SAMPLES).astype(int)
+            starts = np.linspace(0, max(file.count - POINTS_PER_SAMPLE, 0), SAMPLED_PLACES).astype(int)
             starts[:-1] -= starts[:-1] % file.chunk   # a chunk is decoded from its start on
             loads = [partial(self._read_points, file, int(start), POINTS_PER_SAMPLE) for start in np.unique(starts)]
         else:
             header, chunks = self._layout(file)
             loads = [partial(self._read_chunks, file.path, header, *run) for run in _chunk_runs(file, 1, chunks)]
-            loads = [loads[k] for k in np.unique(np.linspace(0, len(loads) - 1, SAMPLES).astype(int))]
+            loads = [loads[k] for k in np.unique(np.linspace(0, len(loads) - 1, SAMPLED_PLACES).astype(int))]
         for load in loads:
             yield load()
 

@@ -10,10 +10,10 @@ import numpy as np
 from .parallel_reader import ParallelCloudReader
 from .reader import CloudHeader
 
-COARSE_STEP = 0.02        # m: coordinates in steps of more scatter by more than half a centimetre, which is as much as curbs and lines are told by
-LEAST_VALUES = 1000       # of a file, from which the step of its coordinates is told
-LEAST_GAPS = 10           # between different values of a coordinate: fewer may be chance
-SMALL_SHARE = 0.01        # of the gaps between different values may be less than the step, as where other points were added
+COARSE_COORDINATES = 0.02        # m: coordinates in steps of more scatter by more than half a centimetre, which is as much as curbs and lines are told by
+VALUES_FOR_STEP = 1000       # of a file, from which the step of its coordinates is told
+GAPS_FOR_STEP = 10           # between different values of a coordinate: fewer may be chance
+SHARE_OF_OTHER_GAPS = 0.01        # of the gaps between different values may be less than the step, as where other points were added
 
 
 @dataclass(frozen=True)
@@ -64,17 +64,17 @@ def _sample(points):
 def _step(values):
     """Between neighbouring ones of (N,) integers."""
     gaps = np.diff(np.unique(values))
-    return float(np.quantile(gaps, SMALL_SHARE, method="lower")) if len(values) >= LEAST_VALUES and len(gaps) >= LEAST_GAPS else 0.0
+    return float(np.quantile(gaps, SHARE_OF_OTHER_GAPS, method="lower")) if len(values) >= VALUES_FOR_STEP and len(gaps) >= GAPS_FOR_STEP else 0.0
 
 
 def coarse_coordinates(samples: Sequence[FileSample]) -> str:
     """What to tell of coordinates that lie in steps of centimetres and more; "" where they are fine."""
     for sample in samples:
         steps = sample.steps
-        if not (steps > COARSE_STEP).any():
+        if not (steps > COARSE_COORDINATES).any():
             continue
         k = int(np.argmax(steps))
-        listed = ", ".join(f"{steps[axis]:.3g} m in {name}" for axis, name in enumerate("xyz") if steps[axis] > COARSE_STEP)
+        listed = ", ".join(f"{steps[axis]:.3g} m in {name}" for axis, name in enumerate("xyz") if steps[axis] > COARSE_COORDINATES)
         ends = np.array([sample.file.minimum[k], sample.file.maximum[k]], np.float32)
         if np.isclose(steps[k], np.abs(np.spacing(ends)), atol=abs(sample.file.scales[k])).any():
             cause = f"at {abs(float(ends[0])):,.0f} m that is the step of numbers of 32 bits, through which some program passed them"
