@@ -10,7 +10,7 @@ import numpy as np
 from .parallel_reader import ParallelCloudReader
 from .reader import CloudHeader
 
-COARSE_COORDINATES = 0.02        # m: coordinates in steps of more scatter by more than half a centimetre, which is as much as curbs and lines are told by
+COARSE_COORDINATES = 0.02        # m: coordinates in steps of more scatter by more than half a centimetre, which is what curbs and lines are told by
 VALUES_FOR_STEP = 1000       # of a file, from which the step of its coordinates is told
 GAPS_FOR_STEP = 10           # between different values of a coordinate: fewer may be chance
 SHARE_OF_OTHER_GAPS = 0.01        # of the gaps between different values may be less than the step, as where other points were added
