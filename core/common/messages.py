@@ -17,8 +17,8 @@ BRACES = "{}"
 AMOUNT = re.compile(r"([\d.,]+ \S+ )([a-z]+)")  # 12 m measured
 PHRASE = 2  # blanks in what is put in: with as many it is a phrase, with fewer a number with its unit or a name
 BETWEEN_SENTENCES = re.compile(r"(?<=[.?…]) (?=[A-Z])")
-METRES = r"(-?\d+(?:\.\d+)?)"
-PLACE = re.compile(rf"road (\d+)(?:, (left|right) side)?, station {METRES}(?: to {METRES})? m")
+_METRES = r"(-?\d+(?:\.\d+)?)"
+_PLACE = re.compile(rf"road (\d+)(?:, (left|right) side)?, station {_METRES}(?: to {_METRES})? m")
 
 
 @dataclass(frozen=True)
@@ -30,15 +30,10 @@ class RoadPlace:
     end: float
     side: str = ""
 
-    def __str__(self) -> str:
-        side = f", {self.side} side" if self.side else ""
-        stretch = f"{self.start:.0f} to {self.end:.0f}" if self.end > self.start else f"{self.start:.1f}"
-        return f"road {self.road}{side}, station {stretch} m"
-
 
 def places_in(text: str) -> list[RoadPlace]:
-    """The places that a sentence names, such as "road 0, left side, station 90 to 120 m"."""
-    return [RoadPlace(int(road), float(start), float(end or start), side or "") for road, side, start, end in PLACE.findall(text)]
+    """The places that a sentence names, such as "road 0, left side, station 90 to 120 m" or "road 0, station 12.3 m"."""
+    return [RoadPlace(int(road), float(start), float(end or start), side or "") for road, side, start, end in _PLACE.findall(text)]
 
 
 class CoreMessages:

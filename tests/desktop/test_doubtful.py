@@ -2,9 +2,12 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from lanewright.core.common.messages import RoadPlace, places_in
 from lanewright.core.common.schemas import DRIVING_LINES, LANES, PASSES, ROAD_EDGES, ROAD_SURFACE
+from lanewright.core.corrections.corrections import Correction
+from lanewright.core.road.surface.point_spacing import ThinMargin, said_of_thin
 from lanewright.desktop.review.doubtful import doubts_of
 from lanewright.processing_provider.results.road_maps import road_maps
 from lanewright.processing_provider.results.runs import Run
@@ -65,9 +68,11 @@ def test_places_that_a_warning_names_are_places(project):
     assert places[0].reasons[0].startswith("Warning: The points are too few")
 
 
-def test_a_sentence_and_its_places_are_written_and_read_in_one_way():
-    places = [RoadPlace(0, 60.0, 80.0, "left"), RoadPlace(3, -12.5, -12.5)]
-    assert places_in("Look here: " + "; ".join(map(str, places)) + ".") == places
+def test_places_are_read_out_of_the_sentences_of_the_core():
+    margins = [ThinMargin(0, "left", -10.0, 80.0, 50.0)]
+    assert places_in(said_of_thin(margins)) == [RoadPlace(0, -10.0, 80.0, "left")]
+    moved = Correction(3, "move", "edge", np.zeros((1, 3)), 2, 12.34, -3.0)
+    assert places_in(moved.described()) == [RoadPlace(2, 12.3, 12.3)]
     assert places_in(WARNING) == [RoadPlace(0, 60.0, 80.0, "left"), RoadPlace(0, 65.0, 75.0, "right")]
     assert places_in("Along the road, 12 m from the station, nothing was found.") == []
 

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ...common.messages import RoadPlace
 from .ground_grid import GroundCells
 
 if TYPE_CHECKING:
@@ -116,7 +115,7 @@ def said_of_thin(margins: Sequence[ThinMargin]) -> str:
         return ""
     longest = sorted(margins, key=lambda margin: margin.start - margin.end)[:TOLD_STRETCHES]
     density = float(np.average([margin.density for margin in margins], weights=[margin.end - margin.start for margin in margins]))
-    where = "; ".join(str(RoadPlace(m.road, m.start, m.end, m.side)) for m in longest)
+    where = "; ".join(f"road {m.road}, {m.side} side, station {m.start:.0f} to {m.end:.0f} m" for m in longest)
     where += "; …" if len(margins) > len(longest) else ""
     return (f"The points are too few to find curbs along {total:.0f} m, where none was drawn ({where}): {density:.0f} per m² beside "
             f"the limit of the road surface, some {100 / np.sqrt(density):.0f} cm apart. A curb of 10 cm needs about "
