@@ -61,7 +61,7 @@ def _junctions(lanes):
     row_of = {name: k for k, name in enumerate(lanes.lane_id)}
     before = {name: k for k, names in enumerate(lanes.successors) if lanes.type[k] == "driving" for name in names}
     ways = [_Way(k, before[lanes.lane_id[k]], row_of[lanes.successors[k][0]]) for k in range(len(lanes))
-            if lanes.type[k] == "connector" and lanes.lane_id[k] in before and len(lanes.successors[k]) == 1]
+            if lanes.type[k] == "connector" and lanes.status[k] != "measured" and lanes.lane_id[k] in before and len(lanes.successors[k]) == 1]
     ways = [way for way in ways if lanes.type[way.exit] == "driving"]
     borders = [lanes.borders(way.row) for way in ways]
     areas = [shapely.make_valid(shapely.Polygon(np.concatenate([left, right[::-1]])[:, :2])) for left, right in borders]
