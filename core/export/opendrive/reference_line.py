@@ -23,6 +23,7 @@ SAME_DIRECTION = 1e-7   # rad
 PLAINER_REACH = 0.7     # of a spiral's length from which an arc or a line is taken in its place
 MOST_ANGLE = 2.0        # rad between the ends of an element and its chord
 NEWTON_ROUNDS = 8
+FIRST_STEP = 4          # places by which the search for the farthest one begins
 
 
 class _Pose(NamedTuple):
@@ -54,7 +55,22 @@ def fit_reference(points: np.ndarray, tolerance: float, ends: tuple[float | None
     ----------
     .. [1] Bertolazzi and Frego (2015), G1 fitting with clothoids, Mathematical Methods in the Applied Sciences 38(5), 881-897.
     """
-    return _Fit(np.asarray(points, float), tolerance, ends, turn_tolerance).run()
+    points = np.asarray(points, float)
+    fit, after = _Fit(points, tolerance, ends, turn_tolerance), None
+    if ends[1] is not None and abs(_wrapped(fit.natural_heading(fit.last) - ends[1])) > turn_tolerance:
+        # a road that turns at its end does so along the longest element that leads there, which is found from the end backwards
+        back = _Fit(points[::-1], tolerance, (ends[1] + np.pi, None), turn_tolerance)
+        last = back.farthest(0, back.pose(0), back.last)
+        if last is None:
+            return None
+        place, element, pose = last
+        if place < back.last:
+            pose = pose._replace(heading=pose.heading + np.pi)
+            points = np.concatenate([points[:back.last - place], [pose[:2]]])
+            fit = _Fit(points, tolerance, (ends[0], pose.heading), turn_tolerance)
+            after = PlanElement(0.0, *pose, element.length, element.kind, tuple(-value for value in element.values[::-1]))
+    elements = fit.run()
+    return PlanView(_in_order([*elements, after] if after is not None else elements)) if elements is not None else None
 
 
 class _Fit:
@@ -71,6 +87,7 @@ class _Fit:
         self.straight = self._straight_lines()
 
     def run(self):
+        """The elements in order, None where even short ones miss the points."""
         elements, here, pose = [], 0, self.pose(0)
         starts = sorted(self.straight)
         while here < self.last:
@@ -79,34 +96,36 @@ class _Fit:
                 found = end, *self._line(pose, end)
             else:
                 limit = next((k for k in starts if k > here), self.last)
-                found = self._farthest(here, pose, limit)
+                found = self.farthest(here, pose, limit)
             if found is None:
                 return None
             here, element, pose = found
             elements.append(element)
-        return PlanView(_in_order(elements))
+        return elements
 
-    def _farthest(self, here, pose, limit):
+    def farthest(self, here, pose, limit):
         """(place, element, pose at its end) of the element from a place that reaches farthest, None where none does."""
-        spiral = self._reach(self._spiral, here, pose, limit)
+        spiral = self._reach(here, pose, limit)
         if spiral is None:
             return None
         length = self.along[spiral[0]] - self.along[here]
         if spiral[0] < limit and length < LEAST_PIECE:
             return None
-        for plainer in (self._line, self._arc):
-            found = self._reach(plainer, here, pose, limit)
-            if found is not None and self.along[found[0]] - self.along[here] >= PLAINER_REACH * length and (
-                    found[0] == limit or self.along[found[0]] - self.along[here] >= LEAST_PIECE):
-                return found
+        nearer = int(np.searchsorted(self.along, self.along[here] + PLAINER_REACH * length))
+        for there in (spiral[0], nearer):
+            if there == limit or self.along[there] - self.along[here] >= LEAST_PIECE <= self.along[limit] - self.along[there]:
+                for plainer in (self._line, self._arc):
+                    found = self._good(plainer, here, pose, there)
+                    if found is not None:
+                        return there, *found
         return spiral
 
-    def _reach(self, make, here, pose, limit):
-        """The element of a kind that ends at the farthest place, by doubling steps and halving; no rest shorter than LEAST_PIECE is left."""
-        good, bad, step = None, limit + 1, 1
+    def _reach(self, here, pose, limit):
+        """The spiral that ends at the farthest place, by doubling steps and halving; no rest shorter than LEAST_PIECE is left."""
+        good, bad, step = None, limit + 1, FIRST_STEP
         tried = min(int(np.searchsorted(self.along, self.along[here] + LEAST_PIECE)), limit)
         while True:
-            found = self._good(make, here, pose, tried)
+            found = self._good(self._spiral, here, pose, tried)
             if found is None:
                 bad = tried
             else:
@@ -119,13 +138,13 @@ class _Fit:
             if bad > limit:
                 step *= 2
                 tried = min(tried + step, limit)
-            elif bad - good[0] > 1:
+            elif bad - good[0] > 1 + (good[0] - here) // 16:   # a sixteenth of an element is not worth the search
                 tried = (good[0] + bad) // 2
             else:
                 break
         if self.along[limit] - self.along[good[0]] < LEAST_PIECE:
             back = int(np.searchsorted(self.along, (self.along[here] + self.along[limit]) / 2))
-            found = self._good(make, here, pose, back) if here < back < limit else None
+            found = self._good(self._spiral, here, pose, back) if here < back < limit else None
             return (back, *found) if found is not None else good
         return good
 
@@ -186,13 +205,20 @@ class _Fit:
             self.known[k] = self._pose(k)
         return self.known[k]
 
-    def _pose(self, k):
+    def natural_heading(self, k):
+        """Radians of the points' own direction."""
+        return self._smoothed(k)[2]
+
+    def _smoothed(self, k):
         allowed = NOISE_TIMES * self.noise + EXACT_SHARE * self.tolerance
         for window in WINDOWS:
             pose, _, worst = self._local(k, window)
             if worst <= allowed:
                 break
-        x, y, heading = pose
+        return pose
+
+    def _pose(self, k):
+        x, y, heading = self._smoothed(k)
         if k in (0, self.last):
             x, y = self.points[k]
             given = self.ends[0 if k == 0 else 1]
