@@ -78,7 +78,8 @@ def _road(element, problems):
         raise RoadExtractionError(f"it is longer than {LONGEST_ROAD / 1000:g} km.")
     profile, lateral, lanes = element.find("elevationProfile"), element.find("lateralProfile"), element.find("lanes")
     road = MapRoad(
-        element.get("id"), element.number("length", sum(one.length for one in elements)), PlanView(tuple(elements)), element.get("name"), element.get("junction", "-1"),
+        element.get("id"), element.number("length", sum(one.length for one in elements)), PlanView(tuple(elements)), element.get("name"),
+        element.get("junction", "-1"),
         element.get("rule", "RHT"), _link(element.find("link", "predecessor")), _link(element.find("link", "successor")),
         _cubics(profile, "elevation"), _cubics(lateral, "superelevation"), _shape(lateral), _cubics(lanes, "laneOffset"))
     for child in lanes.all("laneSection") if lanes is not None else ():
