@@ -1,9 +1,8 @@
 """The plugin object QGIS holds: it registers the Processing provider and, in a window, the menu."""
 
-from qgis.core import Qgis, QgsApplication
+from qgis.core import QgsApplication
 
 from . import add_library_folders
-from .processing_provider.dependencies import how_to_install, missing_packages
 from .processing_provider.provider import LanewrightProvider
 from .processing_provider.task_threads import keep_task_threads
 from .processing_provider.texts import remove_translator
@@ -30,11 +29,10 @@ class LanewrightPlugin:
         if self.iface is None:
             return
         from .desktop.menu import Menu
+        from .desktop.missing import all_is_there
 
         self.menu = Menu(self.iface)
-        missing = missing_packages()
-        if missing:
-            self.iface.messageBar().pushMessage("Lanewright", missing, how_to_install(), level=Qgis.MessageLevel.Warning)
+        all_is_there(self.iface)
 
     def unload(self):
         if self.menu is not None:

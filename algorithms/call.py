@@ -14,13 +14,12 @@ from ..core.common.errors import RoadExtractionError
 from ..core.common.parallel import cancellation_scope
 from .algorithm import WARNINGS
 from .cloud_files import cloud_files
-from .destinations import UnfinishedFiles, check_suffix, check_writable, destination_path
-from .parameters import settings_class
+from .destinations import UnfinishedFiles, UnfinishedLayers, bring_back, check_suffix, check_writable, destination_path
+from .parameters import LayerOutput, settings_class
 from .progress import CountedWarnings
 from .provenance import provenance_now, sign_file
 from .texts import tr
-from .trajectory_source import read_trajectory_source, trajectory_path
-from .vector_source import read_features
+from .vector_source import in_file_units, read_features
 
 
 class Call:
@@ -36,7 +35,7 @@ class Call:
 
     def __init__(self, algorithm, parameters):
         self.algorithm, self.parameters = algorithm, parameters
-        self._files = UnfinishedFiles()
+        self._files, self._layer_files = UnfinishedFiles(), UnfinishedLayers()
         self._scratch = tempfile.TemporaryDirectory(prefix="lanewright-")
         self._results = {}
         self._layers = []
@@ -138,6 +137,8 @@ class Call:
 
     def trajectory(self, name="TRAJECTORY", crs="", heights_needed=True, columns=""):
         """The trajectory as the core takes it, from a layer, a table or a file; `crs` and the `columns` of a file overrule what it says."""
+        from .trajectory_source import read_trajectory_source, trajectory_path
+
         path = trajectory_path(self.parameters.get(name))
         if path is not None:
             from ..core.survey.trajectory.reader import read_trajectory
@@ -158,10 +159,12 @@ class Call:
 
         from ..core.io.crs import parse_crs, same_crs
         from ..core.io.gdal_errors import gdal_exceptions
+        from ..core.io.local_files import open_raster
+        from ..core.io.units import place_of_raster
 
         path = self.raster(name)
         with gdal_exceptions():
-            own = gdal.Open(path).GetProjection()
+            own = place_of_raster(open_raster(path))[1]
         if not own or not crs or same_crs(parse_crs(own), parse_crs(crs)):
             return path
         target = self.scratch_file(f"{name.lower()}.vrt")
@@ -199,6 +202,8 @@ class Call:
             if path is None:
                 continue
             check_suffix(path, spec, self.VECTOR_SUFFIXES)
+            if isinstance(spec, LayerOutput):
+                bring_back(path)
             read = self.read_as(value, path) or self._cloud_at(path)
             if read:
                 raise RoadExtractionError(
@@ -246,7 +251,7 @@ class Call:
     def layer(self, name, features):
         """Remember a vector result; it is written in `finish`, when nothing can fail any more."""
         if self.wants(name):
-            self._layers.append((name, features))
+            self._layers.append((name, in_file_units(features)))
 
     def values(self):
         """What the user gave or left at its default for every input, in types that JSON has."""
@@ -262,7 +267,7 @@ class Call:
 
     def in_users_names(self, text):
         """A message with the names of unfinished files replaced by those the user gave."""
-        return self._files.in_users_names(text)
+        return self._layer_files.in_users_names(self._files.in_users_names(text))
 
     def at_end(self, action):
         """Call a function when the run ends, however it does."""
@@ -271,6 +276,7 @@ class Call:
     def discard_unfinished(self):
         self._at_end.close()
         self._files.discard()
+        self._layer_files.discard()
         self._scratch.cleanup()
 
 

@@ -12,10 +12,12 @@ from pathlib import Path
 from typing import Any
 
 PROGRAM = "Lanewright"
+TIME = "%Y-%m-%dT%H:%M:%SZ"
 SYSTEM_AT, SOFTWARE_AT, NAME_BYTES = 26, 58, 32  # places of the two names in the header of a LAS file, and their length
 UNNAMED = ("", "OTHER", "laspy")                 # what writers put there when they have nothing to say
 SECRET = re.compile(r"(password|passwd|pwd|authcfg)\s*=\s*('[^']*'|\"[^\"]*\"|[^\s&;]+)", re.IGNORECASE)
 CREDENTIALS = re.compile(r"(://[^/\s:@]+):[^@/\s]+@")
+SENTENCE = re.compile(r"(\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ): " + PROGRAM + r" (\S+), (\w+)(?: ([A-Z_]+))?, ({.*})", re.DOTALL)
 
 
 @dataclass(frozen=True)
@@ -39,11 +41,19 @@ class Provenance:
 
     @property
     def time(self) -> str:
-        return self.ended.strftime("%Y-%m-%dT%H:%M:%SZ")
+        return self.ended.strftime(TIME)
 
-    def sentence(self) -> str:
-        """Program, algorithm, time and parameters in one line."""
-        return f"{self.time}: {self.program}, {self.algorithm}, {self.parameters}"
+    def sentence(self, output: str = "") -> str:
+        """Program, algorithm, time and parameters in one line; of a layer also which result of the algorithm it is, such as ROAD_EDGES."""
+        result = f"{self.algorithm} {output}" if output else self.algorithm
+        return f"{self.time}: {self.program}, {result}, {self.parameters}"
+
+    @classmethod
+    def of_sentence(cls, text: str) -> tuple[Provenance, str] | None:
+        """The run and the result that `sentence` told of; None where a text is no such sentence."""
+        found = SENTENCE.search(text)
+        provenance = _read(found[3], found[2], found[5], found[1]) if found else None
+        return None if found is None or provenance is None else (provenance, found[4] or "")
 
     def tags(self) -> dict[str, str]:
         """The same by name, for formats that keep pairs of names and texts."""
@@ -54,6 +64,32 @@ class Provenance:
 def provenance_now(algorithm: str, values: Mapping[str, Any]) -> Provenance:
     """The provenance of a run that has just ended."""
     return Provenance(algorithm, own_version(), values, datetime.now(timezone.utc))
+
+
+def _read(algorithm, version, parameters, time):
+    """A Provenance of its texts; None where they are cut off or somebody else's."""
+    try:
+        values, ended = json.loads(parameters), datetime.strptime(time, TIME).replace(tzinfo=timezone.utc)
+    except ValueError:
+        return None
+    return Provenance(algorithm, version, values, ended) if isinstance(values, dict) else None
+
+
+def signed_by(path: str | os.PathLike[str]) -> Provenance | None:
+    """The provenance that `sign_file` wrote into a GeoTIFF; None where a file is none, or not ours."""
+    if Path(path).suffix.lower() not in (".tif", ".tiff") or not Path(path).is_file():
+        return None
+    from ..core.common.errors import RoadExtractionError
+    from ..core.io.gdal_errors import gdal_exceptions
+    from ..core.io.local_files import open_raster
+
+    try:
+        with gdal_exceptions():
+            tags = open_raster(path).GetMetadata()
+    except RoadExtractionError:
+        return None
+    texts = [tags.get(f"LANEWRIGHT_{name}") for name in ("ALGORITHM", "VERSION", "PARAMETERS", "TIME")]
+    return _read(*texts) if all(texts) else None
 
 
 def own_version() -> str:

@@ -210,14 +210,14 @@ def bright_road_points_of(call, name, progress):
 
 def paint_of(call, name, progress):
     """A LAZ file of marking points; a road without paint gives one without points, and that is a result too."""
-    from ..core.survey.las.reader import open_cloud
+    from ..core.survey.las.reader import cloud_crs, open_cloud
     from ..core.survey.store.road_points import RoadPoints
 
     with open_cloud(call.cloud(name)) as reader:
         if reader.header.point_count:
             return road_points_of(call, name, progress)
-        crs, columns = reader.header.parse_crs(), set(reader.header.point_format.dimension_names)
-        points = RoadPoints.empty_like(origin=reader.header.offsets, crs="" if crs is None else crs.to_wkt())
+        columns = set(reader.header.point_format.dimension_names)
+        points = RoadPoints.empty_like(origin=reader.header.offsets, crs=cloud_crs(reader.header))
         points.has_corrected, points.has_cluster = "intensity_corrected" in columns, "cluster" in columns
         progress.warn(tr("{label} holds no points: no paint was found on this road.").format(label=call.label(name)))
         return points
@@ -227,14 +227,14 @@ def imported_trajectory(call, progress):
     """INPUT in TARGET_CRS (or the clouds' CRS) and, with POINT_CLOUDS given, on the clouds' clock."""
     from ..core.survey.las.reader import read_headers
     from ..core.survey.read_survey import match_clocks
-    from ..core.survey.trajectory.reprojection import reproject_trajectory
+    from ..core.survey.trajectory.reprojection import reproject_trajectory, taken_to_be_in
 
     trajectory = call.trajectory("INPUT", call.crs("INPUT_CRS"), columns=call.string("COLUMNS"))
     headers = read_headers(call.point_clouds()) if call.given("POINT_CLOUDS") else []
     target = call.crs("TARGET_CRS") or next((header.crs for header in headers if header.crs), "")
     if target and not trajectory.crs:
         progress.warn(tr("The trajectory says no CRS; its coordinates are taken to be those of the target CRS as they are."))
-        trajectory = replace(trajectory, crs=target)
+        trajectory = replace(taken_to_be_in(trajectory, target), crs=target)
     trajectory = reproject_trajectory(trajectory, target)
     if headers:
         trajectory, note, *_ = match_clocks(headers, trajectory, call.settings(SURVEY_SETTINGS), progress)

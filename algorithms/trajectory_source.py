@@ -2,14 +2,12 @@
 
 from pathlib import Path
 
-import numpy as np
-
 from ..core.common.errors import RoadExtractionError
 from .texts import tr
 from .vector_source import LINE, POINT, vertices_of
 
-# Files the core reads better than QGIS and GDAL: headers of any wording, none at all, binary SBET
-FILE_SUFFIXES = {".csv", ".txt", ".out", ".sbet", ".xyz", ".pos", ".traj"}
+# Files the core reads better than QGIS and GDAL: headers of any wording, none at all, binary SBET, logs of receivers, tracks
+FILE_SUFFIXES = {".csv", ".txt", ".out", ".sbet", ".xyz", ".pos", ".traj", ".tsv", ".dat", ".asc", ".log", ".nmea", ".pof", ".gpx", ".kml"}
 
 
 def trajectory_path(value):
@@ -25,74 +23,46 @@ def read_trajectory_source(source, crs="", heights_needed=True):
 
     Without heights, where none are needed, all are 0.
     """
-    from ..core.survey.trajectory.reader import trajectory_from_columns
+    import numpy as np
+
+    from ..core.survey.trajectory.reader import trajectory_from_columns, trajectory_from_rows
 
     if source.kind == LINE:
         columns = _line_columns(source)
-    elif source.kind == POINT:
-        columns = _point_columns(source)
-    else:
-        columns = _table_columns(source)
-    if not len(next(iter(columns.values()))):
+        _refuse_empty(source, len(columns["x"]))
+        if not heights_needed and not np.isfinite(columns.get("z", np.nan)).any():
+            columns["z"] = np.zeros(len(columns["x"]))
+        return trajectory_from_columns(columns, crs or source.stored_crs, label=source.label)
+    rows, places = [], [np.empty((0, 4))]
+    for wkb, values in source.stored_rows():
+        if source.kind == POINT:
+            if wkb is None:
+                continue
+            places.append(vertices_of(wkb)[:1])
+        rows.append(values)
+    _refuse_empty(source, len(rows))
+    given = {}
+    if source.kind == POINT:
+        given["x"], given["y"], z, _ = np.concatenate(places).T
+        if source.has_z:
+            given["z"] = z
+    return trajectory_from_rows(source.names, rows, given, crs or source.stored_crs, source.label, heights_needed)
+
+
+def _refuse_empty(source, count):
+    if not count:
         raise RoadExtractionError(
             tr("{label} has no rows. Choose the layer that holds the driven positions.").format(label=source.label)
         )
-    if not heights_needed and not np.isfinite(columns.get("z", np.nan)).any():
-        columns["z"] = np.zeros(len(next(iter(columns.values()))))
-    return trajectory_from_columns(columns, crs or source.crs, label=source.label)
 
 
 def _line_columns(source):
     """Vertices in drawing order; M, where there is one, is the time."""
-    rows = [vertices_of(wkb) for wkb, _ in source.rows(measures=True) if wkb is not None]
+    import numpy as np
+
+    rows = [vertices_of(wkb) for wkb, _ in source.stored_rows(measures=True) if wkb is not None]
     x, y, z, time = np.concatenate([np.empty((0, 4)), *rows]).T
     return {"x": x, "y": y, **({"z": z} if source.has_z else {}), **({"time": time} if source.has_m else {})}
-
-
-def _point_columns(source):
-    """Places from the geometry (the height too, where it has one), the rest from fields."""
-    names = _roles(source)
-    for role in ("x", "y", "lon", "lat", *(("z",) if source.has_z else ())):
-        names.pop(role, None)
-    index = {role: source.names.index(name) for role, name in names.items()}
-    places, fields = [np.empty((0, 4))], {role: [] for role in names}
-    for wkb, values in source.rows():
-        if wkb is None:
-            continue
-        places.append(vertices_of(wkb)[:1])
-        for role, k in index.items():
-            fields[role].append(_number(values[k]))
-    x, y, z, _ = np.concatenate(places).T
-    columns = {role: np.array(values, float) for role, values in fields.items()}
-    return {"x": x, "y": y, **columns, **({} if "z" in names else {"z": z})}
-
-
-def _table_columns(source):
-    names = _roles(source)
-    missing = [role for role, other in (("x", "lon"), ("y", "lat"), ("z", "z")) if role not in names and other not in names]
-    if missing:
-        raise RoadExtractionError(
-            tr("{label} is a table with the columns {names}; {missing} cannot be found among them. Name them time, x, y, z, "
-               "roll, pitch, heading.").format(
-                label=source.label, names=", ".join(source.names), missing=", ".join(missing))
-        )
-    index = [source.names.index(name) for name in names.values()]
-    rows = [[_number(values[k]) for k in index] for _, values in source.rows()]
-    return dict(zip(names, np.array(rows, float).reshape(-1, len(names)).T))
-
-
-def _roles(source):
-    """Role to field name, by the same words as for files."""
-    from ..core.survey.trajectory.columns import columns_by_role
-
-    return columns_by_role(source.names)
-
-
-def _number(value):
-    try:
-        return float(value)
-    except (TypeError, ValueError):
-        return np.nan
 
 
 def trajectory_features(trajectory, **further):
@@ -100,6 +70,7 @@ def trajectory_features(trajectory, **further):
 
     `further` columns, name to (N,) values, belong to an estimated trajectory.
     """
+    import numpy as np
     import shapely
 
     from ..core.common.features import Features
@@ -124,6 +95,8 @@ def trajectory_features(trajectory, **further):
 
 def _road_pass_station(trajectory):
     """(road, pass, station) of every row; None in stretches too short to be a pass."""
+    import numpy as np
+
     from ..core.survey.frame.build import build_frame
 
     found = [(None, None, None)] * len(trajectory)

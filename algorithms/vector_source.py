@@ -1,6 +1,6 @@
 """Vector layers as the algorithms read them, whatever program opens them."""
 
-import numpy as np
+from dataclasses import replace
 
 from ..core.common.errors import RoadExtractionError
 from ..core.common.features import Features
@@ -21,13 +21,13 @@ class VectorSource:
     names : list of str, its fields
     kind : POINT, LINE, POLYGON, TABLE or UNKNOWN
     has_z, has_m : whether its geometries carry heights and measures
-    crs : WKT, "" where unknown
+    stored_crs : WKT of what is stored, "" where unknown
     """
 
-    label, names, kind, has_z, has_m, crs = "", [], UNKNOWN, False, False, ""
+    label, names, kind, has_z, has_m, stored_crs = "", [], UNKNOWN, False, False, ""
 
-    def rows(self, measures=False, check_validity=True):
-        """(WKB or None where there is no geometry, list of values with None for NULL) of every row.
+    def stored_rows(self, measures=False, check_validity=True):
+        """(WKB or None where there is no geometry, list of values with None for NULL) of every row, as it is stored.
 
         Parameters
         ----------
@@ -35,6 +35,20 @@ class VectorSource:
         check_validity : refuse or skip invalid geometries where the program does so
         """
         raise NotImplementedError
+
+    @property
+    def crs(self):
+        """WKT, metric, of the CRS of `rows`; "" where unknown."""
+        from ..core.io.units import in_metres
+
+        return in_metres(self.stored_crs)[0]
+
+    def rows(self, measures=False, check_validity=True):
+        """The rows as `stored_rows` gives them, coordinates in metres."""
+        from ..core.io.units import in_metres
+
+        units, rows = in_metres(self.stored_crs)[1], self.stored_rows(measures, check_validity)
+        return rows if units.metric else ((wkb and scaled_wkb(wkb, units.across, units.up), values) for wkb, values in rows)
 
     def kind_label(self, kind):
         """A kind of geometry as the program calls it."""
@@ -133,6 +147,8 @@ def _measured_parts(wkb, label):
 
 def vertices_of(wkb):
     """(V, 4) x, y, z and m of all vertices of points or lines, in one part or many; NaN where there is no z or m."""
+    import numpy as np
+
     found = []
     _read_vertices(wkb, 0, found)
     return np.concatenate(found) if found else np.empty((0, 4))
@@ -140,6 +156,8 @@ def vertices_of(wkb):
 
 def _read_vertices(wkb, at, found):
     """Append the vertices of the geometry that begins at a byte; the byte where it ends."""
+    import numpy as np
+
     base, has_z, has_m = _type_of(wkb, at)
     at += 5
     if base in (4, 5):
@@ -164,6 +182,71 @@ def _read_vertices(wkb, at, found):
     return at + 8 * count * width
 
 
+def scaled_wkb(wkb, across, up):
+    """Little endian WKB with x and y times `across` and z times `up`; measures stay."""
+    data = bytearray(wkb)
+    _scale(data, 0, across, up)
+    return bytes(data)
+
+
+def _scale(data, at, across, up):
+    """Scale the vertices of the geometry that begins at a byte; the byte where it ends."""
+    import numpy as np
+
+    base, has_z, has_m = _type_of(data, at)
+    at += 5
+    if base > 3:
+        count, at = _uint(data, at), at + 4
+        for _ in range(count):
+            at = _scale(data, at, across, up)
+        return at
+    rings = 1
+    if base == 3:
+        rings, at = _uint(data, at), at + 4
+    width = 2 + has_z + has_m
+    for _ in range(rings):
+        count = 1
+        if base != 1:
+            count, at = _uint(data, at), at + 4
+        values = np.frombuffer(data, "<f8", count * width, at).reshape(count, width)
+        values[:, :2] *= across
+        if has_z:
+            values[:, 2] *= up
+        at += 8 * count * width
+    return at
+
+
+def in_file_units(features):
+    """A layer that is to be written, in the units of the survey's own CRS."""
+    from ..core.io.units import as_in_file
+
+    wkt, units = as_in_file(features.crs)
+    if units.metric:
+        return features
+    if features.geometry_type.endswith("ZM"):
+        return MeasuredInFileUnits(features, wkt, units)
+    import shapely
+
+    moved = [one if one is None else shapely.transform(one, units.in_file, include_z=True) for one in features.geometries]
+    on_map = [field.name for field in features.schema if field.on_map]
+    rows = [{**row, **{name: row[name] / units.across for name in on_map if row.get(name) is not None}} for row in features.rows]
+    return replace(features, geometries=moved, rows=rows, crs=wkt)
+
+
+class MeasuredInFileUnits:
+    """Lines with measures, (WKB, row) one after the other, in the units of a file; otherwise as a Features layer."""
+
+    def __init__(self, lines, crs, units):
+        self.geometry_type, self.schema, self.crs = lines.geometry_type, lines.schema, crs
+        self._lines, self._units = lines, units
+
+    def __len__(self):
+        return len(self._lines)
+
+    def __iter__(self):
+        return ((scaled_wkb(wkb, 1 / self._units.across, 1 / self._units.up), row) for wkb, row in self._lines)
+
+
 def _type_of(wkb, at):
     """(kind without dimensions, has Z, has M) of little endian WKB, ISO or extended."""
     number = _uint(wkb, at + 1)
@@ -173,6 +256,13 @@ def _type_of(wkb, at):
 
 def _uint(wkb, at):
     return int.from_bytes(wkb[at:at + 4], "little")
+
+
+def crs_to_write(features, driver):
+    """WKT of the CRS that a file of an OGR driver gets; "" for none, for which a GeoPackage has an entry that is not geographic."""
+    from ..core.io.crs import UNDEFINED_CARTESIAN
+
+    return features.crs or (UNDEFINED_CARTESIAN if driver == "GPKG" and features.geometry_type != "None" else "")
 
 
 def plain_value(value):

@@ -8,16 +8,14 @@ from qgis.PyQt.QtGui import QAction, QDesktopServices, QIcon
 from qgis.PyQt.QtWidgets import QMenu
 
 from ..processing_provider.reports import last_report
-from ..processing_provider.results.layer_tree import replaces_last_run, road_maps, set_replaces_last_run
+from ..processing_provider.results.layer_tree import replaces_last_run, set_replaces_last_run
+from ..processing_provider.results.road_maps import clouds_of, road_maps
 from ..processing_provider.results.run_table import run_table
 from ..processing_provider.texts import tr
-from .layout.layout_dialog import LayoutDialog, road_map_groups, shown_layers
+from .layout.layout_dialog import LayoutDialog, shown_layers
 from .layout.map_layout import road_map_layout
 from .manual import ManualWindow
-from .overlay.pairs_dialog import PairsDialog
-from .review.doubt_dock import DoubtDock
-from .review.section import inputs_of
-from .review.section_dock import SectionDock
+from .missing import all_is_there
 from .sample_run import SampleRun
 
 PROVIDER = "lanewright"
@@ -99,6 +97,8 @@ class Menu(QObject):
 
     def open_section(self):
         """The cross-section window, with the map waiting for a click; at the doubtful place that is looked at, its section."""
+        if not all_is_there(self.iface):
+            return
         self._section_dock().show()
         self.section.pick.click()
         if self.doubts is not None and self.doubts.isVisible() and self.doubts.place is not None:
@@ -106,37 +106,52 @@ class Menu(QObject):
 
     def _section_dock(self):
         if self.section is None:
+            from .review.section_dock import SectionDock
+
             self.section = SectionDock(self.iface)
         return self.section
 
     def open_pairs(self):
         """The window that places UAV images by paint; what was found in it is there again when it is opened again."""
+        if not all_is_there(self.iface):
+            return
         if self.pairs is None:
+            from .overlay.pairs_dialog import PairsDialog
+
             self.pairs = PairsDialog(self.iface)
         self.pairs.show()
         self.pairs.raise_()
 
     def next_doubt(self):
-        """Pan to the next doubtful place of the newest road map, and say what is doubtful there."""
-        groups = road_maps(QgsProject.instance().layerTreeRoot())
-        if not groups:
-            self.iface.messageBar().pushMessage(
-                "Lanewright", tr("There is no road map in this project yet: run Road map first."), level=Qgis.MessageLevel.Info)
+        """Pan to the next doubtful place of the road map of the active layer, else of the newest, and say what is doubtful there."""
+        maps = self._road_maps()
+        if not maps or not all_is_there(self.iface):
             return
         if self.doubts is None:
+            from .review.doubt_dock import DoubtDock
+
             self.doubts = DoubtDock(self.iface)
             self.doubts.shown.connect(self._show_section)
             self.doubts.run_wanted.connect(self.run_again)
-        self.doubts.go(groups[0])
+        self.doubts.go(maps[0])
+
+    def _road_maps(self):
+        """The road maps of the project; where there are none, a word on that."""
+        found = road_maps(QgsProject.instance(), self.iface.activeLayer())
+        if not found:
+            self.iface.messageBar().pushMessage("Lanewright", tr("There is no road map in this project yet: run Road map, or drop the GeoPackage of "
+                                                                 "one into the project."), level=Qgis.MessageLevel.Info)
+        return found
 
     def _show_section(self, place):
         """The section at a doubtful place, where its window is open."""
         if self.section is not None and self.section.isVisible():
             self.section.show_at(place.middle, place.crs)
 
-    def run_again(self, group, corrections):
+    def run_again(self, road_map, corrections):
         """Road map with all that a road map was made from, and the corrections made in it."""
-        self.open_road_map(**{**inputs_of(group), "CORRECTIONS": corrections.id()})
+        clouds, gone = clouds_of(road_map, QgsProject.instance())
+        self.open_road_map(**{**road_map.values, **({} if gone else {"POINT_CLOUDS": clouds}), "CORRECTIONS": corrections.id()})
 
     def open_report(self):
         """The report written last, in the user's web browser."""
@@ -183,20 +198,17 @@ class Menu(QObject):
     def open_layout(self):
         """A layout of a road map of the project, opened in QGIS's designer."""
         project = QgsProject.instance()
-        groups = road_map_groups(project)
-        if not groups:
-            self.iface.messageBar().pushMessage(
-                "Lanewright", tr("There is no road map in this project yet: run Road map first."), level=Qgis.MessageLevel.Info
-            )
+        maps = self._road_maps()
+        if not maps:
             return
-        self.layout_dialog = LayoutDialog(project, groups, self.iface.mainWindow())
+        self.layout_dialog = LayoutDialog(project, maps, self.iface.mainWindow())
         self.layout_dialog.accepted.connect(lambda: self.print_layout(project, **self.layout_dialog.choice))
         self.layout_dialog.open()
 
-    def print_layout(self, project, group, **chosen):
-        """The layout of one group's layers that are switched on (of all where none is), added to the project and shown."""
-        layers = shown_layers(group) or shown_layers(group, hidden=True)
-        layout = road_map_layout(project, layers, unused_name(project, group.name()), **chosen)
+    def print_layout(self, project, road_map, **chosen):
+        """The layout of one road map's layers that are switched on (of all where none is), added to the project and shown."""
+        layers = shown_layers(road_map, project) or shown_layers(road_map, project, hidden=True)
+        layout = road_map_layout(project, layers, unused_name(project, road_map.name), **chosen)
         project.layoutManager().addLayout(layout)
         designer = self.iface.openLayoutDesigner(layout)
         window = designer.window() if designer is not None else None

@@ -7,14 +7,18 @@ from qgis.core import (
     QgsExpression,
     QgsProcessingException,
     QgsProcessingOutputLayerDefinition,
+    QgsProperty,
     QgsRasterLayer,
+    QgsVariantUtils,
     QgsVectorFileWriter,
 )
 
 from ..algorithms.call import Call, existing_file
-from ..algorithms.destinations import ReplacedFiles, destination_path
+from ..algorithms.destinations import at_path, destination_path
 from ..algorithms.parameters import RasterOutput
+from ..algorithms.vector_source import crs_to_write
 from ..core.common.errors import RoadExtractionError
+from .database import add_tables
 from .embedded_style import embed_style
 from .input_files import close_database, input_files, layer_file, written_over
 from .layers import WKB_TYPES, QgisSource, crs_text, keeps_aliases, qgis_fields, write_features
@@ -73,13 +77,15 @@ class QgisCall(Call):
 
     def crs(self, name="CRS"):
         """WKT, or "" where none was chosen; refuses a CRS that QGIS does not know, which it would pass over."""
+        from ..core.io.units import in_metres
+
         crs = self.processing.parameterAsCrs(self.parameters, name, self.context)
         given = self.parameters.get(name)
         if isinstance(given, str) and given and not crs.isValid():
             raise RoadExtractionError(
                 tr("{label}: the CRS {given} is not known. Give it as EPSG:number.").format(label=self.label(name), given=given)
             )
-        return crs_text(crs)
+        return in_metres(crs_text(crs))[0]
 
     def raster(self, name):
         given = self.parameters.get(name)
@@ -153,39 +159,60 @@ class QgisCall(Call):
 
     def finish(self, numbers):
         """Write the layers, name the files, and return the dictionary QGIS wants."""
-        replaced = ReplacedFiles()
-        try:
-            for name, features in self._layers:
-                close_database(self.destination(name), self.context)
-                replaced.set_aside(self.destination(name))
-                self._results[name] = self._write(name, features)
-        except BaseException:
-            replaced.put_back()
-            raise
-        replaced.forget()
+        for name, features in self._layers:
+            self._results[name] = self._write(name, features)
+        for name, _ in self._layers:
+            close_database(self.destination(name), self.context)
         provenance = self.commit_files()
+        added_to = {destination_path(self.destination(name)).absolute() for name, _ in self._layers
+                    if self.destination(name).startswith("ogr:")}
+        self._layer_files.commit(added_to, add_tables)
         schemas = {name: features.schema for name, features in self._layers}
-        run = run_of(self.algorithm.ID, self.surveyed(), self.algorithm.WHOLE_MAP, self.context, self.values())
+        run = run_of(provenance, self.surveyed(), self.algorithm.WHOLE_MAP, self.context)
         for name, dest in self._results.items():
             note_report(dest)
             look = self.algorithm.LOOKS.get(name, name)
             embed_style(look, dest, self.label(name), schemas.get(name, ()), provenance)
-            style_on_load(look, dest, self.label(name), self.context, schemas.get(name, ()), run, provenance)
+            style_on_load(look, dest, self.label(name), self.context, schemas.get(name, ()), run)
         return {**self._results, **numbers}
 
     def values(self):
-        return {definition.name(): definition.valueAsJsonObject(self.parameters.get(definition.name(), definition.defaultValue()), self.context)
-                for definition in self.processing.parameterDefinitions() if not definition.isDestination()}
+        given = {definition: self.parameters.get(definition.name(), definition.defaultValue())
+                 for definition in self.processing.parameterDefinitions() if not definition.isDestination()}
+        # a batch gives a NULL of QGIS for what was left empty
+        return {definition.name(): None if QgsVariantUtils.isNull(value) else definition.valueAsJsonObject(value, self.context)
+                for definition, value in given.items()}
 
     def _write(self, name, features):
-        fields = qgis_fields(features.schema, with_aliases=keeps_aliases(destination_path(self.destination(name))))
-        crs = QgsCoordinateReferenceSystem.fromWkt(features.crs) if features.crs else QgsCoordinateReferenceSystem()
-        sink, dest = self.processing.parameterAsSink(
-            self.parameters, name, self.context, fields, WKB_TYPES[features.geometry_type], crs
-        )
+        """Write a layer, a file beside its destination at first; where it will be."""
+        value = self.destination(name)
+        path = destination_path(value)
+        fields = qgis_fields(features.schema, with_aliases=keeps_aliases(path))
+        wkt = crs_to_write(features, QgsVectorFileWriter.driverForExtension(path.suffix) if path else "")
+        crs = QgsCoordinateReferenceSystem.fromWkt(wkt) if wkt else QgsCoordinateReferenceSystem()
+        parameters, unfinished, file = self.parameters, "", ""
+        if path is not None:
+            unfinished = str(self._layer_files.begin(path))
+            beside, file = at_path(value, unfinished)
+            parameters = {**parameters, name: self._redirected(name, beside)}
+        sink, dest = self.processing.parameterAsSink(parameters, name, self.context, fields, WKB_TYPES[features.geometry_type], crs)
         if sink is None:
             raise QgsProcessingException(self.processing.invalidSinkError(self.parameters, name))
         write_features(sink, features, fields, self.feedback)
         # The file is complete only once the sink is gone
         del sink
-        return dest
+        if path is None:
+            return dest
+        final = dest.replace(unfinished, file)
+        self.context.setLayersToLoadOnCompletion(
+            {final if key == dest else key: details for key, details in self.context.layersToLoadOnCompletion().items()})
+        return final
+
+    def _redirected(self, name, value):
+        """What was given for an output, with another destination."""
+        given = self.parameters.get(name)
+        if not isinstance(given, QgsProcessingOutputLayerDefinition):
+            return value
+        redirected = QgsProcessingOutputLayerDefinition(given)
+        redirected.sink = QgsProperty.fromValue(value)
+        return redirected

@@ -16,42 +16,62 @@ from .texts import tr
 
 # What Python imports -> what it is called where one installs it
 NEEDED = {"numpy": "numpy", "scipy": "scipy", "laspy": "laspy", "lazrs": "lazrs", "shapely": "shapely",
-          "pyproj": "pyproj", "cv2": "opencv-python-headless", "jinja2": "jinja2", "markupsafe": "markupsafe"}
+          "pyproj": "pyproj", "cv2": "opencv-python-headless", "jinja2": "jinja2", "markupsafe": "markupsafe", "osgeo": "gdal"}
 # Debian's and Ubuntu's own, built for the numpy and PROJ that their QGIS uses
 DEBIAN = {"numpy": "python3-numpy", "scipy": "python3-scipy", "pyproj": "python3-pyproj", "cv2": "python3-opencv",
-          "jinja2": "python3-jinja2", "markupsafe": "python3-markupsafe"}
+          "jinja2": "python3-jinja2", "markupsafe": "python3-markupsafe", "osgeo": "python3-gdal"}
 OLDEST_SHAPELY = 2
 
 
 def missing_packages():
     """One sentence naming what is missing or too old, and the way on; "" when everything is there."""
+    said = missing_in_short()
+    return said and tr("{missing} To install: {command}{where}. Then start QGIS again.").format(
+        missing=said, command=install_command(), where=_where())
+
+
+def missing_in_short():
+    """What is missing or too old, in a few words; "" when everything is there."""
     names = _missing()
     if names:
-        return tr("Missing Python package(s): {names}. To install: {command} Then start QGIS again.").format(
-            names=", ".join(NEEDED[name] for name in names), command=_command(names)
-        )
-    shapely = import_module("shapely")
-    if int(shapely.__version__.split(".")[0]) < OLDEST_SHAPELY:
-        return tr("shapely {version} is installed and version 2 or newer is needed. To install: {command} "
-                  "Then start QGIS again.").format(version=shapely.__version__, command=_command(["shapely"]))
+        return tr("Missing Python package(s): {names}.").format(names=", ".join(NEEDED[name] for name in names))
+    version = _shapely_version()
+    if int(version.split(".")[0]) < OLDEST_SHAPELY:
+        return tr("shapely {version} is installed and version 2 or newer is needed.").format(version=version)
     return ""
 
 
 def how_to_install():
     """What is missing and the commands, for this system and this QGIS, as a text to copy from."""
-    names = _missing() or ["shapely"]
     return "\n\n".join((missing_packages(), tr(
         "The packages go into a folder of your QGIS profile that only Lanewright looks into, after everything QGIS brings. "
         "The QPIP plugin can install them as well: it reads the requirements.txt of Lanewright."
-    ), _command(names)))
+    ), install_command() + _where()))
 
 
 def _missing():
-    return [name for name in NEEDED if find_spec(name) is None]
+    return [name for name in NEEDED if not _is_there(name)]
 
 
-def _command(names):
-    """The command that installs the packages for the Python of this QGIS."""
+def _is_there(name):
+    """Whether Python finds a package; one that is hidden from it makes it raise."""
+    try:
+        return find_spec(name) is not None
+    except (ImportError, ValueError):
+        return False
+
+
+def _shapely_version():
+    """The version of shapely; "0" of one that is there and cannot be loaded."""
+    try:
+        return import_module("shapely").__version__
+    except (ImportError, AttributeError, OSError):
+        return "0"
+
+
+def install_command():
+    """The command that installs what is missing for the Python of this QGIS."""
+    names = _missing() or ["shapely"]
     if Path("/etc/debian_version").exists():
         system = [DEBIAN[name] for name in names if name in DEBIAN]
         own = [name for name in names if name not in DEBIAN]
@@ -60,8 +80,11 @@ def _command(names):
     commands = [f"sudo apt install {' '.join(system)}"] if system else []
     if own:
         commands.append(f'{_python()} -m pip install --no-deps --target "{library_folder()}" {" ".join(map(_wanted, own))}')
-    where = tr(" (in the OSGeo4W Shell)") if sys.platform == "win32" else tr(" (in a terminal)")
-    return " && ".join(commands) + where + "."
+    return " && ".join(commands)
+
+
+def _where():
+    return tr(" (in the OSGeo4W Shell)") if sys.platform == "win32" else tr(" (in a terminal)")
 
 
 def _wanted(name):

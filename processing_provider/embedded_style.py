@@ -2,17 +2,26 @@
 
 from pathlib import Path
 
-from qgis.core import QgsDataSourceUri, QgsRasterLayer, QgsVectorLayer
+from qgis.core import (
+    Qgis,
+    QgsApplication,
+    QgsDataSourceUri,
+    QgsProviderConnectionException,
+    QgsProviderRegistry,
+    QgsRasterLayer,
+    QgsVectorLayer,
+)
 
 from ..algorithms.destinations import destination_path
 from .results.origin import describe_origin
 from .styling import LOOKS, STYLES, apply_style
 
 NAME = "default"
+POSTGIS = "postgres://"
 
 
 def embed_style(name, dest, title, schema=(), provenance=None):
-    """Give the result `dest` of the output `name` its style, and the note of where it comes from: in the GeoPackage, or beside the raster.
+    """Give the result `dest` of the output `name` its style, and the note of where it comes from: in the database, or beside the raster.
 
     Other formats have no room for one. A style that cannot be kept costs a look, not the result, so
     nothing is raised.
@@ -20,12 +29,14 @@ def embed_style(name, dest, title, schema=(), provenance=None):
     path = destination_path(dest)
     look, _ = LOOKS.get(name, (None, None))
     qml = STYLES / f"{look}.qml"
+    if dest.startswith(POSTGIS):
+        _in_the_database(QgsVectorLayer(dest.removeprefix(POSTGIS), title, "postgres"), title, qml, schema, name, provenance)
     if path is None or look is None or not qml.exists():
         return
     if path.suffix.lower() in (".tif", ".tiff"):
         _beside_the_raster(path, qml)
     elif path.suffix.lower() == ".gpkg":
-        _in_the_package(_layer_uri(dest, path), title, qml, schema, name, provenance)
+        _in_the_database(QgsVectorLayer(_layer_uri(dest, path), title, "ogr"), title, qml, schema, name, provenance)
 
 
 def _beside_the_raster(path, qml):
@@ -35,12 +46,13 @@ def _beside_the_raster(path, qml):
         layer.saveNamedStyle(str(path.with_suffix(".qml")))  # QGIS looks for it under this name
 
 
-def _in_the_package(uri, title, qml, schema, output, provenance):
-    layer = QgsVectorLayer(uri, title, "ogr")
+def _in_the_database(layer, title, qml, schema, output, provenance):
     if not layer.isValid():
         return
-    if provenance is not None:
-        describe_origin(layer, provenance)
+    if provenance is not None and layer.providerType() == "postgres":
+        _comment_on_table(layer, provenance.sentence(output))
+    elif provenance is not None:
+        describe_origin(layer, provenance, output)
         layer.saveDefaultMetadata()  # into the package
     apply_style(layer, qml, schema, output)
     # The style of an earlier run into the same table would win
@@ -50,6 +62,17 @@ def _in_the_package(uri, title, qml, schema, output, provenance):
             layer.deleteStyleFromDatabase(ids[number])
     save = getattr(layer, "saveStyleToDatabaseV2", None) or layer.saveStyleToDatabase
     save(NAME, title, True, "")
+
+
+def _comment_on_table(layer, text):
+    """What PostgreSQL keeps of a table, and QGIS shows as its abstract. QGIS's own way makes a table of its own in every schema."""
+    place = QgsDataSourceUri(layer.source())
+    name, quoted = place.quotedTablename(), text.replace("'", "''")
+    try:
+        known = QgsProviderRegistry.instance().providerMetadata("postgres").createConnection(place.connectionInfo(True), {})
+        known.executeSql(f"COMMENT ON TABLE {name} IS '{quoted}'")
+    except QgsProviderConnectionException as problem:
+        QgsApplication.messageLog().logMessage(str(problem), "Lanewright", Qgis.MessageLevel.Warning, False)
 
 
 def _layer_uri(dest, path):

@@ -2,7 +2,6 @@
 
 from itertools import islice
 
-from osgeo import gdal
 from qgis.core import (
     Qgis,
     QgsFeature,
@@ -15,7 +14,7 @@ from qgis.core import (
     QgsVectorFileWriter,
     QgsWkbTypes,
 )
-from qgis.PyQt.QtCore import QMetaType
+from qgis.PyQt.QtCore import QDate, QDateTime, QMetaType, Qt, QTime
 
 from ..algorithms.vector_source import LINE, POINT, POLYGON, TABLE, UNKNOWN, VectorSource, plain_value
 from ..core.common.errors import Cancelled, RoadExtractionError
@@ -53,6 +52,8 @@ def keeps_aliases(path):
     Of every other (scratch layers with path None, CSV, Shapefile, a GeoPackage before GDAL 3.7) QGIS warns for
     each field, and of comments too wherever there is an alias.
     """
+    from osgeo import gdal
+
     driver = gdal.GetDriverByName(QgsVectorFileWriter.driverForExtension(path.suffix)) if path else None
     kept = (driver.GetMetadataItem("DMD_CREATION_FIELD_DEFN_FLAGS") or "").split() if driver else ()
     return "AlternativeName" in kept and "Comment" in kept
@@ -91,9 +92,9 @@ class QgisSource(VectorSource):
         kind = layer.wkbType()
         self.kind = KINDS[QgsWkbTypes.geometryType(kind)]
         self.has_z, self.has_m = QgsWkbTypes.hasZ(kind), QgsWkbTypes.hasM(kind)
-        self.crs = crs_text(layer.sourceCrs() if hasattr(layer, "sourceCrs") else layer.crs())
+        self.stored_crs = crs_text(layer.sourceCrs() if hasattr(layer, "sourceCrs") else layer.crs())
 
-    def rows(self, measures=False, check_validity=True):
+    def stored_rows(self, measures=False, check_validity=True):
         features = self.layer.getFeatures() if check_validity or not isinstance(self.layer, QgsProcessingFeatureSource) else \
             self.layer.getFeatures(QgsFeatureRequest(), Qgis.ProcessingFeatureSourceFlag.SkipGeometryValidityChecks)
         for feature in features:
@@ -116,7 +117,9 @@ def _wkb(geometry, measures):
 
 
 def _value(value):
-    return None if value is None or (hasattr(value, "isNull") and value.isNull()) else value
+    if value is None or (hasattr(value, "isNull") and value.isNull()):
+        return None
+    return value.toString(Qt.DateFormat.ISODateWithMs) if isinstance(value, (QDate, QTime, QDateTime)) else value
 
 
 def crs_text(crs):

@@ -16,7 +16,6 @@ from qgis.PyQt.QtXml import QDomDocument
 
 from .results.attributes import explain_attributes
 from .results.layer_tree import place_layer
-from .results.origin import describe_origin
 from .results.ready_styles import add_ready_styles
 from .results.runs import GROUP
 from .texts import tr
@@ -67,13 +66,13 @@ class Styler(QgsProcessingLayerPostProcessorInterface):
 
     _kept = []  # QGIS keeps no reference, and Python would collect it before the layer is loaded
 
-    def __init__(self, qml, schema, output="", run=None, provenance=None):
+    def __init__(self, qml, schema, output="", run=None):
         super().__init__()
-        self.qml, self.schema, self.output, self.run, self.provenance = qml, schema, output, run, provenance
+        self.qml, self.schema, self.output, self.run = qml, schema, output, run
 
     @classmethod
-    def make(cls, qml, schema=(), output="", run=None, provenance=None):
-        styler = cls(str(qml), schema, output, run, provenance)
+    def make(cls, qml, schema=(), output="", run=None):
+        styler = cls(str(qml), schema, output, run)
         cls._kept = cls._kept[-50:] + [styler]
         return styler
 
@@ -81,8 +80,6 @@ class Styler(QgsProcessingLayerPostProcessorInterface):
         apply_style(layer, self.qml, self.schema, self.output)
         if isinstance(layer, QgsVectorLayer):
             add_ready_styles(layer)
-        if self.provenance is not None:
-            describe_origin(layer, self.provenance)
         if self.run is not None and context.project() is not None:
             place_layer(layer, context.project(), self.output, self.run)
         layer.triggerRepaint()
@@ -124,7 +121,7 @@ def translate_legend(layer):
         layer.rendererChanged.emit()  # a layer tree that shows the layer already reads its legend again
 
 
-def style_on_load(name, dest, title, context, schema=(), run=None, provenance=None):
+def style_on_load(name, dest, title, context, schema=(), run=None):
     """Name, group and style the layer `dest` of a Run where QGIS is going to load it."""
     if not dest or not context.willLoadLayerOnCompletion(dest):
         return
@@ -133,4 +130,4 @@ def style_on_load(name, dest, title, context, schema=(), run=None, provenance=No
     look, order = LOOKS.get(name, (None, TABLES))
     details.layerSortKey = order
     qml = STYLES / f"{look}.qml"
-    details.setPostProcessor(Styler.make(qml, schema, name, run, provenance))
+    details.setPostProcessor(Styler.make(qml, schema, name, run))

@@ -78,7 +78,7 @@ def copc_file(folder, las):
 
 def points_files():
     """Control points as the georeferencer saves them, with and without a header, and as tables."""
-    from lanewright.core.overlay.control_points import read_control_points
+    from lanewright.core.overlay.control_point_file import read_control_points
     from lanewright.core.overlay.source_image import SourceImage
 
     def points(path):

@@ -86,13 +86,19 @@ def _read(source):
 
 def painted_of(call, name, progress):
     """(AssessedLayer of polygons and lines, whether it was a raster) of a vector or raster layer."""
+    import shapely
+
     from ...core.assess.inputs import AssessedLayer
     from ...core.assess.raster_polygons import polygons_of_raster
+    from ...core.io.units import in_metres
 
     source, path, crs = call.painted(name)
     if source is not None:
         return _read(source)[0], False
     polygons, values, _ = polygons_of_raster(path, progress)
+    crs, units = in_metres(crs)
+    if not units.metric:
+        polygons = [shapely.transform(polygon, units.in_metres) for polygon in polygons]
     several = len(set(values.tolist())) > 1
     return AssessedLayer(call.label(name), polygons, [{"class": str(value)} if several else {} for value in values], crs), True
 

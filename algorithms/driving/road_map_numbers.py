@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
 from ...core.common.features import Features
-from ...core.corrections.corrections import Corrections
 from ..texts import tr
+
+if TYPE_CHECKING:
+    from ...core.corrections.corrections import Corrections
 
 MEASURED = "measured"
 

@@ -26,8 +26,8 @@ def read_control_point_layer(source, image, crs=""):
             tr("{label}: the layer holds {kind} geometries. Control points are points, or a table.").format(
                 label=source.label, kind=source.kind_label(source.kind)))
     placed = source.kind == POINT
-    rows = [_row(wkb, values, placed) for wkb, values in source.rows()]
-    return control_points([*source.names, *["mapX", "mapY", "mapZ"] * placed], rows, image, source.label, source.crs or crs)
+    rows = [_row(wkb, values, placed) for wkb, values in source.stored_rows()]
+    return control_points([*source.names, *["mapX", "mapY", "mapZ"] * placed], rows, image, source.label, source.stored_crs or crs)
 
 
 def _row(wkb, values, placed):

@@ -74,8 +74,8 @@ class GeoreferenceImage(Algorithm):
         )
         self.add(FileSpec(
             "GCP_FILE", tr("Control points (file)"),
-            tr("In place of a layer: the .points file of QGIS's georeferencer, or a CSV with the columns pixel, line, easting, northing in any "
-               "order."),
+            tr("In place of a layer: the .points file of QGIS's georeferencer, the gcp_list.txt of OpenDroneMap, or a CSV with the columns pixel, "
+               "line, easting, northing in any order. Where rows name images, those of this image are used."),
             optional=True, file_filter=POINTS_FILTER,
         ))
         self.add(CrsSpec("CRS", tr("CRS of the control points"),
@@ -118,7 +118,7 @@ class GeoreferenceImage(Algorithm):
 def _control_points(call, image, progress):
     """From the layer or the file, whichever was given."""
     from ...core.io.crs import horizontal_part, parse_crs, same_crs
-    from ...core.overlay.control_points import read_control_points
+    from ...core.overlay.control_point_file import read_control_points
 
     given = call.crs()
     path = call.file("GCP_FILE")

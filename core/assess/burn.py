@@ -9,6 +9,8 @@ import numpy as np
 import shapely
 
 from ..io.gdal_errors import gdal_exceptions
+from ..io.local_files import open_raster
+from ..io.units import NO_PLACE, place_of_raster, place_raster
 
 BURN_TILE = 2048  # cells, side of a tile
 
@@ -66,8 +68,8 @@ class DataMask:
     def __init__(self, path: str) -> None:
         from osgeo import gdal
 
-        self._raster = gdal.Open(str(path))
-        self._inverse = gdal.InvGeoTransform(self._raster.GetGeoTransform())
+        self._raster = open_raster(path)
+        self._inverse = gdal.InvGeoTransform(place_of_raster(self._raster)[0] or NO_PLACE)
 
     @gdal_exceptions()
     def burn(self, bounds: tuple[float, float, float, float], shape: tuple[int, int]) -> np.ndarray:
@@ -129,7 +131,7 @@ class OutcomeRaster:
 
     @gdal_exceptions()
     def __init__(self, path: str, polygons: Iterable[Any], cell_size: float, crs: str, margin: int = 0) -> None:
-        from osgeo import gdal, osr
+        from osgeo import gdal
 
         tiles = np.array(covering_tiles(list(polygons), cell_size, margin) or [(0, 0)])
         (self._west, south), (east, self._north) = tiles.min(axis=0), tiles.max(axis=0)
@@ -137,11 +139,7 @@ class OutcomeRaster:
         self._raster = gdal.GetDriverByName("GTiff").Create(
             str(path), int(columns), int(rows), 1, gdal.GDT_Byte, ["TILED=YES", "COMPRESS=DEFLATE", "SPARSE_OK=TRUE", "BIGTIFF=IF_SAFER"])
         x0, _, _, y1 = tile_bounds((self._west, self._north), cell_size)
-        self._raster.SetGeoTransform((x0, cell_size, 0.0, y1, 0.0, -cell_size))
-        if crs:
-            reference = osr.SpatialReference()
-            reference.ImportFromWkt(crs)
-            self._raster.SetProjection(reference.ExportToWkt())
+        place_raster(self._raster, (x0, cell_size, 0.0, y1, 0.0, -cell_size), crs)
         band = self._raster.GetRasterBand(1)
         band.SetNoDataValue(0)
         band.SetDescription("1 hit, 2 missed, 3 false, 4 missed beside a hit, 5 false beside paint")

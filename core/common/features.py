@@ -18,12 +18,14 @@ class Field:
     type : int, float or str
     alias : the name spelled out, with its unit
     needed : False where a layer that is read may lack it, such as one that an earlier version wrote; its values are None then
+    on_map : True for a map coordinate, which is written in the units of the layer's CRS
     """
 
     name: str
     type: type
     alias: str = ""
     needed: bool = True
+    on_map: bool = False
 
 
 @dataclass
@@ -37,6 +39,7 @@ class Features:
     geometries : list of shapely geometries with Z in map coordinates (None in a table)
     rows : list of dict, field name to value; a missing name is NULL
     crs : WKT, "" where unknown
+    description : what made the layer, which a GeoPackage keeps
     """
 
     geometry_type: str
@@ -44,6 +47,7 @@ class Features:
     geometries: list[Any] = field(default_factory=list)
     rows: list[dict[str, Any]] = field(default_factory=list)
     crs: str = ""
+    description: str = ""
 
     def add(self, geometry: Any, **row: Any) -> None:
         """Append a feature with its field values."""

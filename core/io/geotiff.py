@@ -14,7 +14,9 @@ import numpy as np
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from .gdal_errors import gdal_exceptions
+from .local_files import open_raster, reading
 from .unfinished import unfinished_path
+from .units import place_of_raster, place_raster
 
 GEOTIFF_TILE = 512          # px, side of a tile of the file, and of the parts that are processed at a time
 NODATA = -9999.0            # value of pixels without data
@@ -58,14 +60,13 @@ class IntensityImage:
             If the file is missing, not a raster, rotated, has no square pixels, or is in degrees.
         """
         dataset = _open_raster(path)
-        transform = dataset.GetGeoTransform(can_return_null=True)
+        transform, crs = place_of_raster(dataset)
         if transform is None:
             raise RoadExtractionError(f"{path} is an image without georeferencing. Give the intensity image written by “Intensity image”.")
         if transform[2] or transform[4] or abs(transform[1] + transform[5]) > 1e-6 * abs(transform[1]) or transform[1] <= 0:
             raise RoadExtractionError(
                 f"{path} has pixels of {transform[1]:g} by {-transform[5]:g} map units or is rotated. "
                 "An intensity image has square pixels and north up: make it again with “Intensity image”.")
-        crs = dataset.GetProjection() or ""
         reference = dataset.GetSpatialRef()
         if reference is not None and reference.IsGeographic():
             raise RoadExtractionError(
@@ -93,7 +94,8 @@ class IntensityImage:
         if c0 >= c1 or r0 >= r1:
             return values
         band = self._dataset((c1 - c0) * (r1 - r0)).GetRasterBand(1)
-        data = np.frombuffer(band.ReadRaster(c0, r0, c1 - c0, r1 - r0, buf_type=_float32()), np.float32).reshape(r1 - r0, c1 - c0)
+        with reading(self.path):
+            data = np.frombuffer(band.ReadRaster(c0, r0, c1 - c0, r1 - r0, buf_type=_float32()), np.float32).reshape(r1 - r0, c1 - c0)
         nodata = band.GetNoDataValue()
         known = np.isfinite(data) if nodata is None else np.isfinite(data) & (data != np.float32(nodata))
         values[r0 - row:r1 - row, c0 - column:c1 - column] = np.where(known, data, np.nan)
@@ -181,15 +183,10 @@ def _float32():
 
 
 def _open_raster(path):
-    from osgeo import gdal
 
     if not Path(path).is_file():
         raise RoadExtractionError(f"There is no file {path}. Give the intensity image written by “Intensity image”.")
-    try:
-        return gdal.Open(str(path))
-    except RuntimeError as problem:
-        raise RoadExtractionError(
-            f"{path} cannot be read as an image ({problem}). Give the GeoTIFF written by “Intensity image”.") from problem
+    return open_raster(path, "Give the GeoTIFF written by “Intensity image”.")
 
 
 def filled_tiles(dataset: Any) -> list[tuple[int, int]]:
@@ -250,9 +247,7 @@ class NewGeoTiff:
         self._type = gdal.GDT_Byte if byte else gdal.GDT_Float32
         self._dtype = np.dtype(np.uint8 if byte else np.float32)
         self._dataset = gdal.GetDriverByName("GTiff").Create(str(path), width, height, 1, self._type, options)
-        self._dataset.SetGeoTransform(geotransform)
-        if crs:
-            self._dataset.SetProjection(crs)
+        place_raster(self._dataset, geotransform, crs)
         self._dataset.GetRasterBand(1).SetNoDataValue(nodata)
 
     @gdal_exceptions()

@@ -1,41 +1,47 @@
-"""Ground control points: places known in the image and on the map, from a table or a file.
+"""Ground control points: places known in the image and on the map, from a table.
 
-Files are `.points` of the QGIS georeferencer, in its old and new forms, and CSV with any delimiter. Columns are recognised
-by their names or, without names, by the size of the image. Pixel and line count from the outer corner of the
+Columns are recognised by their names or, without names, by the size of the image; where the rows name images, only those of
+the image in hand are used. Pixel and line count from the outer corner of the
 first pixel, whose middle is 0.5, 0.5. The QGIS georeferencer counts lines upward, as negative numbers; this
 is recognised and converted.
 """
 
 from __future__ import annotations
 
-import csv
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
+from itertools import product
+from pathlib import PurePath
 from typing import Any
 
 import numpy as np
 
 from ..common.errors import RoadExtractionError
+from ..io.units import in_metres
 from .source_image import SourceImage
 
-MAX_TABLE_BYTES = 20_000_000  # a table of control points has a few thousand bytes
+MAX_DEPARTURE = 0.1  # of the image's size: what a tilted camera over hilly ground differs from an image that is turned and scaled
 CONTROL, CHECK, DISABLED = "control", "check", "disabled"  # roles of a point
 _FALSE_TEXTS = ("0", "false", "no", "off", "n", "f")
 _CHECK_TEXTS = ("check", "checkpoint", "check point", "chk", "cp", "test")
 COLUMN_ALIASES = {
-    "pixel": "pixel pixelx sourcex srcx column col sample px imagex imgx imx xpixel ximage xsource u".split(),
-    "line": "line pixely sourcey srcy row py imagey imgy imy ypixel yimage ysource v".split(),
-    "easting": "mapx easting east e geox worldx utme xmap xworld rechtswert rw".split(),
-    "northing": "mapy northing north n geoy worldy utmn ymap yworld hochwert hw".split(),
-    "height": "mapz z h geoz height elevation elev altitude alt".split(),
-    "name": "name point id pointid label gcp gcpname gcpid number no nr".split(),
+    "pixel": "pixel pixelx sourcex srcx column col sample samp px imagex imgx imx xpixel ximage ximg xsource colpx u".split(),
+    "line": "line pixely sourcey srcy row py imagey imgy imy ypixel yimage yimg ysource rowpx v".split(),
+    "easting": "mapx easting east e geox worldx utme xmap xworld xgeo targetx xtarget rechtswert rw".split(),
+    "northing": "mapy northing north n geoy worldy utmn ymap yworld ygeo targety ytarget hochwert hw".split(),
+    "height": "mapz z h geoz zgeo worldz zworld height elevation elev altitude alt".split(),
+    "image": "image imagename imagefile imagefilename imageid imagelabel img filename file photo photoname camera cameralabel picture".split(),
+    "name": "name point id pointid pointname label gcp gcpname gcpid gcplabel marker markerlabel markername number no nr".split(),
     "enable": "enable enabled active use used accepted".split(),
     "role": "role type".split(),
     "check": "check ischeck checkpoint".split(),
 }
 REQUIRED_COLUMNS = ("pixel", "line", "easting", "northing")
+IMAGE_FILE = re.compile(r".\.(jpe?g|jp2|tiff?|png|dng|bmp|webp|img|vrt|raw|arw|cr2|nef)$", re.IGNORECASE)
+# Orders of numbers in tables without a header: QGIS, ENVI and ERDAS keep four, OpenDroneMap has the height between them
+NUMBER_ORDERS = (("pixel", "line", "easting", "northing"), ("easting", "northing", "pixel", "line"),
+                 ("easting", "northing", "height", "pixel", "line"), ("pixel", "line", "easting", "northing", "height"))
 
 
 @dataclass(frozen=True)
@@ -84,7 +90,7 @@ def control_points(names: Sequence[Any] | None, rows: Sequence[Sequence[Any]], i
     rows : of texts or numbers
     image : SourceImage that the points belong to
     what : name of the table for error messages
-    crs : WKT of the map coordinates, "" where unknown
+    crs : WKT of the map coordinates in the table, "" where unknown
 
     Returns
     -------
@@ -93,10 +99,11 @@ def control_points(names: Sequence[Any] | None, rows: Sequence[Sequence[Any]], i
     Raises
     ------
     RoadExtractionError
-        If a needed column is missing, no row has numbers, or the points lie outside the image.
+        If a needed column is missing, no row is of this image or has numbers, or the points lie outside the image.
     """
     if not rows:
         raise RoadExtractionError(f"{what} holds no control points. It needs a row for each: pixel, line, easting, northing.")
+    rows = _rows_of_image(rows, image, None if names is None else _columns_named(names).get("image"), what)
     where = guess_columns(rows, image, what) if names is None else find_columns(names, what)
     table = {key: _numbers(rows, where.get(key)) for key in ("pixel", "line", "easting", "northing", "height")}
     known = np.isfinite([table[key] for key in ("pixel", "line", "easting", "northing")]).all(axis=0)
@@ -107,87 +114,46 @@ def control_points(names: Sequence[Any] | None, rows: Sequence[Sequence[Any]], i
     usable = [row for row, good in zip(rows, known) if good]
     roles = _roles(usable, where)
     pixel, line = _in_the_image(table["pixel"][known], table["line"][known], roles != DISABLED, image, what)
-    easting, northing, height = (table[key][known] for key in ("easting", "northing", "height"))
+    crs, units = in_metres(crs)
+    easting, northing, height = units.in_metres(np.stack([table[key][known] for key in ("easting", "northing", "height")], axis=1)).T
     return ControlPoints(pixel, line, easting, northing, height, _names(usable, where.get("name")), roles, crs, int((~known).sum()))
 
 
-def read_control_points(path: str | Path, image: SourceImage, crs: str = "") -> ControlPoints:
-    """Control points of a file.
-
-    Parameters
-    ----------
-    path : `.points` of the QGIS georeferencer (with or without a line "#CRS: ..."; mapX, mapY, sourceX, sourceY or
-        pixelX, pixelY; commas or, from QGIS 1, tabs), or a CSV or TXT table
-    image : SourceImage that the points belong to
-    crs : WKT of the map coordinates where the file names none
-
-    Returns
-    -------
-    ControlPoints
-
-    Raises
-    ------
-    RoadExtractionError
-        If the file cannot be read, or its columns or its CRS are not recognised.
-    """
-    lines, named = _lines(path)
-    delimiter = _delimiter(lines)
-    rows = [[field.strip() for field in row] for row in csv.reader(lines, delimiter=delimiter, skipinitialspace=True)]
-    rows = [[field for field in row if field] if delimiter == " " else row for row in rows]
-    rows = [row for row in rows if any(row)]
-    header = None
-    if rows and sum(as_number(field) == as_number(field) for field in rows[0]) < 2:
-        header, rows = rows[0], rows[1:]
-    return control_points(header, rows, image, str(path), _wkt(named, path) or crs)
+def _plain(names):
+    """Names of columns in small letters alone, without what stands in brackets."""
+    return [re.sub(r"[^a-z]", "", re.sub(r"\(.*?\)|\[.*?\]", "", str(name).lower())) for name in names]
 
 
-def _lines(path):
-    """The lines of the table, and the CRS given above it."""
-    try:
-        if Path(path).stat().st_size > MAX_TABLE_BYTES:
-            raise RoadExtractionError(f"{path} is too large for a table of control points. Was the image given instead?")
-        data = Path(path).read_bytes()
-    except OSError as problem:
-        raise RoadExtractionError(
-            f"{path} cannot be read ({problem.strerror or problem}). Check the path and the rights to read it.") from problem
-    if b"\0" in data and data[:2] not in (b"\xff\xfe", b"\xfe\xff"):
-        raise RoadExtractionError(f"{path} is no text. Control points are read from a .points or CSV file.")
-    text = data.decode("utf-16" if data[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig", "replace")
-    named, lines = "", []
-    for line in text.splitlines():
-        bare = line.strip()
-        if bare.startswith("#"):
-            words = bare.lstrip("# ")
-            if words.lower().startswith("crs:"):
-                named = words[4:].strip()
-                continue
-            # A header may be written as a comment
-            if _delimiter([words]) == " " or not any(word.strip().lower().replace("_", "") in COLUMN_ALIASES["easting"] + COLUMN_ALIASES["pixel"]
-                                                     for word in words.split(_delimiter([words]))):
-                continue
-            bare = words
-        if bare:
-            lines.append(bare)
-    return lines, named
+def _columns_named(names):
+    """{meaning: column} by the names alone; the first alias that a table has is used."""
+    plain = _plain(names)
+    return {key: plain.index(alias) for key, aliases in reversed(COLUMN_ALIASES.items()) for alias in reversed(aliases) if alias in plain}
 
 
-def _delimiter(lines):
-    """Delimiter of the first line; a comma beside semicolons or tabs is a decimal comma."""
-    first = next(iter(lines), "")
-    return next((mark for mark in (";", "\t", ",") if mark in first), " ")
+def names_columns(fields: Sequence[str], least: int) -> bool:
+    """Whether so many fields of a line are names of columns, which tells a header from other lines."""
+    return len(set(_columns_named(fields)) - {"name", "role", "check", "enable", "image"}) >= least
 
 
-def _wkt(named, path):
-    """WKT of the CRS that a file names, "" where it names none."""
-    from ..io.crs import parse_crs
-
-    if not named:
-        return ""
-    try:
-        return parse_crs(named).to_wkt()
-    except RoadExtractionError as problem:
-        raise RoadExtractionError(f"{path} names a CRS that is not understood: {named[:60]!r}. "
-                                  "Correct its first line (#CRS: EPSG:number) or remove it and give the CRS.") from problem
+def _rows_of_image(rows, image, column, what):
+    """The rows that belong to the image in hand; all where no column names images."""
+    text = lambda row, k: str(row[k]).strip() if k < len(row) and row[k] is not None else ""
+    # a name of a column is a hint; only names of files say that rows belong to several images
+    widest = max(len(row) for row in rows)
+    columns = range(widest) if column is None else [column]
+    column = next((k for k in columns if 2 * sum(bool(IMAGE_FILE.search(text(row, k))) for row in rows) > len(rows)), None)
+    if column is None:
+        return rows
+    own = PurePath(image.path)
+    seen = [PurePath(text(row, column).replace("\\", "/")) for row in rows]
+    for same in (lambda path: path.name.lower() == own.name.lower(), lambda path: path.stem.lower() == own.stem.lower()):
+        kept = [row for row, path in zip(rows, seen) if same(path)]
+        if kept:
+            return kept
+    others = sorted({path.name for path in seen})
+    raise RoadExtractionError(
+        f"{what} has no control point of {own.name}: its rows are of {', '.join(others[:3])}{' and others' if len(others) > 3 else ''}. "
+        "Give the image under its own name, or the table of this image.")
 
 
 def find_columns(names: Sequence[Any], what: str) -> dict[str, int]:
@@ -209,12 +175,8 @@ def find_columns(names: Sequence[Any], what: str) -> dict[str, int]:
     RoadExtractionError
         If pixel, line, easting or northing has no column.
     """
-    plain = [re.sub(r"[^a-z]", "", re.sub(r"\(.*?\)|\[.*?\]", "", str(name).lower())) for name in names]
-    found = {}
-    for key, aliases in COLUMN_ALIASES.items():
-        places = [plain.index(alias) for alias in aliases if alias in plain]
-        if places:
-            found[key] = places[0]
+    found = _columns_named(names)
+    plain = _plain(names)
     for bare, keys in (("x", ("easting", "pixel")), ("y", ("northing", "line"))):
         free = [key for key in keys if key not in found]
         if bare in plain and free:
@@ -247,22 +209,45 @@ def guess_columns(rows: Sequence[Sequence[Any]], image: SourceImage, what: str) 
     """
     width = min(len(row) for row in rows)
     values = np.array([[as_number(field) for field in row[:width]] for row in rows])
+    texts = [{str(row[k]).strip() for row in rows} for k in range(width)]
+    words = [k for k in range(width) if not np.isfinite(values[:, k]).any() and not texts[k] <= {"nan", "NaN", "-", ""}]
+    numeric = [k for k in range(width) if k not in words]
+    files = [k for k in words if any(map(IMAGE_FILE.search, texts[k]))]
+    labels = [k for k in words if k not in files] or [k + 1 for k in files if k + 1 not in numeric and any(len(row) > k + 1 for row in rows)]
     fits = []
-    for start in (0, 1):  # a point's name may come first
-        if start + 4 > width or not np.isfinite(values[:, start:start + 4]).all():
+    for start, order in product((0, 1), NUMBER_ORDERS):  # a point's number may come first
+        columns = dict(zip(order, numeric[start:]))
+        if len(columns) < len(order) or not np.isfinite(values[:, [columns[key] for key in REQUIRED_COLUMNS]]).all():
             continue
-        first, second = values[:, start:start + 2], values[:, start + 2:start + 4]
-        for order, pair, other in ((("pixel", "line", "easting", "northing"), first, second),
-                                   (("easting", "northing", "pixel", "line"), second, first)):
-            inside, elsewhere = (image.holds(p[:, 0], np.abs(p[:, 1]), 1.0).all() for p in (pair, other))
-            if inside and not elsewhere:
-                fits.append({**{key: start + k for k, key in enumerate(order)}, **({"name": 0} if start else {}),
-                             **_enable(values, start + 4)})
+        inside = image.holds(values[:, columns["pixel"]], np.abs(values[:, columns["line"]]), 1.0).all()
+        elsewhere = not image.holds(values[:, columns["easting"]], np.abs(values[:, columns["northing"]]), 1.0).all()
+        if inside and elsewhere:
+            last = max(columns.values())
+            further = {**({"name": labels[0]} if labels else {"name": numeric[0]} if start else {}),
+                       **(_enable(values, last + 1) if last + 1 in numeric else {})}
+            fits.append({**columns, **further})
+    if len(fits) > 1:
+        fits = _that_lies_like_an_image(fits, values, image)
     if len(fits) != 1:
         raise RoadExtractionError(
             f"The columns of {what} have no names, and their numbers do not show which are pixel and line in an image of "
             f"{image.width} by {image.height}. Put a line above them: pixel,line,easting,northing.")
     return fits[0]
+
+
+def _that_lies_like_an_image(fits, values, image):
+    """Of several readings of a table those that an image turned, scaled and sheared explains, the one with heights where they agree."""
+    away = []
+    for fit in fits:
+        pixel, line, easting, northing = (values[:, fit[key]] for key in REQUIRED_COLUMNS)
+        ground = np.c_[np.ones(len(values)), easting - easting.mean(), northing - northing.mean()]
+        place = np.c_[pixel, line]
+        away.append(np.sqrt(np.mean((place - ground @ np.linalg.lstsq(ground, place, rcond=None)[0])**2)))
+    near = [fit for fit, distance in zip(fits, away) if distance <= min(away) + 1e-6]
+    # three points lie like an image in any order of the columns
+    clear = len(values) > 3 and min(away) < MAX_DEPARTURE * max(image.width, image.height)
+    alike = all(fit[key] == near[0][key] for fit in near for key in REQUIRED_COLUMNS)
+    return [max(near, key=len)] if alike and (clear or len(near) == len(fits)) else near if clear else fits
 
 
 def _enable(values, column):

@@ -9,8 +9,8 @@ import numpy as np
 
 from ..common.errors import RoadExtractionError
 from ..io.gdal_errors import gdal_exceptions
-
-_NO_GEOTRANSFORM = (0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
+from ..io.local_files import open_raster
+from ..io.units import NO_PLACE, place_of_raster
 
 
 @dataclass(frozen=True)
@@ -101,19 +101,16 @@ def open_image(path: str | Path) -> SourceImage:
 
     if not Path(path).is_file():
         raise RoadExtractionError(f"There is no file {path}. Give the image itself (TIFF, JPEG or PNG).")
-    try:
-        dataset = gdal.Open(str(path))
-    except RuntimeError as problem:
-        raise RoadExtractionError(f"{path} cannot be read as an image ({problem}). Give a TIFF, JPEG or PNG.") from problem
+    dataset = open_raster(path)
     if dataset.RasterCount == 0:
         raise RoadExtractionError(f"{path} is a container of several images. Give one of them, or export it as a TIFF.")
-    transform = dataset.GetGeoTransform(can_return_null=True)
-    placed = transform is not None and tuple(transform) != _NO_GEOTRANSFORM
+    transform, crs = place_of_raster(dataset)
+    transform = None if transform == NO_PLACE else transform
     first, last = dataset.GetRasterBand(1), dataset.GetRasterBand(dataset.RasterCount)
     kind = ("byte" if first.DataType == gdal.GDT_Byte else
             "real" if first.DataType in (gdal.GDT_Float32, gdal.GDT_Float64) else "integer")
     return SourceImage(
-        str(path), dataset.RasterXSize, dataset.RasterYSize, tuple(transform) if placed else None,
-        dataset.GetProjection() or "", dataset.RasterCount,
+        str(path), dataset.RasterXSize, dataset.RasterYSize, transform,
+        crs, dataset.RasterCount,
         dataset.RasterCount > 1 and last.GetColorInterpretation() == gdal.GCI_AlphaBand,
         first.GetColorTable() is not None and dataset.RasterCount == 1, kind, first.GetNoDataValue())

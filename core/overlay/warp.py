@@ -12,7 +12,9 @@ from ..common.errors import Cancelled, RoadExtractionError
 from ..common.progress import Progress
 from ..io.gdal_errors import gdal_exceptions
 from ..io.geotiff import GEOTIFF_TILE
+from ..io.local_files import open_raster
 from ..io.unfinished import unfinished_path
+from ..io.units import as_in_file
 from .georeference import Georeferencing, node_grid, own_pixel_size
 
 GDAL_CACHE = 128_000_000  # bytes: a larger cache delays the writing of blocks to the end of the work
@@ -166,7 +168,7 @@ def _tiled(gdal, image, path, callback):
 
     A rotated image is read across its lines, and each such read would decompress the file from its beginning.
     """
-    dataset = gdal.Open(image.path)
+    dataset = open_raster(image.path)
     band = dataset.GetRasterBand(1)
     size = image.width * image.height * image.bands * gdal.GetDataTypeSize(band.DataType) // 8
     if size < GDAL_CACHE // 2 or band.GetBlockSize()[0] < image.width:
@@ -189,10 +191,11 @@ def _with_point_grid(gdal, found, path):
         pixel, line = node_grid((x0 - reach, y0 - reach, x1 + reach, y1 + reach), _NODES)
         if (np.linalg.det(polynomial.jacobian(pixel, line)) < 0).all():
             break
-    easting, northing = polynomial.to_map(pixel, line)
+    wkt, units = as_in_file(found.points.crs)
+    easting, northing = units.in_file(np.column_stack(polynomial.to_map(pixel, line))).T
     points = [gdal.GCP(*map(float, place)) for place in zip(easting, northing, np.zeros(len(pixel)), pixel, line)]
     more = {"rgbExpand": "rgb"} if found.image.palette else {}
-    return gdal.Translate("", path, format="VRT", GCPs=points, outputSRS=found.points.crs or None, **more)
+    return gdal.Translate("", path, format="VRT", GCPs=points, outputSRS=wkt or None, **more)
 
 
 def _method(found):
@@ -205,14 +208,14 @@ def _departure(gdal, source, found):
     pixel, line = node_grid(area.bounds, 33)
     inside = shapely.contains_xy(area, pixel, line)
     pixel, line = pixel[inside], line[inside]
-    easting, northing = found.fit.polynomial.to_map(pixel, line)
+    easting, northing = as_in_file(found.points.crs)[1].in_file(np.column_stack(found.fit.polynomial.to_map(pixel, line))).T
     transformer = gdal.Transformer(source, None, [f"METHOD={_method(found)}"] + ["MAX_GCP_ORDER=1"] * (_method(found) != "GCP_TPS"))
     places, _ = transformer.TransformPoints(1, np.column_stack([easting, northing, np.zeros(len(pixel))]).tolist())
     return float(np.hypot(*(np.array(places)[:, :2] - np.column_stack([pixel, line])).T).max())
 
 
 def _warp_options(found, bounds):
-    image, size = found.image, found.pixel_size
+    image, size, (wkt, units) = found.image, found.pixel_size, as_in_file(found.points.crs)
     transform = {"tps": True} if _method(found) == "GCP_TPS" else {"polynomialOrder": 1}
     ends = {}
     if not image.has_alpha:
@@ -228,8 +231,9 @@ def _warp_options(found, bounds):
     if found.cut:
         options.append(f"CUTLINE={shapely.to_wkt(drawn_area(found), rounding_precision=3)}")
     return {
-        "format": "VRT", "outputBounds": bounds, "xRes": size, "yRes": size, "resampleAlg": _ALGORITHMS[found.settings.resampling],
-        "dstSRS": found.points.crs or None, "errorThreshold": _APPROXIMATION, "warpOptions": options, **transform, **ends}
+        "format": "VRT", "outputBounds": units.geotransform(bounds, to_file=True), "xRes": size / units.across, "yRes": size / units.across,
+        "resampleAlg": _ALGORITHMS[found.settings.resampling],
+        "dstSRS": wkt or None, "errorThreshold": _APPROXIMATION, "warpOptions": options, **transform, **ends}
 
 
 def _file_options(image):

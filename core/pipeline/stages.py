@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..common.memory import trim_heap
-from ..io.crs import check_projected
+from ..io.cloud_crs import check_projected
 from ..survey.frame.road import CORRIDOR
 from ..survey.las.reader import read_headers
 from ..survey.trajectory.reprojection import reproject_trajectory
@@ -55,7 +55,7 @@ class Extent:
         RoadExtractionError
             If a header cannot be read or the CRS is unsuitable, as in `open_survey`.
         """
-        files = read_headers(paths)
+        files = read_headers(paths, given=crs or trajectory.crs)
         trajectory = reproject_trajectory(trajectory, check_projected(files, crs, trajectory.crs))
         held = [file for file in files if file.count]
         points = sum(file.count for file in held)

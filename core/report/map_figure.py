@@ -14,6 +14,8 @@ import shapely
 
 from ..io.gdal_errors import gdal_exceptions
 from ..io.geotiff import GEOTIFF_TILE, filled_tiles
+from ..io.local_files import open_raster
+from ..io.units import NO_PLACE, place_of_raster
 from ..lazy import cv2
 
 MAP_LONGEST_SIDE = 1800      # px
@@ -49,7 +51,7 @@ def grey_background(path: str, longest: int = MAP_LONGEST_SIDE) -> tuple[np.ndar
     """
     from osgeo import gdal
 
-    dataset = gdal.Open(str(path))
+    dataset = open_raster(path)
     width, height = dataset.RasterXSize, dataset.RasterYSize
     scale = min(1.0, longest / max(width, height))
     columns, rows = max(int(width * scale), 1), max(int(height * scale), 1)
@@ -63,7 +65,7 @@ def grey_background(path: str, longest: int = MAP_LONGEST_SIDE) -> tuple[np.ndar
     empty = ~np.isfinite(values)
     if nodata is not None and np.isfinite(nodata):
         empty |= values == np.float32(nodata)
-    x0, dx, _, y0, _, dy = dataset.GetGeoTransform()
+    x0, dx, _, y0, _, dy = place_of_raster(dataset)[0] or NO_PLACE
     extent = (x0, y0 + dy * height, x0 + dx * width, y0)
     grey = np.zeros(values.shape, np.uint8)
     if not empty.all():

@@ -12,10 +12,10 @@ from scipy.spatial import cKDTree
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from ..common.setting import check_limits, setting
-from ..io.crs import check_metric, check_projected, horizontal_part, parse_crs
+from ..io.cloud_crs import check_projected, crs_note
 from .frame.build import build_frame
 from .las.copies import PER_METRE, distinct_rows, may_overlap, without_copies
-from .las.luminance import INTENSITY_SOURCES, without_intensity
+from .las.intensity_source import INTENSITY_SOURCES, without_intensity
 from .las.reader import POINTS_PER_BLOCK, read_blocks, read_headers
 from .las.scanners import ScannerCensus
 from .read_survey import match_clocks
@@ -103,12 +103,12 @@ def inspect_survey(paths: Sequence[str | Path], trajectory: Trajectory | None = 
         If a file is missing, damaged, or all are empty.
     """
     copies: list[str] = []
-    files = without_copies(read_headers(paths), copies.append)
+    files = without_copies(read_headers(paths, copies.append, crs), copies.append)
     wkt = next((file.crs for file in files if file.crs), "") or crs
     counter = _Counter(files, settings, _usable(trajectory, wkt))
     total, done = sum(file.count for file in files), 0
     for file in files:
-        for block in read_blocks(file.path, POINTS_PER_BLOCK):
+        for block in read_blocks(file.path, POINTS_PER_BLOCK, units=file.units):
             counter.take(block)
             done += len(block)
             progress.report(done / total)
@@ -270,21 +270,12 @@ def _named(counts):
 
 
 def _judge_crs(found):
-    crs = parse_crs(found.crs)
-    if crs is None:
-        try:
-            check_projected(found.files)
-            found.notes.append("The point clouds carry no CRS: set the parameter CRS, so that the results carry one.")
-        except RoadExtractionError as problem:
-            found.notes.append(str(problem))
-        return
     try:
-        check_metric(crs, "The point cloud")
+        crs = check_projected(found.files, found.crs)
+        note = crs_note(found.files, "", crs) if crs else "The point clouds carry no CRS: set the parameter CRS, so that the results carry one."
+        found.notes += [note] if note else []
     except RoadExtractionError as problem:
         found.notes.append(str(problem))
-    names = {horizontal_part(parse_crs(file.crs)).name for file in found.files if file.crs}
-    if len(names) > 1:
-        found.notes.append(f"The files use different CRSs ({', '.join(sorted(names))}): reproject them to one first.")
 
 
 def _judge_trajectory(found, wkt, has_time, progress):

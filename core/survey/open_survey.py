@@ -18,6 +18,7 @@ from ..execution.work_folder import Heard, KeptResults, WorkFolder, code_digest
 from .las.copies import without_copies
 from .las.reader import read_headers
 from .read_survey import SharedReading, read_survey
+from .store.spill_file import parts_are_whole
 from .survey import SURVEY_FOLDER, Survey, SurveySettings, survey_in_folder
 
 if TYPE_CHECKING:
@@ -46,7 +47,7 @@ def open_survey(paths: Sequence[str | Path], trajectory: Trajectory, settings: S
     work, cluster = execution.work, cluster_for(execution, progress)
     executor: Executor = cluster or THREADS
     try:
-        files = without_copies(read_headers(paths), progress.warn)
+        files = without_copies(read_headers(paths, progress.warn, settings.crs or trajectory.crs), progress.warn)
         executor = executor_for(sum(file.count for file in files), execution, progress, cluster)
         read = files, trajectory, settings
         survey = _kept_survey(work, executor, read, progress) if work else _survey_of_run(executor, read, progress)
@@ -92,6 +93,9 @@ def _kept_survey(work, executor, read, progress):
             return found
         heard = Heard(progress)
         parts = WorkFolder(str(work.path / f"{name}.parts"))
+        if not parts_are_whole(parts.path / "points"):
+            parts.discard()
+            parts = WorkFolder(str(parts.path))
         reading = KeptResults(_readers(executor.executor, files, progress), parts)
         shared = SharedReading(reading, executor.executor, parts.path / "points", work.begin(name))
         try:

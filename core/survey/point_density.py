@@ -13,6 +13,7 @@ from ..common.parallel import ordered_map
 from ..common.progress import Progress
 from ..execution.phase import Phase
 from ..io.gdal_errors import gdal_exceptions
+from ..io.units import place_raster
 from .store.section_store import STRETCH_POINTS, Stretch
 
 if TYPE_CHECKING:
@@ -137,18 +138,14 @@ def write_density(found: Inspection, path: str | Path) -> None:
     found : Inspection
     path : of the .tif
     """
-    from osgeo import gdal, osr
+    from osgeo import gdal
 
     density, (west, north) = found.density
     height, width = density.shape
     cell = found.settings.cell_size
     dataset = gdal.GetDriverByName("GTiff").Create(
         str(path), width, height, 1, gdal.GDT_Float32, ["COMPRESS=DEFLATE", "TILED=YES", "PREDICTOR=3"])
-    dataset.SetGeoTransform((west, cell, 0.0, north, 0.0, -cell))
-    if found.crs:
-        reference = osr.SpatialReference()
-        reference.ImportFromWkt(found.crs)
-        dataset.SetProjection(reference.ExportToWkt())
+    place_raster(dataset, (west, cell, 0.0, north, 0.0, -cell), found.crs)
     band = dataset.GetRasterBand(1)
     band.SetNoDataValue(float("nan"))
     band.SetDescription("Points per m²")

@@ -8,10 +8,11 @@ import numpy as np
 
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
+from ..io.units import as_in_file
 from .adjustment import pass_sigma
 from .adjustment.corrections import PassCorrections
-from .las.reader import POINTS_PER_BLOCK, open_cloud, read_blocks
-from .las.writer import new_laz, scale_for
+from .las.reader import POINTS_PER_BLOCK, cloud_crs, open_cloud, read_blocks
+from .las.writer import metres_of_file, new_laz, place_in_file
 from .store.records import COORDINATE_SCALE, ROAD_POINT, point_dtype
 from .store.road_points import RoadPoints
 from .store.section_store import SectionStore
@@ -32,8 +33,8 @@ REQUIRED_FIELDS = ("road", "pass", "station_m", "offset_m", "half_width")
 def write_road_points(road_points: RoadPoints, path: str | Path, progress: Progress = Progress()) -> None:
     """Write road points as LAS 1.4, class 11, in road order; a failed run leaves no file.
 
-    Coordinates are written as measured, with a scale of 0.1 mm, of 1 mm beyond 214 km from the origin and of 1 cm beyond
-    2,147 km. Corrections of passes are written beside them and applied again on reading.
+    Coordinates are written as measured, in the units of the survey's own CRS; in metres with a scale of 0.1 mm, of 1 mm beyond 214 km from
+    the origin and of 1 cm beyond 2,147 km. Corrections of passes are written beside them and applied again on reading.
 
     Parameters
     ----------
@@ -58,8 +59,6 @@ def _header(road_points):
     import laspy
 
     header = laspy.LasHeader(point_format=6, version="1.4")
-    header.scales = np.full(3, scale_for(_farthest(road_points)))
-    header.offsets = np.asarray(road_points.origin, float)
     # times are written as they were read
     header.global_encoding.gps_time_type = laspy.header.GpsTimeType.STANDARD
     header.generating_software = "Lanewright"
@@ -72,16 +71,13 @@ def _header(road_points):
     if road_points.moves is not None:
         header.vlrs.extend(road_points.moves.to_records())
     header.vlrs.extend(pass_sigma.to_record(road_points.pass_sigma))
-    if road_points.crs:
-        from ..io.crs import parse_crs
-
-        header.add_crs(parse_crs(road_points.crs))
+    place_in_file(header, road_points.origin, road_points.crs, _farthest(road_points))
     return header
 
 
 def _farthest(road_points):
-    """The largest |local x| or |local y| of a point, m; 0 where x and y have 32 bits, which need no coarser scale."""
-    if road_points.store.dtype["x"] == np.int32:
+    """The largest |local x| or |local y| of a point, m; 0 where x and y have 32 bits, which need no coarser scale in metres."""
+    if road_points.store.dtype["x"] == np.int32 and as_in_file(road_points.crs)[1].metric:
         return 0.0
     ends = [int(np.abs(road_points.store.section(road, number)[name]).max(initial=0))
             for road, number in road_points.all_sections() for name in "xy"]
@@ -99,8 +95,8 @@ def _record(road_points, road, number, header):
     records = road_points.store.section(road, number)
     out = laspy.ScaleAwarePointRecord.zeros(len(records), header=header)
     off = (0, 0, 0) if road_points.moves is None else road_points.moves.units(records)
-    for name, moved in zip("xyz", off):
-        out.array[name.upper()] = _whole(records[name] - moved, COORDINATE_SCALE / header.scales[0])
+    for name, moved, metres in zip("xyz", off, metres_of_file(header, road_points.crs)):
+        out.array[name.upper()] = _whole(records[name] - moved, COORDINATE_SCALE / metres)
     out["gps_time"] = records["time"]
     out["intensity"] = records["intensity"]
     out["point_source_id"] = records["source"]
@@ -148,7 +144,7 @@ def read_road_points(path: str | Path, progress: Progress = Progress()) -> RoadP
         # where the file says its points lie; 32 bits of x and y reach beyond where they change to 64
         farthest = max((np.abs(np.r_[header.mins, header.maxs][[0, 1, 3, 4]] - origin[[0, 1, 0, 1]])).max(), 0.0) if total else 0.0
         dtype = point_dtype(ROAD_POINT, farthest)
-        crs, moves, sigma = header.parse_crs(), PassCorrections.of_records(header.vlrs), pass_sigma.of_records(header.vlrs)
+        crs, moves, sigma = cloud_crs(header), PassCorrections.of_records(header.vlrs), pass_sigma.of_records(header.vlrs)
     has_corrected, has_cluster, has_spacing = (name in names for name in ("intensity_corrected", "cluster", "spacing"))
     store = SectionStore(dtype)
     done = 0
@@ -181,4 +177,4 @@ def read_road_points(path: str | Path, progress: Progress = Progress()) -> RoadP
         progress.report(done / max(total, 1))
     if not store.count:
         raise RoadExtractionError(f"{path} holds no points. Run the stage that made it again with other settings.")
-    return RoadPoints(store, origin, "" if crs is None else crs.to_wkt(), has_corrected, has_cluster, moves, has_spacing, sigma)
+    return RoadPoints(store, origin, crs, has_corrected, has_cluster, moves, has_spacing, sigma)

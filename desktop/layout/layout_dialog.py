@@ -2,39 +2,25 @@
 
 from __future__ import annotations
 
-from qgis.core import Qgis, QgsLayerTreeGroup, QgsMapLayer, QgsProject
+from qgis.core import Qgis, QgsMapLayer, QgsProject
 from qgis.PyQt.QtWidgets import QComboBox, QDialog, QDialogButtonBox, QFormLayout, QLineEdit, QWidget
 
-from ...processing_provider.results.layer_tree import ALGORITHM
-from ...processing_provider.results.runs import GROUP
+from ...processing_provider.results.road_maps import RoadMap
 from ...processing_provider.texts import tr
 from .map_layout import PAPERS, SCALES
 
-# tables of a GeoPackage, or file names, by which a group is known to hold a road map
-ROAD_MAP = ("road_edges", "driving_lines", "marking_lines", "markings", "road_surface")
+
+def shown_layers(road_map: RoadMap, project: QgsProject, hidden: bool = False) -> list[QgsMapLayer]:
+    """Layers of a road map, and others in its group, that have a place on the map, from above; those that are switched off only with `hidden`."""
+    inside = {node.layerId() for node in road_map.group.findLayers()} if road_map.group is not None else set()
+    inside |= {layer.id() for layer in road_map.layers}
+    return [node.layer() for node in project.layerTreeRoot().findLayers()
+            if node.layerId() in inside and node.layer() and node.layer().isSpatial() and (hidden or node.itemVisibilityChecked())]
 
 
-def road_map_groups(project: QgsProject) -> list[QgsLayerTreeGroup]:
-    """Groups with layers of a road map, the newest first; groups of a survey, or of an image alone, are none."""
-    ours = (group for group in project.layerTreeRoot().findGroups() if group.customProperty(ALGORITHM) or group.name().startswith(GROUP))
-    return [group for group in ours if _holds_a_map(group)]
-
-
-def _holds_a_map(group: QgsLayerTreeGroup) -> bool:
-    lines = [layer for layer in shown_layers(group, hidden=True) if layer.type() == Qgis.LayerType.Vector]
-    return any(layer.fields().lookupField("road") >= 0 and layer.fields().lookupField("station_m") >= 0
-               and layer.geometryType() in (Qgis.GeometryType.Line, Qgis.GeometryType.Polygon) for layer in lines)
-
-
-def shown_layers(group: QgsLayerTreeGroup, hidden: bool = False) -> list[QgsMapLayer]:
-    """Layers of a group that have a place on the map, from above; those that are switched off only with `hidden`."""
-    return [node.layer() for node in group.findLayers()
-            if node.layer() and node.layer().isSpatial() and (hidden or node.itemVisibilityChecked())]
-
-
-def layers_below(project: QgsProject, groups: list[QgsLayerTreeGroup]) -> list[QgsMapLayer]:
+def layers_below(project: QgsProject, maps: list[RoadMap]) -> list[QgsMapLayer]:
     """Images and web maps of a project that are no part of a road map, from above."""
-    inside = {layer.id() for group in groups for layer in shown_layers(group, hidden=True)}
+    inside = {layer.id() for road_map in maps for layer in shown_layers(road_map, project, hidden=True)}
     nodes = project.layerTreeRoot().findLayers()
     return [node.layer() for node in nodes if node.layer() and node.layer().id() not in inside and node.layer().isSpatial()
             and node.layer().type() != Qgis.LayerType.Vector]
@@ -48,13 +34,13 @@ def credit_of(layer: QgsMapLayer) -> str:
 class LayoutDialog(QDialog):
     """Asks what to print; `choice` is what was chosen."""
 
-    def __init__(self, project: QgsProject, groups: list[QgsLayerTreeGroup], parent: QWidget | None = None):
+    def __init__(self, project: QgsProject, maps: list[RoadMap], parent: QWidget | None = None):
         super().__init__(parent)
         self.setWindowTitle(tr("Print layout of the road map"))
-        self.groups, self.project = groups, project
+        self.maps, self.project = maps, project
         form = QFormLayout(self)
-        self.group = QComboBox()
-        self.group.addItems([group.name() for group in groups])
+        self.road_map = QComboBox()
+        self.road_map.addItems([road_map.name for road_map in maps])
         self.paper = QComboBox()
         self.paper.addItems(list(PAPERS))
         self.scale = QComboBox()
@@ -63,7 +49,7 @@ class LayoutDialog(QDialog):
             self.scale.addItem(f"1 : {scale}", scale)
         self.below = QComboBox()
         self.below.addItem(tr("Nothing"), "")
-        for layer in layers_below(project, groups):
+        for layer in layers_below(project, maps):
             self.below.addItem(layer.name(), layer.id())
         seen = [layer.id() for layer in project.layerTreeRoot().checkedLayers()]
         self.below.setCurrentIndex(next((row for row in range(1, self.below.count()) if self.below.itemData(row) in seen), 0))
@@ -71,8 +57,8 @@ class LayoutDialog(QDialog):
         self.credit.setToolTip(tr("Whose data lie below, as their licence wants it said; stands in the lower left corner of the map"))
         self.below.currentIndexChanged.connect(lambda row: self._suggest_credit())
         self._suggest_credit()
-        if len(groups) > 1:
-            form.addRow(tr("Road map"), self.group)
+        if len(maps) > 1:
+            form.addRow(tr("Road map"), self.road_map)
         form.addRow(tr("Paper"), self.paper)
         form.addRow(tr("Scale"), self.scale)
         form.addRow(tr("Layer below (orthoimage, web map)"), self.below)
@@ -94,7 +80,7 @@ class LayoutDialog(QDialog):
 
     @property
     def choice(self) -> dict:
-        """The group, and the arguments of `road_map_layout` that were chosen."""
+        """The road map, and the arguments of `road_map_layout` that were chosen."""
         below = self._layer_below()
-        return dict(group=self.groups[self.group.currentIndex()], paper=self.paper.currentText(), scale=self.scale.currentData(),
+        return dict(road_map=self.maps[self.road_map.currentIndex()], paper=self.paper.currentText(), scale=self.scale.currentData(),
                     below=[below] if below is not None else [], credit=self.credit.text().strip())

@@ -38,6 +38,7 @@ from qgis.PyQt.QtWidgets import (
 )
 
 from ...core.common.errors import RoadExtractionError
+from ...processing_provider.results.road_maps import runs_of
 from ...processing_provider.texts import tr
 from .image_pairs import GAP, GREEN, RED, SIDE, ImagePairs, pair_text
 from .two_points_dialog import TwoPointsDialog
@@ -72,7 +73,6 @@ class PairsDialog(QDialog):
         remove.clicked.connect(lambda checked=False: self._remove())
         self.intensity = QgsMapLayerComboBox()
         self.intensity.setFilters(QgsMapLayerProxyModel.Filter.RasterLayer)
-        self.intensity.layerChanged.connect(lambda layer: self._show_pairs())
         self._prefer_intensity()
         self.size = QDoubleSpinBox()
         self.size.setRange(0.0, 1.0)
@@ -128,13 +128,16 @@ class PairsDialog(QDialog):
         parts.addWidget(right)
         parts.setSizes([270, 890])
         QVBoxLayout(self).addWidget(parts)
+        self.intensity.layerChanged.connect(lambda layer: self._show_pairs())  # the list of pairs is there now
         self._enable()
 
     def _prefer_intensity(self):
         """Choose the intensity image of the last road map, where there is one."""
-        for layer in QgsProject.instance().mapLayers().values():
-            if "intensity" in Path(layer.source()).stem.lower() or layer.name().startswith(tr("Intensity image")):
-                self.intensity.setLayer(layer)
+        ours = (run.layer("INTENSITY_IMAGE") for run in runs_of(QgsProject.instance()))
+        called = (layer for layer in QgsProject.instance().mapLayers().values() if "intensity" in Path(layer.source()).stem.lower())
+        likely = next((layer for layer in (*ours, *called) if layer is not None), None)
+        if likely is not None:
+            self.intensity.setLayer(likely)
 
     # -- images -----------------------------------------------------------------------------------
 

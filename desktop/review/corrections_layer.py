@@ -19,7 +19,7 @@ from qgis.core import (
 from ...core.common.errors import RoadExtractionError
 from ...core.common.schemas import CORRECTIONS
 from ...processing_provider.layers import qgis_fields
-from ...processing_provider.results.layer_tree import OUTPUT
+from ...processing_provider.results.origin import OUTPUT
 from ...processing_provider.styling import STYLES, apply_style
 from ...processing_provider.texts import tr
 

@@ -9,7 +9,6 @@ from qgis.core import (
     QgsCoordinateTransform,
     QgsCsException,
     QgsGeometry,
-    QgsLayerTreeGroup,
     QgsProject,
     QgsRectangle,
     QgsVectorLayer,
@@ -33,11 +32,11 @@ from qgis.PyQt.QtWidgets import (
 
 from ...core.common.errors import RoadExtractionError
 from ...processing_provider.results.attributes import WORDS
+from ...processing_provider.results.road_maps import RoadMap, clouds_of
 from ...processing_provider.texts import tr
 from .corrections_layer import add_correction, correction_at, corrections_layers, new_corrections_layer, take_back
 from .doubtful import Doubt, DoubtfulPiece, doubts_of
 from .line_tool import LineTool
-from .section import clouds_of, layers_of
 
 LEAST_VIEW = 30.0   # m of ground shown about a place
 FILE = "corrections.gpkg"
@@ -47,7 +46,7 @@ CHOSEN = "#ff00c8"  # pieces that the buttons are about
 class DoubtDock(QDockWidget):
     """The window. `go` leads to another place; begins again when the road map is another or has changed.
 
-    Signal `shown` has the place; `run_wanted` the group of the road map and the layer of corrections.
+    Signal `shown` has the place; `run_wanted` the road map and the layer of corrections.
     """
 
     shown = pyqtSignal(object)
@@ -59,7 +58,7 @@ class DoubtDock(QDockWidget):
         self.iface = iface
         self.places: list[Doubt] = []
         self.at = -1
-        self.group: QgsLayerTreeGroup | None = None
+        self.road_map: RoadMap | None = None
         self._of = self._pending = None
         self.bands: list[QgsRubberBand] = []
         self.tool = LineTool(iface.mapCanvas())
@@ -77,7 +76,7 @@ class DoubtDock(QDockWidget):
         for button, step, tip in ((back, -1, tr("The place before")), (ahead, 1, tr("The next place"))):
             button.setToolTip(tip)
             button.setFixedWidth(34)
-            button.clicked.connect(lambda checked=False, step=step: self.go(self.group, step))
+            button.clicked.connect(lambda checked=False, step=step: self.go(self.road_map, step))
         self.list = QListWidget()
         self.list.setSelectionMode(QAbstractItemView.SelectionMode.ExtendedSelection)
         self.list.setWordWrap(True)
@@ -97,7 +96,7 @@ class DoubtDock(QDockWidget):
         self.kept.setWordWrap(True)
         self.undo_button = self._button(tr("Take back the last"), tr("Removes the correction that was made last"), self.undo)
         self.run_button = self._button(tr("Make the map again…"), tr("Opens Road map with these corrections"),
-                                       lambda: self.run_wanted.emit(self.group, self.layer))
+                                       lambda: self.run_wanted.emit(self.road_map, self.layer))
         body = QWidget()
         column = QVBoxLayout(body)
         column.setContentsMargins(6, 6, 6, 6)
@@ -129,13 +128,13 @@ class DoubtDock(QDockWidget):
         """The place shown last."""
         return self.places[self.at] if 0 <= self.at < len(self.places) else None
 
-    def go(self, group: QgsLayerTreeGroup | None, step: int = 1) -> None:
+    def go(self, road_map: RoadMap | None, step: int = 1) -> None:
         """Show the next place of a road map, or the one before; after the last comes the first."""
-        if group is None:
+        if road_map is None:
             return
-        of = [(layer.id(), layer.featureCount()) for layer in layers_of(group)]
+        of = [(layer.id(), layer.featureCount()) for layer in road_map.vectors]
         if of != self._of:
-            self.places, self.at, self._of, self.group = doubts_of(group), -1 if step > 0 else 0, of, group
+            self.places, self.at, self._of, self.road_map = doubts_of(road_map), -1 if step > 0 else 0, of, road_map
         self.show()
         self.raise_()
         if self.places:
@@ -145,7 +144,8 @@ class DoubtDock(QDockWidget):
             self._zoom(self.place)
             self.shown.emit(self.place)
 
-    def _fill(self):
+    def _fill(self, chosen=0):
+        """List the pieces of the place; the buttons are about one of them, until the user selects more."""
         place = self.place
         self.list.clear()
         if place is None:
@@ -155,14 +155,14 @@ class DoubtDock(QDockWidget):
                 at=self.at + 1, count=len(self.places), road=place.road, station=place.station))
             for piece in place.pieces:
                 self.list.addItem(piece.text + self._decision(piece))
-            self.list.selectAll()
+            self.list.setCurrentRow(chosen)
         self._selected()
         self._tell()
 
     def _decision(self, piece):
         """What was decided about a piece and not yet run, for its line in the list."""
-        found = [correction_at(layer, piece.line, self.place.crs, piece.target) for layer in corrections_layers(QgsProject.instance())[:1]]
-        return f"\n  → {WORDS['action'].get(found[0]['action'], found[0]['action'])}" if found and found[0] is not None else ""
+        found = None if self.layer is None else correction_at(self.layer, piece.line, self.place.crs, piece.target)
+        return "" if found is None else f"\n  → {WORDS['action'].get(found['action'], found['action'])}"
 
     def _zoom(self, place):
         canvas = self.iface.mapCanvas()
@@ -188,7 +188,7 @@ class DoubtDock(QDockWidget):
         self.accept_button.setEnabled(count > 0)
         self.delete_button.setEnabled(count > 0)
         self.move_button.setEnabled(count == 1)
-        self.draw_button.setEnabled(self.group is not None)
+        self.draw_button.setEnabled(self.road_map is not None)
         self._highlight()
 
     def _highlight(self):
@@ -216,7 +216,7 @@ class DoubtDock(QDockWidget):
 
     def ask_for_file(self) -> str:
         """Where the corrections are to be kept; "" where the user gave up."""
-        clouds = clouds_of(self.group) if self.group is not None else []
+        clouds = [] if self.road_map is None else clouds_of(self.road_map, QgsProject.instance())[0]
         folder = Path(QgsProject.instance().absolutePath() or (Path(clouds[0]).parent if clouds else Path.home()))
         path, _ = QFileDialog.getSaveFileName(self, tr("File for the corrections"), str(folder / FILE), "GeoPackage (*.gpkg)",
                                               options=QFileDialog.Option.DontConfirmOverwrite)
@@ -236,7 +236,7 @@ class DoubtDock(QDockWidget):
             return None
 
     def decide(self, action: str) -> None:
-        """Accept or delete what is selected, and go on when all of this place is decided."""
+        """Accept or delete what is selected, and go on to the next piece that is not decided, here or at the next place."""
         pieces, place = self.chosen, self.place
         layer = self._layer_to_write(place.crs) if pieces else None
         if layer is None:
@@ -245,10 +245,12 @@ class DoubtDock(QDockWidget):
             add_correction(layer, piece.line, place.crs, action=action, target=piece.target, road=piece.road, station_m=piece.station,
                            offset_m=piece.offset, note=self.note.text() or None)
         self.note.clear()
-        whole = len(pieces) == len(place.pieces)
-        self._fill()
-        if whole and len(self.places) > 1:
-            self.go(self.group)
+        last = max(place.pieces.index(piece) for piece in pieces)
+        count = len(place.pieces)
+        left = [row % count for row in range(last + 1, last + 1 + count) if not self._decision(place.pieces[row % count])]
+        self._fill(left[0] if left else last)
+        if not left and len(self.places) > 1:
+            self.go(self.road_map)
 
     def begin_draw(self, target: str) -> None:
         """Let the user draw what is missing."""
@@ -268,7 +270,7 @@ class DoubtDock(QDockWidget):
 
     def _line_drawn(self, line: QgsGeometry) -> None:
         action, target = self._pending or ("", "")
-        layer = self._layer_to_write(layers_of(self.group)[0].crs()) if action else None
+        layer = self._layer_to_write(self.road_map.vectors[0].crs()) if action else None
         if layer is not None:
             add_correction(layer, line, self.iface.mapCanvas().mapSettings().destinationCrs(), action=action, target=target,
                            note=self.note.text() or None)

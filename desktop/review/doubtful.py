@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from qgis.core import Qgis, QgsGeometry, QgsLayerTreeGroup, QgsLineString, QgsPointXY, QgsRectangle
+from qgis.core import Qgis, QgsGeometry, QgsLineString, QgsPointXY, QgsRectangle
 
-from ...processing_provider.results.layer_tree import OUTPUT
+from ...processing_provider.results.road_maps import RoadMap
 from ...processing_provider.texts import tr
-from .section import layers_of, title_of
+from .section import title_of
 
 OUTPUTS = ("ROAD_EDGES", "MARKING_LINES", "DRIVING_LINES", "LANES")
 TARGETS = {"ROAD_EDGES": "edge", "MARKING_LINES": "marking", "DRIVING_LINES": "lane", "LANES": "lane"}  # what a correction calls them
@@ -49,18 +49,19 @@ class Doubt:
         return tuple(piece.text for piece in self.pieces)
 
 
-def doubts_of(group: QgsLayerTreeGroup) -> list[Doubt]:
+def doubts_of(road_map: RoadMap) -> list[Doubt]:
     """The doubtful places of a road map along its roads; doubts that lie together are one place."""
     found = []
-    for layer in layers_of(group):
-        names = [field.name() for field in layer.fields()]
-        if layer.customProperty(OUTPUT) not in OUTPUTS or "station_m" not in names or "road" not in names:
+    for output in OUTPUTS:
+        layer = road_map.layer(output)
+        names = [] if layer is None else [field.name() for field in layer.fields()]
+        if "station_m" not in names or "road" not in names:
             continue
         for feature in layer.getFeatures():
             row = dict(zip(names, feature.attributes()))
             why = reason(row)
             if why and not feature.geometry().isEmpty():
-                found.append(_doubt(f"{title_of(layer, feature)}: {why}", row, feature.geometry(), layer))
+                found.append(_doubt(f"{title_of(layer, feature)}: {why}", row, feature.geometry(), layer, output))
     return _gathered(sorted(found, key=lambda doubt: (doubt.road, doubt.station)))
 
 
@@ -86,11 +87,11 @@ def _number(value):
         return None
 
 
-def _doubt(text, row, geometry, layer):
+def _doubt(text, row, geometry, layer, output):
     middle = geometry.interpolate(geometry.length() / 2).asPoint() if layer.geometryType() == Qgis.GeometryType.Line else \
         geometry.pointOnSurface().asPoint()
     road, station = int(_number(row.get("road")) or 0), _number(row.get("station_m")) or 0.0
-    piece = DoubtfulPiece(text, TARGETS[layer.customProperty(OUTPUT)], course_of(geometry), road, station, _number(row.get("offset_m")))
+    piece = DoubtfulPiece(text, TARGETS[output], course_of(geometry), road, station, _number(row.get("offset_m")))
     return Doubt((piece,), road, station, geometry.boundingBox(), middle, layer.crs())
 
 

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from qgis.core import (
@@ -16,14 +14,14 @@ from qgis.core import (
     QgsExpressionContextUtils,
     QgsFeature,
     QgsGeometry,
-    QgsLayerTreeGroup,
     QgsPoint,
     QgsPointXY,
     QgsRectangle,
     QgsVectorLayer,
 )
 
-from ...processing_provider.results.layer_tree import CLOUDS, INPUTS, OUTPUT
+from ...processing_provider.results.attributes import title_of as title_expression
+from ...processing_provider.results.origin import output_of
 
 HALF_WIDTH = 20.0     # m of the section either side
 REACH = 60.0          # m about a place within which the road's direction is sought
@@ -90,24 +88,6 @@ class Crossing:
     top: float = math.nan
 
 
-def clouds_of(group: QgsLayerTreeGroup) -> list[str]:
-    """The point clouds that a road map was made from, as noted when its layers came."""
-    return [path for path in str(group.customProperty(CLOUDS) or "").split("\n") if path]
-
-
-def inputs_of(group: QgsLayerTreeGroup) -> dict[str, Any]:
-    """{parameter: value} of the run that made a road map; only its point clouds where nothing else was noted."""
-    try:
-        return json.loads(group.customProperty(INPUTS))
-    except (TypeError, ValueError):
-        return {"POINT_CLOUDS": clouds_of(group)}
-
-
-def layers_of(group: QgsLayerTreeGroup) -> list[QgsVectorLayer]:
-    """The vector layers of a road map."""
-    return [node.layer() for node in group.findLayers() if node.layer() and node.layer().type() == Qgis.LayerType.Vector and node.layer().isSpatial()]
-
-
 def section_at(x: float, y: float, layers: Iterable[QgsVectorLayer]) -> Section | None:
     """The section through a place, across the nearest line of the best kind there is; None where there is no line near.
 
@@ -117,7 +97,7 @@ def section_at(x: float, y: float, layers: Iterable[QgsVectorLayer]) -> Section 
     for output in LEADING:
         nearest, azimuth = REACH, None
         for layer in layers:
-            if layer.customProperty(OUTPUT) != output or layer.geometryType() != Qgis.GeometryType.Line:
+            if output_of(layer) != output or layer.geometryType() != Qgis.GeometryType.Line:
                 continue
             for feature in layer.getFeatures(QgsRectangle(x - REACH, y - REACH, x + REACH, y + REACH)):
                 geometry = feature.geometry()
@@ -139,7 +119,7 @@ def crossings(section: Section, layers: Iterable[QgsVectorLayer]) -> list[Crossi
     """Lines that cross the section, from left to right."""
     line, found = section.line(), []
     for layer in layers:
-        colour = DRAWN.get(layer.customProperty(OUTPUT))
+        colour = DRAWN.get(output_of(layer))
         if colour is None or layer.geometryType() != Qgis.GeometryType.Line:
             continue
         for feature in layer.getFeatures(line.boundingBox()):
@@ -154,7 +134,7 @@ def corners(section: Section, layers: Iterable[QgsVectorLayer], along: float = C
     """(offset, z, part) of the corners of curbs, bottom and top, that lie within `along` m of the section; of layers of curb points."""
     found, box = [], section.line().boundingBox().buffered(along)
     for layer in layers:
-        if layer.customProperty(OUTPUT) not in CORNERS or layer.geometryType() != Qgis.GeometryType.Point:
+        if output_of(layer) not in CORNERS or layer.geometryType() != Qgis.GeometryType.Point:
             continue
         for feature in layer.getFeatures(box):
             place = feature.geometry()
@@ -190,8 +170,9 @@ def _height(geometry, vertex):
 
 
 def title_of(layer: QgsVectorLayer, feature: QgsFeature) -> str:
-    """What a feature is, by the display expression of its layer."""
+    """What a feature is: in the words of the result that its layer is, else by the display expression of the layer."""
     context = QgsExpressionContext(QgsExpressionContextUtils.globalProjectLayerScopes(layer))
     context.setFeature(feature)
-    said = QgsExpression(layer.displayExpression()).evaluate(context)
+    own = title_expression(output_of(layer), {field.name() for field in layer.fields()})
+    said = QgsExpression(own or layer.displayExpression()).evaluate(context)
     return str(said) if said else layer.name()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 from qgis.core import (
     Qgis,
@@ -9,7 +11,6 @@ from qgis.core import (
     QgsCoordinateReferenceSystem,
     QgsCoordinateTransform,
     QgsCsException,
-    QgsLayerTreeGroup,
     QgsPointXY,
     QgsProject,
     QgsTask,
@@ -17,16 +18,16 @@ from qgis.core import (
 from qgis.gui import QgsMapToolEmitPoint, QgsRubberBand
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtGui import QColor
-from qgis.PyQt.QtWidgets import QDockWidget, QDoubleSpinBox, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
+from qgis.PyQt.QtWidgets import QDockWidget, QDoubleSpinBox, QFileDialog, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 
 from ...core.common.errors import Cancelled, RoadExtractionError
 from ...core.common.parallel import cancellation_scope
 from ...core.common.progress import Progress
 from ...core.road.scanlines.from_points import slice_lines
 from ...core.survey.las.near import points_near
-from ...processing_provider.results.layer_tree import road_maps
+from ...processing_provider.results.road_maps import RoadMap, clouds_lie_in, clouds_of, road_maps
 from ...processing_provider.texts import told, tr
-from .section import HALF_WIDTH, Section, clouds_of, corners, crossings, layers_of, middle_of, section_at
+from .section import HALF_WIDTH, Section, corners, crossings, middle_of, section_at
 from .section_view import SectionView
 
 AROUND = 40.0    # m of road kept in memory either side of a place, so that stepping along it needs no new reading
@@ -45,7 +46,8 @@ class SectionDock(QDockWidget):
         self.tool = QgsMapToolEmitPoint(iface.mapCanvas())
         self.tool.canvasClicked.connect(lambda point, button: self.show_at(point, iface.mapCanvas().mapSettings().destinationCrs()))
         self.band = None
-        self.section = self.group = self.task = None
+        self.section = self.road_map = self.task = None
+        self._asked: set[str] = set()  # road maps whose user was asked where the point clouds are
         self._kept, self._kept_at = np.empty((0, 4)), None  # points about a place: (clouds, x, y)
         self.pick = QPushButton(tr("Click in the map"))
         self.pick.clicked.connect(lambda checked=False: iface.mapCanvas().setMapTool(self.tool))
@@ -85,17 +87,15 @@ class SectionDock(QDockWidget):
 
     def show_at(self, point: QgsPointXY, crs: QgsCoordinateReferenceSystem) -> None:
         """The section through a place of the map."""
-        for group in road_maps(QgsProject.instance().layerTreeRoot()):
-            layers = layers_of(group)
-            if not layers:
-                continue
+        for road_map in road_maps(QgsProject.instance(), self.iface.activeLayer()):
+            layers = road_map.vectors
             try:
                 here = QgsCoordinateTransform(crs, layers[0].crs(), QgsProject.instance()).transform(point)
             except QgsCsException:
                 continue
             section = section_at(here.x(), here.y(), layers)
             if section is not None:
-                self._show(section, group)
+                self._show(section, road_map)
                 return
         self.view.show_section(np.empty((0, 3)), [], tr("No line of a road map lies near: click on a road that Lanewright mapped."))
 
@@ -104,34 +104,54 @@ class SectionDock(QDockWidget):
         if self.section is None:
             return
         x, y = self.section.moved(metres)
-        turned = section_at(x, y, layers_of(self.group))
-        self._show(turned or Section(x, y, self.section.azimuth), self.group)
+        turned = section_at(x, y, self.road_map.vectors)
+        self._show(turned or Section(x, y, self.section.azimuth), self.road_map)
 
-    def _show(self, section: Section, group: QgsLayerTreeGroup) -> None:
-        self.section, self.group = section, group
+    def _show(self, section: Section, road_map: RoadMap) -> None:
+        self.section, self.road_map = section, road_map
         self.show()
         self._draw_line()
-        clouds = clouds_of(group)
+        self._stop_reading()  # what is under way belongs to the place before
+        clouds = self._clouds(road_map)
         if not clouds:
-            self._draw(tr("The point clouds of this road map are not known: it was not made by Road map in this project."))
+            self._draw(tr("The point clouds of this road map are not there, so only its lines are shown."))
         elif self._kept_at is None or self._kept_at[0] != clouds or \
                 max(abs(section.x - self._kept_at[1]), abs(section.y - self._kept_at[2])) > AROUND - HALF_WIDTH:
             self._read(clouds)
         else:
             self._draw()
 
+    def _clouds(self, road_map):
+        """The point clouds of a road map; the user is asked once where they are, where they are no longer where they were."""
+        clouds, gone = clouds_of(road_map, QgsProject.instance())
+        if gone and road_map.name not in self._asked:
+            self._asked.add(road_map.name)
+            folder = self.ask_for_folder(gone)
+            if folder:
+                clouds_lie_in(road_map, folder, QgsProject.instance())
+                clouds, _ = clouds_of(road_map, QgsProject.instance())
+        return clouds
+
+    def ask_for_folder(self, gone: list[str]) -> str:
+        """The folder that the user names; "" where there is none."""
+        title = tr("Where is {name}? The folder of the point clouds of this road map").format(name=Path(gone[0]).name)
+        return QFileDialog.getExistingDirectory(self, title, QgsProject.instance().absolutePath())
+
     # -- points -------------------------------------------------------------------------------------
 
     def _read(self, clouds):
-        """Read the points about the section in the background; a newer wish cancels an older one."""
-        if self.task is not None:
-            self.task.cancel()
+        """Read the points about the section in the background."""
         self.view.show_section(np.empty((0, 3)), [], tr("Reading points…"))
         place = (clouds, self.section.x, self.section.y)
         task = QgsTask.fromFunction(tr("Points of a cross-section"), _points, clouds, place[1], place[2],
                                     on_finished=lambda error, found=None: self._ready(task, place, error, found))
         self.task = task  # QGIS keeps no reference
         QgsApplication.taskManager().addTask(task)
+
+    def _stop_reading(self):
+        if self.task is not None:
+            self.task.cancel()
+        self.task = None
 
     def _ready(self, task, place, error, found):
         if task is not self.task:
@@ -147,7 +167,7 @@ class SectionDock(QDockWidget):
         if self.section is None:
             return
         points = self.section.cut(self._kept, self.thickness.value()) if self._kept_at is not None and not message else np.empty((0, 3))
-        layers = layers_of(self.group)
+        layers = self.road_map.vectors
         found = crossings(self.section, layers)
         middle = middle_of(found)
         scanline = [line + (middle, 0.0) for line in slice_lines(points[:, 0] - middle, points[:, 1], 2 * HALF_WIDTH)]
@@ -160,7 +180,7 @@ class SectionDock(QDockWidget):
             self.band = QgsRubberBand(self.iface.mapCanvas(), Qgis.GeometryType.Line)
             self.band.setColor(QColor("#ff00c8"))
             self.band.setWidth(2)
-        self.band.setToGeometry(self.section.line(), layers_of(self.group)[0].crs())
+        self.band.setToGeometry(self.section.line(), self.road_map.vectors[0].crs())
         self.band.show()
 
     def _hide_line(self, visible):

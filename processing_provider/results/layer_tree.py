@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from qgis.core import QgsCoordinateTransform, QgsCsException, QgsLayerTree, QgsLayerTreeGroup, QgsMapLayer, QgsProject, QgsRectangle, QgsSettings
+from qgis.core import QgsCoordinateTransform, QgsCsException, QgsLayerTree, QgsMapLayer, QgsProject, QgsRectangle, QgsSettings
 
+from .origin import OUTPUT, describe_origin, origin_of
+from .road_maps import LINES, road_map_of, runs_of
 from .runs import Run
 
-SURVEY, ALGORITHM, OUTPUT = "lanewright/survey", "lanewright/algorithm", "lanewright/output"  # custom properties of our groups and layers
-CLOUDS = "lanewright/clouds"  # paths, one a line
-INPUTS = "lanewright/inputs"  # JSON of what the run was given
 REPLACE = "lanewright/replace_last_run"  # setting of the user
 IMAGES = ("ORTHOIMAGE", "UAV_IMAGE")
 BELOW_IMAGES = ("INTENSITY_IMAGE", "DENSITY")
@@ -24,7 +23,7 @@ def set_replaces_last_run(replaces: bool) -> None:
 
 
 def place_layer(layer: QgsMapLayer, project: QgsProject, output: str, run: Run) -> None:
-    """Note where a layer comes from, take away what it replaces, and put an image below the lines of the map it lies under.
+    """Note where a layer comes from, hide or take away what it replaces, and put an image below the lines of the map it lies under.
 
     Parameters
     ----------
@@ -34,63 +33,58 @@ def place_layer(layer: QgsMapLayer, project: QgsProject, output: str, run: Run) 
     run : Run that made it
     """
     layer.setCustomProperty(OUTPUT, output)
-    layer.setCustomProperty(ALGORITHM, run.algorithm)
-    root = project.layerTreeRoot()
-    node = root.findLayer(layer.id())
-    group = node.parent() if node is not None else None
-    if group is None or group is root:
+    describe_origin(layer, run.provenance, output)
+    this = road_map_of(layer, project)
+    if this is None or this.group is None:
         return
-    group.setCustomProperty(SURVEY, run.survey)
-    group.setCustomProperty(ALGORITHM, run.algorithm)
-    if run.clouds:
-        group.setCustomProperty(CLOUDS, "\n".join(run.clouds))
-    if run.inputs:
-        group.setCustomProperty(INPUTS, run.inputs)
+    former = [one for one in runs_of(project) if one.group is not None and one.survey == this.survey != "" and layer not in one.layers]
     if replaces_last_run():
-        _remove_former(layer, output, group, project)
+        _remove_former(layer, output, former, project)
+    else:
+        _hide_former(output, this, former, project)
     if output in IMAGES:
-        _lay_under_map(layer, group, project)
+        _lay_under_map(layer, this, project)
 
 
-def road_maps(root: QgsLayerTree) -> list[QgsLayerTreeGroup]:
-    """Groups with driving lines or edges among our results, from above."""
-    return [group for group in root.findGroups() if _layers(group, ("DRIVING_LINES", "ROAD_EDGES", "MARKING_LINES"))]
-
-
-def _layers(group, outputs):
-    """Our layers in a group that are one of these results."""
-    return [node.layer() for node in group.findLayers() if node.layer() and node.layer().customProperty(OUTPUT) in outputs]
-
-
-def _remove_former(layer, output, group, project):
+def _remove_former(layer, output, former, project):
     """Take the same result of the last run of the same survey and algorithm out of the project, and its group once that is empty."""
-    algorithm, survey = layer.customProperty(ALGORITHM), group.customProperty(SURVEY)
-    for former in project.layerTreeRoot().findGroups():
-        if former.customProperty(SURVEY) != survey:
+    algorithm = origin_of(layer).provenance.algorithm
+    for run in former:
+        old = run.layer(output)
+        if old is None or origin_of(old).provenance.algorithm != algorithm:
             continue
-        old = [one.id() for one in _layers(former, (output,)) if one.id() != layer.id() and one.customProperty(ALGORITHM) == algorithm]
-        if not old:
-            continue
-        project.removeMapLayers(old)
-        if former is not group and not former.children():
-            former.parent().removeChildNode(former)
+        project.removeMapLayer(old.id())
+        if not run.group.children():
+            run.group.parent().removeChildNode(run.group)
         return
 
 
-def _lay_under_map(image, group, project):
+def _hide_former(output, this, former, project):
+    """Switch off the earlier map of a survey that is made again, and the result of a stage that was run again: both would lie on each other."""
+    for run in former:
+        if run.group is this.group or run.layer(output) is None or run.provenance.ended > this.provenance.ended:
+            continue
+        if run.is_a_map and run.provenance.algorithm == this.provenance.algorithm:
+            run.group.setItemVisibilityChecked(False)
+    for old in this.older:
+        if origin_of(old).output == output:
+            project.layerTreeRoot().findLayer(old.id()).setItemVisibilityChecked(False)
+
+
+def _lay_under_map(image, this, project):
     """Move an image into the road map it overlaps: above the intensity image, below everything that is drawn."""
     root = project.layerTreeRoot()
-    for road_map in road_maps(root):
-        lines = _layers(road_map, ("DRIVING_LINES", "ROAD_EDGES", "MARKING_LINES"))
-        if road_map is group or not any(_overlap(image, one, project) for one in lines):
+    for road_map in runs_of(project):
+        lines = [layer for layer in map(road_map.layer, LINES) if layer is not None]
+        if road_map.group in (None, this.group) or not any(_overlap(image, one, project) for one in lines):
             continue
-        places = [place for place, node in enumerate(road_map.children())
-                  if QgsLayerTree.isLayer(node) and node.layer() and node.layer().customProperty(OUTPUT) in BELOW_IMAGES]
+        below = {layer.id() for layer in map(road_map.layer, BELOW_IMAGES) if layer is not None}
+        places = [place for place, node in enumerate(road_map.group.children()) if QgsLayerTree.isLayer(node) and node.layerId() in below]
         node = root.findLayer(image.id())
-        road_map.insertChildNode(min(places, default=len(road_map.children())), node.clone())
-        group.removeChildNode(node)
-        if not group.children():
-            group.parent().removeChildNode(group)
+        road_map.group.insertChildNode(min(places, default=len(road_map.group.children())), node.clone())
+        this.group.removeChildNode(node)
+        if not this.group.children():
+            this.group.parent().removeChildNode(this.group)
         return
 
 
@@ -101,3 +95,5 @@ def _overlap(one, other, project):
     except QgsCsException:
         return False
     return QgsRectangle(extent).intersects(other.extent())
+
+

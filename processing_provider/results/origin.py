@@ -1,18 +1,58 @@
-"""Where a layer comes from, in the metadata that QGIS shows in its properties."""
+"""Where a layer comes from, in the metadata that QGIS shows in its properties and keeps in the file."""
 
 from __future__ import annotations
 
-from qgis.core import QgsMapLayer
+from dataclasses import dataclass
 
-from ...algorithms.provenance import Provenance
+from qgis.core import Qgis, QgsMapLayer, QgsProviderRegistry
+
+from ...algorithms.provenance import Provenance, signed_by
+
+OUTPUT = "lanewright/output"  # custom property of our layers: the result that they are, such as ROAD_EDGES
+KNOWN = ("ROAD_EDGES", "ROAD_SURFACE", "MARKINGS", "MARKING_LINES", "DRIVING_LINES", "LANES", "CURVE_ELEMENTS", "PASSES", "CURB_POINTS",
+         "BOUNDARIES", "CORNERS", "INTENSITY_IMAGE")  # results by whose names tables and files are usually called
 
 
-def describe_origin(layer: QgsMapLayer, provenance: Provenance) -> None:
+@dataclass(frozen=True)
+class Origin:
+    """The run that a layer comes from, and which of its results it is; "" where that is not known."""
+
+    provenance: Provenance
+    output: str
+
+
+def describe_origin(layer: QgsMapLayer, provenance: Provenance, output: str = "") -> None:
     """Set title, abstract and history of a layer; the history of an image that carried one is not repeated."""
     metadata = layer.metadata()
     metadata.setTitle(layer.name())
     metadata.setAbstract(f"{provenance.program}, {provenance.algorithm}")
     metadata.setLanguage("")
-    if provenance.sentence() not in metadata.history():
-        metadata.addHistoryItem(provenance.sentence())
+    if provenance.sentence(output) not in metadata.history():
+        metadata.addHistoryItem(provenance.sentence(output))
     layer.setMetadata(metadata)
+
+
+def origin_of(layer: QgsMapLayer) -> Origin | None:
+    """The last run of this program that a layer's metadata tell of; None of a layer that is not ours."""
+    metadata = layer.metadata()
+    told = [found for text in (*metadata.history(), metadata.abstract()) if (found := Provenance.of_sentence(text)) is not None]
+    if not told and layer.type() == Qgis.LayerType.Raster and layer.providerType() == "gdal":
+        told = [(provenance, "") for provenance in [signed_by(layer.source())] if provenance is not None]
+    if not told:
+        return None
+    provenance, output = max(told, key=lambda one: one[0].ended)
+    return Origin(provenance, str(layer.customProperty(OUTPUT) or "") or output or _called(layer))
+
+
+def output_of(layer: QgsMapLayer) -> str:
+    """The result that a layer is, such as ROAD_EDGES; "" of a layer that is not ours."""
+    known = layer.customProperty(OUTPUT)
+    origin = None if known else origin_of(layer)
+    return str(known) if known else "" if origin is None else origin.output
+
+
+def _called(layer):
+    """The result by whose name the table or file of a layer is called: an earlier version did not write it down."""
+    parts = QgsProviderRegistry.instance().decodeUri(layer.providerType(), layer.source())
+    names = [str(parts.get(part) or "").upper() for part in ("layerName", "table")] + [layer.source().rsplit("/", 1)[-1].split(".")[0].upper()]
+    return next((output for name in names for output in sorted(KNOWN, key=len, reverse=True) if name.endswith(output)), "")

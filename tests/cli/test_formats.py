@@ -133,3 +133,16 @@ def test_a_trajectory_comes_from_postgis(survey, tmp_path, database):
         f"--OUTPUT=postgres://{where} table=\"survey_7\".\"drive\" (geom)", folder=tmp_path)
     boundaries(survey, tmp_path, "edges.gpkg", trajectory=f"postgres://{where} table=\"survey_7\".\"drive\" (geom)")
     checked(ogr.Open(str(tmp_path / "edges.gpkg")), ["side"])
+
+
+def test_who_opens_a_table_of_postgis_sees_the_style_and_learns_which_result_of_which_run_it_is(survey, tmp_path, database, qgis_app):
+    from lanewright.processing_provider.results.origin import origin_of
+    from qgis.core import QgsVectorLayer
+
+    where, _ = database
+    boundaries(survey, tmp_path, f"postgres://{where} table=\"survey_7\".\"b12_borders\" (geom)")
+    layer = QgsVectorLayer(f"{where} key='id' table=\"survey_7\".\"b12_borders\" (geom)", "anything", "postgres")
+    assert layer.isValid()
+    origin = origin_of(layer)
+    assert (origin.provenance.algorithm, origin.output) == ("fitroadedges", "ROAD_EDGES")
+    assert layer.renderer().type() != "singleSymbol"

@@ -1,5 +1,8 @@
 """Layers of a road map in a project, as a run leaves them there."""
 
+from datetime import datetime, timezone
+
+from lanewright.algorithms.provenance import Provenance
 from lanewright.processing_provider.layers import qgis_fields
 from lanewright.processing_provider.results.attributes import explain_attributes
 from lanewright.processing_provider.results.layer_tree import place_layer
@@ -9,7 +12,16 @@ from qgis.core import QgsFeature, QgsGeometry, QgsVectorLayer
 EAST, NORTH = 500_000.0, 5_400_000.0
 
 
-def added(project, output, schema, *rows, kind="LineStringZ"):
+CLOUDS = ["/data/B12/a.laz", "/data/B12/b.laz"]
+
+
+def run_at(hour, clouds=CLOUDS, survey="B12", algorithm="roadmap", **values):
+    """A run of a survey that ended at an hour of one day."""
+    provenance = Provenance(algorithm, "1.0", {"POINT_CLOUDS": clouds, **values}, datetime(2026, 6, 1, hour, tzinfo=timezone.utc))
+    return Run(provenance, survey, f"{survey}, {hour}:00")
+
+
+def added(project, output, schema, *rows, kind="LineStringZ", run=None):
     """A layer of a road map; rows of (WKT about EAST, NORTH, fields)."""
     layer = QgsVectorLayer(f"{kind}?crs=EPSG:32650", output, "memory")
     layer.dataProvider().addAttributes(list(qgis_fields(schema, with_aliases=False)))
@@ -24,7 +36,7 @@ def added(project, output, schema, *rows, kind="LineStringZ"):
         layer.dataProvider().addFeature(feature)
     layer.updateExtents()
     explain_attributes(layer, output, schema)
-    run = Run("roadmap", "B12", "B12, 8:00", ("/data/B12/a.laz", "/data/B12/b.laz"))
+    run = run or run_at(8)
     project.addMapLayer(layer, False)
     root = project.layerTreeRoot()
     (root.findGroup(run.group) or root.insertGroup(0, run.group)).insertLayer(0, layer)

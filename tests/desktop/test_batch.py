@@ -4,7 +4,7 @@ import shutil
 
 import pytest
 from lanewright.desktop.dialogs.batch_dialog import BatchAlgorithmDialog
-from lanewright.processing_provider.results.layer_tree import road_maps
+from lanewright.processing_provider.results.road_maps import road_maps
 from lanewright.processing_provider.results.run_table import run_table
 from qgis.core import QgsApplication, QgsProject
 from qgis.PyQt.QtCore import QCoreApplication, QElapsedTimer
@@ -59,7 +59,7 @@ def test_a_batch_of_three_surveys_goes_on_after_one_fails_and_sums_up(surveys, m
     assert sorted(reports) == [str(surveys / day / "report.html") for day in ("monday", "wednesday")]
     shown = [result.name for result in resultsList.getResults()[before:]]
     assert all(any(f"[{day}/report]" in name for name in shown) for day in ("monday", "wednesday")), shown
-    groups = [group.name() for group in road_maps(QgsProject.instance().layerTreeRoot())]
+    groups = [road_map.name for road_map in road_maps(QgsProject.instance())]
     assert len(groups) == 2 and "wednesday/cloud" in groups[0] and "monday/cloud" in groups[1]
     summary = resultsList.getResults()[before:][-1].filename
     text = open(summary, encoding="utf-8").read()

@@ -8,6 +8,7 @@ from lanewright.core.common.schemas import DRIVING_LINES, LANES, ROAD_EDGES
 from lanewright.desktop.review.corrections_layer import corrections_layers
 from lanewright.desktop.review.doubt_dock import DoubtDock
 from lanewright.processing_provider.layers import QgisSource
+from lanewright.processing_provider.results.road_maps import road_maps
 from qgis.core import QgsGeometry, QgsPointXY, QgsProject, QgsRectangle
 from qgis.gui import QgsMapCanvas, QgsMessageBar
 from qgis.PyQt.QtWidgets import QMainWindow
@@ -40,7 +41,7 @@ def window(qgis_app):
 @pytest.fixture
 def at_first(window, tmp_path):
     window.ask_for_file = lambda: str(tmp_path / "corrections.gpkg")
-    window.go(QgsProject.instance().layerTreeRoot().findGroup("B12, 8:00"))
+    window.go(road_maps(QgsProject.instance())[0])
     return window
 
 
@@ -52,39 +53,49 @@ def corrections():
 
 def test_it_says_where_it_is_and_what_is_doubtful_there_and_shows_it(at_first):
     assert "Place 1 of 2" in at_first.where.text() and "station 10 m" in at_first.where.text()
-    assert at_first.list.count() == 2 and len(at_first.bands) == 2
+    assert at_first.list.count() == 2 and len(at_first.bands) == 1, "one piece is lit: the one that the buttons are about"
     assert at_first.iface.mapCanvas().extent().contains(QgsPointXY(EAST + 15, NORTH))
 
 
 def test_it_goes_forward_and_back_and_begins_again_after_the_last(at_first):
-    at_first.go(at_first.group)
+    at_first.go(at_first.road_map)
     assert at_first.place.station == 80
-    at_first.go(at_first.group, -1)
+    at_first.go(at_first.road_map, -1)
     assert at_first.place.station == 10
-    at_first.go(at_first.group, -1)
+    at_first.go(at_first.road_map, -1)
     assert at_first.place.station == 80
 
 
 def test_what_is_accepted_is_kept_in_a_layer_that_road_map_reads_and_the_next_place_comes(at_first):
     at_first.note.setText("seen from the image")
     at_first.accept_button.click()
+    assert at_first.place.station == 10, "a lane is left to decide"
+    at_first.accept_button.click()
     assert corrections() == [("accept", "edge", 0, 10.0, pytest.approx(8.0)), ("accept", "lane", 0, 14.0, pytest.approx(8.0))]
     assert at_first.place.station == 80 and "2 corrections in corrections.gpkg" in at_first.kept.text()
 
 
-def test_only_what_is_selected_is_deleted_and_the_list_says_so(at_first):
-    at_first.list.clearSelection()
-    at_first.list.item(0).setSelected(True)
+def test_delete_takes_one_piece_and_the_next_piece_waits_to_be_decided(at_first):
     at_first.delete_button.click()
     assert [(action, target) for action, target, *_ in corrections()] == [("delete", "edge")]
     assert at_first.place.station == 10 and "→ delete" in at_first.list.item(0).text() and "→" not in at_first.list.item(1).text()
+    assert [piece.target for piece in at_first.chosen] == ["lane"]
+    at_first.go(at_first.road_map)
+    assert len(at_first.chosen) == 1
+
+
+def test_several_are_deleted_where_they_were_selected_by_hand(at_first):
+    at_first.list.selectAll()
+    at_first.delete_button.click()
+    assert [(action, target) for action, target, *_ in corrections()] == [("delete", "edge"), ("delete", "lane")]
+    assert at_first.place.station == 80
 
 
 def test_who_decides_otherwise_has_one_correction_not_two(at_first):
     at_first.delete_button.click()
-    at_first.go(at_first.group, -1)
+    at_first.list.setCurrentRow(0)
     at_first.accept_button.click()
-    assert [action for action, *_ in corrections()] == ["accept", "accept"]
+    assert [action for action, *_ in corrections()] == ["accept"]
 
 
 def test_a_drawn_line_is_kept_with_its_target_and_can_be_taken_back(at_first):
@@ -101,9 +112,9 @@ def test_a_drawn_line_is_kept_with_its_target_and_can_be_taken_back(at_first):
 
 
 def test_one_piece_is_moved_to_a_line_and_a_line_of_one_click_is_none(at_first):
+    at_first.list.selectAll()
     assert not at_first.move_button.isEnabled()
-    at_first.list.clearSelection()
-    at_first.list.item(1).setSelected(True)
+    at_first.list.setCurrentRow(1)
     at_first.move_button.click()
     at_first.tool.add(QgsPointXY(EAST + 14, NORTH + 1))
     at_first.tool.finish()

@@ -1,18 +1,27 @@
 """The print layout of a road map."""
 
+import html
 import math
 
 import numpy as np
 import pytest
-from lanewright.desktop.layout.layout_dialog import LayoutDialog, credit_of, road_map_groups, shown_layers
+from lanewright.core.common.schemas import DRIVING_LINES, ROAD_EDGES
+from lanewright.desktop.layout.layout_dialog import LayoutDialog, credit_of, shown_layers
 from lanewright.desktop.layout.map_layout import MARGIN, SCALES, road_map_layout
 from lanewright.desktop.menu import unused_name
+from lanewright.processing_provider.results.attributes import explain_attributes
+from lanewright.processing_provider.results.road_maps import road_maps
 from qgis.core import (
+    Qgis,
     QgsCategorizedSymbolRenderer,
     QgsCoordinateReferenceSystem,
+    QgsExpression,
+    QgsExpressionContext,
+    QgsExpressionContextUtils,
     QgsFeature,
     QgsGeometry,
     QgsLayoutExporter,
+    QgsLayoutItemLabel,
     QgsLayoutItemLegend,
     QgsLayoutItemMap,
     QgsLayoutItemPicture,
@@ -24,6 +33,7 @@ from qgis.core import (
 )
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtGui import QImage
+from road_map_layers import added
 
 
 def street(project, angle=0.0):
@@ -124,24 +134,16 @@ def test_a_layer_below_is_drawn_last_and_is_not_in_the_legend(project):
     assert len(item(layout, QgsLayoutItemLegend).model().rootGroup().findLayers()) == 1
 
 
-def test_only_groups_with_a_road_map_are_offered(project):
-    """The group of a georeferenced image, and one of the user's own, are none."""
-    for name, fields in (("Lanewright – A", "field=road:integer&field=station_m:double"), ("Lanewright – image", "field=point:string"),
-                         ("Mine", "field=road:integer&field=station_m:double")):
-        layer = QgsVectorLayer(f"LineString?crs=EPSG:32650&{fields}", "lines", "memory")
-        project.addMapLayer(layer, False)
-        project.layerTreeRoot().addGroup(name).addLayer(layer)
-    assert [group.name() for group in road_map_groups(project)] == ["Lanewright – A"]
+def lines_of_a_map(project):
+    return [added(project, output, schema, ("LINESTRING Z (0 0 100, 40 0 100)", dict(road=0)))
+            for output, schema in (("ROAD_EDGES", ROAD_EDGES), ("DRIVING_LINES", DRIVING_LINES))]
 
 
 def test_layers_that_are_switched_off_are_not_printed(project):
-    group = project.layerTreeRoot().addGroup("Lanewright – A")
-    for _ in range(2):
-        layer = QgsVectorLayer("LineString?crs=EPSG:32650&field=road:integer&field=station_m:double", "lines", "memory")
-        project.addMapLayer(layer, False)
-        group.addLayer(layer)
-    group.findLayers()[0].setItemVisibilityChecked(False)
-    assert shown_layers(group) == [group.findLayers()[1].layer()]
+    edges, lanes = lines_of_a_map(project)
+    project.layerTreeRoot().findLayer(lanes.id()).setItemVisibilityChecked(False)
+    road_map, = road_maps(project)
+    assert shown_layers(road_map, project) == [edges] and shown_layers(road_map, project, hidden=True) == [lanes, edges]
 
 
 def test_the_scale_bar_is_a_part_of_the_page(project):
@@ -170,16 +172,13 @@ def web_map(project, source="type=xyz&url=http://127.0.0.1:9/{z}/{x}/{y}.png&zma
 
 
 def test_the_web_map_that_is_seen_is_offered_first_with_its_credit(project):
-    group = project.layerTreeRoot().addGroup("Lanewright – A")
-    layer = QgsVectorLayer("LineString?crs=EPSG:32650&field=road:integer&field=station_m:double", "lines", "memory")
-    project.addMapLayer(layer, False)
-    group.addLayer(layer)
+    lines_of_a_map(project)
     hidden, seen = web_map(project, name="Hidden"), web_map(project)
     project.layerTreeRoot().findLayer(hidden.id()).setItemVisibilityChecked(False)
     metadata = seen.metadata()
     metadata.setRights(["© The survey office"])
     seen.setMetadata(metadata)
-    dialog = LayoutDialog(project, [group])
+    dialog = LayoutDialog(project, road_maps(project))
     assert [dialog.below.itemText(row) for row in range(1, dialog.below.count())] == ["Web map", "Hidden"]
     assert dialog.choice["below"] == [seen] and dialog.choice["credit"] == "© The survey office"
     dialog.below.setCurrentIndex(0)
@@ -197,6 +196,36 @@ def test_the_credit_stands_in_the_corner_of_the_map(project, credit):
     label, chart = layout.itemById("Credit"), item(layout, QgsLayoutItemMap)
     assert label.text() == credit and chart.sceneBoundingRect().contains(label.sceneBoundingRect())
     assert road_map_layout(project, [street(project)], "Without").itemById("Credit") is None
+
+
+@pytest.mark.parametrize("text", ["[% env('HOME') %]", "[%env('HOME')%] [% '%' || 1 + 1 %]", "a [% b", "100 [%]", "[[%%]] %]"])
+def test_names_of_others_are_printed_as_they_stand(project, tmp_path, text):
+    """The name of a survey, a CRS or a layer may hold what QGIS would take for an expression."""
+    edges = street(project)
+    edges.setName(text)
+    edges.setRenderer(QgsCategorizedSymbolRenderer("''", [QgsRendererCategory("", QgsLineSymbol.createSimple({}), text)]))
+    wkt = edges.crs().toWkt(QgsCoordinateReferenceSystem.WktVariant.WKT2_2019)
+    edges.setCrs(QgsCoordinateReferenceSystem.fromWkt(wkt.replace("WGS 84 / UTM zone 50N", text).replace(",117,", ",117.25,")
+                                                      .replace(',ID["EPSG",32650]', "").replace(',ID["EPSG",16050]', "")))
+    layout = road_map_layout(project, [edges], text, credit=text)
+    printed = [label.currentText() for label in layout.items() if isinstance(label, QgsLayoutItemLabel)]
+    assert printed.count(text) == 3, "title, CRS and credit"
+    settings = QgsLayoutExporter.SvgExportSettings()
+    settings.textRenderFormat = Qgis.TextRenderFormat.AlwaysText
+    QgsLayoutExporter(layout).exportToSvg(str(tmp_path / "page.svg"), settings)
+    drawn = html.unescape((tmp_path / "page.svg").read_text(encoding="utf-8"))
+    assert drawn.count(f">{text}<") == 5, "the names of the layer and of its class in the legend too"
+
+
+def test_markup_in_a_field_is_shown_as_it_stands_in_a_map_tip(project):
+    layer = QgsVectorLayer("LineString?crs=EPSG:32650&field=class:string&field=length_m:double", "Markings", "memory")
+    explain_attributes(layer, "MARKINGS", ())
+    feature = QgsFeature(layer.fields())
+    feature["class"] = "<img src='http://localhost/'> & more"
+    context = QgsExpressionContext(QgsExpressionContextUtils.globalProjectLayerScopes(layer))
+    context.setFeature(feature)
+    said = QgsExpression.replaceExpressionText(layer.mapTipTemplate(), context)
+    assert "<img" not in said and "&lt;img" in said and "&amp; more" in said
 
 
 def classes(project, name, values, width=14, attribute="kind"):

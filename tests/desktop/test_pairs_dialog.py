@@ -167,3 +167,12 @@ def test_points_can_be_begun_again(window, flight):
     assert asked.layer is None and not asked.marks and "image: 0" in asked.told.text()
     asked.reject()
     assert window.two_points is None and window.images[0].rough is None
+
+
+def test_a_base_map_above_the_intensity_image_is_no_error_and_the_image_is_chosen(provider, flight, project):
+    project.addMapLayer(QgsRasterLayer(flight[0][0], "A base map"))
+    project.addMapLayer(QgsRasterLayer(flight[1], "Intensity image"))
+    main = QMainWindow()
+    dialog = PairsDialog(SimpleNamespace(mainWindow=lambda: main))
+    assert dialog.intensity.currentLayer().source() == flight[1]
+    dialog.close()

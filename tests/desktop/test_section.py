@@ -5,11 +5,9 @@ import pytest
 from lanewright.core.common.schemas import CURB_POINTS, DRIVING_LINES, ROAD_EDGES
 from lanewright.core.road.scanlines.from_points import slice_lines
 from lanewright.desktop.review.doubtful import doubts_of, reason
-from lanewright.desktop.review.section import Crossing, Section, clouds_of, corners, crossings, inputs_of, middle_of, section_at
+from lanewright.desktop.review.section import Crossing, Section, corners, crossings, middle_of, section_at
 from lanewright.desktop.review.section_view import SectionView
-from lanewright.processing_provider.results.layer_tree import place_layer
-from lanewright.processing_provider.results.runs import run_of
-from qgis.core import NULL, QgsProcessingContext
+from lanewright.processing_provider.results.road_maps import road_maps
 from qgis.PyQt.QtGui import QFontMetricsF
 from road_map_layers import EAST, NORTH, added
 
@@ -53,21 +51,6 @@ def test_only_points_of_the_slice_are_shown(qgis_app):
     points = np.array([[EAST - 3, NORTH, 100.0, 7], [EAST - 3, NORTH + 0.4, 100.0, 7], [EAST + 50, NORTH, 100.0, 7]])
     np.testing.assert_allclose(section.cut(points, 0.3), [[3.0, 100.0, 7.0]])
     assert len(section.cut(points, 1.0)) == 2
-
-
-def test_the_road_map_knows_its_point_clouds(project):
-    road(project)
-    assert clouds_of(project.layerTreeRoot().findGroup("B12, 8:00")) == ["/data/B12/a.laz", "/data/B12/b.laz"]
-
-
-def test_it_can_be_made_again_from_all_that_it_was_made_from(project):
-    road(project)
-    group = project.layerTreeRoot().findGroup("B12, 8:00")
-    assert inputs_of(group) == {"POINT_CLOUDS": ["/data/B12/a.laz", "/data/B12/b.laz"]}, "a map of an earlier version"
-    given = {"POINT_CLOUDS": ["/data/B12/a.laz"], "TRAJECTORY": "/data/B12/drive.csv", "MIN_HEIGHT": 0.08}
-    layer = group.findLayers()[0].layer()
-    place_layer(layer, project, "ROAD_EDGES", run_of("roadmap", given["POINT_CLOUDS"], True, QgsProcessingContext(), {**given, "CRS": NULL}))
-    assert inputs_of(group) == given
 
 
 def test_the_picture_shows_points_on_their_side(qgis_app):
@@ -137,6 +120,6 @@ def test_doubts_come_along_the_road_and_those_of_one_place_together(project):
     added(project, "ROAD_EDGES", ROAD_EDGES, piece(80, side="left", status="bridged"), piece(10, side="left", status="bridged"),
           piece(40, side="left", status="measured"))
     added(project, "DRIVING_LINES", DRIVING_LINES, piece(14, lane=1, direction=1, status="inferred"))
-    places = doubts_of(project.layerTreeRoot().findGroup("B12, 8:00"))
+    places = doubts_of(road_maps(project)[0])
     assert [place.station for place in places] == [10.0, 80.0]
     assert len(places[0].reasons) == 2 and "Lane 1" in "".join(places[0].reasons) and places[0].extent.width() == pytest.approx(12.0)

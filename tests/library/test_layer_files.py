@@ -1,12 +1,17 @@
 """Layers in files, without QGIS."""
 
+import sqlite3
+from contextlib import closing
+
 import numpy as np
 import pytest
 import shapely
-from lanewright.algorithms.vector_source import read_features, vertices_of
+from lanewright.algorithms.vector_source import in_file_units, read_features, scaled_wkb, vertices_of
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.features import Features
 from lanewright.core.common.schemas import CURVE_ELEMENTS, MARKINGS, ROAD_EDGES, SCANLINES, TRAJECTORY
+from lanewright.core.io.crs import parse_crs, same_crs
+from lanewright.core.io.units import in_metres
 from lanewright.core.road.scanlines.layer import LineSpool
 from lanewright.library import gdal_module, measured_lines
 from lanewright.library.layer_files import LayerFile, file_and_table, write_layer
@@ -49,6 +54,55 @@ def test_edges_come_back_as_they_were_written(tmp_path, suffix):
     assert (row["road"], row["side"], row["station_m"], row["chain"]) == (1, "left", 12.25, 4)
     assert row["rmse_m"] is None and row["pass"] is None and row["end_m"] == pytest.approx(1 / 3, abs=1e-9)
     assert CRS.from_wkt(found.crs).to_epsg() == 32650 or suffix == "geojson"
+
+
+@pytest.mark.parametrize("kind, schema, wkb", [("PointZ", TRAJECTORY, None), ("LineStringZM", SCANLINES, True)])
+def test_a_layer_without_a_crs_is_cartesian_in_a_geopackage_and_never_geographic(tmp_path, kind, schema, wkb):
+    if wkb:
+        layer = LineSpool(kind, schema)
+        layer.add(np.array([[1.0, 2, 3, 4], [2, 3, 4, 5]]), np.array([0, 2]))
+    else:
+        layer = Features(kind, schema, [shapely.points(1.0, 2.0, 3.0)], [{}])
+    path = written(tmp_path / "bare.gpkg", layer)
+    with closing(sqlite3.connect(path)) as database:
+        assert database.execute("SELECT srs_id FROM gpkg_geometry_columns").fetchall() == [(-1,)]
+    assert LayerFile(path, "Layer").crs == ""
+
+
+@pytest.mark.parametrize("crs, across, up", [
+    ("EPSG:2263", 1200 / 3937, 1200 / 3937), ("EPSG:2263+5703", 1200 / 3937, 1.0), ("EPSG:2222", 0.3048, 0.3048)])
+@pytest.mark.parametrize("suffix", ["gpkg", "fgb", "shp"])
+def test_a_layer_of_a_survey_in_feet_is_stored_in_feet_and_read_in_metres(tmp_path, suffix, crs, across, up):
+    wkt = in_metres(parse_crs(crs).to_wkt())[0]
+    line = shapely.linestrings([(300000.5, 61000.25, 24.125), (300010.0, 61010.0, 25.0)])
+    path = written(tmp_path / f"edges.{suffix}", in_file_units(Features("LineStringZ", ROAD_EDGES, [line], [dict(EDGE)], wkt)))
+    source = LayerFile(path, "Road edges")
+    (stored, _), = source.stored_rows()
+    np.testing.assert_allclose(vertices_of(stored)[0, :3], [300000.5 / across, 61000.25 / across, 24.125 / up], rtol=1e-12)
+    assert CRS(source.stored_crs).equals(CRS(crs)) or suffix == "shp"
+    found = read_features(source, ROAD_EDGES, "LineStringZ")
+    np.testing.assert_allclose(shapely.get_coordinates(found.geometries, include_z=True), shapely.get_coordinates(line, include_z=True), atol=1e-6)
+    assert same_crs(parse_crs(found.crs), parse_crs(wkt)) and found.rows[0]["station_m"] == 12.25, "fields stay in metres"
+
+
+def test_measures_of_lines_in_feet_stay_as_they_are(tmp_path):
+    layer = LineSpool("LineStringZM", SCANLINES, in_metres("EPSG:2263")[0])
+    layer.add(np.array([[300_000.0, 61_000, 3, 4], [300_001, 61_001, 4, 5]]), np.array([0, 2]), road=0)
+    source = LayerFile(written(tmp_path / "lines.gpkg", in_file_units(layer)), "Scanlines")
+    (stored, _), = source.stored_rows(measures=True)
+    (found, _), = source.rows(measures=True)
+    np.testing.assert_allclose(vertices_of(stored)[0], [984_250.0, 61_000 / (1200 / 3937), 3 / (1200 / 3937), 4])
+    np.testing.assert_allclose(vertices_of(found), [[300_000.0, 61_000, 3, 4], [300_001, 61_001, 4, 5]])
+
+
+def test_every_kind_of_geometry_is_scaled():
+    square = shapely.polygons([(0, 0, 1), (4, 0, 1), (4, 4, 1), (0, 0, 1)], holes=[[(2, 1, 1), (3, 1, 1), (3, 2, 1), (2, 1, 1)]])
+    lines = shapely.multilinestrings([[(0, 0), (1, 2)], [(3, 4), (5, 6)]])
+    for one in (square, shapely.multipolygons([square, square]), lines, shapely.points(1, 2)):
+        wkb = shapely.to_wkb(one, output_dimension=3, flavor="iso")
+        found = shapely.from_wkb(scaled_wkb(wkb, 2.0, 3.0))
+        expected = shapely.get_coordinates(one, include_z=True) * (2.0, 2.0, 3.0)
+        np.testing.assert_array_equal(shapely.get_coordinates(found, include_z=True), expected)
 
 
 def test_points_polygons_and_tables(tmp_path):

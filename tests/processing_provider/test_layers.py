@@ -1,5 +1,8 @@
 """Layers written and read again are the layers that were written."""
 
+import sqlite3
+from contextlib import closing
+
 import numpy as np
 import pytest
 import shapely
@@ -134,6 +137,19 @@ def test_a_geopackage_s_undefined_crs_is_no_crs(tmp_path, qgis_app):
     source.CreateLayer("bare", None, ogr.wkbPoint25D)
     del source
     assert crs_text(QgsVectorLayer(str(tmp_path / "bare.gpkg"), "bare", "ogr").crs()) == ""
+
+
+def test_a_layer_without_a_crs_is_cartesian_and_never_geographic(tmp_path, provider):
+    import processing
+
+    driven = np.c_[np.arange(50.0), 1000.0 + np.arange(50.0), np.full(50, 2000.0), np.full(50, 30.0)]
+    np.savetxt(tmp_path / "drive.csv", driven, "%.3f", ",", header="time,x,y,z", comments="")
+    path = tmp_path / "drive.gpkg"
+    processing.run("lanewright:importtrajectory", {"INPUT": str(tmp_path / "drive.csv"), "OUTPUT": str(path)})
+    with closing(sqlite3.connect(path)) as database:
+        assert database.execute("SELECT srs_id FROM gpkg_geometry_columns").fetchall() == [(-1,)]
+    layer = QgsVectorLayer(str(path), "drive", "ogr")
+    assert QgisSource(layer, "Trajectory").crs == "" and not layer.crs().isGeographic()
 
 
 @pytest.mark.parametrize("name", ["layer.gpkg", "layer.shp", "layer.csv", "layer.geojson"])

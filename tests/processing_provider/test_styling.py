@@ -141,7 +141,7 @@ def test_what_is_loaded_comes_named_and_grouped(qgis_app):
     context.setProject(QgsProject.instance())
     details = QgsProcessingContext.LayerDetails("x", context.project(), "x")
     context.addLayerToLoadOnCompletion("/data/edges.gpkg", details)
-    style_on_load("ROAD_EDGES", "/data/edges.gpkg", "Road edges", context, run=Run("roadmap", "B12", "Lanewright – B12"))
+    style_on_load("ROAD_EDGES", "/data/edges.gpkg", "Road edges", context, run=Run(None, "B12", "Lanewright – B12"))
     loaded = context.layerToLoadOnCompletionDetails("/data/edges.gpkg")
     assert (loaded.name, loaded.groupName, loaded.forceName) == ("Road edges", "Lanewright – B12", True)
     assert loaded.postProcessor() is not None

@@ -41,6 +41,7 @@ class Evidence:
     arrows : (A, 3) interval, offset, and which way it points: 1 along the road, -1 against it, nearer 0 the less sure
     stops : (S, 3) interval, least and greatest offset
     divided : (I,) bool, whether the road is one carriageway of two
+    taken : what an analyst took: interval, offset of the lane that it is taken for, and offset, width and direction of each lane instead
     """
 
     driven: np.ndarray
@@ -50,6 +51,7 @@ class Evidence:
     arrows: np.ndarray
     stops: np.ndarray
     divided: np.ndarray
+    taken: tuple[tuple[int, float, tuple[tuple[float, float, int], ...]], ...] = ()
 
     def part(self, first: int, end: int) -> Evidence:
         """That of the intervals from `first` to `end` (exclusive)."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...common.setting import check_limits, setting
-from ...survey.las.writer import new_laz, scale_for
+from ...survey.las.writer import metres_of_file, new_laz, place_in_file
 from ...survey.store.records import COORDINATE_SCALE
 from .scanlines import Scanlines
 
@@ -83,16 +83,13 @@ class ResampledPoints:
 
         self.path, self.settings = str(path), settings
         self._header = laspy.LasHeader(point_format=6, version="1.4")
-        self._header.scales, self._header.offsets = np.full(3, scale_for(farthest)), np.asarray(origin, float)
         self._header.generating_software = "Lanewright"
         self._header.add_extra_dims([
             laspy.ExtraBytesParams(name=name, type=kind, description=text,
                                    **({} if scale is None else dict(scales=np.array([scale]), offsets=np.array([0.0]))))
             for name, kind, text, scale in SCANLINE_DIMENSIONS])
-        if crs:
-            from ...io.crs import parse_crs
-
-            self._header.add_crs(parse_crs(crs))
+        place_in_file(self._header, origin, crs, farthest)
+        self._metres = metres_of_file(self._header, crs)
         self.count = 0
 
     def __enter__(self) -> ResampledPoints:
@@ -117,8 +114,8 @@ class ResampledPoints:
         s = lines.station[line]
         x, y = frame.road(road).to_map(s, d)
         out = laspy.ScaleAwarePointRecord.zeros(len(line), header=self._header)
-        for name, values in zip("XYZ", (x, y, z)):
-            out.array[name] = np.rint(values / self._header.scales[0])
+        for name, values, metres in zip("XYZ", (x, y, z), self._metres):
+            out.array[name] = np.rint(values / metres)
         out["intensity"] = np.clip(np.rint(intensity), 0, 65535)
         out["return_number"] = out["number_of_returns"] = np.ones(len(line), np.uint8)
         out["point_source_id"] = lines.scanner[line] + 1

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
-from ...io.crs import check_projected, crs_note, unit_note
+from ...io.cloud_crs import check_projected, crs_note, unit_note
 from ..las.copies import without_copies
 from ..las.reader import read_headers
 from ..trajectory.trajectory import Trajectory
@@ -105,7 +105,7 @@ def estimate_trajectory(paths: Sequence[str | Path], crs: str = "", scanner_fiel
         If a file cannot be read, the CRS is geographic or not in metres, or the cloud was not measured from a vehicle on a road.
     """
     copies: list[str] = []
-    files = without_copies(read_headers(paths), copies.append)
+    files = without_copies(read_headers(paths, copies.append, crs), copies.append)
     wkt = check_projected(files, crs)
     found = _estimated(files, scanner_field, wkt, progress)
     found.cloud_notes = copies + [note for note in (crs_note(files, crs, wkt), unit_note(found.above_road, wkt)) if note]

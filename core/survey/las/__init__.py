@@ -6,9 +6,10 @@ In: paths. Out: checked headers, blocks of points in file order, and files that 
 from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
+    "crs_records": ("crs_of_records",),
     "guard": ("find_damage",),
     "near": ("points_near",),
     "parallel_reader": ("ParallelCloudReader",),
-    "reader": ("CloudHeader", "open_cloud", "read_blocks", "read_header", "read_headers"),
-    "writer": ("new_laz", "scale_for"),
+    "reader": ("CloudHeader", "cloud_crs", "open_cloud", "read_blocks", "read_header", "read_headers"),
+    "writer": ("metres_of_file", "new_laz", "place_in_file", "scale_for"),
 })

@@ -83,7 +83,7 @@ def _content(file):
     """Sums over a file's places, intensities and times, whatever the order of its points."""
     names = ["x", "y", "z", "intensity"] + ["gps_time"] * file.has_time
     sums = np.zeros(len(names), np.uint64)
-    for block in read_blocks(file.path, layers=names[2:]):
+    for block in read_blocks(file.path, layers=names[2:], units=file.units):
         for k, name in enumerate(names):
             values = np.asarray(block[name])
             if name == "gps_time":

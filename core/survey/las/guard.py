@@ -11,67 +11,138 @@ import os
 import struct
 from typing import BinaryIO
 
-LASZIP_USER, LASZIP_RECORD = b"laszip encoded", 22204
-VLR_HEADER_SIZE, EVLR_HEADER_SIZE = 54, 60  # bytes
-COMPRESSED_BIT = 0x80        # of the point format
+import numpy as np
+
+from .mending import MendedHeader, count_note, mend, opened, sampled_places
+from .records_of_file import COMPRESSED_BIT, LASZIP_RECORD, LASZIP_USER, VLR_HEADER_SIZE, HeaderFields, base_size
+
 VARIABLE_CHUNKS = 0xFFFFFFFF
 MAX_CHUNK_SIZE = 50_000_000  # points; LASzip writes 50,000
+CHUNKED_COMPRESSOR = 2       # of the other point formats, where each chunk begins anew
 LAYERED_COMPRESSOR = 3       # of point formats 6 and above: a chunk holds its values layer by layer
+MAX_DECODED = 400_000        # points of a last chunk that is decoded to count them: larger ones take too much memory
+FLUSHED_BYTES = 16           # at most that a coder writes behind its last point: points that need fewer bytes are not all there are
+MAX_LOOKS = 1000             # chunks whose first point is looked at
 LAYERS_OF_ITEM = {10: 9, 11: 1, 12: 2, 13: 1}  # POINT14, RGB14, RGBNIR14, WAVEPACKET14; BYTE14 has one layer for each byte
 
 
-def find_damage(path: str | os.PathLike[str]) -> str:
+def find_damage(path: str | os.PathLike[str], mended: MendedHeader | None = None) -> str:
     """What is wrong with the lengths in a file's header.
 
     Parameters
     ----------
     path : of a LAS or LAZ file
+    mended : what is read in place of some of its bytes; by default as `mend` says
 
     Returns
     -------
     The end of a sentence; "" where nothing is wrong, or the file is not a LAS file at all
     """
     size = os.path.getsize(path)
-    with open(path, "rb") as file:
-        head = file.read(375)
-        if len(head) < 227 or head[:4] != b"LASF":
+    with opened(path, mend(path) if mended is None else mended) as file:
+        fields = HeaderFields.read(file)
+        if fields is None:
             return ""
-        header_size, points_at, vlrs = struct.unpack_from("<HII", head, 94)
-        point_format, record_size = struct.unpack_from("<BH", head, 104)
-        if not 227 <= header_size <= points_at <= size:
-            return f"its header states that the points begin at byte {points_at:,} of {size:,}"
-        if vlrs * VLR_HEADER_SIZE > points_at - header_size:
-            return f"its header states {vlrs:,} variable length records, more than fit before the points"
-        if head[25] >= 4 and len(head) >= 247:
-            first_evlr, evlrs = struct.unpack_from("<QI", head, 235)
-            if evlrs and (first_evlr > size or evlrs * EVLR_HEADER_SIZE > size - first_evlr):
-                return f"its header states {evlrs:,} extended records from byte {first_evlr:,} of {size:,}"
-            if wrong := _evlrs_beyond_end(file, first_evlr, evlrs, size):
-                return wrong
-        if not point_format & COMPRESSED_BIT:
+        if not 227 <= fields.header_size <= fields.points_at <= size:
+            return f"its header states that the points begin at byte {fields.points_at:,} of {size:,}"
+        if fields.vlrs * VLR_HEADER_SIZE > fields.points_at - fields.header_size:
+            return f"its header states {fields.vlrs:,} variable length records, more than fit before the points"
+        least = base_size(fields.point_format)
+        if least is not None and fields.record_size < least:
+            return f"its header states {fields.record_size} bytes per point, and points of format {fields.point_format} have {least}"
+        if not fields.compressed:
             return ""
-        record = _laszip_record(file, header_size, vlrs, points_at)
+        record = _laszip_record(file, fields.header_size, fields.vlrs, fields.points_at)
         if record is None:
             return "it is compressed, but the record that describes the compression is missing"
         chunk_size, items = _chunk_size(record), _item_sizes(record)
-        if sum(items) != record_size:
-            return f"its header states {record_size} bytes per point, the compressor {sum(items)}"
+        if sum(items) != fields.record_size:
+            return f"its header states {fields.record_size} bytes per point, the compressor {sum(items)}"
         if chunk_size != VARIABLE_CHUNKS and not 0 < chunk_size <= MAX_CHUNK_SIZE:
             return f"its compressor states chunks of {chunk_size:,} points"
-        count = struct.unpack_from("<Q", head, 247)[0] if head[25] >= 4 and len(head) >= 255 else struct.unpack_from("<I", head, 107)[0]
-        return _chunk_table_damage(file, points_at, size, record, count)
+        return _chunk_table_damage(file, fields.points_at, size, record)
 
 
-def _evlrs_beyond_end(file, place, evlrs, size):
-    """What is wrong with the lengths of the records behind the points; "" where all lie in the file."""
-    for number in range(1, evlrs + 1):
-        file.seek(place + 20)
-        length = file.read(8)
-        after = place + EVLR_HEADER_SIZE + (struct.unpack("<Q", length)[0] if len(length) == 8 else 0)
-        if after > size:
-            return f"its extended record {number:,} ends at byte {after:,} of {size:,}"
-        place = after
-    return ""
+def with_points_of_chunks(path: str | os.PathLike[str], mended: MendedHeader) -> MendedHeader:
+    """The header of an undamaged file, with as many points as its chunks hold where it is compressed.
+
+    Chunks of point formats 6 and above, and those of all sizes, state their points. Of the others each but the last is full, and how many
+    points the last has shows when it is decoded: points beyond its last need bytes that are not there.
+    """
+    with opened(path, mended) as file:
+        fields = HeaderFields.read(file)
+        if fields is None or not fields.compressed:
+            return mended
+        record, begin, table = _chunks(file)
+        count = _points_of(file, record, begin, table, fields)
+    if count == fields.count:
+        return mended
+    return mended.with_count(fields, count, "" if count in fields.counts else count_note(fields.count, count))
+
+
+def places_here_and_there(path: str | os.PathLike[str], mended: MendedHeader) -> np.ndarray:
+    """Coordinates of points all over an undamaged file, without decoding it.
+
+    Returns
+    -------
+    (N, 3) map coordinates: of the first point of every chunk, which is not compressed, or of points evenly spread in a file without chunks
+    """
+    with opened(path, mended) as file:
+        fields = HeaderFields.read(file)
+        if fields is None or not fields.count:
+            return np.empty((0, 3))
+        if not fields.compressed:
+            places = sampled_places(file, fields, 0, fields.count)
+        else:
+            _, begin, table = _chunks(file)
+            at = begin + np.cumsum([0] + [length for points, length in table if points and length])[:-1]
+            places = np.empty((0, 3), "<i4")
+            if len(at):
+                places = np.array([_integers_at(file, int(place)) for place in at[np.unique(np.linspace(0, len(at) - 1, MAX_LOOKS).astype(int))]])
+        return places * fields.scales + fields.offsets
+
+
+def _integers_at(file, place):
+    """The stored x, y and z of a point that is not compressed."""
+    file.seek(place)
+    return np.frombuffer(file.read(12), "<i4")
+
+
+def _points_of(file, record, begin, table, fields):
+    """The points in the chunks of a file; the header's number where they do not tell."""
+    size, compressor = _chunk_size(record), struct.unpack_from("<H", record)[0]
+    if size == VARIABLE_CHUNKS:
+        return sum(points for points, _ in table)
+    if not table or compressor not in (CHUNKED_COMPRESSOR, LAYERED_COMPRESSOR):
+        return fields.count
+    full, length = size * (len(table) - 1), table[-1][1]
+    file.seek(begin + sum(nbytes for _, nbytes in table[:-1]))
+    chunk = file.read(length)
+    if compressor == LAYERED_COMPRESSOR:
+        raw = sum(_item_sizes(record))
+        return full + struct.unpack_from("<I", chunk, raw)[0] if len(chunk) >= raw + 4 else fields.count
+    stated = next((count for count in fields.counts if full < count <= full + size), 0)
+    if min(size, stated - full if stated else size) > MAX_DECODED:
+        return stated or fields.count
+    if stated and not _holds(record, chunk[:length - max(FLUSHED_BYTES, length // 100)], stated - full):
+        return stated
+    low, high = max(stated - full, 1), size + 1   # points that can be decoded, and that cannot
+    while high - low > 1:
+        middle = (low + high) // 2
+        low, high = (middle, high) if _holds(record, chunk, middle) else (low, middle)
+    return full + low
+
+
+def _holds(record, chunk, points):
+    """Whether so many points can be decoded from the bytes of a chunk."""
+    import lazrs
+
+    buffer = np.empty(points * sum(_item_sizes(record)), np.uint8)
+    try:
+        lazrs.decompress_points_with_chunk_table(chunk, record, buffer, [(points, len(chunk))])
+    except lazrs.LazrsError:
+        return False
+    return True
 
 
 def points_per_chunk(path: str | os.PathLike[str]) -> int:
@@ -91,12 +162,18 @@ def chunks_of(path: str | os.PathLike[str]) -> tuple[bytes, int, list[tuple[int,
     begin : byte at which the chunks begin
     table : [(points, bytes)] of each chunk
     """
+    with open(path, "rb") as file:
+        return _chunks(file)
+
+
+def _chunks(file):
+    """As `chunks_of`, of an open file."""
     import lazrs
 
-    with open(path, "rb") as file:
-        _, record, points_at = _compression(file)
-        file.seek(points_at)
-        return record, points_at + 8, lazrs.read_chunk_table(file, lazrs.LazVlr(record))
+    file.seek(0)
+    _, record, points_at = _compression(file)
+    file.seek(points_at)
+    return record, points_at + 8, lazrs.read_chunk_table(file, lazrs.LazVlr(record))
 
 
 def _compression(file):
@@ -140,7 +217,7 @@ def _item_types(record):
     return [struct.unpack_from("<H", record, 34 + 6 * item)[0] for item in range(count)]
 
 
-def _chunk_table_damage(file, points_at, size, record, count):
+def _chunk_table_damage(file, points_at, size, record):
     """What is wrong with the table of chunks, or with the chunks."""
     file.seek(points_at)
     place = file.read(8)
@@ -157,11 +234,11 @@ def _chunk_table_damage(file, points_at, size, record, count):
     if chunks > at - points_at:  # a chunk has at least one byte
         return f"it states {chunks:,} chunks in {at - points_at:,} bytes"
     file.seek(at)
-    return _chunk_damage(file, points_at + 8, at, record, count)
+    return _chunk_damage(file, points_at + 8, at, record)
 
 
-def _chunk_damage(file, first, end, record, count):
-    """What is wrong with the chunks: they must fit before their table and hold the points that the header states."""
+def _chunk_damage(file, first, end, record):
+    """What is wrong with the chunks: they must fit before their table."""
     import lazrs
 
     try:
@@ -173,22 +250,25 @@ def _chunk_damage(file, first, end, record, count):
     taken = sum(length for _, length in table)
     if taken > end - first:
         return f"its chunks should take {taken:,} bytes, and there are {end - first:,}"
-    if _chunk_size(record) == VARIABLE_CHUNKS and sum(points for points, _ in table) != count:
-        return f"its header promises {count:,} points, its chunks {sum(points for points, _ in table):,}"
+    if end > first and not taken:
+        return f"its table of chunks is empty, and there are {end - first:,} bytes of points"
     return _layer_damage(file, first, record, table) if struct.unpack_from("<H", record)[0] == LAYERED_COMPRESSOR else ""
 
 
 def _layer_damage(file, first, record, table):
-    """What is wrong with the lengths of the layers, which each chunk states after its first, uncompressed point."""
+    """What is wrong with the lengths of the layers, which each chunk states after its first, uncompressed point, or with its points."""
     raw = sum(_item_sizes(record))
     layers = sum(LAYERS_OF_ITEM.get(kind, size) for kind, size in zip(_item_types(record), _item_sizes(record)))
     head = raw + 4 + 4 * layers  # the number of points, and the lengths
+    counted = _chunk_size(record) == VARIABLE_CHUNKS
     at = first
-    for _, length in table:
+    for points, length in table:
         file.seek(at)
         data = file.read(min(head, length))
-        taken = sum(struct.unpack_from(f"<{layers}I", data, raw + 4)) if len(data) == head else 0
-        if length and head + taken > length:
-            return f"a chunk of {length:,} bytes states layers of {taken:,}"
+        count, *lengths = struct.unpack_from(f"<{1 + layers}I", data, raw) if len(data) == head else (points,)
+        if length and head + sum(lengths) > length:
+            return f"a chunk of {length:,} bytes states layers of {sum(lengths):,}"
+        if counted and count != points:
+            return f"its table of chunks states {points:,} points in a chunk that holds {count:,}"
         at += length
     return ""

@@ -14,8 +14,8 @@ from .reader import CloudHeader, layer_selection, open_cloud, read_blocks, read_
 
 MAX_BLOCKS_PER_CHUNK = 4   # larger chunks are not decoded as a whole: the points are read one block after the other
 MOST_LAYOUTS = 64          # files whose header and chunks are remembered
-TIME_SAMPLES = 5           # places in a file at which gps_time is sampled
-POINTS_PER_TIME_SAMPLE = 1000
+SAMPLED_PLACES = 5                # places in a file at which points are looked at
+POINTS_PER_SAMPLE = 1000
 
 
 class ParallelCloudReader:
@@ -47,7 +47,7 @@ class ParallelCloudReader:
         """
         for number, first, count in self.ranges(files, size):
             if _in_one_piece(files[number], size):
-                for points in read_blocks(files[number].path, size, self._layers):
+                for points in read_blocks(files[number].path, size, self._layers, files[number].units):
                     yield partial(_identity, points)
             else:
                 yield partial(self._load, files[number], first, count)
@@ -71,7 +71,7 @@ class ParallelCloudReader:
     def points(self, file: CloudHeader, first: int, count: int, size: int) -> Iterator[Any]:
         """Yield the points of a range, as of `ranges` with the same size, as laspy point records; the next may overwrite one."""
         if _in_one_piece(file, size):
-            yield from read_blocks(file.path, size, self._layers)
+            yield from read_blocks(file.path, size, self._layers, file.units)
         else:
             yield self._load(file, first, count)
 
@@ -93,7 +93,7 @@ class ParallelCloudReader:
         """laspy's header of a file and, where it is compressed, its LASzip record, first byte and (C, 2) points and bytes of its chunks."""
         found = self._layouts.get(file.path)
         if found is None:
-            with open_cloud(file.path, self._layers, checked=True) as reader:
+            with open_cloud(file.path, self._layers, known=file) as reader:
                 header = reader.header
             chunks = None
             if header.are_points_compressed:
@@ -108,20 +108,25 @@ class ParallelCloudReader:
 
     def times(self, file: CloudHeader) -> Iterator[np.ndarray]:
         """Yield (N,) gps_time in seconds of a few points at several places of a file, its first and last points among them."""
+        for points in self.samples(file):
+            yield np.array(points["gps_time"], float)
+
+    def samples(self, file: CloudHeader) -> Iterator[Any]:
+        """Yield a few points at several places of a file, its first and last among them, as laspy point records; the next may overwrite one."""
         loads: list[Callable[[], Any]]
         if file.chunk:
-            starts = np.linspace(0, max(file.count - POINTS_PER_TIME_SAMPLE, 0), TIME_SAMPLES).astype(int)
+            starts = np.linspace(0, max(file.count - POINTS_PER_SAMPLE, 0), SAMPLED_PLACES).astype(int)
             starts[:-1] -= starts[:-1] % file.chunk   # a chunk is decoded from its start on
-            loads = [partial(self._read_points, file.path, int(start), POINTS_PER_TIME_SAMPLE) for start in np.unique(starts)]
+            loads = [partial(self._read_points, file, int(start), POINTS_PER_SAMPLE) for start in np.unique(starts)]
         else:
             header, chunks = self._layout(file)
             loads = [partial(self._read_chunks, file.path, header, *run) for run in _chunk_runs(file, 1, chunks)]
-            loads = [loads[k] for k in np.unique(np.linspace(0, len(loads) - 1, TIME_SAMPLES).astype(int))]
+            loads = [loads[k] for k in np.unique(np.linspace(0, len(loads) - 1, SAMPLED_PLACES).astype(int))]
         for load in loads:
-            yield np.array(load()["gps_time"], float)
+            yield load()
 
-    def _read_points(self, path, first, count):
-        return read_points(self._reader(path), path, first, count)
+    def _read_points(self, file, first, count):
+        return read_points(self._reader(file), file.path, first, count)
 
     def _read_chunks(self, path, header, record, place, first, table):
         """The points of chunks that begin at a byte; `table` has (points, bytes) of each."""
@@ -162,13 +167,13 @@ class ParallelCloudReader:
             buffer = self._buffers.bytes = np.empty(size, np.uint8)
         return buffer[:size]
 
-    def _reader(self, path):
-        thread = threading.get_ident()
+    def _reader(self, file):
+        path, thread = file.path, threading.get_ident()
         opened, reader = self._readers.get(thread, ("", None))
         if opened != path:
             if reader is not None:
                 reader.close()
-            reader = open_cloud(path, self._layers, checked=True, sparse=True)
+            reader = open_cloud(path, self._layers, known=file, sparse=True)
             self._readers[thread] = path, reader
         return reader
 

@@ -12,11 +12,16 @@ import numpy as np
 
 from ...common.errors import Cancelled, RoadExtractionError
 from ...common.parallel import check_cancelled
-from .guard import find_damage, points_per_chunk
+from ...io.units import METRES, FileUnits, in_metres
+from .crs_records import crs_of_records
+from .guard import find_damage, places_here_and_there, points_per_chunk, with_points_of_chunks
+from .mending import mend, opened
+from .records_of_file import HeaderFields
 
 POINTS_PER_BLOCK = 400_000  # points decoded at a time
 CLOUD_SUFFIXES = (".las", ".laz")
 MAX_HEADER_SCALE, MAX_HEADER_OFFSET = 1e3, 1e12  # m, of coordinates stored as integers; beyond them no place on earth is described
+BOUNDS_TOLERANCE = 0.01      # m: bounds are often rounded to centimetres
 NOT_FILE_ERRORS = (KeyboardInterrupt, SystemExit, GeneratorExit, Cancelled, MemoryError)  # they say nothing about the file
 
 ReadResult = TypeVar("ReadResult")
@@ -34,11 +39,14 @@ class CloudHeader:
     count : points
     minimum, maximum : (3,) map coordinates
     scales : (3,) metres
-    crs : WKT, "" where the file has none
+    crs : WKT, metric, "" where the file has none
     has_time, has_channel : whether the points have gps_time and a scanner channel
     adjusted_time : whether gps_time is adjusted standard GPS time (global encoding bit 0), not seconds of the GPS week
     chunk : points that are compressed together; 1 in a LAS file, 0 where the number varies
     has_colour : whether the points have red, green and blue
+    notes : sentences about what the header states otherwise than the file shows
+    units : of the coordinates in the file; all others here are in metres
+    crs_problem : why what the file says about its coordinates is not used, "" for nothing
     """
 
     path: str
@@ -54,38 +62,90 @@ class CloudHeader:
     adjusted_time: bool
     chunk: int = 0
     has_colour: bool = False
+    notes: tuple[str, ...] = ()
+    units: FileUnits = METRES
+    crs_problem: str = ""
 
 
-def open_cloud(path: str | os.PathLike[str], layers: Iterable[str] | None = None, checked: bool = False, sparse: bool = False) -> Any:
-    """Open a LAS, LAZ or COPC file with laspy.
+def open_cloud(path: str | os.PathLike[str], layers: Iterable[str] | None = None, known: CloudHeader | None = None, sparse: bool = False,
+               units: FileUnits = METRES) -> Any:
+    """Open a LAS, LAZ or COPC file with laspy, its coordinates in metres.
 
     Parameters
     ----------
     path : of the file
     layers : names of the layers of a LAZ 1.4 file that are decoded beside x, y and the return numbers ("z", "intensity" ...); all by default
-    checked : the file was checked for damage before
+    known : the file's header, where it was read and checked for damage before
     sparse : few points are read here and there: a chunk is decoded no further than they lie in it, by one thread
+    units : of its coordinates, where it does not state them by its CRS
 
     Returns
     -------
-    laspy.LasReader
+    laspy.LasReader, whose header has scales, offsets and bounds in metres
 
     Raises
     ------
     RoadExtractionError
         If the file is missing, is not a LAS or LAZ file, is damaged, or cannot be read.
     """
-    import laspy
+    reader = _open(path, _mended(path) if known is None else _as_known(path, known), layers, sparse)
+    _to_metres(reader.header, _stated_units(reader.header, units) if known is None else known.units)
+    return reader
 
+
+def cloud_crs(header: Any) -> str:
+    """WKT, metric, of the CRS that a laspy header states; "" where there is none that is understood and does not contradict itself."""
+    crs, problem = crs_of_records(header)
+    return "" if problem else in_metres(crs)[0]
+
+
+def _stated_units(header, otherwise):
+    """The FileUnits of the CRS that a header states, and `otherwise` where it states none."""
+    crs = cloud_crs(header)
+    return in_metres(crs)[1] if crs else otherwise
+
+
+def _to_metres(header, units):
+    """Bring what a header says about coordinates from the units of its file to metres."""
+    if not units.metric:
+        header.scales, header.offsets, header.mins, header.maxs = (
+            units.in_metres(numbers) for numbers in (header.scales, header.offsets, header.mins, header.maxs))
+
+
+def _mended(path):
+    """What is read in place of some bytes of a file, which is checked for damage.
+
+    Raises
+    ------
+    RoadExtractionError
+        As `open_cloud`.
+    """
     path = str(path)
     if not Path(path).exists():
         raise RoadExtractionError(f"There is no file {path}. Check the path of the point cloud.")
     if not path.lower().endswith(CLOUD_SUFFIXES):
         raise RoadExtractionError(f"{path} is not a LAS or LAZ file. Lanewright reads .las, .laz and .copc.laz; convert other formats first.")
-    if not checked and (damage := find_damage(path)):
+    mended = mend(path)
+    if damage := find_damage(path, mended):
         raise RoadExtractionError(f"{path} is damaged or cut off: {damage}. Copy or export the file again.")
+    return with_points_of_chunks(path, mended)
+
+
+def _as_known(path, known):
+    """The same of a file whose points were counted."""
+    mended = mend(path)
+    with opened(path, mended) as file:
+        fields = HeaderFields.read(file)
+    return mended if fields is None or fields.count == known.count else mended.with_count(fields, known.count)
+
+
+def _open(path, mended, layers, sparse=False):
+    """laspy.LasReader of a file that is read as it was mended."""
+    import laspy
+
     try:
-        return laspy.open(path, decompression_selection=layer_selection(layers), laz_backend=laspy.LazBackend.Lazrs if sparse else None)
+        return laspy.open(opened(path, mended) if mended.patches else str(path), decompression_selection=layer_selection(layers),
+                          laz_backend=laspy.LazBackend.Lazrs if sparse else None)
     except BaseException as problem:  # laspy's decoders raise many types for a damaged file, some of them not Exceptions
         if isinstance(problem, NOT_FILE_ERRORS):
             raise
@@ -105,59 +165,71 @@ def layer_selection(layers: Iterable[str] | None) -> Any:
     return selection
 
 
-def read_header(path: str | os.PathLike[str]) -> CloudHeader:
-    """The header of a file; bounds that its header does not give are computed from the points.
+def read_header(path: str | os.PathLike[str], given: str = "") -> CloudHeader:
+    """The header of a file; bounds that it does not give, or outside of which points lie, are computed from the points.
+
+    Parameters
+    ----------
+    path : of the file
+    given : WKT of the CRS, where the file states none
 
     Raises
     ------
     RoadExtractionError
         If the file is missing, is not LAS or LAZ, or cannot be read.
     """
-    with open_cloud(path) as reader:
+    mended = _mended(path)
+    with _open(path, mended, None) as reader:
         header = reader.header
         names = set(header.point_format.dimension_names)
         if not ((np.abs(header.scales) < MAX_HEADER_SCALE).all() and (np.abs(header.offsets) < MAX_HEADER_OFFSET).all() and np.all(header.scales)):
             raise RoadExtractionError(
-                f"{path} is damaged: its header says scales of {_listed(header.scales)} and offsets of {_listed(header.offsets)}, with which "
-                "points have no coordinates. Export the file again.")
-        count, low, high = int(header.point_count), header.mins, header.maxs
-        reach = 2.0**31 * np.abs(header.scales)  # of coordinates stored as 32-bit integers
-        plausible = (header.offsets - reach <= low) & (low <= high) & (high <= header.offsets + reach)
-        if count > 1 and not (plausible.all() and (low < high).any()):
-            low, high = _bounds_of_points(path)  # the program that wrote the file left them empty
+                f"{path} gives its points no coordinates: its header says scales of {_listed(header.scales)} and offsets of "
+                f"{_listed(header.offsets)}. Export the file again, with a scale such as 0.001 m.")
+        count, units, bounds_hold = int(header.point_count), _stated_units(header, in_metres(given)[1]), _bounds_hold(path, mended, header)
+        _to_metres(header, units)
+        low, high = _bounds_of_points(path, units) if count > 1 and not bounds_hold else (header.mins, header.maxs)
         return CloudHeader(
             str(path), str(header.version), header.point_format.id, count,
             tuple(map(float, low)), tuple(map(float, high)), tuple(map(float, header.scales)),
-            _crs_of(header), "gps_time" in names, "scanner_channel" in names,
-            bool(header.global_encoding.gps_time_type.value), points_per_chunk(path), "red" in names)
+            cloud_crs(header), "gps_time" in names, "scanner_channel" in names,
+            bool(header.global_encoding.gps_time_type.value), points_per_chunk(path), "red" in names,
+            tuple(f"{path}: {note}." for note in mended.notes), units, crs_of_records(header)[1])
+
+
+def _bounds_hold(path, mended, header):
+    """Whether the bounds that a header states are some, can be, and hold the points at which it is looked."""
+    low, high = header.mins, header.maxs
+    reach = 2.0**31 * np.abs(header.scales)  # of coordinates stored as 32-bit integers
+    plausible = (header.offsets - reach <= low) & (low <= high) & (high <= header.offsets + reach)
+    if not (plausible.all() and (low < high).any()):
+        return False
+    places, margin = places_here_and_there(path, mended), np.abs(header.scales) + BOUNDS_TOLERANCE
+    return bool(((places >= low - margin) & (places <= high + margin)).all())
 
 
 def _listed(numbers):
     return ", ".join(f"{number:g}" for number in numbers)
 
 
-def _bounds_of_points(path):
+def _bounds_of_points(path, units):
     """Least and largest coordinates of the points, (3,) each."""
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
-    for block in read_blocks(path):
+    for block in read_blocks(path, units=units):
         places = np.stack([np.asarray(block[name], float) for name in "xyz"])
         low, high = np.minimum(low, places.min(axis=1)), np.maximum(high, places.max(axis=1))
     return low, high
 
 
-def _crs_of(header):
-    """WKT of the file's CRS from its WKT or GeoKeys records; "" where there is none or it is not understood."""
-    try:
-        crs = header.parse_crs()
-    except MemoryError:
-        raise
-    except Exception:  # an unreadable CRS record counts as no CRS: the user is then asked for one
-        return ""
-    return "" if crs is None else crs.to_wkt()
-
-
-def read_headers(paths: Iterable[str | os.PathLike[str]]) -> list[CloudHeader]:
+def read_headers(paths: Iterable[str | os.PathLike[str]], warn: Callable[[str], None] | None = None,
+                 given: str = "") -> list[CloudHeader]:
     """The headers of several files, in the order given; a file that is given twice, by whatever path, is read once.
+
+    Parameters
+    ----------
+    paths : of the files
+    warn : is told what headers state otherwise than their files show
+    given : WKT of the CRS of those that state none
 
     Raises
     ------
@@ -170,21 +242,25 @@ def read_headers(paths: Iterable[str | os.PathLike[str]]) -> list[CloudHeader]:
     unique = list(by_real_path.values())
     if not unique:
         raise RoadExtractionError("No point cloud was given. Choose one or more LAS, LAZ or COPC files.")
-    files = [read_header(path) for path in unique]
+    files = [read_header(path, given) for path in unique]
     if not sum(file.count for file in files):
         named = f"The file {unique[0]} holds" if len(files) == 1 else f"The files {', '.join(unique[:3])} hold"
         raise RoadExtractionError(f"{named} no points. Check the export of the survey.")
+    if warn is not None:
+        for note in (note for file in files for note in file.notes):
+            warn(note)
     return files
 
 
-def read_blocks(path: str | os.PathLike[str], size: int = POINTS_PER_BLOCK, layers: Sequence[str] | None = None) -> Iterator[Any]:
+def read_blocks(path: str | os.PathLike[str], size: int = POINTS_PER_BLOCK, layers: Sequence[str] | None = None,
+                units: FileUnits = METRES) -> Iterator[Any]:
     """Yield the points of a file in blocks.
 
     Parameters
     ----------
     path : of the file
     size : points of a block
-    layers : as in `open_cloud`
+    layers, units : as in `open_cloud`
 
     Returns
     -------
@@ -195,7 +271,7 @@ def read_blocks(path: str | os.PathLike[str], size: int = POINTS_PER_BLOCK, laye
     RoadExtractionError
         If the file ends early or is damaged.
     """
-    with open_cloud(path, layers) as reader:
+    with open_cloud(path, layers, units=units) as reader:
         promised, read = reader.header.point_count, 0
         while read < promised:
             check_cancelled()

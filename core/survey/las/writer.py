@@ -7,8 +7,12 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
+import numpy as np
+
 from ...common.errors import RoadExtractionError
+from ...io.crs import parse_crs
 from ...io.unfinished import unfinished_path
+from ...io.units import as_in_file
 from ..store.records import COORDINATE_SCALE
 
 MAX_LAS_INTEGER = 2**31 - 2    # largest coordinate, as an integer about the offset, in a LAS file
@@ -35,6 +39,29 @@ def scale_for(farthest: float) -> float:
             return COORDINATE_SCALE if per_metre == 10_000 else 1 / per_metre
     raise RoadExtractionError(f"The points lie up to {farthest / 1000:,.0f} km from the start of the survey, farther than a LAS file can hold. "
                               "Check the coordinates of the trajectory, or process the files of each region separately.")
+
+
+def place_in_file(header: Any, origin: np.ndarray, crs: str, farthest: float) -> None:
+    """Set the scales, offsets and CRS of a new file, in the units of the survey's own CRS.
+
+    Parameters
+    ----------
+    header : laspy.LasHeader
+    origin : (3,) metres, map coordinates of the local origin
+    crs : WKT, metric, "" where unknown
+    farthest : metres, the largest local coordinate
+    """
+    file_wkt, units = as_in_file(crs)
+    header.scales = np.full(3, scale_for(farthest / min(units.across, units.up)))
+    header.offsets = np.asarray(origin, float) if units.metric else units.in_file(origin)
+    if file_wkt:
+        header.add_crs(parse_crs(file_wkt))
+
+
+def metres_of_file(header: Any, crs: str) -> list[float]:
+    """Metres per integer of x, y and z in a new file of a survey."""
+    units = as_in_file(crs)[1]
+    return (header.scales if units.metric else units.in_metres(header.scales)).tolist()
 
 
 @contextmanager

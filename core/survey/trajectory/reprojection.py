@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from ...common.errors import RoadExtractionError
 from ...io.crs import check_metric, horizontal_part, parse_crs, same_crs
+from ...io.units import in_metres, plane_wkt
 from .trajectory import Trajectory
 
+FOOT = 0.3048         # m, of heights whose foot is not said; both differ by 2 mm a kilometre
 HEADING_STEP = 10.0  # m ahead of a position, reprojected with it for the heading
 
 
@@ -22,7 +25,7 @@ def reproject_trajectory(trajectory: Trajectory, target_wkt: str) -> Trajectory:
     Parameters
     ----------
     trajectory : Trajectory
-    target_wkt : WKT or "EPSG:n", projected, in metres; "" where unknown
+    target_wkt : WKT or "EPSG:n", projected; "" where unknown
 
     Returns
     -------
@@ -31,21 +34,25 @@ def reproject_trajectory(trajectory: Trajectory, target_wkt: str) -> Trajectory:
     Raises
     ------
     RoadExtractionError
-        If the target is not projected in metres, the source is in another unit
-        than metres or degrees, or positions cannot be brought to the target.
+        If the target is not projected, the source is of a kind that has no map coordinates, units contradict the CRS, or positions cannot be
+        brought to the target.
     """
     from pyproj import Transformer
     from pyproj.exceptions import ProjError
 
+    if not trajectory.crs:
+        return taken_to_be_in(trajectory, target_wkt)
+    target_wkt = in_metres(target_wkt)[0]
     source, target = parse_crs(trajectory.crs), parse_crs(target_wkt)
-    if source is None or target is None:
+    if target is None:
         return trajectory
     if same_crs(source, target):
         return replace(trajectory, crs=target.to_wkt())
     check_metric(target, "The target of the trajectory")
-    source, target = horizontal_part(source), horizontal_part(target)
-    if not source.is_geographic:
+    if not horizontal_part(source).is_geographic:
         check_metric(source, "The trajectory")
+    target_wkt = plane_wkt(target_wkt)
+    source, target = (horizontal_part(crs) for crs in (source, parse_crs(target_wkt)))
     try:
         transformer = Transformer.from_crs(source, target, always_xy=True)
         x, y = transformer.transform(trajectory.x, trajectory.y)
@@ -58,7 +65,60 @@ def reproject_trajectory(trajectory: Trajectory, target_wkt: str) -> Trajectory:
     x, y = np.where(known, x, np.nan), np.where(known, y, np.nan)
     heading = _reproject_heading(trajectory, source, transformer, x, y)
     note = f"The trajectory was reprojected from {source.name} to {target.name}."
-    return replace(trajectory, x=x, y=y, heading=heading, crs=target.to_wkt(), notes=(*trajectory.notes, note))
+    return replace(trajectory, x=x, y=y, heading=heading, crs=target_wkt, notes=(*trajectory.notes, note))
+
+
+def taken_to_be_in(trajectory: Trajectory, wkt: str) -> Trajectory:
+    """A trajectory without a CRS, its coordinates taken to be those of another file's CRS; it is unchanged where they are in metres.
+
+    Raises
+    ------
+    RoadExtractionError
+        If its columns say feet, and the CRS does not.
+    """
+    crs, (x, y, z), left = lengths_in_metres(wkt, (trajectory.x, trajectory.y, trajectory.z), trajectory.stated_units, "The trajectory")
+    if left:
+        raise RoadExtractionError("The trajectory gives positions in feet, and neither it nor the point cloud carries a CRS. Give the CRS in feet "
+                                  "that they are in: Import trajectory takes that of the trajectory, the parameter CRS that of the cloud.")
+    moved = x is not trajectory.x or z is not trajectory.z
+    return replace(trajectory, x=x, y=y, z=z, crs=crs, stated_units=()) if moved else replace(trajectory, stated_units=())
+
+
+def lengths_in_metres(crs: str, places: tuple[np.ndarray, np.ndarray, np.ndarray], stated: Sequence[tuple[str, str]],
+                      label: str) -> tuple[str, tuple[np.ndarray, ...], Sequence[tuple[str, str]]]:
+    """Coordinates of a trajectory in metres.
+
+    Parameters
+    ----------
+    crs : WKT of their CRS, "" where unknown
+    places : x, y and z, (N,) each, in its units, or where their columns state one, in that
+    stated : (role, "feet" or "metres") of x, y and z
+    label : the source, for messages
+
+    Returns
+    -------
+    crs : WKT, metric
+    places : in metres, or as they were where feet are stated and the CRS is unknown
+    stated : what is still to be seen to once the CRS is known: feet
+
+    Raises
+    ------
+    RoadExtractionError
+        If x or y are stated in feet, and the CRS is in another unit.
+    """
+    known = dict(stated)
+    if not crs:
+        return crs, places, stated if "feet" in known.values() else ()
+    wkt, units = in_metres(crs)
+    factors = []
+    for role, unit in (("x", units.across), ("y", units.across), ("z", units.up)):
+        if known.get(role) == "feet" and unit == 1.0:
+            if role != "z":
+                raise RoadExtractionError(f"{label} gives positions in feet, and its CRS {horizontal_part(parse_crs(crs)).name} is not in feet. "
+                                          "Give the CRS in feet that they are in: Import trajectory takes it.")
+            unit = FOOT
+        factors.append(1.0 if known.get(role) == "metres" else unit)
+    return wkt, tuple(values if factor == 1.0 else values * factor for values, factor in zip(places, factors)), ()
 
 
 def _reproject_heading(trajectory, source, transformer, x, y):

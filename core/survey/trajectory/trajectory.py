@@ -28,6 +28,7 @@ class Trajectory:
     has_time : False where the source has no time
     notes : sentences for the user about what was recognised and changed
     sigma_across : m, one sigma across the way as its processing tells; 0 where unknown
+    stated_units : (role, unit) of x, y and z as their columns state them, while the CRS, and with it the units of the others, is unknown
     """
 
     time: np.ndarray
@@ -41,6 +42,7 @@ class Trajectory:
     has_time: bool = True
     notes: tuple[str, ...] = field(default=())
     sigma_across: float = 0.0
+    stated_units: tuple[tuple[str, str], ...] = ()
 
     def __post_init__(self) -> None:
         for name in ("roll", "pitch", "heading"):

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from flown_images import EAST, NORTH, image
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.overlay.control_points import control_points, read_control_points
+from lanewright.core.overlay.control_point_file import read_control_points
+from lanewright.core.overlay.control_points import control_points
 from lanewright.core.overlay.source_image import SourceImage
 
 PIXEL, LINE = [10.5, 590.0, 300.25, 20.0], [20.25, 30.0, 380.0, 390.5]
@@ -128,3 +129,66 @@ def test_an_image_chosen_in_place_of_the_points_is_refused(tmp_path):
     path.write_bytes(b"II*\0" + bytes(200))
     with pytest.raises(RoadExtractionError, match="is no text"):
         read_control_points(path, SourceImage(str(path), 10, 10))
+
+
+def listed(above, order, name="flown.tif", tail=""):
+    """A list of control points as photogrammetry software keeps it, each row with the image that it was measured in."""
+    height = [20.0 + k for k in range(len(POINTS))]
+    values = [{"E": e, "N": n, "p": p, "l": q, "z": z, "i": name, "g": f"gcp{k}"} for k, ((e, n, p, q), z) in enumerate(zip(POINTS, height))]
+    return above + "".join(" ".join(str(value[key]) for key in order) + tail + "\n" for value in values)
+
+
+LISTS = {
+    "number": listed("EPSG:32650\n", "ENzpli"),
+    "words": listed("WGS84 UTM 50N\n", "ENzpli"),
+    "words, zone": listed("WGS 84 / UTM zone 50N\n", "ENzpli"),
+    "PROJ": listed("+proj=utm +zone=50 +datum=WGS84 +units=m +no_defs\n", "ENzpli"),
+    "WKT": listed(WKT + "\n", "ENzpli"),
+    "labels": listed("EPSG:32650\n", "ENzplig"),
+    "comments": listed("# measured on Monday\nEPSG:32650\n# x y z pixel line image\n", "ENzpli") + "# end\n",
+    "tabs": listed("EPSG:32650\n", "ENzpli").replace(" ", "\t"),
+    "windows": ("\ufeff" + listed("EPSG:32650\n", "ENzpli")).replace("\n", "\r\n"),
+    "other ending, capitals": listed("EPSG:32650\n", "ENzpli", "FLOWN.JPG"),
+    "folder": listed("EPSG:32650\n", "ENzpli", "images/flown.tif"),
+    "image first": listed("#CRS: EPSG:32650\n", "iplENz").replace(" ", ",").replace(",EPSG", " EPSG"),
+    "header": "EPSG:32650\ngeo_x geo_y geo_z im_x im_y image_name gcp_name\n" + listed("", "ENzplig"),
+    "markers": "#CoordinateSystem: EPSG:32650\nMarker Label,X,Y,Z,Camera,Pixel X (px),Pixel Y (px)\n" + listed("", "gENzipl").replace(" ", ","),
+    "ENVI": "; ENVI Image to Map GCP File\n; projection info = {UTM, 50, North, WGS-84}\n; Map (x,y), Image (x,y)\n;\n" + listed("", "ENpl"),
+}
+
+
+@pytest.mark.parametrize("kept", LISTS)
+def test_lists_of_photogrammetry_software_give_the_same_points(kept, tmp_path):
+    path = tmp_path / "gcp_list.txt"
+    path.write_bytes(LISTS[kept].encode())
+    points = read_control_points(path, image())
+    np.testing.assert_allclose([points.pixel, points.line], [PIXEL, LINE])
+    np.testing.assert_allclose([points.easting, points.northing], [EASTING, NORTHING])
+    assert kept == "ENVI" or list(points.height) == [20.0, 21.0, 22.0, 23.0] and "50N" in points.crs
+    assert points.names[1] == ("gcp1" if kept in ("labels", "header", "markers") else "2")
+
+
+@pytest.mark.parametrize("above", ["EPSG:32650\n", "EPSG:32650\ngeo_x geo_y geo_z im_x im_y image_name\n"])
+def test_of_several_images_only_the_rows_of_the_image_in_hand_are_used(above, tmp_path):
+    other = [line.split() for line in listed("", "ENzpli", "other.tif").splitlines()]
+    other = "".join(" ".join([*row[:3], str(5000 - float(row[3])), str(3000 + float(row[4])), row[5]]) + "\n" for row in other)
+    mixed = [line for pair in zip(listed("", "ENzpli").splitlines(), other.splitlines()) for line in pair]
+    path = tmp_path / "gcp_list.txt"
+    path.write_text(above + "\n".join(mixed))
+    points = read_control_points(path, image())
+    np.testing.assert_allclose([points.pixel, points.line, points.easting], [PIXEL, LINE, EASTING])
+    path.write_text(above + other)
+    with pytest.raises(RoadExtractionError, match="no control point of flown.tif: its rows are of other.tif"):
+        read_control_points(path, image())
+
+
+def test_words_above_a_list_that_are_no_crs_are_shown(tmp_path):
+    assert "'WGS84 UTM 77N'" in refusal(listed("WGS84 UTM 77N\n", "ENzpli"), tmp_path)
+
+
+def test_heights_between_the_coordinates_are_not_taken_for_pixels(tmp_path):
+    """A height of 20 m could be a pixel, too; the ground lies like the image in one order alone."""
+    path = tmp_path / "bare.txt"
+    path.write_text(listed("", "ENzpl"))
+    points = read_control_points(path, image())
+    np.testing.assert_allclose([points.pixel, points.height], [PIXEL, [20.0, 21.0, 22.0, 23.0]])

@@ -158,12 +158,10 @@ def test_a_scanner_channel_tells_the_scanners_apart(street, tmp_path):
     np.testing.assert_array_equal(np.unique(contents(survey)["scanner"]), [0, 1])
 
 
-@pytest.mark.parametrize("cloud_crs, says", [
-    ("EPSG:4326", "geographic"), ("EPSG:2263", "foot"), ("EPSG:32632+6360", "heights in US survey foot.*convert the heights")])
-def test_a_cloud_that_is_not_in_metres_is_refused(street, tmp_path, cloud_crs, says):
+def test_a_cloud_in_degrees_is_refused(street, tmp_path):
     trajectory, points, _ = street
-    with pytest.raises(RoadExtractionError, match=says):
-        open_survey([write_cloud(tmp_path / "bad.laz", *points, crs=cloud_crs)], trajectory)
+    with pytest.raises(RoadExtractionError, match="geographic"):
+        open_survey([write_cloud(tmp_path / "bad.laz", *points, crs="EPSG:4326")], trajectory)
 
 
 @pytest.mark.parametrize("other_crs", [25833, 31467], ids=["the next zone", "an old datum, a hundred metres off"])
@@ -355,7 +353,7 @@ def test_degrees_and_a_cloud_without_crs_cannot_be_brought_together(street, tmp_
 
 def test_exchanged_coordinates_are_recognised(street):
     trajectory, _, path = street
-    with pytest.raises(RoadExtractionError, match="x and y are exchanged"):
+    with pytest.raises(RoadExtractionError, match="x and y are exchanged.*export the cloud"):
         open_survey([path], Trajectory(trajectory.time, trajectory.y, trajectory.x, trajectory.z))
 
 

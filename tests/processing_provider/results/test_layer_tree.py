@@ -1,8 +1,10 @@
 """Every run has a group of its own, may take the place of the last one, and an image lies below the lines of its map."""
 
 import re
+from datetime import datetime, timezone
 
 import pytest
+from lanewright.algorithms.provenance import Provenance
 from lanewright.processing_provider.results.layer_tree import place_layer, replaces_last_run, set_replaces_last_run
 from lanewright.processing_provider.results.runs import Run, run_of, survey_name
 from qgis.core import QgsFeature, QgsGeometry, QgsProcessingContext, QgsVectorLayer
@@ -28,6 +30,12 @@ def added(project, run, output, name="layer", at=0.0):
     return layer
 
 
+def run_in(group, survey="B12", hour=8, algorithm="roadmap"):
+    """A run of a survey whose results go into a group, and that ended at an hour of one day."""
+    values = {"POINT_CLOUDS": [f"/data/{survey}/cloud.laz"]} if survey else {}
+    return Run(Provenance(algorithm, "1.0", values, datetime(2026, 6, 1, hour, tzinfo=timezone.utc)), survey, group)
+
+
 def names(project):
     return {group.name(): [node.name() for node in group.findLayers()] for group in project.layerTreeRoot().findGroups()}
 
@@ -47,19 +55,20 @@ def test_a_survey_is_called_by_its_folder_and_its_files(clouds, name):
 
 
 def test_a_map_made_in_one_call_has_a_group_named_by_survey_and_time(qgis_app):
-    group = run_of("roadmap", ["/data/B12/cloud.laz"], True, QgsProcessingContext()).group
+    group = run_of(run_in("").provenance, ["/data/B12/cloud.laz"], True, QgsProcessingContext()).group
     assert re.fullmatch(r"B12/cloud, \d{4}-\d\d-\d\d \d\d:\d\d:\d\d", group)
 
 
 def test_stages_of_a_survey_share_a_group_and_those_of_a_model_know_the_survey(qgis_app):
     context = QgsProcessingContext()
-    assert run_of("detectcurbs", ["/data/B12/cloud.laz"], False, context).group == "B12/cloud"
-    assert run_of("fitroadedges", [], False, context).group == "B12/cloud"
-    assert run_of("fitroadedges", [], False, QgsProcessingContext()).group == "Lanewright"
+    provenance = run_in("").provenance
+    assert run_of(provenance, ["/data/B12/cloud.laz"], False, context).group == "B12/cloud"
+    assert run_of(provenance, [], False, context).group == "B12/cloud"
+    assert run_of(provenance, [], False, QgsProcessingContext()).group == "Lanewright"
 
 
 def test_runs_stay_beside_each_other_unless_the_last_is_to_be_replaced(project):
-    runs = [Run("roadmap", "B12", f"Lanewright – B12, {hour}") for hour in (8, 9, 10)]
+    runs = [run_in(f"Lanewright – B12, {hour}", hour=hour) for hour in (8, 9, 10)]
     for run in runs[:2]:
         added(project, run, "ROAD_EDGES"), added(project, run, "DRIVING_LINES")
     assert len(names(project)) == 2
@@ -71,30 +80,30 @@ def test_runs_stay_beside_each_other_unless_the_last_is_to_be_replaced(project):
 
 def test_only_results_of_the_same_survey_and_algorithm_are_replaced_and_never_the_users_layers(project):
     set_replaces_last_run(True)
-    monday, tuesday = (Run("roadmap", day, f"Lanewright – {day}") for day in ("monday", "tuesday"))
+    monday, tuesday = (run_in(f"Lanewright – {day}", day) for day in ("monday", "tuesday"))
     mine = QgsVectorLayer("Point?crs=EPSG:32650", "mine", "memory")
     added(project, monday, "ROAD_EDGES")
     project.addMapLayer(mine, False)
     project.layerTreeRoot().findGroup(monday.group).addLayer(mine)
     added(project, tuesday, "ROAD_EDGES")
-    added(project, Run("detectboundaries", "monday", "Lanewright – edges of monday"), "ROAD_EDGES")
+    added(project, run_in("Lanewright – edges of monday", "monday", algorithm="detectboundaries"), "ROAD_EDGES")
     assert len(names(project)) == 3
-    added(project, Run("roadmap", "monday", "Lanewright – monday again"), "ROAD_EDGES", "new")
+    added(project, run_in("Lanewright – monday again", "monday", hour=9), "ROAD_EDGES", "new")
     assert names(project)["Lanewright – monday"] == ["mine"]
     assert names(project)["Lanewright – monday again"] == ["new"]
 
 
 def test_an_image_goes_below_the_lines_of_the_map_it_lies_under(project):
-    far, here = Run("roadmap", "far", "Lanewright – far"), Run("roadmap", "here", "Lanewright – here")
+    far, here = run_in("Lanewright – far", "far"), run_in("Lanewright – here", "here")
     for output in ("INTENSITY_IMAGE", "ROAD_SURFACE", "DRIVING_LINES"):
         added(project, here, output, output)
         added(project, far, output, output, at=5000.0)
-    added(project, Run("georeferenceimage", "", "Lanewright"), "ORTHOIMAGE", "image")
+    added(project, run_in("Lanewright", "", algorithm="georeferenceimage"), "ORTHOIMAGE", "image")
     assert names(project)["Lanewright – here"] == ["DRIVING_LINES", "ROAD_SURFACE", "image", "INTENSITY_IMAGE"]
     assert "Lanewright" not in names(project), "its group is empty"
 
 
 def test_an_image_of_elsewhere_stays_in_its_group(project):
-    added(project, Run("roadmap", "here", "Lanewright – here"), "DRIVING_LINES", "lanes")
-    added(project, Run("georeferenceimage", "", "Lanewright"), "ORTHOIMAGE", "image", at=9000.0)
+    added(project, run_in("Lanewright – here", "here"), "DRIVING_LINES", "lanes")
+    added(project, run_in("Lanewright", "", algorithm="georeferenceimage"), "ORTHOIMAGE", "image", at=9000.0)
     assert names(project) == {"Lanewright": ["image"], "Lanewright – here": ["lanes"]}

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from drives import EAST, NORTH, write_cloud
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.io.crs import check_projected
+from lanewright.core.io.cloud_crs import check_projected
 from lanewright.core.survey.las.reader import read_blocks, read_header, read_headers
 from lanewright.core.survey.las.scanners import ScannerCensus, numbers_by_value, times_by_value
 
@@ -83,7 +83,7 @@ def test_a_header_with_which_no_point_has_a_place_is_refused(tmp_path, at, value
     data = bytearray(open(path, "rb").read())
     data[at:at + 24] = np.full(3, value).tobytes()
     open(path, "wb").write(data)
-    with pytest.raises(RoadExtractionError, match="damaged: its header says"):
+    with pytest.raises(RoadExtractionError, match="no coordinates: its header says"):
         read_header(path)
 
 

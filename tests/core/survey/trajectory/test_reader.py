@@ -248,9 +248,32 @@ def test_degrees_given_as_metres_are_refused_by_name(tmp_path):
         read_trajectory(tmp_path / "t.csv", crs="EPSG:32632")
 
 
-def test_feet_are_refused_by_name(tmp_path):
+FEET = "time,x (ft),y (ft),z (ft),roll,pitch,heading"
+
+
+@pytest.mark.parametrize("crs, target", [("", ""), ("", "EPSG:32632"), ("EPSG:32632", "")])
+def test_feet_without_a_crs_in_feet_are_refused_by_name(tmp_path, crs, target):
     with pytest.raises(RoadExtractionError, match="feet"):
-        read_trajectory(write(tmp_path / "t.csv", street(), header="time,x (ft),y (ft),z (ft),roll,pitch,heading"))
+        reproject_trajectory(read_trajectory(write(tmp_path / "t.csv", street(), header=FEET), crs), target)
+
+
+@pytest.mark.parametrize("crs, target", [("EPSG:2263", ""), ("", "EPSG:2263"), ("EPSG:2263", "EPSG:2263+6360"), ("", "EPSG:2263+6360")])
+@pytest.mark.parametrize("header", [FEET, "time,x,y,z,roll,pitch,heading", "time,x (ft),y (ft),z (m),roll,pitch,heading"])
+def test_a_trajectory_in_a_crs_in_feet_is_in_metres_once_it_is_read(tmp_path, crs, target, header):
+    driven, foot = street(), 1200 / 3937
+    up = 1.0 if "z (m)" in header else foot
+    stored = replace(driven, x=driven.x / foot, y=driven.y / foot, z=driven.z / up)
+    found = reproject_trajectory(read_trajectory(write(tmp_path / "t.csv", stored, header=header), crs), target)
+    np.testing.assert_allclose([found.x, found.y, found.z], [driven.x, driven.y, driven.z], atol=1e-3)
+    assert "metre" in found.crs and "New York" in found.crs
+
+
+def test_heights_in_feet_beside_longitude_and_latitude_are_converted(tmp_path):
+    trajectory = street()
+    lon, lat = geographic(trajectory)
+    np.savetxt(tmp_path / "t.csv", np.c_[trajectory.time, lon, lat, trajectory.z / 0.3048], "%.10f", ",",
+               header="time,longitude,latitude,height (ft)", comments="")
+    np.testing.assert_allclose(read_trajectory(tmp_path / "t.csv").z, trajectory.z, atol=1e-6)
 
 
 @pytest.mark.parametrize("content, says", [

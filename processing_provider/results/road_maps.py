@@ -1,0 +1,191 @@
+"""The road maps of a project: which layers are of which run, by what the layers say of themselves, wherever they came from."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from qgis.core import Qgis, QgsLayerTreeGroup, QgsMapLayer, QgsProject, QgsProviderRegistry, QgsVectorLayer
+from qgis.PyQt import sip
+
+from ...algorithms.catalogue import ALGORITHMS
+from ...algorithms.cloud_files import cloud_files
+from ...algorithms.provenance import Provenance
+from ...core.common.errors import RoadExtractionError
+from .origin import Origin, origin_of
+from .runs import survey_name
+
+LINES = ("DRIVING_LINES", "ROAD_EDGES", "MARKING_LINES")  # a road map has one of these
+CLOUDS = "POINT_CLOUDS"
+MOVED = "lanewright/clouds"  # custom property of a layer: where the point clouds of its run lie now, one path a line
+
+
+@dataclass(frozen=True)
+class RoadMap:
+    """The layers of one run, or those that stages made of one survey.
+
+    layers : from above; of each result the newest alone
+    outputs : of the layers, such as ROAD_EDGES
+    provenance : of the run; of stages, that of the first one which names point clouds
+    group : of the layer tree that holds them, None where they lie in none
+    older : layers in whose place a stage that was run again has put newer ones
+    """
+
+    layers: tuple[QgsMapLayer, ...]
+    outputs: tuple[str, ...]
+    provenance: Provenance
+    group: QgsLayerTreeGroup | None
+    older: tuple[QgsMapLayer, ...] = ()
+
+    @property
+    def survey(self) -> str:
+        """What the survey is called, "" where none is known."""
+        return survey_of(self.provenance)
+
+    @property
+    def name(self) -> str:
+        """Survey and local time of the run, by which it is told from others."""
+        if self.group is not None:
+            return self.group.name()
+        return f"{self.survey or self.provenance.algorithm}, {self.provenance.ended.astimezone():%Y-%m-%d %H:%M:%S}"
+
+    @property
+    def values(self) -> dict[str, Any]:
+        """{parameter: value} of the run."""
+        return dict(self.provenance.values)
+
+    @property
+    def vectors(self) -> list[QgsVectorLayer]:
+        """The vector layers that have a place on the map."""
+        return [layer for layer in self.layers if layer.type() == Qgis.LayerType.Vector and layer.isSpatial()]
+
+    def layer(self, output: str) -> QgsMapLayer | None:
+        """The layer that is a result, None where there is none."""
+        return self.layers[self.outputs.index(output)] if output in self.outputs else None
+
+    @property
+    def is_a_map(self) -> bool:
+        """Whether it has lines of a road."""
+        return any(output in LINES for output in self.outputs)
+
+
+def road_maps(project: QgsProject, active: QgsMapLayer | None = None) -> list[RoadMap]:
+    """The road maps of a project: that of the active layer first, the others newest first."""
+    maps = [one for one in runs_of(project) if one.is_a_map]
+    return sorted(maps, key=lambda one: active is None or active not in one.layers)
+
+
+def road_map_of(layer: QgsMapLayer, project: QgsProject) -> RoadMap | None:
+    """The run that a layer of a project belongs to; None of a layer that is not ours."""
+    return next((one for one in runs_of(project) if layer in one.layers), None)
+
+
+def runs_of(project: QgsProject) -> list[RoadMap]:
+    """All runs of this program of which a project has layers, newest first."""
+    nodes = [node for node in project.layerTreeRoot().findLayers() if node.layer() is not None]
+    ours = [(node, origin) for node in nodes if (origin := origin_of(node.layer())) is not None]
+    whole: dict[Any, Any] = {}  # group of the layer tree -> run in one call whose layers it holds
+    for node, origin in ours:
+        if origin.provenance.algorithm in _whole_maps() and node.parent() is not project.layerTreeRoot():
+            whole.setdefault(_id(node.parent()), _run_key(origin))
+    runs: dict[Any, list] = {}
+    for node, origin in ours:
+        in_one_call = origin.provenance.algorithm in _whole_maps()
+        key = _run_key(origin) if in_one_call else whole.get(_id(node.parent())) or _place_key(node, project)
+        runs.setdefault(key, []).append((node, origin))
+    return sorted((_road_map(found, project) for found in runs.values()), key=lambda one: one.provenance.ended, reverse=True)
+
+
+@cache
+def _whole_maps():
+    """Algorithms that make a map in one call."""
+    return frozenset(algorithm.ID for algorithm in ALGORITHMS if algorithm.WHOLE_MAP)
+
+
+def _id(node):
+    """By which a node of the layer tree is known: every look at it may give another object of Python."""
+    return sip.unwrapinstance(node)
+
+
+def _run_key(origin: Origin):
+    return origin.provenance.algorithm, origin.provenance.time, origin.provenance.parameters
+
+
+def _place_key(node, project):
+    """What results of stages have in common: their group, or else the file or schema they lie in."""
+    if node.parent() is not project.layerTreeRoot():
+        return "group", _id(node.parent())
+    layer = node.layer()
+    parts = QgsProviderRegistry.instance().decodeUri(layer.providerType(), layer.source())
+    return "place", str(parts.get("path") or (parts.get("dbname"), parts.get("schema")))
+
+
+def _road_map(found, project):
+    """The RoadMap of the (node of the layer tree, Origin) of one run."""
+    newest: dict[str, Any] = {}
+    for node, origin in found:
+        known = newest.get(origin.output)
+        if known is None or origin.provenance.ended > known[1].provenance.ended:
+            newest[origin.output] = node, origin
+    kept = [(node, origin) for node, origin in found if newest[origin.output][0] is node]
+    in_one_call = [origin for _, origin in kept if origin.provenance.algorithm in _whole_maps()]
+    with_clouds = [origin for _, origin in kept if origin.provenance.values.get(CLOUDS)]
+    provenance = (in_one_call or with_clouds or [kept[0][1]])[0].provenance
+    groups = [node.parent() for node, _ in kept if node.parent() is not project.layerTreeRoot()]
+    layers = tuple(node.layer() for node, _ in kept)
+    return RoadMap(layers, tuple(origin.output for _, origin in kept), provenance, groups[0] if groups else None,
+                   tuple(node.layer() for node, _ in found if node.layer() not in layers))
+
+
+# -- point clouds -------------------------------------------------------------------------------
+
+
+def survey_of(provenance: Provenance) -> str:
+    """What the survey of a run is called, "" where it names no point clouds."""
+    return survey_name(_named(provenance))
+
+
+def _named(provenance):
+    """The point clouds of a run: the files of folders and wildcards where they are still there, else the names."""
+    given = provenance.values.get(CLOUDS) or []
+    names = [str(name) for name in (given if isinstance(given, list) else [given])]
+    try:
+        return cloud_files(names, CLOUDS)
+    except RoadExtractionError:
+        return names
+
+
+def clouds_of(road_map: RoadMap, project: QgsProject) -> tuple[list[str], list[str]]:
+    """(paths of the point clouds of a road map that are there, names of those that are not).
+
+    A cloud that is no longer where it was is looked for beside the layers, and beside the project.
+    """
+    moved = next((str(layer.customProperty(MOVED)).split("\n") for layer in road_map.layers if layer.customProperty(MOVED)), None)
+    named = moved or _named(road_map.provenance)
+    folders = [folder for folder in {project.absolutePath(), *_folders(road_map.layers)} if folder]
+    there, gone = [], []
+    for name in named:
+        places = [Path(name), *(Path(folder) / part for folder in sorted(folders) for part in (name, Path(name).name))]
+        found = next((place for place in places if place.is_file() and (place.is_absolute() or folders)), None)
+        (gone.append(name) if found is None else there.append(str(found.absolute())))
+    return there, gone
+
+
+def _folders(layers: Iterable[QgsMapLayer]):
+    """Where the files of layers lie."""
+    for layer in layers:
+        path = QgsProviderRegistry.instance().decodeUri(layer.providerType(), layer.source()).get("path")
+        if path and Path(path).is_file():
+            yield str(Path(path).parent)
+
+
+def clouds_lie_in(road_map: RoadMap, folder: str, project: QgsProject) -> list[str]:
+    """Look for the point clouds of a road map in a folder and below, and remember those that are found; the names of those that are not."""
+    there, gone = clouds_of(road_map, project)
+    found = {name: next((str(path) for path in sorted(Path(folder).rglob(Path(name).name)) if path.is_file()), "") for name in gone}
+    for layer in road_map.layers if any(found.values()) else ():
+        layer.setCustomProperty(MOVED, "\n".join([*there, *(path or name for name, path in found.items())]))
+    return [name for name, path in found.items() if not path]
