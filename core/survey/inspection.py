@@ -15,7 +15,7 @@ from ..common.setting import check_limits, setting
 from ..io.cloud_crs import check_projected, crs_note
 from .frame.build import build_frame
 from .las.copies import PER_METRE, distinct_rows, may_overlap, without_copies
-from .las.luminance import INTENSITY_SOURCES, without_intensity
+from .las.intensity_source import INTENSITY_SOURCES, without_intensity
 from .las.reader import POINTS_PER_BLOCK, read_blocks, read_headers
 from .las.scanners import ScannerCensus
 from .read_survey import match_clocks

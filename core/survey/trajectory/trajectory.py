@@ -29,6 +29,7 @@ class Trajectory:
     has_time : False where the source has no time
     notes : sentences for the user about what was recognised and changed
     doubts : those that are warnings
+    way_known : False where the order of the positions is not known to be that of the drive
     sigma_across : m, one sigma across the way as its processing tells; 0 where unknown
     stated_units : (role, unit) of x, y and z as their columns state them, while the CRS, and with it the units of the others, is unknown
     """
@@ -46,6 +47,7 @@ class Trajectory:
     sigma_across: float = 0.0
     stated_units: tuple[tuple[str, str], ...] = ()
     doubts: tuple[str, ...] = ()
+    way_known: bool = True
 
     def __post_init__(self) -> None:
         for name in ("roll", "pitch", "heading"):
