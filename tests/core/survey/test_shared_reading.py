@@ -147,7 +147,7 @@ def test_a_folder_that_cannot_be_used_is_named(street, python):
 def test_a_damaged_file_is_named_by_the_worker_that_meets_it(street, python, tmp_path):
     trajectory, (las, _) = street
     cut = tmp_path / "cut.las"
-    cut.write_bytes(open(las, "rb").read()[:-60_000])
+    cut.write_bytes(open(las, "rb").read()[:-60_001])
     with pytest.raises(RoadExtractionError, match="cut.las is (cut off|damaged)"):
         opened((trajectory, [cut]), WorkerProcesses(python, 2))
 
