@@ -8,9 +8,11 @@ import numpy as np
 
 from ...common.errors import RoadExtractionError
 from ...io.crs import horizontal_part, parse_crs
+from ..map_crs import LOCAL_CRS
 from ..xml_tree import XmlElement, xml_text
 from .exporter import LaneletDraft
 
+NO_VERTICAL = "not stated by the survey; heights are written as they are"
 SQUARE = 100_000.0     # m: local coordinates of Autoware are those within a square of this size
 
 
@@ -19,33 +21,37 @@ class Degrees:
     """How the map's places became latitude and longitude.
 
     lonlat : (N, 2) degrees of WGS 84; way : name of the transformation; accuracy : metres as its authors say, -1 where they do not;
-    vertical : what the heights are
+    vertical : what the heights are; local : whether the map lies nowhere on the earth
     """
 
     lonlat: np.ndarray
     way: str
     accuracy: float
     vertical: str
+    local: bool = False
 
 
 def to_degrees(places: np.ndarray, crs: str) -> Degrees:
-    """Latitude and longitude of (N, 2+) places.
+    """Latitude and longitude of (N, 2+) places; those without CRS about the origin of their coordinates become a local map about 0, 0.
 
     Raises
     ------
     RoadExtractionError
-        If the CRS is unknown, or the places lie outside of it.
+        If the CRS is unknown and the coordinates are not local, or the places lie outside of the CRS.
     """
-    from pyproj.transformer import TransformerGroup
+    from pyproj.transformer import Transformer, TransformerGroup
 
     known = parse_crs(crs)
+    if known is None and np.abs(places[:, :2]).max(initial=0.0) < SQUARE:
+        lon, lat = Transformer.from_crs(LOCAL_CRS, "EPSG:4326", always_xy=True).transform(places[:, 0], places[:, 1])
+        return Degrees(np.c_[lon, lat], "local coordinates about latitude and longitude 0", -1.0, NO_VERTICAL, True)
     if known is None:
         raise RoadExtractionError("The layer of lanes has no CRS, so its latitude and longitude are unknown. Set the CRS of the layer and run again.")
     found = TransformerGroup(horizontal_part(known), "EPSG:4326", always_xy=True).transformers[0]
     lon, lat = found.transform(places[:, 0], places[:, 1])
     if not (np.isfinite(lon).all() and np.isfinite(lat).all()):
         raise RoadExtractionError(f"The lanes do not lie where their CRS {horizontal_part(known).name} holds. Check the CRS of the layer.")
-    vertical = known.sub_crs_list[-1].name if known.is_compound else "not stated by the survey; heights are written as they are"
+    vertical = known.sub_crs_list[-1].name if known.is_compound else NO_VERTICAL
     return Degrees(np.c_[lon, lat], found.description, found.accuracy if found.accuracy is not None else -1.0, vertical)
 
 
@@ -63,7 +69,8 @@ def lanelet2_text(draft: LaneletDraft, degrees: Degrees, local: bool = False) ->
         root.add("MetaInfo", format_version="1", map_version="1")
     used = sorted({node for way in draft.ways for node in way.nodes})
     ids = {node: k for k, node in enumerate(used, start=1)}
-    square = np.floor(draft.nodes[used, :2].min(0) / SQUARE) * SQUARE if used else np.zeros(2)
+    local = local or degrees.local
+    square = np.floor(draft.nodes[used, :2].min(0) / SQUARE) * SQUARE if used and not degrees.local else np.zeros(2)
     for node in used:
         lon, lat = degrees.lonlat[node]
         element = root.add("node", id=ids[node], visible="true", version="1", lat=f"{lat:.11f}", lon=f"{lon:.11f}")
