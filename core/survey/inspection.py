@@ -287,7 +287,7 @@ def _judge_trajectory(found, wkt, has_time, progress):
     """Overlap in space and time; what is wrong goes to the notes."""
     try:
         trajectory = clean_trajectory(reproject_trajectory(found.trajectory, wkt))
-        found.notes += [note for note in trajectory.notes if note not in found.notes]
+        found.notes += [note for note in (*trajectory.notes, *trajectory.doubts) if note not in found.notes]
         if has_time:
             trajectory, note, *_ = match_clocks(found.files, trajectory, SurveySettings(), progress)
             found.notes += [note] if note else []
