@@ -40,6 +40,7 @@ class Call:
         self._results = {}
         self._layers = []
         self._at_end = ExitStack()
+        self.warnings = []  # of the run, in the order of the log
 
     def label(self, name):
         return self.algorithm.parameter(name).label
@@ -259,7 +260,7 @@ class Call:
 
     def commit_files(self):
         """Give the files their names, each with a note of where it comes from; that note, for the layers."""
-        provenance = provenance_now(self.algorithm.ID, self.values())
+        provenance = provenance_now(self.algorithm.ID, self.values(), self.warnings)
         for path in self._files.unfinished():
             sign_file(path, provenance)
         self._files.commit()
@@ -295,7 +296,7 @@ def run(call, progress):
         call.check_destinations()
         with cancellation_scope(progress):
             results = call.algorithm.work(call, counted) or {}
-        results[WARNINGS] = counted.count
+        results[WARNINGS], call.warnings = len(counted.texts), counted.texts
         return call.finish(results)
     except RoadExtractionError as error:
         raise RoadExtractionError(call.in_users_names(str(error))) from error

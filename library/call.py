@@ -114,9 +114,9 @@ class FileCall(Call):
 
     def finish(self, numbers):
         """Write the layers beside their destinations, then give all results their names."""
-        provenance = provenance_now(self.algorithm.ID, self.values())
+        provenance = provenance_now(self.algorithm.ID, self.values(), self.warnings)
         for name, features in self._layers:
-            features.description = provenance.sentence(self.algorithm.LOOKS.get(name, name))
+            features.description = "\n".join(provenance.history(self.algorithm.LOOKS.get(name, name)))
             value = self.destination(name)
             path, table = destination_path(value), file_and_table(value)[1]
             unfinished = self._layer_files.begin_copy(path) if table else self._layer_files.begin(path)

@@ -97,7 +97,7 @@ def _earth_centred(x, y, z):
     return bool(EARTH_RADIUS[0] < away < EARTH_RADIUS[1] and np.median(np.abs(z[good])) > HIGHEST_ROAD)
 
 
-def values_by_role(columns: Sequence[TableColumn], meaning: Meaning, label: str, notes: list[str]) -> dict[str, np.ndarray]:
+def values_by_role(columns: Sequence[TableColumn], meaning: Meaning, label: str, notes: list[str], doubts: list[str]) -> dict[str, np.ndarray]:
     """The values of a trajectory: seconds, metres, degrees; roll, pitch and heading in the unit of their columns.
 
     Parameters
@@ -105,7 +105,7 @@ def values_by_role(columns: Sequence[TableColumn], meaning: Meaning, label: str,
     columns : of the table
     meaning : of these
     label : of the table, for messages
-    notes : sentences for the user are added to it
+    notes, doubts : sentences for the user, and warnings, are added to them
 
     Returns
     -------
@@ -129,9 +129,9 @@ def values_by_role(columns: Sequence[TableColumn], meaning: Meaning, label: str,
         found.update(_from_the_centre(*(columns[place[f"ecef_{axis}"]].values for axis in "xyz")))
         notes.append(f"{label} gives earth-centred coordinates; they were converted to longitude, latitude and height above the ellipsoid.")
     if "time" in place:
-        found["time"] = _time(columns, meaning, label, notes)
+        found["time"] = _time(columns, meaning, label, notes, doubts)
     else:
-        notes += _like_time(columns, set(place.values()), label)
+        doubts += _like_time(columns, set(place.values()), label)
     return found
 
 
@@ -162,7 +162,7 @@ def _from_the_centre(x, y, z):
     return {role: np.where(np.isfinite(values), values, np.nan) for role, values in (("lon", lon), ("lat", lat), ("z", height))}
 
 
-def _time(columns, meaning, label, notes):
+def _time(columns, meaning, label, notes, doubts):
     """(N,) seconds of GPS time, or as the column counts."""
     place = meaning.place
     column = columns[place["time"]]
@@ -173,7 +173,7 @@ def _time(columns, meaning, label, notes):
     if column.unit.name != "seconds" and largest > LARGEST_SECONDS:
         factor = next((10.0**-power for power in (3, 6, 9) if largest * 10.0**-power < LARGEST_SECONDS), 1.0)
         seconds = seconds * factor
-        notes.append(f"The times of {label} are so large that they are taken to count {factor:.0e} s.")
+        doubts.append(f"The times of {label} are so large that they are taken to count {factor:.0e} s.")
     if "week" in place and place["week"] != place["time"]:
         return with_week(seconds, columns[place["week"]].values)
     first = seconds[np.isfinite(seconds)][:1]

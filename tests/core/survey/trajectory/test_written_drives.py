@@ -196,7 +196,7 @@ def test_seconds_since_1970_that_could_be_gps_seconds_are_told_by_the_cloud():
 
 def test_a_column_that_looks_like_time_and_is_not_used_is_named(tmp_path):
     found = read(tmp_path, "stamp_of_imu_card,x,y,z\n" + rows((OF_WEEK, S3), *MAP))
-    assert not found.has_time and "stamp_of_imu_card (344800 to 344809.75)" in " ".join(found.notes)
+    assert not found.has_time and "stamp_of_imu_card (344800 to 344809.75)" in " ".join((*found.notes, *found.doubts))
 
 
 def test_of_two_heights_the_one_that_is_used_is_named(tmp_path):
@@ -294,3 +294,32 @@ def test_the_same_columns_of_a_layer_give_the_same_drive(written):
 def test_a_layer_with_clock_times_is_refused_like_a_file():
     with pytest.raises(RoadExtractionError, match="GPS seconds are needed"):
         trajectory_from_rows(["Time"], [[text] for text in clock("%d/%m/%Y %H:%M:%S.%f")], {"x": X, "y": Y, "z": Z}, label="Layer")
+
+
+# -- drives that do not fit together -----------------------------------------------------------------------------------
+
+
+def both(other_x, other_time):
+    first = rows((GPS, S3), *MAP).splitlines()
+    return first, rows((other_time, S3), (other_x, "{:.4f}"), *MAP[1:]).splitlines()
+
+
+@pytest.mark.parametrize("later", [0.0, 0.1, 3.0])
+@pytest.mark.parametrize("interleaved", [False, True])
+def test_two_drives_at_the_same_time_are_refused_with_their_rows(tmp_path, later, interleaved):
+    first, second = both(X + 35.0, GPS + later)
+    lines = [line for pair in zip(first, second) for line in pair] if interleaved else first + second
+    with pytest.raises(RoadExtractionError, match=r"at two places at once: row \d+ .* row \d+ .* m apart"):
+        clean_trajectory(read(tmp_path, "time,x,y,z\n" + "\n".join(lines)))
+
+
+def test_rows_that_are_there_twice_or_in_another_order_are_one_drive(tmp_path):
+    first, second = both(X, GPS)
+    for lines in (first + second, first[::-1], first[20:] + first[:20]):
+        found = clean_trajectory(read(tmp_path, "time,x,y,z\n" + "\n".join(lines)))
+        check(found, GPS)
+
+
+def test_two_drives_one_after_the_other_are_one_trajectory(tmp_path):
+    first, second = both(X + 35.0, GPS + 3600.0)
+    assert len(clean_trajectory(read(tmp_path, "time,x,y,z\n" + "\n".join(second + first)))) == 2 * ROWS
