@@ -24,8 +24,8 @@ MAX_MAP_NUMBER = 1e9            # metres or any other unit of a map
 MAX_DIGITS = 400            # characters of a number
 HEAD = 400                  # bytes in which the declaration of the encoding is looked for
 NATIVE = ("utf-8", "utf-16", "iso8859-1", "ascii")   # codecs that the parser has itself
-BYTE_ORDER_MARKS = (codecs.BOM_UTF32_LE, "utf-32"), (codecs.BOM_UTF32_BE, "utf-32"), (codecs.BOM_UTF8, "utf-8-sig"), (codecs.BOM_UTF16_LE, "utf-16"), (
-    codecs.BOM_UTF16_BE, "utf-16")   # those of 32 bits first: they begin like those of 16
+BYTE_ORDER_MARKS = {codecs.BOM_UTF32_LE: "utf-32", codecs.BOM_UTF32_BE: "utf-32", codecs.BOM_UTF8: "utf-8-sig", codecs.BOM_UTF16_LE: "utf-16",
+                    codecs.BOM_UTF16_BE: "utf-16"}   # those of 32 bits first: they begin like those of 16
 
 
 class XmlElement:
@@ -137,8 +137,8 @@ def read_xml(path: str, root_tag: str, kind: str, progress: Progress = Progress(
     Raises
     ------
     RoadExtractionError
-        If it is no XML, not of this kind, in an encoding that is not known or that it is not written in, declares a document type or entities (no map needs them), or is larger, deeper or emptier than
-        a map is.
+        If it is no XML, not of this kind, in an encoding that is not known or that it is not written in, declares a document type or
+        entities (no map needs them), or is larger, deeper or emptier than a map is.
     """
     return _Reading(Path(path), root_tag, kind).run(progress)
 
@@ -182,7 +182,7 @@ class _Reading:
         """The codec that the file is decoded by, "" where the parser does it by itself."""
         with open(self.path, "rb") as file:
             head = file.read(HEAD)
-        marked = next((name for mark, name in BYTE_ORDER_MARKS if head.startswith(mark)), "")
+        marked = next((name for mark, name in BYTE_ORDER_MARKS.items() if head.startswith(mark)), "")
         if marked:
             return "" if marked in NATIVE else marked
         if head[:4] in ("<".encode("utf-32-le"), "<".encode("utf-32-be")):
@@ -196,8 +196,8 @@ class _Reading:
         except (LookupError, ValueError):
             known = False
         if not known:
-            raise RoadExtractionError(f"{self.path} declares the encoding {name[:40]!r}, which is not known. Save it again as UTF-8, and say so in its "
-                                      "first line.")
+            raise RoadExtractionError(f"{self.path} declares the encoding {name[:40]!r}, which is not known. Save it again as UTF-8, and say so in "
+                                      "its first line.")
         if codec is not None and codec.name.startswith(("utf-16", "utf-32")):
             return "utf-8"   # the declaration itself is written in single bytes: some programs state what they have in memory
         return "" if codec is None or codec.name in NATIVE else codec.name
