@@ -38,7 +38,7 @@ def read_trajectory_source(source, crs="", heights_needed=True):
     rows, places = [], [np.empty((0, 4))]
     for wkb, values in source.stored_rows():
         if source.kind == POINT:
-            if wkb is None:
+            if not wkb:
                 continue
             places.append(vertices_of(wkb)[:1])
         rows.append(values)
@@ -65,7 +65,7 @@ def _line_columns(source):
     """Vertices in drawing order; M, where there is one, is the time."""
     import numpy as np
 
-    rows = [vertices_of(wkb) for wkb, _ in source.stored_rows(measures=True) if wkb is not None]
+    rows = [vertices_of(wkb) for wkb, _ in source.stored_rows(measures=True) if wkb]
     x, y, z, time = np.concatenate([np.empty((0, 4)), *rows]).T
     return {"x": x, "y": y, **({"z": z} if source.has_z else {}), **({"time": time} if source.has_m else {})}
 
