@@ -106,6 +106,8 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     frame.has_time = has_time
     for note in frame.notes:
         progress.info(note)
+    for doubt in trajectory.doubts:
+        progress.warn(doubt)
     if not has_time and len(frame.passes) > len(frame.roads):
         progress.warn(f"The trajectory drives {len(frame.passes)} times over {len(frame.roads)} road(s), and as {_without_time(files, trajectory)} "
                       "the passes are mixed: whatever they differ by blurs the map. Export points and trajectory with their time, or process "
