@@ -54,6 +54,8 @@ class Menu(QObject):
                          tr("New results take the place of the last ones of the same survey and algorithm in the layer tree; files stay"))
         self._add(tr("Manual"), self.manual.open, tr("What every algorithm does, and a walk through a first survey"),
                   theme("/mActionHelpContents.svg"))
+        # QGIS asks when it shows the menu of a layer: only then is it known what the layer is
+        iface.layerTreeView().contextMenuAboutToShow.connect(self._fill_layer_menu)
         # A toolbar of its own would take a row of the window for one button
         iface.addToolBarIcon(self.actions[0])
 
@@ -153,6 +155,15 @@ class Menu(QObject):
         clouds, gone = clouds_of(road_map, QgsProject.instance())
         self.open_road_map(**{**road_map.values, **({} if gone else {"POINT_CLOUDS": clouds}), "CORRECTIONS": corrections.id()})
 
+    def _fill_layer_menu(self, menu):
+        """"Run this stage again" for a layer of ours."""
+        from .dialogs.stage_inputs import stage_again
+
+        layer = self.iface.layerTreeView().currentLayer()
+        again = None if layer is None else stage_again(layer, QgsProject.instance())
+        if again is not None:
+            menu.addAction(QIcon(str(ICON)), tr("Run this stage again…"), lambda: self.open_algorithm(*again))
+
     def open_report(self):
         """The report written last, in the user's web browser."""
         path = last_report()
@@ -173,6 +184,7 @@ class Menu(QObject):
         QDesktopServices.openUrl(QUrl.fromLocalFile(path))
 
     def remove(self):
+        self.iface.layerTreeView().contextMenuAboutToShow.disconnect(self._fill_layer_menu)
         self.iface.removeToolBarIcon(self.actions[0])
         for action in self.actions:
             self.iface.removePluginMenu("Lanewright", action)
@@ -189,9 +201,13 @@ class Menu(QObject):
 
     def open_road_map(self, **values):
         """The dialog of Road map, with some of its values."""
+        self.open_algorithm("lanewright:roadmap", values)
+
+    def open_algorithm(self, name, values):
+        """The dialog of an algorithm, with some of its values."""
         from qgis import processing
 
-        self.dialog = processing.createAlgorithmDialog("lanewright:roadmap", values)
+        self.dialog = processing.createAlgorithmDialog(name, values)
         if self.dialog is not None:  # QGIS has said why
             self.dialog.show()
 

@@ -168,7 +168,7 @@ class QgisCall(Call):
                     if self.destination(name).startswith("ogr:")}
         self._layer_files.commit(added_to, add_tables)
         schemas = {name: features.schema for name, features in self._layers}
-        run = run_of(provenance, self.surveyed(), self.algorithm.WHOLE_MAP, self.context)
+        run = run_of(provenance, self.surveyed(), self.algorithm.WHOLE_MAP, self.context, self.processing.group_of_inputs)
         for name, dest in self._results.items():
             note_report(dest)
             look = self.algorithm.LOOKS.get(name, name)

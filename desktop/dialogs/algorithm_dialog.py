@@ -6,14 +6,19 @@ import json
 from pathlib import Path
 
 from processing.gui.AlgorithmDialog import AlgorithmDialog
+from qgis import utils
 from qgis.core import Qgis, QgsProcessingAlgorithm, QgsProject, QgsSettings
 from qgis.PyQt.QtWidgets import QDialogButtonBox, QFileDialog, QInputDialog, QMenu, QPushButton, QTextBrowser, QWidget
 
+from ...algorithms.cloud_files import cloud_files
+from ...core.common.errors import RoadExtractionError
+from ...processing_provider.results.runs import survey_name
 from ...processing_provider.texts import tr
-from ..review.corrections_layer import corrections_layers
+from ..review.corrections_layer import SURVEY, corrections_layers
 from .batch_dialog import BatchAlgorithmDialog
 from .database_dialog import DatabaseDialog, database_destinations
 from .destinations import LAST_OUTPUT, destinations, outputs_by_default
+from .stage_inputs import name_by_survey, presets
 
 LAST_INPUT = "/Processing/LastInputPath"  # QGIS's own setting
 PRESETS = "lanewright/presets"
@@ -40,7 +45,9 @@ class LanewrightDialog(AlgorithmDialog):
         self.presets.aboutToShow.connect(self._list_presets)
         self.presets_button.setMenu(self.presets)
         self.updateRunButtonVisibility()  # the box shows all of its buttons when it gets another
-        self._offer_corrections()
+        self.setParameters(presets(algorithm, QgsProject.instance(), utils.iface.activeLayer() if utils.iface is not None else None))
+        self._follow_survey()
+        self.named = name_by_survey(self, QgsProject.instance())
         help_shown = self.findChild(QTextBrowser, "textShortHelp")
         if help_shown is not None:
             help_shown.setHtml(help_shown.toHtml().replace(algorithm.displayName(), title, 1))
@@ -51,11 +58,22 @@ class LanewrightDialog(AlgorithmDialog):
         self.batch = BatchAlgorithmDialog(self.algorithm().create(), self.windowTitle(), self.parentWidget())
         self.batch.show()
 
-    def _offer_corrections(self):
-        """The corrections of the project, where it has one layer of them."""
-        layers = corrections_layers(QgsProject.instance())
-        if self.algorithm().parameterDefinition("CORRECTIONS") is not None and len(layers) == 1:
-            self.setParameters({"CORRECTIONS": layers[0].id()})
+    def _follow_survey(self):
+        """Offer the corrections of the survey whose point clouds are chosen, and none of another."""
+        wrappers = self.mainWidget().wrappers
+        if {"CORRECTIONS", "POINT_CLOUDS"} <= set(wrappers):
+            clouds = wrappers["POINT_CLOUDS"]
+            clouds.widgetValueHasChanged.connect(lambda *changed: self._offer_corrections(clouds.parameterValue()))
+
+    def _offer_corrections(self, clouds):
+        try:
+            survey = survey_name(cloud_files(clouds or [], tr("Point clouds")))
+        except RoadExtractionError:  # not yet whole
+            return
+        of = {layer.customProperty(SURVEY): layer.id() for layer in reversed(corrections_layers(QgsProject.instance()))}
+        chosen = self.mainWidget().wrappers["CORRECTIONS"].parameterValue()
+        if survey in of or chosen in of.values():
+            self.setParameters({"CORRECTIONS": of.get(survey)})
 
     def _button(self, text, tip):
         button = QPushButton(text)
