@@ -11,6 +11,7 @@ import json
 import os
 import random
 import resource
+import subprocess
 import sys
 import tempfile
 import time
@@ -20,7 +21,7 @@ from contextlib import nullcontext
 from pathlib import Path
 
 import numpy as np
-from fuzz_readers import kinds
+from fuzz_readers import TITLES, kinds
 from plugin_package import load
 
 try:
@@ -147,17 +148,35 @@ def mutate_by_coverage(attempts, seconds, rng, corpus, report):
     atheris.Fuzz()
 
 
-def in_a_process_of_its_own(work, report):
-    """What `work` reported; a reader that takes the process with it is a problem too."""
-    child = os.fork()
-    if not child:
-        work()
-        report.write_text(json.dumps(work.attempts.report()))
-        sys.stdout.flush()
-        os._exit(0)
-    _, status = os.waitpid(child, 0)
-    if status or not report.exists():
-        print(f"The process ended with {os.waitstatus_to_exitcode(status)}; libFuzzer's file, if there is one, lies in the folder that is kept.")
+def fuzz(title, options, folder):
+    """Feed the reader of one kind, in this process; its counts go into `options.report`."""
+    with atheris.instrument_imports(include=["lanewright"]) if atheris else nullcontext():
+        load()
+        kind = kinds(folder)[title]
+        for content in kind.seeds:  # imports what is imported late, and proves the seeds whole
+            (folder / kind.name).write_bytes(content)
+            kind.read(folder / kind.name)
+    quiet()
+    attempts, rng = Attempts(title, kind, folder, options.keep), np.random.default_rng([options.seed, len(title)])
+    if atheris:
+        mutate_by_coverage(attempts, options.seconds, rng, options.corpus / title.replace(" ", "_"), options.report)
+    mutate_at_random(attempts, options.seconds, rng)
+    options.report.write_text(json.dumps(attempts.report()))
+
+
+def quiet():
+    """What GDAL and PROJ remark on broken files is not looked at."""
+    from osgeo import gdal
+
+    gdal.SetConfigOption("CPL_LOG", os.devnull)
+
+
+def in_a_process_of_its_own(title, options, seconds, report):
+    """What `fuzz` counts; a reader that takes its process with it is a problem too."""
+    code = subprocess.run([sys.executable, __file__, "--only", title, "--seconds", str(seconds), "--seed", str(options.seed), "--keep", options.keep,
+                           "--corpus", options.corpus, "--report", report], stderr=None if options.verbose else subprocess.DEVNULL).returncode
+    if code or not report.exists():
+        print(f"{title}: the process ended with {code}; --verbose says why, and libFuzzer keeps the file in {options.keep}.")
         return {"tried": 0, "refused": 0, "problems": 1}
     return json.loads(report.read_text())
 
@@ -168,39 +187,25 @@ def main():
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--keep", type=Path, default=Path("build/fuzz/found"))
     parser.add_argument("--corpus", type=Path, default=Path("build/fuzz/corpus"))
-    parser.add_argument("--only", default="")
+    parser.add_argument("--only", default="", help="one kind of files")
+    parser.add_argument("--report", type=Path, help=argparse.SUPPRESS)
+    parser.add_argument("--verbose", action="store_true")
     options = parser.parse_args()
     options.keep.mkdir(parents=True, exist_ok=True)
-    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
-    total = {"tried": 0, "refused": 0, "problems": 0}
     with tempfile.TemporaryDirectory() as folder:
-        folder = Path(folder)
-        with atheris.instrument_imports(include=["lanewright"]) if atheris else nullcontext():
-            load()
-            wanted = {title: kind for title, kind in kinds(folder).items() if options.only in ("", title)}
-            for kind in wanted.values():  # imports what is imported late, and proves the seeds whole
-                for content in kind.seeds:
-                    (folder / kind.name).write_bytes(content)
-                    kind.read(folder / kind.name)
-        print(f"{len(wanted)} readers, {'led by coverage' if atheris else 'at random: atheris is not installed here'}", flush=True)
-        for number, (title, kind) in enumerate(wanted.items()):
-            attempts = Attempts(title, kind, folder, options.keep)
-            rng, report = np.random.default_rng([options.seed, number]), folder / f"{number}.json"
-
-            def work(attempts=attempts, rng=rng, report=report, title=title):
-                seconds = options.seconds / len(wanted)
-                if atheris:
-                    mutate_by_coverage(attempts, seconds, rng, options.corpus / title.replace(" ", "_"), report)
-                else:
-                    mutate_at_random(attempts, seconds, rng)
-
-            work.attempts = attempts
-            done = in_a_process_of_its_own(work, report)
+        if options.report:
+            resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+            return fuzz(options.only, options, Path(folder))
+        titles = [title for title in TITLES if options.only in ("", title)]
+        print(f"{len(titles)} readers, {'led by coverage' if atheris else 'at random: atheris is not installed here'}", flush=True)
+        total = {"tried": 0, "refused": 0, "problems": 0}
+        for number, title in enumerate(titles):
+            done = in_a_process_of_its_own(title, options, options.seconds / len(titles), Path(folder) / f"{number}.json")
             print(f"{title}: {done['tried']} files tried, {done['refused']} refused, {done['problems']} problems", flush=True)
             total = {name: count + done[name] for name, count in total.items()}
     print(f"{total['tried']} files tried, {total['refused']} refused, {total['problems']} problems")
-    sys.exit(bool(total["problems"]))
+    return total["problems"]
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(bool(main()))

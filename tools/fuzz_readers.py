@@ -12,6 +12,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+TITLES = ("LAS", "LAZ", "COPC", "trajectory text", "receiver log", "GPX", "SBET", "smrmsg", "control points", "image tags", "OpenDRIVE", "Lanelet2",
+          "GeoPackage", "GeoJSON")
+
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "streets"))
 
 

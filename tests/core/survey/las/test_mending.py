@@ -224,3 +224,12 @@ def test_bounds_of_a_whole_project_are_no_reason_to_look_at_the_points(tmp_path)
     low, high = [400_000, 5_700_000, 0], [600_000, 5_900_000, 500]
     header = read_header(with_bounds(written(street(1, "1.2"), tmp_path / "cloud.laz"), low, high))
     assert (list(header.minimum), list(header.maximum)) == (low, high)
+
+
+def test_a_point_format_that_nobody_knows_is_refused_in_one_sentence(tmp_path):
+    path = written(street(1, "1.2"), tmp_path / "cloud.las")
+    content = bytearray(path.read_bytes())
+    content[104], content[107] = 35, 9   # of the point format and the count
+    path.write_bytes(content)
+    with pytest.raises(RoadExtractionError):
+        read_header(path)
