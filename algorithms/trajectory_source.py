@@ -1,14 +1,14 @@
 """The trajectory from whatever the user has: a layer, a table, or the file itself."""
 
-import math
+from dataclasses import replace
 from pathlib import Path
 
 from ..core.common.errors import RoadExtractionError
 from .texts import tr
 from .vector_source import LINE, POINT, vertices_of
 
-# Files the core reads better than QGIS and GDAL: headers of any wording, none at all, binary SBET
-FILE_SUFFIXES = {".csv", ".txt", ".out", ".sbet", ".xyz", ".pos", ".traj"}
+# Files the core reads better than QGIS and GDAL: headers of any wording, none at all, binary SBET, logs of receivers, tracks
+FILE_SUFFIXES = {".csv", ".txt", ".out", ".sbet", ".xyz", ".pos", ".traj", ".tsv", ".dat", ".asc", ".log", ".nmea", ".pof", ".gpx", ".kml"}
 
 
 def trajectory_path(value):
@@ -26,21 +26,39 @@ def read_trajectory_source(source, crs="", heights_needed=True):
     """
     import numpy as np
 
-    from ..core.survey.trajectory.reader import trajectory_from_columns
+    from ..core.common.schemas import ESTIMATED_TRAJECTORY
+    from ..core.survey.trajectory.reader import trajectory_from_columns, trajectory_from_rows
 
     if source.kind == LINE:
         columns = _line_columns(source)
-    elif source.kind == POINT:
-        columns = _point_columns(source)
-    else:
-        columns = _table_columns(source)
-    if not len(next(iter(columns.values()))):
+        _refuse_empty(source, len(columns["x"]))
+        if not heights_needed and not np.isfinite(columns.get("z", np.nan)).any():
+            columns["z"] = np.zeros(len(columns["x"]))
+        return trajectory_from_columns(columns, crs or source.stored_crs, label=source.label)
+    rows, places = [], [np.empty((0, 4))]
+    for wkb, values in source.stored_rows():
+        if source.kind == POINT:
+            if wkb is None:
+                continue
+            places.append(vertices_of(wkb)[:1])
+        rows.append(values)
+    _refuse_empty(source, len(rows))
+    given = {}
+    if source.kind == POINT:
+        given["x"], given["y"], z, _ = np.concatenate(places).T
+        if source.has_z:
+            given["z"] = z
+    found = trajectory_from_rows(source.names, rows, given, crs or source.stored_crs, source.label, heights_needed)
+    # Estimate trajectory writes the ridge of a cloud without times with its uncertainty, and does not know which way it was driven
+    estimated = {column.name for column in ESTIMATED_TRAJECTORY} <= set(source.names)
+    return replace(found, way_known=False) if estimated and not found.has_time else found
+
+
+def _refuse_empty(source, count):
+    if not count:
         raise RoadExtractionError(
             tr("{label} has no rows. Choose the layer that holds the driven positions.").format(label=source.label)
         )
-    if not heights_needed and not np.isfinite(columns.get("z", np.nan)).any():
-        columns["z"] = np.zeros(len(next(iter(columns.values()))))
-    return trajectory_from_columns(columns, crs or source.stored_crs, label=source.label)
 
 
 def _line_columns(source):
@@ -50,56 +68,6 @@ def _line_columns(source):
     rows = [vertices_of(wkb) for wkb, _ in source.stored_rows(measures=True) if wkb is not None]
     x, y, z, time = np.concatenate([np.empty((0, 4)), *rows]).T
     return {"x": x, "y": y, **({"z": z} if source.has_z else {}), **({"time": time} if source.has_m else {})}
-
-
-def _point_columns(source):
-    """Places from the geometry (the height too, where it has one), the rest from fields."""
-    import numpy as np
-
-    names = _roles(source)
-    for role in ("x", "y", "lon", "lat", *(("z",) if source.has_z else ())):
-        names.pop(role, None)
-    index = {role: source.names.index(name) for role, name in names.items()}
-    places, fields = [np.empty((0, 4))], {role: [] for role in names}
-    for wkb, values in source.stored_rows():
-        if wkb is None:
-            continue
-        places.append(vertices_of(wkb)[:1])
-        for role, k in index.items():
-            fields[role].append(_number(values[k]))
-    x, y, z, _ = np.concatenate(places).T
-    columns = {role: np.array(values, float) for role, values in fields.items()}
-    return {"x": x, "y": y, **columns, **({} if "z" in names else {"z": z})}
-
-
-def _table_columns(source):
-    import numpy as np
-
-    names = _roles(source)
-    missing = [role for role, other in (("x", "lon"), ("y", "lat"), ("z", "z")) if role not in names and other not in names]
-    if missing:
-        raise RoadExtractionError(
-            tr("{label} is a table with the columns {names}; {missing} cannot be found among them. Name them time, x, y, z, "
-               "roll, pitch, heading.").format(
-                label=source.label, names=", ".join(source.names), missing=", ".join(missing))
-        )
-    index = [source.names.index(name) for name in names.values()]
-    rows = [[_number(values[k]) for k in index] for _, values in source.stored_rows()]
-    return dict(zip(names, np.array(rows, float).reshape(-1, len(names)).T))
-
-
-def _roles(source):
-    """Role to field name, by the same words as for files."""
-    from ..core.survey.trajectory.columns import columns_by_role
-
-    return columns_by_role(source.names)
-
-
-def _number(value):
-    try:
-        return float(value)
-    except (TypeError, ValueError):
-        return math.nan
 
 
 def trajectory_features(trajectory, **further):

@@ -18,7 +18,8 @@ SKIPPED = "-"
 SYSTEMS = {"gps": tr("GPS seconds since 1980"), "adjusted": tr("adjusted GPS seconds"), "week": tr("seconds of the week, most likely"),
            "": tr("seconds of the day or from the start: the point clouds tell")}
 ROLE_TITLES = {"": tr("left out"), "time": tr("time"), "x": tr("x (east)"), "y": tr("y (north)"), "z": tr("z (height)"), "roll": tr("roll"),
-               "pitch": tr("pitch"), "heading": tr("heading"), "lon": tr("longitude"), "lat": tr("latitude")}
+               "pitch": tr("pitch"), "heading": tr("heading"), "lon": tr("longitude"), "lat": tr("latitude"),
+               "gps": tr("time, GPS clock"), "utc": tr("time, UTC clock"), "week": tr("GPS week"), "date": tr("date")}
 
 
 class ColumnsWidget(QWidget):
@@ -112,7 +113,7 @@ class ColumnsWidget(QWidget):
             self.table.setCellWidget(0, k, box)
             self.boxes.append(box)
             for row, values in enumerate(found.rows, start=1):
-                self.table.setItem(row, k, QTableWidgetItem(f"{values[k]:.10g}"))
+                self.table.setItem(row, k, QTableWidgetItem(values[k]))
         self.table.resizeColumnsToContents()
         height = self.table.horizontalHeader().sizeHint().height() + sum(self.table.rowHeight(row) for row in range(self.table.rowCount()))
         self.table.setFixedHeight(height + self.table.horizontalScrollBar().sizeHint().height() + 4)

@@ -1,6 +1,7 @@
 """An algorithm's declaration as QGIS's Processing takes it: dialog, checks, run and failure."""
 
 import os
+from contextlib import nullcontext
 from datetime import datetime
 from pathlib import Path
 
@@ -11,8 +12,10 @@ from ..algorithms.call import run
 from ..algorithms.catalogue import toolbox_number
 from ..algorithms.parameters import TrajectorySpec, choice_refused, number_refused
 from ..core.common.errors import Cancelled, RoadExtractionError
+from ..core.io.local_files import offline
 from .call import QgisCall
 from .dependencies import missing_packages
+from .input_files import asks_servers, check_files
 from .parameters import qgis_parameter
 from .progress import FeedbackProgress
 from .results.run_table import note_run
@@ -85,7 +88,12 @@ class LanewrightAlgorithm(QgsProcessingAlgorithm):
         missing = missing_packages()
         if missing:
             return False, missing
-        fine, said = super().checkParameterValues(accept_trajectory_file(self.declaration, parameters, context), context)
+        try:
+            check_files(self, parameters, context)
+        except RoadExtractionError as error:
+            return False, told(str(error))
+        with self._network(parameters, context):
+            fine, said = super().checkParameterValues(accept_trajectory_file(self.declaration, parameters, context), context)
         return fine, said if fine else \
             out_of_range(self.parameterDefinitions(), parameters) or no_trajectory(self.declaration, parameters) or said
 
@@ -94,11 +102,21 @@ class LanewrightAlgorithm(QgsProcessingAlgorithm):
         missing = missing_packages()
         if missing:
             raise QgsProcessingException(missing)
-        results, failure = self._attempt(parameters, context, feedback)
+        try:
+            check_files(self, parameters, context)
+        except RoadExtractionError as error:
+            raise QgsProcessingException(told(str(error))) from error
+        with self._network(parameters, context):
+            results, failure = self._attempt(parameters, context, feedback)
         if not failure:
             return results
         # QGIS never lets go of an exception: raised where the work was, it would keep all of the survey in memory
         raise QgsProcessingException(failure)
+
+    def _network(self, parameters, context):
+        """A context in which GDAL, and QGIS by it, asks no server for what a file says."""
+        with offline():
+            return nullcontext() if asks_servers(self, parameters, context) else offline()
 
     def _attempt(self, parameters, context, feedback):
         """(results, "") of a run, or (None, why there are none); either is noted in the table of runs."""

@@ -14,7 +14,7 @@ from qgis.core import (
     QgsVectorFileWriter,
     QgsWkbTypes,
 )
-from qgis.PyQt.QtCore import QMetaType
+from qgis.PyQt.QtCore import QDate, QDateTime, QMetaType, Qt, QTime
 
 from ..algorithms.vector_source import LINE, POINT, POLYGON, TABLE, UNKNOWN, VectorSource, plain_value
 from ..core.common.errors import Cancelled, RoadExtractionError
@@ -117,7 +117,9 @@ def _wkb(geometry, measures):
 
 
 def _value(value):
-    return None if value is None or (hasattr(value, "isNull") and value.isNull()) else value
+    if value is None or (hasattr(value, "isNull") and value.isNull()):
+        return None
+    return value.toString(Qt.DateFormat.ISODateWithMs) if isinstance(value, (QDate, QTime, QDateTime)) else value
 
 
 def crs_text(crs):

@@ -12,20 +12,24 @@ TIME_SETTING = tuple(spec for spec in SURVEY_SETTINGS if spec.name == "TIME")
 
 class ImportTrajectory(Algorithm):
     ID, TITLE, GROUP = "importtrajectory", "Import trajectory", "Survey"
-    SUMMARY = "Reads the driven trajectory from a CSV or TXT file, an Applanix SBET, or a point or line layer."
+    SUMMARY = "Reads the driven trajectory from a CSV or TXT file, an Applanix SBET, a log or track of a receiver, or a point or line layer."
     HELP = (
-        "Columns may come in any order, with or without a header, in degrees or radians. Rows are sorted by time; "
-        "repeated and unusable rows are dropped and counted. The dialog shows what was understood of a file, and lets you assign its columns."
+        "Columns may come in any order, with or without a header, in degrees, radians or degrees with minutes and seconds. Rows are sorted by time; "
+        "repeated and unusable rows are dropped and counted. The dialog shows what was understood of a file, and lets you assign its columns.\n\n"
+        "Times are GPS seconds. Clock times are read where the file says what the clock shows: GPS time as it is, UTC with the leap seconds "
+        "of its date. Other clock times, and seconds since 1970, are refused, since nobody can tell them apart."
     )
-    TAGS = ("trajectory", "sbet", "applanix", "csv", "gps time")
+    TAGS = ("trajectory", "sbet", "applanix", "csv", "gps time", "nmea", "gpx", "rtklib")
 
     def declare(self):
         self.add(TrajectorySpec("INPUT", tr("Trajectory file or layer"),
-                                tr("A CSV or TXT file, an SBET (.out), or a layer of points or lines with heights.")))
+                                tr("A CSV or TXT file, an SBET (.out), a log (NMEA, RTKLIB, NovAtel), a GPX or KML track, or a layer of points or "
+                                   "lines with heights.")))
         self.add(ColumnsSpec(
             "COLUMNS", tr("Columns"),
             tr("Of a text file, one word a column from the left: time, x, y, z, roll, pitch, heading, lon, lat, or - for a column that is left out; "
-               "such as time,y,x,z. Empty recognises them by their names, or by their numbers where they have none."), optional=True, value=""))
+               "such as time,y,x,z. A column of clock times is gps or utc, by what its clock shows, and week or date where these stand apart. Empty "
+               "recognises them by their names, or by their numbers where they have none."), optional=True, value=""))
         self.add(CrsSpec("INPUT_CRS", tr("CRS of the trajectory"),
                          tr("Where the file does not say it. An SBET is in WGS 84 unless another is chosen."), optional=True))
         self.add(CrsSpec(
@@ -46,6 +50,8 @@ class ImportTrajectory(Algorithm):
         trajectory = clean_trajectory(imported_trajectory(call, progress))
         for note in trajectory.notes:
             progress.info(note)
+        for doubt in trajectory.doubts:
+            progress.warn(doubt)
         if not trajectory.crs:
             progress.warn(tr("The trajectory names no CRS and none was given, so its layer has none: set CRS of the trajectory, or "
                              "CRS to bring it to where the coordinates are in that of the point clouds."))

@@ -10,6 +10,8 @@ NEAREST_PASS = Field("pass", int, "Pass that drove nearest")
 SIDE = Field("side", str, "Side (left/right)")
 STATUS = Field("status", str, "Status")
 CONFIDENCE = Field("confidence", float, "Confidence (0 to 1)", needed=False)
+# JSON: {"nats": by how much it is less probable, "lanes": [{"offset_m", "width_m", "direction"}, ...]}, of a marking line {"nats", "kind"}
+OTHER = Field("other", str, "Second reading that is hardly less probable (JSON)", needed=False)
 STATION = Field("station_m", float, "Station (m)")
 OFFSET = Field("offset_m", float, "Offset, left positive (m)")
 HEIGHT = Field("height_m", float, "Height (m)")
@@ -49,7 +51,7 @@ MARKING_LINES = [ROAD, Field("line", int, "Line"), Field("kind", str, "Kind (edg
                  STATION, END, OFFSET, LENGTH, WIDTH, PASS_SIGMA, Field("params", str, "Fitted function (JSON)")]
 DRIVING_LINES = [ROAD, Field("lane", int, "Lane"), Field("kind", str, "Kind"), Field("pattern", str, "Lines to its left|right"),
                  Field("direction", int, "Direction (1 along, -1 against the road)"),
-                 Field("source", str, "Source (pair/offset)"), STATUS, CONFIDENCE, Field("curve", str, "Curve"), RADIUS, RMSE, SIGMA,
+                 Field("source", str, "Source (pair/offset)"), STATUS, CONFIDENCE, OTHER, Field("curve", str, "Curve"), RADIUS, RMSE, SIGMA,
                  STATION, END, OFFSET, LENGTH, WIDTH, Field("params", str, "Fitted function (JSON)")]
 # left and right as seen in the direction of travel; along the road where nobody drives
 LANES = [ROAD, Field("lane", int, "Lane"), Field("lane_id", str, "Lane and piece (road.lane.piece)"),
@@ -59,7 +61,7 @@ LANES = [ROAD, Field("lane", int, "Lane"), Field("lane_id", str, "Lane and piece
          Field("right_line", str, "What its right border is (line N of the marking lines, edge N: chain of the road edges)"),
          Field("left_kind", str, "Kind of its left border"), Field("right_kind", str, "Kind of its right border"),
          Field("left_patt", str, "Pattern of its left border"), Field("right_patt", str, "Pattern of its right border"),
-         Field("successors", str, "Lanes that follow, by lane_id"), STATUS, CONFIDENCE,
+         Field("successors", str, "Lanes that follow, by lane_id"), STATUS, CONFIDENCE, OTHER,
          STATION, END, WIDTH, LENGTH]
 CURVE_ELEMENTS = [ROAD, Field("lane", int, "Lane"), STATION, END, Field("turn", str, "Turn (left/right)"),
                   Field("radius_m", float, "R (m)"), Field("radius_ft", float, "R (ft)"),
@@ -73,9 +75,10 @@ CURVE_ELEMENTS = [ROAD, Field("lane", int, "Lane"), STATION, END, Field("turn", 
                   *(Field(f"{point}_{axis}", float, f"{point.upper()} {axis}", on_map=True) for point in ("pc", "pt", "pi") for axis in "xy"),
                   Field("rmse_m", float, "RMSE of the arc (m)"),
                   Field("speed_kmh", int, "Highest design speed allowed (km/h)"), Field("code", str, "Design code check")]
-CORRECTIONS = [Field("action", str, "Action (accept/delete/move/draw)"), Field("target", str, "What is meant (edge/marking/lane)"), ROAD, STATION,
-               OFFSET, Field("note", str, "Note"), Field("kind", str, "Kind of a line that is drawn (edge/lane/centre)"),
-               Field("pattern", str, "Pattern of a line that is drawn (solid/dashed)")]
+CORRECTIONS = [Field("action", str, "Action (accept/delete/move/draw/take)"), Field("target", str, "What is meant (edge/marking/lane)"), ROAD,
+               STATION, OFFSET, Field("note", str, "Note"), Field("kind", str, "Kind of a line that is drawn (edge/lane/centre)"),
+               Field("pattern", str, "Pattern of a line that is drawn (solid/dashed)"),
+               Field("other", str, "Second reading that is taken (JSON)")]
 MAP_FINDINGS = [Field("fault", str, "Fault"), Field("element", str, "Road, lane, way or relation"), Field("text", str, "What was seen")]
 CROSS_SECTIONS = [ROAD, Field("section", int, "Section"), STATION, Field("part", str, "Part (carriageway/lane)"), Field("lane", int, "Lane"),
                   Field("type", str, "Type of the lane"), Field("direction", int, "Direction (1 along, -1 against the road, 0 not known)"),

@@ -12,7 +12,7 @@ import numpy as np
 from ..common.parallel import check_cancelled
 from ..curves.model_selection import fit_curves
 from ..markings.cross_section.sections import STATION_STEP
-from .lane_track import BRIDGED
+from .lane_track import BRIDGED, LANE_STATUS
 from .settings import MIN_PLACES_PER_FIT
 
 if TYPE_CHECKING:
@@ -123,6 +123,13 @@ def without_short_status(status: np.ndarray) -> np.ndarray:
         ends[begin], begins[end] = end, begin
         heappush(queue, (end - begin, begin))
     return status
+
+
+def track_pieces(track: LaneTrack, s: np.ndarray) -> list[tuple[int, float, float]]:
+    """(status, start station, end station) of the pieces of a lane, cut where its status changes and where doubt begins or ends; ends touch."""
+    kinds = len(LANE_STATUS)
+    found = status_pieces(without_short_status(track.status + kinds * track.in_doubt()), track.first, s)
+    return [(code % kinds, start, end) for code, start, end in found]
 
 
 def status_pieces(status: np.ndarray, first: int, s: np.ndarray) -> list[tuple[int, float, float]]:

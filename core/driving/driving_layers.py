@@ -40,6 +40,7 @@ class DrivingLines:
     vertices : (V, 3) local metres in the direction of travel, one piece after the other
     start : (P + 1,) int, first vertex of each piece, and V
     crs : WKT, "" where unknown
+    other : (P,) str objects, the second reading as JSON, see `LaneTrack.said`; "" where there is none
     """
 
     road: np.ndarray
@@ -59,6 +60,11 @@ class DrivingLines:
     vertices: np.ndarray
     start: np.ndarray
     crs: str = ""
+    other: np.ndarray = None  # type: ignore[assignment]  # filled on construction
+
+    def __post_init__(self) -> None:
+        if self.other is None:
+            object.__setattr__(self, "other", np.full(len(self.road), "", object))
 
     def __len__(self) -> int:
         return len(self.road)
@@ -116,7 +122,8 @@ def driving_lines_to_features(lines: DrivingLines, frame: RoadFrame) -> Features
         places = lines.vertices[lines.start[k]:lines.start[k + 1]] + frame.origin
         layer.add(shapely.linestrings(places), road=int(lines.road[k]), lane=int(lines.lane[k]), kind="lane", pattern=lines.pattern[k],
                   direction=int(lines.direction[k]), source=lines.source[k], status=lines.status[k], confidence=float(lines.confidence[k]),
-                  curve=curve.kind, radius_m=float(curve.radius) if np.isfinite(curve.radius) else None, rmse_m=float(lines.rmse[k]),
+                  other=lines.other[k] or None, curve=curve.kind,
+                  radius_m=float(curve.radius) if np.isfinite(curve.radius) else None, rmse_m=float(lines.rmse[k]),
                   sigma_m=round(float(lines.sigma[k]), 4), station_m=float(lines.station[k]), end_m=float(lines.end[k]),
                   offset_m=float(lines.offset[k]), length_m=_length(places), width_m=float(lines.width[k]), params=functions[id(curve)])
     return layer

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +10,6 @@ import numpy as np
 
 from ..common.progress import Progress
 from ..countries.catalogue import country
-from ..markings.cross_section.confidence import confidence_of
 from ..markings.cross_section.evidence import point_spacing
 from ..markings.cross_section.roads import EstimatedRoad, estimate_roads
 from ..markings.cross_section.sections import STATION_STEP, CrossSections, sections_of_edges, sections_of_lines, sections_of_pavement
@@ -19,7 +18,7 @@ from ..markings.objects.marking_objects import MarkingObjects
 from ..road.edges.road_edges import RoadEdges
 from ..survey.frame.sigma_along import cuts_where_it_changes
 from .alignment import Element, lane_elements
-from .centreline import Course, element_of, lane_courses, status_pieces, without_short_status
+from .centreline import Course, element_of, lane_courses, track_pieces
 from .connectors import RoadLanes, connectors_between_roads
 from .curve_elements import is_curve
 from .driving_layers import CurveElements, DrivingLines
@@ -33,6 +32,7 @@ from .tapers import laid_out
 from .uncertainty import lane_sigma
 
 if TYPE_CHECKING:
+    from ..markings.cross_section.confidence import TakenReading
     from ..survey.frame.road_frame import RoadFrame
     from ..survey.store.road_points import RoadPoints
 
@@ -41,7 +41,7 @@ __all__ = ["DrivingSettings", "make_driving_lines"]
 
 def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: DrivingSettings = DrivingSettings(),
                        progress: Progress = Progress(), markings: MarkingObjects | None = None, edges: RoadEdges | None = None,
-                       road_points: RoadPoints | None = None) -> tuple[DrivingLines, CurveElements, Lanes]:
+                       road_points: RoadPoints | None = None, taken: Sequence[TakenReading] = ()) -> tuple[DrivingLines, CurveElements, Lanes]:
     """Lines to drive on.
 
     Lanes are those of the most probable cross-sections of each road (`estimate_roads`); their middle is driven. Gaps of all lines are
@@ -56,6 +56,7 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
     markings : MarkingObjects or None: no lane leads along a hatched area
     edges : RoadEdges or None: no lane leads over a curb
     road_points : RoadPoints or None: the heights of the road
+    taken : second readings that an analyst took
 
     Returns
     -------
@@ -72,7 +73,7 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
     curbs, pavement = (sections_of_edges(edges), sections_of_pavement(edges)) if edges is not None else (None, {})
     estimates = estimate_roads(sections_of_lines(marking_lines), frame, settings.lane_width or country(settings.country).usual_lane,
                                settings.traffic_side, curbs, markings, road_points, width_asked=bool(settings.lane_width), pavement=pavement,
-                               progress=progress.part(0.0, 0.4))
+                               progress=progress.part(0.0, 0.4), taken=taken)
     progress.report(0.4)
     if estimates.roads and not estimates.sure:
         progress.warn(f"The survey hardly shows on which side traffic drives; the {estimates.side} was taken. Set Side of traffic if that is wrong.")
@@ -120,7 +121,7 @@ def road_lanes(road: EstimatedRoad, settings: DrivingSettings, lane_width: float
     tracks = estimated_lanes(road.boundaries, road.estimate, lane_width, settings.line_distance)
     tracks = connect(tracks, road.lines, settings.max_bridge, settings.max_inferred, _shown(road.boundaries))
     known = [track.without_doubtful_ends() for track in laid_out(tracks)]
-    tracks = [replace(track, confidence=confidence_of(track.confidence, track.directed)) for track in known
+    tracks = [replace(track, confidence=track.said_confidence()) for track in known
               if track is not None and len(track) * STATION_STEP >= settings.shortest]
     return sorted(tracks, key=lambda track: (track.first, float(track.d[0])))
 
@@ -137,8 +138,7 @@ def _lane_pieces(track: LaneTrack, way: int, course: Course, elements: list[Elem
     """The pieces of one lane by status and uncertainty, in order of station."""
     s = road_lines.s
     grid = s[track.first:track.last + 1]
-    status = without_short_status(track.status)
-    for code, start, end in _cut_by_sigma(status_pieces(status, track.first, s), grid, sigma):
+    for code, start, end in _cut_by_sigma(track_pieces(track, s), grid, sigma):
         rows = slice(np.searchsorted(grid, start), np.searchsorted(grid, end) + 1)
         x, y, at = _between(course, start, end, code_first=start == grid[0], code_last=end == grid[-1])
         if len(x) < 2:
@@ -147,7 +147,7 @@ def _lane_pieces(track: LaneTrack, way: int, course: Course, elements: list[Elem
         element = element_of(elements, start, end)
         yield dict(
             pattern=_patterns(track, rows, way, road_lines), direction=way, source="offset" if track.offset[rows].mean() > 0.5 else "pair",
-            status=LANE_STATUS[code], confidence=float(track.confidence[rows].mean()),
+            status=LANE_STATUS[code], **track.said(rows),
             curve=element.arc if element is not None else course.curve, rmse=course.rmse,
             sigma=sigma[rows].mean(), station=start, end=end,
             offset=np.median(track.d[rows]), width=np.median(track.width[rows]), places=places[::-1] if way < 0 else places)
@@ -206,7 +206,7 @@ def driving_lines_of(rows: list[dict[str, Any]], crs: str) -> DrivingLines:
         _column(rows, "source", object), _column(rows, "status", object), _column(rows, "confidence", float), [row["curve"] for row in rows],
         _column(rows, "rmse", float), _column(rows, "station", float), _column(rows, "end", float), _column(rows, "offset", float),
         _column(rows, "width", float), _column(rows, "sigma", float), np.concatenate([*places, np.empty((0, 3))]),
-        np.append(0, np.cumsum([len(some) for some in places], dtype=int)), crs)
+        np.append(0, np.cumsum([len(some) for some in places], dtype=int)), crs, np.array([row.get("other", "") for row in rows], object))
 
 
 def _curve_elements(rows: list[dict[str, Any]], crs: str, country_name: str) -> CurveElements:

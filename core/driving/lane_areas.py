@@ -9,7 +9,7 @@ import numpy as np
 from ..common.parallel import check_cancelled
 from ..markings.cross_section.sections import STATION_STEP, CrossSections
 from ..markings.cross_section.weights import CENTRE_LINE, CURB, EDGE_LINE, HATCHING, ISLAND, LANE_LINE, OTHER_LINE, SURFACE
-from .centreline import status_pieces, without_short_status
+from .centreline import track_pieces
 from .connectors import NEXT_LANE_GAP, NO_BORDER, connectors_on_road
 from .lane_track import LANE_STATUS, LaneTrack
 from .lanes_layer import Lanes
@@ -39,8 +39,7 @@ def lane_areas(road: EstimatedRoad, curbs: CrossSections | None, tracks: list[La
     rows = []
     for lane, (track, z) in enumerate(zip(tracks, heights), start=1):
         check_cancelled()
-        status = without_short_status(track.status)
-        for code, start, end in status_pieces(status, track.first, road.lines.s):
+        for code, start, end in track_pieces(track, road.lines.s):
             part = slice(*np.searchsorted(road.lines.s[track.first:track.last + 1], [start, end + STATION_STEP / 2]))
             if part.stop - part.start >= 2:
                 rows.append(_area(road, curbs, track, part, z, frame, number) | dict(lane=lane, status=LANE_STATUS[code]))
@@ -80,7 +79,7 @@ def _area(road, curbs, track, part, z, frame, number):
     if track.direction < 0:
         sides, about = [side[::-1] for side in sides[::-1]], about[::-1]
     return dict(road=number, type="driving", direction=track.direction, left=sides[0], right=sides[1], about=about,
-                confidence=float(track.confidence[part].mean()), station=float(s[0]), end=float(s[-1]), first=float(d[0]), last=float(d[-1]),
+                **track.said(part), station=float(s[0]), end=float(s[-1]), first=float(d[0]), last=float(d[-1]),
                 width=float(np.median(track.width[part])))
 
 
@@ -141,4 +140,4 @@ def make_lanes(rows: list[dict[str, Any]], crs: str) -> Lanes:
         border(1, 0), border(0, 1), border(1, 1), border(0, 2), border(1, 2), [row["successors"] for row in rows], column("status", object),
         column("confidence", float), column("station", float), column("end", float),
         np.concatenate([np.empty((0, 3)), *(row["left"] for row in rows)]), np.concatenate([np.empty((0, 3)), *(row["right"] for row in rows)]),
-        np.append(0, np.cumsum([len(row["left"]) for row in rows], dtype=int)), crs)
+        np.append(0, np.cumsum([len(row["left"]) for row in rows], dtype=int)), crs, np.array([row.get("other", "") for row in rows], object))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
@@ -9,7 +10,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..common.parallel import check_cancelled
+from ..common.runs import mask_runs
+from ..markings.cross_section.confidence import SAME_LANE, Reading, confidence_of
 from ..markings.cross_section.sections import STATION_STEP
+from ..markings.cross_section.weights import EstimateWeights
 from ..survey.frame.row_table import RowSpans
 
 if TYPE_CHECKING:
@@ -21,6 +25,7 @@ MAX_LANE_JUMP_SHARE = 0.35       # share of a lane's width by which it may jump 
 GAP_NEIGHBOURHOOD = 10.0         # m around a gap within which other lanes tell of a split or merge
 MIN_LANE_SEPARATION_SHARE = 0.6  # share of a lane's width that lanes keep from each other
 MIN_SHOWN_SHARE = 0.5            # of a gap in which lines are seen
+NEAR_DOUBT = 20.0                # m between two stretches in doubt that are one: what neighbouring metres show is not independent
 BRIDGED_TRUST = 0.7              # share of the probability at both ends of a gap that is left between them
 LEAST_PROBABILITY_OF_END = 0.25, 0.8   # of a lane at its end, between two borders and beside one: with less it is wrong mostly
 END_WIDTH_LENGTH = 10.0          # m over which a lane's width at its end is taken
@@ -38,6 +43,8 @@ class LaneTrack:
     where the place comes from one line only; left, right : (N,) rows of Boundaries that it lies between, -1 where nothing is painted
     left_use, right_use : (N,) what these separate, LANE_LINE ... OTHER_LINE, -1 where unknown
     probability, confidence, directed : (N,) 0 to 1, as of LaneSpan; direction : 1 along the road's reference line, -1 against it
+    second : (N,) object, the second Reading of each place, None where none is known
+    aside : (N,) metres that the lane was moved across from where its own borders show it, to meet a surer stretch
     """
 
     first: int
@@ -53,6 +60,14 @@ class LaneTrack:
     confidence: np.ndarray
     directed: np.ndarray
     direction: int
+    second: np.ndarray = None  # type: ignore[assignment]  # filled on construction
+    aside: np.ndarray = None  # type: ignore[assignment]
+
+    def __post_init__(self) -> None:
+        if self.second is None:
+            self.second = np.full(len(self.d), None, object)
+        if self.aside is None:
+            self.aside = np.zeros(len(self.d))
 
     @property
     def last(self) -> int:
@@ -103,6 +118,44 @@ class LaneTrack:
         rows = int(END_WIDTH_LENGTH / STATION_STEP)
         return float(np.median(self.width[:rows] if head else self.width[-rows:]))
 
+    def in_doubt(self, weights: EstimateWeights = EstimateWeights()) -> np.ndarray:
+        """(N,) bool, where a second reading is hardly less probable, or the lane lies beside where its own borders show it."""
+        behind = np.array([np.inf if one is None else one.nats for one in self.second])
+        found = (behind < weights.doubt) | (np.abs(self.aside) > SAME_LANE)
+        for first, end in mask_runs(~found):
+            if first and end < len(found) and (end - first) * STATION_STEP < NEAR_DOUBT:
+                found[first:end] = True
+        return found
+
+    def said_confidence(self, weights: EstimateWeights = EstimateWeights()) -> np.ndarray:
+        """(N,) how often such lanes are right, at most `most_in_doubt` where there is a second reading."""
+        found = confidence_of(self.confidence, self.directed, weights)
+        return np.where(self.in_doubt(weights), np.minimum(found, weights.most_in_doubt), found)
+
+    def said(self, rows: slice, weights: EstimateWeights = EstimateWeights()) -> dict[str, Any]:
+        """The confidence of part of the lane, and `other`, its second reading as JSON where most of the part is in doubt, else "".
+
+        The JSON holds the nats by which that reading is less probable, and the lanes that then lie there.
+        """
+        confidence = float(self.confidence[rows].mean())
+        if 2 * np.count_nonzero(self.in_doubt(weights)[rows]) <= len(self.d[rows]):
+            return dict(confidence=confidence, other="")
+        return dict(confidence=min(confidence, weights.most_in_doubt), other=self._other(rows, weights))
+
+    def _other(self, rows, weights):
+        readings = []
+        for own, d, width, aside in zip(self.second[rows], self.d[rows], self.width[rows], self.aside[rows]):
+            if abs(aside) > SAME_LANE:
+                readings.append(Reading(0.0, ((d - aside, width, self.direction),)))
+            elif own is not None and own.nats < weights.doubt:
+                readings.append(own)
+        ways = [tuple(way for _, _, way in one.lanes) for one in readings]
+        most = max(sorted(set(ways)), key=ways.count)
+        same = [one for one, way in zip(readings, ways) if way == most]
+        lanes = np.median(np.array([one.lanes for one in same], float).reshape(len(same), -1, 3), axis=0)
+        return json.dumps({"nats": round(float(np.median([one.nats for one in same])), 2), "lanes": [
+            {"offset_m": round(d, 2), "width_m": round(width, 2), "direction": int(way)} for d, width, way in lanes.tolist()]})
+
     def without_doubtful_ends(self) -> LaneTrack | None:
         """The track less stretches at its ends that only led over a gap, or are improbable; None if nothing is left."""
         led_over = (self.status == BRIDGED) | self.offset & (self.left < 0) & (self.right < 0)
@@ -148,7 +201,12 @@ def _between(a, b, d, width):
     ends = (a.probability, b.probability), (a.confidence, b.confidence)
     sure = (np.full(len(d), BRIDGED_TRUST * min(before[-1], after[0])) for before, after in ends)
     directed = np.full(len(d), min(a.directed[-1], b.directed[0]))
-    return LaneTrack(a.last + 1, d, width, np.full(len(d), BRIDGED), np.ones(len(d), bool), *[nothing] * 4, *sure, directed, a.direction)
+    # what leads from one to the other is moved as far as either, and as doubtful
+    aside = a.aside[-1] + (b.aside[0] - a.aside[-1]) * np.arange(1, len(d) + 1) / (len(d) + 1)
+    second = np.full(len(d), None, object)
+    second[:] = [min((one for one in (a.second[-1], b.second[0]) if one is not None), key=lambda one: one.nats, default=None)] * len(d)
+    return LaneTrack(a.last + 1, d, width, np.full(len(d), BRIDGED), np.ones(len(d), bool), *[nothing] * 4, *sure, directed, a.direction, second,
+                     aside)
 
 
 def connect(tracks: list[LaneTrack], lines: CrossSections, most_bridged: float, most_inferred: float, shown: np.ndarray) -> list[LaneTrack]:

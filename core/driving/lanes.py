@@ -150,7 +150,7 @@ def _with_lines_up_to(rank, other):
 
 def _shifted(track, step, share):
     """A track moved across and widened by shares, (N,), of a step: m across and of width."""
-    return replace(track, d=track.d + step[0] * share, width=track.width + step[1] * share)
+    return replace(track, d=track.d + step[0] * share, width=track.width + step[1] * share, aside=track.aside + step[0] * share)
 
 
 def _held(rank):
@@ -188,7 +188,9 @@ def _part(boundaries, span, first, last, lane_width, line_distance):
     left_use = span.left if span.place == span.count - 1 else -1
     right_use = span.right if span.place == 0 else -1
     about = (beside_one, left_use, right_use, span.left_border, span.right_border, span.probability, span.confidence, span.directed)
-    return LaneTrack(first, d, width, status, *(np.full(len(d), value) for value in about), span.direction)
+    second = np.full(len(d), None, object)
+    second[:] = [span.second] * len(d)
+    return LaneTrack(first, d, width, status, *(np.full(len(d), value) for value in about), span.direction, second)
 
 
 def _filled(values):

@@ -38,6 +38,7 @@ class Lanes:
     left, right : (V, 3) local metres, the borders in the direction of travel, piece after piece, cut at the same places
     start : (P + 1,) int, first vertex of each piece, and V
     crs : WKT, "" where unknown
+    other : (P,) str objects, the second reading as JSON, as of DrivingLines
     """
 
     road: np.ndarray
@@ -60,6 +61,11 @@ class Lanes:
     right: np.ndarray
     start: np.ndarray
     crs: str = ""
+    other: np.ndarray = None  # type: ignore[assignment]  # filled on construction
+
+    def __post_init__(self) -> None:
+        if self.other is None:
+            object.__setattr__(self, "other", np.full(len(self.road), "", object))
 
     def __len__(self) -> int:
         return len(self.road)
@@ -99,12 +105,14 @@ def lanes_to_features(lanes: Lanes, origin: Any = LEVEL_ORIGIN) -> Features:
     widths, lengths = lanes.width, lanes.length
     for k in range(len(lanes)):
         left, right = lanes.borders(k)
+        # closed here, so that a lane that begins in a point keeps the vertices of both borders
         layer.add(
-            shapely.Polygon(np.concatenate([left, right[::-1]]) + np.asarray(origin)), road=int(lanes.road[k]), lane=int(lanes.lane[k]),
+            shapely.Polygon(np.concatenate([left, right[::-1], left[:1]]) + np.asarray(origin)), road=int(lanes.road[k]), lane=int(lanes.lane[k]),
             lane_id=lanes.lane_id[k], type=lanes.type[k], direction=int(lanes.direction[k]), left_line=lanes.left_line[k],
             right_line=lanes.right_line[k], left_kind=lanes.left_kind[k], right_kind=lanes.right_kind[k], left_patt=lanes.left_pattern[k],
             right_patt=lanes.right_pattern[k], successors=",".join(lanes.successors[k]), status=lanes.status[k],
-            confidence=float(lanes.confidence[k]), station_m=float(lanes.station[k]), end_m=float(lanes.end[k]), width_m=float(widths[k]),
+            confidence=float(lanes.confidence[k]), other=lanes.other[k] or None,
+            station_m=float(lanes.station[k]), end_m=float(lanes.end[k]), width_m=float(widths[k]),
             length_m=float(lengths[k]))
     return layer
 
@@ -147,7 +155,7 @@ def lanes_from_features(features: Features, origin: Any = LEVEL_ORIGIN) -> Lanes
         _texts(rows, "status", "measured"), _numbers(rows, "confidence", float, 1.0), _numbers(rows, "station_m", float, 0.0),
         _numbers(rows, "end_m", float, 0.0), np.concatenate([np.empty((0, 3)), *(ring[:n] for ring, n in zip(rings, halves))]),
         np.concatenate([np.empty((0, 3)), *(ring[n:][::-1] for ring, n in zip(rings, halves))]), np.append(0, np.cumsum(halves, dtype=int)),
-        features.crs)
+        features.crs, _texts(rows, "other"))
 
 
 def _ring(geometry: Any, name: str) -> np.ndarray:

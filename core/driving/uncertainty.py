@@ -11,7 +11,9 @@ it takes all of it, and what the width of lanes is off by.
 
 The line is off by most of what the places of its lane lie beside it on average over some metres: the borders show the lane there and the line
 passes it. Where the curvature changes, as from a straight into a hairpin bend, places and line are as good as an arc over some metres, which lies
-beside the lane. What passes differ by that were laid on each other comes last.
+beside the lane. A place that is a guess is off by what the guess may be: as far as the lane was moved from where its own borders show it, and, where
+a second reading of the road is hardly less probable, as far as the lanes of that one lie beside, with its probability. What passes differ by that
+were laid on each other comes last.
 
 A piece of a line says the mean along it, and a line is cut where it changes much. It holds against the points of the survey: what they are off
 as a whole, with their trajectory, is in it only where the accuracy of the trajectory was told, since one pass does not show it.
@@ -74,7 +76,7 @@ def lane_sigma(track: LaneTrack, course: Course, road: Road, known: EstimatedRoa
     apart = np.full(len(track), np.nan) if spacing is None else spacing[track.first:track.last + 1]
     apart = np.where(np.isnan(apart), USUAL_SPACING, apart)
     return np.sqrt(_mean_square_of_borders(track, known, paint, apart) + _mean_square_misfit(track, course, road, lines)
-                   + _mean_square_bias(track, course, lines) + passes**2)
+                   + _mean_square_bias(track, course, lines) + _mean_square_guess(track) + passes**2)
 
 
 def _mean_square_of_borders(track, known, paint, spacing):
@@ -121,6 +123,16 @@ def _mean_square_bias(track, course, lines):
     change = np.gradient(gaussian_filter1d(np.gradient(heading) / step, smooth, mode="nearest")) / step
     square = np.maximum(uniform_filter1d(change**2, int(CURVATURE_WINDOW / STATION_STEP) + 1, mode="nearest"), 0.0)
     return square * (ARC_REACH**3 / (15.0 * np.sqrt(7.0))) ** 2
+
+
+def _mean_square_guess(track):
+    """(N,) m², of a place that is a guess: from where its borders show the lane, and from the lanes of a second reading, about the place drawn."""
+    square, doubt = track.aside**2, track.in_doubt()
+    for k in np.flatnonzero(doubt).tolist():
+        second = track.second[k]
+        if second is not None and second.lanes:
+            square[k] += min(abs(d - track.d[k]) for d, _, _ in second.lanes) ** 2 / (1.0 + np.exp(second.nats))
+    return square
 
 
 def _border(track, lines, paint, rows):

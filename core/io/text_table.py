@@ -1,16 +1,18 @@
 """Tables of numbers in text files, with any header and delimiter.
 
 Half a million rows take about a second: lines are counted and split as bytes, and
-the numbers are parsed in one call.
+the numbers are parsed in one call. How people write numbers is one table, STYLES.
 """
 
 from __future__ import annotations
 
+import csv
 import io
 import os
 import re
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -21,9 +23,39 @@ SAMPLE_LINES = 400         # lines of these that are split
 MIN_NUMBER_COLUMNS = 3     # columns of numbers that make a table
 MAX_NUMBER = 1e20          # beyond time in nanoseconds; larger numbers count as missing, like infinity
 FIELDS_PER_CHUNK = 200_000  # fields parsed at a time where some are words
-NUMBER_PATTERN = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?$|[+-]?(nan|inf)$", re.IGNORECASE)
-DECIMAL_COMMA_PATTERN = re.compile(r"[+-]?\d+,\d+([eE][+-]?\d+)?$|[+-]?\d+$")
 DELIMITERS = (";", "\t", "|", ",", " ")
+MIXED = re.compile(rb"[ ]*[,;|\t ][ ]*")                # between columns where a row has several delimiters
+UNIT_SUFFIX = r"(?: ?(?:m|cm|mm|km|s|sec|ms|us|ns|ft|deg|rad|gon|°))?"
+# What stands for a number without being one: dates, clock times, degrees with minutes and seconds
+VALUE_PATTERN = re.compile(r"\d{1,4}[-/.]\d{1,2}[-/.]\d{1,4}([ T]\d{1,2}:.*)?$|"
+                           r"\d{1,2}:\d{2}(:\d{2}([.,]\d*)?)?( ?[ap]\.?m\.?)?(Z|[+-]\d{2}:?\d{2})?$|"
+                           r"[NSEW]? ?[+-]?\d{1,3} ?[°dº:] ?\d{1,2}|[NSEW]? ?[+-]?\d{1,3} \d{1,2}[ .]\d{1,2}([.,]\d*)? ?[NSEW]?$", re.IGNORECASE)
+
+
+@dataclass(frozen=True)
+class NumberStyle:
+    """How numbers are written: the decimal sign, and the sign between groups of three digits, "" for none."""
+
+    decimal: str
+    grouping: str = ""
+
+    @cached_property
+    def number(self) -> re.Pattern[str]:
+        """Matches a field that is a number."""
+        point, mark = re.escape(self.decimal), re.escape(self.grouping)
+        digits = rf"\d{{1,3}}(?:{mark}\d{{3}})+|\d+" if mark else r"\d+"
+        exponent = "[eEdD]" if self.decimal == "." else "[eE]"
+        return re.compile(rf"[+-]?(?:(?:{digits})(?:{point}\d*)?|{point}\d+)(?:{exponent}[+-]?\d+)?{UNIT_SUFFIX}$|[+-]?(?:nan|inf)$", re.IGNORECASE)
+
+    @cached_property
+    def grouped(self) -> re.Pattern[str]:
+        """Matches a text with a number that is written in groups beyond doubt: 2'710'159 or 610.475,8 but not 610.475."""
+        point, mark = re.escape(self.decimal), re.escape(self.grouping)
+        return re.compile(rf"(?<![\d.,])\d{{1,3}}(?:{mark}\d{{3}})+(?:{mark}\d{{3}}|{point}\d+)(?![\d.,])")
+
+
+STYLES = (NumberStyle("."), NumberStyle(","), NumberStyle(".", "'"), NumberStyle(",", "'"), NumberStyle(".", " "), NumberStyle(",", " "),
+          NumberStyle(",", "."), NumberStyle(".", ","))
 
 
 @dataclass(frozen=True)
@@ -36,12 +68,23 @@ class NumberTable:
     preamble : the lines above the numbers, header included, top down
     first_row : the fields of the first row as they are written
     dropped : rows left out because they had another number of fields
+    body : the rows, their fields separated by blanks, with _ for a blank within a field
     """
 
     values: np.ndarray
     preamble: list[str]
     first_row: list[str]
     dropped: int = 0
+    body: bytes = field(default=b"", repr=False)
+
+    @cached_property
+    def _fields(self):
+        # bytes.split() would also split at vertical tabs and form feeds, which did not separate the fields above
+        return re.split(rb"[ \t\n]+", self.body.strip(b" \t\n"))
+
+    def texts(self, column: int) -> list[str]:
+        """The N fields of a column as they are written, "" where one is empty."""
+        return ["" if text == b"nan" else _decoded(text).replace("_", " ") for text in self._fields[column::self.values.shape[1]]]
 
 
 def read_number_table(path: str | os.PathLike[str]) -> NumberTable:
@@ -61,18 +104,29 @@ def read_number_table(path: str | os.PathLike[str]) -> NumberTable:
         If the file cannot be read, holds no table of at least three columns of
         numbers, or uses the comma for columns and decimals alike.
     """
-    data = _text_bytes(path)
+    data = _without_quotes(_text_bytes(path))
     lines = _sample_lines(data)
-    delimiter, columns, decimal_comma = _recognise_format(lines, path)
-    first = next(k for k, line in enumerate(lines) if _is_row(_fields(line, delimiter), columns, decimal_comma))
+    recognised = _recognise_format(lines)
+    if recognised is None:
+        data = MIXED.sub(b" ", data)
+        mixed = _sample_lines(data)
+        recognised = _recognise_format(mixed)
+        if recognised is None:
+            seen = next((line.strip()[:80] for line in lines if line.strip()), "")
+            raise RoadExtractionError(
+                f"{path} holds no table of numbers: it begins {seen!r}. A trajectory needs rows with at least x, y and z, "
+                "and time where there is one, with a decimal point.")
+        lines = mixed
+    delimiter, columns, style = recognised
+    first = next(k for k, line in enumerate(lines) if _is_row(_fields(line, delimiter), columns, style))
     first_row = _fields(lines[first], delimiter)
     if delimiter == ",":
         _refuse_ambiguous_commas(first_row, lines[:first], path)
     body = data.split(b"\n", first)[-1] if first else data
-    values, dropped = _parse(body, delimiter, columns, decimal_comma)
+    values, dropped, body = _parse(body, delimiter, columns, style)
     if not len(values):
         raise RoadExtractionError(f"{path} holds no rows of numbers. Check that it is the trajectory and was exported whole.")
-    return NumberTable(values, [line for line in lines[:first] if line.strip()], first_row, dropped)
+    return NumberTable(values, [line for line in lines[:first] if line.strip()], first_row, dropped, body)
 
 
 def _text_bytes(path):
@@ -87,12 +141,26 @@ def _text_bytes(path):
     if b"\0" in data[:SAMPLE_BYTES]:
         raise RoadExtractionError(
             f"{path} is a binary file. A trajectory is read from text (CSV, TXT) or from Applanix SBET (.out, records of 136 bytes).")
-    return data.replace(b"\r\n", b"\n").replace(b"\r", b"\n").rstrip(b"\x1a\0 \t\n") + b"\n"
+    data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n").rstrip(b"\x1a\0 \t\n") + b"\n"
+    for written, plain in ((b"\xc2\xa0", b" "), (b"\xe2\x80\xaf", b" "), (b"\xe2\x80\x99", b"'"), (b"\xe2\x88\x92", b"-")):
+        data = data.replace(written, plain)  # narrow and fixed blanks, the typographic apostrophe and minus
+    return data
+
+
+def _without_quotes(data):
+    """The text with tabs between its columns, where quotes hold commas or other delimiters together."""
+    sample = data[:SAMPLE_BYTES]
+    quoted = re.search(rb'(?:^|[,;\t|])"[^"\n]*[,;\t|][^"\n]*"([,;\t|]|$)', sample, re.MULTILINE) if b'"' in sample else None
+    if quoted is None:
+        return data
+    mark = quoted.group(1) or b","
+    rows = csv.reader(data.decode("utf-8", "surrogateescape").splitlines(), delimiter=mark.decode())
+    return "".join("\t".join(value.replace("\t", " ") for value in row) + "\n" for row in rows).encode("utf-8", "surrogateescape")
 
 
 def _sample_lines(data):
-    lines = data[:SAMPLE_BYTES].decode("utf-8", "replace").split("\n")
-    return lines[:-1]
+    whole = data[:SAMPLE_BYTES].rpartition(b"\n")[0]
+    return _decoded(whole).split("\n")
 
 
 def _fields(line, delimiter):
@@ -104,36 +172,32 @@ def _fields(line, delimiter):
     return fields[:-1] if len(fields) > 1 and not fields[-1] else fields
 
 
-def _is_number(field, decimal_comma):
-    return bool((DECIMAL_COMMA_PATTERN if decimal_comma else NUMBER_PATTERN).match(field))
-
-
-def _is_row(fields, columns, decimal_comma):
-    numbers = sum(_is_number(field, decimal_comma) for field in fields)
+def _is_row(fields, columns, style):
+    numbers = _numbers_among(fields, style)
     return len(fields) == columns and numbers >= MIN_NUMBER_COLUMNS and 2 * numbers >= len(fields)
 
 
-def _recognise_format(lines, path):
-    """(delimiter, number of columns, decimal comma) that explain the most lines."""
-    best = (0, 0, None)
-    for rank, delimiter in enumerate(DELIMITERS):
-        for decimal_comma in (False, True) if delimiter != "," else (False,):
-            rows = []
-            for line in lines[:SAMPLE_LINES]:
-                fields = _fields(line, delimiter)
-                if MIN_NUMBER_COLUMNS <= len(fields) and _is_row(fields, len(fields), decimal_comma):
-                    rows.append(len(fields))
-            if not rows:
+def _numbers_among(fields, style):
+    return sum(bool(style.number.match(text) or VALUE_PATTERN.match(text)) for text in fields)
+
+
+def _recognise_format(lines):
+    """(delimiter, number of columns, style of numbers) that explain the most lines; None where none does."""
+    lines = lines[:SAMPLE_LINES]
+    styles = [style for style in STYLES if not style.grouping or any(map(style.grouped.search, lines))]
+    best = (0, 0, False, None)
+    for delimiter in DELIMITERS:
+        split = [fields for fields in (_fields(line, delimiter) for line in lines) if len(fields) >= MIN_NUMBER_COLUMNS]
+        for style in styles:
+            if delimiter in (style.decimal, style.grouping):
                 continue
-            columns, count = Counter(rows).most_common(1)[0]
-            best = max(best, (count, columns * (not decimal_comma), (-rank, delimiter, columns, decimal_comma)),
-                       key=lambda found: found[:2])
-    if best[2] is None:
-        seen = next((line.strip()[:80] for line in lines if line.strip()), "")
-        raise RoadExtractionError(
-            f"{path} holds no table of numbers: it begins {seen!r}. A trajectory needs rows with at least x, y and z, "
-            "and time where there is one, with a decimal point.")
-    return best[2][1:]
+            counts = Counter(len(fields) for fields in split if _is_row(fields, len(fields), style))
+            if not counts:
+                continue
+            columns, count = counts.most_common(1)[0]
+            more_numbers = sum(2 * _numbers_among(fields, style) - columns for fields in split if len(fields) == columns)  # than words
+            best = max(best, (count, more_numbers, style.decimal == ".", (delimiter, columns, style)), key=lambda found: found[:3])
+    return best[3]
 
 
 def _refuse_ambiguous_commas(first_row, above, path):
@@ -147,14 +211,15 @@ def _refuse_ambiguous_commas(first_row, above, path):
             "Export it with a decimal point, or with semicolons between the columns.")
 
 
-def _parse(body, delimiter, columns, decimal_comma):
-    """((N, K) values, number of lines with another number of fields)."""
+def _parse(body, delimiter, columns, style=STYLES[0]):
+    """((N, K) values, number of lines with another number of fields, the lines with as many, fields separated by blanks)."""
     body = body.replace(b'"', b"")
+    if style.grouping:
+        body = re.sub(rb"(?<=\d)" + re.escape(style.grouping.encode()) + rb"(?=\d{3}(?!\d))", b"", body)
     if delimiter != " ":
         body = _fill_empty(body, delimiter.encode())
-    table = bytes.maketrans((delimiter + (",Dd" if decimal_comma else "")).encode(),
-                            (" " + (".ee" if decimal_comma else "")).encode())
-    body = body.translate(table)
+    comma = ",Dd" if style.decimal == "," else ""
+    body = body.translate(bytes.maketrans((delimiter + comma).encode(), (" " + ".ee"[:len(comma)]).encode()))
     text = np.frombuffer(body, np.uint8)
     ends = np.flatnonzero(text == 10)
     starts = np.r_[0, ends[:-1] + 1]
@@ -166,15 +231,16 @@ def _parse(body, delimiter, columns, decimal_comma):
     if not right.all():
         body = text[np.repeat(right, ends - starts + 1)].tobytes()
     rows = int(np.count_nonzero(right))
+    if not rows:
+        return np.empty((0, columns)), dropped, b""
     values = None
-    if rows:
-        try:
-            values = np.loadtxt(io.BytesIO(body), comments=None, ndmin=2, encoding="latin1")
-        except ValueError:
-            pass  # a field is not a number: fields are parsed one by one
+    try:
+        values = np.loadtxt(io.BytesIO(body), comments=None, ndmin=2, encoding="latin1")
+    except ValueError:
+        pass  # a field is not a number: fields are parsed one by one
     if values is None or values.shape != (rows, columns):
         values = _parse_mixed(body, columns)
-    return finite_or_nan(values).reshape(-1, columns), dropped
+    return finite_or_nan(values).reshape(-1, columns), dropped, body
 
 
 def finite_or_nan(values: np.ndarray) -> np.ndarray:
@@ -211,8 +277,24 @@ def _parse_mixed(body, columns):
     return np.concatenate(parts) if parts else np.empty((0, columns))
 
 
-def _number_or_nan(field):
+def _number_or_nan(text):
     try:
-        return float(field.replace(b"D", b"e").replace(b"d", b"e"))
+        return float(text)
+    except ValueError:
+        pass
+    # exponents of Fortran, and units behind numbers
+    number = re.fullmatch(rb"([+-]?[\d.]+)(?:[eEdD]([+-]?\d+))?(?:_?([A-Za-z]{1,3}|\xc2?\xb0))?", text)
+    unit = _decoded(number[3]).lower() if number and number[3] else ""
+    if number is None or (unit and not re.fullmatch(UNIT_SUFFIX, unit)):
+        return np.nan
+    try:
+        return float(number[1] + b"e" + (number[2] or b"0"))
     except ValueError:
         return np.nan
+
+
+def _decoded(text):
+    try:
+        return text.decode()
+    except UnicodeDecodeError:
+        return text.decode("latin-1")

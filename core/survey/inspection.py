@@ -15,7 +15,7 @@ from ..common.setting import check_limits, setting
 from ..io.cloud_crs import check_projected, crs_note
 from .frame.build import build_frame
 from .las.copies import PER_METRE, distinct_rows, may_overlap, without_copies
-from .las.luminance import INTENSITY_SOURCES, without_intensity
+from .las.intensity_source import INTENSITY_SOURCES, without_intensity
 from .las.reader import POINTS_PER_BLOCK, read_blocks, read_headers
 from .las.scanners import ScannerCensus
 from .read_survey import match_clocks
@@ -282,7 +282,7 @@ def _judge_trajectory(found, wkt, has_time, progress):
     """Overlap in space and time; what is wrong goes to the notes."""
     try:
         trajectory = clean_trajectory(reproject_trajectory(found.trajectory, wkt))
-        found.notes += [note for note in trajectory.notes if note not in found.notes]
+        found.notes += [note for note in (*trajectory.notes, *trajectory.doubts) if note not in found.notes]
         if has_time:
             trajectory, note, *_ = match_clocks(found.files, trajectory, SurveySettings(), progress)
             found.notes += [note] if note else []

@@ -17,13 +17,15 @@ from ..io.units import as_in_file
 from .adjustment.adjust import adjust_passes
 from .adjustment.beside import compare_carriageways
 from .clock_check import check_clock
+from .fit.trajectory_fit import fitted_trajectory
 from .frame.build import build_frame
 from .frame.road import CORRIDOR
 from .frame.sigma_along import SigmaAlong
 from .las.copies import distinct_rows, may_overlap
-from .las.luminance import check_coloured, without_intensity
+from .las.intensity_source import check_coloured, intensity_source_of, without_intensity
 from .las.parallel_reader import ParallelCloudReader
 from .las.reader import CloudHeader
+from .las.samples import coarse_coordinates, sample_files
 from .reading.blocks import PointChoice, unwrap_week
 from .reading.survey_reader import SurveyReader
 from .store.records import COORDINATE_SCALE, SURVEY_POINT, point_dtype
@@ -42,6 +44,7 @@ SECTION_POINTS = 250_000      # points of a section, about, and
 SECTION_LENGTHS = SECTION_LENGTH, 10.0, 25.0   # m that it may be long
 PARTS_PROGRESS = 0.85        # of reading, where the points are put in order afterwards
 LOWEST_SENSOR = 0.5          # m above the road: no scanner rides lower, but lines and places drawn on the road lie within
+HIGHEST_SENSOR = 5.0         # m above the road: vehicles are up to 4 m high (Directive 96/53/EC), and a mast on a roof adds some
 FEET = 0.3048, 1200 / 3937   # m, of the international foot and of that of surveys in the United States
 
 
@@ -83,8 +86,7 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
         If a file cannot be read, the CRS is geographic or not in metres, or the
         trajectory does not overlap the cloud in space or time.
     """
-    coloured = settings.intensity_from == "rgb"
-    if coloured:
+    if settings.intensity_from == "rgb":
         check_coloured(files)
     crs = check_projected(files, settings.crs, trajectory.crs)
     if note := crs_note(files, settings.crs, crs):
@@ -97,19 +99,28 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     trajectory, time_note, has_time, week_ends = match_clocks(files, trajectory, settings, progress)
     if time_note:
         progress.info(time_note)
+    fitted = fitted_trajectory(files, trajectory, settings.scanner_field, progress)
+    trajectory = fitted.trajectory
     frame = build_frame(trajectory)
     frame.crs = crs
     frame.has_time = has_time
     for note in frame.notes:
         progress.info(note)
+    for doubt in trajectory.doubts:
+        progress.warn(doubt)
     if not has_time and len(frame.passes) > len(frame.roads):
         progress.warn(f"The trajectory drives {len(frame.passes)} times over {len(frame.roads)} road(s), and as {_without_time(files, trajectory)} "
                       "the passes are mixed: whatever they differ by blurs the map. Export points and trajectory with their time, or process "
                       "the files of each drive with its own part of the trajectory.")
     _check_extent(files, frame, crs, trajectory.crs)
+    samples = sample_files(files)
+    intensity, intensity_note = intensity_source_of(samples, settings.intensity_from)
+    for note in (coarse_coordinates(samples), intensity_note):
+        if note:
+            progress.warn(note)
     store = SectionStore(point_dtype(SURVEY_POINT, frame.farthest), settings.section_length or section_length(files, frame),
                          settings.memory_limit, folder=None if shared is None else shared.points)
-    reader = SurveyReader(frame, store, PointChoice(settings.corridor, has_time, week_ends, settings.above_road, coloured))
+    reader = SurveyReader(frame, store, PointChoice(settings.corridor, has_time, week_ends, settings.above_road, intensity))
     again = settings.fit_passes and has_time and len(frame.passes) > len(frame.roads)
     read_at = INGEST_PROGRESS if again else 1.0
     if shared is None:
@@ -137,6 +148,10 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
             "trajectory that the navigation system recorded. If it is that of the vehicle's wheels, add the height of the scanner to its heights.")
     if feet := unit_note(height, crs):
         progress.warn(feet)
+    elif not fitted.seen and not reader.uneven and not 0.0 < height < HIGHEST_SENSOR:
+        progress.warn(f"The trajectory lies {abs(height):.1f} m {'above' if height > 0 else 'below'} the road; scanners ride up to "
+                      f"{HIGHEST_SENSOR:g} m above it. Heights of cloud and trajectory seem to be of two kinds (above the ellipsoid and above sea "
+                      "level), in feet, or upside down. Export both anew with one kind of heights in metres.")
     scanner_field, scanners = reader.census.choose(settings.scanner_field)
     survey = Survey(files, frame, store, crs, reader.heights, scanner_field, scanners,
                     reader.brightest > reader.darkest, has_time,
@@ -145,7 +160,7 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
                  f"{len(frame.roads)} road(s), {len(frame.passes)} pass(es), {len(scanners)} scanner(s); "
                  f"sensor {height:.2f} m above the road.")
     time, place = _sampled(files, reader, has_time, progress)
-    if coloured:
+    if intensity.field == "rgb":
         progress.info("The brightness of the points' colours is taken as their intensity.")
     if not survey.has_intensity and (note := without_intensity(files, settings.intensity_from)):
         progress.warn(note)
@@ -167,7 +182,7 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     if settings.fit_passes and has_time and len(frame.roads) > 1:
         compare_carriageways(survey, progress.part(1.0, 1.0))
     # what the user says overrules what lies beside the trajectory
-    if across := settings.trajectory_sigma or trajectory.sigma_across:
+    if across := max(settings.trajectory_sigma or trajectory.sigma_across, fitted.sigma):
         # what passes differ by is part of the same error
         differ = survey.frame.pass_sigma
         survey.frame.pass_sigma = {road: differ.get(road, SigmaAlong.everywhere(0.0)).at_least(across) for road in range(len(frame.roads))}

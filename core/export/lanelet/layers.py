@@ -81,8 +81,7 @@ def layers_of_lanelets(whole: LaneletMap, crs: str = "", progress: Progress = Pr
         kinds, patterns = zip(*(_border(whole.ways[lanelet.way(role) or 0].tags, turned[role]) for role in turned))
         rows.add(left, right, road=1, lane=count + 1, lane_id=str(id), direction=1,
                  type=LANE_TYPE_OF_LANELET.get(lanelet.tags.get("subtype", ""), "driving"),
-                 left_line=f"line {lanelet.way('left')}", right_line=f"line {lanelet.way('right')}", left_kind=kinds[0],
-                 right_kind=kinds[1], left_pattern=patterns[0], right_pattern=patterns[1],
+                 left_kind=kinds[0], right_kind=kinds[1], left_pattern=patterns[0], right_pattern=patterns[1],
                  successors=[str(other) for other in network.following(id) if network.driven(other)])
         progress.report((count + 1) / len(shown))
     found = MapLayers(rows.lanes(crs))

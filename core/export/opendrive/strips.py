@@ -112,7 +112,11 @@ def cut_into_cells(lanes: Lanes) -> list[Cell]:
     for k in range(len(lanes)):
         a, b = lanes.start[k], lanes.start[k + 1] - 1
         inner = [row for row in range(a + 1, b) if left[row] in cuts or right[row] in cuts] if ordinary[a] else []
-        at = [a, *inner, b]
+        at = [a]
+        for row in inner:   # where both borders stand still there is nothing to cut off
+            if all((left[row], right[row]) != (left[end], right[end]) for end in (at[-1], b)):
+                at.append(row)
+        at.append(b)
         made = []
         for first, last in zip(at[:-1], at[1:]):
             rows = slice(first, last + 1)

@@ -157,6 +157,39 @@ def best_through(cost: np.ndarray, transition: np.ndarray) -> np.ndarray:
     return forward + backward
 
 
+def behind_best(cost: np.ndarray, transition: np.ndarray, length: np.ndarray, repeats: float) -> np.ndarray:
+    """By how many nats the most probable sequence through each cross-section is behind the most probable one of all.
+
+    Where the two differ over a longer way than `repeats`, they differ in how the whole road is laid out. What is seen there again and again was
+    laid out and driven once, so it counts as on a way of that length.
+
+    Parameters
+    ----------
+    cost, transition : as of `best_sequence`
+    length : (I,) metres of each interval
+    repeats : metres
+
+    Returns
+    -------
+    (I, K) nats, 0 for the most probable sequence; inf for cross-sections that are none
+    """
+    choice, total = best_sequence(cost, transition)
+    apart = np.repeat(length[:, None].astype(float), cost.shape[1], axis=1)
+    apart[np.arange(len(choice)), choice] = 0.0
+    # metres for which a sequence has been apart from the best one, up to a cross-section and from it on
+    before, after = apart.copy(), apart.copy()
+    forward, backward = cost.copy(), np.zeros(cost.shape)
+    for i in range(1, len(cost)):
+        step = forward[i - 1][:, None] + transition[i - 1]
+        forward[i] += step.min(0)
+        before[i] = np.where(apart[i] > 0, before[i] + before[i - 1][step.argmin(0)], 0.0)
+    for i in range(len(cost) - 1, 0, -1):
+        step = transition[i - 1] + (cost[i] + backward[i])[None, :]
+        backward[i - 1] = step.min(1)
+        after[i - 1] = np.where(apart[i - 1] > 0, after[i - 1] + after[i][step.argmin(1)], 0.0)
+    return (forward + backward - total) * np.minimum(1.0, repeats / np.maximum(before + after - apart, 1e-9))
+
+
 def _log_sum(values, axis):
     highest = values.max(axis=axis, keepdims=True)
     highest = np.where(np.isfinite(highest), highest, 0.0)

@@ -1,12 +1,41 @@
-"""How often a lane is right that the estimate holds for so probable."""
+"""How often a lane is right that the estimate holds for so probable, and what else may be there."""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 
 from .weights import EstimateWeights
 
+SAME_LANE = 0.15   # m across within which lanes of two cross-sections are the same: as near as a driving line is right
 SUREST = 1e-4    # what is left to say against the surest
+
+
+@dataclass(frozen=True)
+class Reading:
+    """The second reading of a place where a lane was found.
+
+    nats : by how much it is less probable than the first; 0 where that was chosen by the names of lines alone
+    lanes : offset of the middle and width, metres, and direction of each lane that then lies where the lane was found, from left to right
+    """
+
+    nats: float
+    lanes: tuple[tuple[float, float, int], ...]
+
+
+@dataclass(frozen=True)
+class TakenReading:
+    """A second reading that an analyst took.
+
+    road : number; s, d : (V,) metres, rising stations and offsets of the lane that it is taken for
+    lanes : of each lane that lies there instead, metres across from that lane, width in metres, and direction
+    """
+
+    road: int
+    s: np.ndarray
+    d: np.ndarray
+    lanes: tuple[tuple[float, float, int], ...]
 
 
 def confidence_of(there: np.ndarray, directed: np.ndarray, weights: EstimateWeights = EstimateWeights()) -> np.ndarray:

@@ -8,16 +8,16 @@ import numpy as np
 
 from ...common.parallel import check_cancelled
 from .across import Sections, best_sections, lane_strips, misnamed_costs, separated_kinds
-from .along import INTERVALS_AT_ONCE, best_sequence, best_through, probabilities, transitions
+from .along import INTERVALS_AT_ONCE, behind_best, best_sequence, best_through, probabilities, transitions
 from .candidates import Candidates
+from .confidence import SAME_LANE, Reading
 from .evidence import Evidence
-from .lane_width import lane_places
-from .strips import FIRST, SECOND, strip_costs
+from .lane_width import UNPAINTED, beside_surface_end, lane_places
+from .strips import FIRST, SECOND, strip_costs, width_cost
 from .weights import CENTRE_LINE, DASHED, LANE_LINE, EstimateWeights
 
 FARTHEST_BEHIND = 30.0   # nats at most by which one direction is less probable than the other
 INTERVALS_OF_STRETCH = 256      # intervals that are looked at together, 1 to 2 km of road: what they are chosen from takes 0.2 MB for each
-SAME_LANE = 0.15   # m across within which lanes of two cross-sections are the same: as near as a driving line is right
 
 
 @dataclass
@@ -29,10 +29,13 @@ class RoadEstimate:
     sections : Sections; choice : (I,) which of them; total : nats of them; posterior : (I, K) how probable each is
     sureness : (I, K) the same as far as it was seen here, where what is laid out alike along the road counts once, and so do the same lanes
     first_direction : of the lanes met first from the left
-    evidence : that it is made from
+    evidence, weights : that it is made from
     unnamed : (I,) which cross-sections would have been chosen without the names of the lines; -1 where these decide; unnamed_total : nats of them
     once : (I, K) nats of the most probable sequence through each as far as it was seen here, as `sureness` counts that; inf where nothing is known
+    second : (I, K) by how many nats the most probable sequence through each is behind the best one, without names, see `behind_best`; inf where
+        nothing is known
     other, behind : the estimate for the other side of traffic where either may be, else None, and by how many nats it is less probable
+    opposite, opposite_behind : the same as far as it is a second reading, in nats as of `second`
     """
 
     candidates: Candidates
@@ -44,11 +47,15 @@ class RoadEstimate:
     total: float
     first_direction: int
     evidence: Evidence
+    weights: EstimateWeights
     unnamed: np.ndarray
     unnamed_total: float
     once: np.ndarray
+    second: np.ndarray
     other: RoadEstimate | None = None
     behind: float = 0.0
+    opposite: RoadEstimate | None = None
+    opposite_behind: float = 0.0
 
     @property
     def once_total(self) -> float:
@@ -77,7 +84,7 @@ def estimate_road(candidates: Candidates, evidence: Evidence, first_direction: i
     known, total, unnamed_total = np.flatnonzero(paint.any(1)), 0.0, 0.0
     # what named the lines is the same evidence
     cost = sections.cost - _by_stretch(lambda part: misnamed_costs(candidates.take(part), sections.take(part), weights), len(sections.cost))
-    unnamed, once = np.argmin(cost, axis=1), np.full(cost.shape, np.inf)
+    unnamed, (once, second) = np.argmin(cost, axis=1), np.full((2, *cost.shape), np.inf)
     if len(known):
         between = np.r_[0.0, np.cumsum(candidates.length)]
         gap = between[known[1:]] - between[known[:-1] + 1]
@@ -87,9 +94,11 @@ def estimate_road(candidates: Candidates, evidence: Evidence, first_direction: i
         choice[known], total = best_sequence(sections.cost[known], transition)
         posterior[known] = probabilities(sections.cost[known], transition)
         unnamed[known], unnamed_total = best_sequence(cost[known], transition)
+        second[known] = behind_best(cost[known], transition, candidates.length[known], weights.repeats)
         seen_once = _seen_once(candidates, sections, cost, weights)[known]
         sureness[known], once[known] = probabilities(seen_once, transition), best_through(seen_once, transition)
-    return RoadEstimate(candidates, lane_width, sections, choice, posterior, sureness, total, first_direction, evidence, unnamed, unnamed_total, once)
+    return RoadEstimate(candidates, lane_width, sections, choice, posterior, sureness, total, first_direction, evidence, weights, unnamed,
+                        unnamed_total, once, second)
 
 
 def _stretches(count):
@@ -110,7 +119,24 @@ def _best_sections(candidates, evidence, weights, lane_width, first_direction):
         sections = best_sections(own, strip_costs(own, seen, weights, lane_width, first_direction), seen.stops, weights)
         sections.cost += _roads_of_many_lanes(own, sections, seen.divided, weights)
         found.append(sections)
-    return Sections.joined(found)
+    joined = Sections.joined(found)
+    _hold_to_taken(candidates, evidence, joined, lane_width, first_direction, weights)
+    return joined
+
+
+def _hold_to_taken(candidates, evidence, sections, lane_width, first_direction, weights):
+    """Make cross-sections improbable, in place, that have not the lanes that an analyst took."""
+    for interval, former, wanted in evidence.taken:
+        own = lane_strips(sections.take(slice(interval, interval + 1)))
+        lanes = _lanes(candidates, lane_width, first_direction, replace(own, interval=own.interval + interval))
+        there = np.abs(lanes.d - former) < SAME_LANE
+        for d, width, _ in wanted:
+            there |= np.abs(lanes.d - d) < width / 2
+        kept = np.arange(sections.cost.shape[1])
+        fits = np.bincount(lanes.section[there], minlength=len(kept)) == len(wanted)
+        for d, _, way in wanted:
+            fits &= np.isin(kept, lanes.section[(np.abs(lanes.d - d) < 2 * SAME_LANE) & (lanes.way == way)])
+        sections.cost[interval] += np.where(fits, 0.0, weights.not_taken)
 
 
 def _seen_once(c, sections, cost, weights):
@@ -170,6 +196,7 @@ class LaneSpan:
     confidence : 0 to 1, of a lane of either direction there, with the sureness of RoadEstimate
     directed : 0 to 1, of those of this direction among them, on both sides of traffic where the survey leaves that open
     left_border, right_border : what the two separate, LANE_LINE ... OTHER_LINE
+    second : Reading, the most probable one of those without such a lane in that direction there; None where that is not known
     """
 
     interval: int
@@ -183,6 +210,7 @@ class LaneSpan:
     directed: float
     left_border: int
     right_border: int
+    second: Reading | None = None
 
 
 def lane_spans(estimate: RoadEstimate) -> list[LaneSpan]:
@@ -197,16 +225,23 @@ def _lane_spans(estimate, part):
     c, strips = estimate.candidates, _strips_of(estimate, part)
     borders = _uses(estimate.sections.take(part), estimate.choice[part])
     best = np.flatnonzero(strips.section == estimate.choice[strips.interval])
-    for shares, i, m, end, number, first in zip(_place_shares(estimate, strips, best, part), *(values[best].tolist() for values in (
-            strips.interval, strips.left, strips.right, strips.number, strips.first))):
+    lanes = _lanes_of(estimate, strips)
+    own, shares = _place_shares(estimate, lanes, best, part)
+    way = np.where(shares[:, 3] > 0, -lanes.way[own], lanes.way[own])
+    seconds = [min((one for one in both if one is not None), key=lambda one: one.nats, default=None) for both in zip(
+        _second_readings(estimate, lanes, own, way, part), _second_places(estimate, lanes, strips, own, way))]
+    k = 0
+    of_best = (values[best].tolist() for values in (strips.interval, strips.left, strips.right, strips.number, strips.first))
+    for i, m, end, number, first in zip(*of_best):
         # what the borders of its lanes separate, from left to right
         uses = [CENTRE_LINE if inner == first else LANE_LINE for inner in range(number + 1)]
         uses[0], uses[-1] = borders[i - part.start, [m, end]].tolist()
         for place in range(number):
             direction = estimate.first_direction if place < first else -estimate.first_direction
-            probability, confidence, directed, turned = shares[place]
+            probability, confidence, directed, turned = shares[k].tolist()
             found.append(LaneSpan(i, int(c.rows[i, m, 1]), int(c.rows[i, end, 0]), number - 1 - place, number, -direction if turned else direction,
-                                  probability, confidence, 1 - directed if turned else directed, uses[place], uses[place + 1]))
+                                  probability, confidence, 1 - directed if turned else directed, uses[place], uses[place + 1], seconds[k]))
+            k += 1
     return found
 
 
@@ -231,28 +266,33 @@ def _strips_of(estimate, part):
     return replace(found, interval=found.interval + part.start)
 
 
-def _lanes(estimate, strips):
-    c, at = estimate.candidates, strips.interval
+def _lanes_of(estimate, strips):
+    """Every lane of some strips of an estimate."""
+    return _lanes(estimate.candidates, estimate.lane_width, estimate.first_direction, strips)
+
+
+def _lanes(c, lane_width, first_direction, strips):
+    at = strips.interval
     d_left, each = lane_places(c.right[at, strips.left], c.left[at, strips.right], c.made_of[at, strips.left], c.made_of[at, strips.right],
-                               strips.number, estimate.lane_width, c.bend[at])
+                               strips.number, lane_width, c.bend[at])
     of = np.repeat(np.arange(len(at)), strips.number)
     place = np.arange(len(of)) - (np.cumsum(strips.number) - strips.number)[of]
-    way = np.where(place < strips.first[of], estimate.first_direction, -estimate.first_direction)
+    way = np.where(place < strips.first[of], first_direction, -first_direction)
     return _Lanes(at[of], strips.section[of], of, d_left[of] - each[of] * (place + 0.5), each[of], way)
 
 
-def _place_shares(estimate, strips, chosen, part):
-    """Lists of four values for each lane of the chosen strips, from left to right: probability, confidence and directed of LaneSpan, whether turned.
+def _place_shares(estimate, lanes, chosen, part):
+    """The rows of the lanes of the chosen strips, from left to right, and (L, 4) of them: probability, confidence and directed of LaneSpan, turned.
 
     That is of all cross-sections that have a lane within SAME_LANE, whatever bounds it and whatever lies beside it. Of directions the most probable
     sequences are weighed against each other where the other side of traffic counts too: a road that is one way is the same reading on both.
     """
-    lanes, other = _lanes(estimate, strips), estimate.other
+    other = estimate.other
     best = estimate.once_total
     known = [(lanes.interval, lanes.d, lanes.way, estimate.posterior[lanes.interval, lanes.section], estimate.sureness[lanes.interval, lanes.section],
               estimate.once[lanes.interval, lanes.section] - best, estimate.unnamed[lanes.interval] == lanes.section)]
     if other is not None:
-        more = _lanes(other, _strips_of(other, part))
+        more = _lanes_of(other, _strips_of(other, part))
         nothing = np.zeros(len(more.d))
         known.append((more.interval, more.d, more.way, nothing, nothing, other.once[more.interval, more.section] - other.once_total + estimate.behind,
                       nothing > 0))
@@ -275,9 +315,60 @@ def _place_shares(estimate, strips, chosen, part):
             np.minimum.at(values, one[which], nats[beside[which]])
         directed = 1 / (1 + np.exp(least[0] - least[1]))
     turned = (either > 0) & (directed < 0.5) & (as_unnamed > 0) & ~_driven_along(estimate.evidence, lanes)
-    total = np.stack([probability, either, directed, turned], axis=1)
-    begin = np.cumsum(strips.number) - strips.number
-    return [total[begin[k]:begin[k] + strips.number[k]].tolist() for k in chosen]
+    return own, np.stack([probability, either, directed, turned], axis=1)[own]
+
+
+def _second_readings(estimate, lanes, own, way, part):
+    """The second Reading of each of the lanes `own`, which lead the way `way`, (L,); None where nothing is known of others."""
+    sides = [(lanes, estimate.second)]
+    if estimate.opposite is not None:
+        sides.append((_lanes_of(estimate.opposite, _strips_of(estimate.opposite, part)), estimate.opposite.second + estimate.opposite_behind))
+    nats = np.concatenate([behind for _, behind in sides], axis=1)
+    slots = np.cumsum([0] + [behind.shape[1] for _, behind in sides[:-1]])
+    slot = np.concatenate([side.section + first for (side, _), first in zip(sides, slots)])
+    interval, d, width, direction = (np.concatenate([getattr(side, name) for side, _ in sides]) for name in ("interval", "d", "width", "way"))
+    order = np.argsort(interval, kind="stable")
+    begin, end = (np.searchsorted(interval[order], lanes.interval[own], side=side) for side in ("left", "right"))
+    found = []
+    for row, facing, first, last in zip(own.tolist(), way.tolist(), begin.tolist(), end.tolist()):
+        beside, of_place = order[first:last], nats[lanes.interval[row]]
+        alike = (np.abs(d[beside] - lanes.d[row]) < SAME_LANE) & (direction[beside] == facing)
+        without = np.ones(len(of_place), bool)
+        without[slot[beside[alike]]] = False
+        second = int(np.argmin(np.where(without, of_place, np.inf)))
+        least = of_place[~without].min(initial=np.inf)
+        if not np.isfinite(of_place[second]) or not without[second] or not np.isfinite(least):
+            found.append(None)
+            continue
+        there = beside[(slot[beside] == second) & (np.abs(d[beside] - lanes.d[row]) < (width[beside] + lanes.width[row]) / 2 - SAME_LANE)]
+        second_lanes = tuple(zip(d[there].tolist(), width[there].tolist(), direction[there].tolist()))
+        found.append(Reading(max(float(of_place[second] - least), 0.0), second_lanes))
+    return found
+
+
+def _second_places(estimate, lanes, strips, own, way):
+    """The Reading in which the lanes `own` share all the room up to the curb or edge beside them; None for those that do, or lie between lines.
+
+    What the width of a lane says is laid out once, so it counts as one observation however long the road is, and so does where one drove.
+    """
+    c, w, at, strip = estimate.candidates, estimate.weights, lanes.interval[own], lanes.strip[own]
+    left, right = strips.left[strip], strips.right[strip]
+    made_left, made_right = c.made_of[at, left], c.made_of[at, right]
+    begin, number = c.right[at, left], strips.number[strip]
+    shared = (begin - c.left[at, right]) / number
+    place = np.arange(len(own)) - np.searchsorted(strip, strip)
+    d = begin - shared * (place + 0.5)
+    open_room = (UNPAINTED[made_left] ^ UNPAINTED[made_right]) & ~beside_surface_end(made_left, made_right) & (np.abs(d - lanes.d[own]) > SAME_LANE)
+    widths = np.stack([shared, lanes.width[own]])
+    nats = width_cost(widths, estimate.lane_width, w)
+    driven = estimate.evidence.driven[:, at]
+    with np.errstate(invalid="ignore"):
+        inside = np.abs(driven - d) < shared / 2
+        off = [np.where(inside, np.minimum(0.5 * ((driven - middle) / w.driven_sigma) ** 2, w.driven_astride), 0.0).sum(0)
+               for middle in (d, lanes.d[own])]
+    behind = nats[0] - nats[1] + off[0] - off[1]
+    return [Reading(max(float(behind[k]), 0.0), ((float(d[k]), float(shared[k]), int(way[k])),)) if open_room[k] and np.isfinite(behind[k]) else None
+            for k in range(len(own))]
 
 
 def _driven_along(evidence, lanes):

@@ -78,7 +78,7 @@ def strip_costs(candidates: Candidates, evidence: Evidence, weights: EstimateWei
     driven_there = inside.any(0)
     for number in range(1, MAX_LANES + 1):
         begin, each = lane_places(d_left, d_right, made_left, made_right, number, lane_width, c.bend[:, None, None])
-        fits = _width_cost(each, lane_width, w) + _unused(asphalt - number * lane_width, w.unused_asphalt[1]) * loose
+        fits = width_cost(each, lane_width, w) + _unused(asphalt - number * lane_width, w.unused_asphalt[1]) * loose
         # what lies beyond the end of the surface
         beyond = np.clip(1 - width / np.maximum(number * each, 0.1), 0, 1) * hidden
         total = base + scale * (fits + beyond * w.off_asphalt)
@@ -104,8 +104,8 @@ def _unused(asphalt, cost, enough=ASPHALT_OF_A_LANE[1]):
     return cost / (1 + np.exp(-(asphalt - enough) / ASPHALT_SOFTNESS))
 
 
-def _width_cost(width, usual, w):
-    """Nats of a lane of some width, against one of the usual width: most lanes of a road are alike, some as on other roads, few are odd."""
+def width_cost(width: np.ndarray, usual: float, w: EstimateWeights) -> np.ndarray:
+    """Nats of a lane of some width, m, against one of the usual width: most lanes of a road are alike, some as on other roads, few are odd."""
     own = np.exp(-0.5 * ((width - usual) / w.width_sigma) ** 2)
     other = np.exp(-0.5 * ((width - NEUTRAL.usual_lane) / OTHER_SIGMA) ** 2)
     share = (1 - w.other_width - w.odd_width) * own + w.other_width * other + w.odd_width
@@ -159,7 +159,7 @@ def _driven_cost(evidence, inside, d_left, each, number, split, first_direction,
         lane = np.clip(np.floor(np.nan_to_num(place)), 0, number - 1)
         off = (np.nan_to_num(place) - lane - 0.5) * each
         way = np.where(lane < split, first_direction, -first_direction)
-        cost += inside[p] * (np.minimum(0.5 * (off / w.driven_sigma) ** 2, w.driven_astride) + np.where(way == direction, 0.0, w.driven_against))
+        cost += inside[p] * (np.minimum(0.5 * (off / w.driven_sigma) ** 2, w.driven_astride) + np.where(way == -direction, w.driven_against, 0.0))
     return cost
 
 

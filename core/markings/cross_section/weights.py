@@ -65,6 +65,12 @@ class EstimateWeights:
     left_hand : of traffic on the left, against traffic on the right
     calibration : slope and offset of the curve by which probable lanes are right, over the log odds; fitted to 13 km of lanes of 32 simulated
         streets of two simulators, and checked on others (docs/accuracy.md)
+    repeats : metres of road beyond which what two readings of it differ by is seen again, not once more; tuned: what a vehicle that keeps half a
+        metre beside the middle of a lane of 7 m shows on 120 m of road must say no more on a kilometre, and the longest blocks between
+        crossings of the simulated streets have 200 m
+    doubt, most_in_doubt : nats by which a second reading of a lane or line may be less probable to be said beside the first, and the most
+        that the confidence of the first is then: two readings of which either may be right, and all others
+    not_taken : of a cross-section without the lanes of a reading that an analyst took, against any evidence
     calibration_of_direction : slope of the same curve for the direction of a lane; fitted to 7 km of lanes of 20 simulated streets, on some of
         which the lines leave open which way a lane leads
     """
@@ -125,6 +131,10 @@ class EstimateWeights:
     left_hand: float = 0.7
     calibration: tuple[float, float] = (0.38, 1.85)
     calibration_of_direction: float = 1.7
+    repeats: float = 200.0
+    doubt: float = 3.0
+    most_in_doubt: float = 0.6
+    not_taken: float = 1000.0
 
     @property
     def boundary(self) -> np.ndarray:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from ...road.edges.road_edges import RoadEdges
     from ...survey.frame.road_frame import RoadFrame
     from ...survey.store.road_points import RoadPoints
+    from ..cross_section.confidence import TakenReading
 
 KINDS = {EDGE_LINE: "edge", LANE_LINE: "lane", CENTRE_LINE: "centre"}
 MAX_DISTANCE_TO_LINE = 0.15   # m between a marking and the line along it
@@ -29,7 +31,7 @@ MAX_DISTANCE_TO_LINE = 0.15   # m between a marking and the line along it
 
 def named_by_estimate(lines: PaintedLines, frame: RoadFrame, usual_width: float, markings: MarkingObjects | None = None,
                       edges: RoadEdges | None = None, road_points: RoadPoints | None = None, paint: RoadPoints | None = None,
-                      progress: Progress = Progress()) -> PaintedLines:
+                      progress: Progress = Progress(), taken: Sequence[TakenReading] = ()) -> PaintedLines:
     """Lines with the `kind` that the estimate of their road gives them; one that bounds no lane is called by how it is drawn.
 
     Parameters
@@ -40,6 +42,7 @@ def named_by_estimate(lines: PaintedLines, frame: RoadFrame, usual_width: float,
     markings, edges, road_points : what else the estimate is made from, or None
     paint : points of markings, which serve where there are no road points, or None
     progress : Progress
+    taken : second readings that an analyst took
 
     Returns
     -------
@@ -49,7 +52,7 @@ def named_by_estimate(lines: PaintedLines, frame: RoadFrame, usual_width: float,
         return lines
     curbs, pavement = (sections_of_edges(edges), sections_of_pavement(edges)) if edges is not None else (None, None)
     found = _line_kinds(estimate_roads(sections_of_lines(lines), frame, usual_width, curbs=curbs, markings=markings, road_points=road_points,
-                                      paint=paint, pavement=pavement, progress=progress))
+                                      paint=paint, pavement=pavement, progress=progress, taken=taken))
     drawn = np.where([pattern.startswith("double") for pattern in lines.pattern], "centre",
                      np.where(lines.pattern == "dashed", "lane", "edge")).astype(object)
     kind = np.array([found.get(number, own) for number, own in zip(lines.line.tolist(), drawn)], object)

@@ -73,15 +73,30 @@ class PassOffsets:
         return np.interp(self.stations, self.stations[known], values[known]) if known.any() else np.zeros(len(values))
 
 
-class _Strips:
-    """One pass in one window: rows of cells of height and intensity without their slow variations.
+@dataclass(frozen=True)
+class Strips:
+    """One pass, or one scanner of it, in one window: rows of cells of height and intensity without their slow variations.
 
     heights, steps : (rows, cells) float32, m, NaN where unknown; offsets are measured along a row
     paint : (rows, cells) float32, intensity in units of its robust standard deviation, NaN where unknown and at faces, of whose brightness each
         drive sees another side
     """
 
-    def __init__(self, fine, coarse, h, intensity, shape):
+    heights: np.ndarray
+    steps: np.ndarray
+    paint: np.ndarray
+
+    @classmethod
+    def of(cls, fine: np.ndarray, coarse: np.ndarray, h: np.ndarray, intensity: np.ndarray, shape: tuple[int, int]) -> Strips:
+        """The strips of (N,) points.
+
+        Parameters
+        ----------
+        fine, coarse : (N,) m along a row, in whose direction offsets are measured, and across rows
+        h : (N,) m above the road
+        intensity : (N,)
+        shape : rows and cells
+        """
         row, cell = (coarse / ROW_CELL).astype(np.int64), (fine / LAG_CELL).astype(np.int64)
         inside = (row >= 0) & (row < shape[0]) & (cell >= 0) & (cell < shape[1])
         place = (row * shape[1] + cell)[inside]
@@ -93,12 +108,16 @@ class _Strips:
             with np.errstate(invalid="ignore", divide="ignore"):
                 return np.where(count > 0.5, total / count, np.float32(np.nan))
 
-        self.heights = means(h, HEIGHT_BLUR_CELLS)
-        self.steps = np.clip(_detrended(self.heights), -MAX_STEP, MAX_STEP)
-        paint = _detrended(np.where(_at_faces(self.heights), np.float32(np.nan), means(intensity, 1)))
+        heights = means(h, HEIGHT_BLUR_CELLS)
+        steps = np.clip(_detrended(heights), -MAX_STEP, MAX_STEP)
+        paint = _detrended(np.where(_at_faces(heights), np.float32(np.nan), means(intensity, 1)))
         known = np.isfinite(paint)
         spread = float(np.median(np.abs(paint[known]))) / 0.6745 if known.any() else 0.0
-        self.paint = np.clip(paint / max(spread, 1e-6), -MAX_CONTRAST, MAX_CONTRAST)
+        return cls(heights, steps, np.clip(paint / max(spread, 1e-6), -MAX_CONTRAST, MAX_CONTRAST))
+
+    def part(self, rows: slice, cells: slice) -> Strips:
+        """The strips of some rows and cells."""
+        return Strips(self.heights[rows, cells], self.steps[rows, cells], self.paint[rows, cells])
 
 
 def _at_faces(heights):
@@ -125,7 +144,7 @@ def _shifted(one, other, lag):
     return one[:, max(lag, 0):size + min(lag, 0)], other[:, max(-lag, 0):size - max(lag, 0)]
 
 
-def _correlation_sums(one, other):
+def correlation_sums(one: Strips, other: Strips) -> np.ndarray:
     """(2, 4, L) per channel and lag: sums of products, of squares of either strip, and counts, over the cells known in both."""
     found = np.zeros((2, 4, len(LAGS)))
     for k, name in enumerate(CHANNELS):
@@ -140,7 +159,7 @@ def _correlation_sums(one, other):
     return found
 
 
-def _height_offset(one, other, lag):
+def height_offset(one: Strips, other: Strips, lag: int) -> float:
     """Median height of `one` above `other` moved by `lag`, of flat cells, m; NaN for too few cells."""
     off = np.subtract(*_shifted(one.heights, other.heights, lag))
     level = np.maximum(*map(np.abs, _shifted(one.steps, other.steps, lag))) < FLAT_STEP
@@ -218,9 +237,9 @@ def _window_evidence(survey, road, number, moves):
     intensity = points.intensity.take(near).astype(float)
 
     def strips(own, along=0.0, left=0.0):
-        """_Strips across and along of the points of a pass, moved."""
+        """Strips across and along of the points of a pass, moved."""
         places, offsets = s[own] + along, d[own] + left
-        return [_Strips(fine, coarse, h[own], intensity[own], (round(width / ROW_CELL), round(length / LAG_CELL)))
+        return [Strips.of(fine, coarse, h[own], intensity[own], (round(width / ROW_CELL), round(length / LAG_CELL)))
                 for fine, coarse, length, width in ((offsets, places, 2 * STRIP_HALF_WIDTH, WINDOW_LENGTH),
                                                     (places, offsets, WINDOW_LENGTH, 2 * STRIP_HALF_WIDTH))]
 
@@ -229,8 +248,8 @@ def _window_evidence(survey, road, number, moves):
     for one, other in zip(list(rows)[:-1], list(rows)[1:]):
         move = moves.get((one, other), {}).get(number)
         across, lengthwise = strips(rows[other], *move) if move is not None else still[other]
-        found[one, other] = (_correlation_sums(still[one][0], across), _correlation_sums(still[one][1], lengthwise),
-                             _height_offset(still[one][0], across, 0))
+        found[one, other] = (correlation_sums(still[one][0], across), correlation_sums(still[one][1], lengthwise),
+                             height_offset(still[one][0], across, 0))
     return found
 
 
@@ -238,11 +257,11 @@ def _combine_windows(pair, evidence):
     """PassOffsets of two passes from the evidence of their windows, pooled with neighbouring windows."""
     numbers = np.array([row[0] for row in evidence])
     across, lengthwise = (_pool(numbers, np.array([row[k] for row in evidence])) for k in (1, 2))
-    (steps, steps_far), (paint, paint_far) = (_best_offsets(across[:, k]) for k in range(len(CHANNELS)))
+    (steps, steps_far), (paint, paint_far) = (best_offsets(across[:, k]) for k in range(len(CHANNELS)))
     # a curb face looks different from the other lane, so it is used only where no paint is found
     left, far = np.where(np.isnan(paint), steps, paint), np.where(np.isnan(paint), steps_far | paint_far, False)
     # along the road, regular scan lines hit a curb face in a periodic pattern, so only paint is used
-    along, _ = _best_offsets(lengthwise[:, CHANNELS.index("paint")])
+    along, _ = best_offsets(lengthwise[:, CHANNELS.index("paint")])
     rises = np.array([row[3] for row in evidence])
     known = np.isfinite(rises)
     total = _pool(numbers, known.astype(float))
@@ -259,8 +278,8 @@ def _pool(numbers, values):
     return gaussian_filter1d(whole, sigma, axis=0, mode="constant")[numbers - numbers[0]] * (sigma * np.sqrt(2 * np.pi))
 
 
-def _best_offsets(likeness):
-    """Offsets of best correlation, (N,) metres or NaN, from (N, 4, L) of `_correlation_sums`, and (N,) bool where it is at the limit.
+def best_offsets(likeness: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Offsets of best correlation, (N,) metres or NaN, from (N, 4, L) of `correlation_sums`, and (N,) bool where it is at the limit.
 
     Correlation, unlike the mean difference, is not affected by noise, however it is distributed over the cells.
     """

@@ -98,7 +98,7 @@ def fixes_of(time: np.ndarray, place: np.ndarray, track: FirstTrack, rate: float
     beside = middle[:, 1] * np.cos(direction) - middle[:, 0] * np.sin(direction)
     along = away[:, 0] * np.cos(direction)[window] + away[:, 1] * np.sin(direction)[window]
     angle = 2 * np.pi * rate * (time - track.time[window])
-    u, v, phase, misfit, in_front = _resected(along, away[:, 2], angle, window, size)
+    u, v, phase, misfit, in_front = resected(along, away[:, 2], angle, window, size)
     found = track.foot + np.stack([u * np.cos(direction) - beside * np.sin(direction), u * np.sin(direction) + beside * np.cos(direction), v], axis=1)
     count = np.bincount(window, minlength=size)
     good = (count >= MIN_WINDOW_SAMPLES) & (grounded >= MIN_WINDOW_SAMPLES / 2) & (in_front >= MIN_SHARE_IN_FRONT)
@@ -118,8 +118,19 @@ def _line_directions(place, window, size):
     return 0.5 * np.arctan2(2 * xy, xx - yy), middle, count
 
 
-def _resected(a, b, angle, window, size):
-    """Origin (u, v), phase, misfit in metres and share of points before the origin, of every window."""
+def resected(a: np.ndarray, b: np.ndarray, angle: np.ndarray, window: np.ndarray, size: int) -> tuple[np.ndarray, ...]:
+    """The places from which the rays of windows lead.
+
+    Parameters
+    ----------
+    a, b : (N,) m, places of returns in the scan plane
+    angle : (N,) radians that the mirror has turned through, from any start in each window
+    window : (N,) number of the window, below `size`
+
+    Returns
+    -------
+    u, v, phase, misfit, in_front : (size,) m of the place, radians of the angle's start, m, and share of the returns that lie before the place
+    """
     sin, cos = np.sin(angle), np.cos(angle)
     rows = (a * sin - b * cos, a * cos + b * sin, -sin, -cos)
     weight = np.ones(len(a))

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.spatial import cKDTree
 
+from ..trajectory.shape import shaped_trajectory
 from ..trajectory.trajectory import Trajectory, clean_trajectory
 from .passes import LEVEL_SEPARATION, MAX_ROAD_LENGTH, TURN_REACH, Pass, decimate_by_distance, moving_rows, split_into_passes
 from .reference_line import FRAME_EXTENSION, JUNCTION_GAP, continue_line, reference_nodes, track_line
@@ -39,7 +40,7 @@ def build_frame(trajectory: Trajectory) -> RoadFrame:
     RoadExtractionError
         If the trajectory does not move.
     """
-    trajectory = clean_trajectory(trajectory)
+    trajectory = shaped_trajectory(clean_trajectory(trajectory)).trajectory
     origin = np.floor([trajectory.x.min(), trajectory.y.min(), trajectory.z.min()])
     track = np.c_[trajectory.x - origin[0], trajectory.y - origin[1], trajectory.z - origin[2]]
     pieces = split_into_passes(trajectory)
@@ -65,7 +66,7 @@ def build_frame(trajectory: Trajectory) -> RoadFrame:
     passes.sort(key=lambda p: p.time[0])
     for number, p in enumerate(passes):
         p.number = number
-    return RoadFrame(origin, roads, passes, trajectory.crs, trajectory.has_time, trajectory.notes)
+    return RoadFrame(origin, roads, passes, trajectory.crs, trajectory.has_time, trajectory.notes, way_known=trajectory.way_known)
 
 
 def _length(rows, driven):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,13 +11,17 @@ import numpy as np
 
 from ...common.errors import RoadExtractionError
 from ...io.crs import horizontal_part, parse_crs
-from ...io.text_table import NumberTable, read_number_table
-from .columns import ROLES, columns_by_role, find_header
+from ...io.text_table import read_number_table
+from .columns import ROLES, listed
 from .drive_checks import METRES_PER_DEGREE
+from .meaning import TOLD_CLOCKS, Meaning, meaning_of
+from .receiver_logs import is_record
+from .table_columns import CHECKED_ROWS, TableColumn, first_row, titled_columns
 from .trajectory import Trajectory
-from .unnamed_columns import columns_from_numbers
+from .unnamed_columns import MIN_MAP_COORDINATE, columns_from_numbers
+from .written_values import hold_times
 
-ASSIGNABLE = (*ROLES, "lon", "lat")
+ASSIGNABLE = (*ROLES, "lon", "lat", *TOLD_CLOCKS, "week", "date")
 LEFT_OUT = ("-", "", "skip")
 FIRST_GPS_SECONDS, LAST_GPS_SECONDS = 0.6e9, 1.7e9     # s since 1980: 1999 to 2033
 FIRST_ADJUSTED = -0.4e9                                # s, the same less a billion
@@ -29,7 +34,7 @@ def assigned_columns(text: str, count: int, path: str | os.PathLike[str]) -> dic
     Parameters
     ----------
     text : one word a column, from the left, separated by commas: a role of ASSIGNABLE, or - for a column that is left out. Columns
-        after the last word are left out
+        after the last word are left out. gps and utc are times of which it is known what the clock shows
     count : columns of the table
     path : of the file, for messages
 
@@ -42,14 +47,14 @@ def assigned_columns(text: str, count: int, path: str | os.PathLike[str]) -> dic
     RoadExtractionError
         If a word is no role, a role is there twice, there are more words than columns, or a place or the height is missing.
     """
-    words = [word.strip().lower() for word in text.replace(";", ",").split(",")]
     place: dict[str, int] = {}
-    for column, word in enumerate(words):
+    for column, word in enumerate(_words(text)):
         if word in LEFT_OUT:
             continue
         if word not in ASSIGNABLE:
             raise RoadExtractionError(f"Columns names {word!r}, which is no part of a trajectory; use {', '.join(ASSIGNABLE)}, or - for a column "
                                       "that is left out.")
+        word = "time" if word in TOLD_CLOCKS else word
         if word in place:
             raise RoadExtractionError(f"Columns names {word} twice, for column {place[word] + 1} and column {column + 1}. Name each once.")
         place[word] = column
@@ -61,13 +66,17 @@ def assigned_columns(text: str, count: int, path: str | os.PathLike[str]) -> dic
     return place
 
 
+def _words(text):
+    return [word.strip().lower() for word in text.replace(";", ",").split(",")]
+
+
 @dataclass(frozen=True)
 class TableColumns:
     """The columns of a text table.
 
     titles : what stands above each column, "" where nothing does
     roles : of each column, "" for one that is left out
-    rows : the first rows of numbers, (R, K)
+    rows : the first rows as texts, (R, K)
     problem : why the roles are not known, "" where they are
     """
 
@@ -91,25 +100,57 @@ def columns_of_table(path: str | os.PathLike[str], columns: str = "", rows: int 
     RoadExtractionError
         If the file holds no table of numbers.
     """
-    table = read_number_table(path)
-    count = table.values.shape[1]
-    names, _ = find_header(table.preamble, count)
-    problem, place = "", {}
+    if is_record(Path(path)):
+        raise RoadExtractionError(f"{path} is a log or a track, whose columns are known. Leave Columns empty.")
+    found, unmatched = titled_columns(read_number_table(path))
+    problem, meaning = "", Meaning({})
     try:
-        place = place_of_roles(table, Path(path), columns)
+        meaning = meaning_of_table(found, unmatched, Path(path), columns)
     except RoadExtractionError as refused:
         problem = str(refused)
-    role_of = {column: role for role, column in place.items()}
-    return TableColumns(tuple(names or [""] * count), tuple(role_of.get(k, "") for k in range(count)), table.values[:rows], problem)
+    role_of = {column: role for role, column in meaning.place.items() if role in ASSIGNABLE}
+    if meaning.clock:
+        role_of[meaning.place["time"]] = meaning.clock.lower()
+    shown = [[f"{value:.10g}" for value in column.values[:rows]] if not column.is_text else list(column.written())[:rows] for column in found]
+    return TableColumns(tuple(column.title for column in found), tuple(role_of.get(k, "") for k in range(len(found))),
+                        np.array(shown, object).T, problem)
 
 
-def place_of_roles(table: NumberTable, path: Path, columns: str = "") -> dict[str, int]:
-    """{role: column} of a table: as assigned, otherwise by the names above it, otherwise by its numbers."""
-    count = table.values.shape[1]
-    if columns.strip():
-        return assigned_columns(columns, count, path)
-    names, _ = find_header(table.preamble, count)
-    return {role: names.index(name) for role, name in columns_by_role(names).items()} if names else columns_from_numbers(table.values, path)
+def meaning_of_table(columns: Sequence[TableColumn], unmatched: Sequence[str] | None, path: Path, assigned: str = "") -> Meaning:
+    """The Meaning of the columns of a file: as assigned, otherwise by the names above them, otherwise by their numbers.
+
+    Parameters
+    ----------
+    columns, unmatched : as `titled_columns` gives them
+    path : of the file
+    assigned : as `assigned_columns` takes it; "" where nothing was assigned
+
+    Raises
+    ------
+    RoadExtractionError
+        If the columns are not recognised.
+    """
+    if assigned.strip():
+        clock = next((TOLD_CLOCKS[word] for word in _words(assigned) if word in TOLD_CLOCKS), "")
+        return Meaning(assigned_columns(assigned, len(columns), path), clock=clock)
+    if any(column.title for column in columns):
+        return meaning_of(columns, path.name)
+    clocks = [k for k, column in enumerate(columns) if column.holds_texts and hold_times(column.written()[:CHECKED_ROWS])]
+    numbers = [k for k in range(len(columns)) if k not in clocks]
+    try:
+        place = {role: numbers[k] for role, k in columns_from_numbers(np.stack([columns[k].values for k in numbers], axis=1), path).items()}
+        if unmatched and "x" in place and np.nanmedian(np.abs(columns[place["x"]].values)) < MIN_MAP_COORDINATE:
+            raise RoadExtractionError("")   # small numbers are guessed by their order alone, which names that do not fit contradict
+    except RoadExtractionError as refused:
+        if unmatched:
+            raise RoadExtractionError(
+                f"{path} names {len(unmatched)} columns ({listed(unmatched)}), but its rows have {len(columns)}, and the numbers do not show which "
+                f"is which. The first row reads {first_row(columns)}. Say which is which in Columns of Import trajectory.") from refused
+        raise RoadExtractionError(f"{refused} The first row reads {first_row(columns)}.") from refused
+    if clocks and "time" not in place:
+        place["time"] = clocks[0]
+    listing = ", ".join(f"{role} in column {place[role] + 1}" for role in (*ROLES, "lon", "lat") if role in place)
+    return Meaning(place, (f"{path.name} has no line of names; recognised by the numbers: {listing}.",))
 
 
 def time_system_by_size(time: np.ndarray) -> str:

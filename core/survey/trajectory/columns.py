@@ -1,9 +1,11 @@
-"""Which column of a trajectory is which, by its name."""
+"""Which column of a trajectory is which, by its name, and in which unit it is: the one table of names."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from functools import cache
+from typing import NamedTuple
 
 ROLES = ("time", "x", "y", "z", "roll", "pitch", "heading")
 
@@ -25,12 +27,61 @@ COLUMN_NAMES = {
                 "yawangle", "kurs"),
     "lon": ("longitude", "lon", "long", "lng", "lambda", "laenge", "länge"),
     "lat": ("latitude", "lat", "phi", "breite"),
+    # of what several columns hold together
+    "week": ("gpsweek", "week", "weekno", "weeknumber", "gpsweeknumber", "wn", "wnc", "gpswoche"),
+    "date": ("date", "gpsdate", "utcdate", "datum", "calendardate", "fecha", "日期", "日付"),
+    "ecef_x": (), "ecef_y": (), "ecef_z": (),
 }
-UNIT_NAMES = {"deg": "degrees", "degree": "degrees", "degrees": "degrees", "°": "degrees", "rad": "radians",
-         "radian": "radians", "radians": "radians", "ft": "feet", "feet": "feet", "foot": "feet", "usft": "feet",
-         "m": "metres", "meter": "metres", "meters": "metres", "metre": "metres", "metres": "metres", "s": "seconds",
-         "sec": "seconds", "seconds": "seconds", "ms": "milliseconds", "us": "microseconds", "ns": "nanoseconds"}
+# A longer name has a role where all its words are of these, and one is of the first kind: "GPS Time of Week", "altitude_ellipsoidal".
+# Single letters count as words of their own, the others also where they are written together.
+ROLE_WORDS = {
+    "time": ("time times timestamp timetag seconds second secs sec sow tow itow sod gpst utc clock epoch stamp datetime zeit uhrzeit zeitpunkt temps "
+             "heure tiempo hora tempo tijd время 时间 时刻 時刻 時間",
+             "gps gnss of week day the in adjusted adj standard offset unix posix local system receiver since start elapsed date log ins imu "
+             "sensor measurement relative absolute mean gpszeit von woche tag"),
+    "x": ("easting east eastings x e este est ost rechtswert oost 东坐标 東座標",
+          "utm grid map coord coordinate coordinates position pos local projected gps gnss ins imu sensor antenna scanner vehicle platform world"),
+    "y": ("northing north northings y n norte nord hochwert noord 北坐标 北座標",
+          "utm grid map coord coordinate coordinates position pos local projected gps gnss ins imu sensor antenna scanner vehicle platform world"),
+    "z": ("height heights altitude alt elevation elev ele hgt ht z h hell ellh hae msl hmsl hoehe höhe hauteur altura altezza quota cota hoogte "
+          "высота 高程 高度 標高 楕円体高 大地高",
+          "ellipsoid ellipsoidal ell ellipsoidisch ellipsoidische ellipsoidique wgs84 wgs orthometric ortho orth geoid geoidal above sea level mean "
+          "gps gnss ins imu sensor antenna scanner vehicle platform position pos coord coordinate up local geodetic map"),
+    "roll": ("roll rollwinkel rolio roulis rollio 横滚 横滚角 ロール", "angle ins imu sensor vehicle platform euler"),
+    "pitch": ("pitch nickwinkel tangage beccheggio cabeceo 俯仰 俯仰角 ピッチ", "angle ins imu sensor vehicle platform euler"),
+    "heading": ("heading yaw hdg azimuth kurs cap rumbo rotta 航向 航向角 方位角 方位", "angle true grid ins imu sensor vehicle platform euler"),
+    "lon": ("longitude lon lng longitud longitudine laenge länge longitudinal 经度 経度 долгота",
+            "gps gnss ins imu wgs84 wgs geodetic geographic decimal dd position pos coord coordinate sensor vehicle platform geographische"),
+    "lat": ("latitude lat latitud latitudine breite 纬度 緯度 широта",
+            "gps gnss ins imu wgs84 wgs geodetic geographic decimal dd position pos coord coordinate sensor vehicle platform geographische"),
+    "week": ("week wn wnc woche", "gps gnss number no nr"),
+    "date": ("date datum", "gps gnss utc calendar local"),
+    **{f"ecef_{axis}": (axis, "ecef earth centred centered geocentric cartesian wgs84 itrf xyz coord coordinate position pos")
+       for axis in ("x", "y", "z")},
+}
+EARTH_CENTRED = {"ecef", "geocentric", "centred", "centered"}   # one of these tells a coordinate from one on a map
+# Behind a name in brackets these say what a column is of; other words there change nothing.
+QUALIFYING = EARTH_CENTRED | {"sd", "std", "stdev", "sigma", "rms", "rmse", "error", "accuracy", "velocity", "speed", "rate", "bias", "gps", "gpst",
+                              "utc", "unix", "orthometric", "ellipsoidal", "ellipsoid", "msl", "geoid", "week", "day"}
+
+
+class Unit(NamedTuple):
+    """What a column counts, "" where that is not said, and what one of its units is of that."""
+
+    name: str = ""
+    factor: float = 1.0
+
+
+_UNITS = {
+    ("degrees", 1.0): "deg degree degrees ° dd", ("radians", 1.0): "rad radian radians", ("degrees", 0.9): "gon grads",
+    ("feet", 1.0): "ft feet foot usft", ("metres", 1.0): "m meter meters metre metres", ("metres", 1e3): "km", ("metres", 0.01): "cm",
+    ("metres", 1e-3): "mm", ("seconds", 1.0): "s sec secs seconds", ("seconds", 1e-3): "ms msec milliseconds millisec millis",
+    ("seconds", 1e-6): "us µs μs usec microseconds", ("seconds", 1e-9): "ns nsec nanoseconds", ("sexagesimal", 1.0): "d m s|dms|d:m:s|ddd mm ss",
+}
+UNIT_NAMES = {word: Unit(*unit) for unit, words in _UNITS.items() for word in (words.split("|") if "|" in words else words.split())}
 MAX_HEADER_LINES = 15   # above a table, in which the names of its columns are sought
+LONGEST_NAME, MOST_NAMES = 40, 25   # of names of columns in a message
+SEPARATORS = (",", ";", r"\t", r"\|", r"\s{2,}", r"\s+")
 
 
 def columns_by_role(names: Sequence[str]) -> dict[str, str]:
@@ -42,76 +93,114 @@ def columns_by_role(names: Sequence[str]) -> dict[str, str]:
 
     Returns
     -------
-    {role: name} of the roles that are recognised: time, x, y, z, roll, pitch, heading, lon, lat
+    {role: name} of the roles that are recognised: time, x, y, z, roll, pitch, heading, lon, lat, and parts of these
     """
-    plain: dict[str, str] = {}
-    for name in names:
-        plain.setdefault(plain_name(name)[0], name)
+    return {role: names[places[0]] for role, places in candidates_by_role(names).items()}
+
+
+def candidates_by_role(names: Sequence[str]) -> dict[str, list[int]]:
+    """{role: places of the columns that may be it by their names, the likeliest first}."""
+    found: dict[str, list[tuple[int, int]]] = {}
+    for place, name in enumerate(names):
+        for role, rank in _roles_of_name(str(name)).items():
+            found.setdefault(role, []).append((rank, place))
+    return {role: [place for _, place in sorted(found[role])] for role in COLUMN_NAMES if role in found}
+
+
+@cache
+def _roles_of_name(name):
+    """{role: rank, 0 for the usual name} of one name."""
+    words, within, _ = _taken_apart(name)
+    plain, every = "".join(words), [*words, *within]
+    earth = bool(EARTH_CENTRED & set(every))
     roles = {}
-    for role, words in COLUMN_NAMES.items():
-        found = next((word for word in words if word in plain), None)
-        if found is not None:
-            roles[role] = plain[found]
+    for role, usual in COLUMN_NAMES.items():
+        whole = _is_of(role, every) or _is_of(role, [plain, *within])
+        if role.startswith("ecef") != earth:
+            continue
+        if plain in usual and (whole or not within):
+            roles[role] = usual.index(plain)
+        elif whole:
+            roles[role] = len(usual)
     return roles
 
 
-def plain_name(name: str) -> tuple[str, str]:
-    """A column name in small letters without unit and punctuation, and its unit as in UNIT_NAMES or ""."""
-    text = str(name).strip().strip("#%").strip().lower()
-    unit = ""
-    bracket = re.search(r"[\[(<]([^\])>]*)[\])>]", text)
-    if bracket:
-        unit = UNIT_NAMES.get(bracket.group(1).strip().rstrip("."), "")
-        text = text[:bracket.start()] + text[bracket.end():]
-    words = [word for word in re.split(r"[^0-9a-zà-ÿ°]+", text) if word]
-    if len(words) > 1 and words[-1] in UNIT_NAMES:
-        unit = unit or UNIT_NAMES[words[-1]]
+@cache
+def _grammar(role):
+    core, further = (words.split() for words in ROLE_WORDS[role])
+    whole = "|".join(sorted((re.escape(word) for word in core if len(word) > 1), key=len, reverse=True)) or "(?!)"
+    every = "|".join(sorted((re.escape(word) for word in (*core, *further) if len(word) > 1), key=len, reverse=True))
+    return re.compile(f"(?:{every})*(?:{whole})(?:{every})*"), re.compile(f"(?:{every})+"), {word for word in core if len(word) == 1}
+
+
+def _is_of(role, words):
+    """Whether all words of a name belong to a role, and one of them says so."""
+    core, further, letters = _grammar(role)
+    says = [word in letters or bool(core.fullmatch(word)) for word in words]
+    return any(says) and all(said or further.fullmatch(word) for said, word in zip(says, words))
+
+
+def unit_of_name(name: str) -> Unit:
+    """The unit in the name of a column, such as "roll_deg", "Easting [m]" or "TOW [0.001 s]"."""
+    return _taken_apart(str(name))[2]
+
+
+@cache
+def _taken_apart(name):
+    """(words, words in brackets that say what it is of, Unit) of a name, in small letters."""
+    text, unit, within = name.strip().strip("#%").strip(), Unit(), []
+    for bracket in re.findall(r"[\[(<]([^\])>]*)[\])>]", text):
+        inside = unit_named(bracket)
+        unit = unit if unit.name else inside
+        within += [word for word in _split(bracket) if word in QUALIFYING] if not inside.name else []
+    words = _split(re.sub(r"[\[(<][^\])>]*[\])>]?", " ", text))
+    # "gps_week_seconds" is a time and no week in seconds
+    if len(words) > 1 and words[-1] in UNIT_NAMES and not _is_of("time", words) and any(_is_of(role, words[:-1]) or "".join(words[:-1]) in usual
+                                                          for role, usual in COLUMN_NAMES.items()):
+        unit = unit if unit.name else UNIT_NAMES[words[-1]]
         words = words[:-1]
-    return "".join(words), unit
+    if "".join(words) == "itow" and not unit.name:
+        unit = UNIT_NAMES["ms"]   # u-blox counts the time of week in milliseconds
+    return words, within, unit
 
 
-def find_header(preamble: Sequence[str], columns: int) -> tuple[list[str] | None, list[str]]:
-    """The names and units of columns, from the lines above a table.
-
-    Parameters
-    ----------
-    preamble : lines, top down
-    columns : number of columns
-
-    Returns
-    -------
-    names : of the line that names the most roles; None where no line names two
-    units : a value of `UNIT_NAMES` or "" for each column
-    """
-    best, names = 0, None
-    for line in preamble[-MAX_HEADER_LINES:]:
-        for found in _splits(line, columns):
-            count = len(columns_by_role(found))
-            if count > best:
-                best, names = count, found
-    if best < 2 or names is None:
-        return None, [""] * columns
-    units = [plain_name(name)[1] for name in names]
-    if not any(units):
-        units = _unit_line(preamble, columns) or units
-    return names, units
+def _split(text):
+    """Words in small letters; a capital within a word begins another one."""
+    text = re.sub(r"(?<=[a-zà-ÿ])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", " ", text) if not text.isupper() else text
+    words = [word for word in re.split(r"[^\w°]+|_", text.lower()) if word]
+    return ["utm" if re.fullmatch(r"utm\d*[ns]?", word) else word for word in words]
 
 
-def _splits(line, columns):
+def unit_named(text: str) -> Unit:
+    """The Unit that a text names, maybe with a number before it, such as "0.001 s" or "1e-7 deg"; Unit() where it names none."""
+    words = " ".join(text.lower().strip("[]()<> .").split())
+    number = re.match(r"(\d[\d.]*(?:e-?\d+)?|10\^?-\d+)\s*\*?\s*(?=\D)", words)
+    unit = UNIT_NAMES.get(words[number.end():] if number else words)
+    if unit is None:
+        return Unit()
+    factor = 1.0
+    if number:
+        factor = 10.0 ** float(number[1].replace("10", "", 1).lstrip("^")) if number[1].startswith(("10^", "10-")) else float(number[1])
+    return Unit(unit.name, unit.factor * factor)
+
+
+def split_header(line: str) -> Iterator[list[str]]:
+    """The ways in which a line may name columns, with any separator."""
     text = line.strip().lstrip("#%/;!*").strip().replace('"', "")
-    for pattern in (",", ";", r"\t", r"\|", r"\s{2,}", r"\s+"):
+    for pattern in SEPARATORS:
         fields = [field.strip() for field in re.split(pattern, text)]
-        fields = fields[:-1] if fields and not fields[-1] else fields
-        if len(fields) == columns:
-            yield fields
+        yield fields[:-1] if len(fields) > 1 and not fields[-1] else fields
 
 
-def _unit_line(preamble, columns):
+def units_above(preamble: Sequence[str], columns: int) -> list[Unit] | None:
+    """The units of columns where a line above a table holds nothing else; None where none does."""
     for line in reversed(preamble):
-        for fields in _splits(line, columns):
-            units = [UNIT_NAMES.get(field.strip("[]()<> .").lower(), "") for field in fields]
-            if sum(map(bool, units)) * 2 > columns:
-                return units
+        bracketed = re.findall(r"\([^)]*\)|\[[^\]]*\]", line)
+        for fields in (*split_header(line), bracketed):
+            if len(fields) == columns or (fields is bracketed and columns - 2 <= len(fields) < columns):
+                units = [unit_named(field) for field in fields]
+                if sum(bool(unit.name) for unit in units) * 2 > columns:
+                    return units + [Unit()] * (columns - len(units))
     return None
 
 
@@ -121,3 +210,9 @@ def stated_angle_unit(preamble: Sequence[str]) -> str:
     stated = {unit for word, unit in (("radian", "radians"), ("[rad]", "radians"), ("(rad)", "radians"),
                                       ("degree", "degrees"), ("[deg]", "degrees"), ("(deg)", "degrees")) if word in text}
     return stated.pop() if len(stated) == 1 else ""
+
+
+def listed(names: Sequence[str]) -> str:
+    """Names of columns for a message, long ones and long lists cut."""
+    cut = [name if len(name) <= LONGEST_NAME else name[:LONGEST_NAME - 1] + "…" for name in map(str, names[:MOST_NAMES])]
+    return ", ".join(cut) + (f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else "")

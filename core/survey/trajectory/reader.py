@@ -1,4 +1,4 @@
-"""Reading a trajectory: text tables in any format, Applanix SBET, or the columns of a layer."""
+"""Reading a trajectory: text tables in any format, logs of receivers, tracks, Applanix SBET, or the columns of a layer."""
 
 from __future__ import annotations
 
@@ -15,21 +15,24 @@ from ...common.errors import RoadExtractionError
 from ...io.crs import horizontal_part, parse_crs
 from ...io.text_table import SAMPLE_BYTES, finite_or_nan, read_number_table
 from .accuracy_file import accuracy_across
-from .assigned_columns import place_of_roles
-from .columns import ROLES, find_header, stated_angle_unit
+from .assigned_columns import meaning_of_table
+from .columns import listed, stated_angle_unit
 from .drive_checks import HEADING_TOLERANCE, METRES_PER_DEGREE, angle_between, driven_course, geographic_unit
+from .meaning import meaning_of, values_by_role
+from .receiver_logs import columns_of_record, is_record
 from .reprojection import lengths_in_metres, reproject_trajectory
-from .trajectory import Trajectory
+from .table_columns import columns_of_rows, titled_columns
+from .trajectory import MAX_VEHICLE_SPEED, Trajectory
 
 SBET_DOUBLES = 17  # time, lat, lon, height, 3 velocities, roll, pitch, heading, wander angle, 6 more
 WGS84 = "EPSG:4326"
-SECONDS_PER_UNIT = {"milliseconds": 1e-3, "microseconds": 1e-6, "nanoseconds": 1e-9}
+SLOWEST_DRIVE = 0.07  # m/s: a survey whose fastest seconds are slower counts its time in thousandths
 # A vehicle on a road rolls by more than 3 degrees somewhere, but never by 0.2 radians.
 MAX_ROLL_RADIANS = 0.15
 
 
 def read_trajectory(path: str | os.PathLike[str], crs: str = "", target_crs: str = "", columns: str = "") -> Trajectory:
-    """A trajectory from a CSV or text file, with or without header, or an Applanix SBET file.
+    """A trajectory from a CSV or text file, with or without header, a log of a receiver, a GPX or KML track, or an Applanix SBET file.
 
     Parameters
     ----------
@@ -102,30 +105,85 @@ def trajectory_from_columns(columns: Mapping[str, Any], crs: str = "", angle_uni
     return Trajectory(time, x, y, z, roll, pitch, heading, crs=crs, has_time=has_time, notes=tuple(remarks), stated_units=tuple(stated_units))
 
 
-def _read_text(path, crs, columns):
-    """The trajectory in a table of numbers; columns are those assigned, or recognised by the names above the table, otherwise by the numbers."""
+def trajectory_from_rows(titles: Sequence[str], rows: Sequence[Sequence[object]], given: Mapping[str, Any], crs: str = "",
+                         label: str = "The trajectory", heights_needed: bool = True) -> Trajectory:
+    """A trajectory from the rows of a layer, by the same names and units as those of a file.
+
+    Parameters
+    ----------
+    titles : names of the fields
+    rows : a list of values for each position, None where one is missing
+    given : {role: (N,) array} of what the fields need not tell, such as x and y from the points of the layer
+    crs : WKT or "EPSG:n" of x, y; "" where unknown
+    label : the layer, for messages
+    heights_needed : without them 0 is taken where no height is known
+
+    Returns
+    -------
+    Trajectory, not yet cleaned
+
+    Raises
+    ------
+    RoadExtractionError
+        If x, y or z is missing, times cannot be read, or coordinates and CRS contradict each other.
+    """
+    columns = columns_of_rows(titles, rows)
+    # positions from the geometry are not mixed with those in fields
+    elsewhere = (*given, *(("lon", "lat", "ecef_x", "ecef_y", "ecef_z") if "x" in given else ()))
+    meaning = meaning_of(columns, label, elsewhere)
+    defaults: dict[str, Any] = {} if heights_needed else {"z": np.zeros(len(rows))}
+    if not given:
+        _check_complete(label, columns, meaning.place, heights_needed)
+    return _from_table(columns, meaning, given, defaults, crs, "", label, list(meaning.notes))
+
+
+def _read_text(path, crs, columns_given):
+    """The trajectory in a text; columns are those assigned, or recognised by the names above the table, otherwise by the numbers."""
+    if is_record(path):
+        if columns_given.strip():
+            raise RoadExtractionError(f"{path} is a log or a track, whose columns are known. Leave Columns empty.")
+        records = columns_of_record(path)
+        return _from_table(records, meaning_of(records, path.name), {}, {}, crs, "degrees", path.name, [])
     table = read_number_table(path)
-    count = table.values.shape[1]
-    names, units = find_header(table.preamble, count)
-    notes = []
-    place = place_of_roles(table, path, columns)
-    if names or columns.strip():
-        _check_complete(path, names or [f"column {k + 1}" for k in range(count)], place, table.first_row)
-        stated = [units[place[role]] for role in ("heading", "roll", "pitch") if role in place and units[place[role]]]
-        unit = stated[0] if stated else stated_angle_unit(table.preamble)
-    else:
-        unit = stated_angle_unit(table.preamble)
-        notes.append(f"{path.name} has no line of names; recognised by the numbers: "
-                     + ", ".join(f"{role} in column {place[role] + 1}" for role in (*ROLES, "lon", "lat") if role in place) + ".")
+    columns, unmatched = titled_columns(table)
+    meaning = meaning_of_table(columns, unmatched, path, columns_given)
+    notes = list(meaning.notes)
+    _check_complete(path, columns, meaning.place)
+    stated = [columns[meaning.place[role]].unit.name for role in ("heading", "roll", "pitch") if role in meaning.place]
+    unit = next((name for name in stated if name in ("degrees", "radians")), "") or stated_angle_unit(table.preamble)
     if table.dropped:
-        notes.append(f"{table.dropped} lines of {path.name} had another number of columns than {count} and were left out.")
-    found = {role: table.values[:, k] for role, k in place.items()}
-    if "time" in place:
-        found["time"] = found["time"] * SECONDS_PER_UNIT.get(units[place["time"]], 1.0)
-    if "lon" in place and units[place["lon"]] == "radians":
-        found["lon"], found["lat"] = np.degrees(found["lon"]), np.degrees(found["lat"])
-    crs = crs or _stated_crs(path, table.preamble, "x" in found, notes)
-    return trajectory_from_columns(found, crs, unit, path.name, notes, _stated_lengths(units, place, table.preamble))
+        notes.append(f"{table.dropped} lines of {path.name} had another number of columns than {table.values.shape[1]} and were left out.")
+    crs = crs or _stated_crs(path, table.preamble, "x" in meaning.place, notes)
+    return _from_table(columns, meaning, {}, {}, crs, unit, path.name, notes, table.preamble)
+
+
+def _from_table(columns, meaning, given, defaults, crs, angle_unit, label, notes, preamble=()):
+    """The trajectory of columns whose meaning is known."""
+    doubts: list[str] = []
+    found = {**given, **values_by_role(columns, meaning, label, notes, doubts)}
+    if "z" not in found or not np.isfinite(found["z"]).any():
+        found.update(defaults)
+    trajectory = trajectory_from_columns(found, crs, angle_unit, label, notes, _stated_lengths(columns, meaning.place, preamble))
+    trajectory = replace(trajectory, doubts=tuple(doubts))
+    if "time" in meaning.place and not columns[meaning.place["time"]].unit.name and not columns[meaning.place["time"]].is_text:
+        trajectory = _in_seconds(trajectory, label)
+    return trajectory
+
+
+def _in_seconds(trajectory, label):
+    """The trajectory with its times in seconds, where the speed shows that they count thousandths or less."""
+    x, y = trajectory.x, trajectory.y
+    if trajectory.crs and horizontal_part(parse_crs(trajectory.crs)).is_geographic:
+        x, y = x * np.cos(np.radians(np.nanmedian(y))) * METRES_PER_DEGREE, y * METRES_PER_DEGREE
+    step, seconds = np.hypot(np.diff(x), np.diff(y)), np.diff(trajectory.time)
+    speed = step[seconds > 0] / seconds[seconds > 0]
+    speed = speed[np.isfinite(speed)]
+    fastest = np.percentile(speed, 98) if len(speed) else 0.0
+    factor = next((10.0**-power for power in (3, 6, 9) if SLOWEST_DRIVE < fastest * 10.0**power < MAX_VEHICLE_SPEED), 1.0)
+    if not trajectory.has_time or not 0.0 < fastest < SLOWEST_DRIVE or factor == 1.0:
+        return trajectory
+    note = f"The times of {label} are taken to count {factor:.0e} s: in seconds the drive would be {fastest:.2g} m/s fast at most."
+    return replace(trajectory, time=trajectory.time * factor, doubts=(*trajectory.doubts, note))
 
 
 def _stated_crs(path, preamble, projected, notes):
@@ -138,23 +196,22 @@ def _stated_crs(path, preamble, projected, notes):
     return found.to_wkt()
 
 
-def _check_complete(path, names, place, first_row):
-    """Refuse a table without coordinates, or with clock times."""
-    missing = [role for role, other in (("x", "lon"), ("y", "lat"), ("z", "z")) if role not in place and other not in place]
+def _check_complete(source, columns, place, heights_needed=True):
+    """Refuse a table without coordinates."""
+    missing = [role for role, others in (("x", ("lon", "ecef_x")), ("y", ("lat", "ecef_y")), ("z", ("ecef_z",)))
+               if role not in place and not any(other in place for other in others) and (role != "z" or heights_needed)]
     if missing:
+        titles = [column.title or f"column {k + 1}" for k, column in enumerate(columns)]
         raise RoadExtractionError(
-            f"{path} has the columns {', '.join(names)}; {' and '.join(missing)} cannot be found among them. Name them "
-            "time, x, y, z, roll, pitch, heading, or longitude, latitude, height.")
-    if "time" in place and re.match(r"\d+[:-]\d+[:-]\d", first_row[place["time"]]):
-        raise RoadExtractionError(
-            f"The column {names[place['time']]} of {path} holds clock times such as {first_row[place['time']]!r}. GPS seconds are "
-            "needed, since UTC differs from them by leap seconds: export the trajectory with GPS time in seconds.")
+            f"{source} has the columns {listed(titles)}; {' and '.join(missing)} cannot be found among them. Its first row reads "
+            f"{listed([column.first for column in columns])}. Name them time, x, y, z, roll, pitch, heading, or longitude, latitude, height, or "
+            "say which is which in Columns of Import trajectory.")
 
 
-def _stated_lengths(units, place, preamble):
+def _stated_lengths(columns, place, preamble):
     """(role, "feet" or "metres") of the coordinates whose columns, or the lines above the table, state a unit."""
     in_feet = re.search(r"(position|height|distance|coordinates?)s? in (us )?(survey )?(feet|foot|ft)\b", " ".join(preamble).lower())
-    stated = {role: units[place[role]] or ("feet" if in_feet else "") for role in ("x", "y", "z") if role in place}
+    stated = {role: columns[place[role]].unit.name or ("feet" if in_feet else "") for role in ("x", "y", "z") if role in place}
     return [(role, unit) for role, unit in stated.items() if unit in ("feet", "metres")]
 
 

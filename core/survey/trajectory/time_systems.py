@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...common.errors import RoadExtractionError
+from .written_values import UNIX_EPOCH, leap_seconds
 
 SECONDS_PER_WEEK, SECONDS_PER_DAY = 604800.0, 86400.0
 ADJUSTED_OFFSET = 1e9  # s by which adjusted standard GPS time is less than GPS time (ASPRS LAS 1.4)
@@ -93,6 +94,7 @@ def align_time(time: np.ndarray, cloud_span: tuple[float, float], system: str = 
         tried = "One of them may use another time system: set the trajectory's time system (gps, adjusted, week or day) and run again." \
             if system == "automatic" else \
             f"The trajectory was taken to count {TIME_SYSTEM_NAMES[system]}: set its time system to automatic and run again."
+        hint = hint or _unix_hint(first, last, cloud_first, cloud_last)
         raise RoadExtractionError(
             f"The trajectory does not cover the scan in time. The scan was recorded from {cloud_first:.1f} s to {cloud_last:.1f} s"
             f"{'' if not adjusted or cloud_last > SECONDS_PER_WEEK else ' (adjusted GPS time according to its header)'}, "
@@ -129,6 +131,23 @@ def _offsets(first, last, cloud, system):
     if system == "automatic":
         return [("as it is", 0.0), *((name, float(offset)) for name, offset in options)]
     return [(name, float(offset)) for name, offset in options if name == system]
+
+
+def unix_time_found(seconds: float, what: str) -> str:
+    """The sentence on a time that counts from 1970; `what` is who counts."""
+    utc = seconds - UNIX_EPOCH
+    leap = float(leap_seconds(np.array([utc]))[0])
+    return (f"{what} Unix time: {seconds:.0f} s since 1970 are GPS {utc + leap:.0f} s where they count UTC, which differs from GPS time by "
+            f"{leap:.0f} s, and {utc:.0f} s where they do not. Export GPS time in seconds, or write utc in place of time in Columns of Import "
+            "trajectory.")
+
+
+def _unix_hint(first, last, cloud_first, cloud_last):
+    """A sentence where the trajectory would cover the scan if it counted from 1970; otherwise ""."""
+    for shift in (0.0, -ADJUSTED_OFFSET):
+        if min(last - UNIX_EPOCH + shift, cloud_last) - max(first - UNIX_EPOCH + shift, cloud_first) > -LEAP_SECONDS[5]:
+            return unix_time_found(first, "It seems to count")
+    return ""
 
 
 def _leap_hint(first, last, cloud_first, cloud_last):

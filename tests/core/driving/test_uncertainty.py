@@ -104,7 +104,7 @@ def test_beside_a_hatched_area_without_a_line_it_is_as_sure_as_the_outlines_of_i
         corners = street.places([s, s + 0.5, s + 0.5, s], [-1.6, -1.6, 1.6, 1.6])
         bars.add(Polygon(np.c_[corners, np.full(4, HEIGHT)]), **{"road": 0, "class": "hatch", "use": "other"})
     told = sigmas(street.lanes(markings=bars)[0], status="measured")
-    assert told == pytest.approx([0.015, 0.015], abs=2e-3), "half of 3 cm"
+    assert len(told) > 1 and told == pytest.approx([0.015] * len(told), abs=2e-3), "half of 3 cm"
 
 
 def wound(offset):
@@ -119,7 +119,7 @@ def test_where_the_curvature_changes_it_is_worse():
         street = Street(vehicle=-1.75)
         for k, offset in enumerate((-3.5, 0.0, 3.5)):
             street.paint(lead(offset), 5.0, 115.0, kind="edge" if k != 1 else "centre", line=k + 1)
-        told.append(max(sigmas(street.lanes()[0], status="measured")))
+        told.append(max(sigmas(street.lanes()[0], status="measured", lane=1)))
     assert (0.8 * 1.28 * 0.0019) ** 2 < told[1] ** 2 - told[0] ** 2 < (2.0 * 1.28 * 0.0019) ** 2
 
 

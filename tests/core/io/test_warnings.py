@@ -27,7 +27,7 @@ def filters_untouched():
 @pytest.mark.filterwarnings("error")
 def test_a_table_with_words_among_its_numbers_is_read():
     with filters_untouched():
-        values, dropped = _parse(b"1 2 3\n4 none 6\n7 8 9\n1 2\n", " ", 3, False)
+        values, dropped, _ = _parse(b"1 2 3\n4 none 6\n7 8 9\n1 2\n", " ", 3)
     np.testing.assert_array_equal(values, [[1, 2, 3], [4, np.nan, 6], [7, 8, 9]])
     assert dropped == 1
 
@@ -35,7 +35,7 @@ def test_a_table_with_words_among_its_numbers_is_read():
 @pytest.mark.filterwarnings("error")
 def test_a_table_of_numbers_is_read():
     with filters_untouched():
-        values, _ = _parse(b"1;2.5;-3e2\n;5;nan\n", ";", 3, False)
+        values, *_ = _parse(b"1;2.5;-3e2\n;5;nan\n", ";", 3)
     np.testing.assert_array_equal(values, [[1, 2.5, -300], [np.nan, 5, np.nan]])
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from lanewright.core.common.progress import Progress
 from lanewright.core.survey.adjustment.adjust import adjust_passes, solve_corrections
-from lanewright.core.survey.adjustment.register import PassOffsets, _Strips, pass_offsets
+from lanewright.core.survey.adjustment.register import PassOffsets, Strips, pass_offsets
 from scanned_streets import driven, scanned, survey_of
 
 FLAT = ((-20.0, 0.0), (20.0, 0.0))
@@ -136,7 +136,7 @@ def test_the_brightness_of_a_curb_face_is_no_paint_and_a_line_half_a_metre_besid
     along = np.repeat(np.arange(20) * 0.25 + 0.1, 600)
     height, light = np.where(across > 3.0, 0.12, 0.0), np.where(np.abs(across - 3.0) < 0.04, 9000.0, 3000.0) + np.where(
         np.abs(across - 2.5) < 0.06, 5000.0, 0.0) + 100.0 * np.random.default_rng(1).standard_normal(len(across))
-    paint = _Strips(across, along, height, light, (20, 300)).paint
+    paint = Strips.of(across, along, height, light, (20, 300)).paint
     assert np.isnan(paint[:, 148:152]).all() and np.isfinite(paint[:, 100:140]).all() and np.isfinite(paint[:, 160:]).all()
     assert paint[:, 123:127].min() > 2.0
 

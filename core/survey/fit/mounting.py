@@ -1,0 +1,248 @@
+"""Where the scanners rode, seen from the trajectory: by the rays of their mirrors, whatever the trajectory says.
+
+In the frame of the vehicle all points of one mirror lie in one plane, all along the survey. In this plane two directions are as far apart as
+the mirror turned between their times, so that the points of some turns fix the place of the scanner (see estimation/resection.py). It is the
+lever arm from the trajectory to the scanner, as it is in the files. A trajectory of another lane, of another datum, or with heights of another
+kind shows as a lever arm that no vehicle has; coordinates that are stretched, as heights in feet, as rays that do not meet.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...curves.robust import MAD_TO_SIGMA
+from ..estimation.poses import vehicle_axes
+from ..estimation.resection import EXPECTED_HEIGHT, MIN_SHARE_IN_FRONT, resected
+from ..estimation.rough.first_track import DENSITY_ROUNDS, DENSITY_WIDTH, GROUND_WEIGHT_DEPTH, LOWEST_SHARE
+from ..estimation.rough.samples import SAMPLED_LAYERS
+from ..las.parallel_reader import ParallelCloudReader
+from ..las.reader import CloudHeader
+from ..las.scanners import ScannerCensus, numbers_by_value, times_by_value
+from ..las.validity import valid_points
+from ..lattice.rotation_rate import MIN_ROTATION_PEAK, ROTATION_WINDOW, rotation_spectrum, strongest_rotation
+from ..trajectory.trajectory import Trajectory
+
+PLACES_READ, PLACE_POINTS = 8, 50_000   # places in the files that are looked at, and points read at each
+TURNS_WINDOW = 0.05                 # s: some turns of every mirror, in which a vehicle on the road hardly sways
+MIN_TURNS_POINTS, MAX_TURNS_POINTS = 60, 400
+MAX_WINDOWS = 80                    # of a scanner, evenly over the survey
+MIN_WINDOWS = 8                     # good ones that a scanner's place needs
+PLANE_ROUNDS, RATE_ROUNDS = 8, 3
+PLACE_NOISE, ATTITUDE_NOISE = 0.03, 0.01   # m and radians by which points may lie off the plane
+MAX_OFF_PLANE = 0.15                # m, median: points of several mirrors, or of many beams, lie in no plane
+MAX_UPRIGHT = 0.8                   # of the plane's normal: what lies flatter is the ground
+MIN_WINDOW_SHARE = 0.5              # of the windows that must be good
+BELOW_SCANNER = 3.0                 # m about the scanner in plan, within which the ground below it lies
+
+
+@dataclass(frozen=True)
+class Mounting:
+    """A scanner in the frame of the vehicle, whose origin is the trajectory.
+
+    scanner : its number
+    time : (W,) s, middles of windows
+    lever : (W, 3) m ahead, left and up
+    ground : m of the ground above the scanner; negative where the scanner rides above it
+    misfit : m, median distance of points from their rays
+    """
+
+    scanner: int
+    time: np.ndarray
+    lever: np.ndarray
+    ground: float
+    misfit: float
+
+
+@dataclass(frozen=True)
+class _Sample:
+    """First returns in order of time: s, (N, 3) map coordinates, number of the scanner."""
+
+    time: np.ndarray
+    place: np.ndarray
+    scanner: np.ndarray
+
+
+def read_places(files: Sequence[CloudHeader], scanner_field: str | None = "automatic") -> _Sample:
+    """First returns at PLACES_READ places spread evenly over the points of the files.
+
+    Parameters
+    ----------
+    files : headers of the clouds
+    scanner_field : as of `ScannerCensus.choose`
+    """
+    ends = np.cumsum([file.count for file in files])
+    census, parts = ScannerCensus(), []
+    with ParallelCloudReader(SAMPLED_LAYERS) as reader:
+        wanted: dict[int, set[int]] = {}
+        for at in ((np.arange(PLACES_READ) + 0.5) / PLACES_READ * ends[-1]).astype(np.int64).tolist():
+            number = int(np.searchsorted(ends, at, side="right"))
+            wanted.setdefault(number, set()).add(at - int(ends[number] - files[number].count))
+        for number, places in wanted.items():
+            ranges = [(first, count) for _, first, count in reader.ranges([files[number]], PLACE_POINTS)]
+            starts = np.array([first for first, _ in ranges])
+            for k in sorted({int(np.searchsorted(starts, at, side="right")) - 1 for at in places}):
+                for block in reader.points(files[number], *ranges[k], PLACE_POINTS):
+                    parts.append(_first_returns(block))
+                    # a file in one piece is not decoded further than one place
+                    break
+    time, place, source, channel = (np.concatenate(column) for column in zip(*parts))
+    for name, values in (("point_source_id", source), ("scanner_channel", channel)):
+        census.take(name, times_by_value(values, time))
+    field, values = census.choose(scanner_field)
+    scanner = np.zeros(len(time), np.uint8)
+    if field is not None:
+        column = source if field == "point_source_id" else channel
+        scanner = numbers_by_value(values, int(column.max(initial=0)) + 1)[column]
+    order = np.argsort(time, kind="stable")
+    return _Sample(time[order], place[order], scanner[order])
+
+
+def _first_returns(block):
+    """(N,) gps_time, (N, 3) map coordinates, point source and scanner channel of the usable first returns of a block."""
+    raw, names = block.array, set(block.point_format.dimension_names)
+    own = np.asarray(block["return_number"]) <= 1
+    time = raw["gps_time"].astype(float)
+    own &= np.isfinite(time)
+    if (valid := valid_points(block)) is not None:
+        own &= valid
+    place = np.stack([raw[name][own] * scale + offset for name, scale, offset in zip("XYZ", block.scales, block.offsets)], axis=1)
+    channel = np.asarray(block["scanner_channel"]) if "scanner_channel" in names else np.zeros(len(raw), np.int64)
+    return time[own], place, raw["point_source_id"][own].astype(np.int64), channel[own].astype(np.int64)
+
+
+def scanner_mountings(sample: _Sample, trajectory: Trajectory, stretch: float = 1.0) -> list[Mounting]:
+    """The Mounting of every scanner whose mirror is seen to turn.
+
+    Parameters
+    ----------
+    sample : of `read_places`
+    trajectory : Trajectory with times, in the CRS and time system of the sample
+    stretch : by which heights of points and trajectory are multiplied before, to try other units of them
+    """
+    seen = _in_vehicle_frame(sample, trajectory, stretch)
+    found = (_mounting_of(number, *(column[seen[2] == number] for column in seen[:2])) for number in np.unique(seen[2]).tolist())
+    return [one for one in found if one is not None]
+
+
+def _in_vehicle_frame(sample, trajectory, stretch):
+    """(N,) s, (N, 3) m ahead, left and up, and (N,) scanner of points evenly chosen from windows of time."""
+    window = np.floor((sample.time - sample.time[0]) / TURNS_WINDOW).astype(np.int64) if len(sample.time) else np.empty(0, np.int64)
+    kept = np.zeros(len(window), bool)
+    for number in np.unique(sample.scanner).tolist():
+        own = np.flatnonzero((sample.scanner == number) & (sample.time >= trajectory.time[0]) & (sample.time <= trajectory.time[-1]))
+        begin = np.flatnonzero(np.r_[True, np.diff(window[own]) > 0]) if len(own) else np.empty(0, int)
+        size = np.diff(np.append(begin, len(own)))
+        full = np.flatnonzero(size >= MIN_TURNS_POINTS)
+        for k in full[np.unique(np.linspace(0, len(full) - 1, min(MAX_WINDOWS, len(full))).astype(int))] if len(full) else ():
+            kept[own[begin[k]:begin[k] + size[k]:-(-size[k] // MAX_TURNS_POINTS)]] = True
+    rows = np.flatnonzero(kept)
+    time, place = sample.time[rows], sample.place[rows]
+    away = place - np.stack([np.interp(time, trajectory.time, getattr(trajectory, name)) for name in "xyz"], axis=1)
+    away[:, 2] *= stretch
+    axes = vehicle_axes(*(np.interp(time, trajectory.time, angle) for angle in vehicle_angles(trajectory, stretch)))
+    return time, np.stack([(axis * away).sum(axis=1) for axis in axes], axis=1), sample.scanner[rows]
+
+
+def vehicle_angles(trajectory: Trajectory, stretch: float = 1.0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(N,) roll, pitch and yaw (counter-clockwise from east) in radians; from the way driven where the trajectory has none.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+    stretch : by which heights are multiplied before
+    """
+    attitude = trajectory.attitude()
+    if attitude is not None:
+        return attitude[0], attitude[1], np.pi / 2 - attitude[2]
+    dx, dy, dz = (np.gradient(getattr(trajectory, name), trajectory.time) for name in "xyz")
+    return np.zeros(len(trajectory)), np.arctan2(stretch * dz, np.maximum(np.hypot(dx, dy), 0.1)), np.unwrap(np.arctan2(dy, dx))
+
+
+def _mounting_of(number, time, place):
+    """The Mounting of one scanner from the points that it saw, (N,) s and (N, 3) m in the frame of the vehicle; None where they do not show it."""
+    if len(time) < MIN_WINDOWS * MIN_TURNS_POINTS:
+        return None
+    _, window = np.unique(np.floor((time - time[0]) / TURNS_WINDOW), return_inverse=True)
+    size = int(window[-1]) + 1
+    middle, normal, off = _scan_plane(place, window, size)
+    if abs(normal[2]) > MAX_UPRIGHT or np.median(np.abs(off)) > MAX_OFF_PLANE:
+        return None
+    across = np.cross([0.0, 0.0, 1.0], normal)
+    across /= np.linalg.norm(across)
+    upright = np.cross(normal, across)
+    a, b = ((place - middle[window]) @ axis for axis in (across, upright))
+    rate = _rate(time, a, b, window, size)
+    if rate is None:
+        return None
+    middles = np.bincount(window, time, size) / np.bincount(window, minlength=size)
+    found = max((_places(a, b, time - middles[window], window, middles, sign * rate) for sign in (1, -1)), key=lambda one: (one[2].sum(), -one[3]))
+    u, v, good, misfit = found
+    if good.sum() < max(MIN_WINDOWS, MIN_WINDOW_SHARE * size):
+        return None
+    lever = middle + u[:, None] * across + v[:, None] * upright
+    away = place - lever[window]
+    below = away[(np.hypot(*away.T[:2]) < BELOW_SCANNER) & good[window], 2]
+    return Mounting(number, middles[good], lever[good], float(np.median(below)) if len(below) else np.nan, misfit)
+
+
+def _scan_plane(place, window, size):
+    """(W, 3) middles of the windows of places, the unit normal of the planes through them, and (N,) m off these, outliers weighted down.
+
+    Each window has a plane of its own, parallel to the others: trajectories may wander against the scanner.
+    """
+
+    def means(weight, values):
+        return np.stack([np.bincount(window, weight * column, size) for column in values.T], axis=1) / np.bincount(window, weight, size)[:, None]
+
+    far = np.linalg.norm(place - means(np.ones(len(place)), place)[window], axis=1)
+    variance = PLACE_NOISE**2 + (ATTITUDE_NOISE * far) ** 2
+    weight = 1.0 / variance
+    for _ in range(PLANE_ROUNDS):
+        middle = means(weight, place)
+        away = place - middle[window]
+        normal = np.linalg.eigh((weight[:, None] * away).T @ away)[1][:, 0]
+        off = away @ normal
+        weight = 1.0 / variance / (1.0 + off**2 / variance / 4.0)
+    return middle, normal if normal[0] >= 0 else -normal, off
+
+
+def _rate(time, a, b, window, size):
+    """Turns of the mirror per second, from places in the planes of windows; None where they show none."""
+    foot, ground = np.zeros(size), np.zeros(size)
+    order = np.lexsort((b, window))
+    held = np.bincount(window, minlength=size)
+    ground = b[order][np.cumsum(held) - held + (held * LOWEST_SHARE).astype(int)]
+    for _ in range(DENSITY_ROUNDS):
+        weight = 1.0 / ((1.0 + ((a - foot[window]) / DENSITY_WIDTH) ** 2) * (1.0 + ((b - ground[window]) / GROUND_WEIGHT_DEPTH) ** 2))
+        foot, ground = (np.bincount(window, weight * values, size) / np.bincount(window, weight, size) for values in (a, b))
+    phasor = b - ground[window] - EXPECTED_HEIGHT + 1j * (a - foot[window])
+    phasor /= np.maximum(np.abs(phasor), 1e-9)
+    piece = np.floor((time - time[0]) / ROTATION_WINDOW)
+    cuts = np.flatnonzero(np.r_[True, np.diff(piece) > 0, True])
+    spectra = [rotation_spectrum(time[i:j], phasor[i:j]) for i, j in zip(cuts[:-1], cuts[1:]) if j - i >= MIN_TURNS_POINTS]
+    rate, peak = strongest_rotation(spectra) if spectra else (0.0, 0.0)
+    return abs(rate) if peak >= MIN_ROTATION_PEAK else None
+
+
+def _places(a, b, since, window, middles, rate):
+    """(W,) m of the scanner along and up its plane, (W,) bool of good windows, and m of their misfit, by a rate that is made better."""
+    for _ in range(RATE_ROUNDS):
+        u, v, phase, misfit, in_front = resected(a, b, 2 * np.pi * rate * since, window, len(middles))
+        good = in_front >= MIN_SHARE_IN_FRONT
+        apart = np.diff(middles)
+        step = np.diff(phase) - 2 * np.pi * rate * apart
+        step = (step + np.pi) % (2 * np.pi) - np.pi
+        near = good[1:] & good[:-1] & (apart < 1.5 * TURNS_WINDOW)
+        if near.sum() >= MIN_WINDOWS:
+            rate += float(np.median(step[near] / apart[near])) / (2 * np.pi)
+    return u, v, good, float(np.median(misfit[good])) if good.any() else np.inf
+
+
+def usual_lever(mountings: Sequence[Mounting]) -> tuple[np.ndarray, np.ndarray]:
+    """(3,) m ahead, left and up of the middle of the scanners from the trajectory, and (3,) one sigma of a window."""
+    middle = np.mean([np.median(one.lever, axis=0) for one in mountings], axis=0)
+    scatter = np.mean([MAD_TO_SIGMA * np.median(np.abs(one.lever - np.median(one.lever, axis=0)), axis=0) for one in mountings], axis=0)
+    return middle, scatter

@@ -1,0 +1,255 @@
+"""What the columns of a table mean: which is which, by names, units and contents, and their values as a trajectory needs them."""
+
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...common.errors import RoadExtractionError
+from .columns import Unit, candidates_by_role, listed
+from .table_columns import CHECKED_ROWS, TableColumn, first_row, with_week
+from .time_systems import unix_time_found
+from .written_values import (
+    UNIX_EPOCH,
+    angles_of,
+    clock_times,
+    hemisphere_signs,
+    hold_angles,
+    hold_times,
+    leap_seconds,
+    whole_minutes,
+)
+
+EARTH_RADIUS = 6.33e6, 6.42e6    # m from the centre of the earth to its surface, with mountains
+HIGHEST_ROAD = 9000.0            # m: a third coordinate beyond it is no height
+MEAN_SEA_LEVEL = ("ortho", "msl", "sea", "geoid")   # in names of heights
+LARGEST_SECONDS = 1e10           # times beyond it are counted in smaller units
+LEAST_EVEN = 0.95                # of the steps of a column that may be time are near the usual one
+NEVER_BEFORE = 1.46e9            # GPS seconds, April 2026: no clock of a computer is trusted that is behind this
+LONG = 40                        # characters of a field in a message
+TOLD_CLOCKS = {"gps": "GPS", "utc": "UTC"}          # words of Columns that say what a clock shows
+
+
+@dataclass(frozen=True)
+class Meaning:
+    """place : {role: index of a column}; notes : sentences for the user; clock : "GPS" or "UTC" where the user said so"""
+
+    place: Mapping[str, int]
+    notes: tuple[str, ...] = ()
+    clock: str = ""
+
+
+def meaning_of(columns: Sequence[TableColumn], label: str, given: Sequence[str] = ()) -> Meaning:
+    """The roles of named columns.
+
+    Parameters
+    ----------
+    columns : of the table
+    label : of the table, for notes
+    given : roles that come from elsewhere, such as x and y from the points of a layer
+
+    Returns
+    -------
+    Meaning; geodetic coordinates are preferred to earth-centred ones, numbers to clock times, and the usual names to others
+    """
+    named = candidates_by_role([column.title for column in columns])
+    notes: list[str] = []
+    full = {role: [k for k in places if columns[k].first] for role, places in named.items()}
+    _prefer_geodetic(columns, full, label, notes)
+    place = {role: places[0] for role, places in full.items() if places and role not in given}
+    times = [k for k in full.get("time", ()) if not columns[k].is_text] or full.get("time", []) or \
+        [k for k, column in enumerate(columns) if k not in place.values() and column.holds_texts and hold_times(column.written()[:CHECKED_ROWS])]
+    if times and "time" not in given:
+        place["time"] = times[0]
+    heights = full.get("z", [])
+    if len(heights) > 1 and "z" in place and len({_sea_level(columns[k].title) for k in heights}) > 1:
+        others = [columns[k].title for k in heights[1:]]
+        notes.append(f"{label} has several heights; {listed([columns[heights[0]].title])} is used, not {listed(others)}.")
+    return Meaning(place, tuple(notes))
+
+
+def _sea_level(title):
+    return any(word in title.lower() for word in MEAN_SEA_LEVEL)
+
+
+def _prefer_geodetic(columns, places, label, notes):
+    """Keep earth-centred X, Y, Z apart from x, y, z on a map, whatever they are called; drop them beside longitude and latitude."""
+    if all(places.get(axis) for axis in "xyz") and _earth_centred(*(columns[places[axis][0]].values for axis in "xyz")):
+        for axis in "xyz":
+            places.setdefault(f"ecef_{axis}", []).insert(0, places[axis].pop(0))
+    earth = [role for role in ("ecef_x", "ecef_y", "ecef_z") if places.get(role)]
+    if earth and all(places.get(role) for role in ("lon", "lat", "z")):
+        notes.append(f"{label} has earth-centred coordinates beside longitude and latitude; the latter are used, with the heights in "
+                     f"{listed([columns[places['z'][0]].title])}.")
+        for role in earth:
+            del places[role]
+
+
+def _earth_centred(x, y, z):
+    """Whether three columns are coordinates from the centre of the earth."""
+    good = np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
+    if not good.any():
+        return False
+    away = np.median(np.sqrt(x[good]**2 + y[good]**2 + z[good]**2))
+    return bool(EARTH_RADIUS[0] < away < EARTH_RADIUS[1] and np.median(np.abs(z[good])) > HIGHEST_ROAD)
+
+
+def values_by_role(columns: Sequence[TableColumn], meaning: Meaning, label: str, notes: list[str], doubts: list[str]) -> dict[str, np.ndarray]:
+    """The values of a trajectory: seconds, metres, degrees; roll, pitch and heading in the unit of their columns.
+
+    Parameters
+    ----------
+    columns : of the table
+    meaning : of these
+    label : of the table, for messages
+    notes, doubts : sentences for the user, and warnings, are added to them
+
+    Returns
+    -------
+    {role: (N,) float64} of time, x, y, z, lon, lat, roll, pitch, heading as far as they are there
+
+    Raises
+    ------
+    RoadExtractionError
+        If times are clock times of which it is not said what they show, or count from 1970.
+    """
+    place = meaning.place
+    found = {role: columns[k].values for role, k in place.items() if role in ("x", "y", "z", "roll", "pitch", "heading")}
+    for role in {"x", "y", "z"} & set(found):
+        unit = columns[place[role]].unit
+        if unit.name == "metres" and unit.factor != 1.0:
+            found[role] = found[role] * unit.factor
+    for role in ("lon", "lat"):
+        if role in place:
+            found[role] = _angle(columns, place[role], 180.0 if role == "lon" else 90.0)
+    if "lon" not in found and "x" not in found and all(role in place for role in ("ecef_x", "ecef_y", "ecef_z")):
+        found.update(_from_the_centre(*(columns[place[f"ecef_{axis}"]].values for axis in "xyz")))
+        notes.append(f"{label} gives earth-centred coordinates; they were converted to longitude, latitude and height above the ellipsoid.")
+    if "time" in place:
+        found["time"] = _time(columns, meaning, label, notes, doubts)
+    else:
+        doubts += _like_time(columns, set(place.values()), label)
+    return found
+
+
+def _angle(columns, k, most):
+    """(N,) degrees of a column of longitudes or latitudes, with the hemisphere in the column behind it or before it."""
+    column = columns[k]
+    values = column.values
+    if column.holds_texts:
+        texts = column.written()
+        if hold_angles(texts):
+            values = angles_of(texts)
+    elif column.unit.name == "radians" or (column.unit.name == "degrees" and column.unit.factor != 1.0):
+        factor = column.unit.factor if column.unit.name == "degrees" else np.degrees(column.unit.factor)
+        # np.degrees gives the last bit that a product would not
+        values = np.degrees(values) if column.unit == Unit("radians") else values * factor
+    for beside in (k + 1, k - 1):
+        signs = hemisphere_signs(columns[beside].written()) if 0 <= beside < len(columns) and columns[beside].holds_texts else None
+        if signs is not None:
+            together = np.nanmax(np.abs(values), initial=0.0) > most and np.nanmax(np.abs(values), initial=0.0) < 100 * most
+            return np.where(signs < 0, -1.0, 1.0) * np.abs(whole_minutes(values) if together else values)
+    return values
+
+
+def _from_the_centre(x, y, z):
+    from pyproj import Transformer
+
+    lon, lat, height = Transformer.from_crs("EPSG:4978", "EPSG:4979", always_xy=True).transform(x, y, z)
+    return {role: np.where(np.isfinite(values), values, np.nan) for role, values in (("lon", lon), ("lat", lat), ("z", height))}
+
+
+def _time(columns, meaning, label, notes, doubts):
+    """(N,) seconds of GPS time, or as the column counts."""
+    place = meaning.place
+    column = columns[place["time"]]
+    if column.holds_texts:
+        return _from_clock(columns, meaning, label, notes)
+    seconds = column.values * column.unit.factor if column.unit.name == "seconds" else column.values
+    largest = np.nanmax(np.abs(seconds), initial=0.0)
+    if column.unit.name != "seconds" and largest > LARGEST_SECONDS:
+        factor = next((10.0**-power for power in (3, 6, 9) if largest * 10.0**-power < LARGEST_SECONDS), 1.0)
+        seconds = seconds * factor
+        doubts.append(f"The times of {label} are so large that they are taken to count {factor:.0e} s.")
+    if "week" in place and place["week"] != place["time"]:
+        return with_week(seconds, columns[place["week"]].values)
+    first = seconds[np.isfinite(seconds)][:1]
+    later_than_now = len(first) and first[0] > max(NEVER_BEFORE, clock.time() - UNIX_EPOCH + 86_400.0)
+    if len(first) and (meaning.clock == "UTC" or later_than_now or any(word in column.title.lower() for word in ("unix", "posix"))):
+        if meaning.clock == "UTC" and first[0] > UNIX_EPOCH:
+            return _added_leap_seconds(seconds - UNIX_EPOCH, label, notes)
+        if meaning.clock == "UTC":
+            raise RoadExtractionError(f"Columns says utc of {listed([column.title or 'a column'])}, but {first[0]:.1f} is no date and no count "
+                                      "from 1970, so the leap seconds are not known. Write time in place of utc.")
+        raise RoadExtractionError(unix_time_found(float(first[0]), f"{label} counts"))
+    return seconds
+
+
+def _from_clock(columns, meaning, label, notes):
+    """(N,) GPS seconds of clock times, where it is known what the clock shows."""
+    place = meaning.place
+    column = columns[place["time"]]
+    date = columns[place["date"]] if "date" in place and place["date"] != place["time"] else None
+    texts = list(column.written())
+    times = clock_times(texts)
+    if times is not None and not times.dated and date is not None:
+        days = list(date.written())
+        times = clock_times([f"{day.split('.')[0] if day[:8].isdigit() else day} {text}" for day, text in zip(days, texts)]) or times
+    if times is None:
+        raise RoadExtractionError(
+            f"The column {listed([column.title])} of {label} should be the time, but holds {column.first[:LONG]!r}, which is neither a number nor a "
+            f"clock time. The first row reads {first_row(columns)}. Rename the column, or say which is which in Columns of Import trajectory.")
+    return _gps_seconds(times, column, meaning, "" if date is None else date.title, label, notes)
+
+
+def _gps_seconds(times, column, meaning, date_title, label, notes):
+    words = f"{column.title} {date_title}".lower()
+    shows = meaning.clock or times.zone or ("UTC" if any(word in words for word in ("utc", "gmt", "zulu")) else "GPS" if "gps" in words else "")
+    if shows == "GPS" and times.order_known:
+        return times.seconds
+    if shows == "UTC" and times.dated and times.order_known:
+        return _added_leap_seconds(times.seconds, label, notes)
+    known = times.seconds[np.isfinite(times.seconds)]
+    apart = f"by {leap_seconds(known[:1])[0]:.0f} s on this day" if times.dated and len(known) else "by leap seconds"
+    if shows and not times.order_known:
+        why = "day and month cannot be told apart"
+        advice = "write dates as year-month-day"
+    elif shows:
+        why = f"without a date it is not known by how many seconds {shows} differs from them"
+        advice = "add the date"
+    else:
+        why = f"it is not said whether the clock shows GPS time, UTC, which differs {apart}, or local time"
+        advice = "name the column GPS time or UTC, or write gps or utc in place of time in Columns of Import trajectory, if you know what it shows"
+    raise RoadExtractionError(
+        f"The column {listed([column.title or 'without a name'])} of {label} holds clock times such as {column.first[:LONG]!r}. GPS seconds are "
+        f"needed, and {why}. Export the trajectory with GPS time in seconds; or {advice}.")
+
+
+def _added_leap_seconds(utc, label, notes):
+    leap = leap_seconds(utc[np.isfinite(utc)])
+    seconds = utc.copy()
+    seconds[np.isfinite(utc)] += leap
+    if len(leap):
+        notes.append(f"The times of {label} are UTC; {leap[0]:.0f} leap seconds were added to make them GPS time.")
+    return seconds
+
+
+def _like_time(columns, used, label):
+    """A sentence for columns that increase evenly like time and are not used."""
+    likely = []
+    for k, column in enumerate(columns):
+        values = column.values[np.isfinite(column.values)]
+        step = np.diff(values)
+        if k in used or len(step) < 3 or not (step > 0).all():
+            continue
+        usual = np.median(step)
+        counts_rows = (step == 1).all() and values[0] in (0, 1)
+        if not counts_rows and np.mean(np.abs(step - usual) <= 0.2 * usual) > LEAST_EVEN:
+            likely.append(f"{listed([column.title or f'column {k + 1}'])} ({values[0]:.10g} to {values[-1]:.10g})")
+    if not likely:
+        return []
+    return [f"{label} has a column that increases evenly like time and is not used: {listed(likely)}. If it is the time, name it time, or say so in "
+            "Columns of Import trajectory."]

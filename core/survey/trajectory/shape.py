@@ -1,0 +1,212 @@
+"""Whether a trajectory can be the way of a vehicle: as smooth as one drives, and with vertices as near to each other as its bends need.
+
+Between two vertices the vehicle is taken to be on the straight line between them. In a bend of radius R it was off it by up to the sagitta
+L²/8R of vertices L apart; at each vertex the line turns by about L/R, so the sagitta is L/8 times that turn. A spline through the vertices
+passes such bends; how far it is off shows where every second vertex is left out, and falls with the fourth power of the spacing (de Boor, A
+Practical Guide to Splines, ch. V).
+
+Positions of a receiver that nobody filtered scatter from row to row by more than any vehicle shakes. A cubic over a second follows the vehicle
+to millimetres (see VEHICLE_SNAP), so what is left is the noise.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.interpolate import CubicHermiteSpline, CubicSpline
+from scipy.signal import savgol_filter
+
+from ...curves.robust import MAD_TO_SIGMA
+from .drive_checks import HEADING_TOLERANCE, angle_between
+from .trajectory import Trajectory
+
+GAP_FACTOR, SHORTEST_PAUSE = 3.0, 1.0     # times the usual step of time, and s, beyond which the vehicle is not interpolated
+MAX_SAGITTA = 0.05      # m: bends are curved that straight lines between vertices miss by more
+LEFT_SAGITTA = 0.01     # m that the curved trajectory still misses
+MIN_SPACING = 1.5       # m between vertices, from which a bend of the least radius that vehicles drive, 6 m, is missed by MAX_SAGITTA
+MAX_VERTEX_TURN = np.radians(45.0)   # from vertex to vertex: what turns more cannot be told by its vertices
+MIN_SPLINE_ROWS = 3
+SPLINE_ORDER_SHARE = 1.0 / 16.0   # of the error with every second vertex that is left with all: (1/2)^4
+NOISE_TIME, SMOOTH_TIME = 1.0, 2.0   # s over which a cubic tells the noise, and removes it
+MIN_CUBIC_ROWS = 7      # in NOISE_TIME: trajectories with fewer than seven rows a second do not show it
+EVEN_STEPS = 0.2        # share by which steps of time may differ
+MAX_NOISE = 0.03        # m: springs and steering stay below (10 m/s³ of jerk that turns about twice a second leave 2 cm to a cubic over a second)
+
+
+@dataclass(frozen=True)
+class TrackShape:
+    """What is found of a trajectory's shape, and what was done.
+
+    trajectory : Trajectory with curved bends, or smoothed
+    sigma : m, one sigma of its place that stays unknown for that
+    said : the warnings
+    """
+
+    trajectory: Trajectory
+    sigma: float = 0.0
+    said: tuple[str, ...] = ()
+
+
+def shaped_trajectory(trajectory: Trajectory) -> TrackShape:
+    """A trajectory without noise that no vehicle can have caused, and with curves where its vertices are too far apart for its bends.
+
+    Parameters
+    ----------
+    trajectory : Trajectory, cleaned
+    """
+    smooth = smoothed_track(trajectory)
+    curved = curved_track(smooth.trajectory)
+    return TrackShape(curved.trajectory, float(np.hypot(smooth.sigma, curved.sigma)), smooth.said + curved.said)
+
+
+def smoothed_track(trajectory: Trajectory) -> TrackShape:
+    """A trajectory without the noise that no vehicle can have caused; as it is where there is none.
+
+    Parameters
+    ----------
+    trajectory : Trajectory, cleaned
+    """
+    if not trajectory.has_time:
+        return TrackShape(trajectory)
+    pieces = [piece for piece in _pieces(trajectory) if _even(trajectory.time[piece])]
+    noise = np.array([_noise(trajectory, piece) for piece in pieces])
+    noisy = [(piece, one) for piece, one in zip(pieces, noise.tolist()) if one > MAX_NOISE]
+    if not noisy:
+        return TrackShape(trajectory)
+    columns = {name: getattr(trajectory, name).copy() for name in "xyz"}
+    left = 0.0
+    for piece, one in noisy:
+        rows = min(_odd(SMOOTH_TIME / _step(trajectory.time[piece])), _odd(piece.stop - piece.start - 1))
+        for values in columns.values():
+            values[piece] = savgol_filter(values[piece], rows, 3)
+        left = max(left, one * np.sqrt(_cubic_leverage(rows)))
+    rows = sum(piece.stop - piece.start for piece, _ in noisy)
+    worst, share = max(one for _, one in noisy), 100.0 * rows / len(trajectory)
+    first = trajectory.time[noisy[0][0].start]
+    return TrackShape(
+        replace(trajectory, **columns), left,
+        (f"The positions of the trajectory scatter by {100 * worst:.0f} cm from row to row, as those of a receiver that nobody filtered "
+        f"({share:.0f} % of the rows, from {first:.1f} s on); no vehicle shakes so. They were smoothed over {SMOOTH_TIME:g} s, and the way driven "
+        f"is known to about {100 * left:.1f} cm. Give the trajectory that was adjusted together with the inertial unit.",))
+
+
+def curved_track(trajectory: Trajectory) -> TrackShape:
+    """A trajectory with curves through its vertices where they are too far apart for its bends; as it is where they are not.
+
+    Parameters
+    ----------
+    trajectory : Trajectory, cleaned
+    """
+    found, worst, sigma, unsafe = [], (0.0, 0.0, 0), 0.0, 0
+    for piece in _pieces(trajectory):
+        rows = trajectory.rows(piece)
+        if len(rows) < MIN_SPLINE_ROWS:
+            found.append(rows)
+            continue
+        sagitta, turn, length = _sagittas(rows)
+        far = (sagitta > MAX_SAGITTA) & (length > MIN_SPACING)
+        if not far.any():
+            found.append(rows)
+            continue
+        k = int(np.argmax(np.where(far, sagitta, 0.0)))
+        worst = max(worst, (float(sagitta[k]), float(length[k]), piece.start + k))
+        sharp = far & (turn > MAX_VERTEX_TURN)
+        unsafe += np.count_nonzero(sharp)
+        curved, off = _through(rows, np.where(far, np.ceil(np.sqrt(sagitta / LEFT_SAGITTA)), 1).astype(int))
+        sigma = max(sigma, off, float(sagitta[sharp].max(initial=0.0)) / 2)
+        found.append(curved)
+    if not worst[0]:
+        return TrackShape(trajectory)
+    names = ("time", "x", "y", "z", "roll", "pitch", "heading")
+    joined = replace(trajectory, **{name: np.concatenate([getattr(rows, name) for rows in found]) for name in names})
+    place = f"x {trajectory.x[worst[2]]:.0f}, y {trajectory.y[worst[2]]:.0f}"
+    done = "Curves were laid through them" + (f", which is a guess in {unsafe} sharp turns" if unsafe else "")
+    return TrackShape(
+        joined, sigma,
+        (f"The vertices of the trajectory lie up to {worst[1]:.0f} m apart in bends, which straight lines between them miss by up to "
+         f"{worst[0]:.2f} m (near {place}). {done}; the way driven is known to about {max(100 * sigma, 1):.0f} cm. Export the trajectory with ten "
+         "and more positions a second.",))
+
+
+def _pieces(trajectory):
+    """Slices of the rows between gaps of time."""
+    step = np.diff(trajectory.time)
+    if not trajectory.has_time or not len(step):
+        return [slice(0, len(trajectory))]
+    cuts = np.flatnonzero(step > max(GAP_FACTOR * np.median(step), SHORTEST_PAUSE)) + 1
+    return [slice(i, j) for i, j in zip([0, *cuts.tolist()], [*cuts.tolist(), len(trajectory)])]
+
+
+def _step(time):
+    return float(np.median(np.diff(time)))
+
+
+def _odd(rows):
+    return int(rows) // 2 * 2 + 1
+
+
+def _even(time):
+    """Whether times follow each other evenly, and so often that a cubic over NOISE_TIME can be told from noise."""
+    if len(time) < 4 * MIN_CUBIC_ROWS:
+        return False
+    step = np.diff(time)
+    usual = _step(time)
+    return _odd(NOISE_TIME / usual) >= MIN_CUBIC_ROWS and float(np.quantile(np.abs(step - usual), 0.95)) <= EVEN_STEPS * usual
+
+
+def _cubic_leverage(rows):
+    """Share of the variance of a row's noise that is left in the middle of a cubic over so many rows."""
+    return (9.0 * rows**2 - 21.0) / (4.0 * rows * (rows**2 - 4.0))
+
+
+def _noise(trajectory, piece):
+    """m, one sigma of a position of a piece along one axis on the map, against a cubic over NOISE_TIME."""
+    rows = min(_odd(NOISE_TIME / _step(trajectory.time[piece])), _odd(piece.stop - piece.start - 1))
+    off = [getattr(trajectory, name)[piece] - savgol_filter(getattr(trajectory, name)[piece], rows, 3) for name in "xy"]
+    return MAD_TO_SIGMA * float(np.median(np.abs(off))) / np.sqrt(1.0 - _cubic_leverage(rows))
+
+
+def _sagittas(rows):
+    """(N - 1,) m by which a straight line to the next vertex misses the bend, the turn at its ends (radians), and its length (m)."""
+    dx, dy = np.diff(rows.x), np.diff(rows.y)
+    length = np.hypot(dx, dy)
+    if len(length) < 2:
+        return np.zeros(len(length)), np.zeros(len(length)), length
+    way = np.arctan2(dy, dx)
+    turn = np.abs((np.diff(way) + np.pi) % (2 * np.pi) - np.pi)
+    # at an end, or where one side hardly moves, the other side's turn tells it; the smaller of two is that of the bend, not of one corner
+    ends = np.r_[np.inf, turn], np.r_[turn, np.inf]
+    here = np.minimum(*ends)
+    # bends begin and end between vertices: a turn at one end alone is half of a bend
+    here = np.maximum(here, 0.5 * np.maximum(*(np.where(np.isfinite(one), one, 0.0) for one in ends)))
+    return length * here / 8.0, here, length
+
+
+def _through(rows, parts):
+    """The trajectory with so many parts between each two vertices on a spline through all, and m that the spline may be off."""
+    share = np.concatenate([k + np.arange(n) / n for k, n in enumerate(parts.tolist())] + [[len(rows) - 1.0]])
+    at = np.arange(len(rows), dtype=float)
+    knots = rows.time if rows.has_time else np.r_[0.0, np.cumsum(np.hypot(np.diff(rows.x), np.diff(rows.y)))]
+    time = np.interp(share, at, knots)
+    heading = np.degrees(np.unwrap(np.radians(rows.heading)))
+    new = {name: np.interp(time, knots, getattr(rows, name)) for name in ("roll", "pitch")}
+    new.update(time=np.interp(share, at, rows.time), heading=np.interp(time, knots, heading) % 360.0, z=CubicSpline(knots, rows.z)(time))
+    new["x"], new["y"] = _plan(knots, rows)(time).T
+    half = np.unique(np.r_[np.arange(0, len(rows), 2), len(rows) - 1])
+    bend = _sagittas(rows)[0].max() / 2
+    if len(half) == len(rows) or len(half) < 3:
+        return replace(rows, **new), float(bend)
+    off = np.hypot(*(_plan(knots[half], rows.rows(half))(knots) - np.c_[rows.x, rows.y]).T)
+    return replace(rows, **new), float(min(SPLINE_ORDER_SHARE * off.max(), bend))
+
+
+def _plan(knots, rows):
+    """The spline through the positions on the map; in the directions of the headings where there are any."""
+    places = np.c_[rows.x, rows.y]
+    free = CubicSpline(knots, places)
+    velocity, yaw = free(knots, 1), np.radians(90.0 - rows.heading)
+    off = angle_between(90.0 - np.degrees(np.arctan2(velocity[:, 1], velocity[:, 0])), rows.heading)
+    if not (off < HEADING_TOLERANCE).all():
+        return free
+    return CubicHermiteSpline(knots, places, np.hypot(*velocity.T)[:, None] * np.c_[np.cos(yaw), np.sin(yaw)])

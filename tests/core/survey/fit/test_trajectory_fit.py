@@ -1,0 +1,103 @@
+"""A trajectory that is not that of its scanners: told by the rays of their mirrors, moved to where they were, and said in one warning."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from lanewright.core.common.progress import Progress
+from lanewright.core.survey.fit.mounting import read_places, scanner_mountings
+from lanewright.core.survey.fit.trajectory_fit import fitted_trajectory
+from lanewright.core.survey.las.reader import read_headers
+from mirror_drives import Mirror, mirror_drive
+
+PAIR = Mirror(turn=-45.0, lever=(-2.4, 0.3, 0.1)), Mirror(turn=45.0, lever=(-2.4, -0.3, 0.1), ahead=0.7)
+
+
+class Heard(Progress):
+    def __init__(self):
+        self.warned = []
+
+    def warn(self, text):
+        self.warned.append(text)
+
+
+
+
+@pytest.fixture(scope="module")
+def straight(tmp_path_factory):
+    """A street driven with two scanners, its cloud and true trajectory."""
+    measured = mirror_drive(PAIR, seconds=5.0)
+    return measured.write(tmp_path_factory.mktemp("street") / "street.laz"), measured.trajectory()
+
+
+def told(path, trajectory):
+    heard = Heard()
+    return fitted_trajectory(read_headers([path]), trajectory, progress=heard), heard.warned
+
+
+def beside(trajectory, metres):
+    yaw = np.radians(90.0 - trajectory.heading)
+    return replace(trajectory, x=trajectory.x - np.sin(yaw) * metres, y=trajectory.y + np.cos(yaw) * metres)
+
+
+def across(one, other):
+    """(N,) m that the first runs to the left of the second."""
+    yaw = np.radians(90.0 - other.heading)
+    return (one.y - other.y) * np.cos(yaw) - (one.x - other.x) * np.sin(yaw)
+
+
+def test_a_trajectory_that_fits_stays_as_it_is_and_nothing_is_said(straight):
+    path, trajectory = straight
+    found, warned = told(path, trajectory)
+    assert found.trajectory is trajectory and found.sigma == 0.0 and found.seen and not warned
+
+
+def test_the_rays_show_where_the_scanners_were_mounted(straight):
+    path, trajectory = straight
+    mountings = scanner_mountings(read_places(read_headers([path])), trajectory)
+    for one, mirror in zip(mountings, PAIR):
+        np.testing.assert_allclose(np.median(one.lever, axis=0), mirror.lever, atol=0.03)
+        assert one.ground == pytest.approx(-2.6, abs=0.1)
+
+
+@pytest.mark.parametrize("metres", [-3.0, -1.7, 2.0])
+def test_a_trajectory_beside_its_scanners_is_moved_to_them(straight, metres):
+    path, trajectory = straight
+    found, warned = told(path, beside(trajectory, metres))
+    np.testing.assert_allclose(across(found.trajectory, trajectory), 0.0, atol=0.05)
+    assert len(warned) == 1 and f"to the {'left' if metres > 0 else 'right'} of the way" in warned[0]
+
+
+def test_a_trajectory_in_another_datum_is_moved_by_one_vector_on_the_map(tmp_path):
+    measured = mirror_drive((Mirror(lever=(-2.4, 0.0, 0.0)),), seconds=8.0, poses=None)
+    path, trajectory = measured.write(tmp_path / "street.laz"), measured.trajectory()
+    found, warned = told(path, replace(trajectory, x=trajectory.x + 0.5, y=trajectory.y - 2.5))
+    np.testing.assert_allclose(across(found.trajectory, trajectory), 0.0, atol=0.05)
+    assert len(warned) == 1 and "another datum" in warned[0]
+
+
+@pytest.mark.parametrize("up, said", [(48.0, "above"), (-48.0, "below"), (-3.6, "below the road")])
+def test_a_trajectory_far_above_its_scanners_or_below_the_road_gets_their_height(straight, up, said):
+    path, trajectory = straight
+    found, warned = told(path, replace(trajectory, z=trajectory.z + up))
+    np.testing.assert_allclose(found.trajectory.z - trajectory.z, 0.1, atol=0.15)
+    np.testing.assert_allclose(across(found.trajectory, trajectory), 0.0, atol=0.05)
+    assert len(warned) == 1 and said in warned[0] and "ellipsoid" in warned[0]
+
+
+def raised(measured, path, heights):
+    """The cloud and trajectory of a drive, their heights changed."""
+    place = measured.place.copy()
+    place[:, 2] = heights(place[:, 2] + 100.0) - 100.0
+    trajectory = measured.trajectory()
+    return replace(measured, place=place).write(path), replace(trajectory, z=heights(trajectory.z))
+
+
+def test_heights_in_feet_beside_metres_are_named(tmp_path):
+    found, warned = told(*raised(mirror_drive(PAIR, seconds=5.0), tmp_path / "feet.laz", lambda z: z / 0.3048))
+    assert found.seen and len(warned) == 1 and "in feet where x and y are in metres" in warned[0]
+
+
+def test_heights_that_are_upside_down_are_named(tmp_path):
+    _, warned = told(*raised(mirror_drive(PAIR, seconds=5.0), tmp_path / "down.laz", lambda z: -z))
+    assert len(warned) == 1 and "upside down" in warned[0]

@@ -1,0 +1,57 @@
+"""Trajectories that no vehicle drove so: noisy, or with vertices too far apart for their bends."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from drives import ahead, bend, chain, drive
+from lanewright.core.survey.trajectory.shape import shaped_trajectory
+
+BENT = chain(ahead(80), bend(250, 60), ahead(60))
+
+
+def off(one, other):
+    """(N,) m from each position of the second to the first."""
+    return np.hypot(*(np.interp(other.time, one.time, getattr(one, name)) - getattr(other, name) for name in "xy"))
+
+
+@pytest.mark.parametrize("rate", [10.0, 50.0, 200.0])
+def test_a_drive_as_vehicles_drive_stays_as_it_is(rate):
+    driven = drive(chain(ahead(40), bend(12, 90), ahead(40), bend(250, -40)), rate=rate)
+    shape = shaped_trajectory(driven)
+    assert shape.trajectory is driven and shape.sigma == 0.0 and not shape.said
+
+
+@pytest.mark.parametrize("rate, sigma", [(200.0, 0.2), (200.0, 0.05), (20.0, 0.1)])
+def test_noise_that_nobody_filtered_is_smoothed_and_told_by_its_size(rate, sigma):
+    driven = drive(BENT, rate=rate)
+    rng = np.random.default_rng(4)
+    noisy = replace(driven, **{name: getattr(driven, name) + rng.normal(0.0, sigma, len(driven)) for name in "xyz"})
+    shape = shaped_trajectory(noisy)
+    assert np.sqrt(np.mean(off(shape.trajectory, driven) ** 2)) < 0.6 * sigma
+    assert len(shape.said) == 1 and f"scatter by {100 * sigma:.0f} cm" in shape.said[0]
+
+
+@pytest.mark.parametrize("headings", [True, False])
+def test_vertices_far_apart_in_a_bend_get_a_curve_through_them(headings):
+    driven = drive(BENT)
+    if headings:
+        driven = replace(driven, heading=np.degrees(np.arctan2(np.gradient(driven.x), np.gradient(driven.y))) % 360.0)
+    rows = driven.rows(np.unique(np.r_[np.arange(0, len(driven), 350), len(driven) - 1]))   # 70 m
+    shape = shaped_trajectory(rows)
+    assert off(rows, driven).max() > 2.0 and off(shape.trajectory, driven).max() < (0.35 if headings else 0.6)
+    assert off(shape.trajectory, driven).max() < 3 * shape.sigma
+    assert len(shape.said) == 1 and "70 m apart in bends" in shape.said[0]
+
+
+def test_a_gap_between_two_drives_is_no_bend():
+    first = drive(chain(ahead(80)))
+    second = drive(chain(bend(30, 80), ahead(20)), start=2000.0)
+    columns = "time", "x", "y", "z", "roll", "pitch", "heading"
+    both = replace(first, **{name: np.r_[getattr(first, name), getattr(second, name)] for name in columns})
+    assert not shaped_trajectory(both).said
+
+
+def test_a_jump_of_a_receiver_is_no_bend():
+    driven = drive(chain(ahead(100)))
+    assert not shaped_trajectory(replace(driven, y=driven.y + np.where(driven.time > driven.time[200], 0.5, 0.0))).said
