@@ -10,10 +10,9 @@ from qgis import utils
 from qgis.core import Qgis, QgsProcessingAlgorithm, QgsProcessingContext, QgsProcessingFeedback, QgsProject, QgsSettings
 from qgis.PyQt.QtWidgets import QDialogButtonBox, QFileDialog, QInputDialog, QMenu, QPushButton, QTextBrowser, QWidget
 
-from ...algorithms.cloud_files import cloud_files
+from ...algorithms.cloud_files import cloud_files, survey_name
 from ...core.common.errors import RoadExtractionError
 from ...processing_provider.results.run_table import last_run
-from ...processing_provider.results.runs import survey_name
 from ...processing_provider.texts import tr
 from ..messages import tell_result
 from ..review.corrections_layer import SURVEY, corrections_layers
