@@ -8,7 +8,7 @@ from .texts import tr
 from .vector_source import LINE, POINT, vertices_of
 
 # Files the core reads better than QGIS and GDAL: headers of any wording, none at all, binary SBET, logs of receivers, tracks
-FILE_SUFFIXES = {".csv", ".txt", ".out", ".sbet", ".xyz", ".pos", ".traj", ".tsv", ".dat", ".asc", ".log", ".nmea", ".pof", ".gpx", ".kml"}
+FILE_SUFFIXES = {".csv", ".txt", ".out", ".sbet", ".xyz", ".pos", ".traj", ".llh", ".tsv", ".dat", ".asc", ".log", ".nmea", ".pof", ".gpx", ".kml"}
 
 
 def trajectory_path(value):
@@ -38,7 +38,7 @@ def read_trajectory_source(source, crs="", heights_needed=True):
     rows, places = [], [np.empty((0, 4))]
     for wkb, values in source.stored_rows():
         if source.kind == POINT:
-            if wkb is None:
+            if not wkb:
                 continue
             places.append(vertices_of(wkb)[:1])
         rows.append(values)
@@ -65,7 +65,7 @@ def _line_columns(source):
     """Vertices in drawing order; M, where there is one, is the time."""
     import numpy as np
 
-    rows = [vertices_of(wkb) for wkb, _ in source.stored_rows(measures=True) if wkb is not None]
+    rows = [vertices_of(wkb) for wkb, _ in source.stored_rows(measures=True) if wkb]
     x, y, z, time = np.concatenate([np.empty((0, 4)), *rows]).T
     return {"x": x, "y": y, **({"z": z} if source.has_z else {}), **({"time": time} if source.has_m else {})}
 

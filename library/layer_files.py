@@ -89,13 +89,19 @@ class LayerFile(VectorSource):
         from shapely.geometry import shape
 
         if measures and self.has_m:
-            yield from measured_lines.rows(self.path, self.table, self.names, self.label)
+            for number, wkb, values in measured_lines.rows(self.path, self.table, self.names, self.label):
+                self.feature_id = number
+                yield wkb, values
             return
         for record in self._records():
-            geometry = record["geometry"]
-            geometry = None if geometry is None else shape(geometry)
-            # 2D parts of a layer with heights stay flat, as they are
-            wkb = None if geometry is None or geometry.is_empty else shapely.to_wkb(geometry, output_dimension=3, flavor="iso")
+            self.feature_id = record["id"]
+            try:
+                geometry = None if record["geometry"] is None else shape(record["geometry"])
+            except (shapely.errors.GEOSException, ValueError):   # lines of one vertex, rings of three
+                wkb = b""
+            else:
+                # 2D parts of a layer with heights stay flat, as they are
+                wkb = None if geometry is None or geometry.is_empty else shapely.to_wkb(geometry, output_dimension=3, flavor="iso")
             yield wkb, [record["properties"][name] for name in self.names]
 
     def rows_where(self, condition):

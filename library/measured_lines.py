@@ -43,7 +43,7 @@ def check_format(path, label):
 
 
 def rows(path, table, names, label):
-    """(ISO WKB or None, values) of every row, as VectorSource gives them."""
+    """(feature id, ISO WKB or None, values) of every row, as VectorSource gives them."""
     check_gdal(f"{label} has lines with measures")
     from osgeo import ogr
 
@@ -52,7 +52,7 @@ def rows(path, table, names, label):
     for feature in layer:
         geometry = feature.GetGeometryRef()
         wkb = None if geometry is None or geometry.IsEmpty() else bytes(geometry.ExportToIsoWkb(ogr.wkbNDR))
-        yield wkb, [feature.GetField(name) for name in names]
+        yield feature.GetFID(), wkb, [feature.GetField(name) for name in names]
 
 
 def write(path, table, features, check_cancelled):

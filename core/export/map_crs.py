@@ -8,6 +8,8 @@ from ..common.errors import RoadExtractionError
 from ..io.crs import check_metric, horizontal_part, parse_crs, same_crs
 from ..io.units import plane_wkt
 
+LOCAL_CRS = "+proj=tmerc +lat_0=0 +lon_0=0 +k=1 +x_0=0 +y_0=0 +datum=WGS84 +units=m +no_defs"   # of maps that lie nowhere
+
 
 def crs_of_reference(text: str, given: str) -> tuple[str, str]:
     """The CRS of an OpenDRIVE file.

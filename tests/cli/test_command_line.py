@@ -195,7 +195,7 @@ def nothing(survey, folder):
     (another_day, "does not cover the scan in time"),
     (in_degrees, "geographic CRS"),
     (a_zip, "cannot be read as a LAS/LAZ file"),
-    (without_scale, "bad.laz is damaged: its header says scales of nan"),
+    (without_scale, "bad.laz gives its points no coordinates: its header says scales of nan"),
 ], ids=lambda value: getattr(value, "__name__", ""))
 def test_a_cloud_that_cannot_be_worked_with_is_told_in_one_sentence(survey, called, tmp_path, cloud, says):
     cloud(survey, tmp_path)

@@ -68,20 +68,18 @@ def _step(values):
 
 
 def coarse_coordinates(samples: Sequence[FileSample]) -> str:
-    """What to tell of coordinates that lie in steps of centimetres and more; "" where they are fine."""
+    """What to tell of coordinates that lie in steps of centimetres and more since their numbers hold no finer ones; "" where there are none."""
     for sample in samples:
-        steps = sample.steps
-        if not (steps > COARSE_COORDINATES).any():
+        steps, scales = sample.steps, np.abs(sample.file.scales)
+        ends = np.array([sample.file.minimum, sample.file.maximum], np.float32)
+        short = np.isclose(steps, np.abs(np.spacing(ends)), atol=scales).any(axis=0)
+        told = (steps > COARSE_COORDINATES) & (short | np.isclose(steps, scales, rtol=0.01))
+        if not told.any():
             continue
-        k = int(np.argmax(steps))
-        listed = ", ".join(f"{steps[axis]:.3g} m in {name}" for axis, name in enumerate("xyz") if steps[axis] > COARSE_COORDINATES)
-        ends = np.array([sample.file.minimum[k], sample.file.maximum[k]], np.float32)
-        if np.isclose(steps[k], np.abs(np.spacing(ends)), atol=abs(sample.file.scales[k])).any():
-            cause = f"at {abs(float(ends[0])):,.0f} m that is the step of numbers of 32 bits, through which some program passed them"
-        elif np.isclose(steps[k], abs(sample.file.scales[k]), rtol=0.01):
-            cause = f"that is the scale in the header of the file ({sample.file.scales[k]:g} m)"
-        else:
-            cause = "they were rounded or put on a grid before the file was written"
+        k = int(np.argmax(np.where(told, steps, 0.0)))
+        listed = ", ".join(f"{steps[axis]:.3g} m in {name}" for axis, name in enumerate("xyz") if told[axis])
+        cause = f"at {abs(float(ends[0, k])):,.0f} m that is the step of numbers of 32 bits, through which they were passed" if short[k] else \
+            f"that is the scale in the header of the file ({scales[k]:g} m)"
         return (f"The coordinates of {sample.file.path} lie in steps of {listed}: {cause}. Edges and markings are no better than that. Export "
                 "the cloud again with coordinates of 64 bits and a scale of 0.001 m.")
     return ""
