@@ -8,7 +8,7 @@ from .texts import tr
 from .vector_source import LINE, POINT, vertices_of
 
 # Files the core reads better than QGIS and GDAL: headers of any wording, none at all, binary SBET, logs of receivers, tracks
-FILE_SUFFIXES = {".csv", ".txt", ".out", ".sbet", ".xyz", ".pos", ".traj", ".tsv", ".dat", ".asc", ".log", ".nmea", ".pof", ".gpx", ".kml"}
+FILE_SUFFIXES = {".csv", ".txt", ".out", ".sbet", ".xyz", ".pos", ".traj", ".llh", ".tsv", ".dat", ".asc", ".log", ".nmea", ".pof", ".gpx", ".kml"}
 
 
 def trajectory_path(value):

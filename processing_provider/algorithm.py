@@ -5,7 +5,14 @@ from contextlib import nullcontext
 from datetime import datetime
 from pathlib import Path
 
-from qgis.core import QgsProcessingAlgorithm, QgsProcessingException, QgsProcessingOutputNumber, QgsVectorLayer
+from qgis.core import (
+    QgsMapLayer,
+    QgsProcessingAlgorithm,
+    QgsProcessingException,
+    QgsProcessingFeatureSourceDefinition,
+    QgsProcessingOutputNumber,
+    QgsVectorLayer,
+)
 from qgis.PyQt.QtGui import QIcon
 
 from ..algorithms.call import run
@@ -18,6 +25,7 @@ from .dependencies import missing_packages
 from .input_files import asks_servers, check_files
 from .parameters import qgis_parameter
 from .progress import FeedbackProgress
+from .results.road_maps import road_map_of
 from .results.run_table import note_run
 from .texts import told, tr
 
@@ -30,6 +38,7 @@ class LanewrightAlgorithm(QgsProcessingAlgorithm):
     def __init__(self, declaration):
         super().__init__()
         self.declaration = declaration
+        self.group_of_inputs = ""  # of the layer tree
 
     # -- what QGIS asks ---------------------------------------------------------------------
 
@@ -97,6 +106,11 @@ class LanewrightAlgorithm(QgsProcessingAlgorithm):
         return fine, said if fine else \
             out_of_range(self.parameterDefinitions(), parameters) or no_trajectory(self.declaration, parameters) or said
 
+    def prepareAlgorithm(self, parameters, context, feedback):
+        """On the main thread, where the layer tree may be looked at."""
+        self.group_of_inputs = group_of_layers(parameters.values(), context.project()) if context.project() is not None else ""
+        return super().prepareAlgorithm(parameters, context, feedback)
+
     def processAlgorithm(self, parameters, context, feedback):
         # canExecute is asked by the desktop only
         missing = missing_packages()
@@ -124,7 +138,7 @@ class LanewrightAlgorithm(QgsProcessingAlgorithm):
         to_load, whole = context.layersToLoadOnCompletion(), False
         try:
             results = run(call, FeedbackProgress(feedback))
-            note_run(self.declaration, call.survey, began, results)
+            note_run(self.declaration, call.survey, began, results, warnings=[told(text) for text in call.warnings])
             whole = True
             return results, ""
         except RoadExtractionError as error:
@@ -136,6 +150,18 @@ class LanewrightAlgorithm(QgsProcessingAlgorithm):
                 context.setLayersToLoadOnCompletion(to_load)
         note_run(self.declaration, call.survey, began, failure=failure)
         return None, failure
+
+
+def group_of_layers(values, project):
+    """The group in which the first of these layers stands that is of one of our runs, "" where there is none."""
+    for value in values:
+        if isinstance(value, QgsProcessingFeatureSourceDefinition):
+            value = value.source.staticValue()
+        layer = project.mapLayer(value) if isinstance(value, str) else value if isinstance(value, QgsMapLayer) else None
+        run = None if layer is None else road_map_of(layer, project)
+        if run is not None and run.group is not None:
+            return run.group.name()
+    return ""
 
 
 def out_of_range(definitions, parameters):

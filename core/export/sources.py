@@ -159,7 +159,13 @@ def nearest_values(points: np.ndarray, layer: Features | None, name: str, farthe
                                                               if g is not None and row.get(name) is not None]
     if not rows or not len(points):
         return found
-    tree = shapely.STRtree(shapely.force_2d(np.array([g for g, _ in rows], object)))
-    which, place = tree.query_nearest(shapely.points(points), max_distance=farthest, all_matches=False)
-    found[which] = np.array([value for _, value in rows])[place]
+    # of long lines the tree finds the nearest segment much sooner than the nearest line
+    parts, owner = [], []
+    for k, (geometry, _) in enumerate(rows):
+        places = shapely.get_coordinates(geometry)
+        pieces = shapely.linestrings(np.stack([places[:-1], places[1:]], axis=1)) if geometry.geom_type == "LineString" else [geometry]
+        parts += list(pieces)
+        owner += [k] * len(pieces)
+    which, place = shapely.STRtree(parts).query_nearest(shapely.points(points), max_distance=farthest, all_matches=False)
+    found[which] = np.array([value for _, value in rows])[np.array(owner)[place]]
     return found

@@ -200,6 +200,26 @@ def slices_of(cells: list[Cell], lanes: Lanes) -> list[Slice]:
     return found
 
 
+def connector_slices(cells: list[Cell], slices: list[Slice], lanes: Lanes) -> tuple[list[Slice], list[Slice]]:
+    """(a slice for every connector with what nobody drives beside it, the slices that are left)."""
+    undriven = [one for one in slices if not any(cell.direction for cell in one.cells)]
+    by_left = {one.cells[0].left_nodes: one for one in undriven}
+    by_right = {one.cells[-1].right_nodes: one for one in undriven}
+    found, used = [], set()
+
+    def beside(same, turned, nodes):
+        for one, against in ((same.get(nodes), False), (turned.get(nodes[::-1]), True)):
+            if one is not None and id(one) not in used:
+                used.add(id(one))
+                return (one.turned() if against else one).cells
+        return []
+
+    for cell in cells:
+        if is_connector(cell, lanes):
+            found.append(Slice([*beside(by_right, by_left, cell.left_nodes), cell, *beside(by_left, by_right, cell.right_nodes)]))
+    return found, [one for one in slices if id(one) not in used]
+
+
 def directions_where_met(cells: list[Cell]) -> dict[int, float]:
     """The direction of borders where some end and others go on: one for all of them, so that no lane has a kink where roads meet.
 

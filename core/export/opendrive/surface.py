@@ -8,7 +8,7 @@ import shapely
 from .geometry import Cubics
 from .model import MapRoad
 
-BORDER_STEP = 0.5   # m between the places at which borders are computed
+BORDER_STEP = 1.0   # m between the places at which borders are computed
 SAGITTA = 0.0005    # m by which the chord between two of them may miss a curve
 LEAST_BORDER_STEP = 0.05   # m
 BENDING_ROUNDS = 5   # of halving the steps where a border bends

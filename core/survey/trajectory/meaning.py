@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import re
 import time as clock
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -28,6 +29,7 @@ HIGHEST_ROAD = 9000.0            # m: a third coordinate beyond it is no height
 MEAN_SEA_LEVEL = ("ortho", "msl", "sea", "geoid")   # in names of heights
 LARGEST_SECONDS = 1e10           # times beyond it are counted in smaller units
 LEAST_EVEN = 0.95                # of the steps of a column that may be time are near the usual one
+COUNTS_OTHERS = re.compile(r"id\b|\b(no|nr)\b|num|count|index|station|chainage|dist|length|km|frame|image|photo|row|line|record", re.IGNORECASE)
 NEVER_BEFORE = 1.46e9            # GPS seconds, April 2026: no clock of a computer is trusted that is behind this
 LONG = 40                        # characters of a field in a message
 TOLD_CLOCKS = {"gps": "GPS", "utc": "UTC"}          # words of Columns that say what a clock shows
@@ -57,7 +59,7 @@ def meaning_of(columns: Sequence[TableColumn], label: str, given: Sequence[str] 
     """
     named = candidates_by_role([column.title for column in columns])
     notes: list[str] = []
-    full = {role: [k for k in places if columns[k].first] for role, places in named.items()}
+    full = {role: [k for k in places if columns[k].first or not columns[k].is_text] for role, places in named.items()}
     _prefer_geodetic(columns, full, label, notes)
     place = {role: places[0] for role, places in full.items() if places and role not in given}
     times = [k for k in full.get("time", ()) if not columns[k].is_text] or full.get("time", []) or \
@@ -166,8 +168,17 @@ def _time(columns, meaning, label, notes, doubts):
     """(N,) seconds of GPS time, or as the column counts."""
     place = meaning.place
     column = columns[place["time"]]
+    clock_parts = [columns[place[role]].values for role in ("hour", "minute") if role in place]
+    told = "hhmmss" in column.title.lower() or ("date" in place and "utc" in column.title.lower() and not column.unit.name)
+    texts = _hours_minutes_seconds(column.values, *clock_parts, told=told) if not column.is_text else None
+    if texts is not None:
+        columns = [*columns]
+        columns[place["time"]] = column = replace(column, values=np.full(len(texts), np.nan), written=lambda: texts, first=texts[0])
     if column.holds_texts:
         return _from_clock(columns, meaning, label, notes)
+    if "utc" in column.title.lower():
+        doubts.append(f"The column {listed([column.title])} of {label} counts seconds of UTC by its name; no leap seconds were added. If points and "
+                      "lines come out shifted along the road, export the trajectory with GPS time.")
     seconds = column.values * column.unit.factor if column.unit.name == "seconds" else column.values
     largest = np.nanmax(np.abs(seconds), initial=0.0)
     if column.unit.name != "seconds" and largest > LARGEST_SECONDS:
@@ -186,6 +197,21 @@ def _time(columns, meaning, label, notes, doubts):
                                       "from 1970, so the leap seconds are not known. Write time in place of utc.")
         raise RoadExtractionError(unix_time_found(float(first[0]), f"{label} counts"))
     return seconds
+
+
+def _hours_minutes_seconds(values, hour=None, minute=None, told=False):
+    """(N,) texts of clock times that stand in three columns, or in one as hhmmss; None for other times. A date or name may have `told` that."""
+    if hour is None or minute is None:
+        known = values[np.isfinite(values)]
+        step = np.diff(known)
+        if not len(step) or known.min() < 0 or known.max() >= 240_000 or (known % 100 >= 60).any() or (known // 100 % 100 >= 60).any():
+            return None
+        # from 59 s to the next minute such a number goes up by 40 more than the seconds do, and other times never do
+        over = np.floor(known[1:] / 100) > np.floor(known[:-1] / 100)
+        if not told and (not over.any() or over.all()) or not (step[over] > 40.0).all() or not (step[~over] < 40.0).all():
+            return None
+        hour, minute, values = values // 10_000, values // 100 % 100, values % 100
+    return [f"{h:02.0f}:{m:02.0f}:{s:09.6f}" if h + m + s == h + m + s else "" for h, m, s in zip(hour, minute, values)]
 
 
 def _from_clock(columns, meaning, label, notes):
@@ -207,7 +233,9 @@ def _from_clock(columns, meaning, label, notes):
 
 def _gps_seconds(times, column, meaning, date_title, label, notes):
     words = f"{column.title} {date_title}".lower()
-    shows = meaning.clock or times.zone or ("UTC" if any(word in words for word in ("utc", "gmt", "zulu")) else "GPS" if "gps" in words else "")
+    named = "UTC" if any(word in words for word in ("utc", "gmt", "zulu")) else "GPS" if "gps" in words else ""
+    contradict = {times.zone, named} == {"UTC", "GPS"}
+    shows = meaning.clock or ("" if contradict else times.zone or named)
     if shows == "GPS" and times.order_known:
         return times.seconds
     if shows == "UTC" and times.dated and times.order_known:
@@ -243,7 +271,7 @@ def _like_time(columns, used, label):
     for k, column in enumerate(columns):
         values = column.values[np.isfinite(column.values)]
         step = np.diff(values)
-        if k in used or len(step) < 3 or not (step > 0).all():
+        if k in used or len(step) < 3 or not (step > 0).all() or COUNTS_OTHERS.search(column.title):
             continue
         usual = np.median(step)
         counts_rows = (step == 1).all() and values[0] in (0, 1)
