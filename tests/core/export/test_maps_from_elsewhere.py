@@ -49,10 +49,10 @@ MAPS = {
     "a line, and an arc without a spiral": road(geometry(0, -30, 0, 0, 30) + geometry(30, 0, 0, 0, 25, ARC), 55),
     "a parametric cubic": road(geometry(0, 0, 0, 0, 40.14, POLYNOMIAL), 40.14),
     "a superelevation": road(LINE, 40, lateral='<superelevation s="0" a="0.05" b="0.001" c="0" d="0"/>'),
-    "lane 0 beside the line": road(LINE, 40, lanes='<laneOffset s="0" a="1.5" b="0" c="0.003" d="0"/>' + street_section()),
+    "lane 0 beside the line": road(LINE, 40, lanes='<laneOffset s="0" a="1.5" b="0" c="0.003" d="-0.00005"/>' + street_section()),
     "records without order": road(
-        geometry(20, 20, 0, 0, 20) + geometry(0, 0, 0, 0, 20), 40, profile='<elevation s="20" a="1" b="0.1" c="0" d="0"/><elevation s="0" a="1" b="0" '
-        'c="0" d="0"/>', lanes=street_section(20) + street_section(0)),
+        geometry(20, 20, 0, 0, 20) + geometry(0, 0, 0, 0, 20), 40, profile='<elevation s="20" a="1" b="0.1" c="0" d="0"/>'
+        '<elevation s="0" a="1" b="0" c="0" d="0"/>', lanes=street_section(20) + street_section(0)),
     "a median of 0.3 m": road(LINE, 40, lanes=section(right=lane(-1) + lane(-2, "none", 0.3) + lane(-3))),
     "a border of 0.3 m": road(LINE, 40, lanes=section(right=lane(-1) + lane(-2, "border", 0.3))),
     "left-hand traffic": road(LINE, 40, rule="LHT"),
@@ -61,6 +61,7 @@ MAPS = {
                                                   0, ('<predecessor id="1"/><successor id="1"/>', '<predecessor id="-1"/><successor id="-1"/>'))),
     "a road of a junction with a shoulder": road(geometry(0, 0, 0, 0, 25, ARC), 25, junction="9", lanes=section(
         right=lane(-1) + lane(-2, "shoulder", 1.0))) + road(geometry(0, -40, 0, 0, 40), 40, "2"),
+    "roads at one place": road(LINE, 40) + road(geometry(0, 0, 0, 0, 40), 40, "2"),
     "a road without length beside another": road(geometry(0, 0, 0, 0, 0), 0, "7") + road(LINE, 40),
     "gaps and kinks of a reference line": road(geometry(0, 0, 0, 0, 20) + geometry(20, 20.004, 0.004, 0.004, 20), 40),
 }
@@ -147,6 +148,11 @@ def test_a_border_that_folds_back_in_a_tight_curve_is_cut_and_named(tmp_path):
         assert apart(lanes, others) < TOLERANCE
 
 
+def test_a_gap_and_a_kink_of_a_reference_line_are_named(tmp_path):
+    found, _ = taken_in(tmp_path, MAPS["gaps and kinks of a reference line"])
+    assert "road 1 at s 20.0 m, with 0.020 m" in found.notes[0]
+
+
 def test_a_width_below_0_is_taken_as_0_and_named(tmp_path):
     found, lanes = taken_in(tmp_path, road(LINE, 40, lanes=section(right=lane(-1) + lane(-2, widths=widths((0, 1, -0.05, 0, 0))))))
     assert "lane -2 of road 1 with -1.00 m at s 40.0 m" in found.notes[0]
@@ -166,7 +172,8 @@ def test_a_road_that_is_broken_is_named_and_the_others_are_read(tmp_path, broken
 
 def test_ways_of_a_map_from_elsewhere_are_all_that_there_are(tmp_path):
     arms = "".join(road(geometry(0, x, y, heading, 30), 30, id, lanes=street_section(0, ("", '<successor id="-1"/>')),
-                        link='<successor elementType="junction" elementId="9"/>') for id, x, y, heading in (("1", -40, 0, 0), ("2", 0, 40, -np.pi / 2)))
+                        link='<successor elementType="junction" elementId="9"/>')
+                   for id, x, y, heading in (("1", -40, 0, 0), ("2", 0, 40, -np.pi / 2)))
     ways = "".join(road(geometry(0, x, y, heading, 20), 20, id, junction="9", lanes=section(right=lane(-1, link='<successor id="-1"/>')),
                         link=f'<successor elementType="road" elementId="{out}" contactPoint="start"/>')
                    for id, x, y, heading, out in (("3", -10, 0, 0, "5"), ("4", 0, 10, -np.pi / 2, "6")))
