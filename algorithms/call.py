@@ -13,11 +13,12 @@ from pathlib import Path
 from ..core.common.errors import RoadExtractionError
 from ..core.common.parallel import cancellation_scope
 from .algorithm import WARNINGS
-from .cloud_files import cloud_files
+from .cloud_files import cloud_files, survey_name
 from .destinations import UnfinishedFiles, UnfinishedLayers, bring_back, check_suffix, check_writable, destination_path
 from .parameters import LayerOutput, settings_class
 from .progress import CountedWarnings
 from .provenance import provenance_now, sign_file
+from .report_head import run_facts, sign_report
 from .texts import tr
 from .vector_source import in_file_units, read_features
 
@@ -130,6 +131,14 @@ class Call:
     def surveyed(self):
         """The point clouds whose name the results go by; none where a stage starts from another's result."""
         return [] if self.algorithm.parameter("POINT_CLOUDS") is None else self._cloud_files()
+
+    @property
+    def survey(self):
+        """What the survey is called; "" where there is none, or what was given names none."""
+        try:
+            return survey_name(self.surveyed())
+        except RoadExtractionError:
+            return ""
 
     def cloud(self, name):
         """The path of one point cloud; "" where the optional parameter is empty."""
@@ -254,6 +263,11 @@ class Call:
         if self.wants(name):
             self._layers.append((name, in_file_units(features)))
 
+    @property
+    def layers(self):
+        """[(name, Features)] of the vector results so far."""
+        return self._layers
+
     def values(self):
         """What the user gave or left at its default for every input, in types that JSON has."""
         raise NotImplementedError
@@ -263,6 +277,7 @@ class Call:
         provenance = provenance_now(self.algorithm.ID, self.values(), self.warnings)
         for path in self._files.unfinished():
             sign_file(path, provenance)
+            sign_report(path, lambda: run_facts(self, provenance))
         self._files.commit()
         return provenance
 

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from qgis.core import Qgis, QgsApplication, QgsProcessingModelAlgorithm, QgsProcessingUtils, QgsProject
+from qgis.core import Qgis, QgsApplication, QgsProcessingModelAlgorithm, QgsProject
 from qgis.PyQt.QtCore import QObject, QUrl
 from qgis.PyQt.QtGui import QAction, QDesktopServices, QIcon
 from qgis.PyQt.QtWidgets import QMenu
@@ -10,12 +10,13 @@ from qgis.PyQt.QtWidgets import QMenu
 from ..processing_provider.reports import last_report
 from ..processing_provider.results.layer_tree import replaces_last_run, set_replaces_last_run
 from ..processing_provider.results.road_maps import clouds_of, road_maps
-from ..processing_provider.results.run_table import run_table
+from ..processing_provider.results.run_table import last_run
 from ..processing_provider.texts import tr
 from .layout.layout_dialog import LayoutDialog, shown_layers
 from .layout.map_layout import road_map_layout
 from .manual import ManualWindow
-from .missing import all_is_there
+from .messages import all_is_there
+from .runs_window import RunsWindow
 from .sample_run import SampleRun
 
 PROVIDER = "lanewright"
@@ -167,21 +168,21 @@ class Menu(QObject):
     def open_report(self):
         """The report written last, in the user's web browser."""
         path = last_report()
-        if path:
-            QDesktopServices.openUrl(QUrl.fromLocalFile(path))
+        if not path:
+            said = tr("No report has been written since QGIS was started.")
+        elif QDesktopServices.openUrl(QUrl.fromLocalFile(path)):
+            return
         else:
-            self.iface.messageBar().pushMessage(
-                "Lanewright", tr("No report has been written since QGIS was started."), level=Qgis.MessageLevel.Info)
+            said = tr("No web browser could be started. The report is the file {path}.").format(path=path)
+        self.iface.messageBar().pushMessage("Lanewright", said, level=Qgis.MessageLevel.Info)
 
     def open_table(self):
-        """What the runs since QGIS was started gave, as a page in the user's web browser."""
-        table = run_table()
-        if not table:
+        """What the runs since QGIS was started gave, in a window."""
+        if last_run() is None:
             self.iface.messageBar().pushMessage("Lanewright", tr("Nothing has been run since QGIS was started."), level=Qgis.MessageLevel.Info)
             return
-        path = QgsProcessingUtils.generateTempFilename("runs.html")
-        Path(path).write_text(table, encoding="utf-8")
-        QDesktopServices.openUrl(QUrl.fromLocalFile(path))
+        self.dialog = RunsWindow(self.iface.mainWindow())
+        self.dialog.show()
 
     def remove(self):
         self.iface.layerTreeView().contextMenuAboutToShow.disconnect(self._fill_layer_menu)

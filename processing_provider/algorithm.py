@@ -138,7 +138,7 @@ class LanewrightAlgorithm(QgsProcessingAlgorithm):
         to_load, whole = context.layersToLoadOnCompletion(), False
         try:
             results = run(call, FeedbackProgress(feedback))
-            note_run(self.declaration, call.survey, began, results)
+            note_run(self.declaration, call.survey, began, results, warnings=[told(text) for text in call.warnings])
             whole = True
             return results, ""
         except RoadExtractionError as error:

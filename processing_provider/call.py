@@ -23,7 +23,7 @@ from .embedded_style import embed_style
 from .input_files import close_database, input_files, layer_file, written_over
 from .layers import WKB_TYPES, QgisSource, crs_text, keeps_aliases, qgis_fields, write_features
 from .reports import note_report
-from .results.runs import run_of, survey_name
+from .results.runs import run_of
 from .styling import style_on_load
 from .texts import tr
 
@@ -40,14 +40,6 @@ class QgisCall(Call):
         super().__init__(processing.declaration, parameters)
         self.processing, self.context, self.feedback = processing, context, feedback
         self._inputs = input_files(processing, parameters, context)
-
-    @property
-    def survey(self):
-        """What the survey is called; "" where there is none, or what was given names none."""
-        try:
-            return survey_name(self.surveyed())
-        except RoadExtractionError:
-            return ""
 
     # -- in ---------------------------------------------------------------------------------
 

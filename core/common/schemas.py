@@ -47,7 +47,7 @@ MARKINGS = [ROAD, Field("cluster", int, "Cluster"), Field("class", str, "Class")
             Field("scan_m", float, "Scanning distance (m)"), Field("area_m2", float, "Area (m²)"),
             Field("points", int, "Points")]
 MARKING_LINES = [ROAD, Field("line", int, "Line"), Field("kind", str, "Kind (edge/lane/centre)"),
-                 Field("pattern", str, "Pattern"), STATUS, Field("curve", str, "Curve"), RADIUS, RMSE,
+                 Field("pattern", str, "Pattern"), STATUS, OTHER, Field("curve", str, "Curve"), RADIUS, RMSE,
                  STATION, END, OFFSET, LENGTH, WIDTH, PASS_SIGMA, Field("params", str, "Fitted function (JSON)")]
 DRIVING_LINES = [ROAD, Field("lane", int, "Lane"), Field("kind", str, "Kind"), Field("pattern", str, "Lines to its left|right"),
                  Field("direction", int, "Direction (1 along, -1 against the road)"),

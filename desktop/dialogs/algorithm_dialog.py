@@ -7,13 +7,14 @@ from pathlib import Path
 
 from processing.gui.AlgorithmDialog import AlgorithmDialog
 from qgis import utils
-from qgis.core import Qgis, QgsProcessingAlgorithm, QgsProject, QgsSettings
+from qgis.core import Qgis, QgsProcessingAlgorithm, QgsProcessingContext, QgsProcessingFeedback, QgsProject, QgsSettings
 from qgis.PyQt.QtWidgets import QDialogButtonBox, QFileDialog, QInputDialog, QMenu, QPushButton, QTextBrowser, QWidget
 
-from ...algorithms.cloud_files import cloud_files
+from ...algorithms.cloud_files import cloud_files, survey_name
 from ...core.common.errors import RoadExtractionError
-from ...processing_provider.results.runs import survey_name
+from ...processing_provider.results.run_table import last_run
 from ...processing_provider.texts import tr
+from ..messages import tell_result
 from ..review.corrections_layer import SURVEY, corrections_layers
 from .batch_dialog import BatchAlgorithmDialog
 from .database_dialog import DatabaseDialog, database_destinations
@@ -30,6 +31,7 @@ class LanewrightDialog(AlgorithmDialog):
     """QGIS's dialog of an algorithm; `title` stands in its frame."""
 
     def __init__(self, algorithm: QgsProcessingAlgorithm, title: str, parent: QWidget | None = None):
+        self.before: set[str] = set()  # layers of the project when the run began
         super().__init__(algorithm, False, parent)
         self.setWindowTitle(title)
         if len(outputs_by_default(algorithm)) >= FEWEST_OUTPUTS:
@@ -57,6 +59,19 @@ class LanewrightDialog(AlgorithmDialog):
         self.close()
         self.batch = BatchAlgorithmDialog(self.algorithm().create(), self.windowTitle(), self.parentWidget())
         self.batch.show()
+
+    def runAlgorithm(self) -> None:
+        """Run it; the layers that are there before are no results."""
+        self.before = set(QgsProject.instance().mapLayers())
+        super().runAlgorithm()
+
+    def finish(self, successful: bool, result: dict, context: QgsProcessingContext, feedback: QgsProcessingFeedback, in_place: bool = False) -> None:
+        """Load the results as QGIS does, and say in its message bar where they are and what the run warned of."""
+        super().finish(successful, result, context, feedback, in_place)
+        run = last_run()
+        if successful and run is not None and utils.iface is not None:
+            layers = [layer for name, layer in QgsProject.instance().mapLayers().items() if name not in self.before]
+            tell_result(utils.iface, run.title, layers, run.warnings)
 
     def _follow_survey(self):
         """Offer the corrections of the survey whose point clouds are chosen, and none of another."""

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
 from datetime import datetime
-from pathlib import Path
 
 from qgis.core import QgsProcessingContext
 
+from ...algorithms.cloud_files import survey_name
 from ...algorithms.provenance import Provenance
 
 GROUP = "Lanewright"
@@ -46,12 +45,3 @@ def run_of(provenance: Provenance, clouds: list[str], whole: bool, context: QgsP
     store.setProperty(SURVEY_OF_RUN, survey)
     name = survey or GROUP
     return Run(provenance, survey, f"{name}, {datetime.now():%Y-%m-%d %H:%M:%S}" if whole else group or name)
-
-
-def survey_name(clouds: list[str]) -> str:
-    """What a survey is called: the folder of its point clouds and what their names have in common, such as B12/tile."""
-    stems = [Path(path).stem.removesuffix(".copc") for path in clouds]
-    folders = {Path(path).absolute().parent for path in clouds}
-    folder = folders.pop().name if len(folders) == 1 else ""
-    name = os.path.commonprefix(stems).rstrip("_-. 0123456789") if len(set(stems)) > 1 else "".join(stems[:1])
-    return "/".join(part for part in dict.fromkeys((folder, name)) if part)

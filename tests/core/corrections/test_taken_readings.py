@@ -7,11 +7,13 @@ import pytest
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.features import Features
 from lanewright.core.common.schemas import CORRECTIONS
-from lanewright.core.corrections import correct_lanes, corrections_from_features, taken_reading
+from lanewright.core.corrections import correct_lanes, correct_marking_lines, corrections_from_features, taken_reading
+from lanewright.core.curves.model_selection import fit_curve
 from lanewright.core.driving.driving_layers import driving_lines_to_features
 from lanewright.core.driving.driving_lines import make_driving_lines
 from lanewright.core.driving.lanes_layer import lanes_to_features
-from lanewright.core.markings.lines.painted_lines import lines_from_features
+from lanewright.core.markings.lines.naming import named_by_estimate
+from lanewright.core.markings.lines.painted_lines import lines_from_features, lines_to_features, painted_lines_of
 from lined_streets import Street
 
 NOTHING = np.empty((0, 3))
@@ -87,3 +89,36 @@ def test_a_row_that_takes_nothing_is_refused_by_its_number(other):
 
 def test_a_piece_without_a_second_reading_has_none_to_take():
     assert taken_reading({"other": None}, "lane") is None and taken_reading({}, "lane") is None
+
+
+def named(street, lines=None):
+    """The marking lines of a street with the kinds that its estimate gives them, as a run fits and names them."""
+    if lines is None:
+        read = lines_from_features(street.lines, street.frame)
+        lines = painted_lines_of([
+            dict(road=0, line=int(read.line[k]), kind="", pattern=read.pattern[k], status="measured", curve=fit.curve,
+                 arc=np.ravel(fit.curve.project(places[[0, -1], 0], places[[0, -1], 1])[0]), places=places, station=5.0, end=95.0, offset=0.0,
+                 width=0.12, rmse=0.005)
+            for k in range(len(read)) for places in [np.c_[read.course.x, read.course.y, read.course.z][read.course.line(k)]]
+            for fit in [fit_curve(places[:, 0], places[:, 1])]], street.frame, "")
+    return named_by_estimate(lines, street.frame, 3.5)
+
+
+def test_dashes_may_part_lanes_of_one_direction_and_that_is_taken():
+    street = Street(length=100.0, vehicle=-1.75).paint(3.5, kind="").paint(0.0, kind="", pattern="dashed").paint(-3.5, kind="")
+    lines = named(street)
+    assert lines.kind.tolist() == ["edge", "centre", "edge"]
+    layer = lines_to_features(lines, street.frame)
+    assert [row["other"] is None for row in layer.rows] == [True, False, True]
+    assert json.loads(layer.rows[1]["other"])["kind"] == "lane"
+    corrections = Features("any", CORRECTIONS)
+    corrections.add(layer.geometries[1], **taken_reading(layer.rows[1], "marking"))
+    wanted = corrections_from_features(corrections, street.frame)
+    again = named(street, correct_marking_lines(lines, street.frame, wanted, NOTHING))
+    assert again.kind.tolist() == ["edge", "lane", "edge"] and again.status.tolist() == ["measured", "accepted", "measured"]
+    assert not wanted.unmatched and not any(again.other)
+
+
+def test_what_a_solid_line_between_two_lanes_parts_is_sure():
+    lines = named(Street(length=100.0, vehicle=-1.75).paint(3.5, kind="").paint(0.0, kind="").paint(-3.5, kind=""))
+    assert lines.kind.tolist() == ["edge", "centre", "edge"] and not any(lines.other)
