@@ -16,7 +16,7 @@ class ImportLanelet2(Algorithm):
 
     def declare(self):
         add_map_file(self, tr("Lanelet2 file"), tr("A map with the ending .osm."), LANELET_FILTER)
-        add_map_crs(self, tr("In metres, such as that of the survey. Empty takes the UTM zone of the map."))
+        add_map_crs(self, tr("Projected, such as that of the survey. Empty takes the UTM zone of the map."))
         add_map_layers(self)
 
     def work(self, call, progress):

@@ -9,6 +9,7 @@ import numpy as np
 
 from ...common.errors import RoadExtractionError
 from ...io.crs import horizontal_part, parse_crs
+from ...io.units import as_in_file
 from ..map_crs import LOCAL_CRS
 from .exporter import LaneletDraft
 
@@ -52,6 +53,8 @@ def to_degrees(places: np.ndarray, crs: str) -> Degrees:
     if not (np.isfinite(lon).all() and np.isfinite(lat).all()):
         raise RoadExtractionError(f"The lanes do not lie where their CRS {horizontal_part(known).name} holds. Check the CRS of the layer.")
     vertical = known.sub_crs_list[-1].name if known.is_compound else NO_VERTICAL
+    if as_in_file(crs)[1].up != 1.0:
+        vertical += ", in metres"
     return Degrees(np.c_[lon, lat], found.description, found.accuracy if found.accuracy is not None else -1.0, vertical)
 
 
