@@ -115,7 +115,7 @@ class Algorithm:
     def add_crs(self):
         self.add(CrsSpec(
             "CRS", tr("CRS of the point clouds"),
-            tr("Only for point clouds that carry no CRS of their own; it is written into everything made from them."),
+            tr("Only for point clouds that carry no CRS of their own, or contradict themselves; it is written into everything made from them."),
             optional=True, advanced=True,
         ))
 

@@ -13,11 +13,12 @@ from pathlib import Path
 from ..core.common.errors import RoadExtractionError
 from ..core.common.parallel import cancellation_scope
 from .algorithm import WARNINGS
-from .cloud_files import cloud_files
-from .destinations import UnfinishedFiles, check_suffix, check_writable, destination_path
-from .parameters import settings_class
+from .cloud_files import cloud_files, survey_name
+from .destinations import UnfinishedFiles, UnfinishedLayers, bring_back, check_suffix, check_writable, destination_path
+from .parameters import LayerOutput, settings_class
 from .progress import CountedWarnings
 from .provenance import provenance_now, sign_file
+from .report_head import run_facts, sign_report
 from .texts import tr
 from .vector_source import in_file_units, read_features
 
@@ -35,11 +36,12 @@ class Call:
 
     def __init__(self, algorithm, parameters):
         self.algorithm, self.parameters = algorithm, parameters
-        self._files = UnfinishedFiles()
+        self._files, self._layer_files = UnfinishedFiles(), UnfinishedLayers()
         self._scratch = tempfile.TemporaryDirectory(prefix="lanewright-")
         self._results = {}
         self._layers = []
         self._at_end = ExitStack()
+        self.warnings = []  # of the run, in the order of the log
 
     def label(self, name):
         return self.algorithm.parameter(name).label
@@ -130,6 +132,14 @@ class Call:
         """The point clouds whose name the results go by; none where a stage starts from another's result."""
         return [] if self.algorithm.parameter("POINT_CLOUDS") is None else self._cloud_files()
 
+    @property
+    def survey(self):
+        """What the survey is called; "" where there is none, or what was given names none."""
+        try:
+            return survey_name(self.surveyed())
+        except RoadExtractionError:
+            return ""
+
     def cloud(self, name):
         """The path of one point cloud; "" where the optional parameter is empty."""
         path = self.file(name)
@@ -159,11 +169,12 @@ class Call:
 
         from ..core.io.crs import parse_crs, same_crs
         from ..core.io.gdal_errors import gdal_exceptions
+        from ..core.io.local_files import open_raster
         from ..core.io.units import place_of_raster
 
         path = self.raster(name)
         with gdal_exceptions():
-            own = place_of_raster(gdal.Open(path))[1]
+            own = place_of_raster(open_raster(path))[1]
         if not own or not crs or same_crs(parse_crs(own), parse_crs(crs)):
             return path
         target = self.scratch_file(f"{name.lower()}.vrt")
@@ -201,6 +212,8 @@ class Call:
             if path is None:
                 continue
             check_suffix(path, spec, self.VECTOR_SUFFIXES)
+            if isinstance(spec, LayerOutput):
+                bring_back(path)
             read = self.read_as(value, path) or self._cloud_at(path)
             if read:
                 raise RoadExtractionError(
@@ -250,21 +263,27 @@ class Call:
         if self.wants(name):
             self._layers.append((name, in_file_units(features)))
 
+    @property
+    def layers(self):
+        """[(name, Features)] of the vector results so far."""
+        return self._layers
+
     def values(self):
         """What the user gave or left at its default for every input, in types that JSON has."""
         raise NotImplementedError
 
     def commit_files(self):
         """Give the files their names, each with a note of where it comes from; that note, for the layers."""
-        provenance = provenance_now(self.algorithm.ID, self.values())
+        provenance = provenance_now(self.algorithm.ID, self.values(), self.warnings)
         for path in self._files.unfinished():
             sign_file(path, provenance)
+            sign_report(path, lambda: run_facts(self, provenance))
         self._files.commit()
         return provenance
 
     def in_users_names(self, text):
         """A message with the names of unfinished files replaced by those the user gave."""
-        return self._files.in_users_names(text)
+        return self._layer_files.in_users_names(self._files.in_users_names(text))
 
     def at_end(self, action):
         """Call a function when the run ends, however it does."""
@@ -273,6 +292,7 @@ class Call:
     def discard_unfinished(self):
         self._at_end.close()
         self._files.discard()
+        self._layer_files.discard()
         self._scratch.cleanup()
 
 
@@ -291,7 +311,7 @@ def run(call, progress):
         call.check_destinations()
         with cancellation_scope(progress):
             results = call.algorithm.work(call, counted) or {}
-        results[WARNINGS] = counted.count
+        results[WARNINGS], call.warnings = len(counted.texts), counted.texts
         return call.finish(results)
     except RoadExtractionError as error:
         raise RoadExtractionError(call.in_users_names(str(error))) from error

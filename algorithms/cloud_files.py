@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable
 from glob import glob, has_magic
 from pathlib import Path
@@ -44,6 +45,15 @@ def cloud_files(given: Iterable[str], label: str) -> list[str]:
         else:
             found.append(name)
     return list(dict.fromkeys(found))
+
+
+def survey_name(clouds: list[str]) -> str:
+    """What a survey is called: the folder of its point clouds and what their names have in common, such as B12/tile."""
+    stems = [Path(path).stem.removesuffix(".copc") for path in clouds]
+    folders = {Path(path).absolute().parent for path in clouds}
+    folder = folders.pop().name if len(folders) == 1 else ""
+    name = os.path.commonprefix(stems).rstrip("_-. 0123456789") if len(set(stems)) > 1 else "".join(stems[:1])
+    return "/".join(part for part in dict.fromkeys((folder, name)) if part)
 
 
 def _clouds(paths, none_found):

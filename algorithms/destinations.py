@@ -6,10 +6,14 @@ everything else went well, so a failed or cancelled run leaves the previous file
 
 import os
 import re
+import shutil
+import sqlite3
 import tempfile
+from contextlib import closing, contextmanager
 from pathlib import Path
 
 from ..core.common.errors import RoadExtractionError
+from ..core.io.unfinished import finish_file, unfinished_path
 from .parameters import FileOutput, LayerOutput, RasterOutput, ReportOutput
 from .texts import tr
 
@@ -27,6 +31,13 @@ def destination_path(value):
     if not text or text == "TEMPORARY_OUTPUT" or text.startswith(("memory:", "postgres:", "ogr:", "mssql:", "oracle:")):
         return None
     return Path(text)
+
+
+def at_path(value, path):
+    """(destination value with another file, the file that it named as text)."""
+    database = DATABASE.search(value)
+    start, end = database.span("path") if database else (0, len(value.split("|")[0]))
+    return f"{value[:start]}{path}{value[end:]}", value[start:end]
 
 
 def check_suffix(path, spec, vector_suffixes):
@@ -107,12 +118,10 @@ class UnfinishedFiles:
         destination = Path(destination).absolute()
         # .copc.laz and .tif alike keep what follows the first dot of the name
         suffix = "".join(destination.suffixes[-2:]) if destination.name.endswith(".copc.laz") else destination.suffix
-        handle, name = tempfile.mkstemp(prefix=f".{destination.stem}-", suffix=suffix, dir=destination.parent)
-        os.close(handle)
-        # mkstemp makes it private; a result should be as readable as any new file
-        os.chmod(name, 0o666 & ~_umask())
-        self._waiting.append((Path(name), destination))
-        return name
+        temporary = unfinished_path(destination, suffix)
+        temporary.touch()
+        self._waiting.append((temporary, destination))
+        return str(temporary)
 
     def unfinished(self):
         """The temporary paths that were begun."""
@@ -121,7 +130,7 @@ class UnfinishedFiles:
     def commit(self):
         """Give every file its name."""
         for temporary, destination in self._waiting:
-            os.replace(temporary, destination)
+            finish_file(temporary, destination)
             sidecar = Path(f"{temporary}.aux.xml")
             if sidecar.exists():
                 os.replace(sidecar, f"{destination}.aux.xml")
@@ -149,52 +158,110 @@ class UnfinishedFiles:
             self._waiting.remove(pair)
 
 
-class ReplacedFiles:
-    """The previous layers, set aside while new ones are written in their place."""
+class UnfinishedLayers:
+    """Vector files being written: each under its own name, which names its layer and its parts, in a hidden folder beside its place."""
 
     def __init__(self):
-        self._aside, self._new = [], []
+        self._folders = {}  # destination -> hidden folder
 
-    def set_aside(self, value):
-        """Make room for the layer file that a destination value names."""
-        path = destination_path(value)
-        if path is None:
-            return
-        if value.startswith("ogr:"):
-            # One layer of a database: the others stay where they are
-            self._new += [] if path.exists() else [path]
-            return
-        for file in files_of(path):
-            aside = file.with_name(f".{file.name}.previous")
-            try:
-                os.replace(file, aside)
-            except OSError:  # held by a program: it can be replaced only by its own driver
-                return
-            self._aside.append((aside, file))
-        self._new.append(path)
+    def begin(self, destination):
+        """The path to write the file of a destination to; of several tables of one file the same."""
+        destination = Path(destination).absolute()
+        if destination not in self._folders:
+            self._folders[destination] = unfinished_path(destination, "")
+            self._folders[destination].mkdir()
+        return self._folders[destination] / destination.name
 
-    def forget(self):
-        """The new layers are whole: drop the previous ones."""
-        for aside, _ in self._aside:
-            aside.unlink(missing_ok=True)
+    def begin_copy(self, destination):
+        """The same with the tables that there are, for a program that adds one to them."""
+        unfinished = self.begin(destination)
+        if Path(destination).exists() and not unfinished.exists():
+            with _opened(destination) as database, closing(sqlite3.connect(unfinished)) as copy:
+                database.backup(copy)  # what a journal beside it holds too
+        return unfinished
 
-    def put_back(self):
-        """Writing failed: remove what there is of the new layers and restore the previous ones."""
-        for path in self._new:
-            for file in files_of(path):
-                file.unlink(missing_ok=True)
-        for aside, file in self._aside:
-            os.replace(aside, file)
+    def commit(self, added_to=(), add=None):
+        """Give every file its name; `add(unfinished, destination)` puts the tables into those of `added_to`, and into one that cannot be replaced."""
+        for destination, folder in self._folders.items():
+            if add is not None and destination.exists() and (destination in added_to or _is_held(destination)):
+                add(folder / destination.name, destination)
+            else:
+                _give_place(folder, destination)
+        self.discard()
+
+    def in_users_names(self, text):
+        """A text with every temporary path replaced by its destination."""
+        for destination, folder in self._folders.items():
+            text = text.replace(str(folder), str(destination.parent))
+        return text
+
+    def discard(self):
+        """Remove everything that was begun and not committed."""
+        for folder in self._folders.values():
+            shutil.rmtree(folder, ignore_errors=True)
+        self._folders = {}
+
+
+def _give_place(folder, destination):
+    """Move the parts of a layer to their place.
+
+    A file of its own replaces the previous one in one step. The parts of a Shapefile cannot: its .shp is taken away first and
+    comes last, so that there is no moment at which parts of two layers would be read as one.
+    """
+    parts = sorted(folder.iterdir(), key=lambda part: part.name == destination.name)
+    previous = files_of(destination)
+    if destination in previous and len(previous) > 1 and destination.suffix.lower() != ".shp":
+        _settle(destination)
+    if len(parts) > 1:
+        destination.unlink(missing_ok=True)
+    for part in parts:
+        finish_file(part, destination.parent / part.name)
+    # the index or journal of a file that is gone
+    for file in set(previous) - {destination.parent / part.name for part in parts}:
+        file.unlink(missing_ok=True)
+
+
+def _is_held(path):
+    """Whether a program has a database open and the system, which is Windows, lets nobody replace it meanwhile."""
+    try:
+        os.rename(path, path)
+    except PermissionError:
+        return path.suffix.lower() == ".gpkg"
+    return False
+
+
+def _settle(path):
+    """Bring what the journal of a database holds into it; one that outlives its database is played into the next of that name."""
+    with _opened(path) as database:
+        database.execute("SELECT count(*) FROM sqlite_master").fetchone()
+        database.execute("PRAGMA wal_checkpoint(TRUNCATE)")
+
+
+@contextmanager
+def _opened(path):
+    """A database as sqlite3 has it; raises RoadExtractionError where it cannot be worked with."""
+    try:
+        with closing(sqlite3.connect(path)) as database:
+            yield database
+    except sqlite3.Error as problem:
+        raise RoadExtractionError(
+            tr("{path} cannot be written: {reason}. Close the program that holds it, or choose another file.").format(path=path, reason=problem)
+        ) from problem
+
+
+def bring_back(path):
+    """Give a layer its name back where it is missing and an earlier version of the program, killed as it wrote, had set it aside."""
+    if not path.exists():
+        names = (f".{part.name}.previous" for part in _parts(path))
+        for aside in [path.with_name(name) for name in names if path.with_name(name).is_file()]:
+            os.replace(aside, aside.with_name(aside.name[1:].removesuffix(".previous")))
 
 
 def files_of(path):
     """The files there are of a layer: those of one stem for a shapefile, a database's journals for a GeoPackage."""
-    beside = [path.with_suffix(suffix) for suffix in SHAPEFILE] if path.suffix.lower() == ".shp" else \
+    return [file for file in _parts(path) if file.is_file()]
+
+
+def _parts(path):
+    return [path.with_suffix(suffix) for suffix in SHAPEFILE] if path.suffix.lower() == ".shp" else \
         [path.with_name(path.name + suffix) for suffix in ("", "-wal", "-shm", "-journal")]
-    return [file for file in beside if file.is_file()]
-
-
-def _umask():
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask

@@ -5,10 +5,11 @@ from .texts import tr
 
 
 class CountedWarnings(Progress):
-    """Hands everything on to another listener and counts the warnings."""
+    """Hands everything on to another listener and keeps the warnings, in the words of the core."""
 
     def __init__(self, listener):
-        self.listener, self.count = listener, 0
+        self.listener = listener
+        self.texts: list[str] = []
 
     def report(self, fraction):
         self.listener.report(fraction)
@@ -20,7 +21,7 @@ class CountedWarnings(Progress):
         self.listener.info(text)
 
     def warn(self, text):
-        self.count += 1
+        self.texts.append(text)
         self.listener.warn(text)
 
 

@@ -5,13 +5,14 @@ from __future__ import annotations
 import json
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from datetime import datetime, timezone
 from pathlib import Path
 from typing import Any
 
 PROGRAM = "Lanewright"
+WARNED = "warning: "
 TIME = "%Y-%m-%dT%H:%M:%SZ"
 SYSTEM_AT, SOFTWARE_AT, NAME_BYTES = 26, 58, 32  # places of the two names in the header of a LAS file, and their length
 UNNAMED = ("", "OTHER", "laspy")                 # what writers put there when they have nothing to say
@@ -22,12 +23,13 @@ SENTENCE = re.compile(r"(\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ): " + PROGRAM + r" (\S+
 
 @dataclass(frozen=True)
 class Provenance:
-    """One run: its algorithm, the program's version, its inputs and settings by name, when it ended (UTC)."""
+    """One run: its algorithm, the program's version, its inputs and settings by name, when it ended (UTC), what it warned of."""
 
     algorithm: str
     version: str
     values: Mapping[str, Any]
     ended: datetime
+    warnings: tuple[str, ...] = ()
 
     @property
     def program(self) -> str:
@@ -48,6 +50,15 @@ class Provenance:
         result = f"{self.algorithm} {output}" if output else self.algorithm
         return f"{self.time}: {self.program}, {result}, {self.parameters}"
 
+    def history(self, output: str = "") -> list[str]:
+        """The lines that a layer keeps: the sentence, and one for each warning."""
+        return [self.sentence(output), *(f"{self.time}: {WARNED}{text}" for text in self.warnings)]
+
+    def warnings_among(self, lines: Iterable[str]) -> list[str]:
+        """The warnings of this run among the lines of a layer's history."""
+        begin = f"{self.time}: {WARNED}"
+        return [line.removeprefix(begin) for line in lines if line.startswith(begin)]
+
     @classmethod
     def of_sentence(cls, text: str) -> tuple[Provenance, str] | None:
         """The run and the result that `sentence` told of; None where a text is no such sentence."""
@@ -61,9 +72,9 @@ class Provenance:
                 "LANEWRIGHT_TIME": self.time}
 
 
-def provenance_now(algorithm: str, values: Mapping[str, Any]) -> Provenance:
+def provenance_now(algorithm: str, values: Mapping[str, Any], warnings: Iterable[str] = ()) -> Provenance:
     """The provenance of a run that has just ended."""
-    return Provenance(algorithm, own_version(), values, datetime.now(timezone.utc))
+    return Provenance(algorithm, own_version(), values, datetime.now(timezone.utc), tuple(warnings))
 
 
 def _read(algorithm, version, parameters, time):
@@ -79,15 +90,15 @@ def signed_by(path: str | os.PathLike[str]) -> Provenance | None:
     """The provenance that `sign_file` wrote into a GeoTIFF; None where a file is none, or not ours."""
     if Path(path).suffix.lower() not in (".tif", ".tiff") or not Path(path).is_file():
         return None
-    from osgeo import gdal
-
+    from ..core.common.errors import RoadExtractionError
     from ..core.io.gdal_errors import gdal_exceptions
+    from ..core.io.local_files import open_raster
 
-    with gdal_exceptions():
-        try:
-            tags = gdal.OpenEx(str(path), gdal.OF_RASTER).GetMetadata()
-        except RuntimeError:
-            return None
+    try:
+        with gdal_exceptions():
+            tags = open_raster(path).GetMetadata()
+    except RoadExtractionError:
+        return None
     texts = [tags.get(f"LANEWRIGHT_{name}") for name in ("ALGORITHM", "VERSION", "PARAMETERS", "TIME")]
     return _read(*texts) if all(texts) else None
 

@@ -134,13 +134,18 @@ def open_survey_of(call, progress, **reading):
     return survey
 
 
-def check_layers_on_roads(call, layers, frame):
-    """Raise RoadExtractionError where a layer of `layers`, parameter name to Features, was made with another trajectory than the frame's."""
-    from ..core.survey.consistency import check_features_on_roads
+def check_layers_on_roads(call, layers, frame, progress):
+    """Raise RoadExtractionError where a layer of `layers`, parameter name to Features, was made with another trajectory than the frame's.
+
+    What lies far from its roads is left out, with a warning.
+    """
+    from ..core.survey.consistency import check_features_on_roads, keep_near_roads
 
     for name, features in layers.items():
         if features is not None:
             check_features_on_roads(features, frame, call.label(name))
+            if note := keep_near_roads(features, frame, call.label(name)):
+                progress.warn(note)
 
 
 def frame_of(call, crs, progress, road_points=None, layers=None):
@@ -162,7 +167,7 @@ def frame_of(call, crs, progress, road_points=None, layers=None):
     # what passes differ by is seen where the points are read; here it comes with what was made of them
     frame.pass_sigma = {road: sigma for found in ([road_points.pass_sigma] if road_points is not None else [])
                         + [of_layer(layer) for layer in (layers or {}).values() if layer is not None] for road, sigma in found.items()}
-    check_layers_on_roads(call, layers or {}, frame)
+    check_layers_on_roads(call, layers or {}, frame, progress)
     if road_points is not None:
         check_road_points_on_roads(road_points, frame, tr("The points"))
     return frame

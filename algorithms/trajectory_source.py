@@ -1,5 +1,6 @@
 """The trajectory from whatever the user has: a layer, a table, or the file itself."""
 
+from dataclasses import replace
 from pathlib import Path
 
 from ..core.common.errors import RoadExtractionError
@@ -7,7 +8,7 @@ from .texts import tr
 from .vector_source import LINE, POINT, vertices_of
 
 # Files the core reads better than QGIS and GDAL: headers of any wording, none at all, binary SBET, logs of receivers, tracks
-FILE_SUFFIXES = {".csv", ".txt", ".out", ".sbet", ".xyz", ".pos", ".traj", ".tsv", ".dat", ".asc", ".log", ".nmea", ".pof", ".gpx", ".kml"}
+FILE_SUFFIXES = {".csv", ".txt", ".out", ".sbet", ".xyz", ".pos", ".traj", ".llh", ".tsv", ".dat", ".asc", ".log", ".nmea", ".pof", ".gpx", ".kml"}
 
 
 def trajectory_path(value):
@@ -25,6 +26,7 @@ def read_trajectory_source(source, crs="", heights_needed=True):
     """
     import numpy as np
 
+    from ..core.common.schemas import ESTIMATED_TRAJECTORY
     from ..core.survey.trajectory.reader import trajectory_from_columns, trajectory_from_rows
 
     if source.kind == LINE:
@@ -36,7 +38,7 @@ def read_trajectory_source(source, crs="", heights_needed=True):
     rows, places = [], [np.empty((0, 4))]
     for wkb, values in source.stored_rows():
         if source.kind == POINT:
-            if wkb is None:
+            if not wkb:
                 continue
             places.append(vertices_of(wkb)[:1])
         rows.append(values)
@@ -46,7 +48,10 @@ def read_trajectory_source(source, crs="", heights_needed=True):
         given["x"], given["y"], z, _ = np.concatenate(places).T
         if source.has_z:
             given["z"] = z
-    return trajectory_from_rows(source.names, rows, given, crs or source.stored_crs, source.label, heights_needed)
+    found = trajectory_from_rows(source.names, rows, given, crs or source.stored_crs, source.label, heights_needed)
+    # Estimate trajectory writes the ridge of a cloud without times with its uncertainty, and does not know which way it was driven
+    estimated = {column.name for column in ESTIMATED_TRAJECTORY} <= set(source.names)
+    return replace(found, way_known=False) if estimated and not found.has_time else found
 
 
 def _refuse_empty(source, count):
@@ -60,7 +65,7 @@ def _line_columns(source):
     """Vertices in drawing order; M, where there is one, is the time."""
     import numpy as np
 
-    rows = [vertices_of(wkb) for wkb, _ in source.stored_rows(measures=True) if wkb is not None]
+    rows = [vertices_of(wkb) for wkb, _ in source.stored_rows(measures=True) if wkb]
     x, y, z, time = np.concatenate([np.empty((0, 4)), *rows]).T
     return {"x": x, "y": y, **({"z": z} if source.has_z else {}), **({"time": time} if source.has_m else {})}
 

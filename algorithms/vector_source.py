@@ -10,6 +10,7 @@ POINT, LINE, POLYGON, TABLE, UNKNOWN = "point", "line", "polygon", "table", "unk
 KIND_OF = {"PointZ": POINT, "LineStringZ": LINE, "LineStringZM": LINE, "PolygonZ": POLYGON, "MultiLineStringZ": LINE,
            "MultiPolygonZ": POLYGON, "None": TABLE}
 KIND_LABELS = {POINT: "Point", LINE: "Line", POLYGON: "Polygon", TABLE: "No geometry", UNKNOWN: "Unknown geometry"}
+FARTHEST_ON_EARTH = 1e8   # m or feet: coordinates of a map, some times around the earth
 
 
 class VectorSource:
@@ -22,12 +23,13 @@ class VectorSource:
     kind : POINT, LINE, POLYGON, TABLE or UNKNOWN
     has_z, has_m : whether its geometries carry heights and measures
     stored_crs : WKT of what is stored, "" where unknown
+    feature_id : of the row that `stored_rows` gave last
     """
 
-    label, names, kind, has_z, has_m, stored_crs = "", [], UNKNOWN, False, False, ""
+    label, names, kind, has_z, has_m, stored_crs, feature_id = "", [], UNKNOWN, False, False, "", 0
 
     def stored_rows(self, measures=False, check_validity=True):
-        """(WKB or None where there is no geometry, list of values with None for NULL) of every row, as it is stored.
+        """(WKB or None where there is no geometry, b"" where it is none, list of values with None for NULL) of every row, as it is stored.
 
         Parameters
         ----------
@@ -44,15 +46,39 @@ class VectorSource:
         return in_metres(self.stored_crs)[0]
 
     def rows(self, measures=False, check_validity=True):
-        """The rows as `stored_rows` gives them, coordinates in metres."""
+        """The rows as `stored_rows` gives them, coordinates in metres; RoadExtractionError where a geometry cannot be that of a place."""
         from ..core.io.units import in_metres
 
-        units, rows = in_metres(self.stored_crs)[1], self.stored_rows(measures, check_validity)
+        units, rows = in_metres(self.stored_crs)[1], _checked(self, self.stored_rows(measures, check_validity))
         return rows if units.metric else ((wkb and scaled_wkb(wkb, units.across, units.up), values) for wkb, values in rows)
 
     def kind_label(self, kind):
         """A kind of geometry as the program calls it."""
         return KIND_LABELS[kind]
+
+
+def _checked(source, rows):
+    """The rows of a layer whose geometries have vertices enough, and coordinates that are numbers and lie on earth."""
+    import numpy as np
+    import shapely
+
+    read, ids = [], []
+    for row in rows:
+        read.append(row)
+        ids.append(source.feature_id)
+    drawn = [k for k, (wkb, _) in enumerate(read) if wkb is not None]
+    shapes = shapely.from_wkb(np.array([read[k][0] for k in drawn], object), on_invalid="ignore")
+    places, owner = shapely.get_coordinates(shapes, include_z=True, return_index=True)
+    # heights may be missing, which NaN says
+    wrong = ~(np.isfinite(places[:, :2]).all(axis=1) & ~(np.abs(places) > FARTHEST_ON_EARTH).any(axis=1))
+    problems = {drawn[k]: tr("too few vertices") for k in np.flatnonzero(shapely.is_missing(shapes)).tolist()}
+    problems.update((drawn[k], tr("coordinates that lie nowhere on earth")) for k in np.unique(owner[wrong]).tolist())
+    if problems:
+        first = min(problems)
+        raise RoadExtractionError(
+            tr("{label} cannot be used: {count} of its {total} features have {problem}, the first of them feature {id}. Repair or delete "
+               "them.").format(label=source.label, count=len(problems), total=len(read), problem=problems[first], id=ids[first]))
+    return iter(read)
 
 
 def _value(column, value, label):
@@ -72,6 +98,7 @@ def read_features(source, schema, geometry_type):
     Multi-part geometries become one row a part. Raises RoadExtractionError where a
     field that is needed is missing, the geometry is of another kind, or carries no heights.
     """
+    import numpy as np
     import shapely
 
     index = _columns(source, schema)
@@ -92,7 +119,7 @@ def read_features(source, schema, geometry_type):
                 result.add(part, **row)
             continue
         for part in shapely.get_parts(shapely.from_wkb(wkb)):
-            if not part.has_z:
+            if not part.has_z or np.isnan(shapely.get_coordinates(part, include_z=True)).any():
                 raise RoadExtractionError(
                     tr("{label} has geometries without heights (Z). Use the layer that Lanewright wrote.").format(
                         label=source.label

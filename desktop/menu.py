@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from qgis.core import Qgis, QgsApplication, QgsProcessingModelAlgorithm, QgsProcessingUtils, QgsProject
+from qgis.core import Qgis, QgsApplication, QgsProcessingModelAlgorithm, QgsProject
 from qgis.PyQt.QtCore import QObject, QUrl
 from qgis.PyQt.QtGui import QAction, QDesktopServices, QIcon
 from qgis.PyQt.QtWidgets import QMenu
@@ -10,12 +10,13 @@ from qgis.PyQt.QtWidgets import QMenu
 from ..processing_provider.reports import last_report
 from ..processing_provider.results.layer_tree import replaces_last_run, set_replaces_last_run
 from ..processing_provider.results.road_maps import clouds_of, road_maps
-from ..processing_provider.results.run_table import run_table
+from ..processing_provider.results.run_table import last_run
 from ..processing_provider.texts import tr
 from .layout.layout_dialog import LayoutDialog, shown_layers
 from .layout.map_layout import road_map_layout
 from .manual import ManualWindow
-from .missing import all_is_there
+from .messages import all_is_there
+from .runs_window import RunsWindow
 from .sample_run import SampleRun
 
 PROVIDER = "lanewright"
@@ -54,6 +55,8 @@ class Menu(QObject):
                          tr("New results take the place of the last ones of the same survey and algorithm in the layer tree; files stay"))
         self._add(tr("Manual"), self.manual.open, tr("What every algorithm does, and a walk through a first survey"),
                   theme("/mActionHelpContents.svg"))
+        # QGIS asks when it shows the menu of a layer: only then is it known what the layer is
+        iface.layerTreeView().contextMenuAboutToShow.connect(self._fill_layer_menu)
         # A toolbar of its own would take a row of the window for one button
         iface.addToolBarIcon(self.actions[0])
 
@@ -153,26 +156,36 @@ class Menu(QObject):
         clouds, gone = clouds_of(road_map, QgsProject.instance())
         self.open_road_map(**{**road_map.values, **({} if gone else {"POINT_CLOUDS": clouds}), "CORRECTIONS": corrections.id()})
 
+    def _fill_layer_menu(self, menu):
+        """"Run this stage again" for a layer of ours."""
+        from .dialogs.stage_inputs import stage_again
+
+        layer = self.iface.layerTreeView().currentLayer()
+        again = None if layer is None else stage_again(layer, QgsProject.instance())
+        if again is not None:
+            menu.addAction(QIcon(str(ICON)), tr("Run this stage again…"), lambda: self.open_algorithm(*again))
+
     def open_report(self):
         """The report written last, in the user's web browser."""
         path = last_report()
-        if path:
-            QDesktopServices.openUrl(QUrl.fromLocalFile(path))
+        if not path:
+            said = tr("No report has been written since QGIS was started.")
+        elif QDesktopServices.openUrl(QUrl.fromLocalFile(path)):
+            return
         else:
-            self.iface.messageBar().pushMessage(
-                "Lanewright", tr("No report has been written since QGIS was started."), level=Qgis.MessageLevel.Info)
+            said = tr("No web browser could be started. The report is the file {path}.").format(path=path)
+        self.iface.messageBar().pushMessage("Lanewright", said, level=Qgis.MessageLevel.Info)
 
     def open_table(self):
-        """What the runs since QGIS was started gave, as a page in the user's web browser."""
-        table = run_table()
-        if not table:
+        """What the runs since QGIS was started gave, in a window."""
+        if last_run() is None:
             self.iface.messageBar().pushMessage("Lanewright", tr("Nothing has been run since QGIS was started."), level=Qgis.MessageLevel.Info)
             return
-        path = QgsProcessingUtils.generateTempFilename("runs.html")
-        Path(path).write_text(table, encoding="utf-8")
-        QDesktopServices.openUrl(QUrl.fromLocalFile(path))
+        self.dialog = RunsWindow(self.iface.mainWindow())
+        self.dialog.show()
 
     def remove(self):
+        self.iface.layerTreeView().contextMenuAboutToShow.disconnect(self._fill_layer_menu)
         self.iface.removeToolBarIcon(self.actions[0])
         for action in self.actions:
             self.iface.removePluginMenu("Lanewright", action)
@@ -189,9 +202,13 @@ class Menu(QObject):
 
     def open_road_map(self, **values):
         """The dialog of Road map, with some of its values."""
+        self.open_algorithm("lanewright:roadmap", values)
+
+    def open_algorithm(self, name, values):
+        """The dialog of an algorithm, with some of its values."""
         from qgis import processing
 
-        self.dialog = processing.createAlgorithmDialog("lanewright:roadmap", values)
+        self.dialog = processing.createAlgorithmDialog(name, values)
         if self.dialog is not None:  # QGIS has said why
             self.dialog.show()
 

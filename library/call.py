@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import os
-import shutil
-import tempfile
 from pathlib import Path
 
 from ..algorithms import parameters as specs
 from ..algorithms.call import Call
-from ..algorithms.destinations import destination_path, files_of
+from ..algorithms.destinations import destination_path
 from ..algorithms.provenance import provenance_now
 from ..core.common.errors import RoadExtractionError
+from ..core.io.gdal_errors import gdal_exceptions
+from ..core.io.local_files import open_raster
 from .gdal_module import check_gdal
 from .layer_files import DRIVERS, LayerFile, file_and_table, first_table, write_layer
 from .measured_lines import check_format
@@ -35,7 +35,6 @@ class FileCall(Call):
                 check_format(file_and_table(values[spec.name])[0], spec.label)
         super().__init__(algorithm, values)
         self._progress = progress
-        self._folders = {}  # of every vector file that is written: destination -> the temporary folder that it is written in
 
     def _value(self, name):
         return self.parameters.get(name, self.algorithm.parameter(name).default)
@@ -77,12 +76,11 @@ class FileCall(Call):
             return LayerFile(value, label), "", ""
         existing_raster(path, label)
         check_gdal(f"{label} ({name}) is a raster")
-        from osgeo import gdal
-
-        dataset = gdal.OpenEx(path, gdal.OF_RASTER)
-        if dataset is None:  # a vector format of another ending
+        try:
+            with gdal_exceptions():
+                return None, path, open_raster(path).GetProjection()
+        except RoadExtractionError:  # a vector format of another ending
             return LayerFile(value, label), "", ""
-        return None, path, dataset.GetProjection()
 
     def rows_where(self, name, source):
         condition = self.string(name)
@@ -116,45 +114,21 @@ class FileCall(Call):
 
     def finish(self, numbers):
         """Write the layers beside their destinations, then give all results their names."""
-        provenance = provenance_now(self.algorithm.ID, self.values())
+        provenance = provenance_now(self.algorithm.ID, self.values(), self.warnings)
         for name, features in self._layers:
-            features.description = provenance.sentence(self.algorithm.LOOKS.get(name, name))
+            features.description = "\n".join(provenance.history(self.algorithm.LOOKS.get(name, name)))
             value = self.destination(name)
-            path, table = destination_path(value).absolute(), file_and_table(value)[1]
-            write_layer(str(self._unfinished(path, table)), table, features, self._progress.check_cancelled)
-            self._results[name] = f"{destination_path(value)}|layername={table}" if table else value
+            path, table = destination_path(value), file_and_table(value)[1]
+            unfinished = self._layer_files.begin_copy(path) if table else self._layer_files.begin(path)
+            write_layer(str(unfinished), table, features, self._progress.check_cancelled)
+            self._results[name] = f"{path}|layername={table}" if table else value
         self._progress.check_cancelled()
         self.commit_files()
-        for path, folder in self._folders.items():
-            replaced = set(files_of(path))
-            for file in sorted(Path(folder.name).iterdir()):
-                os.replace(file, path.parent / file.name)
-                replaced.discard(path.parent / file.name)
-            for file in replaced:  # the index or journal of a file that is gone
-                file.unlink(missing_ok=True)
+        self._layer_files.commit()
         return {**self._results, **numbers}
 
     def values(self):
         return {spec.name: self._value(spec.name) for spec in self.algorithm.inputs()}
-
-    def _unfinished(self, path, table):
-        """Where a vector file is written at first: under its own name in a folder beside it, with the other tables where it has some."""
-        if path not in self._folders:
-            folder = tempfile.TemporaryDirectory(prefix=f".{path.stem}-", dir=path.parent)
-            self._folders[path] = folder
-            if table and path.exists():
-                shutil.copy2(path, folder.name)
-        return Path(self._folders[path].name) / path.name
-
-    def in_users_names(self, text):
-        for path, folder in self._folders.items():
-            text = text.replace(str(Path(folder.name) / path.name), str(path))
-        return super().in_users_names(text)
-
-    def discard_unfinished(self):
-        for folder in self._folders.values():
-            folder.cleanup()
-        super().discard_unfinished()
 
 
 def existing_raster(path, label):

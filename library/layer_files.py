@@ -9,6 +9,7 @@ from pathlib import Path
 
 from ..algorithms.vector_source import LINE, POINT, POLYGON, TABLE, UNKNOWN, VectorSource, crs_to_write, plain_value
 from ..core.common.errors import RoadExtractionError
+from ..core.io.local_files import OFFLINE, VECTOR_DRIVERS, check_crs_of_geojson
 from . import measured_lines
 
 DRIVERS = {"gpkg": "GPKG", "fgb": "FlatGeobuf", "shp": "ESRI Shapefile", "geojson": "GeoJSON"}
@@ -32,16 +33,28 @@ def file_and_table(value):
 
 def first_table(path):
     """The table that is read where a file is named alone."""
+    from fiona.errors import FionaError, FionaValueError
+
+    try:
+        with _opened(str(path), None) as layer:
+            return layer.name
+    except (FionaError, FionaValueError, OSError):
+        return ""
+
+
+@contextmanager
+def _opened(path, table):
+    """A layer of a file, for reading; nothing is fetched for it."""
     import fiona
 
-    return (fiona.listlayers(str(path)) or [""])[0]
+    with fiona.Env(**OFFLINE), fiona.open(path, layer=table, enabled_drivers=list(VECTOR_DRIVERS)) as layer:
+        yield layer
 
 
 class LayerFile(VectorSource):
     """A layer of a file; `value` names it, `label` is the parameter's."""
 
     def __init__(self, value, label):
-        import fiona
         from fiona.errors import FionaError, FionaValueError
 
         self.label, self.value = label, value
@@ -50,11 +63,13 @@ class LayerFile(VectorSource):
             raise RoadExtractionError(f"{label}: there is no file {self.path}. Check the name and the folder.")
         self.table = table or None
         try:
-            with fiona.open(self.path, layer=self.table) as layer:
+            with _opened(self.path, self.table) as layer:
                 self.table = layer.name
                 self.names = list(layer.schema["properties"])
                 geometry = layer.schema["geometry"]
                 self.stored_crs = _crs_text(layer.crs_wkt)
+                if layer.driver == "GeoJSON":
+                    self._check_crs()
         except (FionaError, FionaValueError, ValueError, OSError) as problem:
             raise RoadExtractionError(f"{label}: {value} cannot be read as a vector layer ({problem}).") from problem
         plain = geometry.replace("3D ", "").replace("Multi", "")
@@ -63,27 +78,38 @@ class LayerFile(VectorSource):
         # fiona leaves measures out
         self.has_m = self.kind == LINE and self.has_z and measured_lines.may_have_measures(self.path, self.table)
 
+    def _check_crs(self):
+        import fiona
+
+        with fiona.open(self.path, layer=self.table, NATIVE_DATA="YES") as layer:
+            check_crs_of_geojson(self.path, layer.tags(ns="NATIVE_DATA").get("NATIVE_DATA"))
+
     def stored_rows(self, measures=False, check_validity=True):
         import shapely
         from shapely.geometry import shape
 
         if measures and self.has_m:
-            yield from measured_lines.rows(self.path, self.table, self.names, self.label)
+            for number, wkb, values in measured_lines.rows(self.path, self.table, self.names, self.label):
+                self.feature_id = number
+                yield wkb, values
             return
         for record in self._records():
-            geometry = record["geometry"]
-            geometry = None if geometry is None else shape(geometry)
-            # 2D parts of a layer with heights stay flat, as they are
-            wkb = None if geometry is None or geometry.is_empty else shapely.to_wkb(geometry, output_dimension=3, flavor="iso")
+            self.feature_id = record["id"]
+            try:
+                geometry = None if record["geometry"] is None else shape(record["geometry"])
+            except (shapely.errors.GEOSException, ValueError):   # lines of one vertex, rings of three
+                wkb = b""
+            else:
+                # 2D parts of a layer with heights stay flat, as they are
+                wkb = None if geometry is None or geometry.is_empty else shapely.to_wkb(geometry, output_dimension=3, flavor="iso")
             yield wkb, [record["properties"][name] for name in self.names]
 
     def rows_where(self, condition):
         """Whether a condition of OGR's SQL holds, for every row."""
-        import fiona
         from fiona._err import CPLE_BaseError  # what GDAL reports is raised as this since fiona 1.10, which has no public name for it
         from fiona.errors import AttributeFilterError
 
-        with fiona.open(self.path, layer=self.table) as layer, _reported_errors() as problems:
+        with _opened(self.path, self.table) as layer, _reported_errors() as problems:
             try:
                 found = {record["id"] for record in layer.filter(where=condition)}
             except (AttributeFilterError, CPLE_BaseError) as problem:
@@ -94,9 +120,7 @@ class LayerFile(VectorSource):
         return [record["id"] in found for record in self._records()]
 
     def _records(self):
-        import fiona
-
-        with fiona.open(self.path, layer=self.table) as layer:
+        with _opened(self.path, self.table) as layer:
             yield from layer
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from ..algorithms.vector_source import crs_to_write, plain_value
 from ..core.common.errors import RoadExtractionError
+from ..core.io.local_files import open_vector
 from .gdal_module import check_gdal
 
 DRIVERS = {".gpkg": "GPKG", ".shp": "ESRI Shapefile"}  # formats that keep measures
@@ -21,9 +22,9 @@ def available():
 def may_have_measures(path, table):
     """Whether a layer of lines has measures; where GDAL's Python module is missing, also True where nobody can tell."""
     if available():
-        from osgeo import gdal, ogr
+        from osgeo import ogr
 
-        dataset = gdal.OpenEx(path, gdal.OF_VECTOR)
+        dataset = open_vector(path)
         layer = None if dataset is None else dataset.GetLayerByName(table)
         return layer is not None and bool(ogr.GT_HasM(layer.GetGeomType()))
     suffix = Path(path).suffix.lower()
@@ -42,16 +43,16 @@ def check_format(path, label):
 
 
 def rows(path, table, names, label):
-    """(ISO WKB or None, values) of every row, as VectorSource gives them."""
+    """(feature id, ISO WKB or None, values) of every row, as VectorSource gives them."""
     check_gdal(f"{label} has lines with measures")
-    from osgeo import gdal, ogr
+    from osgeo import ogr
 
-    dataset = gdal.OpenEx(path, gdal.OF_VECTOR)
+    dataset = open_vector(path)
     layer = dataset.GetLayerByName(table)
     for feature in layer:
         geometry = feature.GetGeometryRef()
         wkb = None if geometry is None or geometry.IsEmpty() else bytes(geometry.ExportToIsoWkb(ogr.wkbNDR))
-        yield wkb, [feature.GetField(name) for name in names]
+        yield feature.GetFID(), wkb, [feature.GetField(name) for name in names]
 
 
 def write(path, table, features, check_cancelled):

@@ -1,20 +1,31 @@
 """An algorithm's declaration as QGIS's Processing takes it: dialog, checks, run and failure."""
 
 import os
+from contextlib import nullcontext
 from datetime import datetime
 from pathlib import Path
 
-from qgis.core import QgsProcessingAlgorithm, QgsProcessingException, QgsProcessingOutputNumber, QgsVectorLayer
+from qgis.core import (
+    QgsMapLayer,
+    QgsProcessingAlgorithm,
+    QgsProcessingException,
+    QgsProcessingFeatureSourceDefinition,
+    QgsProcessingOutputNumber,
+    QgsVectorLayer,
+)
 from qgis.PyQt.QtGui import QIcon
 
 from ..algorithms.call import run
 from ..algorithms.catalogue import toolbox_number
 from ..algorithms.parameters import TrajectorySpec, choice_refused, number_refused
 from ..core.common.errors import Cancelled, RoadExtractionError
+from ..core.io.local_files import offline
 from .call import QgisCall
 from .dependencies import missing_packages
+from .input_files import asks_servers, check_files
 from .parameters import qgis_parameter
 from .progress import FeedbackProgress
+from .results.road_maps import road_map_of
 from .results.run_table import note_run
 from .texts import told, tr
 
@@ -27,6 +38,7 @@ class LanewrightAlgorithm(QgsProcessingAlgorithm):
     def __init__(self, declaration):
         super().__init__()
         self.declaration = declaration
+        self.group_of_inputs = ""  # of the layer tree
 
     # -- what QGIS asks ---------------------------------------------------------------------
 
@@ -85,20 +97,40 @@ class LanewrightAlgorithm(QgsProcessingAlgorithm):
         missing = missing_packages()
         if missing:
             return False, missing
-        fine, said = super().checkParameterValues(accept_trajectory_file(self.declaration, parameters, context), context)
+        try:
+            check_files(self, parameters, context)
+        except RoadExtractionError as error:
+            return False, told(str(error))
+        with self._network(parameters, context):
+            fine, said = super().checkParameterValues(accept_trajectory_file(self.declaration, parameters, context), context)
         return fine, said if fine else \
             out_of_range(self.parameterDefinitions(), parameters) or no_trajectory(self.declaration, parameters) or said
+
+    def prepareAlgorithm(self, parameters, context, feedback):
+        """On the main thread, where the layer tree may be looked at."""
+        self.group_of_inputs = group_of_layers(parameters.values(), context.project()) if context.project() is not None else ""
+        return super().prepareAlgorithm(parameters, context, feedback)
 
     def processAlgorithm(self, parameters, context, feedback):
         # canExecute is asked by the desktop only
         missing = missing_packages()
         if missing:
             raise QgsProcessingException(missing)
-        results, failure = self._attempt(parameters, context, feedback)
+        try:
+            check_files(self, parameters, context)
+        except RoadExtractionError as error:
+            raise QgsProcessingException(told(str(error))) from error
+        with self._network(parameters, context):
+            results, failure = self._attempt(parameters, context, feedback)
         if not failure:
             return results
         # QGIS never lets go of an exception: raised where the work was, it would keep all of the survey in memory
         raise QgsProcessingException(failure)
+
+    def _network(self, parameters, context):
+        """A context in which GDAL, and QGIS by it, asks no server for what a file says."""
+        with offline():
+            return nullcontext() if asks_servers(self, parameters, context) else offline()
 
     def _attempt(self, parameters, context, feedback):
         """(results, "") of a run, or (None, why there are none); either is noted in the table of runs."""
@@ -106,7 +138,7 @@ class LanewrightAlgorithm(QgsProcessingAlgorithm):
         to_load, whole = context.layersToLoadOnCompletion(), False
         try:
             results = run(call, FeedbackProgress(feedback))
-            note_run(self.declaration, call.survey, began, results)
+            note_run(self.declaration, call.survey, began, results, warnings=[told(text) for text in call.warnings])
             whole = True
             return results, ""
         except RoadExtractionError as error:
@@ -118,6 +150,18 @@ class LanewrightAlgorithm(QgsProcessingAlgorithm):
                 context.setLayersToLoadOnCompletion(to_load)
         note_run(self.declaration, call.survey, began, failure=failure)
         return None, failure
+
+
+def group_of_layers(values, project):
+    """The group in which the first of these layers stands that is of one of our runs, "" where there is none."""
+    for value in values:
+        if isinstance(value, QgsProcessingFeatureSourceDefinition):
+            value = value.source.staticValue()
+        layer = project.mapLayer(value) if isinstance(value, str) else value if isinstance(value, QgsMapLayer) else None
+        run = None if layer is None else road_map_of(layer, project)
+        if run is not None and run.group is not None:
+            return run.group.name()
+    return ""
 
 
 def out_of_range(definitions, parameters):

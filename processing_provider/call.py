@@ -7,21 +7,23 @@ from qgis.core import (
     QgsExpression,
     QgsProcessingException,
     QgsProcessingOutputLayerDefinition,
+    QgsProperty,
     QgsRasterLayer,
     QgsVariantUtils,
     QgsVectorFileWriter,
 )
 
 from ..algorithms.call import Call, existing_file
-from ..algorithms.destinations import ReplacedFiles, destination_path
+from ..algorithms.destinations import at_path, destination_path
 from ..algorithms.parameters import RasterOutput
 from ..algorithms.vector_source import crs_to_write
 from ..core.common.errors import RoadExtractionError
+from .database import add_tables
 from .embedded_style import embed_style
 from .input_files import close_database, input_files, layer_file, written_over
 from .layers import WKB_TYPES, QgisSource, crs_text, keeps_aliases, qgis_fields, write_features
 from .reports import note_report
-from .results.runs import run_of, survey_name
+from .results.runs import run_of
 from .styling import style_on_load
 from .texts import tr
 
@@ -38,14 +40,6 @@ class QgisCall(Call):
         super().__init__(processing.declaration, parameters)
         self.processing, self.context, self.feedback = processing, context, feedback
         self._inputs = input_files(processing, parameters, context)
-
-    @property
-    def survey(self):
-        """What the survey is called; "" where there is none, or what was given names none."""
-        try:
-            return survey_name(self.surveyed())
-        except RoadExtractionError:
-            return ""
 
     # -- in ---------------------------------------------------------------------------------
 
@@ -157,19 +151,16 @@ class QgisCall(Call):
 
     def finish(self, numbers):
         """Write the layers, name the files, and return the dictionary QGIS wants."""
-        replaced = ReplacedFiles()
-        try:
-            for name, features in self._layers:
-                close_database(self.destination(name), self.context)
-                replaced.set_aside(self.destination(name))
-                self._results[name] = self._write(name, features)
-        except BaseException:
-            replaced.put_back()
-            raise
-        replaced.forget()
+        for name, features in self._layers:
+            self._results[name] = self._write(name, features)
+        for name, _ in self._layers:
+            close_database(self.destination(name), self.context)
         provenance = self.commit_files()
+        added_to = {destination_path(self.destination(name)).absolute() for name, _ in self._layers
+                    if self.destination(name).startswith("ogr:")}
+        self._layer_files.commit(added_to, add_tables)
         schemas = {name: features.schema for name, features in self._layers}
-        run = run_of(provenance, self.surveyed(), self.algorithm.WHOLE_MAP, self.context)
+        run = run_of(provenance, self.surveyed(), self.algorithm.WHOLE_MAP, self.context, self.processing.group_of_inputs)
         for name, dest in self._results.items():
             note_report(dest)
             look = self.algorithm.LOOKS.get(name, name)
@@ -185,16 +176,35 @@ class QgisCall(Call):
                 for definition, value in given.items()}
 
     def _write(self, name, features):
-        path = destination_path(self.destination(name))
+        """Write a layer, a file beside its destination at first; where it will be."""
+        value = self.destination(name)
+        path = destination_path(value)
         fields = qgis_fields(features.schema, with_aliases=keeps_aliases(path))
         wkt = crs_to_write(features, QgsVectorFileWriter.driverForExtension(path.suffix) if path else "")
         crs = QgsCoordinateReferenceSystem.fromWkt(wkt) if wkt else QgsCoordinateReferenceSystem()
-        sink, dest = self.processing.parameterAsSink(
-            self.parameters, name, self.context, fields, WKB_TYPES[features.geometry_type], crs
-        )
+        parameters, unfinished, file = self.parameters, "", ""
+        if path is not None:
+            unfinished = str(self._layer_files.begin(path))
+            beside, file = at_path(value, unfinished)
+            parameters = {**parameters, name: self._redirected(name, beside)}
+        sink, dest = self.processing.parameterAsSink(parameters, name, self.context, fields, WKB_TYPES[features.geometry_type], crs)
         if sink is None:
             raise QgsProcessingException(self.processing.invalidSinkError(self.parameters, name))
         write_features(sink, features, fields, self.feedback)
         # The file is complete only once the sink is gone
         del sink
-        return dest
+        if path is None:
+            return dest
+        final = dest.replace(unfinished, file)
+        self.context.setLayersToLoadOnCompletion(
+            {final if key == dest else key: details for key, details in self.context.layersToLoadOnCompletion().items()})
+        return final
+
+    def _redirected(self, name, value):
+        """What was given for an output, with another destination."""
+        given = self.parameters.get(name)
+        if not isinstance(given, QgsProcessingOutputLayerDefinition):
+            return value
+        redirected = QgsProcessingOutputLayerDefinition(given)
+        redirected.sink = QgsProperty.fromValue(value)
+        return redirected

@@ -50,7 +50,7 @@ def _in_the_database(layer, title, qml, schema, output, provenance):
     if not layer.isValid():
         return
     if provenance is not None and layer.providerType() == "postgres":
-        _comment_on_table(layer, provenance.sentence(output))
+        _comment_on_table(layer, "\n".join(provenance.history(output)))
     elif provenance is not None:
         describe_origin(layer, provenance, output)
         layer.saveDefaultMetadata()  # into the package

@@ -12,7 +12,9 @@ from qgis.core import (
 )
 
 from ..algorithms.destinations import destination_path
+from ..core.io.local_files import check_local
 
+OPENED_BY_QGIS = ("source", "vector", "raster", "layer")
 READ = ("source", "vector", "raster", "layer", "multilayer", "file", "pointcloud")
 
 
@@ -46,6 +48,30 @@ def layer_file(value, context):
         return text
     layer = QgsProcessingUtils.mapLayerFromString(text, context, False)
     return text if layer is None else layer.source()
+
+
+def check_files(algorithm, parameters, context):
+    """Raise RoadExtractionError where an input names a file that describes data elsewhere, which QGIS would fetch."""
+    for definition in algorithm.parameterDefinitions():
+        if definition.type() in OPENED_BY_QGIS and not definition.isDestination():
+            path = _named_file(parameters.get(definition.name()), context)
+            if path:
+                check_local(path)
+
+
+def _named_file(value, context):
+    """The file that a value names as text; "" where it names a layer, or nothing that is there."""
+    if isinstance(value, QgsProcessingFeatureSourceDefinition):
+        value = value.source.valueAsString(context.expressionContext())[0]
+    file = value.partition("|")[0] if isinstance(value, str) else ""
+    return file if file and os.path.isfile(file) else ""
+
+
+def asks_servers(algorithm, parameters, context):
+    """Whether an input is a layer that the user has from a server, which is then asked; for files, nothing is fetched."""
+    sources = [source for definition in algorithm.parameterDefinitions() if definition.type() in READ and not definition.isDestination()
+               for source in _sources(parameters.get(definition.name()), context)]
+    return any("://" in source or "/vsi" in source.lower() for source in sources if not os.path.exists(source))
 
 
 def close_database(destination, context):

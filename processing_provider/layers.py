@@ -98,7 +98,7 @@ class QgisSource(VectorSource):
         features = self.layer.getFeatures() if check_validity or not isinstance(self.layer, QgsProcessingFeatureSource) else \
             self.layer.getFeatures(QgsFeatureRequest(), Qgis.ProcessingFeatureSourceFlag.SkipGeometryValidityChecks)
         for feature in features:
-            geometry = feature.geometry()
+            self.feature_id, geometry = feature.id(), feature.geometry()
             wkb = None if geometry.isNull() or geometry.isEmpty() else _wkb(geometry, measures)
             yield wkb, [_value(value) for value in feature.attributes()]
 

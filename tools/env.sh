@@ -4,6 +4,8 @@
 LANEWRIGHT_ROOT="$(cd -P "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 LANEWRIGHT_BUILD="$LANEWRIGHT_ROOT/build"
 PY=/usr/bin/python3 # QGIS's own; another python3 on PATH cannot import qgis
+# Python inside QGIS takes the first python3 on PATH for its home, and with that of pyenv or conda it dies.
+export PATH="$(dirname "$PY"):$PATH"
 
 export QT_QPA_PLATFORM=offscreen
 export XDG_RUNTIME_DIR="$LANEWRIGHT_BUILD/run"

@@ -26,8 +26,8 @@ if [ -f "$stamp" ] && command -v qgis_process >/dev/null && [ -x "$LANEWRIGHT_BU
   exit 0
 fi
 
-have_python_packages() {
-  [ -x "$PY" ] && "$PY" -c 'import cv2, ensurepip, fiona, numpy, osgeo.gdal, pip, pyproj, pytest, scipy, setuptools, venv, wheel, qgis.core' 2>/dev/null
+have_python_packages() { # setuptools first: it does not come after another that imports distutils
+  [ -x "$PY" ] && "$PY" -c 'import setuptools, cv2, ensurepip, fiona, numpy, osgeo.gdal, pip, pyproj, pytest, scipy, venv, wheel, qgis.core' 2>/dev/null
 }
 
 # As root, through sudo, or not at all: then the exact command is printed for whoever may run it.
@@ -94,6 +94,7 @@ if [ -z "$installed" ] || ! have_python_packages; then
   as_root true || stop "$(printf 'Installing needs root and there is no sudo for you here. Run this as root, then start again:\n\n%s' "$lines")"
   echo "Installing QGIS and the Python packages (some minutes, about 2 GB)"
   as_root sh -c "$lines"
+  source tools/env.sh # where PROJ's data lie is known now
   installed="$(qgis_version)"
   at_least "${installed:-0}" "$OLDEST" ||
     stop "QGIS ${installed:-none} was installed and Lanewright needs $OLDEST or newer: $NEWER."
@@ -104,7 +105,7 @@ chmod 0700 "$XDG_RUNTIME_DIR"
 # A checkout that was moved, or a new Python, leaves a virtual environment that points nowhere.
 "$LANEWRIGHT_BUILD/venv/bin/python" -c "import sys; sys.exit(sys.prefix != '$LANEWRIGHT_BUILD/venv')" 2>/dev/null ||
   { rm -rf "$LANEWRIGHT_BUILD/venv"; "$PY" -m venv --system-site-packages "$LANEWRIGHT_BUILD/venv"; }
-"$LANEWRIGHT_BUILD/venv/bin/python" -m pip install -q --disable-pip-version-check --cache-dir "$LANEWRIGHT_BUILD/pip" --no-deps -r requirements-dev.txt
+"$LANEWRIGHT_BUILD/venv/bin/python" -m pip install -qq --disable-pip-version-check --cache-dir "$LANEWRIGHT_BUILD/pip" --no-deps -r requirements-dev.txt
 LANEWRIGHT_LIBS="$(echo "$LANEWRIGHT_BUILD"/venv/lib/python3*/site-packages)"
 "$LANEWRIGHT_BUILD/venv/bin/python" -c 'import laspy, lazrs, pytest_qgis, pytest_timeout, shapely; assert shapely.geos_version' ||
   stop "The Python packages of requirements-dev.txt were installed but cannot be imported; the lines above say why."

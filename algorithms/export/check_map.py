@@ -28,7 +28,7 @@ class CheckMap(Algorithm):
     def declare(self):
         add_map_file(self, tr("Map file"), tr("An OpenDRIVE (.xodr) or Lanelet2 (.osm) map; what is in it decides."), MAP_FILTER)
         self.add(CrsSpec("CRS", tr("CRS of the findings"), tr(
-            "OpenDRIVE: only where the file does not say it. Lanelet2: in metres, such as that of the survey; empty takes the UTM zone of the map."),
+            "OpenDRIVE: only where the file does not say it. Lanelet2: projected, such as that of the survey; empty takes the UTM zone of the map."),
             optional=True))
         self.add_sink("OUTPUT", tr("Findings"), tr("A point for each finding. Heights are the map's."), fields=MAP_FINDINGS, geometry="PointZ")
         self.add_report()

@@ -22,7 +22,8 @@ class ExportCad(Algorithm):
     HELP = ("DXF: lane borders, driving lines, marking lines, road edges and outlines of markings as 3D polylines, each class in a layer of its own "
             "with a colour. LandXML 1.2: the axis of every road and every driving line as an alignment of the fitted lines, curves and spirals, "
             "with a profile of tangents; a line that no elements follow within the tolerance is an irregular line.\n\n"
-            "DXF has no place for the CRS; LandXML names it. Cross-sections, surfaces and texts are not there.")
+            "DXF has no place for the CRS; LandXML names it. Both have the units of the layers' CRS, such as US "
+            "survey feet. Cross-sections, surfaces and texts are not there.")
     TAGS = ("DXF", "LandXML", "CAD", "alignment", "profile")
 
     def declare(self):
@@ -64,7 +65,7 @@ def _dxf(call, source, progress):
     from ...core.export.cad.dxf import dxf_lines, write_dxf
 
     lines = dxf_lines(source)
-    write_dxf(lines, call.new_file("OUTPUT"))
+    write_dxf(lines, call.new_file("OUTPUT"), source.lanes.crs)
     counts = Counter(line.layer for line in lines)
     progress.info(tr("{count} polylines in {layers} layers.").format(count=len(lines), layers=len(counts)))
     return {"LINES": float(len(lines)), "ALIGNMENTS": 0.0, "MISSED": 0.0}, [(tr("Layers"), (tr("Layer"), tr("Polylines")), sorted(counts.items()))]

@@ -63,6 +63,8 @@ class ExportLanelet2(Algorithm):
         progress.report(0.8)
         notes = [*source.notes, *(tr("{count} pieces of the type {kind} are no lanelets and were left out.").format(count=count, kind=kind)
                                   for kind, count in draft.skipped.items())]
+        if degrees.local:
+            notes.append(tr("The layer of lanes has no CRS: the map has local coordinates, and latitudes and longitudes about 0."))
         for note in notes:
             progress.warn(note)
         for fault, count in found.counts().items():

@@ -10,12 +10,13 @@ class ImportLanelet2(Algorithm):
     SUMMARY = "Reads a Lanelet2 map into layers like those of the road map, to lay it over a survey and assess it."
     HELP = ("Every lanelet becomes a lane between its two borders, with the lanelets that begin where it ends as successors. Footways, areas and "
             "regulatory elements are not read. Heights are the tag ele of the nodes, as they stand in the file.\n\n"
-            "Latitude and longitude are taken as WGS 84. A map with local_x and local_y alone gets layers in these coordinates, without CRS.")
+            "Latitude and longitude are taken as WGS 84. A map with local_x and local_y alone, or whose latitudes and longitudes are all about 0, "
+            "gets layers in local coordinates, without CRS.")
     TAGS = ("Lanelet2", "osm", "HD map", "Autoware", "planner")
 
     def declare(self):
         add_map_file(self, tr("Lanelet2 file"), tr("A map with the ending .osm."), LANELET_FILTER)
-        add_map_crs(self, tr("In metres, such as that of the survey. Empty takes the UTM zone of the map."))
+        add_map_crs(self, tr("Projected, such as that of the survey. Empty takes the UTM zone of the map."))
         add_map_layers(self)
 
     def work(self, call, progress):

@@ -38,5 +38,5 @@ def survey_with_borders(call, progress, above_road):
     for name, features in layers.items():
         if features is not None:
             check_same_crs(features.crs, survey.crs, get_coordinates(features.geometries[0])[0], call.label(name))
-    check_layers_on_roads(call, layers, survey.frame)
+    check_layers_on_roads(call, layers, survey.frame, progress)
     return survey, BorderLayers(*layers.values())

@@ -4,7 +4,7 @@ from ...core.common.schemas import MARKING_LINES, MARKINGS, ROAD_EDGES
 from ...core.countries.catalogue import COUNTRIES
 from ..algorithm import Algorithm
 from ..parameters import SettingSpec
-from ..survey_input import frame_of, paint_of, road_points_of
+from ..survey_input import check_layers_on_roads, frame_of, paint_of, road_points_of
 from ..texts import tr
 
 LINES = "markings.lines.fit:MarkingLineSettings"
@@ -72,6 +72,7 @@ class FitMarkingLines(Algorithm):
         frame = frame_of(call, points.crs, progress, points, {"MARKINGS": layer})
         markings = markings_from_features(layer, frame)
         edges = call.features("ROAD_EDGES", ROAD_EDGES, "LineStringZ")
+        check_layers_on_roads(call, {"ROAD_EDGES": edges}, frame, progress)
         road_points = road_points_of(call, "ROAD_POINTS", progress.part(0.2, 0.3)) if call.cloud("ROAD_POINTS") else None
         lines = fit_marking_lines(points, markings, frame, call.settings(LINE_SETTINGS), progress.part(0.3, 1.0),
                                   edges=None if edges is None else edges_from_features(edges, frame).densified(frame), road_points=road_points)

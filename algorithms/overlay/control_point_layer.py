@@ -33,7 +33,7 @@ def read_control_point_layer(source, image, crs=""):
 def _row(wkb, values, placed):
     if not placed:
         return list(values)
-    vertices = [] if wkb is None else vertices_of(wkb)
+    vertices = vertices_of(wkb) if wkb else []
     if not len(vertices):
         return [*values, None, None, None]
     x, y, z, _ = vertices[0].tolist()

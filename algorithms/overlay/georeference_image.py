@@ -79,7 +79,7 @@ class GeoreferenceImage(Algorithm):
             optional=True, file_filter=POINTS_FILTER,
         ))
         self.add(CrsSpec("CRS", tr("CRS of the control points"),
-                         tr("Only for control points that name none of their own. It must be projected, in metres."), optional=True))
+                         tr("Only for control points that name none of their own. It must be projected."), optional=True))
         self.add_settings(GEOREFERENCE_SETTINGS)
         self.add_raster("OUTPUT", tr("Georeferenced image"), tr("GeoTIFF with overviews; transparent or without data where the image ends."))
         self.add_sink("RESIDUALS", tr("Residuals"), tr("From where the polynomial puts each point to where it was measured."), "LineStringZ",

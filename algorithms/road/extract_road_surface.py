@@ -52,7 +52,7 @@ class ExtractRoadSurface(Algorithm):
         survey = open_survey_of(call, progress.part(0.0, 0.5))
         edges = None
         if layer is not None:
-            check_layers_on_roads(call, {"ROAD_EDGES": layer}, survey.frame)
+            check_layers_on_roads(call, {"ROAD_EDGES": layer}, survey.frame, progress)
             edges = edges_from_features(layer, survey.frame)
         road_points, surface = extract_road_surface(survey, edges, call.settings(SURFACE_SETTINGS), progress.part(0.5, 0.9))
         write_road_points(road_points, call.new_file("ROAD_POINTS"), progress.part(0.9, 1.0))

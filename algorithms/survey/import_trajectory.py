@@ -50,6 +50,8 @@ class ImportTrajectory(Algorithm):
         trajectory = clean_trajectory(imported_trajectory(call, progress))
         for note in trajectory.notes:
             progress.info(note)
+        for doubt in trajectory.doubts:
+            progress.warn(doubt)
         if not trajectory.crs:
             progress.warn(tr("The trajectory names no CRS and none was given, so its layer has none: set CRS of the trajectory, or "
                              "CRS to bring it to where the coordinates are in that of the point clouds."))

@@ -9,6 +9,7 @@ import numpy as np
 import shapely
 
 from ..io.gdal_errors import gdal_exceptions
+from ..io.local_files import open_raster
 from ..io.units import NO_PLACE, place_of_raster, place_raster
 
 BURN_TILE = 2048  # cells, side of a tile
@@ -67,7 +68,7 @@ class DataMask:
     def __init__(self, path: str) -> None:
         from osgeo import gdal
 
-        self._raster = gdal.Open(str(path))
+        self._raster = open_raster(path)
         self._inverse = gdal.InvGeoTransform(place_of_raster(self._raster)[0] or NO_PLACE)
 
     @gdal_exceptions()

@@ -11,6 +11,7 @@ import shapely
 
 from ..common.errors import RoadExtractionError
 from ..io.crs import check_metric, horizontal_part, parse_crs, same_crs
+from ..io.crs_place import check_place
 from .matching import MAX_ROAD_DISTANCE, TrajectoryStationing, sample_lines, single_lines
 
 MAX_LAYER_DISTANCE = 100.0  # m between the extents of two layers of one road
@@ -70,7 +71,7 @@ def check_kind(layer: AssessedLayer, kinds: Sequence[str], needed: str) -> None:
 
 
 def common_crs(layers: Sequence[AssessedLayer]) -> str:
-    """WKT of the CRS to work in: that of the first layer with one in metres; "" if no layer has a CRS.
+    """WKT of the CRS to work in: that of the first layer with one in metres and true to scale; "" if no layer has a CRS.
 
     Raises
     ------
@@ -84,6 +85,9 @@ def common_crs(layers: Sequence[AssessedLayer]) -> str:
             continue
         try:
             check_metric(crs, layer.label)
+            if len(layer.geometries):
+                west, south, east, north = shapely.total_bounds(layer.geometries).tolist()
+                check_place(layer.crs, ((west + east) / 2, (south + north) / 2), layer.label)
             return layer.crs
         except RoadExtractionError as problem:
             refused = refused or problem

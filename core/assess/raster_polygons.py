@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import shapely
 
-from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from ..io.gdal_errors import gdal_exceptions
+from ..io.local_files import open_raster, reading
 
 RASTER_READ_SIZE = 2048  # pixels, side of the pieces in which a raster is read
 
@@ -34,13 +34,11 @@ def polygons_of_raster(path: str, progress: Progress = Progress()) -> tuple[list
     """
     from osgeo import gdal, ogr
 
-    try:
-        raster = gdal.Open(str(path))
-    except RuntimeError as problem:
-        raise RoadExtractionError(f"{path} cannot be read as a raster ({problem}).") from problem
+    raster = open_raster(path)
     copy = f"/vsimem/lanewright_{id(raster)}.tif"
     try:
-        values = _values(raster, copy, progress.part(0.0, 0.7))
+        with reading(path):
+            values = _values(raster, copy, progress.part(0.0, 0.7))
         source = ogr.GetDriverByName("Memory").CreateDataSource("painted")
         layer = source.CreateLayer("painted", None, ogr.wkbPolygon)
         layer.CreateField(ogr.FieldDefn("value", ogr.OFTInteger))

@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
@@ -16,6 +17,23 @@ BRACES = "{}"
 AMOUNT = re.compile(r"([\d.,]+ \S+ )([a-z]+)")  # 12 m measured
 PHRASE = 2  # blanks in what is put in: with as many it is a phrase, with fewer a number with its unit or a name
 BETWEEN_SENTENCES = re.compile(r"(?<=[.?…]) (?=[A-Z])")
+_METRES = r"(-?\d+(?:\.\d+)?)"
+_PLACE = re.compile(rf"road (\d+)(?:, (left|right) side)?, station {_METRES}(?: to {_METRES})? m")
+
+
+@dataclass(frozen=True)
+class RoadPlace:
+    """A stretch of a road, m along it; both ends are the same where it is one place. `side` is left, right or ""."""
+
+    road: int
+    start: float
+    end: float
+    side: str = ""
+
+
+def places_in(text: str) -> list[RoadPlace]:
+    """The places that a sentence names, such as "road 0, left side, station 90 to 120 m" or "road 0, station 12.3 m"."""
+    return [RoadPlace(int(road), float(start), float(end or start), side or "") for road, side, start, end in _PLACE.findall(text)]
 
 
 class CoreMessages:

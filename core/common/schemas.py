@@ -47,7 +47,7 @@ MARKINGS = [ROAD, Field("cluster", int, "Cluster"), Field("class", str, "Class")
             Field("scan_m", float, "Scanning distance (m)"), Field("area_m2", float, "Area (m²)"),
             Field("points", int, "Points")]
 MARKING_LINES = [ROAD, Field("line", int, "Line"), Field("kind", str, "Kind (edge/lane/centre)"),
-                 Field("pattern", str, "Pattern"), STATUS, Field("curve", str, "Curve"), RADIUS, RMSE,
+                 Field("pattern", str, "Pattern"), STATUS, OTHER, Field("curve", str, "Curve"), RADIUS, RMSE,
                  STATION, END, OFFSET, LENGTH, WIDTH, PASS_SIGMA, Field("params", str, "Fitted function (JSON)")]
 DRIVING_LINES = [ROAD, Field("lane", int, "Lane"), Field("kind", str, "Kind"), Field("pattern", str, "Lines to its left|right"),
                  Field("direction", int, "Direction (1 along, -1 against the road)"),
@@ -75,9 +75,10 @@ CURVE_ELEMENTS = [ROAD, Field("lane", int, "Lane"), STATION, END, Field("turn", 
                   *(Field(f"{point}_{axis}", float, f"{point.upper()} {axis}", on_map=True) for point in ("pc", "pt", "pi") for axis in "xy"),
                   Field("rmse_m", float, "RMSE of the arc (m)"),
                   Field("speed_kmh", int, "Highest design speed allowed (km/h)"), Field("code", str, "Design code check")]
-CORRECTIONS = [Field("action", str, "Action (accept/delete/move/draw)"), Field("target", str, "What is meant (edge/marking/lane)"), ROAD, STATION,
-               OFFSET, Field("note", str, "Note"), Field("kind", str, "Kind of a line that is drawn (edge/lane/centre)"),
-               Field("pattern", str, "Pattern of a line that is drawn (solid/dashed)")]
+CORRECTIONS = [Field("action", str, "Action (accept/delete/move/draw/take)"), Field("target", str, "What is meant (edge/marking/lane)"), ROAD,
+               STATION, OFFSET, Field("note", str, "Note"), Field("kind", str, "Kind of a line that is drawn (edge/lane/centre)"),
+               Field("pattern", str, "Pattern of a line that is drawn (solid/dashed)"),
+               Field("other", str, "Second reading that is taken (JSON)")]
 MAP_FINDINGS = [Field("fault", str, "Fault"), Field("element", str, "Road, lane, way or relation"), Field("text", str, "What was seen")]
 CROSS_SECTIONS = [ROAD, Field("section", int, "Section"), STATION, Field("part", str, "Part (carriageway/lane)"), Field("lane", int, "Lane"),
                   Field("type", str, "Type of the lane"), Field("direction", int, "Direction (1 along, -1 against the road, 0 not known)"),

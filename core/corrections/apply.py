@@ -54,6 +54,10 @@ class LineKind(ABC):
     def accepted(self, piece: dict[str, Any]) -> dict[str, Any]:
         return dict(piece, status=ACCEPTED)
 
+    def taken(self, piece: dict[str, Any], correction: Correction) -> dict[str, Any]:
+        """The piece as its second reading says, which a correction takes."""
+        return self.accepted(piece)
+
 
 def apply_corrections(kind: LineKind, pieces: list[dict[str, Any]], corrections: Sequence[Correction]) -> tuple[list[dict[str, Any]], set[int], bool]:
     """Pieces of lines as an analyst corrected them, one correction after the other.
@@ -98,6 +102,8 @@ def _replaced(kind, pieces, spans, correction):
                 found.append(one)
             elif correction.action == "accept":
                 found.append(kind.accepted(one))
+            elif correction.action == "take":
+                found.append(kind.taken(one, correction))
     return found
 
 

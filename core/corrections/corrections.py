@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -12,12 +13,13 @@ import shapely
 from ..common.errors import RoadExtractionError
 from ..common.features import Features
 from ..io.crs import horizontal_part, parse_crs, same_crs
+from ..markings.cross_section.confidence import TakenReading
 from ..survey.frame.frame_lines import LINE_VERTEX_SPACING
 
 if TYPE_CHECKING:
     from ..survey.frame.road_frame import RoadFrame
 
-ACTIONS = ("accept", "delete", "move", "draw")
+ACTIONS = ("accept", "delete", "move", "draw", "take")
 TARGETS = ("edge", "marking", "lane")
 ACCEPTED, DRAWN = "accepted", "drawn"   # status of what an analyst confirmed, and of what an analyst drew
 
@@ -33,6 +35,8 @@ class Correction:
     station, offset : metres of its middle on that road, NaN for none
     kind, pattern : of a marking line that is drawn, "" where not said
     note : the analyst's words
+    lanes : of a second reading that is taken, offset on the road and width, m, and direction of each lane that then lies there
+    width : m of a lane that is drawn, NaN where not said
     """
 
     row: int
@@ -45,6 +49,8 @@ class Correction:
     kind: str = ""
     pattern: str = ""
     note: str = ""
+    lanes: tuple[tuple[float, float, int], ...] = ()
+    width: float = np.nan
 
     @property
     def draws(self) -> bool:
@@ -74,6 +80,19 @@ class Corrections:
     def of(self, target: str) -> list[Correction]:
         """Those of one target, in the order of the layer."""
         return [one for one in self.rows if one.target == target]
+
+    def taken(self, frame: RoadFrame) -> list[TakenReading]:
+        """The second readings of lanes that were taken, for the estimate of lines and lanes."""
+        found = []
+        for one in self.of("lane"):
+            if one.action == "take" and one.on_a_road:
+                s, d = frame.roads[one.road].locate(*one.places[:, :2].T)
+                order = np.argsort(s)
+                order = order[np.isfinite(s[order])]
+                if len(order):
+                    middle = float(np.median(d[order]))
+                    found.append(TakenReading(one.road, s[order], d[order], tuple((offset - middle, width, way) for offset, width, way in one.lanes)))
+        return found
 
     @property
     def unmatched(self) -> list[Correction]:
@@ -111,10 +130,43 @@ def corrections_from_features(features: Features, frame: RoadFrame, crs: str = "
             raise RoadExtractionError(f"Row {number} of the corrections is to {action} something, which takes a line; it has a point. "
                                       "Draw the line where it belongs.")
         kind, pattern, note = (str(row.get(name) or "").strip() for name in ("kind", "pattern", "note"))
+        lanes: tuple[tuple[float, float, int], ...] = ()
+        if action == "take":
+            lanes, kind = _second_reading(row.get("other"), target, number)
         for places in parts:
             road, station, offset = _located(frame, places)
-            found.rows.append(Correction(number, action, target, places, road, station, offset, kind, pattern, note))
+            found.rows.append(Correction(number, action, target, places, road, station, offset, kind, pattern, note, lanes))
     return found
+
+
+def taken_reading(row: dict[str, Any], target: str) -> dict[str, str] | None:
+    """The fields of a correction that takes the second reading of a piece, in place of the first; None where it has none.
+
+    The correction lies along the piece, as one that accepts it.
+
+    Parameters
+    ----------
+    row : fields of the piece, of which `other` counts
+    target : what the piece is, one of TARGETS
+    """
+    other = str(row.get("other") or "")
+    return {"action": "take", "target": target, "other": other} if other.startswith("{") else None
+
+
+def _second_reading(text: Any, target: str, number: int) -> tuple[tuple[tuple[float, float, int], ...], str]:
+    """The lanes, and the kind of line, of a second reading in JSON."""
+    try:
+        found = json.loads(text or "")
+        if target == "lane":
+            lanes = tuple((float(lane["offset_m"]), float(lane["width_m"]), int(lane["direction"])) for lane in found["lanes"])
+            if all(np.isfinite(lane).all() and lane[1] > 0 and lane[2] in (-1, 1) for lane in lanes):
+                return lanes, ""
+        elif target == "marking":
+            return (), str(found["kind"])
+    except (ValueError, KeyError, TypeError):
+        pass
+    raise RoadExtractionError(f"Row {number} of the corrections is to take a second reading of a {target}, and its field other holds none of that. "
+                              "Copy it from the field other of the lane or marking line.")
 
 
 def _in_crs(features: Features, crs: str) -> list[Any]:

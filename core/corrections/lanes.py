@@ -15,11 +15,13 @@ from ..driving.lanes_layer import Lanes
 from ..survey.frame.placement import located
 from .apply import LineKind, apply_corrections
 from .corrections import DRAWN, Correction, Corrections
+from .places import spans_along
 
 if TYPE_CHECKING:
     from ..survey.frame.road_frame import RoadFrame
 
 LANE_REACH = 1.0        # m: half of the narrowest lane
+TAKEN_REACH, TAKEN_SHARE = 0.5, 0.8   # m beside its place, and share of its length, of a lane that the estimate made as it was taken
 NO_LINES = "none|none"
 SURE = 1.0         # confidence of what an analyst confirmed or drew
 MOST_LOST = 0.5    # share of a curve that may be taken away before its elements go with it
@@ -41,16 +43,16 @@ class _DrivingLines(LineKind):
         return dict(piece, places=columns)
 
     def accepted(self, piece):
-        return dict(super().accepted(piece), confidence=SURE)
+        return dict(super().accepted(piece), confidence=SURE, other="")
 
     def drawn(self, correction, places, like, pieces):
         way = _way(self.frame, correction, places) if like is None else like["direction"]
         blank = dict(road=correction.road, lane=_free_lane(pieces, correction.road), pattern=NO_LINES, direction=way, station=correction.station,
-                     end=correction.station, width=self.lane_width)
+                     end=correction.station, width=correction.width if np.isfinite(correction.width) else self.lane_width)
         places = _in_direction(self.frame, correction, places, way)
         fit = fit_curve(places[:, 0], places[:, 1])
-        piece = dict(blank if like is None else like, source="drawn", status=DRAWN, confidence=SURE, curve=fit.curve, rmse=np.nan, sigma=np.nan,
-                     offset=correction.offset, places=places)
+        piece = dict(blank if like is None else like, source="drawn", status=DRAWN, confidence=SURE, other="", curve=fit.curve, rmse=np.nan,
+                     sigma=np.nan, offset=correction.offset, places=places)
         return self.with_stations(dict(piece, drawn_by=correction), places)
 
 
@@ -70,7 +72,7 @@ class _Lanes(LineKind):
         return dict(piece, columns=columns, changed=True)
 
     def accepted(self, piece):
-        return dict(super().accepted(piece), confidence=SURE, changed=True)
+        return dict(super().accepted(piece), confidence=SURE, other="", changed=True)
 
     def drawn(self, correction, places, like, pieces):
         line = next(one for one in self.lines if one.get("drawn_by") is correction)
@@ -110,6 +112,8 @@ def correct_lanes(lines: DrivingLines, elements: CurveElements, lanes: Lanes, fr
     known = np.concatenate([lines.vertices, known])
     width = float(np.median(lines.width)) if len(lines) else lane_width
     before = _rows_of_lines(lines)
+    wanted = [part for one in wanted for part in (_taken(one, before, frame) if one.action == "take" else [one])]
+    corrections.matched |= {one.row for one in corrections.of("lane") if one.action == "take" and one.on_a_road and not one.lanes}
     rows, of_lines, lines_changed = apply_corrections(_DrivingLines(frame, known, width), before, wanted)
     # the area of a lane is drawn about its driving line
     wanted = [one for one in wanted if not one.draws or one.row in of_lines]
@@ -120,6 +124,33 @@ def correct_lanes(lines: DrivingLines, elements: CurveElements, lanes: Lanes, fr
     return lines, elements, _lanes_of(areas, frame, lanes.crs) if lanes_changed else lanes
 
 
+def _taken(correction, pieces, frame):
+    """What a second reading that was taken comes to: each of its lanes is accepted where the estimate made it, drawn where it did not.
+
+    The lane that it was taken for goes, unless it is one of them.
+    """
+    if not correction.on_a_road or len(correction.places) < 2:
+        return [correction]
+    road = frame.roads[correction.road]
+    s, d = road.locate(*correction.places[:, :2].T)
+    if not np.isfinite(d).all():
+        return [correction]
+    found = [replace(correction, action="delete")]
+    for offset, width, way in correction.lanes:
+        x, y = road.to_map(s, d + offset - np.median(d))
+        order = np.argsort(s * way)
+        drawn = replace(correction, action="draw", places=np.c_[x, y, correction.places[:, 2]][order], offset=offset, width=width)
+        same = [piece["places"] for piece in pieces if piece["direction"] == way]
+        length = sum(last - first for _, first, last in spans_along(same, replace(drawn, action="accept"), TAKEN_REACH))
+        if length >= TAKEN_SHARE * np.hypot(*np.diff(drawn.places[:, :2], axis=0).T).sum():
+            # what the estimate made is accepted, and not deleted with the lane beside it
+            found = [one for one in found if one.action != "delete"]
+            found.append(replace(drawn, action="accept"))
+        else:
+            found.append(drawn)
+    return found
+
+
 def _rows_of_lines(lines):
     names = [one.name for one in fields(lines) if one.name not in ("curve", "vertices", "start", "crs")]
     return [dict({name: getattr(lines, name)[k] for name in names}, curve=lines.curve[k], places=lines.vertices[lines.start[k]:lines.start[k + 1]])
@@ -127,7 +158,7 @@ def _rows_of_lines(lines):
 
 
 def _rows_of_lanes(lanes):
-    names = ("road", "lane", "lane_id", "type", "direction", "status", "confidence", "station", "end")
+    names = ("road", "lane", "lane_id", "type", "direction", "status", "confidence", "other", "station", "end")
     found = []
     for k in range(len(lanes)):
         left, right = lanes.borders(k)

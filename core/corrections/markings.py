@@ -29,6 +29,9 @@ class _Lines(LineKind):
         arc, _ = piece["curve"].project(columns[[0, -1], 0], columns[[0, -1], 1])
         return dict(piece, places=columns, arc=arc)
 
+    def taken(self, piece, correction):
+        return dict(self.accepted(piece), kind=correction.kind)
+
     def drawn(self, correction, places, like, pieces):
         fit = fit_curve(places[:, 0], places[:, 1])
         free = max((piece["line"] for piece in pieces), default=0) + 1

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -33,6 +33,7 @@ from .tapers import laid_out
 from .uncertainty import lane_sigma
 
 if TYPE_CHECKING:
+    from ..markings.cross_section.confidence import TakenReading
     from ..survey.frame.road_frame import RoadFrame
     from ..survey.store.road_points import RoadPoints
 
@@ -41,7 +42,7 @@ __all__ = ["DrivingSettings", "make_driving_lines"]
 
 def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: DrivingSettings = DrivingSettings(),
                        progress: Progress = Progress(), markings: MarkingObjects | None = None, edges: RoadEdges | None = None,
-                       road_points: RoadPoints | None = None) -> tuple[DrivingLines, CurveElements, Lanes]:
+                       road_points: RoadPoints | None = None, taken: Sequence[TakenReading] = ()) -> tuple[DrivingLines, CurveElements, Lanes]:
     """Lines to drive on.
 
     Lanes are those of the most probable cross-sections of each road (`estimate_roads`); their middle is driven. Gaps of all lines are
@@ -56,6 +57,7 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
     markings : MarkingObjects or None: no lane leads along a hatched area
     edges : RoadEdges or None: no lane leads over a curb
     road_points : RoadPoints or None: the heights of the road
+    taken : second readings that an analyst took
 
     Returns
     -------
@@ -72,7 +74,7 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
     curbs, pavement = (sections_of_edges(edges), sections_of_pavement(edges)) if edges is not None else (None, {})
     estimates = estimate_roads(sections_of_lines(marking_lines), frame, settings.lane_width or country(settings.country).usual_lane,
                                settings.traffic_side, curbs, markings, road_points, width_asked=bool(settings.lane_width), pavement=pavement,
-                               progress=progress.part(0.0, 0.4))
+                               progress=progress.part(0.0, 0.4), taken=taken)
     progress.report(0.4)
     if estimates.roads and not estimates.sure:
         progress.warn(f"The survey hardly shows on which side traffic drives; the {estimates.side} was taken. Set Side of traffic if that is wrong.")

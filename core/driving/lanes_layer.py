@@ -105,8 +105,9 @@ def lanes_to_features(lanes: Lanes, origin: Any = LEVEL_ORIGIN) -> Features:
     widths, lengths = lanes.width, lanes.length
     for k in range(len(lanes)):
         left, right = lanes.borders(k)
+        # closed here, so that a lane that begins in a point keeps the vertices of both borders
         layer.add(
-            shapely.Polygon(np.concatenate([left, right[::-1]]) + np.asarray(origin)), road=int(lanes.road[k]), lane=int(lanes.lane[k]),
+            shapely.Polygon(np.concatenate([left, right[::-1], left[:1]]) + np.asarray(origin)), road=int(lanes.road[k]), lane=int(lanes.lane[k]),
             lane_id=lanes.lane_id[k], type=lanes.type[k], direction=int(lanes.direction[k]), left_line=lanes.left_line[k],
             right_line=lanes.right_line[k], left_kind=lanes.left_kind[k], right_kind=lanes.right_kind[k], left_patt=lanes.left_pattern[k],
             right_patt=lanes.right_pattern[k], successors=",".join(lanes.successors[k]), status=lanes.status[k],

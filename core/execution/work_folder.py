@@ -19,7 +19,9 @@ from uuid import uuid4
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from .phase import Executor, Phase, name_of
-from .plain import digest, is_whole, read_plain, write_plain
+from .plain import checksum, digest, is_whole, read_plain, write_plain
+
+LONGEST_NOTE = 1 << 24   # bytes; what a run says in a thousand lines is a hundredth of it
 
 
 class WorkFolder:
@@ -58,8 +60,7 @@ class WorkFolder:
     def finish(self, name: str, folder: Path, messages: Sequence[tuple[str, str]]) -> None:
         """Keep a folder of `begin`, and what was said while it was made: ("info" or "warn", text)."""
         unfinished = self.path / f"{name}.{uuid4().hex}.part"
-        sizes = {file.name: file.stat().st_size for file in folder.iterdir()}
-        unfinished.write_text(json.dumps(dict(folder=folder.name, messages=list(messages), sizes=sizes)), encoding="utf-8")
+        unfinished.write_text(json.dumps(dict(folder=folder.name, messages=list(messages), files=_checksums(folder))), encoding="utf-8")
         os.replace(unfinished, self.path / f"{name}.json")
 
     def discard(self) -> None:
@@ -72,14 +73,26 @@ class WorkFolder:
         shutil.rmtree(gone, ignore_errors=True)
 
     def finished(self, name: str) -> tuple[Path, list[tuple[str, str]]] | None:
-        """The folder and the messages that were kept under a name; None where there are none, or where not all of it has come to the disk."""
+        """The folder and the messages that were kept under a name; None where there are none, or not all as they were written."""
+        note = self.path / f"{name}.json"
         try:
-            found = json.loads((self.path / f"{name}.json").read_text(encoding="utf-8"))
-            folder = self.path / found["folder"]
-            whole = all((folder / file).stat().st_size == size for file, size in found["sizes"].items())
-        except (FileNotFoundError, ValueError, KeyError):
-            return None
-        return (folder, [(kind, text) for kind, text in found["messages"]]) if whole and folder.is_dir() else None
+            if note.stat().st_size > LONGEST_NOTE:
+                return None
+            found = json.loads(note.read_bytes())
+            folder, messages = found["folder"], [(str(kind), str(text)) for kind, text in found["messages"]]
+            whole = Path(folder).name == folder and _checksums(self.path / folder) == found["files"]
+        except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError):
+            return None   # a damaged note may hold any JSON or none
+        return (self.path / folder, messages) if whole else None
+
+
+def _checksums(folder):
+    """{name of each file in a folder: [bytes, CRC-32]}."""
+    found = {}
+    for path in sorted(folder.iterdir()):
+        with open(path, "rb", buffering=0) as file:
+            found[path.name] = [os.fstat(file.fileno()).st_size, checksum(file)]
+    return found
 
 
 class Heard(Progress):

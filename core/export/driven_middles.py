@@ -8,7 +8,7 @@ import numpy as np
 import shapely
 
 from .shared_borders import numbered
-from .sources import RoadMapSource
+from .sources import RoadMapSource, is_stated
 
 NEAR_LINE = 0.15   # m from the middle of a lane within which a driving line is its own
 ROUNDS = 50        # of moving borders: neighbours share them
@@ -26,7 +26,7 @@ def with_driven_middles(source: RoadMapSource, most: float) -> RoadMapSource:
     most : metres
     """
     lanes = source.lanes
-    if not source.driving_lines or most <= 0:
+    if not source.driving_lines or most <= 0 or is_stated(lanes):   # a map from elsewhere has its driving lines from its borders
         return source
     across = (lanes.left - lanes.right)[:, :2]
     across = across / np.maximum(np.hypot(*across.T), 1e-9)[:, None]

@@ -10,7 +10,7 @@ import numpy as np
 import shapely
 
 from ..driving.lanes_layer import Lanes
-from .sources import SAME_LEVEL, RoadMapSource
+from .sources import SAME_LEVEL, RoadMapSource, is_stated
 
 MOST_TURNED = 2.5        # rad: who turns more drives back on the arm that he came from
 LEAST_TURNED = 0.5       # rad from which a way leaves the outermost lane of its arm on that side
@@ -41,9 +41,11 @@ def with_inferred_ways(source: RoadMapSource) -> RoadMapSource:
 
     Parameters
     ----------
-    source : RoadMapSource, checked
+    source : RoadMapSource, checked; one of a map from elsewhere stays as it is, as that states all of its ways
     """
     lanes, added = source.lanes, 0
+    if is_stated(lanes):
+        return source
     for group in _junctions(lanes):
         for entry in sorted({way.entry for way in group}):
             for exit in sorted({way.exit for way in group}):

@@ -6,6 +6,9 @@ import numpy as np
 
 from ..common.errors import RoadExtractionError
 from ..io.crs import check_metric, horizontal_part, parse_crs, same_crs
+from ..io.units import plane_wkt
+
+LOCAL_CRS = "+proj=tmerc +lat_0=0 +lon_0=0 +k=1 +x_0=0 +y_0=0 +datum=WGS84 +units=m +no_defs"   # of maps that lie nowhere
 
 
 def crs_of_reference(text: str, given: str) -> tuple[str, str]:
@@ -56,7 +59,7 @@ def metric_wkt(text: str, what: str) -> str:
     """WKT of the horizontal part of a CRS given as a text; refuses one that is not in metres. `what`: subject of the message."""
     crs = parse_crs(text)
     check_metric(crs, what)
-    return str(horizontal_part(crs).to_wkt())
+    return plane_wkt(text)
 
 
 def utm_of(longitude: float, latitude: float) -> str:

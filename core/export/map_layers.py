@@ -20,7 +20,7 @@ class MapLine:
 
     road : number; what : marking or edge; kind : edge, lane, centre, curb, dropped or pavement; pattern : as in MARKING_LINES
     points : (N, 3) map coordinates; width : metres, NaN where unknown; side : left, right or ""
-    edge : what an edge is, curb or pavement
+    edge : what an edge is, curb or pavement; height : metres of a curb, NaN where unknown
     """
 
     road: int
@@ -31,6 +31,7 @@ class MapLine:
     width: float = np.nan
     side: str = ""
     edge: str = "curb"
+    height: float = np.nan
 
 
 @dataclass
@@ -80,7 +81,8 @@ class MapLayers:
         layer = Features("LineStringZ", ROAD_EDGES, crs=self.lanes.crs)
         for number, line in enumerate((line for line in self.lines if line.what == "edge"), start=1):
             layer.add(shapely.linestrings(line.points), road=line.road, side=line.side or None, status=STATUS_OF_MAPS, station_m=0.0,
-                      end_m=plan_length(line.points), part="bottom", length_m=plan_length(line.points), kind="main", edge=line.edge, chain=number)
+                      end_m=plan_length(line.points), part="bottom", length_m=plan_length(line.points), kind="main", edge=line.edge, chain=number,
+                      height_m=None if np.isnan(line.height) else line.height)
         return layer
 
 

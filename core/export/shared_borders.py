@@ -10,7 +10,7 @@ from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
 from ..driving.lanes_layer import Lanes
-from .sources import RoadMapSource
+from .sources import RoadMapSource, is_stated
 
 WIDEST_DOUBLE = 0.5       # m between the stripes of a double line at the most; what is wider is a median
 SAME_VERTEX = 0.001       # m in plan between vertices that are one
@@ -20,6 +20,7 @@ MOST_LANE_OVERLAP = 0.35  # m that a lane placed where paint is missing may lie 
 LEAST_STRIPE_GAP = 0.12   # m between the middles of two stripes at the least: what is nearer is one line measured twice
 TOLD_MOVE = 0.05          # m from which the user is told
 SHARED_FADE = 10.0        # m of border beyond a common one in which it comes back to its own place
+MOST_MET = 0.01          # m by which a way of a map from elsewhere may miss its lane and is led there: half of the tolerance of an export
 FACING_TRIED = 4          # vertices around one that may face it
 
 
@@ -45,12 +46,14 @@ def with_shared_borders(source: RoadMapSource) -> RoadMapSource:
 
 
 def meet_lanes(lanes: Lanes) -> Lanes:
-    """Lanes whose connectors begin and end at the corners of the lanes that they join, where they miss them by less than WIDEST_DOUBLE.
+    """Lanes whose connectors begin and end at the corners of the lanes that they join, where they miss them by less than WIDEST_DOUBLE, or by
+    less than MOST_MET on a map from elsewhere.
 
     The last metres of a connector, SHARED_FADE or half of it, follow its end.
     """
     row_of = {name: k for k, name in enumerate(lanes.lane_id)}
     left, right = lanes.left.copy(), lanes.right.copy()
+    most = MOST_MET if is_stated(lanes) else WIDEST_DOUBLE
     for k, names in enumerate(lanes.successors):
         for j in (row_of[name] for name in names if name in row_of):
             for one, other, at_end in ((k, j, True), (j, k, False)):
@@ -60,7 +63,7 @@ def meet_lanes(lanes: Lanes) -> Lanes:
                 here, there = (rows[-1], lanes.start[other]) if at_end else (rows[0], lanes.start[other + 1] - 1)
                 for side in (left, right):
                     away = side[there] - side[here]
-                    if SAME_VERTEX < np.hypot(*away[:2]) < WIDEST_DOUBLE or SAME_VERTEX > np.hypot(*away[:2]) and away[2]:
+                    if SAME_VERTEX < np.hypot(*away[:2]) < most or SAME_VERTEX > np.hypot(*away[:2]) and away[2]:
                         side[rows] += _fading(side[rows], at_end)[:, None] * away
     return replace(lanes, left=left, right=right)
 
@@ -78,7 +81,8 @@ def share_borders(lanes: Lanes) -> SharedBorders:
 
     Maps for planners and simulators know one border between two lanes. A double line has two stripes, each the border of its lane; and a lane
     placed where paint was missing may lie some centimetres beside the measured one. Vertices of one cross-section that face each other move to
-    their middle. Where the common border ends, its lanes come back to their own borders along SHARED_FADE.
+    their middle. Where the common border ends, its lanes come back to their own borders along SHARED_FADE. On a map from elsewhere what lies
+    apart stays apart.
 
     Parameters
     ----------
@@ -94,7 +98,7 @@ def share_borders(lanes: Lanes) -> SharedBorders:
     # a place has one height, that of all lanes beside it
     places[:, 2] = np.bincount(nodes, rows[:, 2]) / np.bincount(nodes)
     count = len(lanes.left)
-    pairs, beyond = _facing(lanes, nodes, places)
+    pairs, beyond = (np.empty((0, 2), int), np.empty(0)) if is_stated(lanes) else _facing(lanes, nodes, places)
     if not len(pairs):
         return SharedBorders(replace(lanes, left=places[nodes[:count]], right=places[nodes[count:]]), np.zeros((len(lanes), 2)), 0.0)
     apart = places[pairs[:, 1]] - places[pairs[:, 0]]

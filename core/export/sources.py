@@ -56,6 +56,12 @@ class RoadMapSource:
                 yield label, layer
 
 
+def is_stated(lanes: Lanes) -> bool:
+    """Whether lanes are of a map from elsewhere, which states its borders and ways: all are sure, and none is of a line or edge of a survey."""
+    lines = np.concatenate([lanes.left_line, lanes.right_line])
+    return bool((lanes.status == "measured").all() and (lanes.confidence == 1).all() and (lines == "none").all())
+
+
 def checked(source: RoadMapSource) -> RoadMapSource:
     """The same source without successors that are not there, proven fit for a map.
 
@@ -93,18 +99,26 @@ def checked(source: RoadMapSource) -> RoadMapSource:
 
 
 def _check_shapes(lanes):
-    for k, width in enumerate(lanes.width):
+    for k in range(len(lanes)):
         left, right = lanes.borders(k)
+        width = float(np.hypot(*(left - right)[:, :2].T).max())
         if width < 0.01 or np.hypot(*np.diff(left[[0, -1]], axis=0)[0, :2]) + np.hypot(*np.diff(right[[0, -1]], axis=0)[0, :2]) < 0.01:
             raise RoadExtractionError(f"Lane {lanes.lane_id[k]} has no two borders: it is {width:.2f} m wide. Delete it, or draw it as a strip.")
         for border, side in ((left, "left"), (right, "right")):
-            line = shapely.linestrings(border[:, :2])
-            if not line.is_simple and not line.is_ring:
-                raise RoadExtractionError(f"The {side} border of lane {lanes.lane_id[k]} crosses itself near x {border[0, 0]:.1f}, "
-                                          f"y {border[0, 1]:.1f}. Mend it in the layer of lanes.")
+            if (back := _runs_back(left, right, border)) is not None and not shapely.linestrings(border[:, :2]).is_simple:
+                raise RoadExtractionError(f"The {side} border of lane {lanes.lane_id[k]} runs back and crosses itself near x {back[0]:.1f}, "
+                                          f"y {back[1]:.1f}. Mend it in the layer of lanes.")
         if shapely.linestrings(left[:, :2]).crosses(shapely.linestrings(right[:, :2])):
             raise RoadExtractionError(f"The borders of lane {lanes.lane_id[k]} cross each other near x {left[0, 0]:.1f}, y {left[0, 1]:.1f}. "
                                       "Mend it in the layer of lanes.")
+
+
+def _runs_back(left, right, border):
+    """Where a border runs against the direction of its lane, None where it does nowhere. Ramps may well cross themselves."""
+    across, step = (left - right)[:-1, :2] + (left - right)[1:, :2], np.diff(border[:, :2], axis=0)
+    ahead = step[:, 0] * across[:, 1] - step[:, 1] * across[:, 0]
+    back = np.flatnonzero((ahead < 0) & (np.hypot(*step.T) > LEAST_LED) & (np.hypot(*across.T) > LEAST_LED))
+    return border[back[0]] if len(back) else None
 
 
 def _check_places(lanes):
@@ -145,7 +159,13 @@ def nearest_values(points: np.ndarray, layer: Features | None, name: str, farthe
                                                               if g is not None and row.get(name) is not None]
     if not rows or not len(points):
         return found
-    tree = shapely.STRtree(shapely.force_2d(np.array([g for g, _ in rows], object)))
-    which, place = tree.query_nearest(shapely.points(points), max_distance=farthest, all_matches=False)
-    found[which] = np.array([value for _, value in rows])[place]
+    # of long lines the tree finds the nearest segment much sooner than the nearest line
+    parts, owner = [], []
+    for k, (geometry, _) in enumerate(rows):
+        places = shapely.get_coordinates(geometry)
+        pieces = shapely.linestrings(np.stack([places[:-1], places[1:]], axis=1)) if geometry.geom_type == "LineString" else [geometry]
+        parts += list(pieces)
+        owner += [k] * len(pieces)
+    which, place = shapely.STRtree(parts).query_nearest(shapely.points(points), max_distance=farthest, all_matches=False)
+    found[which] = np.array([value for _, value in rows])[np.array(owner)[place]]
     return found

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import codecs
 import math
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from html import escape
 from pathlib import Path
@@ -20,6 +22,10 @@ MAX_ELEMENTS = 1_000_000    # some hundred kilometres of lanes
 MAX_DEPTH = 60
 MAX_MAP_NUMBER = 1e9            # metres or any other unit of a map
 MAX_DIGITS = 400            # characters of a number
+HEAD = 400                  # bytes in which the declaration of the encoding is looked for
+NATIVE = ("utf-8", "utf-16", "iso8859-1", "ascii")   # codecs that the parser has itself
+BYTE_ORDER_MARKS = {codecs.BOM_UTF32_LE: "utf-32", codecs.BOM_UTF32_BE: "utf-32", codecs.BOM_UTF8: "utf-8-sig", codecs.BOM_UTF16_LE: "utf-16",
+                    codecs.BOM_UTF16_BE: "utf-16"}   # those of 32 bits first: they begin like those of 16
 
 
 class XmlElement:
@@ -131,8 +137,8 @@ def read_xml(path: str, root_tag: str, kind: str, progress: Progress = Progress(
     Raises
     ------
     RoadExtractionError
-        If it is no XML, not of this kind, declares a document type or entities (no map needs them), or is larger, deeper or emptier than
-        a map is.
+        If it is no XML, not of this kind, in an encoding that is not known or that it is not written in, declares a document type or
+        entities (no map needs them), or is larger, deeper or emptier than a map is.
     """
     return _Reading(Path(path), root_tag, kind).run(progress)
 
@@ -143,7 +149,8 @@ class _Reading:
     def __init__(self, path, root_tag, kind):
         self.path, self.root_tag, self.kind = path, root_tag, kind
         self.root, self.open, self.count, self.last_tag = None, [], 0, 0
-        self.parser = parser = ParserCreate()
+        self.encoding = self._encoding()
+        self.parser = parser = ParserCreate("utf-8" if self.encoding else None)
         parser.StartElementHandler, parser.EndElementHandler = self._start, self._end
         parser.CharacterDataHandler = self._text
         parser.StartDoctypeDeclHandler = parser.EntityDeclHandler = self._declared
@@ -151,19 +158,49 @@ class _Reading:
 
     def run(self, progress):
         size, fed = max(self.path.stat().st_size, 1), 0
+        decoder = codecs.getincrementaldecoder(self.encoding)() if self.encoding else None
         try:
             with open(self.path, "rb") as file:
                 while chunk := file.read(CHUNK):
+                    if decoder is not None:
+                        chunk = decoder.decode(chunk).encode("utf-8")
                     self.parser.Parse(chunk, False)
                     fed += len(chunk)
                     if fed - self.parser.CurrentByteIndex > MAX_PENDING:
                         self._refuse(f"has {MAX_PENDING >> 20} MB without the end of a tag")
-                    if fed % (CHUNK * 64) == 0:
-                        progress.report(fed / size)
-                self.parser.Parse(b"", True)
+                    if file.tell() % (CHUNK * 64) == 0:
+                        progress.report(file.tell() / size)
+                self.parser.Parse(decoder.decode(b"", True).encode("utf-8") if decoder is not None else b"", True)
+        except UnicodeError as problem:
+            raise RoadExtractionError(f"{self.path} is not written in the encoding {self.encoding} that it declares. Save it again as UTF-8, and say "
+                                      "so in its first line.") from problem
         except ExpatError as problem:
             raise RoadExtractionError(f"{self.path} is not well-formed XML: {problem}. Is it {self.kind}, and whole?") from problem
         return self.root
+
+    def _encoding(self):
+        """The codec that the file is decoded by, "" where the parser does it by itself."""
+        with open(self.path, "rb") as file:
+            head = file.read(HEAD)
+        marked = next((name for mark, name in BYTE_ORDER_MARKS.items() if head.startswith(mark)), "")
+        if marked:
+            return "" if marked in NATIVE else marked
+        if head[:4] in ("<".encode("utf-32-le"), "<".encode("utf-32-be")):
+            return "utf-32-le" if head[:1] == b"<" else "utf-32-be"
+        said = re.match(rb"""\s*<\?xml[^>]*?\sencoding\s*=\s*["']([^"'>]*)["']""", head)
+        name = said[1].decode("latin-1") if said else ""
+        try:
+            codec = codecs.lookup(name) if name else None
+            # others, such as zip and hex, are no encodings of text
+            known = codec is None or codec._is_text_encoding and codec.incrementaldecoder is not None
+        except (LookupError, ValueError):
+            known = False
+        if not known:
+            raise RoadExtractionError(f"{self.path} declares the encoding {name[:40]!r}, which is not known. Save it again as UTF-8, and say so in "
+                                      "its first line.")
+        if codec is not None and codec.name.startswith(("utf-16", "utf-32")):
+            return "utf-8"   # the declaration itself is written in single bytes: some programs state what they have in memory
+        return "" if codec is None or codec.name in NATIVE else codec.name
 
     def _refuse(self, why):
         raise RoadExtractionError(f"{self.path} {why}. That is not {self.kind}, so it was not read further. Export the map again, or in parts.")

@@ -12,6 +12,7 @@ __getattr__, __all__ = public(__name__, {
     "gdal_errors": ("gdal_exceptions",),
     "geotiff": ("IntensityImage", "filled_tiles", "new_geotiff", "write_display_image"),
     "text_table": ("NumberTable", "read_number_table"),
-    "unfinished": ("unfinished_path",),
+    "local_files": ("check_local", "offline", "open_raster", "open_vector"),
+    "unfinished": ("finish_file", "unfinished_path"),
     "units": ("FileUnits", "as_in_file", "in_metres", "place_of_raster", "place_raster", "plane_wkt", "unit_names"),
 })

@@ -121,5 +121,5 @@ def unit_note(height: float, crs: str) -> str:
     if crs or not SUSPICIOUS_SENSOR_HEIGHT[0] < height < SUSPICIOUS_SENSOR_HEIGHT[1]:
         return ""
     return (f"The sensor seems to ride {height:.1f} m above the road, as if cloud and trajectory were in feet, and no CRS tells their "
-            "unit: everything is measured in metres, so curbs and markings would be missed. If they are in feet, convert both to metres "
-            "(in a metric CRS); if they are not, set CRS.")
+            "unit: everything is measured in metres, so curbs and markings would be missed. Set the parameter CRS to the CRS that they are "
+            "in, such as a zone of State Plane in feet.")

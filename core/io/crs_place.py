@@ -113,7 +113,7 @@ def check_place(wkt: str, place: tuple[float, float], what: str) -> str:
         zone = f", such as UTM zone {_utm_zone(there)}," if there.scale == there.scale and not where else ""
         raise RoadExtractionError(
             f"{what} is in {crs.name}{where}. {lengths}{'' if where or there.scale != there.scale else f' at {_degrees(there)}'}, and roads are "
-            f"measured in metres on the ground. Reproject cloud and trajectory to a CRS that is made for their place{zone} or correct the CRS.")
+            f"measured in metres on the ground. Reproject the data to a CRS that is made for this place{zone} or correct the CRS.")
     if beside > MAX_OUTSIDE_AREA:
         return (f"{what} lies{where.replace('this CRS', 'its CRS ' + crs.name, 1).replace(',', '', 1)}: if the survey was not made there, its CRS is "
                 "wrong, and the results carry it.")

@@ -1,4 +1,4 @@
-"""GDAL's errors as Python exceptions, for Lanewright's own calls alone."""
+"""GDAL's errors as Python exceptions, and no network, for Lanewright's own calls alone."""
 
 from __future__ import annotations
 
@@ -7,6 +7,8 @@ from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from typing import Any
 
+from .local_files import offline
+
 _lock = threading.Lock()
 _active = 0       # blocks of all threads that run at present, before GDAL 3.7
 _enabled: list[Any] = []    # GDAL's modules whose exceptions the first of them enabled
@@ -14,7 +16,7 @@ _enabled: list[Any] = []    # GDAL's modules whose exceptions the first of them 
 
 @contextmanager
 def gdal_exceptions() -> Iterator[None]:
-    """A context, or a decorator of a function, in which GDAL raises RuntimeError; afterwards GDAL is as it was before.
+    """A context, or a decorator of a function, in which GDAL raises RuntimeError and asks no server; afterwards it is as it was before.
 
     Whether GDAL raises is a state of the whole process, which all plugins of QGIS share. Since GDAL 3.7 a
     thread may have a state of its own, and only that is changed; with older versions, the state is restored
@@ -24,6 +26,7 @@ def gdal_exceptions() -> Iterator[None]:
 
     modules = (gdal, ogr)
     with ExitStack() as stack:
+        stack.enter_context(offline())
         if hasattr(gdal, "ExceptionMgr"):
             for module in modules:
                 stack.enter_context(module.ExceptionMgr(useExceptions=True))

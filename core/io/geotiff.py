@@ -14,6 +14,7 @@ import numpy as np
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from .gdal_errors import gdal_exceptions
+from .local_files import open_raster, reading
 from .unfinished import unfinished_path
 from .units import place_of_raster, place_raster
 
@@ -93,7 +94,8 @@ class IntensityImage:
         if c0 >= c1 or r0 >= r1:
             return values
         band = self._dataset((c1 - c0) * (r1 - r0)).GetRasterBand(1)
-        data = np.frombuffer(band.ReadRaster(c0, r0, c1 - c0, r1 - r0, buf_type=_float32()), np.float32).reshape(r1 - r0, c1 - c0)
+        with reading(self.path):
+            data = np.frombuffer(band.ReadRaster(c0, r0, c1 - c0, r1 - r0, buf_type=_float32()), np.float32).reshape(r1 - r0, c1 - c0)
         nodata = band.GetNoDataValue()
         known = np.isfinite(data) if nodata is None else np.isfinite(data) & (data != np.float32(nodata))
         values[r0 - row:r1 - row, c0 - column:c1 - column] = np.where(known, data, np.nan)
@@ -181,15 +183,10 @@ def _float32():
 
 
 def _open_raster(path):
-    from osgeo import gdal
 
     if not Path(path).is_file():
         raise RoadExtractionError(f"There is no file {path}. Give the intensity image written by “Intensity image”.")
-    try:
-        return gdal.Open(str(path))
-    except RuntimeError as problem:
-        raise RoadExtractionError(
-            f"{path} cannot be read as an image ({problem}). Give the GeoTIFF written by “Intensity image”.") from problem
+    return open_raster(path, "Give the GeoTIFF written by “Intensity image”.")
 
 
 def filled_tiles(dataset: Any) -> list[tuple[int, int]]:

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..io.gdal_errors import gdal_exceptions
 from ..io.geotiff import IntensityImage
+from ..io.local_files import open_raster
 from ..lazy import cv2
 from .rough_place import similarity
 from .source_image import SourceImage
@@ -35,7 +36,7 @@ def pair_cutouts(image: SourceImage, intensity: IntensityImage, pixel: np.ndarra
     """
     from osgeo import gdal
 
-    dataset = gdal.Open(image.path)
+    dataset = open_raster(image.path)
     if image.palette:
         dataset = gdal.Translate("", dataset, format="VRT", rgbExpand="rgb")
     bands = (1, 2, 3) if dataset.RasterCount - image.has_alpha >= 3 else (1, 1, 1)

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..io.gdal_errors import gdal_exceptions
+from ..io.local_files import open_raster
 from .source_image import SourceImage
 
 FULL_FRAME_DIAGONAL = 43.27  # mm, of the 24 x 36 mm that a focal length "in 35 mm film" refers to
@@ -46,9 +47,8 @@ class PositionTags:
 @gdal_exceptions()
 def read_position_tags(image: SourceImage) -> PositionTags | None:
     """The PositionTags of an image; None where it has no latitude and longitude."""
-    from osgeo import gdal
 
-    dataset = gdal.Open(image.path)
+    dataset = open_raster(image.path)
     packets = dataset.GetMetadata("xml:XMP")
     exif = {**(dataset.GetMetadata("EXIF") or {}), **(dataset.GetMetadata() or {})}
     return position_tags(exif, "".join(packets) if isinstance(packets, list) else "")

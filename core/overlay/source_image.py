@@ -9,6 +9,7 @@ import numpy as np
 
 from ..common.errors import RoadExtractionError
 from ..io.gdal_errors import gdal_exceptions
+from ..io.local_files import open_raster
 from ..io.units import NO_PLACE, place_of_raster
 
 
@@ -100,10 +101,7 @@ def open_image(path: str | Path) -> SourceImage:
 
     if not Path(path).is_file():
         raise RoadExtractionError(f"There is no file {path}. Give the image itself (TIFF, JPEG or PNG).")
-    try:
-        dataset = gdal.Open(str(path))
-    except RuntimeError as problem:
-        raise RoadExtractionError(f"{path} cannot be read as an image ({problem}). Give a TIFF, JPEG or PNG.") from problem
+    dataset = open_raster(path)
     if dataset.RasterCount == 0:
         raise RoadExtractionError(f"{path} is a container of several images. Give one of them, or export it as a TIFF.")
     transform, crs = place_of_raster(dataset)

@@ -12,6 +12,7 @@ from ..common.errors import Cancelled, RoadExtractionError
 from ..common.progress import Progress
 from ..io.gdal_errors import gdal_exceptions
 from ..io.geotiff import GEOTIFF_TILE
+from ..io.local_files import open_raster
 from ..io.unfinished import unfinished_path
 from ..io.units import as_in_file
 from .georeference import Georeferencing, node_grid, own_pixel_size
@@ -167,7 +168,7 @@ def _tiled(gdal, image, path, callback):
 
     A rotated image is read across its lines, and each such read would decompress the file from its beginning.
     """
-    dataset = gdal.Open(image.path)
+    dataset = open_raster(image.path)
     band = dataset.GetRasterBand(1)
     size = image.width * image.height * image.bands * gdal.GetDataTypeSize(band.DataType) // 8
     if size < GDAL_CACHE // 2 or band.GetBlockSize()[0] < image.width:

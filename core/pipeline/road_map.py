@@ -256,20 +256,21 @@ def _paint(result, image_path, settings, stages, executor):
                                      executor=executor.passing())
     executor.forget()
     markings = correct_markings(markings, result.corrections)
-    edges = result.edges.densified(frame)
+    edges, taken = result.edges.densified(frame), result.corrections.taken(frame)
     lines = stages.run("lines", "Fitting marking lines …", fit_marking_lines, clustered, markings, frame, settings.lines,
-                       edges=edges, road_points=result.road_points)
+                       edges=edges, road_points=result.road_points, taken=taken)
     known = np.c_[edges.course.x, edges.course.y, edges.course.z]
     corrected = correct_marking_lines(lines, frame, result.corrections, known)
     if corrected is not lines:
-        lines = named_by_estimate(corrected, frame, country(settings.lines.country).usual_lane, markings, edges, result.road_points, clustered)
+        lines = named_by_estimate(corrected, frame, country(settings.lines.country).usual_lane, markings, edges, result.road_points, clustered,
+                                  taken=taken)
     markings = named_by_lines(markings, lines)
     result.markings, result.marking_lines = markings_to_features(markings, frame), lines_to_features(lines, frame)
     paint = Points(columns_of_roads(clustered.store, clustered.roads()))
     result.marking_curvature = marking_curvature(paint, result.marking_lines.geometries, frame.origin)
     driving, elements, lanes = stages.run(
         "driving", "Making driving lines …", make_driving_lines, lines, frame, settings.driving,
-        markings=markings, edges=edges, road_points=result.road_points)
+        markings=markings, edges=edges, road_points=result.road_points, taken=taken)
     executor.release()
     driving, elements, lanes = correct_lanes(driving, elements, lanes, frame, result.corrections,
                                              settings.driving.lane_width or country(settings.driving.country).usual_lane, known)

@@ -10,6 +10,7 @@ from ..common.texts import told, tr
 from ..common.words import word
 from ..io.crs import horizontal_part, parse_crs
 from ..io.gdal_errors import gdal_exceptions
+from ..io.local_files import open_raster
 from ..io.units import NO_PLACE, place_of_raster
 from ..lazy import cv2
 from ..overlay.control_points import CHECK, CONTROL, DISABLED
@@ -149,7 +150,7 @@ def _reduced_copy(path):
     """((H, W, 3) small copy of the drawn image, pixels per metre, map coordinates of its north-west corner)."""
     from osgeo import gdal
 
-    dataset = gdal.Open(str(path))
+    dataset = open_raster(path)
     share = min(1.0, RESIDUAL_PICTURE_SIDE / max(dataset.RasterXSize, dataset.RasterYSize))
     width, height = (max(int(n * share), 1) for n in (dataset.RasterXSize, dataset.RasterYSize))
     colours = (3, 2, 1) if dataset.RasterCount >= 3 else (1, 1, 1)

@@ -14,6 +14,7 @@ import shapely
 
 from ..io.gdal_errors import gdal_exceptions
 from ..io.geotiff import GEOTIFF_TILE, filled_tiles
+from ..io.local_files import open_raster
 from ..io.units import NO_PLACE, place_of_raster
 from ..lazy import cv2
 
@@ -50,7 +51,7 @@ def grey_background(path: str, longest: int = MAP_LONGEST_SIDE) -> tuple[np.ndar
     """
     from osgeo import gdal
 
-    dataset = gdal.Open(str(path))
+    dataset = open_raster(path)
     width, height = dataset.RasterXSize, dataset.RasterYSize
     scale = min(1.0, longest / max(width, height))
     columns, rows = max(int(width * scale), 1), max(int(height * scale), 1)

@@ -11,6 +11,7 @@ from typing import Any
 
 from ..common.texts import language
 
+_END_OF_TITLE = "</h1>"
 TEMPLATES = Path(__file__).parent / "templates"
 
 
@@ -102,6 +103,14 @@ def _template() -> Any:
 
     loader = FileSystemLoader(str(TEMPLATES))
     return Environment(loader=loader, autoescape=True, undefined=StrictUndefined, keep_trailing_newline=True).get_template("page.html")
+
+
+def with_facts(html: str, rows: Iterable[tuple[str, str]]) -> str:
+    """A page of `Page.html` with a table of (name, value) below its title; another page stays as it is."""
+    from markupsafe import escape
+
+    table = "".join(f"<tr><td>{escape(name)}</td><td>{escape(value)}</td></tr>\n" for name, value in rows)
+    return html.replace(_END_OF_TITLE, f"{_END_OF_TITLE}\n<table>\n{table}</table>", 1)
 
 
 def number(value: float) -> str:

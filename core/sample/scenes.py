@@ -12,7 +12,7 @@ from .plan.roundabout import roundabout
 from .plan.scene import PlanScene
 from .plan.serpentine import serpentine
 from .streets.cycle_lanes import cycle_lanes
-from .streets.lane_scenes import hatched_island, no_centre_line, one_lane, wide_lane
+from .streets.lane_scenes import beside_middle, hatched_island, no_centre_line, one_lane, one_sided_island, solid_centre_line, wide_lane
 from .streets.ordinary import rural, street, urban
 from .streets.outskirts import outskirts
 from .streets.street import Scene
@@ -41,6 +41,9 @@ _SCENES = {
     "motorway": _Kind(motorway, 240.0, 600.0), "serpentine": _Kind(serpentine, 200.0, 1000.0),
     "crossing": _Kind(crossing, 110.0, 300.0), "roundabout": _Kind(roundabout, 110.0, 300.0)}
 SCENES = tuple(_SCENES)
+# those that tests survey and nobody is offered: streets that can be read in two ways
+_SCENES |= {"beside-middle": _Kind(beside_middle, *_STREET), "solid-centre-line": _Kind(solid_centre_line, *_STREET),
+            "one-sided-island": _Kind(one_sided_island, *_STREET)}
 
 
 def length_of(name: str, length: float) -> float:

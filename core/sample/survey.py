@@ -102,9 +102,10 @@ def make_sample_survey(settings: SampleSettings | None = None, progress: Progres
         If the CRS is not recognised, is geographic or not in metres.
     """
     from ..io.crs import check_metric, parse_crs
+    from ..io.units import as_in_file
 
     settings = settings or SampleSettings()
-    crs = parse_crs(settings.crs)
+    crs = parse_crs(as_in_file(settings.crs)[0])   # a survey is made in metres
     if crs is not None:
         check_metric(crs, "The sample survey")
     return SampleSurvey(settings, "" if crs is None else crs.to_wkt("WKT1_GDAL"), progress or Progress())

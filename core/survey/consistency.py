@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from .store.road_points import RoadPoints
 
 STATION_TOLERANCE = 1.0    # m: far more than rounding, far less than the shift of another drive
+# m from the roads: the widest corridor and an arm of a side street beyond it; the nodes compared are 5 m apart
+REACH_OF_ROADS, NODES_APART = 200.0, 50
 CHECKED_SECTIONS, CHECKED_POINTS_PER_SECTION = 50, 200  # evenly over the file
 
 
@@ -44,6 +46,47 @@ def check_features_on_roads(features: Features, frame: RoadFrame, label: str) ->
             x, y = shapely.get_coordinates(geometry).T[:2]
             agree.append(_station_agrees(frame, row["road"], x, y, row["station_m"]))
     _refuse_mismatch(agree, label, "features")
+
+
+def keep_near_roads(features: Features, frame: RoadFrame, label: str) -> str:
+    """Leave out what lies so far from the roads that it was drawn or written there by mistake: work goes with the length of lines.
+
+    Parameters
+    ----------
+    features : Features in map coordinates, which are changed: points and polygons go whole, of lines the vertices far away
+    frame : RoadFrame
+    label : name of the input, as at the beginning of a sentence
+
+    Returns
+    -------
+    What to tell of it, "" where all lies near
+    """
+    import shapely
+    from scipy.spatial import cKDTree
+
+    shapes = np.asarray(features.geometries, object)
+    if not len(shapes):
+        return ""
+    places, owner = shapely.get_coordinates(shapes, include_z=True, return_index=True)
+    local = np.column_stack(frame.to_local(places[:, 0], places[:, 1]))
+    nodes = np.concatenate([np.column_stack([road.x, road.y])[::NODES_APART] for road in frame.roads])
+    low, high = nodes.min(axis=0) - REACH_OF_ROADS, nodes.max(axis=0) + REACH_OF_ROADS
+    far = ~((local >= low) & (local <= high)).all(axis=1)
+    far[~far] = ~np.isfinite(cKDTree(nodes).query(local[~far], distance_upper_bound=REACH_OF_ROADS)[0])
+    if not far.any():
+        return ""
+    lines = shapely.get_type_id(shapes) == shapely.GeometryType.LINESTRING
+    kept = np.bincount(owner[~far], minlength=len(shapes))
+    touched = np.unique(owner[far])
+    cut = touched[lines[touched] & (kept[touched] > 1)]
+    for row in cut.tolist():
+        features.geometries[row] = shapely.linestrings(places[(owner == row) & ~far])
+    gone = set(touched.tolist()) - set(cut.tolist())
+    example = places[int(np.argmax(far))]
+    features.geometries[:], features.rows[:] = ([value for row, value in enumerate(values) if row not in gone]
+                                                for values in (features.geometries, features.rows))
+    return (f"{label}: {np.count_nonzero(far):,} of {len(far):,} vertices lie more than {REACH_OF_ROADS:.0f} m from the trajectory, the first at "
+            f"{example[0]:.1f}, {example[1]:.1f}. They were left out, and {len(gone):,} of {len(shapes):,} features with them.")
 
 
 def check_road_points_on_roads(road_points: RoadPoints, frame: RoadFrame, label: str) -> None:

@@ -15,8 +15,9 @@ from ..common.setting import check_limits, setting
 from ..io.cloud_crs import check_projected, crs_note
 from .frame.build import build_frame
 from .las.copies import PER_METRE, distinct_rows, may_overlap, without_copies
-from .las.luminance import INTENSITY_SOURCES, without_intensity
+from .las.intensity_source import INTENSITY_SOURCES, intensity_source_of, without_intensity
 from .las.reader import POINTS_PER_BLOCK, read_blocks, read_headers
+from .las.samples import coarse_coordinates, sample_files
 from .las.scanners import ScannerCensus
 from .read_survey import match_clocks
 from .reading.sensor_height import HEIGHT_PEAK_REACH, OWN_TRACK_HALF_WIDTH, sensor_height_of
@@ -30,6 +31,7 @@ INTENSITY_VALUES = 65536
 MAX_DENSITY_CELLS = 40_000_000  # of the density raster
 MAX_COPY_SAMPLES = 500_000      # points among which copies are looked for
 COPY_PRIMES = np.array([73856093, 19349663, 83492791])   # mix the numbers of a place, so that neighbours are chosen apart from each other
+CELLS_BEFORE = 2**19      # cells either side of the first, in each direction
 PROFILE_STEP = 2.0         # m driven between the heights of the profile
 
 
@@ -113,7 +115,8 @@ def inspect_survey(paths: Sequence[str | Path], trajectory: Trajectory | None = 
             done += len(block)
             progress.report(done / total)
     found = counter.inspection(files, wkt, trajectory, progress)
-    found.notes[:0] = copies
+    samples = sample_files(files)
+    found.notes[:0] = copies + [note for note in (coarse_coordinates(samples), intensity_source_of(samples, INTENSITY_SOURCES[0])[1]) if note]
     return found
 
 
@@ -133,9 +136,9 @@ class _Counter:
     def __init__(self, files, settings, trajectory):
         self.settings = settings
         filled = [file for file in files if file.count]
-        self.minimum = np.min([file.minimum for file in filled], axis=0)
-        self.maximum = np.max([file.maximum for file in filled], axis=0)
-        self.corner = np.floor(self.minimum / settings.cell_size) * settings.cell_size
+        self.minimum, self.maximum = np.full(3, np.inf), np.full(3, -np.inf)
+        # where cells are counted from; points may lie before it where headers state other bounds
+        self.corner = np.floor(np.min([file.minimum for file in filled], axis=0) / settings.cell_size) * settings.cell_size
         self.cells, self.cubes = _Tally(), _Tally()
         self.intensity = np.zeros(INTENSITY_VALUES, np.int64)
         self.census, self.time = ScannerCensus(), [np.inf, -np.inf]
@@ -150,6 +153,9 @@ class _Counter:
     def take(self, block):
         x, y, z = (np.asarray(block[name], float) for name in "xyz")
         self.count += len(x)
+        if len(x):
+            self.minimum, self.maximum = (beyond(known, [end(axis) for axis in (x, y, z)])
+                                          for beyond, end, known in ((np.minimum, np.min, self.minimum), (np.maximum, np.max, self.maximum)))
         cell, cube = self.settings.cell_size, self.settings.cube_size
         column, row = np.floor((x - self.corner[0]) / cell), np.floor((y - self.corner[1]) / cell)
         self.cells.add(_key(column, row))
@@ -204,16 +210,16 @@ class _Counter:
 
     def _raster(self):
         cell = self.settings.cell_size
-        width, height = (int(np.floor((self.maximum[k] - self.corner[k]) / cell)) + 1 for k in (0, 1))
-        corner = (self.corner[0], self.corner[1] + height * cell)
+        column, row, _ = _unkey(self.cells.keys)
+        first, last = row.min(), row.max()
+        west, width, height = column.min(), int(np.ptp(column)) + 1, int(last - first) + 1
+        corner = (self.corner[0] + west * cell, self.corner[1] + (last + 1) * cell)
         if width * height > MAX_DENSITY_CELLS:
             raise RoadExtractionError(
                 f"A density raster of {width:,} x {height:,} cells of {cell} m would be too large. Choose a larger cell, or "
                 "inspect fewer files at once.")
         image = np.full((height, width), np.nan, np.float32)
-        column, row, _ = _unkey(self.cells.keys)
-        inside = (column < width) & (row < height) & (column >= 0) & (row >= 0)
-        image[height - 1 - row[inside], column[inside]] = self.cells.counts[inside] / cell**2
+        image[last - row, column - west] = self.cells.counts / cell**2
         return image, corner
 
 
@@ -244,14 +250,13 @@ def _copy_samples(place, time, every):
 
 
 def _key(column, row, layer=0):
-    """One int64 of up to three cell numbers below 2**20 each."""
-    part = [np.clip(np.asarray(v), 0, 2**20 - 1).astype(np.int64) for v in (column, row, layer)]
+    """One int64 of up to three cell numbers from -CELLS_BEFORE to below CELLS_BEFORE."""
+    part = [np.clip(np.asarray(v) + CELLS_BEFORE, 0, 2 * CELLS_BEFORE - 1).astype(np.int64) for v in (column, row, layer)]
     return (part[2] << 40) | (part[1] << 20) | part[0]
 
 
 def _unkey(keys):
-    mask = 2**20 - 1
-    return keys & mask, (keys >> 20) & mask, keys >> 40
+    return tuple((keys >> bits & 2 * CELLS_BEFORE - 1) - CELLS_BEFORE for bits in (0, 20, 40))
 
 
 def _density(counts, size):
@@ -282,7 +287,7 @@ def _judge_trajectory(found, wkt, has_time, progress):
     """Overlap in space and time; what is wrong goes to the notes."""
     try:
         trajectory = clean_trajectory(reproject_trajectory(found.trajectory, wkt))
-        found.notes += [note for note in trajectory.notes if note not in found.notes]
+        found.notes += [note for note in (*trajectory.notes, *trajectory.doubts) if note not in found.notes]
         if has_time:
             trajectory, note, *_ = match_clocks(found.files, trajectory, SurveySettings(), progress)
             found.notes += [note] if note else []

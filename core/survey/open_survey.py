@@ -18,6 +18,7 @@ from ..execution.work_folder import Heard, KeptResults, WorkFolder, code_digest
 from .las.copies import without_copies
 from .las.reader import read_headers
 from .read_survey import SharedReading, read_survey
+from .store.spill_file import parts_are_whole
 from .survey import SURVEY_FOLDER, Survey, SurveySettings, survey_in_folder
 
 if TYPE_CHECKING:
@@ -92,6 +93,9 @@ def _kept_survey(work, executor, read, progress):
             return found
         heard = Heard(progress)
         parts = WorkFolder(str(work.path / f"{name}.parts"))
+        if not parts_are_whole(parts.path / "points"):
+            parts.discard()
+            parts = WorkFolder(str(parts.path))
         reading = KeptResults(_readers(executor.executor, files, progress), parts)
         shared = SharedReading(reading, executor.executor, parts.path / "points", work.begin(name))
         try:

@@ -23,9 +23,10 @@ from .frame.build import build_frame
 from .frame.road import CORRIDOR
 from .frame.sigma_along import SigmaAlong
 from .las.copies import distinct_rows, may_overlap
-from .las.luminance import check_coloured, without_intensity
+from .las.intensity_source import check_coloured, intensity_source_of, without_intensity
 from .las.parallel_reader import ParallelCloudReader
 from .las.reader import CloudHeader
+from .las.samples import coarse_coordinates, sample_files
 from .reading.blocks import PointChoice, unwrap_week
 from .reading.survey_reader import SurveyReader
 from .store.records import COORDINATE_SCALE, SURVEY_POINT, point_dtype
@@ -86,8 +87,7 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
         If a file cannot be read, the CRS is geographic or not in metres, or the
         trajectory does not overlap the cloud in space or time.
     """
-    coloured = settings.intensity_from == "rgb"
-    if coloured:
+    if settings.intensity_from == "rgb":
         check_coloured(files)
     crs = check_projected(files, settings.crs, trajectory.crs)
     if note := crs_note(files, settings.crs, crs):
@@ -107,14 +107,21 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     frame.has_time = has_time
     for note in frame.notes:
         progress.info(note)
+    for doubt in trajectory.doubts:
+        progress.warn(doubt)
     if not has_time and len(frame.passes) > len(frame.roads):
         progress.warn(f"The trajectory drives {len(frame.passes)} times over {len(frame.roads)} road(s), and as {_without_time(files, trajectory)} "
                       "the passes are mixed: whatever they differ by blurs the map. Export points and trajectory with their time, or process "
                       "the files of each drive with its own part of the trajectory.")
     _check_extent(files, frame, crs, trajectory.crs)
+    samples = sample_files(files)
+    intensity, intensity_note = intensity_source_of(samples, settings.intensity_from)
+    for note in (coarse_coordinates(samples), intensity_note):
+        if note:
+            progress.warn(note)
     store = SectionStore(point_dtype(SURVEY_POINT, frame.farthest), settings.section_length or section_length(files, frame),
                          settings.memory_limit, folder=None if shared is None else shared.points)
-    reader = SurveyReader(frame, store, PointChoice(settings.corridor, has_time, week_ends, settings.above_road, coloured))
+    reader = SurveyReader(frame, store, PointChoice(settings.corridor, has_time, week_ends, settings.above_road, intensity))
     again = settings.fit_passes and has_time and len(frame.passes) > len(frame.roads)
     read_at = INGEST_PROGRESS if again else 1.0
     if shared is None:
@@ -154,7 +161,7 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
                  f"{len(frame.roads)} road(s), {len(frame.passes)} pass(es), {len(scanners)} scanner(s); "
                  f"sensor {height:.2f} m above the road.")
     time, place = _sampled(files, reader, has_time, progress)
-    if coloured:
+    if intensity.field == "rgb":
         progress.info("The brightness of the points' colours is taken as their intensity.")
     if not survey.has_intensity and (note := without_intensity(files, settings.intensity_from)):
         progress.warn(note)

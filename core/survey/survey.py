@@ -15,7 +15,7 @@ from ..execution.phase import Executor, Recipe
 from ..execution.plain import read_plain, write_plain
 from ..execution.threads import THREADS
 from .frame.road import CORRIDOR
-from .las.luminance import INTENSITY_SOURCES
+from .las.intensity_source import INTENSITY_SOURCES
 from .las.reader import POINTS_PER_BLOCK, CloudHeader
 from .reading.blocks import KEPT_ABOVE_ROAD
 from .reading.finishing import Finishing

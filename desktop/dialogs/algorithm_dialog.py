@@ -6,14 +6,20 @@ import json
 from pathlib import Path
 
 from processing.gui.AlgorithmDialog import AlgorithmDialog
-from qgis.core import Qgis, QgsProcessingAlgorithm, QgsProject, QgsSettings
+from qgis import utils
+from qgis.core import Qgis, QgsProcessingAlgorithm, QgsProcessingContext, QgsProcessingFeedback, QgsProject, QgsSettings
 from qgis.PyQt.QtWidgets import QDialogButtonBox, QFileDialog, QInputDialog, QMenu, QPushButton, QTextBrowser, QWidget
 
+from ...algorithms.cloud_files import cloud_files, survey_name
+from ...core.common.errors import RoadExtractionError
+from ...processing_provider.results.run_table import last_run
 from ...processing_provider.texts import tr
-from ..review.corrections_layer import corrections_layers
+from ..messages import tell_result
+from ..review.corrections_layer import SURVEY, corrections_layers
 from .batch_dialog import BatchAlgorithmDialog
 from .database_dialog import DatabaseDialog, database_destinations
 from .destinations import LAST_OUTPUT, destinations, outputs_by_default
+from .stage_inputs import name_by_survey, presets
 
 LAST_INPUT = "/Processing/LastInputPath"  # QGIS's own setting
 PRESETS = "lanewright/presets"
@@ -25,6 +31,7 @@ class LanewrightDialog(AlgorithmDialog):
     """QGIS's dialog of an algorithm; `title` stands in its frame."""
 
     def __init__(self, algorithm: QgsProcessingAlgorithm, title: str, parent: QWidget | None = None):
+        self.before: set[str] = set()  # layers of the project when the run began
         super().__init__(algorithm, False, parent)
         self.setWindowTitle(title)
         if len(outputs_by_default(algorithm)) >= FEWEST_OUTPUTS:
@@ -40,7 +47,9 @@ class LanewrightDialog(AlgorithmDialog):
         self.presets.aboutToShow.connect(self._list_presets)
         self.presets_button.setMenu(self.presets)
         self.updateRunButtonVisibility()  # the box shows all of its buttons when it gets another
-        self._offer_corrections()
+        self.setParameters(presets(algorithm, QgsProject.instance(), utils.iface.activeLayer() if utils.iface is not None else None))
+        self._follow_survey()
+        self.named = name_by_survey(self, QgsProject.instance())
         help_shown = self.findChild(QTextBrowser, "textShortHelp")
         if help_shown is not None:
             help_shown.setHtml(help_shown.toHtml().replace(algorithm.displayName(), title, 1))
@@ -51,11 +60,35 @@ class LanewrightDialog(AlgorithmDialog):
         self.batch = BatchAlgorithmDialog(self.algorithm().create(), self.windowTitle(), self.parentWidget())
         self.batch.show()
 
-    def _offer_corrections(self):
-        """The corrections of the project, where it has one layer of them."""
-        layers = corrections_layers(QgsProject.instance())
-        if self.algorithm().parameterDefinition("CORRECTIONS") is not None and len(layers) == 1:
-            self.setParameters({"CORRECTIONS": layers[0].id()})
+    def runAlgorithm(self) -> None:
+        """Run it; the layers that are there before are no results."""
+        self.before = set(QgsProject.instance().mapLayers())
+        super().runAlgorithm()
+
+    def finish(self, successful: bool, result: dict, context: QgsProcessingContext, feedback: QgsProcessingFeedback, in_place: bool = False) -> None:
+        """Load the results as QGIS does, and say in its message bar where they are and what the run warned of."""
+        super().finish(successful, result, context, feedback, in_place)
+        run = last_run()
+        if successful and run is not None and utils.iface is not None:
+            layers = [layer for name, layer in QgsProject.instance().mapLayers().items() if name not in self.before]
+            tell_result(utils.iface, run.title, layers, run.warnings)
+
+    def _follow_survey(self):
+        """Offer the corrections of the survey whose point clouds are chosen, and none of another."""
+        wrappers = self.mainWidget().wrappers
+        if {"CORRECTIONS", "POINT_CLOUDS"} <= set(wrappers):
+            clouds = wrappers["POINT_CLOUDS"]
+            clouds.widgetValueHasChanged.connect(lambda *changed: self._offer_corrections(clouds.parameterValue()))
+
+    def _offer_corrections(self, clouds):
+        try:
+            survey = survey_name(cloud_files(clouds or [], tr("Point clouds")))
+        except RoadExtractionError:  # not yet whole
+            return
+        of = {layer.customProperty(SURVEY): layer.id() for layer in reversed(corrections_layers(QgsProject.instance()))}
+        chosen = self.mainWidget().wrappers["CORRECTIONS"].parameterValue()
+        if survey in of or chosen in of.values():
+            self.setParameters({"CORRECTIONS": of.get(survey)})
 
     def _button(self, text, tip):
         button = QPushButton(text)

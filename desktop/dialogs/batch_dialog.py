@@ -10,9 +10,8 @@ from processing.gui import BatchAlgorithmDialog as qgis_batch
 from qgis.core import Qgis, QgsProcessing, QgsProcessingAlgorithm, QgsProcessingOutputHtml, QgsProcessingUtils, QgsSettings
 from qgis.PyQt.QtWidgets import QDialogButtonBox, QFileDialog, QPushButton, QWidget
 
-from ...algorithms.cloud_files import cloud_files
+from ...algorithms.cloud_files import cloud_files, survey_name
 from ...core.common.errors import RoadExtractionError
-from ...processing_provider.results.runs import survey_name
 from ...processing_provider.texts import tr
 from .destinations import LAST_OUTPUT, destinations, outputs_by_default
 

@@ -18,6 +18,7 @@ from qgis.core import (
     QgsMapLayerLegendUtils,
     QgsPrintLayout,
     QgsRenderContext,
+    QgsSymbolLegendNode,
     QgsTextFormat,
 )
 from qgis.PyQt.QtCore import QRectF, QSizeF
@@ -30,6 +31,11 @@ FONT = "DejaVu Sans"
 DPI = 300.0                      # of the measurement; any would do
 STYLES = (QgsLegendStyle.Style.Title, QgsLegendStyle.Style.Group, QgsLegendStyle.Style.Subgroup, QgsLegendStyle.Style.Symbol,
           QgsLegendStyle.Style.SymbolLabel)
+
+
+def as_it_stands(text: str) -> str:
+    """A text of others, such as the name of a survey or a CRS, for a layout, which would evaluate expressions between [% and %] in it."""
+    return text.replace("[%", "[% '[%' %]")
 
 
 def drawn(layers: list[QgsMapLayer]) -> list[QgsMapLayer]:
@@ -70,7 +76,9 @@ def add_legend(layout: QgsPrintLayout, layers: list[QgsMapLayer], room: QRectF) 
     root.clear()
     vectors = drawn(layers)
     for layer in vectors:
-        _leave_out_empty_classes(legend, root.addLayer(layer), layer)
+        node = root.addLayer(layer)
+        _leave_out_empty_classes(legend, node, layer)
+        _print_as_it_stands(legend, node, layer)
     legend.setSplitLayer(False)
     legend.setEqualColumnWidth(False)
     legend.setColumnSpace(3)
@@ -104,6 +112,17 @@ def _leave_out_empty_classes(legend, node: QgsLayerTreeLayer, layer):
     if order:
         QgsMapLayerLegendUtils.setLegendNodeOrder(node, order)
         legend.model().refreshLayerLegend(node)
+
+
+def _print_as_it_stands(legend, node, layer):
+    """Let no expression in the names of a layer and of its classes be evaluated."""
+    if "[%" in layer.name():
+        node.setCustomProperty("legend/title-label", as_it_stands(layer.name()))
+    for row, entry in enumerate(legend.model().layerOriginalLegendNodes(node)):
+        label = entry.symbolLabel() if isinstance(entry, QgsSymbolLegendNode) else ""
+        if "[%" in label:
+            QgsMapLayerLegendUtils.setLegendNodeUserLabel(node, row, as_it_stands(label))
+            legend.model().refreshLayerLegend(node)
 
 
 def _set_sizes(legend, title, entry, symbol):

@@ -31,7 +31,7 @@ from qgis.PyQt.QtCore import QRectF, Qt
 from qgis.PyQt.QtGui import QColor, QFont
 
 from ...processing_provider.texts import tr
-from .layout_legend import add_legend, legend_height
+from .layout_legend import add_legend, as_it_stands, legend_height
 from .page_series import MapPage, pages_along
 
 PAPERS = {"A4": (297.0, 210.0), "A3": (420.0, 297.0)}  # mm, landscape
@@ -207,7 +207,8 @@ def _add_map(layout, layers, crs, frame, centre, angle, scale):
 def _add_heading(layout, title, crs, frame, atlas):
     """The title, and on the right the CRS of the map and the page of an atlas."""
     page = ", " + tr("page") + " [% @atlas_featurenumber %] / [% @atlas_totalfeatures %]" if atlas else ""
-    for text, size, side in ((title, 13, Qt.AlignmentFlag.AlignLeft), (crs.userFriendlyIdentifier() + page, 8, Qt.AlignmentFlag.AlignRight)):
+    right = as_it_stands(crs.userFriendlyIdentifier()) + page
+    for text, size, side in ((as_it_stands(title), 13, Qt.AlignmentFlag.AlignLeft), (right, 8, Qt.AlignmentFlag.AlignRight)):
         heading = QgsLayoutItemLabel(layout)
         heading.setText(text)
         heading.setHAlign(side)
@@ -265,7 +266,7 @@ def _add_credit(layout, frame, credit):
     """In the lower left corner of the map."""
     label = QgsLayoutItemLabel(layout)
     label.setId("Credit")
-    label.setText(credit)
+    label.setText(as_it_stands(credit))
     label.setTextFormat(_text(6.5))
     label.setBackgroundEnabled(True)
     label.setBackgroundColor(QColor(255, 255, 255, 200))

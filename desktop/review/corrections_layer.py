@@ -9,9 +9,11 @@ from qgis.core import (
     Qgis,
     QgsCoordinateReferenceSystem,
     QgsCoordinateTransform,
+    QgsCsException,
     QgsFeature,
     QgsGeometry,
     QgsProject,
+    QgsRectangle,
     QgsVectorFileWriter,
     QgsVectorLayer,
 )
@@ -25,16 +27,42 @@ from ...processing_provider.texts import tr
 
 NAME = "CORRECTIONS"
 TABLE = "corrections"
+NEEDED = {"action", "target"}        # fields by which a layer of corrections is known
+SURVEY = "lanewright/survey"         # custom property of the layer: whose corrections it has
+MOVED = 2.0        # m that a piece is moved at most
 SAME_PLACE = 0.1   # m between two lines of which one is taken for the other
 
 
 def corrections_layers(project: QgsProject) -> list[QgsVectorLayer]:
-    """The layers of corrections in a project, newest first."""
-    nodes = project.layerTreeRoot().findLayers()
-    return [node.layer() for node in nodes if node.layer() is not None and node.layer().customProperty(OUTPUT) == NAME]
+    """The layers of corrections in a project, from above: made here, or dropped in."""
+    layers = [node.layer() for node in project.layerTreeRoot().findLayers() if isinstance(node.layer(), QgsVectorLayer)]
+    return [layer for layer in layers if NEEDED <= {field.name() for field in layer.fields()}]
 
 
-def new_corrections_layer(project: QgsProject, path: str, crs: QgsCoordinateReferenceSystem) -> QgsVectorLayer:
+def corrections_of_survey(project: QgsProject, survey: str, extent: QgsRectangle, crs: QgsCoordinateReferenceSystem) -> QgsVectorLayer | None:
+    """The layer with the corrections of a survey: one that says so, else one that says nothing and lies where the survey does.
+
+    Parameters
+    ----------
+    project : QgsProject
+    survey : its name
+    extent, crs : where it lies
+    """
+    for layer in corrections_layers(project):
+        of = layer.customProperty(SURVEY)
+        if of == survey or not of and layer.featureCount() > 0 and _overlaps(layer, extent, crs, project):
+            return layer
+    return None
+
+
+def _overlaps(layer, extent, crs, project):
+    try:
+        return QgsCoordinateTransform(crs, layer.crs(), project).transformBoundingBox(extent).intersects(layer.extent())
+    except QgsCsException:
+        return False
+
+
+def new_corrections_layer(project: QgsProject, path: str, crs: QgsCoordinateReferenceSystem, survey: str = "") -> QgsVectorLayer:
     """A layer of corrections above all others, in a GeoPackage; one that is there already is taken up again.
 
     Raises
@@ -54,22 +82,25 @@ def new_corrections_layer(project: QgsProject, path: str, crs: QgsCoordinateRefe
                 tr("The corrections cannot be kept in {path}: {problem}. Choose another place.").format(path=path, problem=problem))
     layer = QgsVectorLayer(f"{path}|layername={TABLE}", tr("Corrections"), "ogr")
     names = {field.name() for field in layer.fields()} if layer.isValid() else set()
-    if not {"action", "target"} <= names:
+    if not NEEDED <= names:
         raise RoadExtractionError(tr("{path} holds no layer of corrections. Choose a new name.").format(path=path))
     apply_style(layer, STYLES / "corrections.qml", CORRECTIONS, NAME)
     layer.setCustomProperty(OUTPUT, NAME)
+    layer.setCustomProperty(SURVEY, survey)
     project.addMapLayer(layer, False)
     project.layerTreeRoot().insertLayer(0, layer)
     return layer
 
 
-def add_correction(layer: QgsVectorLayer, line: QgsGeometry, crs: QgsCoordinateReferenceSystem, **values: object) -> int:
+def add_correction(layer: QgsVectorLayer, line: QgsGeometry, crs: QgsCoordinateReferenceSystem, former: QgsFeature | None = None,
+                   **values: object) -> int:
     """Write one row; an earlier one of the same target at the same place makes room for it.
 
     Parameters
     ----------
     layer : of corrections
     line, crs : its course, and the CRS of its coordinates
+    former : an earlier decision about the same piece, None where there is none; one of the same target at this place is found without it
     values : of the fields; those that are None stay empty
 
     Returns
@@ -78,7 +109,7 @@ def add_correction(layer: QgsVectorLayer, line: QgsGeometry, crs: QgsCoordinateR
     """
     placed = QgsGeometry(line)
     placed.transform(QgsCoordinateTransform(crs, layer.crs(), QgsProject.instance()))
-    former = correction_at(layer, line, crs, str(values["target"]))
+    former = former or correction_at(layer, line, crs, str(values["target"]))
     feature = QgsFeature(layer.fields())
     feature.setGeometry(placed)
     for name, value in values.items():
@@ -101,6 +132,18 @@ def correction_at(layer: QgsVectorLayer, line: QgsGeometry, crs: QgsCoordinateRe
     box = placed.boundingBox().buffered(SAME_PLACE)
     for feature in layer.getFeatures(box):
         if feature["target"] == target and feature.geometry().hausdorffDistance(placed) < SAME_PLACE:
+            return feature
+    return None
+
+
+def move_of(layer: QgsVectorLayer, line: QgsGeometry, crs: QgsCoordinateReferenceSystem, target: str, road: int, station: float) -> QgsFeature | None:
+    """The correction that moves a piece, by where the piece begins and lies; None where there is none."""
+    placed = QgsGeometry(line)
+    placed.transform(QgsCoordinateTransform(crs, layer.crs(), QgsProject.instance()))
+    for feature in layer.getFeatures(placed.boundingBox().buffered(MOVED)):
+        begins = feature["road"], feature["station_m"]
+        if (feature["action"], feature["target"]) == ("move", target) and NULL not in begins and begins[0] == road \
+                and abs(begins[1] - station) < SAME_PLACE and feature.geometry().distance(placed) < MOVED:
             return feature
     return None
 

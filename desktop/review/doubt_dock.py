@@ -15,9 +15,11 @@ from qgis.core import (
 )
 from qgis.gui import QgsRubberBand
 from qgis.PyQt.QtCore import Qt, pyqtSignal
-from qgis.PyQt.QtGui import QColor
+from qgis.PyQt.QtGui import QAction, QColor, QKeySequence
 from qgis.PyQt.QtWidgets import (
     QAbstractItemView,
+    QCheckBox,
+    QComboBox,
     QDockWidget,
     QFileDialog,
     QHBoxLayout,
@@ -34,13 +36,14 @@ from ...core.common.errors import RoadExtractionError
 from ...processing_provider.results.attributes import WORDS
 from ...processing_provider.results.road_maps import RoadMap, clouds_of
 from ...processing_provider.texts import tr
-from .corrections_layer import add_correction, correction_at, corrections_layers, new_corrections_layer, take_back
+from .corrections_layer import add_correction, correction_at, corrections_of_survey, move_of, new_corrections_layer, take_back
 from .doubtful import Doubt, DoubtfulPiece, doubts_of
 from .line_tool import LineTool
 
 LEAST_VIEW = 30.0   # m of ground shown about a place
 FILE = "corrections.gpkg"
 CHOSEN = "#ff00c8"  # pieces that the buttons are about
+SEEN = "lanewright/seen"  # custom property of a layer: keys of pieces that were accepted and that no correction could be about, one a line
 
 
 class DoubtDock(QDockWidget):
@@ -64,6 +67,7 @@ class DoubtDock(QDockWidget):
         self.tool = LineTool(iface.mapCanvas())
         self.tool.drawn.connect(self._line_drawn)
         self.tool.given_up.connect(self._stop_drawing)
+        self.tool.too_short.connect(lambda: self._hint(tr("A line takes two clicks at least.")))
         self._build()
         # beside the Results Viewer, which opens with the first report: below it the list had room for three lines
         iface.addTabifiedDockWidget(Qt.DockWidgetArea.RightDockWidgetArea, self, [], True)
@@ -72,11 +76,20 @@ class DoubtDock(QDockWidget):
     def _build(self):
         self.where = QLabel()
         self.where.setWordWrap(True)
-        back, ahead = QPushButton("◀"), QPushButton("▶")
-        for button, step, tip in ((back, -1, tr("The place before")), (ahead, 1, tr("The next place"))):
-            button.setToolTip(tip)
+        back = self._button("◀", tr("The place before"), lambda: self.go(self.road_map, -1), "P")
+        ahead = self._button("▶", tr("The next place"), lambda: self.go(self.road_map), "N")
+        for button in (back, ahead):
             button.setFixedWidth(34)
-            button.clicked.connect(lambda checked=False, step=step: self.go(self.road_map, step))
+        self.kinds = QComboBox()
+        for title, kind in ((tr("Everything"), ""), (tr("Road edges"), "edge"), (tr("Road surface"), "surface"), (tr("Marking lines"), "marking"),
+                            (tr("Lanes"), "lane"), (tr("Warnings"), "warning")):
+            self.kinds.addItem(title, kind)
+        self.order = QComboBox()
+        self.order.addItem(tr("The most doubtful first"), True)
+        self.order.addItem(tr("Along the road"), False)
+        self.undecided = QCheckBox(tr("Only what is not done"))
+        for changed in (self.kinds.currentIndexChanged, self.order.currentIndexChanged):
+            changed.connect(lambda index: self._begin_again())
         self.list = QListWidget()
         self.list.setSelectionMode(QAbstractItemView.SelectionMode.ExtendedSelection)
         self.list.setWordWrap(True)
@@ -84,14 +97,18 @@ class DoubtDock(QDockWidget):
         self.list.itemSelectionChanged.connect(self._selected)
         self.note = QLineEdit()
         self.note.setPlaceholderText(tr("Note, kept with the correction"))
-        self.accept_button = self._button(tr("Accept"), tr("It is right as it is"), lambda: self.decide("accept"))
-        self.delete_button = self._button(tr("Delete"), tr("There is nothing of that kind here"), lambda: self.decide("delete"))
-        self.move_button = self._button(tr("Move…"), tr("Draw where it belongs, within 2 m of where it is"), self.begin_move)
+        self.accept_button = self._button(tr("Accept"), tr("It is right as it is"), lambda: self.decide("accept"), "A")
+        self.delete_button = self._button(tr("Delete"), tr("There is nothing of that kind here"), lambda: self.decide("delete"), "D")
+        self.move_button = self._button(tr("Move…"), tr("Draw where it belongs, within 2 m of where it is"), self.begin_move, "M")
         self.draw_button = self._button(tr("Draw"), tr("Draw what is missing"), lambda: None)
         menu = QMenu(self)
         for target, title in (("edge", tr("Road edge…")), ("marking", tr("Marking line…")), ("lane", tr("Lane, in the direction of travel…"))):
             menu.addAction(title, lambda target=target: self.begin_draw(target))
         self.draw_button.setMenu(menu)
+        self.hint = QLabel()  # in the message bar it would lie on the map, and clicks on it would be lost
+        self.hint.setWordWrap(True)
+        self.hint.setStyleSheet("background: #fff3c4; color: #222222; padding: 4px")
+        self.hint.hide()
         self.kept = QLabel()
         self.kept.setWordWrap(True)
         self.undo_button = self._button(tr("Take back the last"), tr("Removes the correction that was made last"), self.undo)
@@ -101,23 +118,32 @@ class DoubtDock(QDockWidget):
         column = QVBoxLayout(body)
         column.setContentsMargins(6, 6, 6, 6)
         column.addLayout(_row(back, ahead, self.where))
+        column.addLayout(_row(self.kinds, self.order))
+        column.addWidget(self.undecided)
         column.addWidget(self.list, 1)
         column.addLayout(_row(self.accept_button, self.delete_button, self.move_button, self.draw_button))
         column.addWidget(self.note)
+        column.addWidget(self.hint)
         column.addWidget(self.kept)
         column.addLayout(_row(self.undo_button, self.run_button))
         self.setWidget(body)
 
-    def _button(self, text, tip, what):
+    def _button(self, text, tip, what, key=""):
+        """A button; `key` presses it while the window has the focus."""
         button = QPushButton(text)
-        button.setToolTip(tip)
+        button.setToolTip(f"{tip} ({key})" if key else tip)
         button.clicked.connect(lambda checked=False: what())
+        if key:
+            action = QAction(tip, self)
+            action.setShortcut(QKeySequence(key))
+            action.setShortcutContext(Qt.ShortcutContext.WidgetWithChildrenShortcut)
+            action.triggered.connect(lambda checked=False: button.click())
+            self.addAction(action)
         return button
 
     def remove(self) -> None:
         """Take the window out of QGIS."""
-        if self.iface.mapCanvas().mapTool() is self.tool:
-            self.iface.mapCanvas().unsetMapTool(self.tool)
+        self._stop_drawing()
         self._unlight()
         self.iface.removeDockWidget(self)
 
@@ -134,35 +160,67 @@ class DoubtDock(QDockWidget):
             return
         of = [(layer.id(), layer.featureCount()) for layer in road_map.vectors]
         if of != self._of:
-            self.places, self.at, self._of, self.road_map = doubts_of(road_map), -1 if step > 0 else 0, of, road_map
+            self._of, self.road_map = of, road_map
+            self._list_places()
         self.show()
         self.raise_()
-        if self.places:
-            self.at = (self.at + step) % len(self.places)
+        for _ in self.places:
+            self.at = (self.at + step) % len(self.places) if self.at >= 0 else 0 if step > 0 else len(self.places) - 1
+            if not self.undecided.isChecked() or not self._is_done(self.place):
+                break
         self._fill()
+        self.list.setFocus()  # for the keys
         if self.place is not None:
             self._zoom(self.place)
             self.shown.emit(self.place)
+
+    def _list_places(self):
+        kind = self.kinds.currentData()
+        found = doubts_of(self.road_map, [kind] if kind else [])
+        self.places, self.at = sorted(found, key=lambda place: -place.doubt) if self.order.currentData() else found, -1
+
+    def _begin_again(self):
+        """The first place of another choice or order."""
+        if self.road_map is not None:
+            self._list_places()
+            self.go(self.road_map)
 
     def _fill(self, chosen=0):
         """List the pieces of the place; the buttons are about one of them, until the user selects more."""
         place = self.place
         self.list.clear()
         if place is None:
-            self.where.setText(tr("Nothing in this road map is doubtful: all of it was measured."))
+            self.where.setText(tr("Nothing of this is doubtful in the road map: all of it was measured."))
         else:
-            self.where.setText(tr("<b>Place {at} of {count}</b>, road {road}, station {station:.0f} m").format(
-                at=self.at + 1, count=len(self.places), road=place.road, station=place.station))
+            self.where.setText(tr("<b>Place {at} of {count}</b>, {done} done; road {road}, station {station:.0f} m").format(
+                at=self.at + 1, count=len(self.places), done=sum(map(self._is_done, self.places)), road=place.road, station=place.station))
             for piece in place.pieces:
-                self.list.addItem(piece.text + self._decision(piece))
+                decision = self._decision(piece)
+                self.list.addItem(f"{piece.text}\n  → {decision}" if decision else piece.text)
             self.list.setCurrentRow(chosen)
         self._selected()
         self._tell()
 
+    def _is_done(self, place):
+        return all(self._decision(piece) for piece in place.pieces)
+
     def _decision(self, piece):
-        """What was decided about a piece and not yet run, for its line in the list."""
-        found = None if self.layer is None else correction_at(self.layer, piece.line, self.place.crs, piece.target)
-        return "" if found is None else f"\n  → {WORDS['action'].get(found['action'], found['action'])}"
+        """What was decided about a piece and not yet run; "" for nothing."""
+        if not piece.target:
+            return WORDS["action"]["accept"] if piece.key in self._seen() else ""
+        found = self._former(piece)
+        return "" if found is None else str(WORDS["action"].get(found["action"], found["action"]))
+
+    def _former(self, piece):
+        """The correction that was made of a piece, None where there is none."""
+        layer = self.layer
+        if layer is None:
+            return None
+        return correction_at(layer, piece.line, self.places[0].crs, piece.target) or \
+            move_of(layer, piece.line, self.places[0].crs, piece.target, piece.road, piece.station)
+
+    def _seen(self):
+        return str(self.road_map.layers[0].customProperty(SEEN) or "").split("\n")
 
     def _zoom(self, place):
         canvas = self.iface.mapCanvas()
@@ -184,10 +242,10 @@ class DoubtDock(QDockWidget):
         return [] if place is None else [place.pieces[index.row()] for index in self.list.selectedIndexes()]
 
     def _selected(self):
-        count = len(self.chosen)
+        count, correctable = len(self.chosen), all(piece.target for piece in self.chosen)
         self.accept_button.setEnabled(count > 0)
-        self.delete_button.setEnabled(count > 0)
-        self.move_button.setEnabled(count == 1)
+        self.delete_button.setEnabled(count > 0 and correctable)
+        self.move_button.setEnabled(count == 1 and correctable)
         self.draw_button.setEnabled(self.road_map is not None)
         self._highlight()
 
@@ -211,8 +269,11 @@ class DoubtDock(QDockWidget):
 
     @property
     def layer(self) -> QgsVectorLayer | None:
-        """The layer that corrections go to, None before the first."""
-        return next(iter(corrections_layers(QgsProject.instance())), None)
+        """The layer that corrections of this survey go to, None before the first."""
+        vectors = [] if self.road_map is None else self.road_map.vectors
+        if not vectors:
+            return None
+        return corrections_of_survey(QgsProject.instance(), self.road_map.survey, vectors[0].extent(), vectors[0].crs())
 
     def ask_for_file(self) -> str:
         """Where the corrections are to be kept; "" where the user gave up."""
@@ -222,7 +283,7 @@ class DoubtDock(QDockWidget):
                                               options=QFileDialog.Option.DontConfirmOverwrite)
         return path if not path or path.lower().endswith(".gpkg") else f"{path}.gpkg"
 
-    def _layer_to_write(self, crs):
+    def _layer_to_write(self):
         layer = self.layer
         if layer is not None:
             return layer
@@ -230,7 +291,7 @@ class DoubtDock(QDockWidget):
         if not path:
             return None
         try:
-            return new_corrections_layer(QgsProject.instance(), path, crs)
+            return new_corrections_layer(QgsProject.instance(), path, self.road_map.vectors[0].crs(), self.road_map.survey)
         except RoadExtractionError as problem:
             self.iface.messageBar().pushMessage("Lanewright", str(problem), level=Qgis.MessageLevel.Warning)
             return None
@@ -238,15 +299,18 @@ class DoubtDock(QDockWidget):
     def decide(self, action: str) -> None:
         """Accept or delete what is selected, and go on to the next piece that is not decided, here or at the next place."""
         pieces, place = self.chosen, self.place
-        layer = self._layer_to_write(place.crs) if pieces else None
-        if layer is None:
+        to_write = [piece for piece in pieces if piece.target]
+        layer = self._layer_to_write() if to_write else None
+        if not pieces or to_write and layer is None:
             return
-        for piece in pieces:
-            add_correction(layer, piece.line, place.crs, action=action, target=piece.target, road=piece.road, station_m=piece.station,
-                           offset_m=piece.offset, note=self.note.text() or None)
+        for piece in to_write:
+            add_correction(layer, piece.line, place.crs, self._former(piece), action=action, target=piece.target, road=piece.road,
+                           station_m=piece.station, offset_m=piece.offset, note=self.note.text() or None)
+        seen = [piece.key for piece in pieces if not piece.target]
+        if seen:
+            self.road_map.layers[0].setCustomProperty(SEEN, "\n".join([*filter(None, self._seen()), *seen]))
         self.note.clear()
-        last = max(place.pieces.index(piece) for piece in pieces)
-        count = len(place.pieces)
+        last, count = max(place.pieces.index(piece) for piece in pieces), len(place.pieces)
         left = [row % count for row in range(last + 1, last + 1 + count) if not self._decision(place.pieces[row % count])]
         self._fill(left[0] if left else last)
         if not left and len(self.places) > 1:
@@ -254,33 +318,43 @@ class DoubtDock(QDockWidget):
 
     def begin_draw(self, target: str) -> None:
         """Let the user draw what is missing."""
-        self._begin("draw", target)
+        self._begin("draw", target, None)
 
     def begin_move(self) -> None:
         """Let the user draw where the selected piece belongs."""
-        self._begin("move", self.chosen[0].target)
+        self._begin("move", self.chosen[0].target, self.chosen[0])
 
-    def _begin(self, action, target):
-        self._pending = action, target
+    def _begin(self, action, target, piece):
+        """Draw; what was begun for the same is gone on with. The file comes first: who names none has drawn nothing that could be lost."""
+        if self._layer_to_write() is None:
+            return
+        if self._pending != (action, target, piece):
+            self.tool.clear()
+        self._pending = action, target, piece
         self.iface.mapCanvas().setMapTool(self.tool)
-        bar = self.iface.messageBar()
-        bar.clearWidgets()
-        bar.pushMessage("Lanewright", tr("Click along the line where it belongs. The right button ends it, Backspace takes a click back, Esc stops."),
-                        level=Qgis.MessageLevel.Info, duration=0)
+        self._hint("")
+
+    def _hint(self, text):
+        self.hint.setText(" ".join(filter(None, (text, tr(
+            "Click along the line where it belongs. The right button ends it, Backspace takes a click back, Esc stops.")))))
+        self.hint.show()
 
     def _line_drawn(self, line: QgsGeometry) -> None:
-        action, target = self._pending or ("", "")
-        layer = self._layer_to_write(self.road_map.vectors[0].crs()) if action else None
+        action, target, piece = self._pending or ("", "", None)
+        layer = self._layer_to_write() if action else None
         if layer is not None:
-            add_correction(layer, line, self.iface.mapCanvas().mapSettings().destinationCrs(), action=action, target=target,
-                           note=self.note.text() or None)
+            of = {} if piece is None else dict(road=piece.road, station_m=piece.station, offset_m=piece.offset)
+            add_correction(layer, line, self.iface.mapCanvas().mapSettings().destinationCrs(), None if piece is None else self._former(piece),
+                           action=action, target=target, note=self.note.text() or None, **of)
             self.note.clear()
+        row = self.list.currentRow()
         self._stop_drawing()
-        self._fill()
+        self._fill(max(row, 0))
 
     def _stop_drawing(self):
         self._pending = None
-        self.iface.messageBar().clearWidgets()
+        self.hint.hide()
+        self.tool.clear()
         self.iface.mapCanvas().unsetMapTool(self.tool)
 
     def undo(self) -> None:
@@ -302,5 +376,5 @@ class DoubtDock(QDockWidget):
 def _row(*widgets):
     row = QHBoxLayout()
     for widget in widgets:
-        row.addWidget(widget, 1 if isinstance(widget, (QLabel, QLineEdit)) else 0)
+        row.addWidget(widget, 1 if isinstance(widget, (QLabel, QLineEdit, QComboBox)) else 0)
     return row

@@ -1,16 +1,18 @@
-"""Places of a road map that want a look: pieces that were not measured, that are uncertain, or where the two boundary methods differ."""
+"""Places of a road map that want a look, each with how many metres of it are likely to be wrong."""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 
-from qgis.core import Qgis, QgsGeometry, QgsLineString, QgsPointXY, QgsRectangle
+from qgis.core import Qgis, QgsCoordinateReferenceSystem, QgsGeometry, QgsLineString, QgsPointXY, QgsRectangle
 
 from ...processing_provider.results.road_maps import RoadMap
 from ...processing_provider.texts import tr
+from .missing_parts import Missing, grown_surface, lane_ends, missing_edges, warned_places
 from .section import title_of
 
-OUTPUTS = ("ROAD_EDGES", "MARKING_LINES", "DRIVING_LINES", "LANES")
 TARGETS = {"ROAD_EDGES": "edge", "MARKING_LINES": "marking", "DRIVING_LINES": "lane", "LANES": "lane"}  # what a correction calls them
 GUESSED = ("bridged", "inferred")
 DECIDED = ("accepted", "drawn")  # an analyst has seen these
@@ -19,17 +21,38 @@ APART = 5.0         # cm between the two boundary methods, as in the report
 SHORTEST = 2.0      # m: shorter pieces are not worth a stop
 SAME_PLACE = 10.0   # m of station within which doubts are looked at together
 
+# Share of a piece that is likely to be wrong, by which places are ranked. Of a piece with a confidence it is 1 - confidence.
+# Methods that differ: one of the two is wrong. Bridged and inferred pieces without a confidence: as an unsure one.
+LIKELY_WRONG = {"apart": 0.5, "guessed": 1.0 - UNSURE}
+
 
 @dataclass(frozen=True)
 class DoubtfulPiece:
-    """One piece of a line or lane: what is doubtful, its target for a correction, its course, and where it begins along the road."""
+    """One piece of a line or lane, or something that is not there.
+
+    text : what is doubtful
+    kind : edge, marking, lane, surface or warning
+    target : what a correction calls it; "" where there is nothing that a correction could be about
+    line : its course
+    road, station, offset : where it begins along the road
+    doubt : m of it that are likely to be wrong
+    other : the second reading of the program, as the layer holds it; "" where there is none
+    """
 
     text: str
+    kind: str
     target: str
     line: QgsGeometry
     road: int
     station: float
     offset: float | None
+    doubt: float = 0.0
+    other: str = ""
+
+    @property
+    def key(self) -> str:
+        """By which the piece is known when the places are made again."""
+        return f"{self.kind} {self.road} {self.station:.1f} {'' if self.offset is None else f'{self.offset:.1f}'}"
 
 
 @dataclass(frozen=True)
@@ -41,28 +64,53 @@ class Doubt:
     station: float
     extent: QgsRectangle
     middle: QgsPointXY
-    crs: object
+    crs: QgsCoordinateReferenceSystem
 
     @property
     def reasons(self) -> tuple[str, ...]:
         """What is doubtful there, one line a piece."""
         return tuple(piece.text for piece in self.pieces)
 
+    @property
+    def doubt(self) -> float:
+        """m that are likely to be wrong."""
+        return sum(piece.doubt for piece in self.pieces)
 
-def doubts_of(road_map: RoadMap) -> list[Doubt]:
-    """The doubtful places of a road map along its roads; doubts that lie together are one place."""
+
+def doubts_of(road_map: RoadMap, kinds: Iterable[str] = ()) -> list[Doubt]:
+    """The doubtful places of a road map along its roads; doubts that lie together are one place.
+
+    kinds : those of DoubtfulPiece that are wanted; none for all
+    """
+    pieces = [piece for output in ("ROAD_EDGES", "MARKING_LINES", "DRIVING_LINES") for piece in _doubtful_rows(road_map, output)]
+    # a lane is looked at once: its area only where its driving line says nothing
+    seen = [(piece.road, piece.station) for piece in pieces if piece.kind == "lane"]
+    if road_map.layer("DRIVING_LINES") is None or not seen:
+        pieces += _doubtful_rows(road_map, "LANES")
+    for found in (missing_edges(road_map), grown_surface(road_map), lane_ends(road_map), warned_places(road_map)):
+        pieces += [_missing_piece(missing) for missing in found]
+    wanted = set(kinds)
+    crs = road_map.vectors[0].crs()
+    return _gathered(sorted((piece for piece in pieces if not wanted or piece.kind in wanted), key=lambda piece: (piece.road, piece.station)), crs)
+
+
+def _doubtful_rows(road_map, output):
+    layer = road_map.layer(output)
+    names = [] if layer is None else [field.name() for field in layer.fields()]
     found = []
-    for output in OUTPUTS:
-        layer = road_map.layer(output)
-        names = [] if layer is None else [field.name() for field in layer.fields()]
-        if "station_m" not in names or "road" not in names:
-            continue
-        for feature in layer.getFeatures():
-            row = dict(zip(names, feature.attributes()))
-            why = reason(row)
-            if why and not feature.geometry().isEmpty():
-                found.append(_doubt(f"{title_of(layer, feature)}: {why}", row, feature.geometry(), layer, output))
-    return _gathered(sorted(found, key=lambda doubt: (doubt.road, doubt.station)))
+    for feature in layer.getFeatures() if {"station_m", "road"} <= set(names) else ():
+        row = dict(zip(names, feature.attributes()))
+        why = reason(row)
+        if why and not feature.geometry().isEmpty():
+            target = TARGETS[output]
+            found.append(DoubtfulPiece(f"{title_of(layer, feature)}: {why}", target, target, course_of(feature.geometry()),
+                                       int(_number(row.get("road")) or 0), _number(row.get("station_m")) or 0.0, _number(row.get("offset_m")),
+                                       (_number(row.get("length_m")) or 0.0) * _share_wrong(row), str(row.get("other") or "")))
+    return found
+
+
+def _missing_piece(missing: Missing):
+    return DoubtfulPiece(missing.text, missing.kind, "", missing.line, missing.road, missing.station, None, missing.doubt)
 
 
 def reason(row: dict) -> str:
@@ -80,19 +128,19 @@ def reason(row: dict) -> str:
     return tr("not measured") if row.get("status") in GUESSED else ""
 
 
+def _share_wrong(row):
+    apart, sure = _number(row.get("agree_cm")), _number(row.get("confidence"))
+    if apart is not None and apart > APART:
+        return LIKELY_WRONG["apart"]
+    return LIKELY_WRONG["guessed"] if sure is None else 1.0 - sure
+
+
 def _number(value):
     try:
-        return float(value)
+        number = float(value)
     except (TypeError, ValueError):  # NULL too
         return None
-
-
-def _doubt(text, row, geometry, layer, output):
-    middle = geometry.interpolate(geometry.length() / 2).asPoint() if layer.geometryType() == Qgis.GeometryType.Line else \
-        geometry.pointOnSurface().asPoint()
-    road, station = int(_number(row.get("road")) or 0), _number(row.get("station_m")) or 0.0
-    piece = DoubtfulPiece(text, TARGETS[output], course_of(geometry), road, station, _number(row.get("offset_m")))
-    return Doubt((piece,), road, station, geometry.boundingBox(), middle, layer.crs())
+    return number if math.isfinite(number) else None
 
 
 def course_of(geometry: QgsGeometry) -> QgsGeometry:
@@ -106,15 +154,23 @@ def course_of(geometry: QgsGeometry) -> QgsGeometry:
     return flat
 
 
-def _gathered(doubts):
-    """Doubts that begin within SAME_PLACE of the first of them are one."""
-    places: list[Doubt] = []
-    for doubt in doubts:
-        last = places[-1] if places else None
-        if last is not None and last.road == doubt.road and doubt.station - last.station <= SAME_PLACE:
-            extent = QgsRectangle(last.extent)
-            extent.combineExtentWith(doubt.extent)
-            places[-1] = Doubt(last.pieces + doubt.pieces, last.road, last.station, extent, last.middle, last.crs)
+def _gathered(pieces, crs):
+    """Pieces that begin within SAME_PLACE of the first of them are one place."""
+    groups: list[list[DoubtfulPiece]] = []
+    for piece in pieces:
+        first = groups[-1][0] if groups else None
+        if first is not None and first.road == piece.road and piece.station - first.station <= SAME_PLACE:
+            groups[-1].append(piece)
         else:
-            places.append(doubt)
-    return places
+            groups.append([piece])
+    return [_place(group, crs) for group in groups]
+
+
+def _place(pieces, crs):
+    extent = QgsRectangle(pieces[0].line.boundingBox())
+    for piece in pieces[1:]:
+        extent.combineExtentWith(piece.line.boundingBox())
+    first = max(pieces, key=lambda piece: piece.doubt)
+    middle = first.line.interpolate(first.line.length() / 2).asPoint() if first.line.length() > 0 else first.line.centroid().asPoint()
+    ordered = tuple(sorted(pieces, key=lambda piece: -piece.doubt))
+    return Doubt(ordered, pieces[0].road, pieces[0].station, extent, middle, crs)

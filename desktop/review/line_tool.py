@@ -13,11 +13,13 @@ COLOUR = "#2166ac"
 class LineTool(QgsMapTool):
     """Left button: a vertex, snapped as the project says. Right button: the line is ready. Backspace: one vertex back. Esc: none.
 
-    `drawn` has the line in the CRS of the map; `given_up` is sent when there is none.
+    `drawn` has the line in the CRS of the map, `given_up` is sent when there is none, and `too_short` where it has one vertex alone:
+    drawing goes on then. What was drawn stays while another tool, such as the hand, is used.
     """
 
     drawn = pyqtSignal(QgsGeometry)
     given_up = pyqtSignal()
+    too_short = pyqtSignal()
 
     def __init__(self, canvas: QgsMapCanvas):
         super().__init__(canvas)
@@ -43,7 +45,7 @@ class LineTool(QgsMapTool):
             self._show(self.vertices)
             event.ignore()  # or the canvas goes back to its last extent
         elif event.key() == Qt.Key.Key_Escape:
-            self._clear()
+            self.clear()
             self.given_up.emit()
 
     def add(self, point: QgsPointXY) -> None:
@@ -54,17 +56,17 @@ class LineTool(QgsMapTool):
     def finish(self) -> None:
         """Hand the line over."""
         vertices = list(self.vertices)
-        self._clear()
-        if len(vertices) < 2:
-            self.given_up.emit()
-        else:
+        if len(vertices) == 1:
+            self.too_short.emit()
+            return
+        self.clear()
+        if vertices:
             self.drawn.emit(QgsGeometry.fromPolylineXY(vertices))
+        else:
+            self.given_up.emit()
 
-    def deactivate(self) -> None:
-        self._clear()
-        super().deactivate()
-
-    def _clear(self):
+    def clear(self) -> None:
+        """Forget what was drawn."""
         self.vertices = []
         self.band.reset(Qgis.GeometryType.Line)
 

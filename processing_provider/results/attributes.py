@@ -27,7 +27,8 @@ WORDS = {
     "use": {"keep": tr("marking"), "other": tr("other paint")},
     "source": {"pair": tr("between two lines"), "offset": tr("beside one line"), "drawn": tr("drawn by hand")},
     "turn": {"left": tr("left"), "right": tr("right")},
-    "action": {"accept": tr("accept"), "delete": tr("delete"), "move": tr("move"), "draw": tr("draw")},
+    "action": {"accept": tr("accept"), "delete": tr("delete"), "move": tr("move"), "draw": tr("draw"),
+               "take": tr("take the second reading")},
     "target": {"edge": tr("road edge"), "marking": tr("marking"), "lane": tr("lane")},
     "outcome": {"correct": tr("correct"), "missed": tr("missed"), "false": tr("false"), "excluded": tr("excluded")},
 }
@@ -137,5 +138,11 @@ def map_tip(layer: QgsVectorLayer) -> str:
     where = ""
     if {"road", "station_m"} <= names:
         end = "|| coalesce(' – ' || format_number(\"end_m\", 1), '')" if "end_m" in names else ""
-        where = f"<br>{tr('Road')} [% \"road\" %], {tr('station')} [% format_number(\"station_m\", 1) {end} %] m"
-    return f"<b>[% {layer.displayExpression()} %]</b>{where}{tip_picture(names)}"
+        road = _in_html('"road"')
+        where = f"<br>{tr('Road')} [% {road} %], {tr('station')} [% format_number(\"station_m\", 1) {end} %] m"
+    return f"<b>[% {_in_html(layer.displayExpression())} %]</b>{where}{tip_picture(names)}"
+
+
+def _in_html(expression):
+    """An expression whose text is shown as it stands in a page: what a field holds may be markup."""
+    return f"replace(replace(to_string({expression}), '&', '&amp;'), '<', '&lt;')"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from qgis.core import Qgis, QgsMapLayer, QgsProviderRegistry
 
@@ -27,20 +27,23 @@ def describe_origin(layer: QgsMapLayer, provenance: Provenance, output: str = ""
     metadata.setTitle(layer.name())
     metadata.setAbstract(f"{provenance.program}, {provenance.algorithm}")
     metadata.setLanguage("")
-    if provenance.sentence(output) not in metadata.history():
-        metadata.addHistoryItem(provenance.sentence(output))
+    for line in provenance.history(output):
+        if line not in metadata.history():
+            metadata.addHistoryItem(line)
     layer.setMetadata(metadata)
 
 
 def origin_of(layer: QgsMapLayer) -> Origin | None:
     """The last run of this program that a layer's metadata tell of; None of a layer that is not ours."""
     metadata = layer.metadata()
-    told = [found for text in (*metadata.history(), metadata.abstract()) if (found := Provenance.of_sentence(text)) is not None]
+    lines = [*metadata.history(), *metadata.abstract().splitlines()]
+    told = [found for text in lines if (found := Provenance.of_sentence(text)) is not None]
     if not told and layer.type() == Qgis.LayerType.Raster and layer.providerType() == "gdal":
         told = [(provenance, "") for provenance in [signed_by(layer.source())] if provenance is not None]
     if not told:
         return None
     provenance, output = max(told, key=lambda one: one[0].ended)
+    provenance = replace(provenance, warnings=tuple(provenance.warnings_among(lines)))
     return Origin(provenance, str(layer.customProperty(OUTPUT) or "") or output or _called(layer))
 
 

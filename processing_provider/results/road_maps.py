@@ -12,11 +12,10 @@ from qgis.core import Qgis, QgsLayerTreeGroup, QgsMapLayer, QgsProject, QgsProvi
 from qgis.PyQt import sip
 
 from ...algorithms.catalogue import ALGORITHMS
-from ...algorithms.cloud_files import cloud_files
+from ...algorithms.cloud_files import cloud_files, survey_name
 from ...algorithms.provenance import Provenance
 from ...core.common.errors import RoadExtractionError
 from .origin import Origin, origin_of
-from .runs import survey_name
 
 LINES = ("DRIVING_LINES", "ROAD_EDGES", "MARKING_LINES")  # a road map has one of these
 CLOUDS = "POINT_CLOUDS"

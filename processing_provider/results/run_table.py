@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
@@ -14,7 +14,7 @@ MOST_RUNS = 1000  # kept; a batch of more is read from its reports
 
 @dataclass(frozen=True)
 class RunRecord:
-    """One run: its algorithm's title, its survey, when it began, its seconds, its numbers by label, and why it failed ("" if it did not)."""
+    """One run: its algorithm's title, survey, begin, seconds, numbers by label, why it failed ("" if it did not), and its warnings."""
 
     title: str
     survey: str
@@ -22,12 +22,14 @@ class RunRecord:
     seconds: float
     numbers: Mapping[str, float]
     failure: str = ""
+    warnings: tuple[str, ...] = ()
 
 
 _runs: list[RunRecord] = []
 
 
-def note_run(declaration: Any, survey: str, began: datetime, results: Mapping[str, Any] | None = None, failure: str = "") -> None:
+def note_run(declaration: Any, survey: str, began: datetime, results: Mapping[str, Any] | None = None, failure: str = "",
+             warnings: Sequence[str] = ()) -> None:
     """Remember a run that has just ended.
 
     Parameters
@@ -37,25 +39,39 @@ def note_run(declaration: Any, survey: str, began: datetime, results: Mapping[st
     began : local time
     results : of the run, None where it failed
     failure : the sentence that it failed with
+    warnings : as the log has them
     """
     numbers = {number.label: results[number.name] for number in declaration.numbers if results is not None and number.name in results}
     seconds = (datetime.now() - began).total_seconds()
-    _runs.append(RunRecord(declaration.title(), survey, began, seconds, numbers, failure))
+    _runs.append(RunRecord(declaration.title(), survey, began, seconds, numbers, failure, tuple(warnings)))
     del _runs[:-MOST_RUNS]
 
 
+def last_run() -> RunRecord | None:
+    """The run that ended last; None where there was none."""
+    return _runs[-1] if _runs else None
+
+
+def run_tables() -> list[tuple[str, list[str], list[list[Any]]]]:
+    """(title, head, rows) of a table for every algorithm, with a row for each of its runs since QGIS was started."""
+    found = []
+    for title in dict.fromkeys(run.title for run in _runs):
+        runs = [run for run in _runs if run.title == title]
+        labels = list(dict.fromkeys(label for run in runs for label in run.numbers))
+        rows = [[f"{run.began:%Y-%m-%d %H:%M:%S}", run.survey or "–", *(run.numbers.get(label, "–") for label in labels),
+                 round(run.seconds, 1), run.failure or "–"] for run in runs]
+        found.append((title, [tr("Begun"), tr("Survey"), *labels, tr("Duration (s)"), tr("Failed")], rows))
+    return found
+
+
 def run_table() -> str:
-    """An HTML page with a table for every algorithm, a row for each of its runs; "" where there was none."""
+    """An HTML page with these tables; "" where there was no run."""
     if not _runs:
         return ""
     from ...core.report.page import Page
 
     page = Page(tr("Runs of Lanewright"), tr("since QGIS was started"))
-    for title in dict.fromkeys(run.title for run in _runs):
-        runs = [run for run in _runs if run.title == title]
-        labels = list(dict.fromkeys(label for run in runs for label in run.numbers))
+    for title, head, rows in run_tables():
         page.heading(title)
-        page.table((tr("Begun"), tr("Survey"), *labels, tr("Duration (s)"), tr("Failed")),
-                   [(f"{run.began:%Y-%m-%d %H:%M:%S}", run.survey or "–", *(run.numbers.get(label, "–") for label in labels),
-                     round(run.seconds, 1), run.failure or "–") for run in runs])
+        page.table(head, rows)
     return page.html()

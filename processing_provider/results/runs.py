@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
 from datetime import datetime
-from pathlib import Path
 
 from qgis.core import QgsProcessingContext
 
+from ...algorithms.cloud_files import survey_name
 from ...algorithms.provenance import Provenance
 
 GROUP = "Lanewright"
@@ -29,7 +28,7 @@ class Run:
     group: str
 
 
-def run_of(provenance: Provenance, clouds: list[str], whole: bool, context: QgsProcessingContext) -> Run:
+def run_of(provenance: Provenance, clouds: list[str], whole: bool, context: QgsProcessingContext, group: str = "") -> Run:
     """The run that has just ended.
 
     Parameters
@@ -39,18 +38,10 @@ def run_of(provenance: Provenance, clouds: list[str], whole: bool, context: QgsP
     whole : whether it makes a map in one call. Each such run has a group of its own, named by survey and time;
         the stages of a survey share one, since together they make one map
     context : of the run; the stages of a model have one in common
+    group : that its inputs stand in, "" for none; a stage puts its result beside them
     """
     store = context.temporaryLayerStore()  # an object of Qt, which keeps a value for whoever comes next
     survey = survey_name(clouds) or str(store.property(SURVEY_OF_RUN) or "")
     store.setProperty(SURVEY_OF_RUN, survey)
     name = survey or GROUP
-    return Run(provenance, survey, f"{name}, {datetime.now():%Y-%m-%d %H:%M:%S}" if whole else name)
-
-
-def survey_name(clouds: list[str]) -> str:
-    """What a survey is called: the folder of its point clouds and what their names have in common, such as B12/tile."""
-    stems = [Path(path).stem.removesuffix(".copc") for path in clouds]
-    folders = {Path(path).absolute().parent for path in clouds}
-    folder = folders.pop().name if len(folders) == 1 else ""
-    name = os.path.commonprefix(stems).rstrip("_-. 0123456789") if len(set(stems)) > 1 else "".join(stems[:1])
-    return "/".join(part for part in dict.fromkeys((folder, name)) if part)
+    return Run(provenance, survey, f"{name}, {datetime.now():%Y-%m-%d %H:%M:%S}" if whole else group or name)

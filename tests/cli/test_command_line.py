@@ -5,6 +5,7 @@ import os
 import re
 import shutil
 import subprocess
+import sys
 from pathlib import Path
 
 import laspy
@@ -194,7 +195,7 @@ def nothing(survey, folder):
     (another_day, "does not cover the scan in time"),
     (in_degrees, "geographic CRS"),
     (a_zip, "cannot be read as a LAS/LAZ file"),
-    (without_scale, "bad.laz is damaged: its header says scales of nan"),
+    (without_scale, "bad.laz gives its points no coordinates: its header says scales of nan"),
 ], ids=lambda value: getattr(value, "__name__", ""))
 def test_a_cloud_that_cannot_be_worked_with_is_told_in_one_sentence(survey, called, tmp_path, cloud, says):
     cloud(survey, tmp_path)
@@ -362,3 +363,16 @@ def test_a_road_without_paint_gives_empty_layers_stage_by_stage(street, called, 
         run = called("run", f"lanewright:{stage[0]}", *stage[1:], folder=tmp_path)
         assert run.returncode == 0, run.stderr
     assert feature_count(tmp_path / "driving.gpkg") == feature_count(tmp_path / "lines.gpkg") == 0
+
+
+def test_another_python_first_on_the_path_is_no_home_for_that_inside_qgis(tmp_path):
+    """As of pyenv and conda, of the same version: Python inside QGIS would look there for its own modules and die."""
+    library = tmp_path / "lib" / f"python3.{sys.version_info[1]}"
+    (library / "lib-dynload").mkdir(parents=True)
+    shutil.copy(os.__file__, library / "os.py")
+    (tmp_path / "bin").mkdir()
+    (tmp_path / "bin" / "python3").write_text("#!/bin/sh\n")
+    (tmp_path / "bin" / "python3").chmod(0o755)
+    listed = subprocess.run(["bash", "-c", f"source '{ROOT}/tools/env.sh' && qgis_process plugins"], capture_output=True, text=True,
+                            env={**os.environ, "PATH": f"{tmp_path / 'bin'}:{os.environ['PATH']}"})
+    assert listed.returncode == 0 and "lanewright" in listed.stdout, listed.stderr[-500:]

@@ -5,6 +5,7 @@ import shutil
 import signal
 import sqlite3
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -154,3 +155,14 @@ def test_a_layer_that_another_program_holds_open_is_replaced_or_told_in_one_sent
     assert files(tmp_path) <= {"edges.gpkg", "edges.gpkg-journal"}
     with sqlite3.connect(layer) as whole:
         assert whole.execute("PRAGMA integrity_check").fetchone() == ("ok",)
+
+
+def test_a_layer_is_the_one_of_before_or_the_new_one_whenever_a_run_is_killed(tmp_path):
+    """Few kills of many: tools/kill_runs.py makes as many as one likes."""
+    sys.path.insert(0, str(ROOT / "tools"))
+    try:
+        import kill_runs
+    finally:
+        sys.path.pop(0)
+    assert kill_runs.check(4, tmp_path) == []
+    assert not [path for path in tmp_path.iterdir() if path.suffix == ".previous"]

@@ -9,10 +9,10 @@ from lanewright.desktop.review.corrections_layer import corrections_layers
 from lanewright.desktop.review.doubt_dock import DoubtDock
 from lanewright.processing_provider.layers import QgisSource
 from lanewright.processing_provider.results.road_maps import road_maps
-from qgis.core import QgsGeometry, QgsPointXY, QgsProject, QgsRectangle
-from qgis.gui import QgsMapCanvas, QgsMessageBar
+from qgis.core import QgsPointXY, QgsProject, QgsRectangle
+from qgis.gui import QgsMapCanvas, QgsMapToolPan, QgsMessageBar
 from qgis.PyQt.QtWidgets import QMainWindow
-from road_map_layers import EAST, NORTH, added
+from road_map_layers import EAST, NORTH, added, run_at
 
 
 @pytest.fixture
@@ -111,17 +111,74 @@ def test_a_drawn_line_is_kept_with_its_target_and_can_be_taken_back(at_first):
     assert corrections() == [] and not at_first.undo_button.isEnabled()
 
 
-def test_one_piece_is_moved_to_a_line_and_a_line_of_one_click_is_none(at_first):
+def test_a_piece_is_moved_to_a_line_which_takes_two_clicks_and_the_list_says_so(at_first):
     at_first.list.selectAll()
     assert not at_first.move_button.isEnabled()
     at_first.list.setCurrentRow(1)
     at_first.move_button.click()
     at_first.tool.add(QgsPointXY(EAST + 14, NORTH + 1))
     at_first.tool.finish()
-    assert corrections_layers(QgsProject.instance()) == []
-    at_first.move_button.click()
-    at_first._line_drawn(QgsGeometry.fromPolylineXY([QgsPointXY(EAST + 14, NORTH + 1), QgsPointXY(EAST + 22, NORTH + 1)]))
+    assert corrections() == [] and "two clicks" in at_first.hint.text(), "drawing goes on"
+    at_first.tool.add(QgsPointXY(EAST + 22, NORTH + 1))
+    at_first.tool.finish()
     assert [(action, target) for action, target, *_ in corrections()] == [("move", "lane")]
+    assert "→ move" in at_first.list.item(1).text() and "→" not in at_first.list.item(0).text()
+    at_first.list.setCurrentRow(1)
+    at_first.accept_button.click()
+    assert [(action, target) for action, target, *_ in corrections()] == [("accept", "lane")], "a decision takes the place of another"
+
+
+def test_what_is_drawn_stays_while_the_hand_moves_the_map_and_nothing_covers_the_map(at_first):
+    canvas = at_first.iface.mapCanvas()
+    at_first.begin_draw("edge")
+    assert at_first.iface.messageBar().currentItem() is None and at_first.hint.isVisible()
+    at_first.tool.add(QgsPointXY(EAST + 20, NORTH + 4))
+    canvas.setMapTool(QgsMapToolPan(canvas))
+    at_first.begin_draw("edge")
+    at_first.tool.add(QgsPointXY(EAST + 30, NORTH + 4))
+    at_first.tool.finish()
+    assert [length for *_, length in corrections()] == [pytest.approx(10.0)] and not at_first.hint.isVisible()
+
+
+def test_who_names_no_file_for_the_corrections_has_drawn_nothing_yet(at_first):
+    at_first.ask_for_file = lambda: ""
+    at_first.begin_draw("edge")
+    assert at_first.iface.mapCanvas().mapTool() is not at_first.tool
+
+
+def test_single_keys_go_on_accept_and_delete(at_first):
+    keys = {action.shortcut().toString(): action for action in at_first.actions()}
+    assert "(A)" in at_first.accept_button.toolTip() and "(D)" in at_first.delete_button.toolTip()
+    keys["A"].trigger(), keys["D"].trigger()
+    assert [action for action, *_ in corrections()] == ["accept", "delete"] and at_first.place.station == 80
+    keys["P"].trigger()
+    assert at_first.place.station == 10
+
+
+def test_what_is_done_is_counted_and_passed_over_on_wish(at_first):
+    at_first.list.selectAll()
+    at_first.accept_button.click()
+    assert "1 done" in at_first.where.text() and at_first.place.station == 80
+    at_first.undecided.setChecked(True)
+    at_first.go(at_first.road_map)
+    assert at_first.place.station == 80
+
+
+def test_one_kind_alone_is_gone_through(at_first):
+    at_first.kinds.setCurrentIndex(at_first.kinds.findData("lane"))
+    assert [place.station for place in at_first.places] == [14.0] and at_first.list.count() == 1
+
+
+def test_corrections_of_another_survey_are_left_alone(at_first, tmp_path):
+    at_first.accept_button.click()
+    mine, = corrections_layers(QgsProject.instance())
+    added(QgsProject.instance(), "ROAD_EDGES", ROAD_EDGES, ("LINESTRING Z (0 900 100, 20 900 100)", dict(
+        road=0, station_m=0.0, length_m=20.0, side="left", status="bridged")), run=run_at(9, ["/data/B13/a.laz"], "B13"))
+    at_first.ask_for_file = lambda: str(tmp_path / "corrections of B13.gpkg")
+    at_first.go(road_maps(QgsProject.instance())[0])
+    assert at_first.layer is None and "No corrections" in at_first.kept.text()
+    at_first.accept_button.click()
+    assert at_first.layer != mine and mine.featureCount() == at_first.layer.featureCount() == 1
 
 
 def test_who_names_no_file_changes_nothing(at_first):

@@ -1,5 +1,6 @@
 """The print layout of a road map."""
 
+import html
 import math
 
 import numpy as np
@@ -8,13 +9,19 @@ from lanewright.core.common.schemas import DRIVING_LINES, ROAD_EDGES
 from lanewright.desktop.layout.layout_dialog import LayoutDialog, credit_of, shown_layers
 from lanewright.desktop.layout.map_layout import MARGIN, SCALES, road_map_layout
 from lanewright.desktop.menu import unused_name
+from lanewright.processing_provider.results.attributes import explain_attributes
 from lanewright.processing_provider.results.road_maps import road_maps
 from qgis.core import (
+    Qgis,
     QgsCategorizedSymbolRenderer,
     QgsCoordinateReferenceSystem,
+    QgsExpression,
+    QgsExpressionContext,
+    QgsExpressionContextUtils,
     QgsFeature,
     QgsGeometry,
     QgsLayoutExporter,
+    QgsLayoutItemLabel,
     QgsLayoutItemLegend,
     QgsLayoutItemMap,
     QgsLayoutItemPicture,
@@ -189,6 +196,36 @@ def test_the_credit_stands_in_the_corner_of_the_map(project, credit):
     label, chart = layout.itemById("Credit"), item(layout, QgsLayoutItemMap)
     assert label.text() == credit and chart.sceneBoundingRect().contains(label.sceneBoundingRect())
     assert road_map_layout(project, [street(project)], "Without").itemById("Credit") is None
+
+
+@pytest.mark.parametrize("text", ["[% env('HOME') %]", "[%env('HOME')%] [% '%' || 1 + 1 %]", "a [% b", "100 [%]", "[[%%]] %]"])
+def test_names_of_others_are_printed_as_they_stand(project, tmp_path, text):
+    """The name of a survey, a CRS or a layer may hold what QGIS would take for an expression."""
+    edges = street(project)
+    edges.setName(text)
+    edges.setRenderer(QgsCategorizedSymbolRenderer("''", [QgsRendererCategory("", QgsLineSymbol.createSimple({}), text)]))
+    wkt = edges.crs().toWkt(QgsCoordinateReferenceSystem.WktVariant.WKT2_2019)
+    edges.setCrs(QgsCoordinateReferenceSystem.fromWkt(wkt.replace("WGS 84 / UTM zone 50N", text).replace(",117,", ",117.25,")
+                                                      .replace(',ID["EPSG",32650]', "").replace(',ID["EPSG",16050]', "")))
+    layout = road_map_layout(project, [edges], text, credit=text)
+    printed = [label.currentText() for label in layout.items() if isinstance(label, QgsLayoutItemLabel)]
+    assert printed.count(text) == 3, "title, CRS and credit"
+    settings = QgsLayoutExporter.SvgExportSettings()
+    settings.textRenderFormat = Qgis.TextRenderFormat.AlwaysText
+    QgsLayoutExporter(layout).exportToSvg(str(tmp_path / "page.svg"), settings)
+    drawn = html.unescape((tmp_path / "page.svg").read_text(encoding="utf-8"))
+    assert drawn.count(f">{text}<") == 5, "the names of the layer and of its class in the legend too"
+
+
+def test_markup_in_a_field_is_shown_as_it_stands_in_a_map_tip(project):
+    layer = QgsVectorLayer("LineString?crs=EPSG:32650&field=class:string&field=length_m:double", "Markings", "memory")
+    explain_attributes(layer, "MARKINGS", ())
+    feature = QgsFeature(layer.fields())
+    feature["class"] = "<img src='http://localhost/'> & more"
+    context = QgsExpressionContext(QgsExpressionContextUtils.globalProjectLayerScopes(layer))
+    context.setFeature(feature)
+    said = QgsExpression.replaceExpressionText(layer.mapTipTemplate(), context)
+    assert "<img" not in said and "&lt;img" in said and "&amp; more" in said
 
 
 def classes(project, name, values, width=14, attribute="kind"):

@@ -193,3 +193,40 @@ def test_a_layer_of_another_stage_is_refused_by_its_fields_and_its_geometry(tmp_
         read_features(LayerFile(path, "Markings"), MARKINGS, "PolygonZ")
     with pytest.raises(RoadExtractionError, match="of the kind Line; Point is needed"):
         read_features(LayerFile(path, "Curb points"), ROAD_EDGES, "PointZ")
+
+
+ODD = {
+    "one vertex": ([[610400.0, 2710200.0, 24.0]], "too few vertices"),
+    "nowhere": ([[float("nan"), 2710200.0, 24.0], [610410.0, 2710210.0, 25.0]], "nowhere on earth"),
+    "beyond the earth": ([[1e308, 2710200.0, 24.0], [610410.0, 2710210.0, 25.0]], "nowhere on earth"),
+    "endless heights": ([[610400.0, 2710200.0, float("inf")], [610410.0, 2710210.0, 25.0]], "nowhere on earth"),
+    "no heights": ([[610400.0, 2710200.0, float("nan")], [610410.0, 2710210.0, 25.0]], "without heights"),
+}
+
+
+@pytest.mark.parametrize("vertices, says", ODD.values(), ids=ODD)
+def test_geometries_that_can_be_none_of_a_road_are_refused_by_layer_number_and_feature(tmp_path, vertices, says):
+    import json
+
+    good = [[610400.0, 2710200.0, 24.0], [610410.0, 2710210.0, 25.0]]
+    features = [{"type": "Feature", "id": 11 + k, "properties": {"road": 0}, "geometry": {"type": "LineString", "coordinates": line}}
+                for k, line in enumerate([good, vertices, good])]
+    (tmp_path / "edges.geojson").write_text(json.dumps({"type": "FeatureCollection", "features": features}), encoding="utf-8")
+    with pytest.raises(RoadExtractionError, match=f"Road edges .*{says}") as raised:
+        read_features(LayerFile(str(tmp_path / "edges.geojson"), "Road edges"), ROAD_EDGES[:1], "LineStringZ")
+    if says != "without heights":
+        assert "1 of its 3 features" in str(raised.value) and "feature 12" in str(raised.value)
+
+
+def test_a_ring_of_two_vertices_is_refused_and_rows_without_geometry_are_none_to_speak_of(tmp_path):
+    import json
+
+    def layer(*rings):
+        features = [{"type": "Feature", "properties": {}, "geometry": ring and {"type": "Polygon", "coordinates": ring}} for ring in rings]
+        (tmp_path / "areas.geojson").write_text(json.dumps({"type": "FeatureCollection", "features": features}), encoding="utf-8")
+        return LayerFile(str(tmp_path / "areas.geojson"), "Area")
+
+    square = [[[0, 0], [1, 0], [1, 1], [0, 0]]]
+    assert [wkb is None for wkb, _ in layer(square, None).rows()] == [False, True]
+    with pytest.raises(RoadExtractionError, match="Area cannot be used: 1 of its 2 features have too few vertices"):
+        layer(square, [[[0, 0], [1, 0]]]).rows()

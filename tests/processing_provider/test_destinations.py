@@ -1,16 +1,21 @@
 """Results appear whole or not at all."""
 
 import os
+import sqlite3
+import time
+from contextlib import closing
 from pathlib import Path
 
 import numpy as np
 import pytest
 from drives import write_cloud
-from lanewright.algorithms.destinations import ReplacedFiles, UnfinishedFiles, check_suffix, check_writable, destination_path
+from lanewright.algorithms import destinations
+from lanewright.algorithms.destinations import UnfinishedFiles, UnfinishedLayers, bring_back, check_suffix, check_writable, destination_path
 from lanewright.algorithms.driving.road_map import RoadMap
 from lanewright.core.common.errors import RoadExtractionError
+from lanewright.core.io.unfinished import ABANDONED_TIME
 from lanewright.processing_provider.call import QgisCall
-from qgis.core import QgsProcessingContext, QgsProcessingFeedback, QgsProcessingOutputLayerDefinition, QgsProject
+from qgis.core import QgsProcessingContext, QgsProcessingFeedback, QgsProcessingOutputLayerDefinition, QgsProject, QgsVectorLayer
 
 
 def test_yesterdays_result_stands_until_todays_is_complete(tmp_path):
@@ -105,36 +110,133 @@ def test_a_name_that_fits_is_taken(provider, name, path):
     check_suffix(Path(path), RoadMap().parameter(name), QgisCall.VECTOR_SUFFIXES)
 
 
-@pytest.mark.parametrize("files", [["map.gpkg"], ["edges.shp", "edges.dbf", "edges.shx"], ["edges.fgb"]])
+LAYERS = [["map.gpkg"], ["edges.dbf", "edges.shp", "edges.shx"], ["edges.fgb"]]
+
+
+def write(folder, names, text):
+    for name in names:
+        (folder / name).write_text(text)
+
+
+@pytest.mark.parametrize("files", LAYERS)
 def test_a_layer_that_cannot_be_written_leaves_yesterdays(tmp_path, files):
-    for name in files:
-        (tmp_path / name).write_text("yesterday")
-    replaced = ReplacedFiles()
-    replaced.set_aside(str(tmp_path / files[0]))
-    replaced.set_aside(str(tmp_path / "new.gpkg"))
-    assert all(name.endswith(".previous") for name in os.listdir(tmp_path)), "room is made"
-    for name in (files[0], "new.gpkg", "new.gpkg-journal"):
-        (tmp_path / name).write_text("half")
-    replaced.put_back()
-    assert sorted(os.listdir(tmp_path)) == sorted(files)
+    write(tmp_path, files, "yesterday")
+    layers = UnfinishedLayers()
+    main = next(name for name in files if name != "edges.dbf" and name != "edges.shx")
+    write(layers.begin(tmp_path / main).parent, files[:1], "half")
     assert all((tmp_path / name).read_text() == "yesterday" for name in files)
+    layers.discard()
+    assert sorted(os.listdir(tmp_path)) == files
 
 
-def test_a_layer_that_was_written_is_todays(tmp_path):
-    (tmp_path / "map.gpkg").write_text("yesterday")
-    replaced = ReplacedFiles()
-    replaced.set_aside(str(tmp_path / "map.gpkg"))
-    (tmp_path / "map.gpkg").write_text("today")
-    replaced.forget()
-    assert os.listdir(tmp_path) == ["map.gpkg"] and (tmp_path / "map.gpkg").read_text() == "today"
+@pytest.mark.parametrize("files", LAYERS)
+def test_a_layer_that_was_written_is_todays_in_all_its_parts(tmp_path, files):
+    write(tmp_path, files, "yesterday")
+    layers = UnfinishedLayers()
+    main = next(name for name in files if name != "edges.dbf" and name != "edges.shx")
+    write(layers.begin(tmp_path / main).parent, files, "today")
+    layers.commit()
+    assert sorted(os.listdir(tmp_path)) == files
+    assert all((tmp_path / name).read_text() == "today" for name in files)
 
 
-def test_a_new_layer_of_a_geopackage_leaves_the_others_alone(tmp_path):
-    (tmp_path / "map.gpkg").write_text("the others")
-    replaced = ReplacedFiles()
-    replaced.set_aside(f"ogr:dbname='{tmp_path}/map.gpkg' table=\"road_edges\" (geom)")
-    replaced.put_back()
-    assert (tmp_path / "map.gpkg").read_text() == "the others"
+def test_of_a_shapefile_no_parts_of_two_layers_are_ever_read_as_one(tmp_path, monkeypatch):
+    write(tmp_path, LAYERS[1], "yesterday")
+    layers, seen = UnfinishedLayers(), []
+    write(layers.begin(tmp_path / "edges.shp").parent, LAYERS[1], "today")
+
+    def looked(unfinished, path, finish=destinations.finish_file):
+        seen.append((tmp_path / "edges.shp").exists())
+        finish(unfinished, path)
+
+    monkeypatch.setattr(destinations, "finish_file", looked)
+    layers.commit()
+    assert seen == [False, False, False] and (tmp_path / "edges.shp").read_text() == "today"
+
+
+def test_what_a_journal_holds_is_not_played_into_the_next_database_of_that_name(tmp_path):
+    """As after a crash of QGIS: rows that were written lie in the journal alone."""
+    def database(path, rows, leave_journal):
+        made = sqlite3.connect(path, isolation_level=None)
+        made.execute("PRAGMA journal_mode=WAL")
+        made.execute("CREATE TABLE lanes (id INTEGER)")
+        made.executemany("INSERT INTO lanes VALUES (?)", [(k,) for k in range(rows)])
+        if leave_journal:
+            copies = {suffix: Path(f"{path}{suffix}").read_bytes() for suffix in ("", "-wal")}
+        made.close()
+        for suffix, content in copies.items() if leave_journal else ():
+            Path(f"{path}{suffix}").write_bytes(content)
+
+    database(tmp_path / "map.gpkg", 500, leave_journal=True)
+    layers = UnfinishedLayers()
+    copied = layers.begin_copy(tmp_path / "map.gpkg")
+    with closing(sqlite3.connect(copied)) as copy:
+        assert copy.execute("SELECT count(*) FROM lanes").fetchone() == (500,), "the table to which another is added is whole"
+        copy.execute("CREATE TABLE edges (id INTEGER)")
+    layers.commit()
+    assert os.listdir(tmp_path) == ["map.gpkg"]
+    with closing(sqlite3.connect(tmp_path / "map.gpkg")) as whole:
+        assert whole.execute("PRAGMA integrity_check").fetchone() == ("ok",)
+        assert whole.execute("SELECT count(*) FROM edges").fetchone() == (0,)
+
+
+def test_a_layer_that_a_killed_run_had_set_aside_gets_its_name_back(tmp_path):
+    write(tmp_path, [".edges.shp.previous", ".edges.dbf.previous", ".map.gpkg.previous", "map.gpkg"], "yesterday")
+    bring_back(tmp_path / "edges.shp")
+    bring_back(tmp_path / "map.gpkg")
+    assert sorted(os.listdir(tmp_path)) == [".map.gpkg.previous", "edges.dbf", "edges.shp", "map.gpkg"]
+
+
+def test_what_killed_runs_left_goes_after_a_day_and_what_a_run_of_today_writes_stays(tmp_path):
+    left = [UnfinishedLayers().begin(tmp_path / "map.gpkg") for _ in range(2)]
+    for path in left:
+        path.write_text("half")
+    long_ago = time.time() - 2 * ABANDONED_TIME
+    for path in (left[0], left[0].parent):
+        os.utime(path, (long_ago, long_ago))
+    UnfinishedLayers().begin(tmp_path / "map.gpkg")
+    assert not left[0].parent.exists() and left[1].exists()
+
+
+def made_table(path, table, rows):
+    with closing(sqlite3.connect(path)) as database:
+        return database.execute(f'SELECT count(*) FROM "{table}"').fetchone()[0] == rows
+
+
+def test_a_table_is_replaced_in_its_geopackage_while_qgis_has_it_open_and_the_users_own_table_is_edited(provider, tmp_path):
+    """Edits of another table of the database that are not saved yet are not lost, and the new rows are seen by the open layer."""
+    (tmp_path / "short.csv").write_text("time,x,y,z\n" + "".join(f"{k},{500000 + k},4000000,10\n" for k in range(20)))
+    (tmp_path / "long.csv").write_text("time,x,y,z\n" + "".join(f"{k},{500000 + k},4000000,10\n" for k in range(30)))
+
+    def written(name, table):
+        algorithm, feedback = provider.algorithm("importtrajectory").create(), QgsProcessingFeedback()
+        results, done = algorithm.run({"INPUT": str(tmp_path / f"{name}.csv"), "INPUT_CRS": "EPSG:32650",
+                                       "OUTPUT": f"ogr:dbname='{tmp_path}/map.gpkg' table=\"{table}\" (geom)"}, QgsProcessingContext(), feedback)
+        assert done, feedback.textLog()
+        return results["OUTPUT"]
+
+    layers = {table: QgsVectorLayer(written("short", table), table, "ogr") for table in ("lines", "own")}
+    layers["own"].startEditing()
+    layers["lines"].startEditing()
+    assert layers["own"].deleteFeature(1)
+    written("long", "lines")
+    assert layers["own"].commitChanges(), layers["own"].commitErrors()
+    layers["lines"].rollBack()
+    layers["lines"].reload()
+    assert len(list(layers["lines"].getFeatures())) == 30
+    layers.clear()
+    assert made_table(tmp_path / "map.gpkg", "lines", 30) and made_table(tmp_path / "map.gpkg", "own", 19)
+    assert [name for name in os.listdir(tmp_path) if name.startswith(".")] == []
+
+
+def test_what_is_loaded_is_the_layer_at_its_place(provider, tmp_path):
+    context = QgsProcessingContext()
+    context.setProject(QgsProject.instance())
+    (tmp_path / "drive.csv").write_text("time,x,y,z\n" + "".join(f"{k},{500000 + k},4000000,10\n" for k in range(20)))
+    wanted = QgsProcessingOutputLayerDefinition(str(tmp_path / "lines.gpkg"), QgsProject.instance())
+    results, done = provider.algorithm("importtrajectory").create().run(
+        {"INPUT": str(tmp_path / "drive.csv"), "INPUT_CRS": "EPSG:32650", "OUTPUT": wanted}, context, QgsProcessingFeedback())
+    assert done and list(context.layersToLoadOnCompletion()) == [results["OUTPUT"]] == [str(tmp_path / "lines.gpkg")]
 
 
 def test_a_run_that_fails_asks_for_no_layer_to_be_loaded(provider, tmp_path):

@@ -22,7 +22,7 @@ class Blocked(importlib.abc.MetaPathFinder):
 sys.meta_path.insert(0, Blocked())
 import importlib.util
 from qgis.core import QgsApplication
-from qgis.gui import QgsMessageBar
+from qgis.gui import QgsLayerTreeView, QgsMessageBar
 from qgis.PyQt.QtWidgets import QMainWindow, QPushButton
 app = QgsApplication([], True)
 app.initQgis()
@@ -33,6 +33,8 @@ class Window:
     bar = QgsMessageBar(main)
     mainWindow = lambda self: self.main
     messageBar = lambda self: self.bar
+    tree = QgsLayerTreeView(main)
+    layerTreeView = lambda self: self.tree
     activeLayer = lambda self: None
     def __getattr__(self, name):
         return lambda *given: None

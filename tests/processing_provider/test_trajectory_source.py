@@ -92,3 +92,42 @@ def test_a_written_trajectory_carries_road_pass_and_station(qgis_app):
 ])
 def test_which_values_are_files_for_our_own_reader(value, is_file):
     assert (trajectory_path(value) is not None) == is_file
+
+
+@pytest.mark.parametrize(("field", "values", "seconds"), [
+    ("gps_seconds[s]:string", [f"{t:.3f}" for t in TIME], TIME),
+    ("gps_time_ms:double", TIME * 1000, TIME),
+    ("utc:datetime", [f"2021-10-13T23:46:{40 + k // 10:02d}.{k % 10}00Z" for k in range(60)], 1_318_204_018.0 + 0.1 * np.arange(60)),
+])
+def test_a_layer_knows_the_names_units_and_clocks_that_a_file_knows(qgis_app, field, values, seconds):
+    from qgis.PyQt.QtCore import QDateTime, Qt
+
+    stored = [QDateTime.fromString(v, Qt.DateFormat.ISODateWithMs) if field.endswith("datetime") else v for v in values]
+    layer = layer_of(f"Point?crs=EPSG:32650&field={field}&field=Ellipsoidal height:double",
+                     [(f"Point({x} {y})", [v, z]) for v, x, y, z in zip(stored, X, Y, Z)])
+    trajectory = read_trajectory_source(QgisSource(layer, "Trajectory"))
+    np.testing.assert_allclose(np.c_[trajectory.time, trajectory.z], np.c_[seconds, Z], atol=1e-3)
+
+
+def test_a_layer_with_clock_times_of_nobody_knows_what_is_refused_as_a_file_is(qgis_app):
+    layer = layer_of("PointZ?crs=EPSG:32650&field=Time:string", [
+        (f"PointZ({x} {y} 3)", [f"13/10/2021 23:46:{k:02d}"]) for k, (x, y) in enumerate(zip(X, Y))])
+    with pytest.raises(RoadExtractionError, match="GPS seconds are needed"):
+        read_trajectory_source(QgisSource(layer, "Trajectory"))
+
+
+@pytest.mark.parametrize("door", ["file", "QGIS layer", "layer without QGIS"])
+def test_a_gpx_track_is_read_by_every_door(qgis_app, tmp_path, door):
+    from lanewright.core.survey.trajectory.reader import read_trajectory
+    from lanewright.library.layer_files import LayerFile
+
+    path = tmp_path / "drive.gpx"
+    points = "".join(
+        f'<trkpt lat="{24.5 + 1e-5 * k}" lon="118.09"><ele>{20 + k}</ele><time>2021-10-13T23:46:{22 + k // 4}.{k % 4 * 25:02d}0Z</time></trkpt>'
+        for k in range(40))
+    path.write_text(f'<gpx version="1.1" creator="x" xmlns="http://www.topografix.com/GPX/1/1"><trk><trkseg>{points}</trkseg></trk></gpx>')
+    layer = f"{path}|layername=track_points"
+    trajectory = read_trajectory(path) if door == "file" else read_trajectory_source(
+        QgisSource(QgsVectorLayer(layer), "Trajectory") if door == "QGIS layer" else LayerFile(layer, "Trajectory"))
+    np.testing.assert_allclose(trajectory.time, 1_318_204_000.0 + 0.25 * np.arange(40), atol=0.01)
+    np.testing.assert_allclose(trajectory.z, 20.0 + np.arange(40))

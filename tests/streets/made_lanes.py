@@ -54,7 +54,7 @@ class LaneScene:
 
     def piece(self, left, right, lane=1, piece=1, road=1, direction=1, **values):
         """A piece between two lines in the direction of travel."""
-        given = {"left_kind": "lane", "right_kind": "edge", "left_pattern": "dashed", "right_pattern": "solid", **values}
+        given = {"left_kind": "lane", "right_kind": "edge", "left_pattern": "dashed", "right_pattern": "solid", "confidence": 0.99, **values}
         self.rows.add(left, right, road=road, lane=lane, lane_id=f"{road}.{lane}.{piece}", direction=direction, **given)
 
     def lanes(self):

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import shapely
 
+from ...io.units import FileUnits
 from ..opendrive.exporter import OpenDriveSettings, draft_opendrive
 from ..opendrive.geometry import PlanElement, PlanView
 from ..opendrive.reference_line import fit_reference
@@ -35,9 +36,19 @@ class Alignment:
     profile: np.ndarray
     missed: float = 0.0
 
+    def in_file(self, units: FileUnits) -> Alignment:
+        """The same in the units of a file; its heights have those of x and y."""
+        if units.metric:
+            return self
+        per_metre = 1.0 / units.across
+        plan = None if self.plan is None else PlanView(tuple(
+            replace(one, s=one.s * per_metre, x=one.x * per_metre, y=one.y * per_metre, length=one.length * per_metre,
+                    values=tuple(bend / per_metre for bend in one.values)) for one in self.plan.elements))
+        return replace(self, plan=plan, places=self.places * per_metre, profile=self.profile * per_metre)
+
     @property
     def length(self) -> float:
-        """Metres in plan."""
+        """In plan."""
         return self.plan.length if self.plan is not None else float(np.hypot(*np.diff(self.places[:, :2], axis=0).T).sum())
 
 

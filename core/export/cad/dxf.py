@@ -12,6 +12,7 @@ import shapely
 from ...common.errors import RoadExtractionError
 from ...common.features import Features
 from ...io.gdal_errors import gdal_exceptions
+from ...io.units import as_in_file
 from ..sources import RoadMapSource
 
 COLOURS = {"LANE_BORDER": "#808080", "DRIVING_LINE": "#00a0ff", "MARKING_EDGE": "#ffffff", "MARKING_LANE": "#e0e0e0", "MARKING_CENTRE": "#ffd040",
@@ -67,8 +68,14 @@ def colour_of(layer: str) -> str:
     return next((colour for name, colour in COLOURS.items() if layer.startswith(name)), "#c0c0c0")
 
 
-def write_dxf(lines: list[DxfLine], path: str) -> None:
-    """Write the file by GDAL.
+def write_dxf(lines: list[DxfLine], path: str, crs: str = "") -> None:
+    """Write the file by GDAL, in the units of the survey's own CRS.
+
+    Parameters
+    ----------
+    lines : list of DxfLine
+    path : of the file
+    crs : WKT, metric, of the lines, "" where unknown
 
     Raises
     ------
@@ -81,12 +88,13 @@ def write_dxf(lines: list[DxfLine], path: str) -> None:
         raise RoadExtractionError("DXF is written by GDAL, whose Python module is not installed. Install it (on Debian python3-gdal), or choose "
                                   "FORMAT = landxml.") from problem
 
+    units = as_in_file(crs)[1]
     with gdal_exceptions():
         dataset = gdal.GetDriverByName("DXF").Create(path, 0, 0, 0, gdal.GDT_Unknown)
         layer = dataset.CreateLayer("entities")
         for line in lines:
             feature, geometry = ogr.Feature(layer.GetLayerDefn()), ogr.Geometry(ogr.wkbLineString25D)
-            for x, y, z in line.places:
+            for x, y, z in units.in_file(line.places):
                 geometry.AddPoint(float(x), float(y), float(z))
             feature.SetField("Layer", line.layer)
             feature.SetStyleString(f"PEN(c:{colour_of(line.layer)},w:1px)")

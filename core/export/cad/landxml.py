@@ -12,10 +12,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...io.crs import horizontal_part, parse_crs
+from ...io.units import SAME_UNIT, as_in_file
 from ..opendrive.geometry import PlanElement
 from ..xml_tree import XmlElement, xml_text
 from .alignments import Alignment, elements_without_reversal
 
+FEET_IN_LANDXML = {"USSurveyFoot": 1200 / 3937, "foot": 0.3048}   # m
 NAMESPACE = "http://www.landxml.org/schema/LandXML-1.2"
 
 
@@ -25,13 +27,21 @@ def landxml_text(alignments: Sequence[Alignment], crs: str = "", name: str = "Ro
     Parameters
     ----------
     alignments : list of Alignment
-    crs : WKT, "" where unknown
+    crs : WKT, metric, "" where unknown; where it is that of a survey in feet, so is the file, heights too
     name : of the project
     date, time : of the file, ISO 8601
     """
     root = XmlElement("LandXML", {"xmlns": NAMESPACE, "version": "1.2", "date": date, "time": time, "language": "English", "readOnly": "false"})
-    root.add("Units").add("Metric", areaUnit="squareMeter", linearUnit="meter", volumeUnit="cubicMeter", temperatureUnit="celsius",
-                          pressureUnit="milliBars", angularUnit="decimal degrees", directionUnit="decimal degrees")
+    file_wkt, units = as_in_file(crs)
+    unit = next((name for name, foot in FEET_IN_LANDXML.items() if abs(units.across / foot - 1) < SAME_UNIT), "")
+    if unit:
+        crs = file_wkt
+        root.add("Units").add("Imperial", areaUnit="squareFoot", linearUnit=unit, volumeUnit="cubicFeet", temperatureUnit="fahrenheit",
+                              pressureUnit="inHG", angularUnit="decimal degrees", directionUnit="decimal degrees")
+        alignments = [one.in_file(units) for one in alignments]
+    else:
+        root.add("Units").add("Metric", areaUnit="squareMeter", linearUnit="meter", volumeUnit="cubicMeter", temperatureUnit="celsius",
+                              pressureUnit="milliBars", angularUnit="decimal degrees", directionUnit="decimal degrees")
     known = horizontal_part(parse_crs(crs))
     if known is not None:
         authority = known.to_authority()

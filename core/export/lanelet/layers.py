@@ -7,7 +7,7 @@ import numpy as np
 from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
 from ...io.crs import parse_crs
-from ..map_crs import metric_wkt, utm_of
+from ..map_crs import LOCAL_CRS, metric_wkt, utm_of
 from ..map_layers import LaneRows, MapLayers, MapLine, without_repeats
 from .model import LaneletMap
 from .routing import LaneletNetwork
@@ -15,6 +15,7 @@ from .routing import LaneletNetwork
 PATTERN_OF_WAY = {"solid": "solid", "dashed": "dashed", "solid_solid": "double-solid",
                   "dashed_dashed": "double-dashed", "solid_dashed": "solid-dashed", "dashed_solid": "dashed-solid"}
 EDGE_WAYS = ("curbstone", "road_border", "guard_rail", "wall", "fence")
+NO_LAND = 1.0   # degrees from latitude and longitude 0
 LANE_TYPE_OF_LANELET = {"bicycle_lane": "bicycle", "emergency_lane": "shoulder", "parking": "parking", "road_shoulder": "shoulder"}
 
 
@@ -28,8 +29,9 @@ def node_places(whole: LaneletMap, crs: str = "") -> tuple[np.ndarray, str]:
 
     Returns
     -------
-    places : (N, 3) metres; a height of 0 where a node has none. Nodes without latitude have their local_x and local_y
-    crs : WKT, "" where the map has no latitudes
+    places : (N, 3) metres; a height of 0 where a node has none. A map without latitudes, or with all of them about 0, where there is nothing
+        but sea, has local coordinates: local_x and local_y, or metres from latitude and longitude 0
+    crs : WKT, "" where coordinates are local
 
     Raises
     ------
@@ -40,10 +42,15 @@ def node_places(whole: LaneletMap, crs: str = "") -> tuple[np.ndarray, str]:
 
     known = np.isfinite(whole.degrees).all(1)
     heights = np.nan_to_num(whole.heights)
-    if not known.all():
-        if not np.isfinite(whole.local).all():
+    at_sea = known.any() and np.abs(whole.degrees[known]).max() < NO_LAND
+    if not known.all() or at_sea:
+        if np.isfinite(whole.local).all():
+            return np.c_[whole.local, heights], ""
+        if not known.all():
             raise RoadExtractionError(f"Node {whole.node_ids[~known][0]} has neither lat and lon nor local_x and local_y. Export the map with them.")
-        return np.c_[whole.local, heights], ""
+        if not crs:
+            x, y = Transformer.from_crs("EPSG:4326", LOCAL_CRS, always_xy=True).transform(*whole.degrees.T)
+            return np.c_[x, y, heights], ""
     target = metric_wkt(crs, "The chosen CRS") if crs else utm_of(*whole.degrees.mean(0))
     x, y = Transformer.from_crs("EPSG:4326", parse_crs(target), always_xy=True).transform(*whole.degrees.T)
     places = np.c_[x, y, heights]
@@ -81,8 +88,7 @@ def layers_of_lanelets(whole: LaneletMap, crs: str = "", progress: Progress = Pr
         kinds, patterns = zip(*(_border(whole.ways[lanelet.way(role) or 0].tags, turned[role]) for role in turned))
         rows.add(left, right, road=1, lane=count + 1, lane_id=str(id), direction=1,
                  type=LANE_TYPE_OF_LANELET.get(lanelet.tags.get("subtype", ""), "driving"),
-                 left_line=f"line {lanelet.way('left')}", right_line=f"line {lanelet.way('right')}", left_kind=kinds[0],
-                 right_kind=kinds[1], left_pattern=patterns[0], right_pattern=patterns[1],
+                 left_kind=kinds[0], right_kind=kinds[1], left_pattern=patterns[0], right_pattern=patterns[1],
                  successors=[str(other) for other in network.following(id) if network.driven(other)])
         progress.report((count + 1) / len(shown))
     found = MapLayers(rows.lanes(crs))
@@ -93,6 +99,8 @@ def layers_of_lanelets(whole: LaneletMap, crs: str = "", progress: Progress = Pr
             pattern = PATTERN_OF_WAY.get(way.tags.get("subtype", ""), "")
             found.lines.append(MapLine(1, "edge" if kind in EDGE_WAYS else "marking", "lane", pattern, points,
                                        edge="curb" if kind == "curbstone" else "pavement"))
+    if not crs:
+        found.notes.append("The map has local coordinates: its place on the earth is not known, and the layers have no CRS.")
     left_out = len(whole.lanelets) - len(network.left)
     if left_out:
         found.notes.append(f"{left_out} lanelets lack a border or its nodes and were left out.")

@@ -10,7 +10,7 @@ from ..xml_tree import XmlElement, read_xml
 from .model import Lanelet, LaneletMap, Way
 
 OSM_KIND = "a Lanelet2 map in the XML of OpenStreetMap"
-MAX_ID = 2**62
+MAX_ID = 2**63   # ids are whole numbers of 64 bits with a sign; those that editors give to what is new are negative
 
 
 def read_lanelet2(path: str, progress: Progress = Progress()) -> LaneletMap:
@@ -56,7 +56,9 @@ def lanelets_of(root: XmlElement) -> LaneletMap:
         seen.add((element.tag, id))
         if element.tag == "node":
             ids.append(id)
-            places.append((element.number("lon", np.nan), element.number("lat", np.nan), _tag_number(tags, "ele", element)))
+            # maps in local coordinates leave latitude and longitude out, or empty
+            lon, lat = (element.number(name, np.nan) if element.get(name) else np.nan for name in ("lon", "lat"))
+            places.append((lon, lat, _tag_number(tags, "ele", element)))
             local.append((_tag_number(tags, "local_x", element), _tag_number(tags, "local_y", element)))
         elif element.tag == "way":
             ways[id] = Way(id, [_id(child, "ref") for child in element.all("nd")], tags, element.line)
@@ -74,7 +76,7 @@ def lanelets_of(root: XmlElement) -> LaneletMap:
 def _id(element, name):
     text = element.get(name)
     try:
-        value = int(text) if len(text) < 20 else MAX_ID
+        value = int(text) if len(text) <= 20 else MAX_ID
     except ValueError:
         value = MAX_ID
     if abs(value) >= MAX_ID:

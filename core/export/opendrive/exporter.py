@@ -18,7 +18,18 @@ from .model import OPEN_END, MapLane, MapRoad, OpenDriveMap, RoadMark
 from .network import LaneNetwork
 from .road_objects import add_objects
 from .road_shape import add_lanes, centre_of, shape_of
-from .strips import Cell, Slice, cut_into_cells, directions_where_met, end_to_end, is_connector, mark_junctions, slices_of, strips_of
+from .strips import (
+    Cell,
+    Slice,
+    connector_slices,
+    cut_into_cells,
+    directions_where_met,
+    end_to_end,
+    is_connector,
+    mark_junctions,
+    slices_of,
+    strips_of,
+)
 
 ROUND_ORIGIN = 100.0      # m: the false origin is a multiple of it
 MIDDLES_SHARE = 0.5       # of the tolerance by which borders are moved to their driving lines
@@ -116,7 +127,7 @@ class _Drafting:
         self.sigma = sigma_of_lanes(self.lanes, source.driving_lines)
         self.notes: list[str] = []
         self.cells = cut_into_cells(self.lanes)
-        self.slices = slices_of(self.cells, self.lanes)
+        self.connectors, self.slices = connector_slices(self.cells, slices_of(self.cells, self.lanes), self.lanes)
         self.left_hand = self._left_hand()
 
     def _left_hand(self) -> bool:
@@ -158,7 +169,7 @@ class _Drafting:
         breaks = {(id(one), id(owner[id(other)])) for one in ordinary for cell in one.cells for other in cell.after if id(other) in owner
                   and any(id(near) not in owner for near in cell.after + other.before)}
         found = [([one.turned() for one in strip[::-1]] if _against(strip) else strip, False) for strip in strips_of(ordinary, breaks)]
-        parts = [part for one in inside for part in one.ways()] + [Slice([cell]) for cell in self.cells if is_connector(cell, self.lanes)]
+        parts = [part for one in inside for part in one.ways()] + self.connectors
         lost = sum(len(one.cells) for one in inside if not any(cell.direction for cell in one.cells))
         if lost:
             self.notes.append(f"{lost} pieces that nobody drives lie within junctions, where OpenDRIVE has no place for them.")

@@ -153,6 +153,19 @@ class PlanView:
             places[rows], heading[rows], bend[rows] = self.elements[k].at(s[rows] - starts[k])
         return places, heading, bend
 
+    def jumps(self, gap: float, kink: float) -> list[float]:
+        """Metres at which an element begins elsewhere, or in another direction, than the one before ends.
+
+        gap, kink : metres and radians from which it counts
+        """
+        found = []
+        for one, other in zip(self.elements[:-1], self.elements[1:]):
+            x, y, heading = one.end()
+            turn = (other.heading - heading + np.pi) % (2 * np.pi) - np.pi
+            if np.hypot(other.x - x, other.y - y) > gap or abs(turn) > kink:
+                found.append(other.s)
+        return found
+
     def lengthened(self, before: float, after: float) -> PlanView:
         """The same line, which goes on with the curvature of its ends by metres before its start and after its end."""
         elements = self.elements

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .geometry import Cubics
 from .model import MapRoad
 from .profiles import fit_cubics, simplified
 from .road_shape import RoadShape, risen
@@ -39,6 +40,10 @@ def add_heights(road: MapRoad, shape: RoadShape, tolerance: float) -> None:
     shape : RoadShape of the same road
     tolerance : metres by which a height may be missed
     """
+    level = np.concatenate([z.ravel() for z in shape.z])
+    if np.ptp(level) == 0:
+        road.elevation = Cubics.constant(float(level[0]))
+        return
     profiles = _profiles(shape, np.zeros(0))
     s = np.array([profile.s for profile in profiles])
     middle = _at_reference(profiles, s)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -18,7 +19,9 @@ PATTERN_OF_MARK = {"solid": "solid", "broken": "dashed", "solid solid": "double-
                    "broken broken": "double-dashed", "solid broken": "solid-dashed", "broken solid": "dashed-solid", "botts dots": "dashed"}
 RAISED = ("curb", "sidewalk", "walking")
 NO_LANES = (*RAISED, "none", "rail", "tram")
-SHORTEST_SECTION = 1e-6   # m
+SHORTEST_SECTION = 0.005   # m: of shorter ones the ends would be one vertex
+NEGATIVE_WIDTH = -0.01     # m: less is the rounding of a file
+LEAST_CURB = 0.005     # m of height: less is none that the map states
 LEAST_WIDTH = 0.05     # m: lanes that are narrower everywhere are none
 
 
@@ -37,21 +40,43 @@ def layers_of_opendrive(whole: OpenDriveMap, crs: str = "", progress: Progress =
     Sidewalks are no lanes of ours: where one begins there is an edge
     """
     rows, found, network = LaneRows(), MapLayers(LaneRows().lanes(crs)), LaneNetwork(whole)
-    numbers = road_numbers(whole)
+    numbers, faults = road_numbers(whole), _Faults()
     for count, road in enumerate(whole.roads):
         surface = RoadSurface(road)
         for number, section in enumerate(road.sections):
             if road.section_end(number) - section.s > SHORTEST_SECTION:
-                _add_section(rows, found.lines, whole, network, surface, number, numbers[road.id])
+                _add_section(rows, found.lines, whole, network, surface, number, numbers[road.id], faults)
         progress.report((count + 1) / len(whole.roads))
     found.lanes = _existing(rows).lanes(crs)
     if whole.problems:
         line, text = whole.problems[0]
         found.notes.append(f"{len(whole.problems)} parts of the file were passed over; the first: line {line}, {text}")
+    found.notes += faults.said()
     return found
 
 
-def _add_section(rows, lines, whole, network, surface, number, road_number):
+@dataclass
+class _Faults:
+    """What is wrong with the geometry of the map. folds : (road, lane, place) of borders; negative : (road, lane, least width, s)."""
+
+    folds: list[tuple[str, int, np.ndarray]] = field(default_factory=list)
+    negative: list[tuple[str, int, float, float]] = field(default_factory=list)
+
+    def said(self) -> list[str]:
+        found = []
+        if self.folds:
+            road, lane, place = self.folds[0]
+            found.append(f"{len(self.folds)} borders of lanes fold back over themselves, as a curve is tighter there than the border is far from "
+                         f"the reference line. The folds were cut off. The first is of road {road}, lane {lane}, near x {place[0]:.1f}, "
+                         f"y {place[1]:.1f}.")
+        if self.negative:
+            road, lane, width, s = self.negative[0]
+            found.append(f"{len(self.negative)} lanes have a width below 0, which was taken as 0. The first is lane {lane} of road {road} with "
+                         f"{width:.2f} m at s {s:.1f} m.")
+        return found
+
+
+def _add_section(rows, lines, whole, network, surface, number, road_number, faults):
     """The lanes and lines of one section."""
     road, section = surface.road, surface.road.sections[number]
     s = surface.stations(number)
@@ -60,13 +85,18 @@ def _add_section(rows, lines, whole, network, surface, number, road_number):
         if id == 0:
             lines += _painted(road_number, lane, section.s, s, whole.placed(surface.places(s, offsets[0])), "centre")
             continue
-        inside = id - int(np.sign(id))
-        inner, outer = (whole.placed(points) for points in surface.borders(number, id, s, offsets))
+        inside = surface.inside(number, id)
+        (inner, _), (outer, fold) = (surface.without_folds(s, points) for points in surface.borders(number, id, s, offsets))
+        inner, outer = whole.placed(inner), whole.placed(outer)
+        if fold is not None:
+            faults.folds.append((road.id, id, whole.placed(fold[None])[0]))
+        if not lane.border and len(lane.width) and (least := lane.width.least(float(s[-1]) - section.s))[0] < NEGATIVE_WIDTH:
+            faults.negative.append((road.id, id, least[0], section.s + least[1]))
         lines += _painted(road_number, lane, section.s, s, outer, _kind(section.lanes, id))
         if _kind(section.lanes, id) == "pavement" and plan_length(outer) > LEAST_WIDTH:
             lines.append(MapLine(road_number, "edge", "main", "", without_repeats(outer), side="left" if id > 0 else "right", edge="pavement"))
         if _edge(section.lanes, id) and plan_length(inner) > LEAST_WIDTH:
-            lines.append(MapLine(road_number, "edge", "main", "", without_repeats(inner), side="left" if id > 0 else "right"))
+            lines.append(_curb(surface, number, id, s, inner, road_number))
         if lane.type in NO_LANES or np.abs(offsets[id] - offsets[inside]).max() < LEAST_WIDTH:
             continue
         way, driven = travel(road, id), lane.type in DRIVEN_TYPES
@@ -78,8 +108,29 @@ def _add_section(rows, lines, whole, network, surface, number, road_number):
         rows.add(*borders, road=road_number, lane=id, lane_id=lane_name(road.id, id, number), direction=way if driven else 0,
                  type=("connector" if road.junction != "-1" else "driving") if driven else LANE_TYPE_OF.get(lane.type, "shoulder"),
                  left_kind=about[0][0], right_kind=about[1][0], left_pattern=about[0][1], right_pattern=about[1][1],
-                 successors=[lane_name(key[0], key[2], key[1]) for key in network.following((road.id, number, id))] if driven else [],
+                 successors=[lane_name(key[0], key[2], key[1]) for key in _following(network, (road.id, number, id))] if driven else [],
                  station=float(s[0]), end=float(s[-1]))
+
+
+def _following(network, key, passed=()):
+    """The lanes that a lane leads to, those beyond sections that are too short to be shown."""
+    for other in network.following(key):
+        road = network.roads[other[0]]
+        if road.section_end(other[1]) - road.sections[other[1]].s > SHORTEST_SECTION:
+            yield other
+        elif other not in passed:
+            yield from _following(network, other, (*passed, other))
+
+
+def _curb(surface, number, id, s, inner, road_number):
+    """The edge where a raised lane begins: at its foot, with its height, which is that of the top of a curb or of the near side of a sidewalk."""
+    lane = surface.road.sections[number].lanes[id]
+    near, far = surface.lifts(number, id, s)
+    foot = surface.lifts(number, surface.inside(number, id), s)[1]
+    rise = float(np.median((far if lane.type == "curb" else near) - foot))
+    inner = np.c_[inner[:, :2], inner[:, 2] - near + foot]
+    return MapLine(road_number, "edge", "main", "", without_repeats(inner), side="left" if id > 0 else "right",
+                   height=rise if rise > LEAST_CURB else np.nan)
 
 
 def _existing(rows):

@@ -71,18 +71,20 @@ def opendrive_of(root: XmlElement) -> OpenDriveMap:
 
 def _road(element, problems):
     plan = element.find("planView")
-    elements = [_geometry(child) for child in (plan.all("geometry") if plan is not None else ())]
+    elements = sorted((_geometry(child) for child in (plan.all("geometry") if plan is not None else ())), key=lambda one: one.s)
     if not elements:
         raise RoadExtractionError("it has no geometry.")
     if sum(abs(one.length) for one in elements) > LONGEST_ROAD:
         raise RoadExtractionError(f"it is longer than {LONGEST_ROAD / 1000:g} km.")
     profile, lateral, lanes = element.find("elevationProfile"), element.find("lateralProfile"), element.find("lanes")
     road = MapRoad(
-        element.get("id"), element.number("length"), PlanView(tuple(elements)), element.get("name"), element.get("junction", "-1"),
+        element.get("id"), element.number("length", sum(one.length for one in elements)), PlanView(tuple(elements)), element.get("name"),
+        element.get("junction", "-1"),
         element.get("rule", "RHT"), _link(element.find("link", "predecessor")), _link(element.find("link", "successor")),
         _cubics(profile, "elevation"), _cubics(lateral, "superelevation"), _shape(lateral), _cubics(lanes, "laneOffset"))
     for child in lanes.all("laneSection") if lanes is not None else ():
         road.sections.append(_section(child))
+    road.sections.sort(key=lambda section: section.s)
     if not road.sections:
         problems.append((element.line, f"road {road.id} has no lane section."))
     objects = element.find("objects")
@@ -115,7 +117,7 @@ def _link(element):
 
 def _cubics(parent, tag, start="s"):
     rows = [[child.number(start), *(child.number(name) for name in "abcd")] for child in (parent.all(tag) if parent is not None else ())]
-    return Cubics(np.array(rows, float).reshape(-1, 5))
+    return Cubics(np.array(sorted(rows, key=lambda row: row[0]), float).reshape(-1, 5))
 
 
 def _shape(parent):
@@ -139,13 +141,13 @@ def _lane(element):
     lane = MapLane(int(number), element.get("type"), _cubics(element, "width", "sOffset"))
     if not len(lane.width) and element.find("border") is not None:
         lane.width, lane.border = _cubics(element, "border", "sOffset"), True
-    lane.marks = [_mark(child) for child in element.all("roadMark")]
+    lane.marks = sorted((_mark(child) for child in element.all("roadMark")), key=lambda mark: mark.s)
     link = element.find("link")
     for child in link.children if link is not None else ():
         if child.tag in ("predecessor", "successor"):
             getattr(lane, child.tag + "s").append(int(child.number("id")))
     rows = [[child.number(name, 0.0) for name in ("sOffset", "inner", "outer")] for child in element.all("height")]
-    lane.heights = np.array(rows, float).reshape(-1, 3)
+    lane.heights = np.array(sorted(rows), float).reshape(-1, 3)
     lane.data = {child.get("code"): child.get("value") for child in element.all("userData")}
     return lane
 
@@ -177,6 +179,7 @@ def _junction(element):
     junction = Junction(element.get("id"), element.get("name"))
     for child in element.all("connection"):
         links = [(int(link.number("from")), int(link.number("to"))) for link in child.all("laneLink")]
-        ends = (child.get(name) for name in ("incomingRoad", "connectingRoad", "contactPoint"))
-        junction.connections.append(Connection(child.get("id"), *ends, links))
+        # a direct junction links roads without a road between
+        connecting = child.get("connectingRoad") or child.get("linkedRoad")
+        junction.connections.append(Connection(child.get("id"), child.get("incomingRoad"), connecting, child.get("contactPoint"), links))
     return junction

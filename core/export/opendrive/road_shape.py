@@ -12,7 +12,9 @@ from .profiles import broken_lines, difference, fit_cubics, simplified
 from .reference_line import fit_reference, polynomial_reference
 from .strips import MOST_TURN, SLOPE_REACH, Slice
 
-NEAREST_POINTS = 0.005   # m between points of a guide line
+NEAREST_POINTS = 0.005   # m within which two places of a guide line are one
+GUIDE_STEP = 0.1         # m between points of a guide line at the least: what lies between tells no direction
+LEAST_GUIDE = 0.05       # m of a guide line: where lane 0 is shorter, as about a corner, another border leads
 LEAST_END = 0.5          # m of width from which the end of a road has a direction
 MOST_ASKEW = 0.5         # rad between the end of a road and a square cut to which it can turn within a few metres
 SQUARE_END = 0.002           # m along the road by which the corners of an end may miss a square cut: validators allow 1 cm between two roads
@@ -22,6 +24,7 @@ SMOOTHER = (1.0, 3.0)    # m, standard deviations of the means that take the cor
 BEND_STEP = 0.25         # m between the places at which a border is held against the curvature
 LEAST_STRETCH = 0.1      # of a border against the reference line: less is beside the centre of the curve
 FOOT_ROUNDS = 8
+FOUND_FOOT = 1e-9        # m
 END_ROUNDS = 4
 LEAST_STEP = 0.001       # m along the road between places that count
 SAME_LINE = 0.02         # m by which lane 0 may jump from section to section and still go on
@@ -69,10 +72,15 @@ def shape_of(strip: list[Slice], centres: list[int], tolerance: float) -> RoadSh
     tolerance : metres that the centre border may lie beside the reference line; what is missed is made up by the lane offset
     """
     guide, index = _guide(strip, centres)
-    keep = np.append(True, np.hypot(*np.diff(guide, axis=0).T) > NEAREST_POINTS)
+    along = np.append(0.0, np.cumsum(np.hypot(*np.diff(guide, axis=0).T)))
+    if along[-1] < LEAST_GUIDE:
+        guide, index = _guide(strip, [int(np.argmax([np.hypot(*np.diff(line[:, :2], axis=0).T).sum() for line in one.borders()])) for one in strip])
+        along = np.append(0.0, np.cumsum(np.hypot(*np.diff(guide, axis=0).T)))
+    keep = np.append(True, np.diff(np.floor(along / GUIDE_STEP)) > 0)
+    keep[np.flatnonzero(keep)[-1] if keep.sum() > 1 else -1] = False
+    keep[-1] = True
     ends, widest = _end_headings(strip, guide)
     plan = _reference(guide[keep], tolerance, ends, SQUARE_END / max(widest, 1.0), _reach(strip, index, guide)[keep])
-    along = np.append(0.0, np.cumsum(np.hypot(*np.diff(guide, axis=0).T)))
     along *= plan.length / along[-1]
     for _ in range(END_ROUNDS):   # seen from a longer line the corners lie a little elsewhere
         s_all, t_all = _frame(plan, strip, [along[rows] for rows in index])
@@ -238,7 +246,10 @@ def feet(plan: PlanView, places: np.ndarray, near: np.ndarray) -> tuple[np.ndarr
         on, heading, bend = plan.at(s)
         dx, dy = places[:, 0] - on[:, 0], places[:, 1] - on[:, 1]
         across = dy * np.cos(heading) - dx * np.sin(heading)
-        s = s + (dx * np.cos(heading) + dy * np.sin(heading)) / np.clip(1 - bend * across, 0.2, 5.0)
+        step = (dx * np.cos(heading) + dy * np.sin(heading)) / np.clip(1 - bend * across, 0.2, 5.0)
+        s = s + step
+        if np.abs(step).max(initial=0.0) < FOUND_FOOT:
+            break
     on, heading, _ = plan.at(s)
     dx, dy = places[:, 0] - on[:, 0], places[:, 1] - on[:, 1]
     return s, dy * np.cos(heading) - dx * np.sin(heading)

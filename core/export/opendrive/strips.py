@@ -112,7 +112,11 @@ def cut_into_cells(lanes: Lanes) -> list[Cell]:
     for k in range(len(lanes)):
         a, b = lanes.start[k], lanes.start[k + 1] - 1
         inner = [row for row in range(a + 1, b) if left[row] in cuts or right[row] in cuts] if ordinary[a] else []
-        at = [a, *inner, b]
+        at = [a]
+        for row in inner:   # where both borders stand still there is nothing to cut off
+            if all((left[row], right[row]) != (left[end], right[end]) for end in (at[-1], b)):
+                at.append(row)
+        at.append(b)
         made = []
         for first, last in zip(at[:-1], at[1:]):
             rows = slice(first, last + 1)
@@ -194,6 +198,26 @@ def slices_of(cells: list[Cell], lanes: Lanes) -> list[Slice]:
             row.append(beside)
         found.append(Slice(row))
     return found
+
+
+def connector_slices(cells: list[Cell], slices: list[Slice], lanes: Lanes) -> tuple[list[Slice], list[Slice]]:
+    """(a slice for every connector with what nobody drives beside it, the slices that are left)."""
+    undriven = [one for one in slices if not any(cell.direction for cell in one.cells)]
+    by_left = {one.cells[0].left_nodes: one for one in undriven}
+    by_right = {one.cells[-1].right_nodes: one for one in undriven}
+    found, used = [], set()
+
+    def beside(same, turned, nodes):
+        for one, against in ((same.get(nodes), False), (turned.get(nodes[::-1]), True)):
+            if one is not None and id(one) not in used:
+                used.add(id(one))
+                return (one.turned() if against else one).cells
+        return []
+
+    for cell in cells:
+        if is_connector(cell, lanes):
+            found.append(Slice([*beside(by_right, by_left, cell.left_nodes), cell, *beside(by_left, by_right, cell.right_nodes)]))
+    return found, [one for one in slices if id(one) not in used]
 
 
 def directions_where_met(cells: list[Cell]) -> dict[int, float]:

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import numpy as np
+import shapely
 
 from .geometry import Cubics
 from .model import MapRoad
 
-BORDER_STEP = 0.5   # m between the places at which borders are computed
+BORDER_STEP = 1.0   # m between the places at which borders are computed
 SAGITTA = 0.0005    # m by which the chord between two of them may miss a curve
 LEAST_BORDER_STEP = 0.05   # m
 BENDING_ROUNDS = 5   # of halving the steps where a border bends
 BEFORE_END = 1e-6    # m before the end of a section at which its functions still hold
+LEAST_STATION = 0.005   # m between two of them: nearer ones would be one vertex
+LONGEST_FOLD = 200      # places before and after a step back among which its crossing is looked for
+GAP, KINK = 1e-4, 1e-4  # m and rad between elements of the reference line from which a border jumps there: it is cut on both sides
 
 
 class RoadSurface:
@@ -34,9 +38,9 @@ class RoadSurface:
         own = [lane.width.rows[:, 0] + first for lane in road.sections[number].lanes.values()]
         knots = np.concatenate([even, [element.s for element in road.plan.elements], road.lane_offset.rows[:, 0], *own])
         knots = np.unique(knots[(knots >= first) & (knots <= last)])
-        keep = np.append(True, np.diff(knots) > 1e-3)
-        keep[-1] = True
-        knots = knots[keep]
+        keep = np.append(True, np.diff(knots) > LEAST_STATION) & (knots < last - LEAST_STATION)
+        keep[0] = True
+        knots = np.append(knots[keep], last) if last > first else knots[[0, -1]]
         if number + 1 < len(road.sections):   # the functions of the next section begin at its end
             knots[-1] = max(knots[-1] - BEFORE_END, knots[-2])
         for _ in range(BENDING_ROUNDS):
@@ -48,7 +52,8 @@ class RoadSurface:
             if not bent.any():
                 break
             knots = np.sort(np.append(knots, middles[bent]))
-        return knots
+        jumps = np.array([s for s in road.plan.jumps(GAP, KINK) if knots[0] + LEAST_STATION < s < knots[-1] - LEAST_STATION])
+        return np.sort(np.append(knots, jumps - BEFORE_END))
 
     def offsets(self, number: int, s: np.ndarray) -> dict[int, np.ndarray]:
         """(N,) metres left of the reference line of every lane's outer border, and of lane 0, by lane number."""
@@ -60,7 +65,7 @@ class RoadSurface:
             for id in sorted((id for id in section.lanes if id * side > 0), key=abs):
                 lane = section.lanes[id]
                 value = lane.width.at(s - section.s)
-                outer = side * np.abs(value) if lane.border else outer + side * value
+                outer = side * np.abs(value) if lane.border else outer + side * np.maximum(value, 0.0)
                 found[id] = outer
         return found
 
@@ -75,13 +80,58 @@ class RoadSurface:
 
     def borders(self, number: int, id: int, s: np.ndarray, offsets: dict[int, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
         """((N, 3) inner, (N, 3) outer) border of a lane along the road."""
-        lane = self.road.sections[number].lanes[id]
-        inner = offsets[max((other for other in offsets if other * id >= 0 and abs(other) < abs(id)), key=abs)]
-        lift = np.zeros((2, len(s)))
-        if len(lane.heights):
-            k = np.searchsorted(lane.heights[:, 0], s - self.road.sections[number].s + 1e-9, side="right") - 1
-            lift = np.where(k < 0, 0.0, lane.heights[np.maximum(k, 0), 1:].T)
+        inner = offsets[self.inside(number, id)]
+        lift = self.lifts(number, id, s)
         return self.places(s, inner, lift[0]), self.places(s, offsets[id], lift[1])
+
+    def inside(self, number: int, id: int) -> int:
+        """The lane next to one on the side of lane 0, which is never missing."""
+        return max((other for other in self.road.sections[number].lanes if other * id >= 0 and abs(other) < abs(id)), key=abs, default=0)
+
+    def lifts(self, number: int, id: int, s: np.ndarray) -> np.ndarray:
+        """(2, N) metres that the inner and the outer border of a lane lie above the road."""
+        heights = self.road.sections[number].lanes[id].heights if id in self.road.sections[number].lanes else np.empty((0, 3))
+        if not len(heights):
+            return np.zeros((2, len(s)))
+        k = np.searchsorted(heights[:, 0], s - self.road.sections[number].s + 1e-9, side="right") - 1
+        return np.where(k < 0, 0.0, heights[np.maximum(k, 0), 1:].T)
+
+    def without_folds(self, s: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray | None]:
+        """(N, 3) places of a border at s, of which none lies on a loop, and where the first loop was, None where there was none.
+
+        Where a curve is tighter than a border is far from the reference line, the border runs back for a while and crosses itself twice over.
+        The places between are led to the crossing, so that the border stands still there.
+        """
+        heading = self.road.plan.at((s[:-1] + s[1:]) / 2)[1]
+        steps = np.diff(points[:, :2], axis=0)
+        back = steps[:, 0] * np.cos(heading) + steps[:, 1] * np.sin(heading) < 0
+        if not back.any() or shapely.linestrings(points[:, :2]).is_simple:
+            return points, None
+        points, first = points.copy(), None
+        for a in np.flatnonzero(back & ~np.append(False, back[:-1])):
+            b = a + int(np.argmin(np.append(back[a:], False)))   # the steps a to b - 1 run back
+            crossing = _crossing(points, a, b)
+            if crossing is not None:
+                before, after, place = crossing
+                first = place if first is None else first
+                points[before + 1:after + 1] = place
+        return points, first
+
+
+def _crossing(points, a, b):
+    """(step, step, place) at which the steps before a cross those from b on: the one that is left last; None where none do."""
+    lines = shapely.linestrings(np.stack([points[:-1, :2], points[1:, :2]], axis=1))
+    before, after = np.arange(max(a - LONGEST_FOLD, 0), a), np.arange(b, min(b + LONGEST_FOLD, len(lines)))
+    if not len(before) or not len(after):
+        return None
+    pairs = shapely.STRtree(lines[after]).query(lines[before], predicate="intersects")
+    if not pairs.shape[1]:
+        return None
+    # the outermost crossing takes all smaller loops with it
+    i, j = min(((before[p], after[q]) for p, q in pairs.T), key=lambda pair: (pair[0], -pair[1]))
+    place = shapely.get_coordinates(shapely.intersection(lines[i], lines[j]))[0]
+    share = np.hypot(*(place - points[i, :2])) / max(float(np.hypot(*(points[i + 1] - points[i])[:2])), 1e-12)
+    return i, j, np.append(place, points[i, 2] + share * (points[i + 1, 2] - points[i, 2]))
 
 
 def shape_height(shape: np.ndarray, s: np.ndarray, t: np.ndarray) -> np.ndarray:

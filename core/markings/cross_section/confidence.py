@@ -25,6 +25,20 @@ class Reading:
     lanes: tuple[tuple[float, float, int], ...]
 
 
+@dataclass(frozen=True)
+class TakenReading:
+    """A second reading that an analyst took.
+
+    road : number; s, d : (V,) metres, rising stations and offsets of the lane that it is taken for
+    lanes : of each lane that lies there instead, metres across from that lane, width in metres, and direction
+    """
+
+    road: int
+    s: np.ndarray
+    d: np.ndarray
+    lanes: tuple[tuple[float, float, int], ...]
+
+
 def confidence_of(there: np.ndarray, directed: np.ndarray, weights: EstimateWeights = EstimateWeights()) -> np.ndarray:
     """The share of such lanes that run the right way and within 15 cm of the true driving line: of those that lie there, those that lead this way.
 

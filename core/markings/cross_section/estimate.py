@@ -119,7 +119,24 @@ def _best_sections(candidates, evidence, weights, lane_width, first_direction):
         sections = best_sections(own, strip_costs(own, seen, weights, lane_width, first_direction), seen.stops, weights)
         sections.cost += _roads_of_many_lanes(own, sections, seen.divided, weights)
         found.append(sections)
-    return Sections.joined(found)
+    joined = Sections.joined(found)
+    _hold_to_taken(candidates, evidence, joined, lane_width, first_direction, weights)
+    return joined
+
+
+def _hold_to_taken(candidates, evidence, sections, lane_width, first_direction, weights):
+    """Make cross-sections improbable, in place, that have not the lanes that an analyst took."""
+    for interval, former, wanted in evidence.taken:
+        own = lane_strips(sections.take(slice(interval, interval + 1)))
+        lanes = _lanes(candidates, lane_width, first_direction, replace(own, interval=own.interval + interval))
+        there = np.abs(lanes.d - former) < SAME_LANE
+        for d, width, _ in wanted:
+            there |= np.abs(lanes.d - d) < width / 2
+        kept = np.arange(sections.cost.shape[1])
+        fits = np.bincount(lanes.section[there], minlength=len(kept)) == len(wanted)
+        for d, _, way in wanted:
+            fits &= np.isin(kept, lanes.section[(np.abs(lanes.d - d) < 2 * SAME_LANE) & (lanes.way == way)])
+        sections.cost[interval] += np.where(fits, 0.0, weights.not_taken)
 
 
 def _seen_once(c, sections, cost, weights):
@@ -208,7 +225,7 @@ def _lane_spans(estimate, part):
     c, strips = estimate.candidates, _strips_of(estimate, part)
     borders = _uses(estimate.sections.take(part), estimate.choice[part])
     best = np.flatnonzero(strips.section == estimate.choice[strips.interval])
-    lanes = _lanes(estimate, strips)
+    lanes = _lanes_of(estimate, strips)
     own, shares = _place_shares(estimate, lanes, best, part)
     way = np.where(shares[:, 3] > 0, -lanes.way[own], lanes.way[own])
     seconds = [min((one for one in both if one is not None), key=lambda one: one.nats, default=None) for both in zip(
@@ -249,13 +266,18 @@ def _strips_of(estimate, part):
     return replace(found, interval=found.interval + part.start)
 
 
-def _lanes(estimate, strips):
-    c, at = estimate.candidates, strips.interval
+def _lanes_of(estimate, strips):
+    """Every lane of some strips of an estimate."""
+    return _lanes(estimate.candidates, estimate.lane_width, estimate.first_direction, strips)
+
+
+def _lanes(c, lane_width, first_direction, strips):
+    at = strips.interval
     d_left, each = lane_places(c.right[at, strips.left], c.left[at, strips.right], c.made_of[at, strips.left], c.made_of[at, strips.right],
-                               strips.number, estimate.lane_width, c.bend[at])
+                               strips.number, lane_width, c.bend[at])
     of = np.repeat(np.arange(len(at)), strips.number)
     place = np.arange(len(of)) - (np.cumsum(strips.number) - strips.number)[of]
-    way = np.where(place < strips.first[of], estimate.first_direction, -estimate.first_direction)
+    way = np.where(place < strips.first[of], first_direction, -first_direction)
     return _Lanes(at[of], strips.section[of], of, d_left[of] - each[of] * (place + 0.5), each[of], way)
 
 
@@ -270,7 +292,7 @@ def _place_shares(estimate, lanes, chosen, part):
     known = [(lanes.interval, lanes.d, lanes.way, estimate.posterior[lanes.interval, lanes.section], estimate.sureness[lanes.interval, lanes.section],
               estimate.once[lanes.interval, lanes.section] - best, estimate.unnamed[lanes.interval] == lanes.section)]
     if other is not None:
-        more = _lanes(other, _strips_of(other, part))
+        more = _lanes_of(other, _strips_of(other, part))
         nothing = np.zeros(len(more.d))
         known.append((more.interval, more.d, more.way, nothing, nothing, other.once[more.interval, more.section] - other.once_total + estimate.behind,
                       nothing > 0))
@@ -300,7 +322,7 @@ def _second_readings(estimate, lanes, own, way, part):
     """The second Reading of each of the lanes `own`, which lead the way `way`, (L,); None where nothing is known of others."""
     sides = [(lanes, estimate.second)]
     if estimate.opposite is not None:
-        sides.append((_lanes(estimate.opposite, _strips_of(estimate.opposite, part)), estimate.opposite.second + estimate.opposite_behind))
+        sides.append((_lanes_of(estimate.opposite, _strips_of(estimate.opposite, part)), estimate.opposite.second + estimate.opposite_behind))
     nats = np.concatenate([behind for _, behind in sides], axis=1)
     slots = np.cumsum([0] + [behind.shape[1] for _, behind in sides[:-1]])
     slot = np.concatenate([side.section + first for (side, _), first in zip(sides, slots)])

@@ -36,11 +36,12 @@ _known: WeakKeyDictionary[Any, dict[Any, Any]] = WeakKeyDictionary()   # stores 
 class Evidence:
     """What is seen beside boundaries, by interval.
 
-    driven : (P, I) m, offset of each pass, NaN where it was not; directions : (P,) 1 along, -1 against the road
+    driven : (P, I) m, offset of each pass, NaN where it was not; directions : (P,) 1 along, -1 against the road, 0 unknown
     asphalt, hatched : (I, B) share of each bin of BIN metres, from -FAR on, that is road surface or hatched; None where unknown
     arrows : (A, 3) interval, offset, and which way it points: 1 along the road, -1 against it, nearer 0 the less sure
     stops : (S, 3) interval, least and greatest offset
     divided : (I,) bool, whether the road is one carriageway of two
+    taken : what an analyst took: interval, offset of the lane that it is taken for, and offset, width and direction of each lane instead
     """
 
     driven: np.ndarray
@@ -50,6 +51,7 @@ class Evidence:
     arrows: np.ndarray
     stops: np.ndarray
     divided: np.ndarray
+    taken: tuple[tuple[int, float, tuple[tuple[float, float, int], ...]], ...] = ()
 
     def part(self, first: int, end: int) -> Evidence:
         """That of the intervals from `first` to `end` (exclusive)."""
@@ -72,7 +74,7 @@ def driven_offsets(frame: RoadFrame, road: int, s: np.ndarray) -> tuple[np.ndarr
     Returns
     -------
     d : (P, K) metres, offset of every pass; NaN where it did not drive
-    direction : (P,) int, 1 along the road's reference line, -1 against it
+    direction : (P,) int, 1 along the road's reference line, -1 against it; 0 where the drive was estimated and that is not known
     """
     passes = frame.passes_of(road)
     d = np.full((len(passes), len(s)), np.nan)
@@ -80,7 +82,7 @@ def driven_offsets(frame: RoadFrame, road: int, s: np.ndarray) -> tuple[np.ndarr
         first, last = p.span
         there = (s >= first) & (s <= last)
         row[there] = p.at_station(s[there])[0]
-    return d, np.array([p.direction for p in passes], int)
+    return d, np.array([p.direction if frame.way_known else 0 for p in passes], int)
 
 
 def other_carriageway(frame: RoadFrame, road: int, s: np.ndarray) -> np.ndarray:
@@ -94,7 +96,7 @@ def other_carriageway(frame: RoadFrame, road: int, s: np.ndarray) -> np.ndarray:
     """
     found = np.zeros(len(s), bool)
     ways = {p.direction for p in frame.passes_of(road)}
-    if len(ways) != 1:
+    if len(ways) != 1 or not frame.way_known:
         return found
     of_road = frame.road(road)
     for p in frame.passes:

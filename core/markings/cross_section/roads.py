@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -13,6 +14,7 @@ from ...survey.frame.row_table import stacked
 from ..figures.parking_bays import rows_of_bays
 from .arrows import arrows_of, driven_against
 from .candidates import Boundaries, Candidates, boundary_candidates, gather_boundaries
+from .confidence import TakenReading
 from .dashes import dash_lengths
 from .estimate import RoadEstimate, estimate_road, lane_spans
 from .evidence import Evidence, between_ends, driven_offsets, evidence_of, other_carriageway, surface_coverage
@@ -60,7 +62,7 @@ def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_widt
                    curbs: dict[int, CrossSections] | None = None, markings: MarkingObjects | None = None,
                    road_points: RoadPoints | None = None, paint: RoadPoints | None = None, width_asked: bool = False,
                    weights: EstimateWeights = EstimateWeights(), pavement: dict[int, CrossSections] | None = None,
-                   progress: Progress = Progress()) -> RoadEstimates:
+                   progress: Progress = Progress(), taken: Sequence[TakenReading] = ()) -> RoadEstimates:
     """Estimate lines and lanes.
 
     Parameters
@@ -75,6 +77,7 @@ def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_widt
     width_asked : whether `usual_width` is the user's own
     weights : EstimateWeights
     progress : Progress
+    taken : second readings that an analyst took
     """
     known: dict[int, tuple[Boundaries, Candidates, Evidence]] = {}
     drives = {number: driven_offsets(frame, number, of_road.s) for number, of_road in lines.items()}
@@ -100,8 +103,9 @@ def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_widt
                                        (pavement or {}).get(number), dash_lengths(of_road, markings, number))
         candidates = boundary_candidates(boundaries, weights)
         progress.report(0.4 * (len(known) + 1) / len(lines))
-        known[number] = boundaries, candidates, evidence_of(
+        evidence = evidence_of(
             candidates, of_road.s, *driven, covered, hatched, arrows.get(number), markings, number, other_carriageway(frame, number, of_road.s))
+        known[number] = boundaries, candidates, replace(evidence, taken=_taken_on(taken, number, candidates, of_road.s))
     sides = {"right": (-1,), "left": (1,)}.get(side, (-1, 1))
     found = dict(zip(sides, ordered_map(lambda first: _estimates(known, first, usual_width, weights), sides, progress.part(0.4, 0.7))))
     total, unnamed, once = ({first: sum(getattr(one, name) for one in of_roads.values()) + (weights.left_hand if first > 0 else 0.0)
@@ -127,6 +131,18 @@ def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_widt
             estimate = replace(estimate, other=other if behind < SURE_SIDE else None, behind=behind, opposite=other, opposite_behind=opposite)
         roads[number] = EstimatedRoad(lines[number], known[number][0], estimate)
     return RoadEstimates(roads, "right" if best < 0 else "left", behind >= SURE_SIDE, width, against)
+
+
+def _taken_on(taken, number, candidates, s):
+    """`Evidence.taken` of a road: each reading in the intervals whose middle it reaches over."""
+    middle = (s[candidates.first] + s[candidates.last]) / 2
+    found = []
+    for one in taken:
+        if one.road == number:
+            inside = np.flatnonzero((middle >= one.s[0]) & (middle <= one.s[-1]))
+            for interval, d in zip(inside.tolist(), np.interp(middle[inside], one.s, one.d).tolist()):
+                found.append((interval, d, tuple((d + across, width, way) for across, width, way in one.lanes)))
+    return tuple(found)
 
 
 def _closed_areas(markings, frame, number, s, driven):

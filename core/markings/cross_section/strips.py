@@ -159,7 +159,7 @@ def _driven_cost(evidence, inside, d_left, each, number, split, first_direction,
         lane = np.clip(np.floor(np.nan_to_num(place)), 0, number - 1)
         off = (np.nan_to_num(place) - lane - 0.5) * each
         way = np.where(lane < split, first_direction, -first_direction)
-        cost += inside[p] * (np.minimum(0.5 * (off / w.driven_sigma) ** 2, w.driven_astride) + np.where(way == direction, 0.0, w.driven_against))
+        cost += inside[p] * (np.minimum(0.5 * (off / w.driven_sigma) ** 2, w.driven_astride) + np.where(way == -direction, w.driven_against, 0.0))
     return cost
 
 

@@ -70,6 +70,7 @@ class EstimateWeights:
         crossings of the simulated streets have 200 m
     doubt, most_in_doubt : nats by which a second reading of a lane or line may be less probable to be said beside the first, and the most
         that the confidence of the first is then: two readings of which either may be right, and all others
+    not_taken : of a cross-section without the lanes of a reading that an analyst took, against any evidence
     calibration_of_direction : slope of the same curve for the direction of a lane; fitted to 7 km of lanes of 20 simulated streets, on some of
         which the lines leave open which way a lane leads
     """
@@ -133,6 +134,7 @@ class EstimateWeights:
     repeats: float = 200.0
     doubt: float = 3.0
     most_in_doubt: float = 0.6
+    not_taken: float = 1000.0
 
     @property
     def boundary(self) -> np.ndarray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from ...road.edges.road_edges import RoadEdges
     from ...survey.frame.road_frame import RoadFrame
     from ...survey.store.road_points import RoadPoints
+    from ..cross_section.confidence import TakenReading
     from .strands import Strand
 
 LINES_SHARE = 0.65         # of the work; the rest is the estimate that names the lines
@@ -70,7 +71,7 @@ class MarkingLineSettings:
 
 def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, frame: RoadFrame,
                       settings: MarkingLineSettings = MarkingLineSettings(), progress: Progress = Progress(), edges: RoadEdges | None = None,
-                      road_points: RoadPoints | None = None) -> PaintedLines:
+                      road_points: RoadPoints | None = None, taken: Sequence[TakenReading] = ()) -> PaintedLines:
     """Trace, link and fit the painted lines of all roads.
 
     Parameters
@@ -81,6 +82,7 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
     settings : MarkingLineSettings
     progress : Progress
     edges, road_points : RoadEdges and RoadPoints, or None: what the lines separate is told better with them
+    taken : second readings that an analyst took
 
     Returns
     -------
@@ -133,7 +135,7 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
     if road_points is not None:
         drawn = with_unseen_paint(drawn, markings, clustered_points, road_points)
     return named_by_estimate(drawn, frame, country(settings.country).usual_lane, markings, edges, road_points, clustered_points,
-                             progress.part(LINES_SHARE, 1.0))
+                             progress.part(LINES_SHARE, 1.0), taken)
 
 
 def _linked(strands, edges, settings):

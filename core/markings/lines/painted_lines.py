@@ -69,6 +69,7 @@ class PaintedLines:
     rmse, width : (P,) metres, of the paint from the curve and of the paint across; NaN where unknown; None where nothing is known
     unseen : P arrays (K, 3), metres: first and last station of stretches of a bridged piece that lie between two tracks of the scan,
         and the width of the line; None where it was not looked for
+    other : (P,) str objects, the second reading of `kind` as JSON, "" where there is none; None where it was not looked for
     """
 
     line: np.ndarray
@@ -81,6 +82,7 @@ class PaintedLines:
     rmse: np.ndarray | None = None
     width: np.ndarray | None = None
     unseen: list[np.ndarray] | None = None
+    other: np.ndarray | None = None
 
     def __len__(self) -> int:
         return len(self.line)
@@ -128,7 +130,8 @@ def lines_to_features(lines: PaintedLines, frame: RoadFrame) -> Features:
         first, last = fitted.arc[k].tolist()
         layer.add(
             geometry, road=int(lines.course.road[k]), line=int(lines.line[k]), kind=lines.kind[k], pattern=lines.pattern[k],
-            status=lines.status[k], curve=curve.kind, radius_m=float(curve.radius) if curve.kind == "circle" else None,
+            status=lines.status[k], other=None if lines.other is None else lines.other[k] or None,
+            curve=curve.kind, radius_m=float(curve.radius) if curve.kind == "circle" else None,
             rmse_m=_known(fitted.rmse[k]), station_m=float(fitted.station[k]), end_m=float(fitted.end[k]),
             offset_m=_known(fitted.offset[k]), length_m=float(geometry.length), width_m=float(fitted.width[k]),
             pass_sig_m=_known(frame.passes_sigma(int(lines.course.road[k]), np.array([fitted.station[k], fitted.end[k]]), np.nan).mean()),

@@ -9,6 +9,7 @@ import numpy as np
 from ...common.errors import RoadExtractionError
 from ...io.gdal_errors import gdal_exceptions
 from ...io.geotiff import GEOTIFF_TILE, IntensityImage
+from ...io.local_files import open_raster
 from ..source_image import SourceImage
 from .contrast import paint_contrast
 
@@ -121,7 +122,7 @@ def read_photo(image: SourceImage, size: float, cell: float) -> Photo:
     factor = max(1, int(cell / size + 0.25), int(np.ceil(np.sqrt(width * height / MOST_PIXELS))))
     columns, rows = max(1, width // factor), max(1, height // factor)
     try:
-        dataset = gdal.Open(image.path)
+        dataset = open_raster(image.path)
         if image.palette:
             dataset = gdal.Translate("", dataset, format="VRT", rgbExpand="rgb")
         colours = (1, 2, 3) if dataset.RasterCount - image.has_alpha >= 3 else (1,)

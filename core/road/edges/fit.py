@@ -275,10 +275,12 @@ def _draw(found, frame, road, side, piece, number, led_across):
         along = np.linspace(a, b, max(int(np.ceil((b - a) / EDGE_VERTEX_SPACING)), 1) + 1)
         vertices, rows = curve.at(along), points[i:j + 1]
         passes = frame.passes_sigma(road, np.interp(along, t, points["s"]))
+        sigma = edge_sigma(along, t, residual, points["support"], passes=passes)
         found.append(EdgePiece(vertices, road, side, "bridged" if bridged[i] else "measured", number, float(rows["s"][0]),
                                float(rows["s"][-1]), float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum()),
                                float(np.median(rows["height"])), float(np.sqrt(np.mean(residual[i:j + 1] ** 2))),
-                               sigma=edge_sigma(along, t, residual, points["support"], passes=passes)))
+                               # a bridge is one guess
+                               sigma=float(sigma.mean()) if bridged[i] else sigma))
     return float(points["s"][0]), float(points["s"][-1])
 
 

@@ -28,30 +28,43 @@ def one_lane(length: float, seed: int, radius: float, curb_height: float, gutter
     -------
     Scene
     """
-    return _between_edge_lines("one-lane", 5.8, True, length, seed, radius, curb_height, gutter)
+    return _between_edge_lines("one-lane", 5.8, True, 0.0, length, seed, radius, curb_height, gutter)
 
 
 def wide_lane(length: float, seed: int, radius: float, curb_height: float, gutter: float) -> Scene:
     """The same as `one_lane` with a lane of 7 m, as broad as two."""
-    return _between_edge_lines("wide-lane", 7.0, True, length, seed, radius, curb_height, gutter)
+    return _between_edge_lines("wide-lane", 7.0, True, 0.0, length, seed, radius, curb_height, gutter)
+
+
+def beside_middle(length: float, seed: int, radius: float, curb_height: float, gutter: float) -> Scene:
+    """The lane of `wide_lane` without arrows, driven half a metre right of its middle: it might as well be two lanes."""
+    return _between_edge_lines("beside-middle", 7.0, True, -0.5, length, seed, radius, curb_height, gutter)
+
+
+def solid_centre_line(length: float, seed: int, radius: float, curb_height: float, gutter: float) -> Scene:
+    """A lane each way, parted by a solid line; nobody drove in the oncoming one."""
+    return _between_edge_lines("solid-centre-line", 7.0, False, -1.75, length, seed, radius, curb_height, gutter, (1.0, 0.0))
 
 
 def no_centre_line(length: float, seed: int, radius: float, curb_height: float, gutter: float) -> Scene:
     """The street of `wide_lane` as two lanes, one each way, without arrows and without a line between; driven on the right."""
-    return _between_edge_lines("no-centre-line", 7.0, False, length, seed, radius, curb_height, gutter)
+    return _between_edge_lines("no-centre-line", 7.0, False, -1.75, length, seed, radius, curb_height, gutter)
 
 
-def _between_edge_lines(name, width, one_way, length, seed, radius, curb_height, gutter):
+def _between_edge_lines(name, width, one_way, track, length, seed, radius, curb_height, gutter, centre=None):
+    """A street between two edge lines, driven at an offset; `centre` are the (painted, gap) m of a line in its middle."""
     road = SceneBuilder(length, seed, radius)
     half = width / 2
     left_edge, right_edge = half + _MARGIN, half + _PARKING
     lowered_left, lowered_right = [], []
     road.line("edge line", 1, half, 0.0, length, width=_LINE)
     road.line("edge line", 2, -half, 0.0, length, width=_LINE)
+    if centre:
+        road.line("centre line", 3, 0.0, 0.0, length, width=_LINE, dash=centre if centre[1] else None)
     for base in road.modules():
         lowered_left.append((base + 63.0, base + 68.0))
         lowered_right.append((base + 96.0, base + 101.0))
-        if one_way:
+        if one_way and not track:
             for station in (18.0, 58.0, 98.0):
                 road.figure("arrow", straight_arrow(base + station, 0.0, 1))
         road.manhole(base + 31.0, 0.9)
@@ -68,7 +81,6 @@ def _between_edge_lines(name, width, one_way, length, seed, radius, curb_height,
     else:
         road.lane(1, -1, (0.0, half / 2, half), (length, half / 2, half))
         road.lane(2, 1, (0.0, -half / 2, half), (length, -half / 2, half))
-    track = 0.0 if one_way else -half / 2
     return road.scene(name, sidewalk(1, left_edge, curb_height, lowered_left), sidewalk(-1, right_edge, curb_height, lowered_right),
                       [(1, track, 1.0)], gutter)
 
@@ -84,27 +96,38 @@ def hatched_island(length: float, seed: int, radius: float, curb_height: float, 
     -------
     Scene
     """
+    return _around_island("hatched-island", _ISLAND, (1.0, 1.0), 0.5, 1.0, length, seed, radius, curb_height, gutter)
+
+
+def one_sided_island(length: float, seed: int, radius: float, curb_height: float, gutter: float) -> Scene:
+    """The same with an island on one side of the middle alone, with thin bars far apart."""
+    return _around_island("one-sided-island", (34.0, 50.0, 66.0, 94.0), (1.7, 0.0), 0.3, 1.7, length, seed, radius, curb_height, gutter)
+
+
+def _around_island(name, island, sides, bar, gap, length, seed, radius, curb_height, gutter):
+    """A lane each way about an island whose borders leave the middle by shares of _ISLAND_HALF to the left and to the right."""
     road = SceneBuilder(length, seed, radius)
     half = 4.2
     edge = half + _MARGIN
-    opens, full, closing, closed = _ISLAND
+    opens, full, closing, closed = island
     tip = _LINE / 2      # where the two borders lie side by side
     lowered = []
-    middle = [(0.0, 0.0)]
+    middles: tuple[list[tuple[float, float]], list[tuple[float, float]]] = ([(0.0, 0.0)], [(0.0, 0.0)])
     for base in road.modules():
         lowered.append((base + 12.0, base + 17.0))
         road.line("centre line", 1, 0.0, base, base + opens - _WARNING, width=_LINE, dash=(4.0, 6.0))
         road.line("centre line", 2, 0.0, base + opens - _WARNING, base + opens, width=_LINE)
         road.line("centre line", 5, 0.0, base + closed, base + closed + _WARNING, width=_LINE)
         road.line("centre line", 6, 0.0, base + closed + _WARNING, base + MODULE, width=_LINE, dash=(4.0, 6.0))
-        border = [(base + opens, tip), (base + full, _ISLAND_HALF), (base + closing, _ISLAND_HALF), (base + closed, tip)]
-        border = _cut(border, length)
-        if len(border) > 1:
-            road.tapered("centre line", 3, border, width=_LINE)
-            road.tapered("centre line", 4, [(s, -d) for s, d in border], width=_LINE)
-            inside = np.array([(s, d - tip) for s, d in border])
-            road.figure("hatching", *hatched_area(np.concatenate([inside, (inside * [1, -1])[::-1]])))
-        middle += [(base + opens, 0.0), *border, (base + closed, 0.0)]
+        left, right = (_cut([(base + opens, tip), (base + full, max(side * _ISLAND_HALF, tip)), (base + closing, max(side * _ISLAND_HALF, tip)),
+                             (base + closed, tip)], length) for side in sides)
+        if len(left) > 1:
+            road.tapered("centre line", 3, left, width=_LINE)
+            road.tapered("centre line", 4, [(s, -d) for s, d in right], width=_LINE)
+            inside, below = (np.array([(s, d - tip) for s, d in border]) for border in (left, right))
+            road.figure("hatching", *hatched_area(np.concatenate([inside, (below * [1, -1])[::-1]]), bar, gap))
+        for middle, border in zip(middles, (left, right)):
+            middle += [(base + opens, 0.0), *border, (base + closed, 0.0)]
         road.manhole(base + 24.0, -1.9)
         road.manhole(base + 84.0, 2.6)
         road.repair(base + 50.0, base + 60.0, -3.6, -1.9, 1.35)
@@ -114,10 +137,10 @@ def hatched_island(length: float, seed: int, radius: float, curb_height: float, 
         road.poles(base + 22.0, base + MODULE, -edge - 0.6, 34.0)
     road.line("edge line", 7, half, 0.0, length, width=_LINE)
     road.line("edge line", 8, -half, 0.0, length, width=_LINE)
-    middle = _cut([*middle, (middle[-1][0] + MODULE, 0.0)], length)
-    road.lane(1, -1, *((s, (d + half) / 2, half - d) for s, d in middle))
-    road.lane(2, 1, *((s, -(d + half) / 2, half - d) for s, d in middle))
-    return road.scene("hatched-island", sidewalk(1, edge, curb_height, lowered), sidewalk(-1, edge, curb_height, lowered),
+    left, right = (_cut([*middle, (middle[-1][0] + MODULE, 0.0)], length) for middle in middles)
+    road.lane(1, -1, *((s, (d + half) / 2, half - d) for s, d in left))
+    road.lane(2, 1, *((s, -(d + half) / 2, half - d) for s, d in right))
+    return road.scene(name, sidewalk(1, edge, curb_height, lowered), sidewalk(-1, edge, curb_height, lowered),
                       [(1, -2.35, 1.0), (-1, 2.35, 1.1)], gutter)
 
 

@@ -315,6 +315,7 @@ def _without_time(samples, crs):
     place = ridge_of(samples.place)
     step = np.gradient(place[:, :2], axis=0)
     trajectory = _rough(np.arange(len(place), dtype=float), place, np.arctan2(step[:, 1], step[:, 0]), samples.origin, crs, False)
+    trajectory = replace(trajectory, way_known=False)
     notes = [f"The points have no times, so the track is the ridge of their density: it is rough, its place known to about {DENSITY_SIGMA:g} m, "
              f"its height above the road to {DENSITY_HEIGHT_SIGMA:g} m, "
              "and which way was driven is not known. It is the longest drive; what branches off is not in it, and where a road was driven both "

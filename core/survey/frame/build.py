@@ -66,7 +66,7 @@ def build_frame(trajectory: Trajectory) -> RoadFrame:
     passes.sort(key=lambda p: p.time[0])
     for number, p in enumerate(passes):
         p.number = number
-    return RoadFrame(origin, roads, passes, trajectory.crs, trajectory.has_time, trajectory.notes)
+    return RoadFrame(origin, roads, passes, trajectory.crs, trajectory.has_time, trajectory.notes, way_known=trajectory.way_known)
 
 
 def _length(rows, driven):

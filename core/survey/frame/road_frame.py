@@ -26,6 +26,7 @@ class RoadFrame:
     passes : list of Pass, by number
     crs : WKT, "" where unknown
     has_time : whether points are assigned to passes by their time
+    way_known : whether the direction of its passes is that of the drive, which an estimated trajectory may not know
     notes : remarks on the trajectory, for the log
     pass_sigma : {road number: SigmaAlong}, one sigma across of the middle of its passes, by what they differ or
         by the accuracy of the trajectory where it was told, whichever is more; without entry where both are unknown
@@ -38,6 +39,7 @@ class RoadFrame:
     has_time: bool = True
     notes: Sequence[str] = ()
     pass_sigma: dict[int, SigmaAlong] = field(default_factory=dict)
+    way_known: bool = True
 
     def road(self, number: int) -> Road:
         """The road of a number."""

@@ -10,7 +10,7 @@ from __future__ import annotations
 import io
 import os
 import struct
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import BinaryIO
 
@@ -112,7 +112,7 @@ def count_note(stated: int, there: int) -> str:
         ". If it was copied or downloaded, compare its length with the original's" if there < stated else "")
 
 
-def _records(file, fields, size) -> Iterator[Record]:
+def _records(file, fields, size):
     """The variable length records before the points, the last as far as it is there."""
     at = fields.header_size
     for _ in range(fields.vlrs):
@@ -123,7 +123,7 @@ def _records(file, fields, size) -> Iterator[Record]:
         at += VLR_HEADER_SIZE + len(record.data)
 
 
-def _extended(file, fields, size) -> Iterator[Record]:
+def _extended(file, fields, size):
     """The extended records behind the points that lie in the file."""
     at = fields.first_evlr
     for _ in range(fields.evlrs):
@@ -168,7 +168,7 @@ def _mended_records(records, fields):
                   for record in mended]
     if all(record is before for record, before in zip(mended, records)):
         return []
-    data = b"".join(record.bytes for record in mended)
+    data = b"".join(record.whole for record in mended)
     room = fields.points_at - fields.header_size
     return [(fields.header_size, data.ljust(room, b"\0"))] if len(data) <= room else []
 

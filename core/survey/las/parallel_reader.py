@@ -14,8 +14,8 @@ from .reader import CloudHeader, layer_selection, open_cloud, read_blocks, read_
 
 MAX_BLOCKS_PER_CHUNK = 4   # larger chunks are not decoded as a whole: the points are read one block after the other
 MOST_LAYOUTS = 64          # files whose header and chunks are remembered
-TIME_SAMPLES = 5           # places in a file at which gps_time is sampled
-POINTS_PER_TIME_SAMPLE = 1000
+SAMPLED_PLACES = 5                # places in a file at which points are looked at
+POINTS_PER_SAMPLE = 1000
 
 
 class ParallelCloudReader:
@@ -108,17 +108,22 @@ class ParallelCloudReader:
 
     def times(self, file: CloudHeader) -> Iterator[np.ndarray]:
         """Yield (N,) gps_time in seconds of a few points at several places of a file, its first and last points among them."""
+        for points in self.samples(file):
+            yield np.array(points["gps_time"], float)
+
+    def samples(self, file: CloudHeader) -> Iterator[Any]:
+        """Yield a few points at several places of a file, its first and last among them, as laspy point records; the next may overwrite one."""
         loads: list[Callable[[], Any]]
         if file.chunk:
-            starts = np.linspace(0, max(file.count - POINTS_PER_TIME_SAMPLE, 0), TIME_SAMPLES).astype(int)
+            starts = np.linspace(0, max(file.count - POINTS_PER_SAMPLE, 0), SAMPLED_PLACES).astype(int)
             starts[:-1] -= starts[:-1] % file.chunk   # a chunk is decoded from its start on
-            loads = [partial(self._read_points, file, int(start), POINTS_PER_TIME_SAMPLE) for start in np.unique(starts)]
+            loads = [partial(self._read_points, file, int(start), POINTS_PER_SAMPLE) for start in np.unique(starts)]
         else:
             header, chunks = self._layout(file)
             loads = [partial(self._read_chunks, file.path, header, *run) for run in _chunk_runs(file, 1, chunks)]
-            loads = [loads[k] for k in np.unique(np.linspace(0, len(loads) - 1, TIME_SAMPLES).astype(int))]
+            loads = [loads[k] for k in np.unique(np.linspace(0, len(loads) - 1, SAMPLED_PLACES).astype(int))]
         for load in loads:
-            yield np.array(load()["gps_time"], float)
+            yield load()
 
     def _read_points(self, file, first, count):
         return read_points(self._reader(file), file.path, first, count)

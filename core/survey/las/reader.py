@@ -246,8 +246,9 @@ def read_headers(paths: Iterable[str | os.PathLike[str]], warn: Callable[[str], 
     if not sum(file.count for file in files):
         named = f"The file {unique[0]} holds" if len(files) == 1 else f"The files {', '.join(unique[:3])} hold"
         raise RoadExtractionError(f"{named} no points. Check the export of the survey.")
-    for note in (note for file in files for note in file.notes if warn is not None):
-        warn(note)
+    if warn is not None:
+        for note in (note for file in files for note in file.notes):
+            warn(note)
     return files
 
 

@@ -136,7 +136,7 @@ class Record:
         return self.at + len(self.head) + self.length
 
     @property
-    def bytes(self) -> bytes:
+    def whole(self) -> bytes:
         """All of it, with the length that is there."""
         kind = "<H" if len(self.head) == VLR_HEADER_SIZE else "<Q"
         return self.head[:20] + struct.pack(kind, len(self.data)) + self.head[20 + struct.calcsize(kind):] + self.data

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...common.memory import ScratchBuffers
 from ..frame.projection import POINTS_PER_PROJECTION, RoadProjection
-from ..las.luminance import luminance
+from ..las.intensity_source import IntensitySource
 from ..las.scale import LasAxis
 from ..las.scanners import EVER, times_by_value
 from ..las.time_slots import TimeSlots
@@ -141,19 +141,19 @@ class PointChoice:
     has_time : whether points are assigned to passes by their time; else by the nearest point on a road
     week_ends : whether the GPS week ends during the scan
     above_road : metres above the road up to which points are kept
-    coloured : whether the luminance of the colours is taken as intensity
+    intensity : what the intensity of points is read from
     """
 
     corridor: float
     has_time: bool
     week_ends: bool = False
     above_road: float = KEPT_ABOVE_ROAD
-    coloured: bool = False
+    intensity: IntensitySource = IntensitySource()
 
     @property
     def layers(self) -> tuple[str, ...]:
         """The LAZ layers that are decoded."""
-        return (*DECODED_LAYERS, "rgb") if self.coloured else DECODED_LAYERS
+        return (*DECODED_LAYERS, *self.intensity.layers)
 
 
 class BlockProjector:
@@ -268,7 +268,7 @@ class BlockProjector:
         columns["time"][:] = raw["gps_time"] if "gps_time" in raw.dtype.names else 0.0
         if self.choice.week_ends:
             columns["time"][:] = unwrap_week(columns["time"])
-        columns["intensity"][:] = luminance(piece) if self.choice.coloured else raw["intensity"]
+        columns["intensity"][:] = self.choice.intensity.of(piece)
         columns["source"][:] = raw["point_source_id"]
         columns["scanner"] = np.broadcast_to(np.uint8(0), len(raw))
         if "scanner_channel" in names and flagged(piece):

@@ -7,6 +7,7 @@ temporary file grows with its bytes.
 from __future__ import annotations
 
 import os
+import struct
 import tempfile
 import threading
 import weakref
@@ -21,10 +22,12 @@ from uuid import uuid4
 import numpy as np
 
 from ...common.memory import column_buffers, freed_on_demand
+from ...execution.plain import checksum
 
 PACKING_CHUNK = 1 << 15  # values packed at a time: they fit the processor's cache
 PART_WIDTHS = {0: (), 1: (1,), 2: (2,), 3: (2, 1), 4: (4,), 5: (4, 1), 6: (4, 2)}  # bytes of a value -> bytes of its parts, lowest first
 PART_DTYPES = {width: np.dtype(f"u{width}") for width in (1, 2, 4, 8)}
+SEAL = struct.Struct("<I")   # CRC-32 of what comes before it in a part
 OPEN_PARTS = 64          # files of parts that are held open: a system lets a program open some hundred (macOS 256)
 MAX_FREE_RANGES = 64     # free ranges of the file that are remembered; of more, the smallest is forgotten
 
@@ -259,12 +262,23 @@ def new_part(folder: Path) -> Iterator[SpillFile]:
     file = SpillFile(folder / name, unfinished)
     try:
         yield file
+        file.seal()
         file.close()
         if file.end:
             os.replace(unfinished, folder / name)
     finally:
         file.close()
         unfinished.unlink(missing_ok=True)
+
+
+def parts_are_whole(folder: Path) -> bool:
+    """Whether all files of `new_part` in a folder are as they were written, which they may not be after the power failed."""
+    for path in folder.glob("points-*.bin"):
+        with open(path, "rb", buffering=0) as file:
+            end = os.fstat(file.fileno()).st_size - SEAL.size
+            if end < 0 or checksum(file, end) != SEAL.unpack(file.read(SEAL.size))[0]:
+                return False
+    return True
 
 
 class SpillFile(ColumnFile):
@@ -323,6 +337,12 @@ class SpillFile(ColumnFile):
                     return place
             self.end += nbytes
             return self.end - nbytes
+
+    def seal(self) -> None:
+        """Write a checksum of all bytes behind them, by which `parts_are_whole` knows them again."""
+        if self.end:
+            self._own.file.seek(0)
+            self._own.write(self.end, np.frombuffer(SEAL.pack(checksum(self._own.file, self.end)), np.uint8))
 
     def _read(self, place, array):
         self._own.read(place, array)

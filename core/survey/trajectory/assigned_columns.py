@@ -15,6 +15,7 @@ from ...io.text_table import read_number_table
 from .columns import ROLES, listed
 from .drive_checks import METRES_PER_DEGREE
 from .meaning import TOLD_CLOCKS, Meaning, meaning_of
+from .receiver_logs import is_record
 from .table_columns import CHECKED_ROWS, TableColumn, first_row, titled_columns
 from .trajectory import Trajectory
 from .unnamed_columns import MIN_MAP_COORDINATE, columns_from_numbers
@@ -99,6 +100,8 @@ def columns_of_table(path: str | os.PathLike[str], columns: str = "", rows: int 
     RoadExtractionError
         If the file holds no table of numbers.
     """
+    if is_record(Path(path)):
+        raise RoadExtractionError(f"{path} is a log or a track, whose columns are known. Leave Columns empty.")
     found, unmatched = titled_columns(read_number_table(path))
     problem, meaning = "", Meaning({})
     try:

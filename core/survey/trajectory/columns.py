@@ -30,13 +30,14 @@ COLUMN_NAMES = {
     # of what several columns hold together
     "week": ("gpsweek", "week", "weekno", "weeknumber", "gpsweeknumber", "wn", "wnc", "gpswoche"),
     "date": ("date", "gpsdate", "utcdate", "datum", "calendardate", "fecha", "日期", "日付"),
+    "hour": ("hour", "hours", "hh", "gpshour", "utchour", "stunde", "heure"), "minute": ("minute", "minutes", "min", "gpsminute", "utcminute"),
     "ecef_x": (), "ecef_y": (), "ecef_z": (),
 }
 # A longer name has a role where all its words are of these, and one is of the first kind: "GPS Time of Week", "altitude_ellipsoidal".
 # Single letters count as words of their own, the others also where they are written together.
 ROLE_WORDS = {
-    "time": ("time times timestamp timetag seconds second secs sec sow tow itow sod gpst utc clock epoch stamp datetime zeit uhrzeit zeitpunkt temps "
-             "heure tiempo hora tempo tijd время 时间 时刻 時刻 時間",
+    "time": ("time times timestamp timetag seconds second secs sec sow tow itow sod gpst utc clock epoch stamp datetime zeit uhrzeit zeitpunkt "
+             "zeitstempel temps heure tiempo hora tempo tijd время 时间 时刻 時刻 時間",
              "gps gnss of week day the in adjusted adj standard offset unix posix local system receiver since start elapsed date log ins imu "
              "sensor measurement relative absolute mean gpszeit von woche tag"),
     "x": ("easting east eastings x e este est ost rechtswert oost 东坐标 東座標",
@@ -45,17 +46,17 @@ ROLE_WORDS = {
           "utm grid map coord coordinate coordinates position pos local projected gps gnss ins imu sensor antenna scanner vehicle platform world"),
     "z": ("height heights altitude alt elevation elev ele hgt ht z h hell ellh hae msl hmsl hoehe höhe hauteur altura altezza quota cota hoogte "
           "высота 高程 高度 標高 楕円体高 大地高",
-          "ellipsoid ellipsoidal ell ellipsoidisch ellipsoidische ellipsoidique wgs84 wgs orthometric ortho orth geoid geoidal above sea level mean "
+          "ellipsoid ellipsoidal ell ellipsoidisch ellipsoidische ellipsoidique wgs84 wgs orthometric ortho orth above sea level mean "
           "gps gnss ins imu sensor antenna scanner vehicle platform position pos coord coordinate up local geodetic map"),
     "roll": ("roll rollwinkel rolio roulis rollio 横滚 横滚角 ロール", "angle ins imu sensor vehicle platform euler"),
     "pitch": ("pitch nickwinkel tangage beccheggio cabeceo 俯仰 俯仰角 ピッチ", "angle ins imu sensor vehicle platform euler"),
     "heading": ("heading yaw hdg azimuth kurs cap rumbo rotta 航向 航向角 方位角 方位", "angle true grid ins imu sensor vehicle platform euler"),
     "lon": ("longitude lon lng longitud longitudine laenge länge longitudinal 经度 経度 долгота",
-            "gps gnss ins imu wgs84 wgs geodetic geographic decimal dd position pos coord coordinate sensor vehicle platform geographische"),
+            "gps gnss ins imu wgs84 wgs geodetic geographic decimal dd position pos coord coordinate sensor vehicle platform geographische e"),
     "lat": ("latitude lat latitud latitudine breite 纬度 緯度 широта",
-            "gps gnss ins imu wgs84 wgs geodetic geographic decimal dd position pos coord coordinate sensor vehicle platform geographische"),
+            "gps gnss ins imu wgs84 wgs geodetic geographic decimal dd position pos coord coordinate sensor vehicle platform geographische n"),
     "week": ("week wn wnc woche", "gps gnss number no nr"),
-    "date": ("date datum", "gps gnss utc calendar local"),
+    "date": ("date datum", "gps gnss utc calendar local"), "hour": ("hour hours", "gps utc local"), "minute": ("minute minutes", "gps utc local"),
     **{f"ecef_{axis}": (axis, "ecef earth centred centered geocentric cartesian wgs84 itrf xyz coord coordinate position pos")
        for axis in ("x", "y", "z")},
 }
@@ -130,7 +131,8 @@ def _grammar(role):
     core, further = (words.split() for words in ROLE_WORDS[role])
     whole = "|".join(sorted((re.escape(word) for word in core if len(word) > 1), key=len, reverse=True)) or "(?!)"
     every = "|".join(sorted((re.escape(word) for word in (*core, *further) if len(word) > 1), key=len, reverse=True))
-    return re.compile(f"(?:{every})*(?:{whole})(?:{every})*"), re.compile(f"(?:{every})+"), {word for word in core if len(word) == 1}
+    return re.compile(f"(?:{every})*(?:{whole})(?:{every})*"), re.compile(f"(?:{every})+|[{''.join(word for word in further if len(word) == 1)}-]"), \
+        {word for word in core if len(word) == 1}
 
 
 def _is_of(role, words):

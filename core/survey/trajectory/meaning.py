@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time as clock
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -57,7 +57,7 @@ def meaning_of(columns: Sequence[TableColumn], label: str, given: Sequence[str] 
     """
     named = candidates_by_role([column.title for column in columns])
     notes: list[str] = []
-    full = {role: [k for k in places if columns[k].first] for role, places in named.items()}
+    full = {role: [k for k in places if columns[k].first or not columns[k].is_text] for role, places in named.items()}
     _prefer_geodetic(columns, full, label, notes)
     place = {role: places[0] for role, places in full.items() if places and role not in given}
     times = [k for k in full.get("time", ()) if not columns[k].is_text] or full.get("time", []) or \
@@ -97,7 +97,7 @@ def _earth_centred(x, y, z):
     return bool(EARTH_RADIUS[0] < away < EARTH_RADIUS[1] and np.median(np.abs(z[good])) > HIGHEST_ROAD)
 
 
-def values_by_role(columns: Sequence[TableColumn], meaning: Meaning, label: str, notes: list[str]) -> dict[str, np.ndarray]:
+def values_by_role(columns: Sequence[TableColumn], meaning: Meaning, label: str, notes: list[str], doubts: list[str]) -> dict[str, np.ndarray]:
     """The values of a trajectory: seconds, metres, degrees; roll, pitch and heading in the unit of their columns.
 
     Parameters
@@ -105,7 +105,7 @@ def values_by_role(columns: Sequence[TableColumn], meaning: Meaning, label: str,
     columns : of the table
     meaning : of these
     label : of the table, for messages
-    notes : sentences for the user are added to it
+    notes, doubts : sentences for the user, and warnings, are added to them
 
     Returns
     -------
@@ -129,9 +129,9 @@ def values_by_role(columns: Sequence[TableColumn], meaning: Meaning, label: str,
         found.update(_from_the_centre(*(columns[place[f"ecef_{axis}"]].values for axis in "xyz")))
         notes.append(f"{label} gives earth-centred coordinates; they were converted to longitude, latitude and height above the ellipsoid.")
     if "time" in place:
-        found["time"] = _time(columns, meaning, label, notes)
+        found["time"] = _time(columns, meaning, label, notes, doubts)
     else:
-        notes += _like_time(columns, set(place.values()), label)
+        doubts += _like_time(columns, set(place.values()), label)
     return found
 
 
@@ -162,18 +162,26 @@ def _from_the_centre(x, y, z):
     return {role: np.where(np.isfinite(values), values, np.nan) for role, values in (("lon", lon), ("lat", lat), ("z", height))}
 
 
-def _time(columns, meaning, label, notes):
+def _time(columns, meaning, label, notes, doubts):
     """(N,) seconds of GPS time, or as the column counts."""
     place = meaning.place
     column = columns[place["time"]]
+    clock_parts = [columns[place[role]].values for role in ("hour", "minute") if role in place]
+    texts = _hours_minutes_seconds(column.values, *clock_parts) if not column.is_text else None
+    if texts is not None:
+        columns = [*columns]
+        columns[place["time"]] = column = replace(column, values=np.full(len(texts), np.nan), written=lambda: texts, first=texts[0])
     if column.holds_texts:
         return _from_clock(columns, meaning, label, notes)
+    if "utc" in column.title.lower():
+        doubts.append(f"The column {listed([column.title])} of {label} counts seconds of UTC by its name; no leap seconds were added. If points and "
+                      "lines come out shifted along the road, export the trajectory with GPS time.")
     seconds = column.values * column.unit.factor if column.unit.name == "seconds" else column.values
     largest = np.nanmax(np.abs(seconds), initial=0.0)
     if column.unit.name != "seconds" and largest > LARGEST_SECONDS:
         factor = next((10.0**-power for power in (3, 6, 9) if largest * 10.0**-power < LARGEST_SECONDS), 1.0)
         seconds = seconds * factor
-        notes.append(f"The times of {label} are so large that they are taken to count {factor:.0e} s.")
+        doubts.append(f"The times of {label} are so large that they are taken to count {factor:.0e} s.")
     if "week" in place and place["week"] != place["time"]:
         return with_week(seconds, columns[place["week"]].values)
     first = seconds[np.isfinite(seconds)][:1]
@@ -186,6 +194,21 @@ def _time(columns, meaning, label, notes):
                                       "from 1970, so the leap seconds are not known. Write time in place of utc.")
         raise RoadExtractionError(unix_time_found(float(first[0]), f"{label} counts"))
     return seconds
+
+
+def _hours_minutes_seconds(values, hour=None, minute=None):
+    """(N,) texts of clock times that stand in three columns, or in one as hhmmss; None for other times."""
+    if hour is None or minute is None:
+        known = values[np.isfinite(values)]
+        step = np.diff(known)
+        if not len(step) or known.min() < 0 or known.max() >= 240_000 or (known % 100 >= 60).any() or (known // 100 % 100 >= 60).any():
+            return None
+        # from 59 s to the next minute such a number goes up by 40 more than the seconds do, and other times never do
+        over = np.floor(known[1:] / 100) > np.floor(known[:-1] / 100)
+        if not over.any() or over.all() or not (step[over] > 40.0).all() or not (step[~over] < 40.0).all():
+            return None
+        hour, minute, values = values // 10_000, values // 100 % 100, values % 100
+    return [f"{h:02.0f}:{m:02.0f}:{s:09.6f}" if h + m + s == h + m + s else "" for h, m, s in zip(hour, minute, values)]
 
 
 def _from_clock(columns, meaning, label, notes):
@@ -207,7 +230,9 @@ def _from_clock(columns, meaning, label, notes):
 
 def _gps_seconds(times, column, meaning, date_title, label, notes):
     words = f"{column.title} {date_title}".lower()
-    shows = meaning.clock or times.zone or ("UTC" if any(word in words for word in ("utc", "gmt", "zulu")) else "GPS" if "gps" in words else "")
+    named = "UTC" if any(word in words for word in ("utc", "gmt", "zulu")) else "GPS" if "gps" in words else ""
+    contradict = {times.zone, named} == {"UTC", "GPS"}
+    shows = meaning.clock or ("" if contradict else times.zone or named)
     if shows == "GPS" and times.order_known:
         return times.seconds
     if shows == "UTC" and times.dated and times.order_known:

@@ -19,7 +19,7 @@ from .assigned_columns import meaning_of_table
 from .columns import listed, stated_angle_unit
 from .drive_checks import HEADING_TOLERANCE, METRES_PER_DEGREE, angle_between, driven_course, geographic_unit
 from .meaning import meaning_of, values_by_role
-from .receiver_logs import columns_of_records
+from .receiver_logs import columns_of_record, is_record
 from .reprojection import lengths_in_metres, reproject_trajectory
 from .table_columns import columns_of_rows, titled_columns
 from .trajectory import MAX_VEHICLE_SPEED, Trajectory
@@ -139,10 +139,10 @@ def trajectory_from_rows(titles: Sequence[str], rows: Sequence[Sequence[object]]
 
 def _read_text(path, crs, columns_given):
     """The trajectory in a text; columns are those assigned, or recognised by the names above the table, otherwise by the numbers."""
-    records = columns_of_records(path, _head(path))
-    if records is not None:
+    if is_record(path):
         if columns_given.strip():
             raise RoadExtractionError(f"{path} is a log or a track, whose columns are known. Leave Columns empty.")
+        records = columns_of_record(path)
         return _from_table(records, meaning_of(records, path.name), {}, {}, crs, "degrees", path.name, [])
     table = read_number_table(path)
     columns, unmatched = titled_columns(table)
@@ -159,10 +159,12 @@ def _read_text(path, crs, columns_given):
 
 def _from_table(columns, meaning, given, defaults, crs, angle_unit, label, notes, preamble=()):
     """The trajectory of columns whose meaning is known."""
-    found = {**given, **values_by_role(columns, meaning, label, notes)}
+    doubts: list[str] = []
+    found = {**given, **values_by_role(columns, meaning, label, notes, doubts)}
     if "z" not in found or not np.isfinite(found["z"]).any():
         found.update(defaults)
     trajectory = trajectory_from_columns(found, crs, angle_unit, label, notes, _stated_lengths(columns, meaning.place, preamble))
+    trajectory = replace(trajectory, doubts=tuple(doubts))
     if "time" in meaning.place and not columns[meaning.place["time"]].unit.name and not columns[meaning.place["time"]].is_text:
         trajectory = _in_seconds(trajectory, label)
     return trajectory
@@ -181,7 +183,7 @@ def _in_seconds(trajectory, label):
     if not trajectory.has_time or not 0.0 < fastest < SLOWEST_DRIVE or factor == 1.0:
         return trajectory
     note = f"The times of {label} are taken to count {factor:.0e} s: in seconds the drive would be {fastest:.2g} m/s fast at most."
-    return replace(trajectory, time=trajectory.time * factor, notes=(*trajectory.notes, note))
+    return replace(trajectory, time=trajectory.time * factor, doubts=(*trajectory.doubts, note))
 
 
 def _stated_crs(path, preamble, projected, notes):
@@ -297,14 +299,11 @@ def _from_north(heading, in_degrees, course, unit):
     return heading, [f"The heading differs from the course driven by {difference:.0f}° in the median; the course is used, not the heading."]
 
 
-def _head(path):
-    with open(path, "rb") as file:
-        return file.read(SAMPLE_BYTES)
-
-
 def _is_sbet(path):
     """Whether a file consists of binary records of 17 doubles with valid latitude, longitude and increasing time."""
-    size, head = path.stat().st_size, _head(path)
+    size = path.stat().st_size
+    with open(path, "rb") as file:
+        head = file.read(SAMPLE_BYTES)
     if b"\0" not in head or head[:2] in (b"\xff\xfe", b"\xfe\xff") or size < 2 * SBET_DOUBLES * 8:
         return False
     usable = len(head) // (SBET_DOUBLES * 8) * SBET_DOUBLES

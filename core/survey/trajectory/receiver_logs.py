@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
 from xml.parsers.expat import ExpatError, ParserCreate
@@ -16,6 +16,7 @@ from .table_columns import TableColumn, with_week
 from .written_values import hemisphere_signs, whole_minutes
 
 HEAD_BYTES = 20_000
+TRACK_ENDINGS = (".gpx", ".kml")
 CHUNK = 1 << 16            # bytes handed to the parser at once
 MOST_TEXT = 200            # characters of a coordinate or time that are kept
 
@@ -42,24 +43,17 @@ NMEA = re.compile(r"\$(?:G[A-Z]|BD|QZ)(?P<name>GGA|GNS|RMC|ZDA),(?P<rest>[^*\s]*
 NOVATEL = re.compile(r"[#%](?P<name>[A-Z]+A),(?P<head>[^;\n]*);(?P<rest>[^*\n]*)")
 
 
-def read_log(path: Path, text: str) -> list[TableColumn] | None:
-    """The positions in a log of sentences, as columns with names; None for a text without such sentences.
-
-    Parameters
-    ----------
-    path : of the file, for messages
-    text : of the file
+def read_log(path: Path) -> list[TableColumn]:
+    """The positions in a log of sentences, as columns with names.
 
     Raises
     ------
     RoadExtractionError
         If its sentences hold no positions.
     """
-    if not (NMEA.search(text[:HEAD_BYTES]) or NOVATEL.search(text[:HEAD_BYTES])):
-        return None
     kept: dict[str, list[list[str]]] = {}
     day = ""
-    for line in text.split("\n"):
+    for line in path.read_text(encoding="latin-1").split("\n"):
         nmea = NMEA.search(line)
         if nmea:
             fields = [nmea["name"], *nmea["rest"].split(",")]
@@ -127,8 +121,8 @@ def _number(value):
         return np.nan
 
 
-def read_track(path: Path) -> list[TableColumn] | None:
-    """The positions of a GPX or KML file, as columns with names; None for a file of another kind.
+def read_track(path: Path) -> list[TableColumn]:
+    """The positions of a GPX or KML file, as columns with names.
 
     Of GPX the points of tracks are taken, otherwise those of its route; of KML the tracks (gx:Track), otherwise the lines.
 
@@ -137,8 +131,6 @@ def read_track(path: Path) -> list[TableColumn] | None:
     RoadExtractionError
         If it is no XML, or holds neither track nor line.
     """
-    if path.suffix.lower() not in (".gpx", ".kml"):
-        return None
     reader = _TrackReader()
     try:
         reader.read(path)
@@ -213,9 +205,14 @@ class _TrackReader:
         self._text = ""
 
 
-def columns_of_records(path: Path, head: bytes) -> Sequence[TableColumn] | None:
-    """The positions of a track or of a log of sentences, as columns with names; None where a file is neither, by its ending and first bytes."""
-    track = read_track(path)
-    if track is not None or not re.search(rb"^[^\n]{0,40}[$#%][A-Z]{3,}", head[:HEAD_BYTES], re.MULTILINE):
-        return track
-    return read_log(path, path.read_text(encoding="latin-1"))
+def is_record(path: Path) -> bool:
+    """Whether a file is a track or a log of sentences, by its ending and its beginning."""
+    with open(path, "rb") as file:
+        head = file.read(HEAD_BYTES)
+    text = head.decode("latin-1")
+    return path.suffix.lower() in TRACK_ENDINGS or bool(NMEA.search(text) or NOVATEL.search(text))
+
+
+def columns_of_record(path: Path) -> list[TableColumn]:
+    """The positions of a track or of a log of sentences, as columns with names; RoadExtractionError where it holds none."""
+    return read_track(path) if path.suffix.lower() in TRACK_ENDINGS else read_log(path)

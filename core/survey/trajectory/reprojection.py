@@ -77,7 +77,7 @@ def taken_to_be_in(trajectory: Trajectory, wkt: str) -> Trajectory:
         If its columns say feet, and the CRS does not.
     """
     crs, (x, y, z), left = lengths_in_metres(wkt, (trajectory.x, trajectory.y, trajectory.z), trajectory.stated_units, "The trajectory")
-    if left:
+    if "feet" in dict(left).values():
         raise RoadExtractionError("The trajectory gives positions in feet, and neither it nor the point cloud carries a CRS. Give the CRS in feet "
                                   "that they are in: Import trajectory takes that of the trajectory, the parameter CRS that of the cloud.")
     moved = x is not trajectory.x or z is not trajectory.z
@@ -98,8 +98,8 @@ def lengths_in_metres(crs: str, places: tuple[np.ndarray, np.ndarray, np.ndarray
     Returns
     -------
     crs : WKT, metric
-    places : in metres, or as they were where feet are stated and the CRS is unknown
-    stated : what is still to be seen to once the CRS is known: feet
+    places : in metres, or as they were where the CRS is unknown
+    stated : what is still to be looked at once the CRS is known
 
     Raises
     ------
@@ -108,7 +108,7 @@ def lengths_in_metres(crs: str, places: tuple[np.ndarray, np.ndarray, np.ndarray
     """
     known = dict(stated)
     if not crs:
-        return crs, places, stated if "feet" in known.values() else ()
+        return crs, places, stated
     wkt, units = in_metres(crs)
     factors = []
     for role, unit in (("x", units.across), ("y", units.across), ("z", units.up)):

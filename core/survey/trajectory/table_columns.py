@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -98,8 +98,10 @@ def first_row(columns: Sequence[TableColumn]) -> str:
 
 
 def _fields(table):
-    return [TableColumn("", table.values[:, k], unit_named(text.lstrip("+-0123456789.,' ")), lambda k=k: table.texts(k), text)
-            for k, text in enumerate(table.first_row)]
+    columns = [TableColumn("", table.values[:, k], unit_named(text.lstrip("+-0123456789.,' ")), lambda k=k: table.texts(k), text)
+               for k, text in enumerate(table.first_row)]
+    # the first row may be the one that lacks a time
+    return [replace(column, first=next(filter(None, column.written()), "")) if column.is_text and not column.first else column for column in columns]
 
 
 def _spans_without_names(fields):

@@ -12,6 +12,7 @@ from .time_systems import unwrap_time
 
 MAX_VEHICLE_SPEED = 70.0    # m/s of a survey vehicle
 MIN_POSITION_JUMP = 2.0     # m: shorter steps are not outliers, whatever their speed
+MOST_OUTLIERS = 10, 0.02    # rows, and of all rows: more are no outliers but another drive at the same time
 MIN_ORIGIN_DISTANCE = 1000.0  # m: a drive whose positions are all farther from the origin of the coordinates does not pass through it
 
 
@@ -27,6 +28,8 @@ class Trajectory:
     crs : WKT, "" where unknown
     has_time : False where the source has no time
     notes : sentences for the user about what was recognised and changed
+    doubts : those that are warnings
+    way_known : False where the order of the positions is not known to be that of the drive
     sigma_across : m, one sigma across the way as its processing tells; 0 where unknown
     stated_units : (role, unit) of x, y and z as their columns state them, while the CRS, and with it the units of the others, is unknown
     """
@@ -43,6 +46,8 @@ class Trajectory:
     notes: tuple[str, ...] = field(default=())
     sigma_across: float = 0.0
     stated_units: tuple[tuple[str, str], ...] = ()
+    doubts: tuple[str, ...] = ()
+    way_known: bool = True
 
     def __post_init__(self) -> None:
         for name in ("roll", "pitch", "heading"):
@@ -85,7 +90,7 @@ def clean_trajectory(trajectory: Trajectory) -> Trajectory:
     Raises
     ------
     RoadExtractionError
-        If fewer than two different positions remain, or they are in degrees.
+        If fewer than two different positions remain, they are in degrees, or there are two drives at the same time.
     """
     notes = list(trajectory.notes)
     _refuse_degrees(trajectory)
@@ -95,12 +100,15 @@ def clean_trajectory(trajectory: Trajectory) -> Trajectory:
         trajectory = replace(trajectory, time=unwrapped)
     good = np.isfinite(trajectory.time) & np.isfinite(trajectory.x) & np.isfinite(trajectory.y) & np.isfinite(trajectory.z)
     good &= ~_zero_rows(trajectory, good)
+    rows = np.flatnonzero(good)   # of the source, to be named
     if not good.all():
         notes.append(f"{np.count_nonzero(~good)} of {len(good)} trajectory rows had no usable time or position and were dropped.")
         trajectory = trajectory.rows(good)
     if (np.diff(trajectory.time) < 0).any():
         notes.append("The trajectory was not in order of time; it was sorted.")
-        trajectory = trajectory.rows(np.lexsort((trajectory.y, trajectory.x, trajectory.time)))
+        order = np.lexsort((trajectory.y, trajectory.x, trajectory.time))
+        trajectory, rows = trajectory.rows(order), rows[order]
+    _refuse_two_drives(trajectory, rows)
     repeated = np.r_[False, np.diff(trajectory.time) <= 0]
     if repeated.any():
         notes.append(f"{np.count_nonzero(repeated)} trajectory rows repeated an earlier time and were dropped.")
@@ -122,6 +130,20 @@ def refuse_standstill(trajectory: Trajectory) -> None:
         raise RoadExtractionError(
             f"The trajectory has {len(x)} usable position(s) over {length:.1f} m. At least two positions and "
             "1 m of driving are needed; check the time and coordinate columns of the file.")
+
+
+def _refuse_two_drives(trajectory, rows):
+    """Refuse positions, sorted by time, of which many are at once at two places."""
+    apart = np.hypot(np.diff(trajectory.x), np.diff(trajectory.y))
+    at_once = np.r_[False, (np.diff(trajectory.time) <= 0) & (apart > MIN_POSITION_JUMP)] | _outlier_rows(trajectory)
+    if not trajectory.has_time or at_once.sum() <= max(MOST_OUTLIERS[0], MOST_OUTLIERS[1] * len(rows)):
+        return
+    second = int(np.argmax(at_once))
+    first = second - 1
+    raise RoadExtractionError(
+        f"The trajectory is at two places at once: row {rows[first] + 1} of its positions at {trajectory.time[first]:.3f} s and row "
+        f"{rows[second] + 1} at {trajectory.time[second]:.3f} s lie {apart[first]:.0f} m apart, and so do {at_once.sum():,} of {len(rows):,} rows. "
+        "Two receivers or two days seem to have been put together: give each drive its own trajectory, or times that go on.")
 
 
 def _zero_rows(trajectory, good):

@@ -14,7 +14,7 @@ _DATE = r"(?P<date>\d{4}[-/.]\d{1,2}[-/.]\d{1,2}|\d{1,2}[-/.]\d{1,2}[-/.]\d{4}|\
 _CLOCK = r"(?P<hour>\d{1,2}):(?P<minute>\d{2})(?::(?P<second>\d{2}(?:[.,]\d*)?))?\s*(?P<half>[ap]\.?m\.?)?"
 _ZONE = r"(?P<zone>Z|UTC|GMT|GPST?|[+-]\d{2}:?\d{2})?"
 TIME = re.compile(rf"(?:{_DATE}(?:\s*[T ,]\s*|$))?(?:{_CLOCK})?\s*{_ZONE}$", re.IGNORECASE)
-ANGLE = re.compile(r"(?P<before>[NSEW])?\s*(?P<sign>[+-])?\s*(?P<degrees>\d{1,3}(?:\.\d*)?)\s*[°ºd:\s]?\s*"
+ANGLE = re.compile(r"(?P<before>[NSEW])?\s*(?P<sign>[+-])?\s*(?P<degrees>\d{1,3}(?:[.,]\d*)?)\s*[°ºd:\s]?\s*"
                    r"(?:(?P<minutes>\d{1,2}(?:[.,]\d*)?)\s*['′’m:\s]?\s*)?(?:(?P<seconds>\d{1,2}(?:[.,]\d*)?)\s*(?:''|[\"″”s])?\s*)?"
                    r"(?P<after>[NSEW])?$", re.IGNORECASE)
 LOOKED_AT = 50          # texts of a column by which it is told what they are

@@ -5,9 +5,10 @@ import json
 import numpy as np
 import pytest
 from lanewright.core.common.features import Features
-from lanewright.core.common.schemas import ROAD_EDGES
+from lanewright.core.common.schemas import MARKINGS, ROAD_EDGES
+from lanewright.core.sample.parts.paint import straight_arrow
 from lined_streets import HEIGHT, Street
-from shapely.geometry import LineString
+from shapely.geometry import LineString, Polygon
 
 
 def curbs(street, *offsets):
@@ -85,3 +86,38 @@ def test_the_uncertainty_of_a_lane_reaches_to_the_lanes_of_the_second_reading():
     doubtful, sure = (min(row["sigma_m"] for row in readings(Street(vehicle=vehicle).paint(3.5, kind="edge").paint(-3.5, kind="edge")).values())
                       for vehicle in (-0.5, -1.75))
     assert doubtful > 0.5 and sure < 0.01
+
+
+def estimated(street):
+    """The street with a drive that was estimated from points without times: where it led is known, which way is not."""
+    street.frame.way_known = False
+    return street
+
+
+def arrows(street, *places):
+    """Markings of arrows: (station, offset, way)."""
+    layer = Features("PolygonZ", MARKINGS)
+    for station, offset, way in places:
+        corners = street.places(*straight_arrow(station, offset, way).T)
+        layer.add(Polygon(np.c_[corners, np.full(len(corners), HEIGHT)]), **{"road": 0, "class": "arrow", "use": "other"})
+    return layer
+
+
+@pytest.mark.parametrize("way", [1, -1])
+@pytest.mark.parametrize("stations", [(60.0,), (30.0, 60.0, 90.0)])
+def test_which_way_an_estimated_drive_led_says_nothing_against_arrows(way, stations):
+    street = estimated(Street(vehicle=0.0).paint(1.75, kind="edge").paint(-1.75, kind="edge"))
+    row, = readings(street, markings=arrows(street, *((station, 0.0, way) for station in stations))).values()
+    assert row["direction"] == way and row["other"] is None and row["confidence"] > 0.7
+
+
+def test_a_lane_of_which_nothing_shows_which_way_it_leads_says_both():
+    row, = readings(estimated(Street(vehicle=0.0).paint(1.75, kind="edge").paint(-1.75, kind="edge"))).values()
+    assert row["confidence"] <= 0.6 and other_lanes(row, 0.0) == [(0.0, 3.5, -row["direction"])]
+
+
+def test_on_an_estimated_drive_lanes_lead_on_the_side_that_is_usual_and_may_lead_the_other_way():
+    street = estimated(Street(vehicle=-1.75).paint(3.5, kind="edge").paint(0.0, pattern="double-solid", kind="centre").paint(-3.5, kind="edge"))
+    found = readings(street)
+    assert {offset: row["direction"] for offset, row in found.items()} == {-1.75: 1, 1.75: -1}
+    assert all(row["confidence"] <= 0.6 and [lane[2] for lane in other_lanes(row, -1.75)] == [-row["direction"]] for row in found.values())

@@ -4,7 +4,7 @@ import json
 
 import numpy as np
 import pytest
-from lanewright.core.execution.plain import FORMAT, TEXT_LENGTH, read_plain, write_plain
+from lanewright.core.execution.plain import CHECKSUM, FORMAT, TEXT_LENGTH, is_whole, read_plain, write_plain
 from lanewright.core.road.common.occlusion import OcclusionGrid
 from lanewright.core.road.profiles.detect import CurbSettings
 from lanewright.core.survey.frame.passes import Pass
@@ -39,7 +39,7 @@ def test_a_file_that_ends_early_and_one_of_others_are_refused(tmp_path):
     path = tmp_path / "value.plain"
     write_plain(path, [np.arange(9)])
     whole = path.read_bytes()
-    for length in (len(whole) - 8, len(FORMAT) + TEXT_LENGTH.size + 5, len(FORMAT) + 3):
+    for length in (len(whole) - 8, len(FORMAT) + CHECKSUM.size + TEXT_LENGTH.size + 5, len(FORMAT) + 3):
         path.write_bytes(whole[:length])
         with pytest.raises(OSError, match="ends early"):
             read_plain(path)
@@ -84,6 +84,20 @@ def test_what_is_not_plain_is_refused_and_leaves_no_file(tmp_path, value):
 
 def test_a_file_that_names_a_class_outside_core_makes_nothing_of_it(tmp_path):
     text = json.dumps([{"object": "os:system", "state": []}, []]).encode()
-    (tmp_path / "value.plain").write_bytes(FORMAT + TEXT_LENGTH.pack(len(text)) + text)
+    (tmp_path / "value.plain").write_bytes(FORMAT + CHECKSUM.pack(0) + TEXT_LENGTH.pack(len(text)) + text)
     with pytest.raises(ImportError):
         read_plain(tmp_path / "value.plain")
+
+
+@pytest.mark.parametrize("place", [3, 9, 16, 30, -1, -3000])
+def test_a_file_of_the_right_length_with_other_bytes_is_not_whole(tmp_path, place):
+    path = tmp_path / "value.plain"
+    write_plain(path, {"s": np.arange(1.0, 900.0)})
+    assert is_whole(path)
+    content = bytearray(path.read_bytes())
+    content[place] ^= 0x40
+    path.write_bytes(content)
+    assert not is_whole(path)
+    if place == 16:   # the length of the text, now far too large
+        with pytest.raises(OSError):
+            read_plain(path)

@@ -112,7 +112,7 @@ def test_lanes_lead_on_through_sections_roads_and_junctions(tmp_path):
 def test_a_curb_is_a_road_edge_at_its_foot(tmp_path):
     edges = layers(tmp_path, road(geometry(0, 0, 0, 0, 40), 40)).road_edges()
     assert len(edges) == 1 and edges.rows[0]["side"] == "right"
-    np.testing.assert_allclose(shapely.get_coordinates(edges.geometries[0], include_z=True)[:, 1:], np.tile([-3.5, 0], (81, 1)), atol=1e-9)
+    np.testing.assert_allclose(shapely.get_coordinates(edges.geometries[0], include_z=True)[:, 1:], np.tile([-3.5, 0], (41, 1)), atol=1e-9)
 
 
 def test_the_false_origin_is_added_and_the_reference_read(tmp_path):

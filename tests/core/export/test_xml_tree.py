@@ -32,6 +32,40 @@ def test_a_hostile_file_is_refused_in_one_sentence(tmp_path, what):
         read_xml(str(path), "OpenDRIVE", "an OpenDRIVE file")
 
 
+STREET = '<OpenDRIVE><road name="{}"/></OpenDRIVE>'
+
+
+@pytest.mark.parametrize("encoding, name", [
+    ("gbk", "中山路"), ("shift_jis", "桜通り"), ("utf-7", "Straße"), ("utf-32", "Straße"), ("utf-32-le", "Straße"), ("windows-1252", "Straße"),
+    ("utf-16", "Straße"), ("utf-8-sig", "Straße"), ("cp437", "Straße"), ("big5", "中山路")])
+def test_the_name_of_a_street_is_read_in_any_encoding_of_text(tmp_path, encoding, name):
+    path = tmp_path / "map.xodr"
+    path.write_bytes(f'<?xml version="1.0" encoding="{encoding}"?>{STREET.format(name)}'.encode(encoding))
+    assert read_xml(str(path), "OpenDRIVE", "an OpenDRIVE file").find("road").get("name") == name
+
+
+def test_a_file_that_says_utf_16_and_is_utf_8_is_read(tmp_path):
+    path = tmp_path / "map.xodr"
+    path.write_text(f'<?xml version="1.0" encoding="utf-16"?>{STREET.format("Straße")}', encoding="utf-8")
+    assert read_xml(str(path), "OpenDRIVE", "an OpenDRIVE file").find("road").get("name") == "Straße"
+
+
+@pytest.mark.parametrize("encoding, said", [("klingon", "'klingon', which is not known"), ("hex", "'hex', which is not known"),
+                                            ("gbk", "not written in the encoding gbk"), ("undefined", "not written in the encoding undefined")])
+def test_an_encoding_that_is_none_or_another_is_named(tmp_path, encoding, said):
+    path = tmp_path / "map.xodr"
+    path.write_bytes(f'<?xml version="1.0" encoding="{encoding}"?>'.encode() + STREET.format("").encode().replace(b'""', b'"\xff\xff"'))
+    with pytest.raises(RoadExtractionError, match=said):
+        read_xml(str(path), "OpenDRIVE", "an OpenDRIVE file")
+
+
+def test_entities_are_refused_in_every_encoding(tmp_path):
+    path = tmp_path / "map.xodr"
+    path.write_bytes(('<?xml version="1.0" encoding="utf-32"?>' + HOSTILE["a billion laughs"][0]).encode("utf-32"))
+    with pytest.raises(RoadExtractionError, match="document type or entities"):
+        read_xml(str(path), "OpenDRIVE", "an OpenDRIVE file")
+
+
 READ = """
 import importlib.util, sys
 spec = importlib.util.spec_from_file_location("lanewright", sys.argv[1] + "/__init__.py", submodule_search_locations=[sys.argv[1]])

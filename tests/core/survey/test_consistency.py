@@ -7,7 +7,7 @@ from drives import EAST, NORTH, ahead, bend, chain, drive
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.features import Features
 from lanewright.core.common.schemas import CURB_POINTS, ROAD_EDGES
-from lanewright.core.survey.consistency import check_features_on_roads, check_road_points_on_roads
+from lanewright.core.survey.consistency import check_features_on_roads, check_road_points_on_roads, keep_near_roads
 from lanewright.core.survey.frame.build import build_frame
 from lanewright.core.survey.store.records import ROAD_POINT, to_units
 from lanewright.core.survey.store.road_points import RoadPoints
@@ -77,3 +77,27 @@ def test_a_road_that_is_not_there_is_another_drive_s(street):
 def test_nothing_is_nobody_s(street):
     check_features_on_roads(Features("PointZ", CURB_POINTS), street, "Curb points")
     check_road_points_on_roads(RoadPoints.empty_like(origin=street.origin), street, "The points")
+
+
+def test_points_drawn_far_away_by_mistake_are_left_out_and_counted(street):
+    curbs = curbs_along(street)
+    assert keep_near_roads(curbs, street, "Curb points") == "" and len(curbs) == len(STATIONS)
+    curbs.add(shapely.Point(0.0, NORTH, 100.0), road=0, station_m=30.0)
+    curbs.add(shapely.Point(EAST + 90.0, NORTH + 400.0, 100.0), road=0, station_m=40.0)
+    note = keep_near_roads(curbs, street, "Curb points")
+    assert note.startswith("Curb points: 2 of 87 vertices lie more than 200 m from the trajectory, the first at 0.0") and "2 of 87 features" in note
+    assert len(curbs) == len(curbs.rows) == len(STATIONS)
+
+
+def test_of_a_line_the_vertex_drawn_far_away_goes_and_of_polygons_the_whole(street):
+    x, y = street.to_map(0, STATIONS, np.full(len(STATIONS), 4.0))
+    along = np.c_[x, y, np.full(len(x), 100.0)]
+    astray = np.insert(along, 7, [0.0, 0.0, 100.0], axis=0)
+    edges, marks = Features("LineStringZ", ROAD_EDGES), Features("PolygonZ", ROAD_EDGES)
+    edges.add(shapely.LineString(astray), road=0)
+    edges.add(shapely.LineString(astray[6:8]), road=0)
+    marks.add(shapely.Polygon(astray[5:10]), road=0)
+    assert "1 of 2 features" in keep_near_roads(edges, street, "Road edges") and "1 of 1 features" in keep_near_roads(marks, street, "Markings")
+    np.testing.assert_array_equal(shapely.get_coordinates(edges.geometries, include_z=True), along)
+    assert len(edges.rows) == 1 and not len(marks)
+    assert keep_near_roads(edges, street, "Road edges") == ""

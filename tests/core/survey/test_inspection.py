@@ -156,3 +156,21 @@ def test_the_drive_is_told_with_its_road_pass_and_sensor_height(tmp_path):
 
 def test_without_a_trajectory_nothing_is_told_of_the_drive(tmp_path):
     assert inspect_survey([a_carpet(tmp_path / "a.laz")]).drive is None
+
+
+@pytest.mark.parametrize("low, high", [((WEST + 300, SOUTH + 300, 0), (WEST + 400, SOUTH + 400, 9)),
+                                       ((WEST - 1e5, SOUTH - 1e5, 0), (WEST + 1e5, SOUTH + 1e5, 9)),
+                                       ((WEST + 9, SOUTH + 3, 0), (WEST - 9, SOUTH - 3, 9))],
+                         ids=["beside the points", "of the whole project", "the other way round"])
+def test_bounds_in_a_header_that_are_not_the_points_change_nothing(tmp_path, low, high):
+    import struct
+
+    right, path = inspect_survey([a_carpet(tmp_path / "right.laz")]), a_carpet(tmp_path / "wrong.laz")
+    data = bytearray(open(path, "rb").read())
+    struct.pack_into("<6d", data, 179, *np.c_[high, low].ravel())
+    open(path, "wb").write(data)
+    found = inspect_survey([path])
+    np.testing.assert_allclose(np.r_[found.minimum, found.maximum], np.r_[right.minimum, right.maximum], atol=1e-6)
+    np.testing.assert_array_equal(found.density[0], right.density[0])
+    np.testing.assert_allclose(found.density[1], right.density[1])
+    assert "points per m²".capitalize() in inspection_report(found)

@@ -147,7 +147,7 @@ def test_a_folder_that_cannot_be_used_is_named(street, python):
 def test_a_damaged_file_is_named_by_the_worker_that_meets_it(street, python, tmp_path):
     trajectory, (las, _) = street
     cut = tmp_path / "cut.las"
-    cut.write_bytes(open(las, "rb").read()[:-60_000])
+    cut.write_bytes(open(las, "rb").read()[:-60_001])
     with pytest.raises(RoadExtractionError, match="cut.las is (cut off|damaged)"):
         opened((trajectory, [cut]), WorkerProcesses(python, 2))
 
@@ -188,6 +188,29 @@ def test_a_work_folder_keeps_the_points_in_order_and_nothing_that_was_on_the_way
     heard = Heard()
     assert opened(street, progress=heard, work_folder=str(tmp_path / "work")) == by_threads
     assert heard.says("read by an earlier run")
+
+
+def zeros(path):
+    """A power failure: what was written last has not come to the disk."""
+    content = path.read_bytes()
+    path.write_bytes(content[:-64] + bytes(64))
+
+
+@pytest.mark.parametrize("pattern", ["survey-*/survey.plain", "survey-*/points-*.bin"])
+def test_points_that_a_power_failure_damaged_are_read_again(street, by_threads, tmp_path, pattern):
+    work = tmp_path / "work"
+    assert opened(street, work_folder=str(work)) == by_threads
+    zeros(next(work.glob(pattern)))
+    assert opened(street, work_folder=str(work)) == by_threads
+
+
+def test_of_a_reading_that_a_power_failure_ended_damaged_parts_are_not_used(street, by_threads, tmp_path):
+    work = tmp_path / "work"
+    with pytest.raises(Cancelled):
+        opened(street, progress=StopsReading(work, 3), work_folder=str(work))
+    for path in work.glob("*.parts/points/points-*.bin"):
+        zeros(path)
+    assert opened(street, work_folder=str(work)) == by_threads
 
 
 def test_another_run_that_was_quicker_is_believed(street, by_threads, tmp_path, monkeypatch):

@@ -66,3 +66,19 @@ def test_an_edge_is_cut_where_passes_begin_to_differ_by_centimetres_and_its_piec
 def test_an_edge_that_is_uncertain_by_millimetres_more_or_less_is_one_piece():
     (whole,) = piece(np.where(PLACES < 63.0, 0.001, 0.009)).cut_by_sigma()
     assert whole.length == 100.0
+
+
+def test_a_bridge_is_as_uncertain_as_what_the_curb_may_do_in_it_and_that_grows_with_the_third_power_of_its_length():
+    def middle_of(gap):
+        places = np.r_[np.arange(0.0, 30.0, 0.5), np.arange(30.0 + gap, 60.0 + gap, 0.5)]
+        ends = places[np.searchsorted(places, 30.0) - 1], 30.0 + gap
+        return float(edge_sigma(np.array([sum(ends) / 2]), places, np.zeros(len(places)))[0])
+
+    assert middle_of(1.0) < 1.1 * MAIN_EDGE.foot, "no bridge: points are joined so far"
+    assert middle_of(5.5) < 0.007 and 0.015 < middle_of(9.5) < 0.025
+    assert middle_of(19.5) / middle_of(9.5) > 7.0
+
+
+def test_a_bridge_makes_what_was_measured_beside_it_no_less_sure():
+    places = np.r_[np.arange(0.0, 30.0, 0.5), np.arange(45.0, 75.0, 0.5)]
+    np.testing.assert_allclose(edge_sigma(np.array([15.0, 60.0]), places, np.zeros(len(places))), MAIN_EDGE.foot, rtol=0.05)

@@ -64,6 +64,8 @@ TIMES = {
     "UTC": ("UTC,x,y,z\n" + rows(clock("%Y-%m-%dT%H:%M:%S.%f", UTC_CLOCKS), *MAP), GPS),
     "UTC by its letter": ("time,x,y,z\n" + rows(clock("%Y-%m-%dT%H:%M:%S.%fZ", UTC_CLOCKS), *MAP), GPS),
     "UTC and a zone": ("time,x,y,z\n" + rows(clock("%Y-%m-%dT%H:%M:%S.%f+00:00", UTC_CLOCKS), *MAP), GPS),
+    "clock in three columns": ("GPS hour,GPS minute,GPS second,x,y,z\n" + rows(clock("%H"), clock("%M"), clock("%S.%f"), *MAP), OF_DAY),
+    "first time missing": ("GPS time,x,y,z\n,0,0,0\n" + rows(clock("%Y-%m-%d %H:%M:%S.%f"), *MAP), np.r_[np.nan, GPS]),
     "both clock and seconds": ("UTC Time,SOW,x,y,z\n" + rows(clock("%H:%M:%S.%f", UTC_CLOCKS), (OF_WEEK, S3), *MAP), OF_WEEK),
     "RTKLIB": ("% program : x\n%  GPST                  latitude(deg) longitude(deg)  height(m)   Q  ns\n"
                + rows(clock("%Y/%m/%d %H:%M:%S.%f"), *GEO, [1] * ROWS, [12] * ROWS, mark="   "), GPS),
@@ -79,6 +81,8 @@ TIMES = {
 
 
 def check(found, time, tolerance=0.003):
+    if time is not None and len(time) > ROWS:
+        found, time = found.rows(np.arange(1, len(time))), time[1:]
     np.testing.assert_allclose(np.c_[found.x, found.y, found.z], np.c_[X, Y, Z], atol=tolerance)
     if time is None:
         assert not found.has_time
@@ -118,6 +122,8 @@ PLACES = {
     "colons": "time,lat,lon,h\n" + rows((GPS, S3), dms(LAT, "{0}:{1:02d}:{2:.5f}"), dms(LON, "{0}:{1:02d}:{2:.5f}"), GEO[2]),
     "minutes alone": "time,lat,lon,h\n" + rows(
         (GPS, S3), [f"{int(v)}° {v % 1 * 60:.7f}'" for v in LAT], [f"{int(v)}° {v % 1 * 60:.7f}'" for v in LON], GEO[2]),
+    "letters in the names": "time,Latitude N,Longitude E,Height\n" + rows((GPS, S3), *GEO),
+    "height of the geoid first": "time,lat,lon,Geoid height,Altitude MSL\n" + rows((GPS, S3), *GEO[:2], [12.0] * ROWS, GEO[2]),
     "letters behind": "time,lat,NS,lon,EW,h\n" + rows((GPS, S3), GEO[0], ["N"] * ROWS, GEO[1], ["E"] * ROWS, GEO[2]),
     "degrees and minutes of a receiver": "time,lat,NS,lon,EW,h\n" + rows(
         (GPS, S3), nmea_angle(LAT, 2), ["N"] * ROWS, nmea_angle(LON, 3), ["E"] * ROWS, GEO[2]),
@@ -171,6 +177,22 @@ def test_a_clock_of_which_nobody_says_what_it_shows_is_refused_and_shown(tmp_pat
     assert repr(column[0]) in str(refused.value) and title in str(refused.value) and "gps or utc" in str(refused.value)
 
 
+def test_hours_minutes_and_seconds_in_one_number_are_a_clock_time(tmp_path):
+    times = 234_655.0 + 0.25 * np.arange(ROWS)
+    times[20:] += 40.0   # from 23:46:59.75 to 23:47:00
+    with pytest.raises(RoadExtractionError, match="GPS seconds are needed"):
+        read(tmp_path, "Time,x,y,z\n" + rows((times, S2), *MAP))
+
+
+def test_a_clock_that_contradicts_its_name_is_refused(tmp_path):
+    with pytest.raises(RoadExtractionError, match="it is not said whether"):
+        read(tmp_path, "GPS time,x,y,z\n" + rows(clock("%Y-%m-%dT%H:%M:%S.%fZ"), *MAP))
+
+
+def test_seconds_of_utc_are_warned_of(tmp_path):
+    assert "seconds of UTC by its name" in read(tmp_path, "UTCTime (sec),x,y,z\n" + rows((OF_WEEK, S3), *MAP)).doubts[0]
+
+
 def test_what_a_clock_shows_is_said_in_columns(tmp_path):
     text = "Time;x;y;z\n" + rows(clock("%d/%m/%Y %H:%M:%S.%f"), *MAP, mark=";")
     check(read(tmp_path, text, columns="gps,x,y,z"), GPS)
@@ -196,7 +218,7 @@ def test_seconds_since_1970_that_could_be_gps_seconds_are_told_by_the_cloud():
 
 def test_a_column_that_looks_like_time_and_is_not_used_is_named(tmp_path):
     found = read(tmp_path, "stamp_of_imu_card,x,y,z\n" + rows((OF_WEEK, S3), *MAP))
-    assert not found.has_time and "stamp_of_imu_card (344800 to 344809.75)" in " ".join(found.notes)
+    assert not found.has_time and "stamp_of_imu_card (344800 to 344809.75)" in " ".join((*found.notes, *found.doubts))
 
 
 def test_of_two_heights_the_one_that_is_used_is_named(tmp_path):
@@ -294,3 +316,32 @@ def test_the_same_columns_of_a_layer_give_the_same_drive(written):
 def test_a_layer_with_clock_times_is_refused_like_a_file():
     with pytest.raises(RoadExtractionError, match="GPS seconds are needed"):
         trajectory_from_rows(["Time"], [[text] for text in clock("%d/%m/%Y %H:%M:%S.%f")], {"x": X, "y": Y, "z": Z}, label="Layer")
+
+
+# -- drives that do not fit together -----------------------------------------------------------------------------------
+
+
+def both(other_x, other_time):
+    first = rows((GPS, S3), *MAP).splitlines()
+    return first, rows((other_time, S3), (other_x, "{:.4f}"), *MAP[1:]).splitlines()
+
+
+@pytest.mark.parametrize("later", [0.0, 0.1, 3.0])
+@pytest.mark.parametrize("interleaved", [False, True])
+def test_two_drives_at_the_same_time_are_refused_with_their_rows(tmp_path, later, interleaved):
+    first, second = both(X + 35.0, GPS + later)
+    lines = [line for pair in zip(first, second) for line in pair] if interleaved else first + second
+    with pytest.raises(RoadExtractionError, match=r"at two places at once: row \d+ .* row \d+ .* m apart"):
+        clean_trajectory(read(tmp_path, "time,x,y,z\n" + "\n".join(lines)))
+
+
+def test_rows_that_are_there_twice_or_in_another_order_are_one_drive(tmp_path):
+    first, second = both(X, GPS)
+    for lines in (first + second, first[::-1], first[20:] + first[:20]):
+        found = clean_trajectory(read(tmp_path, "time,x,y,z\n" + "\n".join(lines)))
+        check(found, GPS)
+
+
+def test_two_drives_one_after_the_other_are_one_trajectory(tmp_path):
+    first, second = both(X + 35.0, GPS + 3600.0)
+    assert len(clean_trajectory(read(tmp_path, "time,x,y,z\n" + "\n".join(second + first)))) == 2 * ROWS

@@ -1,0 +1,113 @@
+"""Intensities as exporters write them: with a sign, in decibels, in an extra field."""
+
+import laspy
+import numpy as np
+import pytest
+from lanewright.core.survey.las.intensity_source import intensity_source_of
+from lanewright.core.survey.las.reader import read_blocks, read_headers
+from lanewright.core.survey.las.samples import coarse_coordinates, sample_files
+
+COUNT = 60_000
+RNG = np.random.default_rng(6)
+# what asphalt, worn and new paint send back, as a share of what white paper would
+REFLECTANCE = np.r_[RNG.lognormal(np.log(0.08), 0.35, COUNT - 4000), RNG.lognormal(np.log(0.7), 0.3, 4000)]
+RNG.shuffle(REFLECTANCE)
+DECIBELS = 10 * np.log10(REFLECTANCE)
+
+
+def cloud(path, intensity=0, x=None, scale=0.001, **fields):
+    header = laspy.LasHeader(version="1.4", point_format=6)
+    header.scales, header.offsets = [scale] * 3, [500_000.0, 5_800_000.0, 0.0]
+    header.add_extra_dims([laspy.ExtraBytesParams(name, values.dtype.str[1:]) for name, values in fields.items()])
+    las = laspy.LasData(header)
+    las.x = 500_000 + RNG.uniform(0, 200, COUNT) if x is None else x
+    las.y, las.z = 5_800_000 + RNG.uniform(0, 20, COUNT), 60 + RNG.uniform(0, 3, COUNT)
+    las.intensity = np.broadcast_to(intensity, COUNT)
+    for name, values in fields.items():
+        las[name] = values
+    las.write(str(path))
+    return path
+
+
+def read(path, wanted="intensity"):
+    """(N,) intensities as a survey reads them, and what is said of them."""
+    source, note = intensity_source_of(sample_files(read_headers([path])), wanted)
+    return np.concatenate([source.of(block) for block in read_blocks(path)]), note
+
+
+def wrapped(values):
+    return (np.rint(values).astype(np.int64) % 65536).astype(np.uint16)
+
+
+def check_linear(found):
+    """Intensities are in proportion to what came back, as far as whole numbers can be."""
+    bright = REFLECTANCE > 0.02
+    share = found[bright] / REFLECTANCE[bright]
+    np.testing.assert_allclose(share / np.median(share), 1.0, atol=0.15)
+
+
+@pytest.mark.parametrize("per_decibel, white", [(100, 0.0), (100, 3.0), (100, -12.0), (10, 0.0)],
+                         ids=["hundredths", "brighter", "all negative", "tenths"])
+def test_reflectance_in_decibels_that_lost_its_sign_is_what_it_was(tmp_path, per_decibel, white):
+    found, note = read(cloud(tmp_path / "cloud.laz", wrapped(per_decibel * (DECIBELS + white))))
+    if per_decibel == 100:
+        check_linear(found)
+    assert np.corrcoef(np.log(found + 1.0), DECIBELS)[0, 1] > 0.97
+    assert f"{per_decibel} a dB" in note and "without one" in note
+
+
+def test_linear_values_that_lost_their_sign_keep_their_order_and_distances(tmp_path):
+    values = np.clip(20_000 * REFLECTANCE - 8000, -16_000, 16_000)
+    found, note = read(cloud(tmp_path / "cloud.laz", wrapped(values)))
+    assert np.corrcoef(found, values)[0, 1] > 0.999 and "linear values" in note
+
+
+SOUND = {
+    "16 bits": 20_000 * REFLECTANCE,
+    "12 bits": 2000 * REFLECTANCE,
+    "8 bits": 120 * REFLECTANCE,
+    "8 bits in 16": np.rint(120 * REFLECTANCE) * 257,
+    "saturated": np.where(REFLECTANCE > 0.4, 65535, 20_000 * REFLECTANCE),
+    "signs brighter than all else": np.where(REFLECTANCE > 0.7, 65535 - RNG.uniform(0, 20_000, COUNT), 20_000 * REFLECTANCE),
+    "decibels with an offset": 100 * (DECIBELS + 40),
+    "up to the brim": RNG.uniform(0, 65535, COUNT),
+}
+
+
+@pytest.mark.parametrize("values", SOUND.values(), ids=SOUND)
+def test_other_intensities_are_read_as_they_are_without_a_word(tmp_path, values):
+    stored = np.clip(np.rint(values), 0, 65535).astype(np.uint16)
+    found, note = read(cloud(tmp_path / "cloud.laz", stored))
+    assert note == ""
+    np.testing.assert_array_equal(found, stored)
+
+
+@pytest.mark.parametrize("name, values", [("Reflectance", DECIBELS.astype("f4")), ("Amplitude", (DECIBELS + 30).astype("f4")),
+                                          ("reflectance [0.01 dB]", np.rint(100 * DECIBELS).astype("i2")), ("Reflectance", REFLECTANCE.astype("f8"))],
+                         ids=["dB", "positive dB", "hundredths of dB", "linear"])
+def test_a_field_of_the_usual_name_stands_in_for_an_intensity_that_is_empty(tmp_path, name, values):
+    found, note = read(cloud(tmp_path / "cloud.laz", 0, **{name: values}))
+    check_linear(found)
+    assert f"the extra field {name} is read" in note
+
+
+def test_a_field_beside_a_good_intensity_is_not_looked_at(tmp_path):
+    found, note = read(cloud(tmp_path / "cloud.laz", np.rint(2000 * REFLECTANCE), Reflectance=DECIBELS.astype("f4")))
+    assert note == "" and np.array_equal(found, np.rint(2000 * REFLECTANCE))
+
+
+def coarse(path):
+    return coarse_coordinates(sample_files(read_headers([path])))
+
+
+def test_coordinates_through_numbers_of_32_bits_are_told_with_their_step(tmp_path):
+    x = 500_000 + RNG.uniform(0, 200, COUNT)
+    assert coarse(cloud(tmp_path / "fine.laz", x=x)) == ""
+    told = coarse(cloud(tmp_path / "coarse.laz", x=x.astype(np.float32).astype(float)))
+    assert "0.031 m in x" in told and "32 bits" in told and "coarse.laz" in told
+
+
+@pytest.mark.parametrize("scale, says", [(0.1, "0.1 m in x, 0.1 m in y, 0.1 m in z"), (0.01, "")])
+def test_a_scale_of_decimetres_is_told(tmp_path, scale, says):
+    told = coarse(cloud(tmp_path / "cloud.laz", scale=scale))
+    assert says in told and bool(told) == bool(says)
