@@ -163,7 +163,7 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     time, place = _sampled(files, reader, has_time, progress)
     if intensity.field == "rgb":
         progress.info("The brightness of the points' colours is taken as their intensity.")
-    if not survey.has_intensity and (note := without_intensity(files, settings.intensity_from)):
+    if not survey.has_intensity and (note := without_intensity(files, settings.intensity_from, list(samples[0].fields))):
         progress.warn(note)
     if has_time and len(scanners) == 1:
         at = read_at if shared is None else PARTS_PROGRESS * read_at
