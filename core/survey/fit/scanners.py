@@ -40,8 +40,8 @@ LOOK_WINDOWS, SCANNER_WINDOWS = 4, 16   # of the survey in which scanners are lo
 # m ahead, left and up that scanners may differ by without a move: along lines nothing is drawn sharply; less than the faces that are looked for
 MAX_SCANNER_OFFSETS = 2 * AGREEMENT_PLAN, AGREEMENT_PLAN, 0.010
 SIDES = "right", "left"
-DIRECTIONS_SAID = ("ahead", "behind"), ("to the left", "to the right"), ("above", "below")
-LEAST_SAID = 0.005           # m
+SAID_AS = ("ahead", "behind"), ("to the left", "to the right"), ("above", "below")
+SAID_M = 0.005           # m
 
 
 @dataclass(frozen=True)
@@ -102,7 +102,7 @@ def _said(survey, one, sigma):
     if one.far:
         return (f"{names} lie more than {100 * MAX_OFFSET:.0f} cm apart, too far to lay them on each other: curbs and lines are doubled. Calibrate "
                 "the mounting of the scanners anew, or process the points of one scanner alone.")
-    right, left = (", ".join(f"{100 * abs(metres):.1f} cm {words[int(metres < 0)]}" for metres, words in zip(side, DIRECTIONS_SAID) if abs(metres) > LEAST_SAID)
+    right, left = (", ".join(f"{100 * abs(metres):.1f} cm {words[int(metres < 0)]}" for metres, words in zip(side, SAID_AS) if abs(metres) > SAID_M)
                    or "nothing that shows" for side in np.nan_to_num(-one.moves))
     return (f"{names} differ all along the survey: what the first sees lies {left} of what the other sees on the left of the vehicle, and {right} on "
             "the right, as with a wrong lever arm or boresight angles. They were laid on each other, each moved by its share; nothing shows which of "
