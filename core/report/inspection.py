@@ -10,6 +10,7 @@ import numpy as np
 from ..common.texts import told, tr
 from ..io.crs import horizontal_part, parse_crs
 from ..lazy import cv2
+from ..survey.trajectory.time_systems import SECONDS_PER_WEEK
 from .map_figure import png
 from .page import Page
 
@@ -85,7 +86,7 @@ def _time(page, found):
     if found.time_span:
         first, last = found.time_span
         rows.append(("gps_time", tr("{first:.3f} to {last:.3f} s, {seconds:.1f} s").format(first=first, last=last, seconds=last - first)))
-        if found.files[0].adjusted_time:
+        if first > SECONDS_PER_WEEK:   # whatever the header says of them
             start = datetime(1980, 1, 6) + timedelta(seconds=first + 1e9)
             rows.append((tr("Counted as"), tr("adjusted standard GPS time; begins {start} in GPS time").format(start=f"{start:%Y-%m-%d %H:%M:%S}")))
         else:

@@ -164,22 +164,26 @@ def check_coloured(files: Sequence[CloudHeader]) -> None:
             "Set Intensity from to intensity, or export the points with red, green and blue.")
 
 
-def without_intensity(files: Sequence[CloudHeader], taken_from: str) -> str:
+def without_intensity(files: Sequence[CloudHeader], taken_from: str, fields: Sequence[str] = ()) -> str:
     """What to say of a cloud whose points are all equally bright.
 
     Parameters
     ----------
     files : headers of the clouds
     taken_from : one of INTENSITY_SOURCES, what was read as intensity
+    fields : extra fields of the points
 
     Returns
     -------
-    A sentence that names the colours, where they are a way out; "" where they are not
+    A sentence that names the colours, or else the extra fields, where they are a way out; "" where they are not
     """
     if taken_from == "rgb":
         return "The colours of the points are all the same, so they do not stand in for intensity."
-    return ("The intensity of all points is the same, but they have colours: set Intensity from (INTENSITY_FROM) to rgb, and paint is "
-            "looked for in their brightness.") if any(_has_colours(file) for file in files) else ""
+    if any(_has_colours(file) for file in files):
+        return ("The intensity of all points is the same, but they have colours: set Intensity from (INTENSITY_FROM) to rgb, and paint is "
+                "looked for in their brightness.")
+    return (f"The intensity of all points is the same. If one of their extra fields ({', '.join(fields)}) holds what came back to the scanner, "
+            "export it as intensity.") if fields else ""
 
 
 def _has_colours(file):

@@ -21,6 +21,7 @@ from .records_of_file import HeaderFields
 POINTS_PER_BLOCK = 400_000  # points decoded at a time
 CLOUD_SUFFIXES = (".las", ".laz")
 MAX_HEADER_SCALE, MAX_HEADER_OFFSET = 1e3, 1e12  # m, of coordinates stored as integers; beyond them no place on earth is described
+MAX_MAP_COORDINATE = 1e8      # m or feet: bounds beyond were never those of points
 BOUNDS_TOLERANCE = 0.01      # m: bounds are often rounded to centimetres
 NOT_FILE_ERRORS = (KeyboardInterrupt, SystemExit, GeneratorExit, Cancelled, MemoryError)  # they say nothing about the file
 
@@ -186,6 +187,7 @@ def read_header(path: str | os.PathLike[str], given: str = "") -> CloudHeader:
             raise RoadExtractionError(
                 f"{path} gives its points no coordinates: its header says scales of {_listed(header.scales)} and offsets of "
                 f"{_listed(header.offsets)}. Export the file again, with a scale such as 0.001 m.")
+        overflow = _overflow(header)
         count, units, bounds_hold = int(header.point_count), _stated_units(header, in_metres(given)[1]), _bounds_hold(path, mended, header)
         _to_metres(header, units)
         low, high = _bounds_of_points(path, units) if count > 1 and not bounds_hold else (header.mins, header.maxs)
@@ -194,7 +196,17 @@ def read_header(path: str | os.PathLike[str], given: str = "") -> CloudHeader:
             tuple(map(float, low)), tuple(map(float, high)), tuple(map(float, header.scales)),
             cloud_crs(header), "gps_time" in names, "scanner_channel" in names,
             bool(header.global_encoding.gps_time_type.value), points_per_chunk(path), "red" in names,
-            tuple(f"{path}: {note}." for note in mended.notes), units, crs_of_records(header)[1])
+            tuple(f"{path}: {note}." for note in (*mended.notes, *overflow)), units, crs_of_records(header)[1])
+
+
+def _overflow(header):
+    """What to tell of coordinates that the integers of a file cannot hold, by the bounds that its header states; () where they can."""
+    reach = 2.0**31 * np.abs(header.scales)   # of coordinates stored as 32-bit integers
+    for axis, low, high, least, most in zip("xyz", header.mins, header.maxs, header.offsets - reach, header.offsets + reach):
+        if -MAX_MAP_COORDINATE < low < high < MAX_MAP_COORDINATE and not (low >= least - BOUNDS_TOLERANCE and high <= most + BOUNDS_TOLERANCE):
+            return (f"its header says that {axis} runs from {low:.1f} to {high:.1f}, and its scale and offset can hold {least:.1f} to "
+                    f"{most:.1f} alone: points lie elsewhere than they were measured. Export it again with an offset near the survey",)
+    return ()
 
 
 def _bounds_hold(path, mended, header):

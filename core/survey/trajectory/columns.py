@@ -46,7 +46,7 @@ ROLE_WORDS = {
           "utm grid map coord coordinate coordinates position pos local projected gps gnss ins imu sensor antenna scanner vehicle platform world"),
     "z": ("height heights altitude alt elevation elev ele hgt ht z h hell ellh hae msl hmsl hoehe höhe hauteur altura altezza quota cota hoogte "
           "высота 高程 高度 標高 楕円体高 大地高",
-          "ellipsoid ellipsoidal ell ellipsoidisch ellipsoidische ellipsoidique wgs84 wgs orthometric ortho orth above sea level mean "
+          "ellipsoid ellipsoidal ell ellipsoidische ellipsoïdale ellipsoidale wgs84 wgs orthometric ortho orth above sea level mean "
           "gps gnss ins imu sensor antenna scanner vehicle platform position pos coord coordinate up local geodetic map"),
     "roll": ("roll rollwinkel rolio roulis rollio 横滚 横滚角 ロール", "angle ins imu sensor vehicle platform euler"),
     "pitch": ("pitch nickwinkel tangage beccheggio cabeceo 俯仰 俯仰角 ピッチ", "angle ins imu sensor vehicle platform euler"),
@@ -176,6 +176,8 @@ def _split(text):
 def unit_named(text: str) -> Unit:
     """The Unit that a text names, maybe with a number before it, such as "0.001 s" or "1e-7 deg"; Unit() where it names none."""
     words = " ".join(text.lower().strip("[]()<> .").split())
+    behind = re.fullmatch(r"(\D+?)\s*[*x]\s*(\d[\d.]*(?:e-?\d+)?|10\^?-\d+)", words)
+    words = f"{behind[2]} {behind[1]}" if behind else words
     number = re.match(r"(\d[\d.]*(?:e-?\d+)?|10\^?-\d+)\s*\*?\s*(?=\D)", words)
     unit = UNIT_NAMES.get(words[number.end():] if number else words)
     if unit is None:

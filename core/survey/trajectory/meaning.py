@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import time as clock
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -28,6 +29,7 @@ HIGHEST_ROAD = 9000.0            # m: a third coordinate beyond it is no height
 MEAN_SEA_LEVEL = ("ortho", "msl", "sea", "geoid")   # in names of heights
 LARGEST_SECONDS = 1e10           # times beyond it are counted in smaller units
 LEAST_EVEN = 0.95                # of the steps of a column that may be time are near the usual one
+COUNTS_OTHERS = re.compile(r"id\b|\b(no|nr)\b|num|count|index|station|chainage|dist|length|km|frame|image|photo|row|line|record", re.IGNORECASE)
 NEVER_BEFORE = 1.46e9            # GPS seconds, April 2026: no clock of a computer is trusted that is behind this
 LONG = 40                        # characters of a field in a message
 TOLD_CLOCKS = {"gps": "GPS", "utc": "UTC"}          # words of Columns that say what a clock shows
@@ -167,7 +169,8 @@ def _time(columns, meaning, label, notes, doubts):
     place = meaning.place
     column = columns[place["time"]]
     clock_parts = [columns[place[role]].values for role in ("hour", "minute") if role in place]
-    texts = _hours_minutes_seconds(column.values, *clock_parts) if not column.is_text else None
+    told = "hhmmss" in column.title.lower() or ("date" in place and "utc" in column.title.lower() and not column.unit.name)
+    texts = _hours_minutes_seconds(column.values, *clock_parts, told=told) if not column.is_text else None
     if texts is not None:
         columns = [*columns]
         columns[place["time"]] = column = replace(column, values=np.full(len(texts), np.nan), written=lambda: texts, first=texts[0])
@@ -196,8 +199,8 @@ def _time(columns, meaning, label, notes, doubts):
     return seconds
 
 
-def _hours_minutes_seconds(values, hour=None, minute=None):
-    """(N,) texts of clock times that stand in three columns, or in one as hhmmss; None for other times."""
+def _hours_minutes_seconds(values, hour=None, minute=None, told=False):
+    """(N,) texts of clock times that stand in three columns, or in one as hhmmss; None for other times. A date or name may have `told` that."""
     if hour is None or minute is None:
         known = values[np.isfinite(values)]
         step = np.diff(known)
@@ -205,7 +208,7 @@ def _hours_minutes_seconds(values, hour=None, minute=None):
             return None
         # from 59 s to the next minute such a number goes up by 40 more than the seconds do, and other times never do
         over = np.floor(known[1:] / 100) > np.floor(known[:-1] / 100)
-        if not over.any() or over.all() or not (step[over] > 40.0).all() or not (step[~over] < 40.0).all():
+        if not told and (not over.any() or over.all()) or not (step[over] > 40.0).all() or not (step[~over] < 40.0).all():
             return None
         hour, minute, values = values // 10_000, values // 100 % 100, values % 100
     return [f"{h:02.0f}:{m:02.0f}:{s:09.6f}" if h + m + s == h + m + s else "" for h, m, s in zip(hour, minute, values)]
@@ -268,7 +271,7 @@ def _like_time(columns, used, label):
     for k, column in enumerate(columns):
         values = column.values[np.isfinite(column.values)]
         step = np.diff(values)
-        if k in used or len(step) < 3 or not (step > 0).all():
+        if k in used or len(step) < 3 or not (step > 0).all() or COUNTS_OTHERS.search(column.title):
             continue
         usual = np.median(step)
         counts_rows = (step == 1).all() and values[0] in (0, 1)

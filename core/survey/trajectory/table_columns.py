@@ -136,6 +136,8 @@ def _possible_spans(role, fields):
     if not fields:
         return
     together = _fields_of_a_time(fields)
+    if role == "date":
+        yield 1, ""   # the clock behind it has a name of its own, unless the names are too few
     if together > 1:
         yield together, "time"
     elif role == "time" and len(fields) > 1 and _week(fields[0].values) and _within(fields[1].values, 0.0, SECONDS_PER_GPS_WEEK + 1.0):

@@ -17,6 +17,9 @@ TIME = re.compile(rf"(?:{_DATE}(?:\s*[T ,]\s*|$))?(?:{_CLOCK})?\s*{_ZONE}$", re.
 ANGLE = re.compile(r"(?P<before>[NSEW])?\s*(?P<sign>[+-])?\s*(?P<degrees>\d{1,3}(?:[.,]\d*)?)\s*[°ºd:\s]?\s*"
                    r"(?:(?P<minutes>\d{1,2}(?:[.,]\d*)?)\s*['′’m:\s]?\s*)?(?:(?P<seconds>\d{1,2}(?:[.,]\d*)?)\s*(?:''|[\"″”s])?\s*)?"
                    r"(?P<after>[NSEW])?$", re.IGNORECASE)
+COMPACT = re.compile(r"(\d{4})(\d{2})(\d{2})T(\d{2})(\d{2})(\d{2})(?!\d)")                       # 20211013T234640
+MONTH_NAME = re.compile(r"(\d{1,2})[-/. ](jan|feb|mar|apr|may|jun|jul|aug|sep|oct|nov|dec)[a-z]*\.?[-/., ]+(\d{4})", re.IGNORECASE)
+MONTHS = ("jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec")
 LOOKED_AT = 50          # texts of a column by which it is told what they are
 MOST = 0.9              # of them
 GPS_EPOCH = datetime(1980, 1, 6)
@@ -45,16 +48,22 @@ class ClockTimes:
 def hold_times(texts: Sequence[str]) -> bool:
     """Whether most texts of a column are clock times, with dates or without, or dates."""
     some = [text for text in texts if text.strip()][:LOOKED_AT]
-    found = [TIME.match(text.strip()) for text in some]
+    found = [_match(text) for text in some]
     times = [match for match in found if match and (match["hour"] or match["date"] and not match["date"].isdigit())]
     return bool(some) and len(times) >= MOST * len(some)
+
+
+def _match(text):
+    """TIME in a text, where months may have English names and ISO 8601 its short form."""
+    text = COMPACT.sub(r"\1-\2-\3 \4:\5:\6", text.strip())
+    return TIME.match(MONTH_NAME.sub(lambda named: f"{named[3]}-{MONTHS.index(named[2].lower()) + 1}-{named[1]}", text))
 
 
 def clock_times(texts: Sequence[str]) -> ClockTimes | None:
     """Clock times of (N,) texts; None where they are none."""
     if not hold_times(texts) and not all(re.fullmatch(r"\d{8} .*:.*", text) for text in texts[:LOOKED_AT] if text):
         return None
-    found = [TIME.match(text.strip()) for text in texts]
+    found = [_match(text) for text in texts]
     dates = {match["date"] for match in found if match and match["date"]}
     day_first, order_known = _order(dates)
     midnight = {date: _midnight(date, day_first) for date in dates}

@@ -224,3 +224,27 @@ def test_bounds_of_a_whole_project_are_no_reason_to_look_at_the_points(tmp_path)
     low, high = [400_000, 5_700_000, 0], [600_000, 5_900_000, 500]
     header = read_header(with_bounds(written(street(1, "1.2"), tmp_path / "cloud.laz"), low, high))
     assert (list(header.minimum), list(header.maximum)) == (low, high)
+
+
+def test_a_point_format_that_nobody_knows_is_refused_in_one_sentence(tmp_path):
+    path = written(street(1, "1.2"), tmp_path / "cloud.las")
+    content = bytearray(path.read_bytes())
+    content[104], content[107] = 35, 9   # of the point format and the count
+    path.write_bytes(content)
+    with pytest.raises(RoadExtractionError):
+        read_header(path)
+
+
+def test_coordinates_that_overflowed_the_integers_of_their_file_are_told(tmp_path):
+    """A scale of a ten-millionth from an offset of 0 ends at 215 m."""
+    path = written(street(1, "1.2"), tmp_path / "cloud.laz", *(((at + 8 * axis, "<d"), value) for at, value in ((131, 1e-7), (155, 0.0))
+                                                               for axis in range(3)))
+    (note,) = read_header(path).notes
+    assert "y runs from 5800000" in note or "x runs from 500000" in note
+
+
+def test_an_intensity_elsewhere_is_named_by_its_fields(tmp_path):
+    from lanewright.core.survey.las.intensity_source import without_intensity
+
+    path = written(street(1, "1.2", 3000, [("echo width", "u2")]), tmp_path / "cloud.laz")
+    assert "(echo width)" in without_intensity(read_headers([path]), "intensity", ["echo width"])

@@ -66,6 +66,12 @@ TIMES = {
     "UTC and a zone": ("time,x,y,z\n" + rows(clock("%Y-%m-%dT%H:%M:%S.%f+00:00", UTC_CLOCKS), *MAP), GPS),
     "clock in three columns": ("GPS hour,GPS minute,GPS second,x,y,z\n" + rows(clock("%H"), clock("%M"), clock("%S.%f"), *MAP), OF_DAY),
     "first time missing": ("GPS time,x,y,z\n,0,0,0\n" + rows(clock("%Y-%m-%d %H:%M:%S.%f"), *MAP), np.r_[np.nan, GPS]),
+    "GPS clock, short form": ("GPS time,x,y,z\n" + rows(clock("%Y%m%dT%H%M%S.%f"), *MAP), GPS),
+    "GPS clock, names of months": ("GPS time,x,y,z\n" + rows(clock("%d-%b-%Y %H:%M:%S.%f"), *MAP), GPS),
+    "date and clock of two names among angles of three fields": (
+        "  UTCDate  UTCTime  Latitude  Longitude  H-Ell  Q\n  (MDY)  (HMS)  (D M S)  (D M S)  (m)\n" + rows(
+            clock("%m/%d/%Y", UTC_CLOCKS), clock("%H:%M:%S.%f", UTC_CLOCKS), LAT_DMS, LON_DMS, GEO[2], [1] * ROWS, mark="  "), GPS),
+    "seconds of the day beside a date": ("Date,Time[s],x,y,z\n" + rows(clock("%Y-%m-%d"), (OF_DAY, S3), *MAP), OF_DAY),
     "both clock and seconds": ("UTC Time,SOW,x,y,z\n" + rows(clock("%H:%M:%S.%f", UTC_CLOCKS), (OF_WEEK, S3), *MAP), OF_WEEK),
     "RTKLIB": ("% program : x\n%  GPST                  latitude(deg) longitude(deg)  height(m)   Q  ns\n"
                + rows(clock("%Y/%m/%d %H:%M:%S.%f"), *GEO, [1] * ROWS, [12] * ROWS, mark="   "), GPS),
@@ -127,6 +133,9 @@ PLACES = {
     "letters behind": "time,lat,NS,lon,EW,h\n" + rows((GPS, S3), GEO[0], ["N"] * ROWS, GEO[1], ["E"] * ROWS, GEO[2]),
     "degrees and minutes of a receiver": "time,lat,NS,lon,EW,h\n" + rows(
         (GPS, S3), nmea_angle(LAT, 2), ["N"] * ROWS, nmea_angle(LON, 3), ["E"] * ROWS, GEO[2]),
+    "ten millionths behind the unit": "time,lat (deg*1e-7),lon (deg*1e-7),height (mm),hMSL (mm)\n" + rows(
+        (GPS, S3), (LAT * 1e7, "{:.0f}"), (LON * 1e7, "{:.0f}"), (Z * 1000, "{:.0f}"), (Z * 1000 - 12000, "{:.0f}")),
+    "French": "Temps GPS (s);Est (m);Nord (m);Altitude ellipsoïdale (m)\n" + COMMA(rows((GPS, S3), *MAP, mark=";")),
     "ten millionths of a degree": "time,lat [1e-7 deg],lon [1e-7 deg],height [mm]\n" + rows(
         (GPS, S3), (LAT * 1e7, "{:.0f}"), (LON * 1e7, "{:.0f}"), (Z * 1000, "{:.0f}")),
     "radians": "Time[s];Latitude[rad];Longitude[rad];Height[m]\n" + rows(
@@ -182,6 +191,16 @@ def test_hours_minutes_and_seconds_in_one_number_are_a_clock_time(tmp_path):
     times[20:] += 40.0   # from 23:46:59.75 to 23:47:00
     with pytest.raises(RoadExtractionError, match="GPS seconds are needed"):
         read(tmp_path, "Time,x,y,z\n" + rows((times, S2), *MAP))
+
+
+def test_numbers_beside_a_date_are_hours_minutes_and_seconds(tmp_path):
+    found = read(tmp_path, "UTC,Date,x,y,z\n" + rows(clock("%H%M%S.%f", UTC_CLOCKS), clock("%Y-%m-%d", UTC_CLOCKS), *MAP))
+    check(found, GPS)
+
+
+@pytest.mark.parametrize("title", ["fid", "chainage", "Distance (m)", "image_no"])
+def test_what_counts_something_else_is_not_named_as_time(tmp_path, title):
+    assert not read(tmp_path, f"{title},x,y,z\n" + rows((3.1 * np.arange(ROWS), S3), *MAP)).doubts
 
 
 def test_a_clock_that_contradicts_its_name_is_refused(tmp_path):
@@ -285,13 +304,22 @@ def test_logs_of_receivers_and_tracks_are_read(tmp_path, name):
         np.testing.assert_allclose(found.roll, ROLL, atol=1e-3)
 
 
+@pytest.mark.parametrize("name", ["points.gpx", "line.kml", "points.kml"])
+def test_without_a_track_the_points_and_lines_are_the_drive(tmp_path, name):
+    places = [f"{b:.10f},{a:.10f},{c:.4f}" for a, b, c in zip(LAT, LON, Z)]
+    text = {"points.gpx": "".join(f'<wpt lat="{a:.10f}" lon="{b:.10f}"><ele>{c:.4f}</ele></wpt>' for a, b, c in zip(LAT, LON, Z)),
+            "line.kml": f"<LineString><coordinates>{' '.join(places)}</coordinates></LineString>",
+            "points.kml": "".join(f"<Point><coordinates>{place}</coordinates></Point>" for place in places)}[name]
+    check(read(tmp_path, f"<file>{text}</file>", name), None)
+
+
 def test_a_log_without_a_date_is_refused_with_a_way_out(tmp_path):
     with pytest.raises(RoadExtractionError, match="without a date"):
         read(tmp_path, nmea(day=""), "drive.nmea")
 
 
 @pytest.mark.parametrize(("name", "text", "says"), [
-    ("points.gpx", '<gpx><wpt lat="1" lon="2"><ele>3</ele></wpt></gpx>', "holds 1 waypoints"), ("broken.gpx", "<gpx><trk>", "cannot be read as XML"),
+    ("route.gpx", "<gpx><rte/></gpx>", "holds no track"), ("broken.gpx", "<gpx><trk>", "cannot be read as XML"),
     ("odd.gpx", '<?xml version="1.0" encoding="klingon"?><gpx/>', "cannot be read"),
     ("bomb.kml", '<!DOCTYPE kml [<!ENTITY a "aaaa">]><kml>&a;</kml>', "entities of its own"), ("empty.kml", "<kml/>", "holds no track"),
     ("gst.nmea", "$GNGST,1,2,3*00\n$GPRMC,1,2,3*00\n" * 5, "no sentence with positions"),
