@@ -85,7 +85,7 @@ def _rounding(place, progress):
             steps[axis] = next((step for step in SINGLE_STEPS if np.abs(some / step - np.rint(some / step)).max() * step < ROUNDED_TO), 0.0)
     if not steps.any():
         return 0.0
-    progress.warn(f"The coordinates of the points come in steps of {steps[0]:.3g} m in x and {steps[1]:.3g} m in y, as numbers of single precision do: "
+    progress.warn(f"The coordinates of the points come in steps of {steps[0]:.3g} m in x and {steps[1]:.3g} m in y, as those of single precision: "
                   "what is drawn is blurred by that. Export the cloud anew with double precision, or with an offset near the survey.")
     return float(steps.max() / np.sqrt(12.0))
 
