@@ -159,7 +159,7 @@ def correlation_sums(one: Strips, other: Strips, lags: np.ndarray = LAGS) -> np.
         squares = [v * v for v in values]
         for j, lag in enumerate(lags.tolist()):
             for i, pair in enumerate((values, (squares[0], known[1]), (known[0], squares[1]), known)):
-                found[k, i, j] = np.vdot(*map(np.ascontiguousarray, _shifted(*pair, lag)))
+                found[k, i, j] = np.vdot(*map(np.ascontiguousarray, _shifted(pair[0], pair[1], lag)))
     return found
 
 
