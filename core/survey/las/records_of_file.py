@@ -171,8 +171,7 @@ def base_size(point_format: int) -> int | None:
     """Bytes of a point without extra bytes; None for a format that laspy does not know."""
     from laspy.point.dims import ALL_POINT_FORMATS_DTYPE
 
-    found = ALL_POINT_FORMATS_DTYPE.get(point_format)
-    return None if found is None else found.itemsize
+    return ALL_POINT_FORMATS_DTYPE[point_format].itemsize if point_format in ALL_POINT_FORMATS_DTYPE else None
 
 
 def extra_bytes_described(records: list[Record]) -> int:
