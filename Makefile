@@ -1,6 +1,6 @@
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test bench accuracy package manual window lint translations test-newer test-hdmap test-cluster models
+.PHONY: help setup demo test bench accuracy package manual window lint translations test-newer test-hdmap test-cluster models fuzz
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*## ' $(firstword $(MAKEFILE_LIST)) | sed -E 's/^([a-z-]+):.*## /make \1\t/' | expand -t 16
@@ -31,6 +31,9 @@ window: setup ## a real QGIS window driven on a screen of its own, pictures into
 
 lint: setup ## style, spelling, types, names that Qt 6 knows, and the scans QGIS's plugin repository makes of an upload
 	@tools/lint.sh
+
+fuzz: setup ## every reader fed with broken files, led by coverage where atheris can be installed (SECONDS=1800 of the processor; default 60)
+	@tools/fuzz.sh --seconds $(or $(SECONDS),60)
 
 translations: setup ## new texts into resources/i18n/*.ts for the translators, and the .qm that QGIS loads
 	@tools/translations.sh

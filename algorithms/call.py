@@ -22,6 +22,8 @@ from .report_head import run_facts, sign_report
 from .texts import tr
 from .vector_source import in_file_units, read_features
 
+NAMES_ONLY = "LANEWRIGHT_NAMES_ONLY"
+
 
 class Call:
     """Reads parameters into what the core takes, and writes what the core gave.
@@ -114,6 +116,11 @@ class Call:
     def finish(self, numbers):
         """Write the layers, give files their names, and return all results by name."""
         raise NotImplementedError
+
+    @property
+    def names_only(self):
+        """Whether results name the files that they were made from without their folders; the user says so by a variable."""
+        return os.environ.get(NAMES_ONLY, "") not in ("", "0")
 
     # -- in ---------------------------------------------------------------------------------
 
@@ -274,7 +281,7 @@ class Call:
 
     def commit_files(self):
         """Give the files their names, each with a note of where it comes from; that note, for the layers."""
-        provenance = provenance_now(self.algorithm.ID, self.values(), self.warnings)
+        provenance = provenance_now(self.algorithm.ID, self.values(), self.warnings, self.names_only)
         for path in self._files.unfinished():
             sign_file(path, provenance)
             sign_report(path, lambda: run_facts(self, provenance))

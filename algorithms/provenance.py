@@ -18,6 +18,8 @@ SYSTEM_AT, SOFTWARE_AT, NAME_BYTES = 26, 58, 32  # places of the two names in th
 UNNAMED = ("", "OTHER", "laspy")                 # what writers put there when they have nothing to say
 SECRET = re.compile(r"(password|passwd|pwd|authcfg)\s*=\s*('[^']*'|\"[^\"]*\"|[^\s&;]+)", re.IGNORECASE)
 CREDENTIALS = re.compile(r"(://[^/\s:@]+):[^@/\s]+@")
+# A folder, where a value begins with a path or names that of a database; texts that only hold a stroke, such as a WKT, are none
+FOLDER = re.compile(r"(?P<before>^(?:file://)?|dbname=')(?P<folder>(?:[A-Za-z]:)?[^|'\"<>\[\]\n]*[\\/])(?=[^\\/])")
 SENTENCE = re.compile(r"(\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ): " + PROGRAM + r" (\S+), (\w+)(?: ([A-Z_]+))?, ({.*})", re.DOTALL)
 
 
@@ -72,9 +74,28 @@ class Provenance:
                 "LANEWRIGHT_TIME": self.time}
 
 
-def provenance_now(algorithm: str, values: Mapping[str, Any], warnings: Iterable[str] = ()) -> Provenance:
-    """The provenance of a run that has just ended."""
+def provenance_now(algorithm: str, values: Mapping[str, Any], warnings: Iterable[str] = (), names_only: bool = False) -> Provenance:
+    """The provenance of a run that has just ended; with `names_only` it names files without their folders."""
+    if names_only:
+        folders: set[str] = set()
+        values = {name: _without_folders(value, folders) for name, value in values.items()}
+        for folder in sorted(folders, key=len, reverse=True):
+            warnings = [text.replace(folder, "") for text in warnings]
     return Provenance(algorithm, own_version(), values, datetime.now(timezone.utc), tuple(warnings))
+
+
+def _without_folders(value, folders):
+    """A value of a parameter with the names of files alone; their folders are noted."""
+    if isinstance(value, Mapping):
+        return {name: _without_folders(one, folders) for name, one in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_without_folders(one, folders) for one in value]
+    if isinstance(value, os.PathLike):
+        value = os.fspath(value)
+    if not isinstance(value, str):
+        return value
+    folders.update(found["folder"] for found in FOLDER.finditer(value))
+    return FOLDER.sub(lambda found: found["before"], value)
 
 
 def _read(algorithm, version, parameters, time):

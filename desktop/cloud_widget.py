@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from datetime import datetime, timedelta
 from pathlib import Path
 
-from qgis.core import Qgis, QgsMimeDataUtils, QgsProject, QgsSettings
+from qgis.core import Qgis, QgsCoordinateReferenceSystem, QgsMimeDataUtils, QgsProject, QgsSettings
 from qgis.gui import QgsProcessingGui
 from qgis.PyQt.QtCore import pyqtSignal
 from qgis.PyQt.QtGui import QDragEnterEvent, QDropEvent
@@ -19,6 +20,8 @@ LAST_FOLDER = "/Processing/LastInputPath"  # QGIS's own setting
 FILTER = "LAS, LAZ, COPC (*.las *.laz *.LAS *.LAZ);;All files (*.*)"
 SEPARATOR = ";"
 MEGABYTE = 1e6
+MOST_HEADERS = 200          # files whose headers are read for the line below the names
+GPS_EPOCH, ADJUSTED = datetime(1980, 1, 6), 1e9  # s, what adjusted GPS time leaves out
 
 
 class PointCloudsWidget(QWidget):
@@ -107,6 +110,7 @@ class PointCloudsWidget(QWidget):
     def _tell(self) -> None:
         if self.told is not None:
             self.told.setText(described(self.value()))
+            self.told.setWordWrap(True)
             self.told.setVisible(bool(self.value()))
         self.names.setToolTip("\n".join(self.value()))
 
@@ -157,7 +161,48 @@ def described(given: list[str]) -> str:
         return tr("There is no file {name}.").format(name=missing[0])
     size = sum(path.stat().st_size for path in files) / MEGABYTE
     mb = f"{size:,.1f}" if size < 10 else f"{size:,.0f}"
-    return tr("1 file, {size} MB").format(size=mb) if len(files) == 1 else tr("{count} files, {size} MB").format(count=len(files), size=mb)
+    said = tr("1 file, {size} MB").format(size=mb) if len(files) == 1 else tr("{count} files, {size} MB").format(count=len(files), size=mb)
+    return ", ".join([said, *_of_headers(files)])
+
+
+def _of_headers(files):
+    """Points, extent, CRS and time of clouds, as their headers say; nothing where one cannot be read, or there are too many."""
+    if len(files) > MOST_HEADERS:
+        return
+    from ..core.survey.las.reader import read_headers
+
+    try:
+        headers = read_headers([str(path) for path in files])
+    except (RoadExtractionError, OSError):  # the run says why
+        return
+    yield tr("{count} points").format(count=f"{sum(header.count for header in headers):,}")
+    wide, high = (max(header.maximum[axis] for header in headers) - min(header.minimum[axis] for header in headers) for axis in (0, 1))
+    yield tr("{width} × {height} m").format(width=f"{wide:,.0f}", height=f"{high:,.0f}")
+    names = {QgsCoordinateReferenceSystem.fromWkt(header.crs).userFriendlyIdentifier() for header in headers if header.crs}
+    yield " / ".join(sorted(names)) or tr("no CRS")
+    yield from _scanned(headers)
+
+
+def _scanned(headers):
+    """When the first point of the first file and the last one of the last file were scanned."""
+    from ..core.survey.las.reader import open_cloud
+
+    if not all(header.has_time and header.count for header in headers):
+        yield tr("no times")
+        return
+    times = []
+    for header, number in ((headers[0], 0), (headers[-1], headers[-1].count - 1)):
+        try:
+            with open_cloud(header.path, layers=("gps_time",), known=header) as cloud:
+                cloud.seek(number)
+                times.append(float(cloud.read_points(1).gps_time[0]))
+        except (RoadExtractionError, OSError, ValueError):
+            return
+    if headers[0].adjusted_time:
+        begin, end = (GPS_EPOCH + timedelta(seconds=time + ADJUSTED) for time in times)
+        yield tr("scanned {begin} to {end} (GPS time)").format(begin=f"{begin:%Y-%m-%d %H:%M:%S}", end=f"{end:%H:%M:%S}")
+    else:
+        yield tr("times {begin:.0f} to {end:.0f} s").format(begin=times[0], end=times[1])
 
 
 def _source(value) -> str:

@@ -8,7 +8,7 @@ from qgis.PyQt.QtGui import QAction, QDesktopServices, QIcon
 from qgis.PyQt.QtWidgets import QMenu
 
 from ..processing_provider.reports import last_report
-from ..processing_provider.results.layer_tree import replaces_last_run, set_replaces_last_run
+from ..processing_provider.results.layer_tree import keeps_names_only, replaces_last_run, set_keeps_names_only, set_replaces_last_run
 from ..processing_provider.results.road_maps import clouds_of, road_maps
 from ..processing_provider.results.run_table import last_run
 from ..processing_provider.texts import tr
@@ -53,6 +53,8 @@ class Menu(QObject):
         self._add_models()
         self._add_choice(tr("Replace the last run of a survey"), replaces_last_run, set_replaces_last_run,
                          tr("New results take the place of the last ones of the same survey and algorithm in the layer tree; files stay"))
+        self._add_choice(tr("Name files without their folders"), keeps_names_only, set_keeps_names_only,
+                         tr("Results keep the names of the files they were made from, but not the folders; for layers that are given away"))
         self._add(tr("Manual"), self.manual.open, tr("What every algorithm does, and a walk through a first survey"),
                   theme("/mActionHelpContents.svg"))
         # QGIS asks when it shows the menu of a layer: only then is it known what the layer is

@@ -2,17 +2,27 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from qgis.core import Qgis, QgsMapLayer, QgsProcessingContext, QgsProject
 from qgis.gui import QgsProcessingMapLayerComboBox
+from qgis.PyQt.QtWidgets import QComboBox
 
+from ..algorithms.cloud_files import cloud_files
+from ..algorithms.trajectory_source import FILE_SUFFIXES
+from ..core.common.errors import RoadExtractionError
 from ..core.survey.trajectory.columns import columns_by_role
 from .dialog_wrapper import DialogWrapper
+
+CLOUDS = "POINT_CLOUDS"
+MOST_TABLES = 20  # files beside the point clouds that are looked into
 
 
 class TrajectoryWrapper(DialogWrapper):
     """QGIS's own choice of layers, which begins with the trajectory of the project instead of its first layer."""
 
     def createWidget(self, **more):
+        self._offered = ""  # file that was found beside the point clouds
         # only a parameter that may stay empty is shown empty
         shown = self.parameterDefinition().clone()
         owner = self.parameterDefinition().algorithm()
@@ -32,6 +42,24 @@ class TrajectoryWrapper(DialogWrapper):
             if likely is not None:
                 self.widget.setLayer(likely)
 
+    def postInitialize(self, wrappers):
+        """Follow the point clouds: the one trajectory that lies beside them is offered, where none is chosen."""
+        for wrapper in wrappers:
+            if wrapper.parameterDefinition().name() == CLOUDS:
+                wrapper.widgetValueHasChanged.connect(lambda *changed, wrapper=wrapper: self.follow(wrapper.parameterValue()))
+
+    def follow(self, clouds) -> None:
+        """Offer the trajectory beside point clouds; one that was offered for others gives way."""
+        if self.widget.value() not in (None, "", self._offered):
+            return
+        likely = trajectory_beside([str(name) for name in clouds or []])
+        if likely:
+            self.setValue(likely)
+        elif self._offered:
+            for box in self.widget.findChildren(QComboBox):
+                box.setCurrentIndex(-1)  # QGIS's own way to no layer does nothing while a file is chosen
+        self._offered = likely
+
     def setWidgetValue(self, value, context):
         self.widget.setValue(value, context)
 
@@ -48,6 +76,28 @@ def trajectory_of(project: QgsProject, active: QgsMapLayer | None = None) -> Qgs
     if active in found:
         return active
     return found[0] if len(found) == 1 else None
+
+
+def trajectory_beside(clouds: list[str]) -> str:
+    """The one file in the folder of point clouds that holds a trajectory; "" where there is none, or more than one."""
+    try:
+        folders = {Path(path).absolute().parent for path in cloud_files(clouds, CLOUDS)}
+    except RoadExtractionError:
+        return ""
+    if len(folders) != 1 or not (folder := folders.pop()).is_dir():
+        return ""
+    tables = sorted(path for path in folder.iterdir() if path.is_file() and path.suffix.lower() in FILE_SUFFIXES)
+    usable = [str(path) for path in tables[:MOST_TABLES] if _is_a_trajectory(path)]
+    return usable[0] if len(usable) == 1 else ""
+
+
+def _is_a_trajectory(path):
+    from ..core.survey.trajectory.reader import read_trajectory
+
+    try:
+        return len(read_trajectory(str(path))) > 1
+    except (RoadExtractionError, OSError, ValueError):
+        return False
 
 
 def looks_like_a_trajectory(layer: QgsMapLayer) -> bool:

@@ -114,7 +114,7 @@ class FileCall(Call):
 
     def finish(self, numbers):
         """Write the layers beside their destinations, then give all results their names."""
-        provenance = provenance_now(self.algorithm.ID, self.values(), self.warnings)
+        provenance = provenance_now(self.algorithm.ID, self.values(), self.warnings, self.names_only)
         for name, features in self._layers:
             features.description = "\n".join(provenance.history(self.algorithm.LOOKS.get(name, name)))
             value = self.destination(name)

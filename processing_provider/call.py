@@ -23,6 +23,7 @@ from .embedded_style import embed_style
 from .input_files import close_database, input_files, layer_file, written_over
 from .layers import WKB_TYPES, QgisSource, crs_text, keeps_aliases, qgis_fields, write_features
 from .reports import note_report
+from .results.layer_tree import keeps_names_only
 from .results.runs import run_of
 from .styling import style_on_load
 from .texts import tr
@@ -40,6 +41,10 @@ class QgisCall(Call):
         super().__init__(processing.declaration, parameters)
         self.processing, self.context, self.feedback = processing, context, feedback
         self._inputs = input_files(processing, parameters, context)
+
+    @property
+    def names_only(self):
+        return keeps_names_only() or super().names_only
 
     # -- in ---------------------------------------------------------------------------------
 

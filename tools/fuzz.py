@@ -1,96 +1,38 @@
-"""Feeds the readers broken files for a while: fuzz.py [--seconds 60] [--seed 0] [--keep FOLDER]
+"""Feeds every reader broken files: fuzz.py [--seconds 60] [--seed 0] [--keep FOLDER] [--only KIND]
 
-Bytes of whole files are changed, cut, doubled and filled up. A reader may accept what is left or refuse it with
-one sentence (RoadExtractionError); anything else, a run of more than ten seconds and memory beyond reason
-included, is printed with the file that caused it, and kept.
+Seconds are of the processor's, shared among the readers (fuzz_readers.py). Bytes of whole files are changed, cut, doubled and filled up;
+where atheris is installed (`make fuzz` does that where it can be), what reaches code that no file had reached before is changed further,
+and kept for the next time. A reader may accept a file or refuse it with one sentence (RoadExtractionError); anything else, a run of more
+than ten seconds and memory beyond reason included, is printed once for each place in the code, with the file that caused it.
 """
 
 import argparse
+import json
+import os
+import random
 import resource
-import struct
+import subprocess
 import sys
 import tempfile
 import time
 import traceback
 import warnings
+from contextlib import nullcontext
 from pathlib import Path
 
 import numpy as np
+from fuzz_readers import TITLES, kinds
 from plugin_package import load
+
+try:
+    import atheris
+except ImportError:
+    atheris = None
 
 SLOW = 10.0            # s
 MEMORY = 6 * 1024**3   # bytes
-
-
-def seeds(folder):
-    """Whole files of every kind, by the reader they are for."""
-    import laspy
-    from lanewright.core.survey.las.parallel_reader import ParallelCloudReader
-    from lanewright.core.survey.las.reader import read_blocks, read_header
-    from lanewright.core.survey.trajectory.reader import read_trajectory
-    from pyproj import CRS
-
-    def cloud(path):
-        header = read_header(path)
-        for block in read_blocks(path, 1000):
-            np.asarray(block.array["X"])
-        with ParallelCloudReader() as readers:  # as a survey is read
-            for load in readers.blocks([header], 100):
-                np.asarray(load().array["X"])
-            for times in readers.times(header) if header.has_time and header.count else ():
-                np.asarray(times)
-
-    rng = np.random.default_rng(0)
-    made = []
-    for version, point_format in (("1.2", 1), ("1.4", 6), ("1.2", 3)):
-        header = laspy.LasHeader(version=version, point_format=point_format)
-        header.scales, header.offsets = [0.001] * 3, [500000.0, 5000000.0, 0.0]
-        header.add_crs(CRS.from_epsg(32632))
-        las = laspy.LasData(header)
-        las.x, las.y, las.z = (rng.uniform(0, 50, 400) + offset for offset in header.offsets)
-        las.gps_time = np.linspace(0, 4, 400)
-        las.intensity = rng.integers(0, 65535, 400)
-        for suffix in ("las", "laz"):
-            path = folder / f"seed_{version}_{point_format}.{suffix}"
-            las.write(str(path))
-            made.append((path.read_bytes(), f".{suffix}", cloud))
-        if point_format == 6:
-            made.append((copc_file(folder, path), ".copc.laz", cloud))
-    time_, angle = np.linspace(100.0, 200.0, 60), np.linspace(0, 1.5, 60)
-    x, y = 500000 + 300 * np.sin(angle), 5000000 + 300 * np.cos(angle)
-    rows = np.c_[time_, x, y, 100 + 0 * x, 0.1 + 0 * x, 0.2 + 0 * x, 90 + np.degrees(angle)]
-    for delimiter, header in ((",", "time,x,y,z,roll,pitch,heading"), (";", ""), ("\t", "GPSTime\tEasting\tNorthing\tHeight\tRoll\tPitch\tYaw")):
-        text = "\n".join([header] * bool(header) + [delimiter.join(f"{v:.4f}" for v in row) for row in rows])
-        made.append((text.encode(), ".csv", read_trajectory))
-    records = b"".join(struct.pack("<17d", t, 0.85, 0.15 + 1e-7 * t, 100.0, *([0.0] * 13)) for t in time_)
-    made.append((records, ".out", read_trajectory))
-    made += points_files()
-    return made
-
-
-def copc_file(folder, las):
-    """The tests can write COPC, with many chunks of different sizes."""
-    sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "core" / "survey"))
-    from copc_files import write_copc
-
-    return Path(write_copc(las, folder / "seed.copc.laz", in_a_node=20)).read_bytes()
-
-
-def points_files():
-    """Control points as the georeferencer saves them, with and without a header, and as tables."""
-    from lanewright.core.overlay.control_point_file import read_control_points
-    from lanewright.core.overlay.source_image import SourceImage
-
-    def points(path):
-        read_control_points(path, SourceImage(str(path), 1000, 600))
-
-    new = ('#CRS: EPSG:32632\nmapX,mapY,sourceX,sourceY,enable,dX,dY,residual\n'
-           + "\n".join(f"{500000 + 10 * k},{5000000 + k * k},{100 * k},{-50 * k},1,0,0,0" for k in range(8)))
-    old = "mapX\tmapY\tpixelX\tpixelY\tenable\n" + "\n".join(f"{500000 + 10 * k}\t{5000000 + k * k}\t{100 * k}\t{-50 * k}\t1" for k in range(8))
-    named = "name;pixel;line;easting;northing;height;role\n" + "\n".join(
-        f"P{k};{100 * k},5;{50 * k},5;{500000 + 10 * k};{5000000 + k * k};10,0;check" for k in range(8))
-    bare = "\n".join(f"{100 * k} {50 * k} {500000 + 10 * k} {5000000 + k * k}" for k in range(8))
-    return [(text.encode(), suffix, points) for text, suffix in ((new, ".points"), (old, ".points"), (named, ".csv"), (bare, ".txt"))]
+SENTENCE = (20, 1500)  # letters of a refusal
+LONGEST = 1 << 17      # bytes of a file
 
 
 def broken(content, rng):
@@ -127,50 +69,143 @@ def broken(content, rng):
     return bytes(data)
 
 
+class Attempts:
+    """Files tried with the reader of one kind, and the problems they caused.
+
+    Parameters
+    ----------
+    title, kind : of `kinds`
+    folder : for the file that is tried
+    keep : folder for files that caused problems
+    """
+
+    def __init__(self, title, kind, folder, keep):
+        from lanewright.core.common.errors import RoadExtractionError
+
+        self.title, self.kind, self.refusal, self.keep = title, kind, RoadExtractionError, keep
+        self.path = folder / kind.name
+        self.tried = self.refused = 0
+        self.problems = {}  # where in the code -> the file and what was said
+
+    def one(self, content):
+        """Let the reader read a file."""
+        self.path.write_bytes(content)
+        began, problem, place = time.process_time(), "", ""
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("error", RuntimeWarning)  # what numpy says of NaN is no sentence for a user
+                self.kind.read(self.path)
+        except self.refusal as error:
+            self.refused += 1
+            if not SENTENCE[0] < len(str(error)) < SENTENCE[1]:
+                problem = place = f"message of {len(str(error))} letters: {str(error)[:200]}"
+        except Exception as error:
+            problem = traceback.format_exc()
+            place = str([(frame.filename, frame.lineno) for frame in traceback.extract_tb(error.__traceback__)][-1:]) + type(error).__name__
+        if time.process_time() - began > SLOW:
+            problem, place = problem + f"\n{time.process_time() - began:.0f} s of the processor", place + " slow"
+        self.tried += 1
+        if problem and place not in self.problems:
+            kept = self.keep / f"{self.title.replace(' ', '_')}_{len(self.problems)}_{self.kind.name}"
+            kept.write_bytes(content)
+            self.problems[place] = f"{kept}\n{problem}"
+            print(self.problems[place], flush=True)
+
+    def report(self):
+        return {"tried": self.tried, "refused": self.refused, "problems": len(self.problems)}
+
+
+def mutate_at_random(attempts, seconds, rng):
+    """Try files that are broken without looking where they get to."""
+    end = time.process_time() + seconds
+    while time.process_time() < end:
+        attempts.one(broken(attempts.kind.seeds[int(rng.integers(0, len(attempts.kind.seeds)))], rng))
+
+
+def mutate_by_coverage(attempts, seconds, rng, corpus, report):
+    """Try files that libFuzzer breaks, with `broken` for one in three; does not return."""
+    corpus.mkdir(parents=True, exist_ok=True)
+    for number, content in enumerate(attempts.kind.seeds):
+        (corpus / f"seed{number}").write_bytes(content)
+    end = time.process_time() + seconds
+
+    def one(content):
+        attempts.one(content)
+        if time.process_time() > end:
+            report.write_text(json.dumps(attempts.report()))
+            sys.stdout.flush()
+            os._exit(0)
+
+    def changed(content, longest, seed):
+        random.seed(seed)
+        if random.random() < 1 / 3:
+            return broken(content, np.random.default_rng(seed))[:longest]
+        return atheris.Mutate(content, longest)
+
+    atheris.Setup(["fuzz", str(corpus), f"-max_len={LONGEST}", f"-seed={int(rng.integers(1, 2**31))}", "-timeout=60", "-rss_limit_mb=0",
+                   "-verbosity=0", "-print_final_stats=0", f"-artifact_prefix={attempts.keep}/{attempts.title.replace(' ', '_')}_"],
+                  one, custom_mutator=changed)
+    atheris.Fuzz()
+
+
+def fuzz(title, options, folder):
+    """Feed the reader of one kind, in this process; its counts go into `options.report`."""
+    with atheris.instrument_imports(include=["lanewright"]) if atheris else nullcontext():
+        load()
+        kind = kinds(folder)[title]
+        for content in kind.seeds:  # imports what is imported late, and proves the seeds whole
+            (folder / kind.name).write_bytes(content)
+            kind.read(folder / kind.name)
+    quiet()
+    attempts, rng = Attempts(title, kind, folder, options.keep), np.random.default_rng([options.seed, len(title)])
+    if atheris:
+        mutate_by_coverage(attempts, options.seconds, rng, options.corpus / title.replace(" ", "_"), options.report)
+    mutate_at_random(attempts, options.seconds, rng)
+    options.report.write_text(json.dumps(attempts.report()))
+
+
+def quiet():
+    """What GDAL and PROJ remark on broken files is not looked at."""
+    from osgeo import gdal
+
+    gdal.SetConfigOption("CPL_LOG", os.devnull)
+
+
+def in_a_process_of_its_own(title, options, seconds, report):
+    """What `fuzz` counts; a reader that takes its process with it is a problem too."""
+    code = subprocess.run([sys.executable, __file__, "--only", title, "--seconds", str(seconds), "--seed", str(options.seed), "--keep", options.keep,
+                           "--corpus", options.corpus, "--report", report], stderr=None if options.verbose else subprocess.DEVNULL).returncode
+    if code or not report.exists():
+        print(f"{title}: the process ended with {code}; --verbose says why, and libFuzzer keeps the file in {options.keep}.")
+        return {"tried": 0, "refused": 0, "problems": 1}
+    return json.loads(report.read_text())
+
+
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seconds", type=float, default=60.0)
     parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--keep", type=Path, default=Path("build/fuzz"))
+    parser.add_argument("--keep", type=Path, default=Path("build/fuzz/found"))
+    parser.add_argument("--corpus", type=Path, default=Path("build/fuzz/corpus"))
+    parser.add_argument("--only", default="", help="one kind of files")
+    parser.add_argument("--report", type=Path, help=argparse.SUPPRESS)
+    parser.add_argument("--verbose", action="store_true")
     options = parser.parse_args()
-    load()
-    from lanewright.core.common.errors import RoadExtractionError
-
-    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
     options.keep.mkdir(parents=True, exist_ok=True)
-    rng, tried, refused, found = np.random.default_rng(options.seed), 0, 0, 0
     with tempfile.TemporaryDirectory() as folder:
-        folder = Path(folder)
-        whole = seeds(folder)
-        end = time.process_time() + options.seconds
-        while time.process_time() < end:
-            content, suffix, reader = whole[int(rng.integers(0, len(whole)))]
-            path = folder / f"broken{suffix}"
-            path.write_bytes(broken(content, rng))
-            began = time.process_time()
-            problem = ""
-            try:
-                with warnings.catch_warnings():
-                    warnings.simplefilter("error")  # what numpy says of NaN is no sentence for a user
-                    reader(path)
-            except RoadExtractionError as error:
-                refused += 1
-                problem = "" if 20 < len(str(error)) < 1500 else f"message of {len(str(error))} characters: {str(error)[:200]}"
-            except BaseException:
-                problem = traceback.format_exc()
-            if time.process_time() - began > SLOW:
-                problem += f"\n{time.process_time() - began:.0f} s of CPU"
-            tried += 1
-            if problem:
-                found += 1
-                kept = options.keep / f"{options.seed}_{tried}{suffix}"
-                kept.write_bytes(path.read_bytes())
-                print(f"{kept}\n{problem}", flush=True)
-                if isinstance(sys.exc_info()[1], KeyboardInterrupt):
-                    break
-    print(f"{tried} files tried, {refused} refused, {found} problems")
-    sys.exit(bool(found))
+        if options.report:
+            resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+            return fuzz(options.only, options, Path(folder))
+        titles = [title for title in TITLES if options.only in ("", title)]
+        print(f"{len(titles)} readers, {'led by coverage' if atheris else 'at random: atheris is not installed here'}", flush=True)
+        total = {"tried": 0, "refused": 0, "problems": 0}
+        for number, title in enumerate(titles):
+            done = in_a_process_of_its_own(title, options, options.seconds / len(titles), Path(folder) / f"{number}.json")
+            print(f"{title}: {done['tried']} files tried, {done['refused']} refused, {done['problems']} problems", flush=True)
+            total = {name: count + done[name] for name, count in total.items()}
+    print(f"{total['tried']} files tried, {total['refused']} refused, {total['problems']} problems")
+    return total["problems"]
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(bool(main()))

@@ -11,7 +11,8 @@ class ImportOpenDrive(Algorithm):
     HELP = ("Lines, arcs, spirals and polynomials of the reference line, elevation, superelevation and shape, lane offsets, widths and borders, road "
             "marks, heights of curbs and the links of lanes are read. Signals, objects, bridges, railways and the lines of their paint are not.\n\n"
             "Lanes of a section are a piece; lanes of roads in a junction are connectors. Sidewalks are no lanes: a road edge is drawn where one "
-            "begins. Files that declare entities, or are not what a map can be, are refused.")
+            "begins, with the height of its curb. Gaps of reference lines, borders that fold back in a tight curve, and widths below 0 are named "
+            "with their road; folds are cut off. Files that declare entities, or are not what a map can be, are refused.")
     TAGS = ("OpenDRIVE", "xodr", "HD map", "simulator", "CARLA", "esmini")
 
     def declare(self):

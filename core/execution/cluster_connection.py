@@ -9,6 +9,7 @@ from __future__ import annotations
 import importlib.metadata
 import ipaddress
 import platform
+import re
 import socket
 import time
 from pathlib import Path
@@ -24,6 +25,7 @@ from .work_folder import code_digest
 CONNECT_TIME = 20.0      # s for a scheduler to answer
 WORKERS_TIME = 60.0      # s for the first worker to come
 LEAST_MEMORY = 1 << 30   # bytes: a section of a dense survey, its surroundings and what is imported (about 0.5 GB, measured) twice
+ADDRESS = re.compile(r"([a-z]+://)?(?P<host>\[[0-9a-fA-F:.%]+\]|[^\s:/@?#\[\]]+):[0-9]+/?")
 PACKAGE = "lanewright"
 INSTALL = 'pip install "lanewright[cluster]"'
 EQUAL = (PACKAGE, "distributed", *NEEDED)   # packages whose versions must be equal, or results and messages could differ
@@ -31,7 +33,8 @@ EQUAL = (PACKAGE, "distributed", *NEEDED)   # packages whose versions must be eq
 
 def is_loopback(address: str) -> bool:
     """Whether an address, such as tcp://127.0.0.1:8786, never leaves this computer."""
-    host = address.rpartition("://")[2].rpartition(":")[0]
+    whole = ADDRESS.fullmatch(address)
+    host = whole["host"] if whole else ""
     try:
         return ipaddress.ip_address(host.strip("[]")).is_loopback
     except ValueError:
@@ -46,7 +49,7 @@ def check_address(address: str, insecure: bool) -> None:
     RoadExtractionError
         If it is none, or does not begin with tls://, leaves this computer, and `insecure` is not set.
     """
-    if not address.rpartition(":")[2].rstrip("/").isdigit():
+    if not ADDRESS.fullmatch(address):
         raise RoadExtractionError(
             f"{address} is no address of a scheduler: it needs a port. Give the address that its log shows, such as tls://name:8786, or "
             "tcp://127.0.0.1:8786 on this computer.")

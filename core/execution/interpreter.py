@@ -56,8 +56,8 @@ def candidates() -> Iterator[str]:
     places = [Path(path) for path in (sys.executable, getattr(sys, "_base_executable", "")) if path]
     for folder in folders:
         places += [folder / "python.exe", folder / "bin" / name, folder / "bin" / "python3"]
-    # QGIS.app/Contents/MacOS/bin
-    places += [Path(sys.executable or ".").parent / "bin" / "python3"]
+    if sys.executable:   # QGIS.app/Contents/MacOS/bin
+        places.append(Path(sys.executable).parent / "bin" / "python3")
     for path in dict.fromkeys(places):
         if path.name.lower().startswith("python") and path.is_file():
             yield str(path)

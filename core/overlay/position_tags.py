@@ -51,7 +51,13 @@ def read_position_tags(image: SourceImage) -> PositionTags | None:
     dataset = open_raster(image.path)
     packets = dataset.GetMetadata("xml:XMP")
     exif = {**(dataset.GetMetadata("EXIF") or {}), **(dataset.GetMetadata() or {})}
-    return position_tags(exif, "".join(packets) if isinstance(packets, list) else "")
+    return position_tags({_text(name): _text(value) for name, value in exif.items()},
+                         "".join(map(_text, packets)) if isinstance(packets, list) else "")
+
+
+def _text(value):
+    """What GDAL gives as text; it gives bytes where they are not UTF-8."""
+    return value.decode("latin-1") if isinstance(value, bytes) else value
 
 
 def position_tags(exif: Mapping[str, str], xmp: str = "") -> PositionTags | None:

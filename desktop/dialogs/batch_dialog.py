@@ -7,16 +7,25 @@ from pathlib import Path
 
 from processing.core.ProcessingResults import resultsList
 from processing.gui import BatchAlgorithmDialog as qgis_batch
+from processing.gui import BatchPanel as qgis_batch_panel
 from qgis.core import Qgis, QgsProcessing, QgsProcessingAlgorithm, QgsProcessingOutputHtml, QgsProcessingUtils, QgsSettings
 from qgis.PyQt.QtWidgets import QDialogButtonBox, QFileDialog, QPushButton, QWidget
 
-from ...algorithms.cloud_files import cloud_files, survey_name
+from ...algorithms.cloud_files import SUFFIXES, cloud_files, survey_name
 from ...core.common.errors import RoadExtractionError
 from ...processing_provider.texts import tr
+from ..trajectory_widget import trajectory_beside
 from .destinations import LAST_OUTPUT, destinations, outputs_by_default
 
 CLOUDS = "POINT_CLOUDS"
+LAST_INPUT = "/Processing/LastInputPath"  # QGIS's own setting
 PATH_WIDTH = 330  # px
+
+
+def surveys_in(folder: str) -> list[str]:
+    """Folders with point clouds: the given one and those below it, each a survey, by name."""
+    clouds = (path for path in Path(folder).rglob("*") if path.suffix.lower() in SUFFIXES and path.is_file())
+    return sorted({str(path.parent) for path in clouds})
 
 
 class BatchAlgorithmDialog(qgis_batch.BatchAlgorithmDialog):
@@ -32,11 +41,42 @@ class BatchAlgorithmDialog(qgis_batch.BatchAlgorithmDialog):
         for name in (CLOUDS, "TRAJECTORY"):  # QGIS shows the last ten letters of a path
             if name in self.mainWidget().parameter_to_column:
                 self.mainWidget().tblParameters.setColumnWidth(self.mainWidget().parameter_to_column[name], PATH_WIDTH)
+        if {CLOUDS, "TRAJECTORY"} <= set(self.mainWidget().parameter_to_column):
+            add = QPushButton(tr("Add the surveys of a folder…"))
+            add.setToolTip(tr("One row for each folder with point clouds, and the trajectory that lies beside them"))
+            add.clicked.connect(lambda checked=False: self.choose_surveys())
+            self.buttonBox().addButton(add, QDialogButtonBox.ButtonRole.ResetRole)
+        for fill in self.findChildren(qgis_batch_panel.BatchPanelFillWidget):
+            if fill.parameterDefinition.name() == CLOUDS:  # QGIS would make a row of every file of whatever kind
+                fill.showDirectorySelectionDialog = self.choose_surveys
         save = QPushButton(tr("Save everything to…"))
         save.setToolTip(tr("One folder for all surveys: of each the layers in one GeoPackage called like the survey, images and reports beside it"))
         save.clicked.connect(lambda checked=False: self.choose_folder())
         self.buttonBox().addButton(save, QDialogButtonBox.ButtonRole.ResetRole)
         self.updateRunButtonVisibility()  # the box shows all of its buttons when it gets another
+
+    def choose_surveys(self) -> None:
+        folder = QFileDialog.getExistingDirectory(self, tr("Folder of the surveys"), QgsSettings().value(LAST_INPUT, ""))
+        if folder:
+            QgsSettings().setValue(LAST_INPUT, folder)
+            self.add_surveys(folder)
+
+    def add_surveys(self, folder: str) -> None:
+        """A row for each survey in a folder and below, with its trajectory where one lies beside it."""
+        found, panel = surveys_in(folder), self.mainWidget()
+        row = panel.batchRowCount()
+        while row > 0 and not panel.wrappers[row - 1][panel.parameter_to_column[CLOUDS]].parameterValue():
+            row -= 1  # rows that are empty are filled first
+        for clouds in found:
+            if row >= panel.batchRowCount():
+                panel.addRow(1)
+            panel.wrappers[row][panel.parameter_to_column[CLOUDS]].setParameterValue(clouds, self.processingContext())
+            drive = trajectory_beside([clouds])
+            if drive:
+                panel.wrappers[row][panel.parameter_to_column["TRAJECTORY"]].setParameterValue(drive, self.processingContext())
+            row += 1
+        self.messageBar().clearWidgets()
+        self.messageBar().pushMessage("", tr("{count} surveys in {folder}.").format(count=len(found), folder=folder), level=Qgis.MessageLevel.Info)
 
     def choose_folder(self) -> None:
         folder = QFileDialog.getExistingDirectory(self, tr("Folder for all results"), QgsSettings().value(LAST_OUTPUT, ""))

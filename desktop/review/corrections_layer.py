@@ -110,6 +110,10 @@ def add_correction(layer: QgsVectorLayer, line: QgsGeometry, crs: QgsCoordinateR
     placed = QgsGeometry(line)
     placed.transform(QgsCoordinateTransform(crs, layer.crs(), QgsProject.instance()))
     former = former or correction_at(layer, line, crs, str(values["target"]))
+    lacking = [column for column in CORRECTIONS if column.name in values and layer.fields().lookupField(column.name) < 0]
+    if lacking:  # a layer of an earlier version
+        layer.dataProvider().addAttributes(list(qgis_fields(lacking, with_aliases=False)))
+        layer.updateFields()
     feature = QgsFeature(layer.fields())
     feature.setGeometry(placed)
     for name, value in values.items():

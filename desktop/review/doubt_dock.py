@@ -33,6 +33,7 @@ from qgis.PyQt.QtWidgets import (
 )
 
 from ...core.common.errors import RoadExtractionError
+from ...core.corrections.corrections import taken_reading
 from ...processing_provider.results.attributes import WORDS
 from ...processing_provider.results.road_maps import RoadMap, clouds_of
 from ...processing_provider.texts import tr
@@ -100,6 +101,8 @@ class DoubtDock(QDockWidget):
         self.accept_button = self._button(tr("Accept"), tr("It is right as it is"), lambda: self.decide("accept"), "A")
         self.delete_button = self._button(tr("Delete"), tr("There is nothing of that kind here"), lambda: self.decide("delete"), "D")
         self.move_button = self._button(tr("Move…"), tr("Draw where it belongs, within 2 m of where it is"), self.begin_move, "M")
+        self.other_button = self._button(tr("Other reading"), tr("Take the second reading of the program, which is hardly less likely"),
+                                         lambda: self.decide("take"), "O")
         self.draw_button = self._button(tr("Draw"), tr("Draw what is missing"), lambda: None)
         menu = QMenu(self)
         for target, title in (("edge", tr("Road edge…")), ("marking", tr("Marking line…")), ("lane", tr("Lane, in the direction of travel…"))):
@@ -121,7 +124,7 @@ class DoubtDock(QDockWidget):
         column.addLayout(_row(self.kinds, self.order))
         column.addWidget(self.undecided)
         column.addWidget(self.list, 1)
-        column.addLayout(_row(self.accept_button, self.delete_button, self.move_button, self.draw_button))
+        column.addLayout(_row(self.accept_button, self.delete_button, self.move_button, self.other_button, self.draw_button))
         column.addWidget(self.note)
         column.addWidget(self.hint)
         column.addWidget(self.kept)
@@ -246,6 +249,7 @@ class DoubtDock(QDockWidget):
         self.accept_button.setEnabled(count > 0)
         self.delete_button.setEnabled(count > 0 and correctable)
         self.move_button.setEnabled(count == 1 and correctable)
+        self.other_button.setEnabled(count == 1 and taken_reading({"other": self.chosen[0].other}, self.chosen[0].target) is not None)
         self.draw_button.setEnabled(self.road_map is not None)
         self._highlight()
 
@@ -297,15 +301,17 @@ class DoubtDock(QDockWidget):
             return None
 
     def decide(self, action: str) -> None:
-        """Accept or delete what is selected, and go on to the next piece that is not decided, here or at the next place."""
+        """Accept or delete what is selected or take its other reading, and go on to the next piece that is not decided, here or at the next place."""
         pieces, place = self.chosen, self.place
         to_write = [piece for piece in pieces if piece.target]
         layer = self._layer_to_write() if to_write else None
         if not pieces or to_write and layer is None:
             return
         for piece in to_write:
-            add_correction(layer, piece.line, place.crs, self._former(piece), action=action, target=piece.target, road=piece.road,
-                           station_m=piece.station, offset_m=piece.offset, note=self.note.text() or None)
+            reading = taken_reading({"other": piece.other}, piece.target) or {} if action == "take" else {}
+            add_correction(layer, piece.line, place.crs, self._former(piece), **{
+                "action": action, "target": piece.target, "road": piece.road, "station_m": piece.station, "offset_m": piece.offset,
+                "note": self.note.text() or None, **reading})
         seen = [piece.key for piece in pieces if not piece.target]
         if seen:
             self.road_map.layers[0].setCustomProperty(SEEN, "\n".join([*filter(None, self._seen()), *seen]))

@@ -8,6 +8,7 @@ from .origin import OUTPUT, describe_origin, origin_of
 from .road_maps import LINES, road_map_of, runs_of
 from .runs import Run
 
+NAMES_ONLY = "lanewright/names_only"      # setting of the user
 REPLACE = "lanewright/replace_last_run"  # setting of the user
 IMAGES = ("ORTHOIMAGE", "UAV_IMAGE")
 BELOW_IMAGES = ("INTENSITY_IMAGE", "DENSITY")
@@ -20,6 +21,15 @@ def replaces_last_run() -> bool:
 
 def set_replaces_last_run(replaces: bool) -> None:
     QgsSettings().setValue(REPLACE, bool(replaces))
+
+
+def keeps_names_only() -> bool:
+    """Whether the user wants results to name the files they were made from without their folders."""
+    return QgsSettings().value(NAMES_ONLY, False, type=bool)
+
+
+def set_keeps_names_only(names: bool) -> None:
+    QgsSettings().setValue(NAMES_ONLY, bool(names))
 
 
 def place_layer(layer: QgsMapLayer, project: QgsProject, output: str, run: Run) -> None:

@@ -107,3 +107,20 @@ def test_a_row_that_names_no_place_makes_temporary_layers(dialog, monkeypatch):
     assert first["DRIVING_LINES"].sink.staticValue() == first["REPORT"] == "TEMPORARY_OUTPUT" and not first["CURB_POINTS"].sink.staticValue()
     assert first["DRIVING_LINES"].destinationProject is not None
     assert second["MARKINGS"].sink.staticValue() == "markings.gpkg" and not second["REPORT"]
+
+
+def test_a_folder_of_surveys_gives_a_row_each_with_its_trajectory_and_nothing_else(dialog, tmp_path):
+    table = "time,x,y,z\n" + "".join(f"{100 + k / 10},{500000 + k},{5400000},100\n" for k in range(60))
+    for place in ("north/B12", "south/B12", "empty"):
+        (tmp_path / place).mkdir(parents=True, exist_ok=True)
+        (tmp_path / place / "corrections.gpkg-wal").touch()
+        (tmp_path / place / "readme.txt").write_text("what was scanned and when\n")
+    (tmp_path / "north/B12/drive.csv").write_text(table)
+    (tmp_path / "north/B12/tile_2.LAZ").touch()
+    panel = dialog.mainWidget()
+    value = lambda row, name: panel.wrappers[row][panel.parameter_to_column[name]].parameterValue()  # noqa: E731
+    panel.clear()
+    dialog.add_surveys(str(tmp_path))
+    assert panel.batchRowCount() == 2
+    assert [value(row, "POINT_CLOUDS") for row in (0, 1)] == [[str(tmp_path / "north/B12")], [str(tmp_path / "south/B12")]]
+    assert value(0, "TRAJECTORY") == str(tmp_path / "north/B12/drive.csv") and not value(1, "TRAJECTORY")

@@ -155,6 +155,21 @@ def test_single_keys_go_on_accept_and_delete(at_first):
     assert at_first.place.station == 10
 
 
+def test_the_other_reading_of_a_lane_is_taken_by_one_key_and_goes_into_the_corrections(at_first, tmp_path):
+    reading = '{"lanes": [{"offset_m": 1.5, "width_m": 3.5, "direction": 1}, {"offset_m": -1.5, "width_m": 3.5, "direction": -1}]}'
+    lane = added(QgsProject.instance(), "DRIVING_LINES", DRIVING_LINES, ("LINESTRING Z (80 0 100, 88 0 100)", dict(
+        road=0, station_m=80.0, length_m=8.0, lane=1, direction=1, status="inferred", confidence=0.55, other=reading)))
+    assert lane.featureCount() == 1
+    at_first.go(road_maps(QgsProject.instance())[0])
+    assert "another reading" in at_first.list.item(0).text() and at_first.other_button.isEnabled()
+    {action.shortcut().toString(): action for action in at_first.actions()}["O"].trigger()
+    layer, = corrections_layers(QgsProject.instance())
+    row, = layer.getFeatures()
+    assert (row["action"], row["target"], row["other"]) == ("take", "lane", reading)
+    at_first.list.setCurrentRow(1)
+    assert not at_first.other_button.isEnabled(), "the edge has one reading alone"
+
+
 def test_what_is_done_is_counted_and_passed_over_on_wish(at_first):
     at_first.list.selectAll()
     at_first.accept_button.click()

@@ -164,3 +164,37 @@ def test_a_cloud_as_trajectory_is_refused_as_what_it_is(provider, folder):
     fine, said = algorithm.checkParameterValues({"POINT_CLOUDS": [str(folder / "tile_1.laz")], "TRAJECTORY": str(folder / "tile_1.laz")},
                                                 QgsProcessingContext())
     assert not fine and "tile_1.laz holds neither a layer nor a table of positions" in said
+
+
+# -- what lies beside the point clouds -------------------------------------------------------------
+
+
+@pytest.fixture
+def surveyed(tmp_path):
+    """A survey in a folder with its trajectory as a table, and a text that is none."""
+    from processing import run
+
+    run("lanewright:samplesurvey", {
+        "LENGTH": 20, "PULSE_RATE": 20000, "POINT_CLOUD": str(tmp_path / "s.laz"), "TRAJECTORY": str(tmp_path / "d.gpkg")})
+    places = [(feature["time"], feature.geometry()) for feature in QgsVectorLayer(str(tmp_path / "d.gpkg"), "d").getFeatures()]
+    rows = [f"{time},{place.constGet().x()},{place.constGet().y()},{place.constGet().z()}" for time, place in places]
+    (tmp_path / "d.gpkg").unlink()
+    (tmp_path / "drive.csv").write_text("\n".join(["time,x,y,z", *rows]))
+    (tmp_path / "notes.txt").write_text("rain in the morning")
+    return tmp_path
+
+
+def test_the_trajectory_beside_the_point_clouds_is_offered_and_one_that_was_chosen_stays(surveyed, project):
+    dialog = dialog_of()
+    wrappers = dialog.mainWidget().wrappers
+    dialog.setParameters({"POINT_CLOUDS": [str(surveyed / "s.laz")]})
+    assert wrappers["TRAJECTORY"].parameterValue() == str(surveyed / "drive.csv")
+    dialog.setParameters({"POINT_CLOUDS": ["/elsewhere/s.laz"]})
+    assert not wrappers["TRAJECTORY"].parameterValue(), "it is not that of another survey"
+    dialog.setParameters({"TRAJECTORY": str(surveyed / "notes.txt"), "POINT_CLOUDS": [str(surveyed / "s.laz")]})
+    assert wrappers["TRAJECTORY"].parameterValue() == str(surveyed / "notes.txt")
+
+
+def test_points_extent_crs_and_time_of_the_clouds_are_said(surveyed):
+    said = described([str(surveyed / "s.laz")])
+    assert " points, " in said and " m, EPSG:32650" in said and ("scanned 20" in said or "times " in said), said

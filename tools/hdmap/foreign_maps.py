@@ -1,4 +1,4 @@
-"""Takes maps of other people in and out again: foreign_maps.py FOLDER [--limit SECONDS] [--only NAME] [--json FILE] [--crs CRS].
+"""Takes maps of other people in and out again: foreign_maps.py FOLDER [--limit SECONDS] [--only NAME ...] [--json FILE] [--crs CRS].
 
 Every .xodr of the folder is read by Import OpenDRIVE and written by Export OpenDRIVE (1.7 and 1.8) and Export Lanelet2; what was written is read
 again. The table has the CPU seconds of each step, and the largest distance of the borders of its lanes, sampled from the original here by plain
@@ -264,9 +264,9 @@ def apart(places, lines):
     return float(across.max()), float(rise.max()) if len(rise) else math.nan
 
 
-def one_map(path, folder, crs, limit):
+def one_map(path, folder, given):
     """The row of a map."""
-    table = f"{folder}/{path.stem}"
+    table, crs, limit = f"{folder}/{path.stem}", given.crs, given.limit
     said, seconds, fault = step(lambda: read(path, table, crs, "importopendrive"), limit)
     row = {"map": path.stem, "import": {"s": seconds, "fault": fault, "said": said}}
     if fault:
@@ -276,7 +276,8 @@ def one_map(path, folder, crs, limit):
     row["metres"] = float(sum(np.hypot(*np.diff(line[:, :2], axis=0).T).sum() for line in first)) / 2
     row["import"]["apart"] = apart(original.places(NO_VEHICLES), first)
     row["import"]["back"] = apart(np.concatenate([np.empty((0, 3)), *first]), original.lines())
-    for name, (algorithm, ending, more) in EXPORTS.items():
+    for name in given.exports:
+        algorithm, ending, more = EXPORTS[name]
         output = Path(f"{table}_{name}.{ending}")
         said, used, fault = step(lambda: write(algorithm, table, output, more), limit)   # noqa: B023
         row[name] = {"s": used, "fault": fault, "said": said}
@@ -312,7 +313,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path)
     parser.add_argument("--limit", type=int, default=120)
-    parser.add_argument("--only", default="")
+    parser.add_argument("--only", default=[""], nargs="*", help="parts of the names of maps")
+    parser.add_argument("--exports", default=list(EXPORTS), nargs="*", choices=list(EXPORTS))
     parser.add_argument("--json", type=Path)
     parser.add_argument("--crs", default="EPSG:25832", help="given to maps, which often have none; Lanelet2 needs one")
     parser.add_argument("--keep", type=Path, help="folder for the layers and files that are made")
@@ -322,10 +324,10 @@ def main():
         folder = given.keep or Path(temporary)
         folder.mkdir(parents=True, exist_ok=True)
         for path in sorted(given.folder.glob("*.xodr")):
-            if given.only in path.name:
+            if any(name in path.name for name in given.only):
                 for old in folder.glob(f"{path.stem}*"):
                     old.unlink()
-                rows.append(one_map(path, folder, given.crs, given.limit))
+                rows.append(one_map(path, folder, given))
                 print(shown(rows[-1]), flush=True)
                 if given.json:
                     given.json.write_text(json.dumps(rows, indent=1), encoding="utf-8")

@@ -153,8 +153,8 @@ class PlanView:
             places[rows], heading[rows], bend[rows] = self.elements[k].at(s[rows] - starts[k])
         return places, heading, bend
 
-    def jumps(self, gap: float, kink: float) -> list[float]:
-        """Metres at which an element begins elsewhere, or in another direction, than the one before ends.
+    def jumps(self, gap: float, kink: float) -> list[tuple[float, float, float]]:
+        """(s, metres, radians) where an element begins elsewhere, or in another direction, than the one before ends.
 
         gap, kink : metres and radians from which it counts
         """
@@ -162,8 +162,9 @@ class PlanView:
         for one, other in zip(self.elements[:-1], self.elements[1:]):
             x, y, heading = one.end()
             turn = (other.heading - heading + np.pi) % (2 * np.pi) - np.pi
-            if np.hypot(other.x - x, other.y - y) > gap or abs(turn) > kink:
-                found.append(other.s)
+            away = float(np.hypot(other.x - x, other.y - y))
+            if away > gap or abs(turn) > kink:
+                found.append((other.s, away, abs(turn)))
         return found
 
     def lengthened(self, before: float, after: float) -> PlanView:

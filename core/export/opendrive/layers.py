@@ -21,6 +21,7 @@ RAISED = ("curb", "sidewalk", "walking")
 NO_LANES = (*RAISED, "none", "rail", "tram")
 SHORTEST_SECTION = 0.005   # m: of shorter ones the ends would be one vertex
 NEGATIVE_WIDTH = -0.01     # m: less is the rounding of a file
+BORDER_JUMP = 0.01     # m: half of the tolerance of an export
 LEAST_CURB = 0.005     # m of height: less is none that the map states
 LEAST_WIDTH = 0.05     # m: lanes that are narrower everywhere are none
 
@@ -43,6 +44,7 @@ def layers_of_opendrive(whole: OpenDriveMap, crs: str = "", progress: Progress =
     numbers, faults = road_numbers(whole), _Faults()
     for count, road in enumerate(whole.roads):
         surface = RoadSurface(road)
+        faults.jumps += [(road.id, *jump) for jump in surface.jumps() if jump[1] > BORDER_JUMP]
         for number, section in enumerate(road.sections):
             if road.section_end(number) - section.s > SHORTEST_SECTION:
                 _add_section(rows, found.lines, whole, network, surface, number, numbers[road.id], faults)
@@ -57,13 +59,21 @@ def layers_of_opendrive(whole: OpenDriveMap, crs: str = "", progress: Progress =
 
 @dataclass
 class _Faults:
-    """What is wrong with the geometry of the map. folds : (road, lane, place) of borders; negative : (road, lane, least width, s)."""
+    """What is wrong with the geometry of the map.
 
+    folds : (road, lane, place) of borders; negative : (road, lane, least width, s); jumps : (road, s, metres by which borders jump there)
+    """
+
+    jumps: list[tuple[str, float, float]] = field(default_factory=list)
     folds: list[tuple[str, int, np.ndarray]] = field(default_factory=list)
     negative: list[tuple[str, int, float, float]] = field(default_factory=list)
 
     def said(self) -> list[str]:
         found = []
+        if self.jumps:
+            road, s, metres = max(self.jumps, key=lambda jump: jump[2])
+            found.append(f"The reference lines of {len({jump[0] for jump in self.jumps})} roads have gaps or kinks, at which borders of lanes jump "
+                         f"by more than {BORDER_JUMP:g} m. The largest is of road {road} at s {s:.1f} m, with {metres:.3f} m.")
         if self.folds:
             road, lane, place = self.folds[0]
             found.append(f"{len(self.folds)} borders of lanes fold back over themselves, as a curve is tighter there than the border is far from "

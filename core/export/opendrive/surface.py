@@ -52,7 +52,7 @@ class RoadSurface:
             if not bent.any():
                 break
             knots = np.sort(np.append(knots, middles[bent]))
-        jumps = np.array([s for s in road.plan.jumps(GAP, KINK) if knots[0] + LEAST_STATION < s < knots[-1] - LEAST_STATION])
+        jumps = np.array([s for s, _, _ in road.plan.jumps(GAP, KINK) if knots[0] + LEAST_STATION < s < knots[-1] - LEAST_STATION])
         return np.sort(np.append(knots, jumps - BEFORE_END))
 
     def offsets(self, number: int, s: np.ndarray) -> dict[int, np.ndarray]:
@@ -83,6 +83,16 @@ class RoadSurface:
         inner = offsets[self.inside(number, id)]
         lift = self.lifts(number, id, s)
         return self.places(s, inner, lift[0]), self.places(s, offsets[id], lift[1])
+
+    def jumps(self) -> list[tuple[float, float]]:
+        """(s, metres) where the reference line has a gap or a kink, and how far the farthest border jumps there."""
+        found = []
+        for s, gap, turn in self.road.plan.jumps(GAP, KINK):
+            number = max((k for k, section in enumerate(self.road.sections) if section.s <= s), default=-1)
+            if number >= 0:
+                farthest = max(float(np.abs(t).max()) for t in self.offsets(number, np.array([s])).values())
+                found.append((s, gap + 2 * farthest * float(np.sin(turn / 2))))
+        return found
 
     def inside(self, number: int, id: int) -> int:
         """The lane next to one on the side of lane 0, which is never missing."""

@@ -87,7 +87,7 @@ def geographic_unit(lon: np.ndarray, lat: np.ndarray, time: np.ndarray | None = 
     else:
         seconds = np.diff(np.asarray(time)[good])
         speed = np.percentile(step[seconds > 0] / seconds[seconds > 0], 95) if (seconds > 0).any() else 0.0
-        if not 0 < speed * METRES_PER_DEGREE < 2 * MAX_VEHICLE_SPEED:
+        if not 0 < speed < 2 * MAX_VEHICLE_SPEED / METRES_PER_DEGREE:
             return ""
         # a constant, or the noise of a standard deviation, varies but does not travel
         if np.hypot(*(np.diff(column).sum() for column in (lon, lat))) < 0.02 * step.sum():

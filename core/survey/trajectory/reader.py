@@ -222,7 +222,7 @@ def _plane_coordinates(columns, time, crs, label, notes):
     if "x" in columns and "y" in columns and ("lon" not in columns or (known is not None and not geographic)):
         x, y = columns["x"], columns["y"]
         unit = geographic_unit(x, y, time)
-        if geographic and not unit and max(np.nanmax(np.abs(x)), np.nanmax(np.abs(y))) > 360:
+        if geographic and not unit and (np.abs(np.stack([x, y])) > 360).any():
             raise RoadExtractionError(
                 f"{label} has the CRS {horizontal_part(known).name} (degrees), but its coordinates reach "
                 f"{np.nanmax(np.abs(x)):.0f}, {np.nanmax(np.abs(y)):.0f}. Give the CRS that its x and y are in.")
@@ -235,7 +235,7 @@ def _plane_coordinates(columns, time, crs, label, notes):
     elif "lon" in columns and "lat" in columns:
         x, y = columns["lon"], columns["lat"]
         unit = geographic_unit(x, y, time)
-        if not unit and max(np.nanmax(np.abs(x)), np.nanmax(np.abs(y))) > 360:
+        if not unit and (np.abs(np.stack([x, y])) > 360).any():
             raise RoadExtractionError(
                 f"{label} has longitude and latitude up to {np.nanmax(np.abs(x)):.0f}, {np.nanmax(np.abs(y)):.0f}; these are not degrees. "
                 "Name the columns x and y when they are metres.")

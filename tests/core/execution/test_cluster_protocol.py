@@ -265,7 +265,8 @@ def test_results_go_straight_to_the_work_folder(by_threads, tmp_path):
 
 @pytest.mark.parametrize("address, own", [
     ("tcp://127.0.0.1:8786", True), ("tcp://[::1]:8786", True), ("localhost:8786", True), ("tls://10.1.2.3:8786", False),
-    ("tcp://10.1.2.3:8786", False), ("tcp://localhost.example:8786", False), ("tcp://127.example.org:1", False), ("10.1.2.3", False)])
+    ("tcp://10.1.2.3:8786", False), ("tcp://localhost.example:8786", False), ("tcp://127.example.org:1", False), ("10.1.2.3", False),
+    ("evil.example:1://127.0.0.1:8786", False), ("tcp://127.0.0.1@evil.example:8786", False), ("tcp://evil.example/127.0.0.1:8786", False)])
 def test_this_computer_is_known_by_its_address(address, own):
     assert is_loopback(address) is own
 
@@ -277,7 +278,8 @@ def test_another_computer_is_not_talked_to_without_encryption_unless_that_is_wan
     check_address("tcp://127.0.0.1:8786", insecure=False)
 
 
-@pytest.mark.parametrize("address", ["scheduler", "10.1.2.3", "tcp://127.0.0.1", "tls://scheduler.example:"])
+@pytest.mark.parametrize("address", ["scheduler", "10.1.2.3", "tcp://127.0.0.1", "tls://scheduler.example:",
+                                     "evil.example:1://127.0.0.1:8786", "tcp://127.0.0.1@evil.example:8786"])
 def test_an_address_without_a_port_is_no_address(address):
     with pytest.raises(RoadExtractionError, match="needs a port"):
         ExecutionSettings(scheduler=address)

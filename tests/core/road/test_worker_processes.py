@@ -3,6 +3,7 @@
 import threading
 import time
 from contextlib import closing
+from pathlib import Path
 
 import pytest
 from curbed_streets import street, survey_of
@@ -175,5 +176,14 @@ def test_a_negative_number_of_workers_is_refused():
 def test_nothing_of_qgis_is_mistaken_for_python(monkeypatch):
     monkeypatch.setattr(interpreter.sys, "executable", "/usr/bin/qgis")
     assert all("qgis" not in path for path in interpreter.candidates())
+
+
+def test_no_interpreter_of_the_current_folder_is_taken(tmp_path, monkeypatch):
+    """Python inside another program may not know where it lies."""
+    (tmp_path / "bin").mkdir()
+    (tmp_path / "bin" / "python3").write_text("#!/bin/sh\n")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(interpreter.sys, "executable", "")
+    assert all(Path(path).is_absolute() for path in interpreter.candidates())
 
 

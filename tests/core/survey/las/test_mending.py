@@ -226,6 +226,15 @@ def test_bounds_of_a_whole_project_are_no_reason_to_look_at_the_points(tmp_path)
     assert (list(header.minimum), list(header.maximum)) == (low, high)
 
 
+def test_a_point_format_that_nobody_knows_is_refused_in_one_sentence(tmp_path):
+    path = written(street(1, "1.2"), tmp_path / "cloud.las")
+    content = bytearray(path.read_bytes())
+    content[104], content[107] = 35, 9   # of the point format and the count
+    path.write_bytes(content)
+    with pytest.raises(RoadExtractionError):
+        read_header(path)
+
+
 def test_coordinates_that_overflowed_the_integers_of_their_file_are_told(tmp_path):
     """A scale of a ten-millionth from an offset of 0 ends at 215 m."""
     path = written(street(1, "1.2"), tmp_path / "cloud.laz", *(((at + 8 * axis, "<d"), value) for at, value in ((131, 1e-7), (155, 0.0))
