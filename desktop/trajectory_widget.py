@@ -6,6 +6,7 @@ from pathlib import Path
 
 from qgis.core import Qgis, QgsMapLayer, QgsProcessingContext, QgsProject
 from qgis.gui import QgsProcessingMapLayerComboBox
+from qgis.PyQt.QtWidgets import QComboBox
 
 from ..algorithms.cloud_files import cloud_files
 from ..algorithms.trajectory_source import FILE_SUFFIXES
@@ -55,7 +56,8 @@ class TrajectoryWrapper(DialogWrapper):
         if likely:
             self.setValue(likely)
         elif self._offered:
-            self.widget.setLayer(None)
+            for box in self.widget.findChildren(QComboBox):
+                box.setCurrentIndex(-1)  # QGIS's own way to no layer does nothing while a file is chosen
         self._offered = likely
 
     def setWidgetValue(self, value, context):

@@ -65,7 +65,8 @@ class ExportOpenDrive(Algorithm):
         shown, found = layers_of_opendrive(whole, source.lanes.crs), check_opendrive(whole, source.lanes.crs, progress.part(0.7, 0.9))
         across, rise = border_misses(source.lanes, shown.lanes)
         driven = driving_line_misses(source.driving_lines, shown.lanes)
-        single = driving_line_misses(source.driving_lines, shown.lanes, apart_from=source.led_to_middles())
+        led = source.led_to_middles()
+        single = driving_line_misses(source.driving_lines, shown.lanes, apart_from=led) if len(led) else driven
         notes = [*source.notes, *draft.notes]
         if not source.lanes.crs:
             notes.append(tr("The layer of lanes has no CRS: the file has no geoReference."))

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..common.progress import Progress
 from ..countries.catalogue import country
+from ..markings.cross_section.confidence import share_within
 from ..markings.cross_section.evidence import point_spacing
 from ..markings.cross_section.roads import EstimatedRoad, estimate_roads
 from ..markings.cross_section.sections import STATION_STEP, CrossSections, sections_of_edges, sections_of_lines, sections_of_pavement
@@ -82,8 +83,10 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
                       "or set Side of traffic if the arrows are right.")
     for count, (number, one) in enumerate(estimates.roads.items()):
         part = progress.part(0.4 + 0.6 * count / len(estimates.roads), 0.4 + 0.6 * (count + 1) / len(estimates.roads))
-        tracks = road_lanes(one, settings, estimates.lane_width)
         s = one.lines.s
+        passes = frame.passes_sigma(number, s)
+        tracks = [replace(track, confidence=track.confidence * share_within(passes[track.first:track.last + 1]))
+                  for track in road_lanes(one, settings, estimates.lane_width)]
         part.report(0.25)
         alignment = lane_elements(tracks, s, frame.roads[number])
         part.report(0.5)
@@ -92,7 +95,6 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
             progress.warn("Neither the marking lines nor road points have heights; the trajectory's are used.")
             heights = [frame.track_height(number, s[t.first:t.last + 1]) for t in tracks]
         courses = lane_courses(tracks, s, frame.roads[number], alignment)
-        passes = frame.passes_sigma(number, s)
         spacing = None if road_points is None else point_spacing(road_points, number, s)
         for lane, (track, course, elements, z) in enumerate(zip(tracks, courses, alignment, heights), start=1):
             sigma = lane_sigma(track, course, frame.roads[number], one, paint, passes[track.first:track.last + 1], spacing)

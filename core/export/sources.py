@@ -150,23 +150,31 @@ def _check_layers(source):
                                       f"x {low[0] + FARTHEST_LAYER:.0f}, y {low[1] + FARTHEST_LAYER:.0f}. Choose the layers of one survey.")
 
 
-def nearest_values(points: np.ndarray, layer: Features | None, name: str, farthest: float = 0.5) -> np.ndarray:
-    """(N,) a number of the line or area nearest to each of (N, 2) points, NaN where none lies near.
+class NearestValues:
+    """A number of the line or area of a layer that is nearest to a place.
 
-    farthest : metres
+    Parameters
+    ----------
+    layer : Features, or None
+    name : of the field; features without a value are left out
     """
-    found = np.full(len(points), np.nan)
-    rows: list[tuple[Any, float]] = [] if layer is None else [(g, float(row[name])) for g, row in layer
-                                                              if g is not None and row.get(name) is not None]
-    if not rows or not len(points):
+
+    def __init__(self, layer: Features | None, name: str) -> None:
+        rows: list[tuple[Any, float]] = [] if layer is None else [(g, float(row[name])) for g, row in layer
+                                                                  if g is not None and row.get(name) is not None]
+        # of long lines the tree finds the nearest segment much sooner than the nearest line
+        parts, values = [], []
+        for geometry, value in rows:
+            places = shapely.get_coordinates(geometry)
+            pieces = shapely.linestrings(np.stack([places[:-1], places[1:]], axis=1)) if geometry.geom_type == "LineString" else [geometry]
+            parts += list(pieces)
+            values += [value] * len(pieces)
+        self._tree, self._values = shapely.STRtree(parts), np.array(values)
+
+    def at(self, points: np.ndarray, farthest: float = 0.5) -> np.ndarray:
+        """(N,) numbers nearest to (N, 2) points, NaN where none lies within `farthest` metres."""
+        found = np.full(len(points), np.nan)
+        if len(self._values) and len(points):
+            which, part = self._tree.query_nearest(shapely.points(points), max_distance=farthest, all_matches=False)
+            found[which] = self._values[part]
         return found
-    # of long lines the tree finds the nearest segment much sooner than the nearest line
-    parts, owner = [], []
-    for k, (geometry, _) in enumerate(rows):
-        places = shapely.get_coordinates(geometry)
-        pieces = shapely.linestrings(np.stack([places[:-1], places[1:]], axis=1)) if geometry.geom_type == "LineString" else [geometry]
-        parts += list(pieces)
-        owner += [k] * len(pieces)
-    which, place = shapely.STRtree(parts).query_nearest(shapely.points(points), max_distance=farthest, all_matches=False)
-    found[which] = np.array([value for _, value in rows])[np.array(owner)[place]]
-    return found

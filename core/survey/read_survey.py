@@ -17,6 +17,7 @@ from ..io.units import as_in_file
 from .adjustment.adjust import adjust_passes
 from .adjustment.beside import compare_carriageways
 from .clock_check import check_clock
+from .fit.scanners import lay_scanners
 from .fit.trajectory_fit import fitted_trajectory
 from .frame.build import build_frame
 from .frame.road import CORRIDOR
@@ -172,17 +173,18 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
         survey.put_in_order(shared.ordered, shared.ordering, progress.part(PARTS_PROGRESS * read_at, read_at))
     if has_time and not feet:   # a scanner that rides three times too high sees three times too far
         check_clock(survey, progress)
+    measured = survey.store
+    mounted = lay_scanners(survey, progress.part(read_at, read_at), None if shared is None else shared.points) if has_time and not feet else 0.0
     if again:
-        measured = survey.store
         adjust_passes(survey, progress.part(INGEST_PROGRESS, 1.0), None if shared is None else shared.points)
-        if shared is not None and survey.store is not measured:
-            for file in shared.ordered.iterdir():
-                file.unlink()
-            survey.put_in_order(shared.ordered, shared.ordering, progress.part(1.0, 1.0))
+    if shared is not None and survey.store is not measured:
+        for file in shared.ordered.iterdir():
+            file.unlink()
+        survey.put_in_order(shared.ordered, shared.ordering, progress.part(1.0, 1.0))
     if settings.fit_passes and has_time and len(frame.roads) > 1:
         compare_carriageways(survey, progress.part(1.0, 1.0))
     # what the user says overrules what lies beside the trajectory
-    if across := max(settings.trajectory_sigma or trajectory.sigma_across, fitted.sigma):
+    if across := max(settings.trajectory_sigma or trajectory.sigma_across, fitted.sigma, mounted):
         # what passes differ by is part of the same error
         differ = survey.frame.pass_sigma
         survey.frame.pass_sigma = {road: differ.get(road, SigmaAlong.everywhere(0.0)).at_least(across) for road in range(len(frame.roads))}

@@ -12,6 +12,8 @@ OUTPUT = "lanewright/output"  # custom property of our layers: the result that t
 KNOWN = ("ROAD_EDGES", "ROAD_SURFACE", "MARKINGS", "MARKING_LINES", "DRIVING_LINES", "LANES", "CURVE_ELEMENTS", "PASSES", "CURB_POINTS",
          "BOUNDARIES", "CORNERS", "INTENSITY_IMAGE")  # results by whose names tables and files are usually called
 
+IMAGES = {"roadmap": "INTENSITY_IMAGE", "intensityimage": "INTENSITY_IMAGE"}  # the image that an algorithm makes; its file says no more
+
 
 @dataclass(frozen=True)
 class Origin:
@@ -39,7 +41,8 @@ def origin_of(layer: QgsMapLayer) -> Origin | None:
     lines = [*metadata.history(), *metadata.abstract().splitlines()]
     told = [found for text in lines if (found := Provenance.of_sentence(text)) is not None]
     if not told and layer.type() == Qgis.LayerType.Raster and layer.providerType() == "gdal":
-        told = [(provenance, "") for provenance in [signed_by(layer.source())] if provenance is not None]
+        signed = signed_by(layer.source())
+        told = [] if signed is None else [(signed, IMAGES.get(signed.algorithm, ""))]
     if not told:
         return None
     provenance, output = max(told, key=lambda one: one[0].ended)

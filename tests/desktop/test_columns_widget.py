@@ -39,6 +39,15 @@ def test_a_role_given_to_another_column_leaves_its_former_one(qgis_app, drive):
     assert widget.value() == "time,y,z,x" and "positions" in widget.told.text()
 
 
+def test_of_a_log_it_is_told_what_was_understood_and_there_is_nothing_to_assign(qgis_app, tmp_path):
+    path = tmp_path / "drive.nmea"
+    path.write_text("".join(f"$GPRMC,1000{k:02d}.00,A,4830.0000,N,00900.0000,E,1,2,131021,,*00\n"
+                            f"$GPGGA,1000{k:02d}.00,4830.{50 * k:04d},N,00900.0000,E,4,12,0.9,300.0,M,48.0,M,,*00\n" for k in range(30)))
+    widget = ColumnsWidget()
+    widget.show_file(str(path))
+    assert widget.table.isHidden() and "30 positions" in widget.told.text() and "GPS seconds since 1980" in widget.told.text()
+
+
 def test_another_file_begins_anew_and_a_layer_has_no_columns(qgis_app, drive, tmp_path):
     widget = ColumnsWidget()
     widget.show_file(drive)

@@ -6,7 +6,8 @@ from contextlib import closing
 import numpy as np
 import pytest
 import shapely
-from lanewright.algorithms.vector_source import read_features
+from lanewright.algorithms.trajectory_source import read_trajectory_source
+from lanewright.algorithms.vector_source import read_features, vertices_of
 from lanewright.core.common.errors import Cancelled, RoadExtractionError
 from lanewright.core.common.features import Features
 from lanewright.core.common.schemas import CURVE_ELEMENTS, ROAD_EDGES
@@ -150,6 +151,22 @@ def test_a_layer_without_a_crs_is_cartesian_and_never_geographic(tmp_path, provi
         assert database.execute("SELECT srs_id FROM gpkg_geometry_columns").fetchall() == [(-1,)]
     layer = QgsVectorLayer(str(path), "drive", "ogr")
     assert QgisSource(layer, "Trajectory").crs == "" and not layer.crs().isGeographic()
+
+
+def test_a_trajectory_in_feet_is_stored_in_feet_and_read_in_metres(tmp_path, provider):
+    import processing
+
+    foot = 1200 / 3937
+    driven = np.c_[np.arange(50.0), 984_250.0 + np.arange(50.0), np.full(50, 200_000.0), np.full(50, 100.0)]
+    np.savetxt(tmp_path / "drive.csv", driven, "%.3f", ",", header="time,x,y,z", comments="")
+    path = str(tmp_path / "drive.gpkg")
+    processing.run("lanewright:importtrajectory", {"INPUT": str(tmp_path / "drive.csv"), "INPUT_CRS": "EPSG:2263", "OUTPUT": path})
+    source = QgisSource(QgsVectorLayer(path, "drive", "ogr"), "Trajectory")
+    stored, read = (np.concatenate([vertices_of(wkb)[:, :3] for wkb, _ in rows]) for rows in (source.stored_rows(), source.rows()))
+    np.testing.assert_allclose(stored, driven[:, 1:], atol=1e-6)
+    np.testing.assert_allclose(read, driven[:, 1:] * foot, atol=1e-6)
+    assert source.layer.crs().authid() == "EPSG:2263"
+    np.testing.assert_allclose(read_trajectory_source(source).x, driven[:, 1] * foot, atol=1e-6)
 
 
 @pytest.mark.parametrize("name", ["layer.gpkg", "layer.shp", "layer.csv", "layer.geojson"])

@@ -11,7 +11,7 @@ import shapely
 from ...common.setting import check_limits, setting
 from ..lane_uncertainty import sigma_of_lanes
 from ..painted_objects import stop_lines, walked_crossings
-from ..sources import RoadMapSource, nearest_values
+from ..sources import NearestValues, RoadMapSource
 
 SAME_PLACE = 0.001      # m: vertices nearer than this are one node
 HIGH_CURB = 0.10        # m: lower ones can be driven over, as the format means by `low`
@@ -95,7 +95,7 @@ class _Drafting:
         self.way_of: dict[tuple[int, ...], int] = {}
         # beside a double line the bounds meet in its middle, and the line to drive on stays between the stripes
         self.middles = source.middles if source.middles is not None else (lanes.left + lanes.right) / 2
-        self.heights = source.road_edges
+        self.curb_heights = NearestValues(source.road_edges, "height_m")
         self.sigma = sigma_of_lanes(lanes, source.driving_lines)
 
     def run(self) -> LaneletDraft:
@@ -167,8 +167,8 @@ class _Drafting:
     def _tags(self, nodes, kind, pattern, line):
         places = self.draft.nodes[list(nodes)]
         if kind == "curb":
-            height = np.nanmedian(np.append(nearest_values(places[:, :2], self.heights, "height_m", NEAREST_EDGE), [np.nan])) \
-                if self.heights is not None else np.nan
+            heights = self.curb_heights.at(places[:, :2], NEAREST_EDGE)
+            height = float(np.nanmedian(heights)) if np.isfinite(heights).any() else np.nan
             tags = {"type": "curbstone", "subtype": "low" if height < HIGH_CURB else "high"}
             return tags | ({} if np.isnan(height) else {"height": f"{height:.2f}"})
         if pattern in SUBTYPE_OF_PATTERN:

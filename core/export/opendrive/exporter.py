@@ -11,7 +11,7 @@ from ...common.progress import Progress
 from ...common.setting import check_limits, setting
 from ..driven_middles import with_driven_middles
 from ..lane_uncertainty import sigma_of_lanes
-from ..sources import RoadMapSource, nearest_values
+from ..sources import NearestValues, RoadMapSource
 from .heights import add_heights
 from .junctions import link_roads
 from .model import OPEN_END, MapLane, MapRoad, OpenDriveMap, RoadMark
@@ -125,6 +125,7 @@ class _Drafting:
     def __init__(self, source: RoadMapSource, origin: np.ndarray, settings: OpenDriveSettings) -> None:
         self.source, self.lanes, self.origin, self.settings = source, source.lanes, origin, settings
         self.sigma = sigma_of_lanes(self.lanes, source.driving_lines)
+        self.curb_heights = NearestValues(source.road_edges, "height_m")
         self.notes: list[str] = []
         self.cells = cut_into_cells(self.lanes)
         self.connectors, self.slices = connector_slices(self.cells, slices_of(self.cells, self.lanes), self.lanes)
@@ -268,7 +269,7 @@ class _Drafting:
                 continue
             beyond = max(lanes) + 1 if left else min(lanes) - 1
             curb = MapLane(beyond, "curb", type(lanes[id].width).constant(CURB_WIDTH), [RoadMark(0.0, "none")])
-            heights = nearest_values(border[:, :2] + self.origin[:2], self.source.road_edges, "height_m", NEAREST_CURB)
+            heights = self.curb_heights.at(border[:, :2] + self.origin[:2], NEAREST_CURB)
             if np.isfinite(heights).any():
                 curb.heights = np.array([[0.0, 0.0, round(float(np.nanmedian(heights)), 3)]])
             lanes[beyond] = curb

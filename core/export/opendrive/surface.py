@@ -36,7 +36,8 @@ class RoadSurface:
         step = min(step, max(float(np.sqrt(8 * SAGITTA / max(bend, 1e-9))), LEAST_BORDER_STEP))
         even = np.linspace(first, last, max(int(np.ceil((last - first) / step - 1e-9)), 1) + 1)
         own = [lane.width.rows[:, 0] + first for lane in road.sections[number].lanes.values()]
-        knots = np.concatenate([even, [element.s for element in road.plan.elements], road.lane_offset.rows[:, 0], *own])
+        heights = road.elevation.rows[:, 0], road.superelevation.rows[:, 0], road.shape[:, 0]
+        knots = np.concatenate([even, [element.s for element in road.plan.elements], road.lane_offset.rows[:, 0], *heights, *own])
         knots = np.unique(knots[(knots >= first) & (knots <= last)])
         keep = np.append(True, np.diff(knots) > LEAST_STATION) & (knots < last - LEAST_STATION)
         keep[0] = True

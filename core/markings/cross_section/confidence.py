@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.special import erf
 
 from .weights import EstimateWeights
 
@@ -72,6 +73,17 @@ def calibrated(probability: np.ndarray, weights: EstimateWeights = EstimateWeigh
     (N,) 0 to 1
     """
     return _on_curve(probability, *weights.calibration)
+
+
+def share_within(sigma: np.ndarray) -> np.ndarray:
+    """The share of lines that lie within SAME_LANE of their true place, of those that are off by a normal error; to three decimals.
+
+    Parameters
+    ----------
+    sigma : (N,) m, one sigma that all lines share, see `RoadFrame.pass_sigma`; 0 where nothing says it
+    """
+    with np.errstate(divide="ignore"):
+        return np.round(erf(SAME_LANE / (np.sqrt(2.0) * np.asarray(sigma, float))), 3)
 
 
 def _on_curve(probability, slope, offset):

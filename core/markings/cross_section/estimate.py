@@ -358,7 +358,8 @@ def _second_places(estimate, lanes, strips, own, way):
     shared = (begin - c.left[at, right]) / number
     place = np.arange(len(own)) - np.searchsorted(strip, strip)
     d = begin - shared * (place + 0.5)
-    open_room = (UNPAINTED[made_left] ^ UNPAINTED[made_right]) & ~beside_surface_end(made_left, made_right) & (np.abs(d - lanes.d[own]) > SAME_LANE)
+    open_room = (UNPAINTED[made_left] ^ UNPAINTED[made_right]) & ~beside_surface_end(made_left, made_right) & (shared > lanes.width[own]) \
+        & (np.abs(d - lanes.d[own]) > SAME_LANE)
     widths = np.stack([shared, lanes.width[own]])
     nats = width_cost(widths, estimate.lane_width, w)
     driven = estimate.evidence.driven[:, at]

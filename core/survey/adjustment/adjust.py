@@ -7,9 +7,10 @@ because nothing shows which of them is more accurate.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy import sparse
@@ -22,8 +23,11 @@ from ..store.section_store import SectionStore
 from .carrying import continued_corrections
 from .corrections import CORRECTION_STEP, PassCorrections
 from .pass_sigma import sigma_of_passes
-from .register import AXES, PassOffsets, pass_offsets
+from .register import AXES, MAX_OFFSET, PassOffsets, pass_offsets
 from .remaining import places_of_one_drive, remaining_places, said_of_one_drive, said_of_places
+
+if TYPE_CHECKING:
+    from ..store.columns import Columns
 
 MOVED_COLUMNS = "x", "y", "z", "s", "d"
 AGREEMENT_PLAN, AGREEMENT_HEIGHT = 0.020, 0.007    # m: a road stays as measured if nine tenths of its offsets are less
@@ -119,9 +123,15 @@ def _disagree(offsets):
 def _report_offsets(road, offsets, found, progress):
     """Log the offsets, and warn of places where passes still differ after the corrections found."""
     if found:
-        plan, up = (f"{100 * np.median(v):.1f} cm (at most {100 * v.max():.1f})" if len(v) else "an unknown distance" for v in _separations(offsets))
-        progress.info(f"Road {road}: its passes lay {plan} beside and {up} above each other, as navigation drifts between two drives. "
-                     "They were laid on each other, each moved by its share.")
+        apart = _separations(offsets)
+        plan, up = (f"{100 * np.median(v):.1f} cm (at most {100 * v.max():.1f})" if len(v) else "an unknown distance" for v in apart)
+        said = f"Road {road}: its passes lay {plan} beside and {up} above each other"
+        if max((float(v.max()) for v in apart if len(v)), default=0.0) > MAX_OFFSET:
+            progress.warn(f"{said}, which is more than navigation drifts within a survey, as drives of different years or datums do. They were laid "
+                          "on each other, each moved by its share; nothing shows which of them is right, so all that is drawn may be off by half of "
+                          "that. Process the files of each drive by itself, or measure control points.")
+        else:
+            progress.info(f"{said}, as navigation drifts between two drives. They were laid on each other, each moved by its share.")
     elif all(len(v) for v in _separations(offsets)):
         plan, up = (100 * np.percentile(v, 90) for v in _separations(offsets))
         progress.info(f"Road {road}: nine tenths of its passes lie within {plan:.1f} cm beside and {up:.1f} cm above each other; "
@@ -173,11 +183,27 @@ def _moved_track(frame, moves, p):
 
 def _replace_points(survey, moves, progress, folder):
     """Replace the store by one of corrected points, and the passes of the frame by corrected ones."""
-    before, frame = survey.store, survey.frame
+    frame = survey.frame
+    replace_points(survey, lambda records: _moved_points(frame, moves, records), progress, folder)
+    survey.moves = moves
+    survey.frame = replace(frame, passes=[_moved_track(frame, moves, p) for p in frame.passes])
+
+
+def replace_points(survey: Any, moved: Callable[[Columns], Columns], progress: Progress = Progress(), folder: Path | None = None) -> None:
+    """Replace the store of a survey by one of moved points.
+
+    Parameters
+    ----------
+    survey : Survey
+    moved : gives the Columns of a section with other coordinates
+    progress : Progress
+    folder : of the moved points that are not kept in memory; None for a temporary file
+    """
+    before = survey.store
     store = SectionStore(before.dtype, before.section_length, before.memory_limit, folder=folder)
 
     def part(key):
-        records = _moved_points(frame, moves, before.section(*key))
+        records = moved(before.section(*key))
         return store.partition(key[0], records) if len(records) else None
 
     try:
@@ -188,5 +214,4 @@ def _replace_points(survey, moves, progress, folder):
         store.close()
         raise
     before.close()
-    survey.store, survey.moves = store, moves
-    survey.frame = replace(frame, passes=[_moved_track(frame, moves, p) for p in frame.passes])
+    survey.store = store

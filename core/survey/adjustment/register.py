@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d, maximum_filter1d, minimum_filter1d
+from scipy.ndimage import gaussian_filter1d, maximum_filter1d, median_filter, minimum_filter1d
 
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
@@ -30,6 +30,10 @@ STRIP_HALF_WIDTH = 12.0           # m either side of the reference line
 LAG_CELL, ROW_CELL = 0.02, 0.25  # m: cell size along an offset, and across it
 MAX_OFFSET = 0.30            # m between two passes
 LAGS = np.arange(-int(round(MAX_OFFSET / LAG_CELL)), int(round(MAX_OFFSET / LAG_CELL)) + 1)
+MAX_ROUGH_OFFSET = 1.5       # m between two drives of different years or datums
+ROUGH_LAGS = 2 * np.arange(-int(MAX_ROUGH_OFFSET / LAG_CELL / 2), int(MAX_ROUGH_OFFSET / LAG_CELL / 2) + 1)   # narrower than half of a line
+MIN_COMPARED = 0.3           # of the windows that show an offset across, or the passes seem to lie farther apart
+ROUGH_GROUPS, ROUGH_GROUP = 5, 3   # groups along a road, and windows of each, that are searched then
 MIN_CELL_HEIGHT, MAX_CELL_HEIGHT = -0.3, 0.4   # m about the road's expected height: ground and curbs
 HEIGHT_BLUR_CELLS = 3               # cells over which heights are averaged
 DETREND_CELLS = 51            # cells: variations over more than a metre are neither curbs nor paint
@@ -144,18 +148,18 @@ def _shifted(one, other, lag):
     return one[:, max(lag, 0):size + min(lag, 0)], other[:, max(-lag, 0):size - max(lag, 0)]
 
 
-def correlation_sums(one: Strips, other: Strips) -> np.ndarray:
+def correlation_sums(one: Strips, other: Strips, lags: np.ndarray = LAGS) -> np.ndarray:
     """(2, 4, L) per channel and lag: sums of products, of squares of either strip, and counts, over the cells known in both."""
-    found = np.zeros((2, 4, len(LAGS)))
+    found = np.zeros((2, 4, len(lags)))
     for k, name in enumerate(CHANNELS):
         known = [np.isfinite(getattr(strips, name)) for strips in (one, other)]
         # integers sum exactly, in whatever order the library adds them
         values = [np.where(there, np.rint(getattr(strips, name) * CHANNEL_SCALE[name]), 0.0) for there, strips in zip(known, (one, other))]
         known = [there.astype(float) for there in known]
         squares = [v * v for v in values]
-        for j, lag in enumerate(LAGS.tolist()):
+        for j, lag in enumerate(lags.tolist()):
             for i, pair in enumerate((values, (squares[0], known[1]), (known[0], squares[1]), known)):
-                found[k, i, j] = np.vdot(*map(np.ascontiguousarray, _shifted(*pair, lag)))
+                found[k, i, j] = np.vdot(*map(np.ascontiguousarray, _shifted(pair[0], pair[1], lag)))
     return found
 
 
@@ -189,19 +193,70 @@ def pass_offsets(survey: Any, road: int, progress: Progress = Progress()) -> lis
                if _several_passes(survey.frame.passes_of(road), number * WINDOW_LENGTH, (number + 1) * WINDOW_LENGTH)]
     seen = _seen(survey, road, windows, {}, progress.part(0.0, 1.0 / 3.0))
     found = [_combine_windows(pair, evidence) for pair, evidence in sorted(seen.items())]
+    rough = {(pair.one, pair.other): places for pair in found if (places := _rough_offsets(survey, road, pair))}
+    if rough:
+        seen = _seen(survey, road, windows, rough, progress.part(1.0 / 3.0, 1.0 / 3.0))
+        found = [_combine_windows(pair, evidence) for pair, evidence in sorted(seen.items())]
     along, left = (_mean_size(found, axis) for axis in PLAN_AXES)
     order = PLAN_AXES if along > MUCH_LARGER * left else PLAN_AXES[::-1]
     for k, (taken, measured) in enumerate((order, order[::-1]), start=1):
-        moves = {(pair.one, pair.other): {int(station // WINDOW_LENGTH): (metres, 0.0) if taken == "along" else (0.0, metres)
-                                          for station, metres in zip(pair.stations, pair.everywhere(taken)) if abs(metres) > MIN_COUPLED_OFFSET}
-                 for pair in found}
+        moves = {}
+        for pair in found:
+            places = rough.get((pair.one, pair.other), {})
+            moves[pair.one, pair.other] = {
+                number: (along + metres, left) if taken == "along" else (along, left + metres)
+                for number, metres in zip((pair.stations // WINDOW_LENGTH).astype(int).tolist(), pair.everywhere(taken).tolist())
+                if abs(metres) > MIN_COUPLED_OFFSET for along, left in [places.get(number, (0.0, 0.0))]}
         if apart := sorted({number for places in moves.values() for number in places}):
             again = _seen(survey, road, apart, moves, progress.part(k / 3.0, (k + 1) / 3.0))
             of_window = {pair: {row[0]: row for row in rows} for pair, rows in again.items()}
             there = {pair: [of_window.get(pair, {}).get(row[0], row) for row in rows] for pair, rows in seen.items()}
             found = [replace(before, **{measured: getattr(_combine_windows(pair, evidence), measured)})
                      for before, (pair, evidence) in zip(found, sorted(there.items()))]
-    return found
+    return [_with_rough(pair, rough.get((pair.one, pair.other), {})) for pair in found]
+
+
+def _with_rough(pair, places):
+    """PassOffsets with the rough offsets by which the second pass was moved before."""
+    if not places:
+        return pair
+    along, left = np.array([places[number] for number in (pair.stations // WINDOW_LENGTH).astype(int).tolist()]).T
+    # what the second look does not show remains as the rough one found it
+    return replace(pair, **{name: np.where(np.isnan(fine) & (rough != 0.0), rough, fine + rough)
+                            for name, fine, rough in (("along", pair.along, along), ("left", pair.left, left))})
+
+
+def _rough_offsets(survey, road, pair):
+    """{window: (along, left) by which the second of two passes is to be moved} where they lie farther apart than MAX_OFFSET; {} where they do not.
+
+    Drives of different years, or in different datums, lie apart by as much as a metre. Where hardly any window shows an offset, or large ones,
+    and where none shows one along the road, groups of windows are searched up to MAX_ROUGH_OFFSET.
+    """
+    known = pair.left[np.isfinite(pair.left)]
+    across = len(known) < MIN_COMPARED * len(pair.left) or len(pair.far) > 0 or np.median(np.abs(known)) > MAX_OFFSET / 2
+    if not across and np.isfinite(pair.along).any():
+        return {}
+    numbers = (pair.stations // WINDOW_LENGTH).astype(int)
+    starts = np.unique(np.linspace(0, max(len(numbers) - ROUGH_GROUP, 0), ROUGH_GROUPS).astype(int)).tolist()
+    found = []
+    for start in starts:
+        group = numbers[start:start + ROUGH_GROUP].tolist()
+        evidence = [one[pair.one, pair.other] for one in ordered_map(lambda number: _window_evidence(survey, road, number, {}, ROUGH_LAGS), group)
+                    if (pair.one, pair.other) in one]
+        if evidence:
+            along, left = (best_offsets(np.sum([one[k] for one in evidence], axis=0), ROUGH_LAGS)[0] for k in (1, 0))
+            paint, steps = (CHANNELS.index(name) for name in ("paint", "steps"))
+            found.append((np.mean(group), *(column[paint] if np.isfinite(column[paint]) else column[steps] for column in (along, left))))
+    where, *columns = np.array(found).reshape(-1, 3).T
+    # one group alone may be wrong, the median of three neighbours is not
+    known = [(where[there], median_filter(column[there], 3, mode="nearest")) for column in columns for there in [np.isfinite(column)]]
+    shown = [len(values) > len(starts) / 3 for _, values in known]
+    if max((float(np.abs(values).max()) for (_, values), own in zip(known, shown) if own), default=0.0) <= MAX_OFFSET:
+        return {}
+    along, left = (np.interp(numbers, *column) if own else np.zeros(len(numbers)) for column, own in zip(known, shown))
+    if not across:
+        left = np.zeros(len(numbers))
+    return {number: (a, b) for number, a, b in zip(numbers.tolist(), along.tolist(), left.tolist())}
 
 
 def _mean_size(offsets, axis):
@@ -223,7 +278,7 @@ def _several_passes(passes, start, end):
     return sum(p.span[0] < end and p.span[1] > start for p in passes) > 1
 
 
-def _window_evidence(survey, road, number, moves):
+def _window_evidence(survey, road, number, moves, lags=LAGS):
     """{(one, other): (correlation sums across, correlation sums along, height offset)} of a window, each pass with the next.
 
     moves : {(one, other): {window: (along, left) by which the other is moved before}}
@@ -248,7 +303,7 @@ def _window_evidence(survey, road, number, moves):
     for one, other in zip(list(rows)[:-1], list(rows)[1:]):
         move = moves.get((one, other), {}).get(number)
         across, lengthwise = strips(rows[other], *move) if move is not None else still[other]
-        found[one, other] = (correlation_sums(still[one][0], across), correlation_sums(still[one][1], lengthwise),
+        found[one, other] = (correlation_sums(still[one][0], across, lags), correlation_sums(still[one][1], lengthwise, lags),
                              height_offset(still[one][0], across, 0))
     return found
 
@@ -278,26 +333,28 @@ def _pool(numbers, values):
     return gaussian_filter1d(whole, sigma, axis=0, mode="constant")[numbers - numbers[0]] * (sigma * np.sqrt(2 * np.pi))
 
 
-def best_offsets(likeness: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def best_offsets(likeness: np.ndarray, lags: np.ndarray = LAGS) -> tuple[np.ndarray, np.ndarray]:
     """Offsets of best correlation, (N,) metres or NaN, from (N, 4, L) of `correlation_sums`, and (N,) bool where it is at the limit.
 
     Correlation, unlike the mean difference, is not affected by noise, however it is distributed over the cells.
     """
+    cell = LAG_CELL * float(lags[1] - lags[0])
+    prior = PRIOR_OFFSET_SIGMA * float(lags[-1]) / float(LAGS[-1])
     products, squares, others, counts = np.moveaxis(likeness, 1, 0)
-    enough = counts[:, len(LAGS) // 2]
+    enough = counts[:, len(lags) // 2]
     correlation = np.clip(products / np.sqrt(np.maximum(squares * others, 1e-12)), 0.0, MAX_CORRELATION)
     fit = np.log(1.0 - correlation**2) * (enough / CORRELATED_CELLS)[:, None]
-    unlikely = np.where(enough[:, None] >= MIN_SHARED_CELLS, fit, 0.0) + (LAG_CELL * LAGS / PRIOR_OFFSET_SIGMA) ** 2
+    unlikely = np.where(enough[:, None] >= MIN_SHARED_CELLS, fit, 0.0) + (LAG_CELL * lags / prior) ** 2
     best = np.argmin(unlikely, axis=1)
     least = unlikely.min(axis=1)
     clear = (least < -MIN_LIKELIHOOD_RATIO) & (_second_best(unlikely, best) > MAX_RUNNER_UP * least)
-    limit = clear & ((best == 0) | (best == len(LAGS) - 1))
+    limit = clear & ((best == 0) | (best == len(lags) - 1))
     # sub-cell position from a parabola through the best lag and its neighbours
-    k = np.clip(best, PARABOLA_CELLS, len(LAGS) - 1 - PARABOLA_CELLS)[:, None] + np.arange(-PARABOLA_CELLS, PARABOLA_CELLS + 1)
+    k = np.clip(best, PARABOLA_CELLS, len(lags) - 1 - PARABOLA_CELLS)[:, None] + np.arange(-PARABOLA_CELLS, PARABOLA_CELLS + 1)
     bend, slope, _ = np.polyfit(np.arange(-PARABOLA_CELLS, PARABOLA_CELLS + 1.0), np.take_along_axis(unlikely, k, 1).T, 2)
     bend = np.maximum(bend, 1e-12)
-    found = LAG_CELL * (LAGS[k[:, PARABOLA_CELLS]] + np.clip(-0.5 * slope / bend, -PARABOLA_CELLS, PARABOLA_CELLS))
-    return np.where(clear & ~limit & (LAG_CELL / np.sqrt(bend) < MAX_OFFSET_SIGMA), found, np.nan), limit
+    found = LAG_CELL * lags[k[:, PARABOLA_CELLS]] + cell * np.clip(-0.5 * slope / bend, -PARABOLA_CELLS, PARABOLA_CELLS)
+    return np.where(clear & ~limit & (cell / np.sqrt(bend) < MAX_OFFSET_SIGMA * cell / LAG_CELL), found, np.nan), limit
 
 
 def _second_best(unlikely, best):

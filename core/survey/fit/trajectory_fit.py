@@ -23,6 +23,9 @@ VEHICLE_HEIGHT = 4.0    # m (the same), so no scanner rides farther above or bel
 BELOW_ROAD = 0.5        # m below the road, beyond which a trajectory is no line on it either
 FOOT = 0.3048           # m
 CLEARLY_BETTER = 0.5    # of what one move leaves, below which another is taken
+SINGLE_STEPS = tuple(2.0**-k for k in range(6))   # m from number to number of single precision, from 262 km on
+ROUNDING_SAMPLES, MIN_ROUNDED_VALUES = 20_000, 200   # points looked at, and different values of them, or points lie on lines
+ROUNDED_TO = 0.0011     # m: files round coordinates once more, to a millimetre
 PLACE_GAP = 2.0         # s between windows, from which they are of another place
 MIN_PLACE_WINDOWS = 3
 USUAL_AHEAD = 3.0       # m ahead of a trajectory on the same vehicle that scanners ride, one sigma
@@ -61,6 +64,7 @@ def fitted_trajectory(files: Sequence[CloudHeader], trajectory: Trajectory, scan
     if not trajectory.has_time or not all(file.has_time for file in files if file.count):
         return FittedTrajectory(given, shape.sigma, False)
     sample = read_places(files, scanner_field)
+    shape = replace(shape, sigma=float(np.hypot(shape.sigma, _rounding(sample.place, progress))))
     mountings = [one for one in scanner_mountings(sample, shape.trajectory) if np.hypot(*usual_lever([one])[0][:2]) < CORRIDOR]
     if not mountings or _other_heights(sample, shape.trajectory, mountings, progress):
         return FittedTrajectory(given, shape.sigma, bool(mountings))
@@ -70,6 +74,20 @@ def fitted_trajectory(files: Sequence[CloudHeader], trajectory: Trajectory, scan
     # a trajectory far above its scanners swings over them, as the vehicle rolls
     moved = _on_way(level, mountings if level is shape.trajectory else _met(scanner_mountings(sample, level)), progress)
     return FittedTrajectory(given if moved is shape.trajectory else moved, shape.sigma, True)
+
+
+def _rounding(place, progress):
+    """m across, one sigma of the rounding of coordinates that went through single precision; it is said. 0 where they did not."""
+    steps = np.zeros(2)
+    for axis, values in enumerate(place.T[:2]):
+        some = values[::max(len(values) // ROUNDING_SAMPLES, 1)]
+        if len(np.unique(some)) > MIN_ROUNDED_VALUES:
+            steps[axis] = next((step for step in SINGLE_STEPS if np.abs(some / step - np.rint(some / step)).max() * step < ROUNDED_TO), 0.0)
+    if not steps.any():
+        return 0.0
+    progress.warn(f"The coordinates of the points come in steps of {steps[0]:.3g} m in x and {steps[1]:.3g} m in y, as those of single precision: "
+                  "what is drawn is blurred by that. Export the cloud anew with double precision, or with an offset near the survey.")
+    return float(steps.max() / np.sqrt(12.0))
 
 
 def _met(mountings):

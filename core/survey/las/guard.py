@@ -51,7 +51,8 @@ def find_damage(path: str | os.PathLike[str], mended: MendedHeader | None = None
         if least is not None and fields.record_size < least:
             return f"its header states {fields.record_size} bytes per point, and points of format {fields.point_format} have {least}"
         if not fields.compressed:
-            return ""
+            there = (size - fields.points_at) // fields.record_size if fields.record_size else 0
+            return f"its header promises {fields.count:,} points, and {there:,} are there" if fields.count > there else ""
         record = _laszip_record(file, fields.header_size, fields.vlrs, fields.points_at)
         if record is None:
             return "it is compressed, but the record that describes the compression is missing"

@@ -18,6 +18,7 @@ import numpy as np
 
 from .records_of_file import EVLR_HEADER_SIZE, VLR_HEADER_SIZE, HeaderFields, Record, base_size, extra_bytes_described, readable_extra_bytes
 
+MAX_RECORD_SIZE = 65535     # bytes of a point
 SAMPLED_RECORDS = 1000     # of those behind the last point that a header states, to see whether they are points too
 BOX_GROWTH, LEAST_BOX_REACH = 10.0, 1000.0   # a road goes on where the points stated end: so many times their extent, and so many metres, beyond it
 COUNT_AT, LONG_COUNT_AT, RECORD_SIZE_AT, POINTS_AT, EVLR_COUNT_AT = 107, 247, 105, 96, 243
@@ -143,12 +144,12 @@ def _lengths(fields, records, size):
     if fields.compressed:
         # the decoder cannot do without the record that says of what its points consist
         sizes = [record.item_sizes for record in records if record.item_sizes]
-        return replace(fields, record_size=sum(sizes[0])) if sizes and sum(sizes[0]) >= base else fields
+        return replace(fields, record_size=sum(sizes[0])) if sizes and base <= sum(sizes[0]) <= MAX_RECORD_SIZE else fields
     behind = records[-1].end if records else fields.header_size
     end = fields.end_of_points(size)
 
     def fits(points_at, record_size):
-        return points_at <= size and record_size >= base and any(points_at + count * record_size == end for count in fields.counts)
+        return points_at <= size and base <= record_size <= MAX_RECORD_SIZE and any(points_at + count * record_size == end for count in fields.counts)
 
     if fits(fields.points_at, fields.record_size):
         return fields

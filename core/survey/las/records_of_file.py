@@ -169,9 +169,9 @@ class Record:
 
 def base_size(point_format: int) -> int | None:
     """Bytes of a point without extra bytes; None for a format that laspy does not know."""
-    from laspy.point.dims import ALL_POINT_FORMATS_DTYPE
+    from laspy import PointFormat, supported_point_formats
 
-    return ALL_POINT_FORMATS_DTYPE[point_format].itemsize if point_format in ALL_POINT_FORMATS_DTYPE else None
+    return PointFormat(point_format).size if point_format in supported_point_formats() else None
 
 
 def extra_bytes_described(records: list[Record]) -> int:

@@ -72,7 +72,7 @@ def coarse_coordinates(samples: Sequence[FileSample]) -> str:
     for sample in samples:
         steps, scales = sample.steps, np.abs(sample.file.scales)
         ends = np.array([sample.file.minimum, sample.file.maximum], np.float32)
-        short = np.isclose(steps, np.abs(np.spacing(ends)), atol=scales).any(axis=0)
+        short = (np.abs(steps - np.abs(np.spacing(ends))) <= scales).any(axis=0)
         told = (steps > COARSE_COORDINATES) & (short | np.isclose(steps, scales, rtol=0.01))
         if not told.any():
             continue

@@ -16,6 +16,7 @@ from .table_columns import TableColumn, with_week
 from .written_values import hemisphere_signs, whole_minutes
 
 HEAD_BYTES = 20_000
+KINDS_OF_POSITIONS = ("trkpt", "coord", "rtept", "coordinates", "wpt", "point")   # in GPX and KML, the likeliest drive first
 TRACK_ENDINGS = (".gpx", ".kml")
 CHUNK = 1 << 16            # bytes handed to the parser at once
 MOST_TEXT = 200            # characters of a coordinate or time that are kept
@@ -124,7 +125,8 @@ def _number(value):
 def read_track(path: Path) -> list[TableColumn]:
     """The positions of a GPX or KML file, as columns with names.
 
-    Of GPX the points of tracks are taken, otherwise those of its route; of KML the tracks (gx:Track), otherwise the lines.
+    Of GPX the points of tracks are taken, otherwise those of its route, otherwise its waypoints; of KML the tracks (gx:Track), otherwise the
+    lines, otherwise the points.
 
     Raises
     ------
@@ -138,14 +140,11 @@ def read_track(path: Path) -> list[TableColumn]:
         raise RoadExtractionError(f"{path} cannot be read as XML ({problem}). Save the track again.") from problem
     except (LookupError, ValueError) as problem:
         raise RoadExtractionError(f"{path} cannot be read ({problem}). Save the track again, as UTF-8.") from problem
-    for kind in ("trkpt", "coord", "rtept", "coordinates"):
-        rows = reader.rows[kind]
-        if rows:
-            break
-    else:
-        held = f"; it holds {len(reader.rows['wpt'])} waypoints (layer waypoints)" if reader.rows["wpt"] else ""
-        raise RoadExtractionError(f"{path} holds no track{held}. A drive is a track (layer track_points): save it with its track, or choose the "
-                                  "layer of positions.")
+    kind = next((kind for kind in KINDS_OF_POSITIONS if reader.rows[kind]), None)
+    if kind is None:
+        raise RoadExtractionError(f"{path} holds no track. A drive is a track (layer track_points): save it with its track, or choose the layer of "
+                                  "positions.")
+    rows = reader.rows[kind]
     if kind == "coord":
         rows = [[*row[:3], when] for row, when in zip(rows, reader.whens if len(reader.whens) == len(rows) else [""] * len(rows))]
     columns = [_column_of_track(rows, k, title, unit)
@@ -162,7 +161,7 @@ class _TrackReader:
     """Points of a file, [longitude, latitude, height, time] as texts, by the element that they stand in."""
 
     def __init__(self):
-        self.rows: dict[str, list[list[str]]] = {kind: [] for kind in ("trkpt", "rtept", "wpt", "coord", "coordinates")}
+        self.rows: dict[str, list[list[str]]] = {kind: [] for kind in KINDS_OF_POSITIONS}
         self.whens: list[str] = []
         self._text, self._point = "", None
         self._parser = ParserCreate()
@@ -200,8 +199,8 @@ class _TrackReader:
             self.whens.append(text)
         elif name == "coord":
             self.rows["coord"].append([*text.split(), "", "", ""][:4])
-        elif name == "coordinates" and len(text.split()) > 1:
-            self.rows["coordinates"] += [[*tuple_.split(","), "", "", ""][:3] + [""] for tuple_ in text.split()]
+        elif name == "coordinates":
+            self.rows["coordinates" if len(text.split()) > 1 else "point"] += [[*tuple_.split(","), "", "", ""][:3] + [""] for tuple_ in text.split()]
         self._text = ""
 
 

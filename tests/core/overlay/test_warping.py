@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
-from flown_images import HEIGHT, WIDTH, chequered, measured
+from flown_images import HEIGHT, WIDTH, chequered, ground, measured
 from lanewright.core.common.errors import Cancelled, RoadExtractionError
 from lanewright.core.common.progress import Progress
+from lanewright.core.overlay.control_points import control_points
 from lanewright.core.overlay.georeference import GeoreferenceSettings, georeference
 from lanewright.core.overlay.source_image import open_image
 from lanewright.core.overlay.warp import draw_image, output_grid
@@ -40,6 +41,23 @@ def fields_lie_where_they_are(dataset, found, light=200.0, field=20):
     (1, {"bend": 0.0}), (2, {"bend": 0.03}), (2, {"bend": 0.15}), (3, {"bend": 0.03, "twist": 0.02}), (1, {"bend": 0.0, "turn": 2.5})])
 def test_every_field_lies_where_the_polynomial_puts_it(order, distortion, tmp_path):
     fields_lie_where_they_are(*drawn(tmp_path, order, distortion=distortion))
+
+
+@pytest.mark.parametrize("order, bend", [(1, 0.0), (2, 0.03)])
+def test_an_image_with_control_points_in_feet_is_drawn_in_feet_where_it_lies_in_metres(order, bend, tmp_path):
+    dataset, found = drawn(tmp_path, order, distortion={"bend": bend})
+    pixel, line = np.transpose(RIMS)
+    foot = 1200 / 3937
+    rows = np.c_[pixel, line, np.transpose(ground(pixel, line, bend=bend)) / foot].tolist()
+    points = control_points(["pixel", "line", "easting", "northing"], rows, open_image(tmp_path / "flown.tif"), "The table", "EPSG:2263")
+    in_feet = georeference(open_image(tmp_path / "flown.tif"), points, GeoreferenceSettings(order=order))
+    assert draw_image(in_feet, tmp_path / "feet.tif") < 0.1
+    image = gdal.Open(str(tmp_path / "feet.tif"))
+    assert "New York" in image.GetProjection() and "US survey foot" in image.GetProjection()
+    np.testing.assert_allclose(np.array(image.GetGeoTransform()) * foot, dataset.GetGeoTransform(), atol=1e-6)
+    assert (image.RasterXSize, image.RasterYSize) == (dataset.RasterXSize, dataset.RasterYSize)
+    np.testing.assert_allclose(image.ReadAsArray().astype(float), dataset.ReadAsArray().astype(float), atol=4)
+    assert open_image(tmp_path / "feet.tif").geotransform == pytest.approx(dataset.GetGeoTransform())
 
 
 def test_edges_stay_sharp_in_a_turned_image_to_its_rim(tmp_path):

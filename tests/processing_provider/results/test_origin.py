@@ -53,3 +53,10 @@ def test_a_geopackage_brings_its_history_into_any_project(made):
 def test_no_password_is_written(source):
     said = Provenance("roadmap", "1", {"TRAJECTORY": source}, datetime.now(timezone.utc)).parameters
     assert "secret" not in said and "se cret" not in said and "TRAJECTORY" in said
+
+
+def test_an_intensity_image_is_known_whatever_its_file_is_called(made):
+    from lanewright.processing_provider.results.origin import output_of
+    from qgis.core import QgsRasterLayer
+
+    assert output_of(QgsRasterLayer(str(made / "image.tif"), "mine")) == "INTENSITY_IMAGE"

@@ -45,7 +45,7 @@ def face_of(survey, number):
     """Offset of the left curb face in the points of one drive, metre by metre along the street."""
     points = records(survey)
     h = points["z"] * 1e-4 - (100.0 - survey.frame.origin[2])
-    face = (points["pass_number"] == number) & (points["d"] > 20_000) & (points["d"] < 40_000) & (h > 0.04) & (h < 0.09)
+    face = (points["pass_number"] == number) & (points["d"] > 20_000) & (points["d"] < 45_000) & (h > 0.04) & (h < 0.09)
     metre = np.floor(points["s"][face] * 1e-4 / 10.0).astype(int)
     known = np.bincount(metre) > 10
     return (np.bincount(metre, points["d"][face] * 1e-4) / np.maximum(np.bincount(metre), 1))[known]
@@ -185,3 +185,13 @@ def test_one_offset_out_of_line_moves_nothing_by_much():
     left[9] = 0.28
     moved = solve_corrections([PassOffsets(0, 1, stations, nothing, left, nothing, nothing[:0])])
     np.testing.assert_allclose(moved[1][1][1] - moved[0][1][1], 0.02, atol=0.012)
+
+
+@pytest.mark.parametrize("left", [0.58, -1.0])
+def test_drives_of_different_years_are_laid_on_each_other_and_said(left):
+    survey, heard = twice(left=left, paint=lambda x, y: np.abs(y) < 0.06), Heard()
+    adjust_passes(survey, heard)
+    one, other = face_of(survey, 0), face_of(survey, 1)
+    np.testing.assert_allclose(one, other, atol=0.01)
+    assert np.median(survey.frame.pass_sigma[0].metres) == pytest.approx(abs(left) / 2, abs=0.02)
+    assert sum("different years" in text for text in heard.warned) == 1

@@ -101,3 +101,11 @@ def test_heights_in_feet_beside_metres_are_named(tmp_path):
 def test_heights_that_are_upside_down_are_named(tmp_path):
     _, warned = told(*raised(mirror_drive(PAIR, seconds=5.0), tmp_path / "down.laz", lambda z: -z))
     assert len(warned) == 1 and "upside down" in warned[0]
+
+
+def test_coordinates_that_went_through_single_precision_are_named(tmp_path):
+    measured = mirror_drive(PAIR, seconds=5.0)
+    rounded = measured.place.copy()
+    rounded[:, :2] = np.round(rounded[:, :2] / 0.0625) * 0.0625
+    found, warned = told(replace(measured, place=rounded).write(tmp_path / "street.laz"), measured.trajectory())
+    assert len(warned) == 1 and "single precision" in warned[0] and found.sigma == pytest.approx(0.018, abs=0.001)

@@ -248,3 +248,9 @@ def test_an_intensity_elsewhere_is_named_by_its_fields(tmp_path):
 
     path = written(street(1, "1.2", 3000, [("echo width", "u2")]), tmp_path / "cloud.laz")
     assert "(echo width)" in without_intensity(read_headers([path]), "intensity", ["echo width"])
+
+
+def test_a_point_format_that_nobody_defined_is_refused_in_one_sentence(tmp_path):
+    for suffix in (".las", ".laz"):
+        with pytest.raises(RoadExtractionError, match="cloud"):
+            read_header(written(street(1, "1.2", 100), tmp_path / f"cloud{suffix}", ((104, "<B"), 63)))

@@ -304,13 +304,22 @@ def test_logs_of_receivers_and_tracks_are_read(tmp_path, name):
         np.testing.assert_allclose(found.roll, ROLL, atol=1e-3)
 
 
+@pytest.mark.parametrize("name", ["points.gpx", "line.kml", "points.kml"])
+def test_without_a_track_the_points_and_lines_are_the_drive(tmp_path, name):
+    places = [f"{b:.10f},{a:.10f},{c:.4f}" for a, b, c in zip(LAT, LON, Z)]
+    text = {"points.gpx": "".join(f'<wpt lat="{a:.10f}" lon="{b:.10f}"><ele>{c:.4f}</ele></wpt>' for a, b, c in zip(LAT, LON, Z)),
+            "line.kml": f"<LineString><coordinates>{' '.join(places)}</coordinates></LineString>",
+            "points.kml": "".join(f"<Point><coordinates>{place}</coordinates></Point>" for place in places)}[name]
+    check(read(tmp_path, f"<file>{text}</file>", name), None)
+
+
 def test_a_log_without_a_date_is_refused_with_a_way_out(tmp_path):
     with pytest.raises(RoadExtractionError, match="without a date"):
         read(tmp_path, nmea(day=""), "drive.nmea")
 
 
 @pytest.mark.parametrize(("name", "text", "says"), [
-    ("points.gpx", '<gpx><wpt lat="1" lon="2"><ele>3</ele></wpt></gpx>', "holds 1 waypoints"), ("broken.gpx", "<gpx><trk>", "cannot be read as XML"),
+    ("route.gpx", "<gpx><rte/></gpx>", "holds no track"), ("broken.gpx", "<gpx><trk>", "cannot be read as XML"),
     ("odd.gpx", '<?xml version="1.0" encoding="klingon"?><gpx/>', "cannot be read"),
     ("bomb.kml", '<!DOCTYPE kml [<!ENTITY a "aaaa">]><kml>&a;</kml>', "entities of its own"), ("empty.kml", "<kml/>", "holds no track"),
     ("gst.nmea", "$GNGST,1,2,3*00\n$GPRMC,1,2,3*00\n" * 5, "no sentence with positions"),
