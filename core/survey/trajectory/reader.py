@@ -215,6 +215,10 @@ def _stated_lengths(columns, place, preamble):
     return [(role, unit) for role, unit in stated.items() if unit in ("feet", "metres")]
 
 
+def _farthest(values):
+    return np.abs(values).max(initial=0.0, where=np.isfinite(values))
+
+
 def _plane_coordinates(columns, time, crs, label, notes):
     """x, y and their CRS; longitude and latitude in degrees where they are geographic."""
     known = parse_crs(crs)
@@ -225,7 +229,7 @@ def _plane_coordinates(columns, time, crs, label, notes):
         if geographic and not unit and (np.abs(np.stack([x, y])) > 360).any():
             raise RoadExtractionError(
                 f"{label} has the CRS {horizontal_part(known).name} (degrees), but its coordinates reach "
-                f"{np.nanmax(np.abs(x)):.0f}, {np.nanmax(np.abs(y)):.0f}. Give the CRS that its x and y are in.")
+                f"{_farthest(x):.0f}, {_farthest(y):.0f}. Give the CRS that its x and y are in.")
         if not geographic and known is not None and unit:
             raise RoadExtractionError(
                 f"{label} has the CRS {horizontal_part(known).name}, but its coordinates look like longitude and latitude "
@@ -237,7 +241,7 @@ def _plane_coordinates(columns, time, crs, label, notes):
         unit = geographic_unit(x, y, time)
         if not unit and (np.abs(np.stack([x, y])) > 360).any():
             raise RoadExtractionError(
-                f"{label} has longitude and latitude up to {np.nanmax(np.abs(x)):.0f}, {np.nanmax(np.abs(y)):.0f}; these are not degrees. "
+                f"{label} has longitude and latitude up to {_farthest(x):.0f}, {_farthest(y):.0f}; these are not degrees. "
                 "Name the columns x and y when they are metres.")
     else:
         raise RoadExtractionError(f"{label} has no x and y, nor longitude and latitude. Name its columns time, x, y, z.")

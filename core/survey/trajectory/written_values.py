@@ -155,5 +155,5 @@ def hemisphere_signs(texts: Sequence[str]) -> np.ndarray | None:
 
 def whole_minutes(values: np.ndarray) -> np.ndarray:
     """(N,) degrees of numbers in which receivers write degrees and minutes together, ddmm.mmmm (NMEA 0183)."""
-    size = np.abs(values)
+    size = np.where(np.isfinite(values), np.abs(values), np.nan)
     return np.copysign(np.floor(size / 100.0) + size % 100.0 / 60.0, values)
