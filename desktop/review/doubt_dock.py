@@ -101,7 +101,7 @@ class DoubtDock(QDockWidget):
         self.accept_button = self._button(tr("Accept"), tr("It is right as it is"), lambda: self.decide("accept"), "A")
         self.delete_button = self._button(tr("Delete"), tr("There is nothing of that kind here"), lambda: self.decide("delete"), "D")
         self.move_button = self._button(tr("Move…"), tr("Draw where it belongs, within 2 m of where it is"), self.begin_move, "M")
-        self.other_button = self._button(tr("Other reading"), tr("Take the second reading of the program, which is hardly less likely"),
+        self.other_button = self._button(tr("Other reading"), tr("Take the second reading of the program, which is almost as likely"),
                                          lambda: self.decide("take"), "O")
         self.draw_button = self._button(tr("Draw"), tr("Draw what is missing"), lambda: None)
         menu = QMenu(self)
