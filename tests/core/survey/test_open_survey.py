@@ -304,7 +304,7 @@ def test_a_street_all_in_feet_that_no_crs_tells_of_is_warned_of(street, tmp_path
                      z=trajectory.z / unit)
     heard = Heard()
     open_survey([write_cloud(tmp_path / "feet.laz", *feet, crs=crs)], driven, progress=heard)
-    assert any(re.search("as if cloud and trajectory were in feet.*set CRS", text) for text in heard.warnings) == warned
+    assert any(re.search("as if cloud and trajectory were in feet.*Set the parameter CRS", text) for text in heard.warnings) == warned
     assert not any("The times of the points" in text for text in heard.warnings)
 
 
@@ -355,26 +355,6 @@ def test_exchanged_coordinates_are_recognised(street):
     trajectory, _, path = street
     with pytest.raises(RoadExtractionError, match="x and y are exchanged.*export the cloud"):
         open_survey([path], Trajectory(trajectory.time, trajectory.y, trajectory.x, trajectory.z))
-
-
-def test_longitude_and_latitude_exchanged_are_recognised(street, tmp_path):
-    from pyproj import Transformer
-
-    trajectory, points, _ = street
-    lon, lat = Transformer.from_crs(32632, 4326, always_xy=True).transform(trajectory.x, trajectory.y)
-    cloud = write_cloud(tmp_path / "c.laz", *points, crs="EPSG:32632")
-    with pytest.raises(RoadExtractionError, match="longitude and latitude are exchanged"):
-        open_survey([cloud], Trajectory(trajectory.time, lat, lon, trajectory.z, crs="EPSG:4326"))
-
-
-def test_a_cloud_counted_from_the_centre_of_the_earth_is_recognised(street, tmp_path):
-    from pyproj import Transformer
-
-    trajectory, (x, y, z, time), _ = street
-    lon, lat = Transformer.from_crs(32632, 4979, always_xy=True).transform(x, y)
-    cloud = write_cloud(tmp_path / "c.laz", *Transformer.from_crs(4979, 4978, always_xy=True).transform(lon, lat, z), time)
-    with pytest.raises(RoadExtractionError, match="centre of the earth: reproject"):
-        open_survey([cloud], trajectory)
 
 
 @pytest.mark.parametrize("foot", [0.3048, 1200 / 3937])
