@@ -68,7 +68,7 @@ class _Sample:
 
 
 def read_places(files: Sequence[CloudHeader], scanner_field: str | None = "automatic") -> _Sample:
-    """First returns of PLACE_WINDOWS of time at each of PLACES_READ places spread evenly over the points of the files; of more where places are fewer.
+    """First returns of PLACE_WINDOWS of time, or more, at each of PLACES_READ places spread evenly over the points of the files.
 
     Parameters
     ----------
