@@ -87,11 +87,12 @@ def said_of_levels(frame: Any) -> list[str]:
             continue
         middle = float(np.median(rise[known]))
         if np.quantile(np.abs(rise[known] - middle), SHARE_ALONG) < EVEN_RISE:
+            first, last = s[known].min() - CORRECTION_STEP / 2, s[known].max() + CORRECTION_STEP / 2
             said.append(
-                f"Roads {one} and {other} run along each other at stations {s[known].min() - CORRECTION_STEP / 2:.0f} to "
-                f"{s[known].max() + CORRECTION_STEP / 2:.0f} m of road {one}, and one lies {abs(middle):.2f} m above the other all along, as no bridge "
-                "does. They seem to be one road with heights of two kinds (above the ellipsoid and above sea level), and the map shows it twice. Bring "
-                "the drives to one kind of heights, or process the files of each drive by itself.")
+                f"Roads {one} and {other} run along each other at stations {first:.0f} to {last:.0f} m of road {one}, and one lies "
+                f"{abs(middle):.2f} m above the other all along, as no bridge does. They seem to be one road with heights of two kinds (above the "
+                "ellipsoid and above sea level), and the map shows it twice. Bring the drives to one kind of heights, or process the files of each "
+                "drive by itself.")
     return said
 
 
