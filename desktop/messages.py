@@ -30,7 +30,8 @@ def all_is_there(iface) -> bool:
         return True
     copy = _button(tr("Copy command"), lambda: QgsApplication.clipboard().setText(install_command()))
     copy.setToolTip(install_command())
-    _say(iface, missing, Qgis.MessageLevel.Warning, copy, _button(tr("How to install…"), lambda: show_text(iface.mainWindow(), "Lanewright", how_to_install())))
+    how = _button(tr("How to install…"), lambda: show_text(iface.mainWindow(), "Lanewright", how_to_install()))
+    _say(iface, missing, Qgis.MessageLevel.Warning, copy, how)
     return False
 
 
