@@ -36,7 +36,7 @@ from ..adjustment.register import (
 )
 from ..store.records import COORDINATE_SCALE, to_units
 
-LOOK_WINDOWS, SCANNER_WINDOWS = 4, 16   # of the survey in which scanners are looked at, and measured: an error of a mounting is the same in all
+LOOK_WINDOWS, SCANNER_WINDOWS = 3, 16   # of the survey in which scanners are looked at, and measured: an error of a mounting is the same in all
 # m ahead, left and up that scanners may differ by without a move: along lines nothing is drawn sharply; less than the faces that are looked for
 MAX_SCANNER_OFFSETS = 2 * AGREEMENT_PLAN, AGREEMENT_PLAN, 0.010
 SIDES = "right", "left"
@@ -73,7 +73,7 @@ def lay_scanners(survey: Any, progress: Progress = Progress(), folder: Path | No
     -------
     m across, one sigma that stays open: how far the middle of the scanners may be off; 0 where they agree
     """
-    if len(survey.scanners) < 2 or not any(map(_apart, scanner_offsets(survey, LOOK_WINDOWS))):
+    if len(survey.scanners) < 2 or _agree_at_a_look(survey):
         return 0.0
     offsets = scanner_offsets(survey, SCANNER_WINDOWS)
     if not any(map(_apart, offsets)):
@@ -88,6 +88,27 @@ def lay_scanners(survey: Any, progress: Progress = Progress(), folder: Path | No
     frame = survey.frame
     replace_points(survey, lambda records: _moved(frame, moves, records), progress, folder)
     return sigma
+
+
+def _agree_at_a_look(survey):
+    """Whether scanners agree in the first windows that show all of their moves, or in all LOOK_WINDOWS together.
+
+    An error of a mounting is the same all along a survey, so that one window clears a scanner.
+    """
+    seen: dict[int, list] = {}
+    for window in _windows(survey, LOOK_WINDOWS):
+        for number, evidence in _window_evidence(survey, window).items():
+            seen.setdefault(number, []).append(evidence)
+        offsets = [_offsets(number, evidence) for number, evidence in seen.items()]
+        if len(offsets) == len(survey.scanners) - 1 and not any(map(_apart, offsets)) and all(map(_all_shown, offsets)):
+            return True
+    return not any(_apart(_offsets(number, evidence)) for number, evidence in seen.items())
+
+
+def _all_shown(one):
+    """Whether moves of a scanner are known: on both sides those across and up, on one that along the way."""
+    known = np.isfinite(one.moves)
+    return bool(known[:, 1:].all() and known[:, 0].any())
 
 
 def _apart(one):
