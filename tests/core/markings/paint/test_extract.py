@@ -11,7 +11,8 @@ from lanewright.core.intensity.image import make_intensity_image, write_intensit
 from lanewright.core.io.geotiff import IntensityImage
 from lanewright.core.markings.paint import extract as extraction
 from lanewright.core.markings.paint import windows
-from lanewright.core.markings.paint.extract import MarkingSettings, extract_markings
+from lanewright.core.markings.paint.extract import extract_markings
+from lanewright.core.markings.paint.settings import MarkingSettings
 from lanewright.core.survey.frame.build import build_frame
 from lanewright.core.survey.store.records import ROAD_POINT, to_units
 from lanewright.core.survey.store.road_points import RoadPoints
