@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...common.errors import RoadExtractionError
-from .columns import Unit, candidates_by_role, listed
+from .columns import LONGEST_NAME, Unit, candidates_by_role, listed
 from .table_columns import CHECKED_ROWS, TableColumn, first_row, with_week
 from .time_systems import unix_time_found
 from .written_values import (
@@ -31,7 +31,6 @@ LARGEST_SECONDS = 1e10           # times beyond it are counted in smaller units
 LEAST_EVEN = 0.95                # of the steps of a column that may be time are near the usual one
 COUNTS_OTHERS = re.compile(r"id\b|\b(no|nr)\b|num|count|index|station|chainage|dist|length|km|frame|image|photo|row|line|record", re.IGNORECASE)
 NEVER_BEFORE = 1.46e9            # GPS seconds, April 2026: no clock of a computer is trusted that is behind this
-LONG = 40                        # characters of a field in a message
 TOLD_CLOCKS = {"gps": "GPS", "utc": "UTC"}          # words of Columns that say what a clock shows
 
 
@@ -226,8 +225,9 @@ def _from_clock(columns, meaning, label, notes):
         times = clock_times([f"{day.split('.')[0] if day[:8].isdigit() else day} {text}" for day, text in zip(days, texts)]) or times
     if times is None:
         raise RoadExtractionError(
-            f"The column {listed([column.title])} of {label} should be the time, but holds {column.first[:LONG]!r}, which is neither a number nor a "
-            f"clock time. The first row reads {first_row(columns)}. Rename the column, or say which is which in Columns of Import trajectory.")
+            f"The column {listed([column.title])} of {label} should be the time, but holds {column.first[:LONGEST_NAME]!r}, which is neither a "
+            f"number nor a clock time. The first row reads {first_row(columns)}. Rename the column, or say which is "
+            "which in Columns of Import trajectory.")
     return _gps_seconds(times, column, meaning, "" if date is None else date.title, label, notes)
 
 
@@ -252,8 +252,8 @@ def _gps_seconds(times, column, meaning, date_title, label, notes):
         why = f"it is not said whether the clock shows GPS time, UTC, which differs {apart}, or local time"
         advice = "name the column GPS time or UTC, or write gps or utc in place of time in Columns of Import trajectory, if you know what it shows"
     raise RoadExtractionError(
-        f"The column {listed([column.title or 'without a name'])} of {label} holds clock times such as {column.first[:LONG]!r}. GPS seconds are "
-        f"needed, and {why}. Export the trajectory with GPS time in seconds; or {advice}.")
+        f"The column {listed([column.title or 'without a name'])} of {label} holds clock times such as {column.first[:LONGEST_NAME]!r}. GPS seconds "
+        f"are needed, and {why}. Export the trajectory with GPS time in seconds; or {advice}.")
 
 
 def _added_leap_seconds(utc, label, notes):

@@ -11,6 +11,7 @@ from xml.parsers.expat import ExpatError, ParserCreate
 import numpy as np
 
 from ...common.errors import RoadExtractionError
+from ...io.text_table import as_number
 from .columns import Unit
 from .table_columns import TableColumn, with_week
 from .written_values import hemisphere_signs, whole_minutes
@@ -89,7 +90,7 @@ def _columns_of_log(rows, fields):
     clocked = "clock" in fields
     offset = 1 if clocked else 2
     text = {what: [row[k + offset] if len(row) > k + offset else "" for row in rows] for what, k in fields.items()}
-    number = {what: np.array([_number(value) for value in values]) for what, values in text.items()}
+    number = {what: np.array([as_number(value) for value in values]) for what, values in text.items()}
     bad = np.array([value in NO_SOLUTION for value in text.get("status", [""] * len(rows))]) | (number.get("quality", np.ones(len(rows))) == 0)
     for axis in ("lat", "lon"):
         if f"{axis}_side" in text:
@@ -109,17 +110,10 @@ def _columns_of_log(rows, fields):
         times = [f"{day or first} {clock[:2]}:{clock[2:4]}:{clock[4:]}".strip() if re.match(r"\d{6}", clock) else ""
                  for day, clock in zip(days, text["clock"])]
         return [TableColumn("UTC", np.full(len(rows), np.nan), Unit(), lambda: times, next((time for time in times if time), "")), *columns]
-    week, seconds = (np.array([_number(row[k]) for row in rows]) for k in (0, 1))
+    week, seconds = (np.array([as_number(row[k]) for row in rows]) for k in (0, 1))
     if "seconds" in number:
         week, seconds = number["week"], number["seconds"]
     return [TableColumn("GPS time", with_week(seconds, week), Unit("seconds"), first=str(seconds[0])), *columns]
-
-
-def _number(value):
-    try:
-        return float(value)
-    except ValueError:
-        return np.nan
 
 
 def read_track(path: Path) -> list[TableColumn]:
@@ -154,7 +148,7 @@ def read_track(path: Path) -> list[TableColumn]:
 
 def _column_of_track(rows, k, title, unit):
     texts = [row[k] for row in rows]
-    return TableColumn(title, np.array([_number(text) for text in texts]), Unit(unit), lambda: texts, next((text for text in texts if text), ""))
+    return TableColumn(title, np.array([as_number(text) for text in texts]), Unit(unit), lambda: texts, next((text for text in texts if text), ""))
 
 
 class _TrackReader:
