@@ -22,6 +22,7 @@ from .written_values import (
     hold_times,
     leap_seconds,
     whole_minutes,
+    whole_seconds,
 )
 
 EARTH_RADIUS = 6.33e6, 6.42e6    # m from the centre of the earth to its surface, with mountains
@@ -144,6 +145,10 @@ def _angle(columns, k, most):
         texts = column.written()
         if hold_angles(texts):
             values = angles_of(texts)
+    elif column.unit.name == "packed minutes":
+        return whole_minutes(values)
+    elif column.unit.name == "packed seconds":
+        return whole_minutes(whole_seconds(values * column.unit.factor))
     elif column.unit.name == "radians" or (column.unit.name == "degrees" and column.unit.factor != 1.0):
         factor = column.unit.factor if column.unit.name == "degrees" else np.degrees(column.unit.factor)
         # np.degrees gives the last bit that a product would not
