@@ -15,7 +15,7 @@ from ..io.cloud_crs import check_projected, crs_note, unit_note
 from ..io.crs import crs_name, parse_crs
 from ..io.units import FOOT, US_SURVEY_FOOT, as_in_file
 from .adjustment.adjust import adjust_passes
-from .adjustment.beside import compare_carriageways
+from .adjustment.beside import compare_carriageways, said_of_levels
 from .clock_check import check_clock
 from .fit.scanners import lay_scanners
 from .fit.trajectory_fit import fitted_trajectory
@@ -181,6 +181,8 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
         for file in shared.ordered.iterdir():
             file.unlink()
         survey.put_in_order(shared.ordered, shared.ordering, progress.part(1.0, 1.0))
+    for said in said_of_levels(survey.frame) if len(frame.roads) > 1 else ():
+        progress.warn(said)
     if settings.fit_passes and has_time and len(frame.roads) > 1:
         compare_carriageways(survey, progress.part(1.0, 1.0))
     # what the user says overrules what lies beside the trajectory

@@ -196,7 +196,7 @@ def _counted_seconds(column, label, doubts):
     if column.unit.name != "seconds" and largest > LARGEST_SECONDS:
         factor = next((10.0**-power for power in (3, 6, 9) if largest * 10.0**-power < LARGEST_SECONDS), 1.0)
         seconds = seconds * factor
-        doubts.append(f"The times of {label} are so large that they are taken to count {factor:.0e} s.")
+        doubts.append(f"The times of {label} are so large that they are taken as counts of {factor:g} s.")
     return seconds
 
 
@@ -210,7 +210,7 @@ def _from_1970(seconds, title, shown, label, notes):
         if shown == "UTC":
             raise RoadExtractionError(f"Columns says utc of {listed([title or 'a column'])}, but {first[0]:.1f} is no date and no count "
                                       "from 1970, so the leap seconds are not known. Write time in place of utc.")
-        raise RoadExtractionError(unix_time_found(float(first[0]), f"{label} counts"))
+        raise RoadExtractionError(unix_time_found(float(first[0]), f"The times of {label} seem to count"))
     return seconds
 
 

@@ -180,7 +180,7 @@ def _in_seconds(trajectory, label):
     factor = next((10.0**-power for power in (3, 6, 9) if SLOWEST_DRIVE < fastest * 10.0**power < MAX_VEHICLE_SPEED), 1.0)
     if not trajectory.has_time or not 0.0 < fastest < SLOWEST_DRIVE or factor == 1.0:
         return trajectory
-    note = f"The times of {label} are taken to count {factor:.0e} s: in seconds the drive would be {fastest:.2g} m/s fast at most."
+    note = f"The times of {label} are taken as counts of {factor:g} s: in seconds the drive would be at most {fastest:.2g} m/s fast."
     return replace(trajectory, time=trajectory.time * factor, doubts=(*trajectory.doubts, note))
 
 
