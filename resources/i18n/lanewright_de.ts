@@ -7590,6 +7590,11 @@
         </message>
         <message>
             <location filename="../../desktop/review/section_dock.py" />
+            <source>Click on the road in the map.</source>
+            <translation>Klicken Sie in der Karte auf die Straße.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/section_dock.py" />
             <source>No line of a road map lies near: click on a road that Lanewright mapped.</source>
             <translation>Keine Linie einer Straßenkarte liegt in der Nähe: Klicken Sie auf eine Straße, die Lanewright kartiert hat.</translation>
         </message>
@@ -7637,11 +7642,6 @@
             <location filename="../../desktop/review/section_dock.py" />
             <source>No points were read.</source>
             <translation>Es wurden keine Punkte gelesen.</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/review/section_view.py" />
-            <source>Click on the road in the map.</source>
-            <translation>Klicken Sie in der Karte auf die Straße.</translation>
         </message>
         <message>
             <location filename="../../desktop/review/section_view.py" />
