@@ -177,7 +177,7 @@ class _Reading:
                                       "so in its first line.") from problem
         except ExpatError as problem:
             if self.in_utf8 and not _is_utf8(self.path):
-                raise RoadExtractionError(f"{self.path} is not written in UTF-8, as XML is that names no other encoding. Save it again as UTF-8, or "
+                raise RoadExtractionError(f"{self.path} is not written in UTF-8, though it names no other encoding. Save it again as UTF-8, or "
                                           "name its encoding in its first line.") from problem
             raise RoadExtractionError(f"{self.path} is not well-formed XML: {problem}. Is it {self.kind}, and whole?") from problem
         return self.root

@@ -40,7 +40,7 @@ LOOK_WINDOWS, SCANNER_WINDOWS = 3, 16   # of the survey in which scanners are lo
 # m ahead, left and up that scanners may differ by without a move: along lines nothing is drawn sharply; less than the faces that are looked for
 MAX_SCANNER_OFFSETS = 2 * AGREEMENT_PLAN, AGREEMENT_PLAN, 0.010
 SIDES = "right", "left"
-SAID_AS = ("ahead", "behind"), ("to the left", "to the right"), ("above", "below")
+SAID_AS = ("ahead", "behind"), ("left", "right"), ("above", "below")
 SAID_M = 0.005           # m
 
 
@@ -124,10 +124,10 @@ def _said(survey, one, sigma):
         return (f"{names} lie more than {100 * MAX_OFFSET:.0f} cm apart, too far to lay them on each other: curbs and lines are doubled. Calibrate "
                 "the mounting of the scanners anew, or process the points of one scanner alone.")
     right, left = (", ".join(f"{100 * abs(metres):.1f} cm {words[int(metres < 0)]}" for metres, words in zip(side, SAID_AS) if abs(metres) > SAID_M)
-                   or "nothing that shows" for side in np.nan_to_num(-one.moves))
-    return (f"{names} differ all along the survey: what the first sees lies {left} of what the other sees on the left of the vehicle, and {right} on "
-            "the right, as with a wrong lever arm or boresight angles. They were laid on each other, each moved by its share; nothing shows which of "
-            f"them is right, so all that is drawn may be off by {100 * sigma:.1f} cm (one sigma). Calibrate the mounting of the scanners anew.")
+                   or "nothing that is measurable" for side in np.nan_to_num(-one.moves))
+    return (f"{names} differ all along the survey, as with a wrong lever arm or boresight angles. On the left of the vehicle, points of the first "
+            f"are displaced from those of the other by {left}, on the right by {right}. Each was moved by its share. Nothing shows which of them is "
+            f"right, so the map may be off by {100 * sigma:.1f} cm (one sigma). Calibrate the mounting of the scanners anew.")
 
 
 def _shares(offsets):

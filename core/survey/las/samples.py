@@ -80,7 +80,7 @@ def coarse_coordinates(samples: Sequence[FileSample]) -> str:
             continue
         k = int(np.argmax(np.where(told, steps, 0.0)))
         listed = ", ".join(f"{steps[axis]:.3g} m in {name}" for axis, name in enumerate("xyz") if told[axis])
-        cause = f"at {abs(float(ends[0, k])):,.0f} m that is the step of numbers of 32 bits, through which they were passed" if short[k] else \
+        cause = f"at {abs(float(ends[0, k])):,.0f} m that is the step of 32-bit numbers, in which some program kept them" if short[k] else \
             f"that is the scale in the header of the file ({scales[k]:g} m)"
         return (f"The coordinates of {sample.file.path} lie in steps of {listed}: {cause}. Edges and markings are no better than that. Export "
                 "the cloud again with coordinates of 64 bits and a scale of 0.001 m.")
