@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import shapely
 
-from .geometry import Cubics
 from .model import MapRoad
 
 BORDER_STEP = 1.0   # m between the places at which borders are computed
@@ -146,20 +145,22 @@ def _crossing(points, a, b):
 
 
 def shape_height(shape: np.ndarray, s: np.ndarray, t: np.ndarray) -> np.ndarray:
-    """(N,) metres of the lateral shape at s and t: a cubic in t at each given s, linear between them."""
+    """(N,) metres of the lateral shape at s and t: a cubic in t at each given s, linear between them; right of its first t a cubic goes on straight."""
     if not len(shape):
         return np.zeros(len(s))
-    given = np.unique(shape[:, 0])
-    profiles = [Cubics(rows[np.argsort(rows[:, 1])][:, 1:]) for rows in (shape[shape[:, 0] == at] for at in given)]
-    values = np.stack([_within(profile, t) for profile in profiles])
+    rows = shape[np.lexsort((shape[:, 1], shape[:, 0]))]
+    given, first, count = np.unique(rows[:, 0], return_index=True, return_counts=True)
+    starts = np.full((len(given), count.max()), np.inf)
+    starts[np.repeat(np.arange(len(given)), count), np.arange(len(rows)) - np.repeat(first, count)] = rows[:, 1]
+
+    def value(k: np.ndarray) -> np.ndarray:
+        piece = np.maximum((starts[k] <= t[:, None] + 1e-9).sum(1) - 1, 0)
+        _, start, a, b, c, d = rows[first[k] + piece].T
+        dt = t - start
+        return np.where(t < starts[k, 0], a + b * dt, a + dt * (b + dt * (c + dt * d)))
+
     k = np.clip(np.searchsorted(given, s, side="right") - 1, 0, max(len(given) - 2, 0))
     if len(given) == 1:
-        return values[0]
+        return value(k)
     share = np.clip((s - given[k]) / (given[k + 1] - given[k]), 0.0, 1.0)
-    column = np.arange(len(s))
-    return values[k, column] * (1 - share) + values[k + 1, column] * share
-
-
-def _within(profile, t):
-    """A profile's value; right of its first t the first piece goes on."""
-    return profile.at(np.maximum(t, profile.rows[0, 0])) + profile.rows[0, 2] * np.minimum(t - profile.rows[0, 0], 0.0)
+    return value(k) * (1 - share) + value(k + 1) * share
