@@ -100,10 +100,11 @@ def _hermite(s, values, knots, ends):
     fixed = np.isfinite(known)
     target = np.append(values, np.zeros(2 * len(j))) - (weights * np.where(fixed, known, 0.0)[columns]).sum(1)
     weights = np.where(fixed[columns], 0.0, weights)
-    band, right = np.zeros((2 * BAND + 1, 2 * count)), np.where(fixed, known, 0.0)
-    for one, other in np.ndindex(4, 4):
-        np.add.at(band[BAND + one - other], columns[:, other], weights[:, one] * weights[:, other])
-    np.add.at(right, columns, weights * target[:, None])
+    size, side = 2 * count, np.arange(4)
+    place = (BAND + side[:, None] - side) * size + columns[:, None, :]   # of each product of two weights in the band
+    products = weights[:, :, None] * weights[:, None, :]
+    band = np.bincount(place.ravel(), products.ravel(), (2 * BAND + 1) * size).reshape(-1, size)
+    right = np.where(fixed, known, 0.0) + np.bincount(columns.ravel(), (weights * target[:, None]).ravel(), size)
     band[BAND, fixed] = 1.0
     found = solve_banded((BAND, BAND), band, right)
     return found[::2], found[1::2]
