@@ -146,7 +146,8 @@ def _rows_of_image(rows, image, column, what):
         return rows
     own = PurePath(image.path)
     seen = [PurePath(text(row, column).replace("\\", "/")) for row in rows]
-    for same in (lambda path: path.name.lower() == own.name.lower(), lambda path: path.stem.lower() == own.stem.lower()):
+    for same in (lambda path: path.name == own.name,
+                 lambda path: path.name.lower() == own.name.lower(), lambda path: path.stem.lower() == own.stem.lower()):
         kept = [row for row, path in zip(rows, seen) if same(path)]
         if kept:
             return kept

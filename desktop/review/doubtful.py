@@ -104,7 +104,7 @@ def _doubtful_rows(road_map, output):
         if why and not feature.geometry().isEmpty():
             target = TARGETS[output]
             other = str(row.get("other") or "")
-            why += tr("; another reading is hardly less likely") if other else ""
+            why += tr("; another reading is almost as likely") if other else ""
             found.append(DoubtfulPiece(f"{title_of(layer, feature)}: {why}", target, target, course_of(feature.geometry()),
                                        int(_number(row.get("road")) or 0), _number(row.get("station_m")) or 0.0, _number(row.get("offset_m")),
                                        (_number(row.get("length_m")) or 0.0) * _share_wrong(row), other))

@@ -81,7 +81,7 @@ class _Faults:
         if self.negative:
             road, lane, width, s = self.negative[0]
             found.append(f"{len(self.negative)} lanes have a width below 0, which was taken as 0. The first is lane {lane} of road {road} with "
-                         f"{width:.2f} m at s {s:.1f} m.")
+                         f"{width:.2f} m at s {s:.1f} m. Correct them where the map was made.")
         return found
 
     def _said_jumps(self) -> str:
@@ -97,7 +97,7 @@ class _Faults:
         if rest:
             named.append(f"{len(rest)} more roads, by at most {rest[0][0][2]:.3f} m")
         return (f"Gaps or kinks of the reference line ({len(roads)} of the roads) make borders of lanes jump by more than {BORDER_JUMP:g} m: "
-                f"{'; '.join(named)}.")
+                f"{'; '.join(named)}. Correct them where the map was made.")
 
 
 def _add_section(rows, lines, whole, network, surface, number, road_number, faults):

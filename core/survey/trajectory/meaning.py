@@ -22,6 +22,7 @@ from .written_values import (
     hold_times,
     leap_seconds,
     whole_minutes,
+    whole_seconds,
 )
 
 EARTH_RADIUS = 6.33e6, 6.42e6    # m from the centre of the earth to its surface, with mountains
@@ -145,6 +146,10 @@ def _angle(columns, k, most):
         texts = column.written()
         if hold_angles(texts):
             values = angles_of(texts)
+    elif column.unit.name == "packed minutes":
+        return whole_minutes(values)
+    elif column.unit.name == "packed seconds":
+        return whole_minutes(whole_seconds(values * column.unit.factor))
     elif column.unit.name == "radians" or (column.unit.name == "degrees" and column.unit.factor != 1.0):
         factor = column.unit.factor if column.unit.name == "degrees" else np.degrees(column.unit.factor)
         # np.degrees gives the last bit that a product would not
@@ -184,7 +189,7 @@ def _time(columns, meaning, label, notes, doubts):
     if column.unit.name != "seconds" and largest > LARGEST_SECONDS:
         factor = next((10.0**-power for power in (3, 6, 9) if largest * 10.0**-power < LARGEST_SECONDS), 1.0)
         seconds = seconds * factor
-        doubts.append(f"The times of {label} are so large that they are taken to count {factor:.0e} s.")
+        doubts.append(f"The times of {label} are so large that they are taken as counts of {factor:g} s.")
     if "week" in place and place["week"] != place["time"]:
         return with_week(seconds, columns[place["week"]].values)
     first = seconds[np.isfinite(seconds)][:1]
@@ -195,7 +200,7 @@ def _time(columns, meaning, label, notes, doubts):
         if meaning.clock == "UTC":
             raise RoadExtractionError(f"Columns says utc of {listed([column.title or 'a column'])}, but {first[0]:.1f} is no date and no count "
                                       "from 1970, so the leap seconds are not known. Write time in place of utc.")
-        raise RoadExtractionError(unix_time_found(float(first[0]), f"{label} counts"))
+        raise RoadExtractionError(unix_time_found(float(first[0]), f"The times of {label} seem to count"))
     return seconds
 
 

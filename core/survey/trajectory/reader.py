@@ -182,7 +182,7 @@ def _in_seconds(trajectory, label):
     factor = next((10.0**-power for power in (3, 6, 9) if SLOWEST_DRIVE < fastest * 10.0**power < MAX_VEHICLE_SPEED), 1.0)
     if not trajectory.has_time or not 0.0 < fastest < SLOWEST_DRIVE or factor == 1.0:
         return trajectory
-    note = f"The times of {label} are taken to count {factor:.0e} s: in seconds the drive would be {fastest:.2g} m/s fast at most."
+    note = f"The times of {label} are taken as counts of {factor:g} s: in seconds the drive would be at most {fastest:.2g} m/s fast."
     return replace(trajectory, time=trajectory.time * factor, doubts=(*trajectory.doubts, note))
 
 
@@ -234,6 +234,9 @@ def _plane_coordinates(columns, time, crs, label, notes):
             raise RoadExtractionError(
                 f"{label} has the CRS {horizontal_part(known).name}, but its coordinates look like longitude and latitude "
                 f"(about {np.nanmedian(x):.4f}, {np.nanmedian(y):.4f}). Set its CRS to EPSG:4326.")
+        if not geographic and not unit and geographic_unit(y, x, time) == "degrees" and _farthest(y) > 90.0:
+            raise RoadExtractionError(f"{label} has x and y that look like latitude and longitude (about {np.nanmedian(x):.4f}, "
+                                      f"{np.nanmedian(y):.4f}), in this order. Name the columns latitude and longitude.")
         if not geographic and not unit:
             return x, y, "" if known is None else known.to_wkt()
     elif "lon" in columns and "lat" in columns:
@@ -241,8 +244,11 @@ def _plane_coordinates(columns, time, crs, label, notes):
         unit = geographic_unit(x, y, time)
         if not unit and (np.abs(np.stack([x, y])) > 360).any():
             raise RoadExtractionError(
-                f"{label} has longitude and latitude up to {_farthest(x):.0f}, {_farthest(y):.0f}; these are not degrees. "
-                "Name the columns x and y when they are metres.")
+                f"{label} has longitude and latitude up to {_farthest(x):.0f}, {_farthest(y):.0f}; these are not degrees. Write their unit behind "
+                "their names, such as latitude (ddmm.mmmm) or latitude (1e-7 deg), or name the columns x and y where they are metres.")
+        if _farthest(y) > 90.0 >= _farthest(x):
+            raise RoadExtractionError(f"{label} has latitudes up to {_farthest(y):.4f}°, and there are none beyond 90°, while its longitudes reach "
+                                      f"{_farthest(x):.4f}°: the two are exchanged. Name the columns the other way round.")
     else:
         raise RoadExtractionError(f"{label} has no x and y, nor longitude and latitude. Name its columns time, x, y, z.")
     if unit == "radians":

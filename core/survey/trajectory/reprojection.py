@@ -61,7 +61,8 @@ def reproject_trajectory(trajectory: Trajectory, target_wkt: str) -> Trajectory:
             raise ProjError("some positions lie where the projection is not defined")
     except ProjError as problem:
         raise RoadExtractionError(
-            f"The trajectory is in {source.name} and cannot be brought to {target.name} ({problem}). Check the CRS of the trajectory.") from problem
+            f"The trajectory is in {source.name} and cannot be brought to {target.name} ({problem}). Check the CRS of the trajectory"
+            f"{', and that its longitude and latitude are not exchanged' if source.is_geographic else ''}.") from problem
     x, y = np.where(known, x, np.nan), np.where(known, y, np.nan)
     heading = _reproject_heading(trajectory, source, transformer, x, y)
     note = f"The trajectory was reprojected from {source.name} to {target.name}."

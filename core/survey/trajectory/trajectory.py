@@ -143,7 +143,7 @@ def _refuse_two_drives(trajectory, rows):
     raise RoadExtractionError(
         f"The trajectory is at two places at once: row {rows[first] + 1} of its positions at {trajectory.time[first]:.3f} s and row "
         f"{rows[second] + 1} at {trajectory.time[second]:.3f} s lie {apart[first]:.0f} m apart, and so do {at_once.sum():,} of {len(rows):,} rows. "
-        "Two receivers or two days seem to have been put together: give each drive its own trajectory, or times that go on.")
+        "Two receivers or two days seem to have been put together: give each drive its own trajectory, or times that continue.")
 
 
 def _zero_rows(trajectory, good):

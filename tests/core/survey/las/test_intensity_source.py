@@ -104,7 +104,7 @@ def test_coordinates_through_numbers_of_32_bits_are_told_with_their_step(tmp_pat
     x = 500_000 + RNG.uniform(0, 200, COUNT)
     assert coarse(cloud(tmp_path / "fine.laz", x=x)) == ""
     told = coarse(cloud(tmp_path / "coarse.laz", x=x.astype(np.float32).astype(float)))
-    assert "0.031 m in x" in told and "32 bits" in told and "coarse.laz" in told
+    assert "0.031 m in x" in told and "32-bit numbers" in told and "coarse.laz" in told
 
 
 @pytest.mark.parametrize("scale, says", [(0.1, "0.1 m in x, 0.1 m in y, 0.1 m in z"), (0.01, "")])
