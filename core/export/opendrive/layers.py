@@ -23,7 +23,7 @@ NO_LANES = (*RAISED, "none", "rail", "tram")
 SHORTEST_SECTION = 0.005   # m: of shorter ones the ends would be one vertex
 NEGATIVE_WIDTH = -0.01     # m: less is the rounding of a file
 BORDER_JUMP = 0.01     # m: half of the tolerance of an export
-MOST_NAMED = 20        # roads that one sentence names
+ROADS_NAMED = 20        # roads that one sentence names
 LEAST_WIDTH = 0.05     # m: lanes that are narrower everywhere are none
 
 
@@ -90,10 +90,10 @@ class _Faults:
         for jump in sorted(self.jumps, key=lambda jump: -jump[2]):
             roads.setdefault(jump[0], []).append(jump)
         named = []
-        for jumps in list(roads.values())[:MOST_NAMED]:
+        for jumps in list(roads.values())[:ROADS_NAMED]:
             road, s, metres, lane = jumps[0]
             named.append(f"road {road}, lane {lane}, by {metres:.3f} m at s {s:.1f} m" + (f" and less at {len(jumps) - 1} more" if jumps[1:] else ""))
-        rest = list(roads.values())[MOST_NAMED:]
+        rest = list(roads.values())[ROADS_NAMED:]
         if rest:
             named.append(f"{len(rest)} more roads, by at most {rest[0][0][2]:.3f} m")
         return (f"Gaps or kinks of the reference line ({len(roads)} of the roads) make borders of lanes jump by more than {BORDER_JUMP:g} m: "
