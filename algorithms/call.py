@@ -283,9 +283,10 @@ class Call:
     def commit_files(self):
         """Give the files their names, each with a note of where it comes from; that note, for the layers."""
         provenance = provenance_now(self.algorithm.ID, self.values(), self.warnings, self.names_only)
+        crs = next((features.crs for _, features in self._layers if features.crs), "")
         for path in self._files.unfinished():
             sign_file(path, provenance)
-            sign_report(path, lambda: run_facts(self, provenance))
+            sign_report(path, lambda: run_facts(self.algorithm, self.survey, self.surveyed(), crs, provenance))
         self._files.commit()
         return provenance
 

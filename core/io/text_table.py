@@ -13,6 +13,7 @@ import re
 from collections import Counter
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -270,6 +271,14 @@ def _parse(body, delimiter, columns, style=STYLES[0]):
 def finite_or_nan(values: np.ndarray) -> np.ndarray:
     """The values, of any shape, with NaN for those that are infinite or beyond MAX_NUMBER, with which sums overflow."""
     return np.where(np.abs(values) < MAX_NUMBER, values, np.nan)
+
+
+def as_number(value: Any) -> float:
+    """The number in a field, with a decimal point or comma; NaN where it holds none."""
+    try:
+        return float(value.replace(",", ".") if isinstance(value, str) else value)
+    except (TypeError, ValueError):
+        return np.nan
 
 
 def _fill_empty(body, mark):

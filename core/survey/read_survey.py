@@ -13,7 +13,7 @@ from ..common.progress import Progress
 from ..execution.phase import Executor
 from ..io.cloud_crs import check_projected, crs_note, unit_note
 from ..io.crs import crs_name, parse_crs
-from ..io.units import as_in_file
+from ..io.units import FOOT, US_SURVEY_FOOT, as_in_file
 from .adjustment.adjust import adjust_passes
 from .adjustment.beside import compare_carriageways, said_of_levels
 from .clock_check import check_clock
@@ -47,7 +47,6 @@ SECTION_LENGTHS = SECTION_LENGTH, 10.0, 25.0   # m that it may be long
 PARTS_PROGRESS = 0.85        # of reading, where the points are put in order afterwards
 LOWEST_SENSOR = 0.5          # m above the road: no scanner rides lower, but lines and places drawn on the road lie within
 HIGHEST_SENSOR = 5.0         # m above the road: vehicles are up to 4 m high (Directive 96/53/EC), and a mast on a roof adds some
-FEET = 0.3048, 1200 / 3937   # m, of the international foot and of that of surveys in the United States
 
 
 @dataclass(frozen=True)
@@ -319,12 +318,12 @@ def _what_to_try(low, high, x, y, crs, trajectory_crs, reach):
     if _runs_through(low, high, y, x, reach):
         return ("In one of them x and y are exchanged: where the trajectory's x is its easting or it is in longitude and latitude, export the cloud "
                 "with the easting as x; otherwise name the trajectory's columns the other way round, or swap them.")
-    if any(_runs_through(low * foot, high * foot, x, y, reach) for foot in FEET):
+    if any(_runs_through(low * foot, high * foot, x, y, reach) for foot in (FOOT, US_SURVEY_FOOT)):
         if not as_in_file(crs)[1].metric:
             return "The trajectory was taken to be in feet like the cloud, and seems to be in metres: give it its own CRS, as Import trajectory does."
         return ("The cloud's coordinates are the trajectory's in feet: give each the CRS that it is in (the parameter CRS is that of clouds that "
                 "carry none), or convert the cloud to metres.")
-    if any(_runs_through(low, high, x * foot, y * foot, reach) for foot in FEET):
+    if any(_runs_through(low, high, x * foot, y * foot, reach) for foot in (FOOT, US_SURVEY_FOOT)):
         return ("The trajectory's coordinates are the cloud's in feet: give it the CRS in feet that it is in, as Import trajectory does, or convert "
                 "it to metres.")
     if (np.abs(high[:2]) <= 180).all() and (np.abs(low[:2]) <= 180).all() and (high - low)[:2].max() < 1.0:

@@ -12,8 +12,8 @@ from ...common.setting import check_limits, setting
 from ..driven_middles import with_driven_middles
 from ..lane_uncertainty import sigma_of_lanes
 from ..sources import NearestValues, RoadMapSource
-from .heights import add_heights, lane_heights
-from .junctions import link_roads
+from .heights import add_heights, heights_above_road
+from .junctions import DraftRoad, link_roads
 from .model import OPEN_END, MapLane, MapRoad, OpenDriveMap, RoadMark
 from .network import LaneNetwork
 from .road_objects import add_objects
@@ -57,19 +57,6 @@ class OpenDriveSettings:
 
     def __post_init__(self) -> None:
         check_limits(self)
-
-
-@dataclass
-class DraftRoad:
-    """A road with the cells that its lanes come from.
-
-    road; strip : slices; numbers : lane of every cell of every slice; single : whether it is a way through a junction
-    """
-
-    road: MapRoad
-    strip: list[Slice]
-    numbers: list[list[int]]
-    single: bool
 
 
 @dataclass
@@ -194,7 +181,7 @@ class _Drafting:
         for row, (one, ids, section, centre) in enumerate(zip(strip, numbers, road.sections, centres)):
             for k, (cell, id) in enumerate(zip(one.cells, ids)):
                 self._describe(section.lanes[id], cell)
-                section.lanes[id].heights = lane_heights(shape, row, k)
+                section.lanes[id].heights = heights_above_road(shape, row, k)
                 section.lanes[id].marks = [self._mark_between(one, k if id > 0 else k + 1, id)]
                 status[str(self.lanes.status[cell.piece])] += cell.length
             # where lane 0 lies apart from them, the innermost border is that of the empty lane between

@@ -65,7 +65,7 @@ def add_heights(road: MapRoad, shape: RoadShape, tolerance: float) -> None:
                 return
 
 
-def lane_heights(shape: RoadShape, number: int, cell: int) -> np.ndarray:
+def heights_above_road(shape: RoadShape, number: int, cell: int) -> np.ndarray:
     """(N, 3) metres from the start of a slice's section, heights of the inner and outer border of one of its lanes above the road."""
     lift, s = shape.lifts[number][cell], shape.s[number][cell:cell + 2].mean(0) - shape.starts[number]
     rows = [(0.0, lift[0])]

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...common.progress import Progress
+from ...io.units import FOOT
 from ..estimation.growth import MAX_UNEXPLAINED
 from ..frame.road import CORRIDOR
 from ..las.reader import CloudHeader
@@ -21,7 +22,6 @@ from .mounting import Mounting, read_places, scanner_mountings, usual_lever, veh
 HALF_VEHICLE = 1.275    # m: no vehicle on the road is wider than 2.55 m (Directive 96/53/EC), so no scanner rides farther beside its middle
 VEHICLE_HEIGHT = 4.0    # m (the same), so no scanner rides farther above or below a trajectory that is on the vehicle
 BELOW_ROAD = 0.5        # m below the road, beyond which a trajectory is no line on it either
-FOOT = 0.3048           # m
 CLEARLY_BETTER = 0.5    # of what one move leaves, below which another is taken
 SINGLE_STEPS = tuple(2.0**-k for k in range(6))   # m from number to number of single precision, from 262 km on
 ROUNDING_SAMPLES, MIN_ROUNDED_VALUES = 20_000, 200   # points looked at, and different values of them, or points lie on lines

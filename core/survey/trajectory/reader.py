@@ -17,7 +17,7 @@ from ...io.text_table import SAMPLE_BYTES, finite_or_nan, read_number_table
 from .accuracy_file import accuracy_across
 from .assigned_columns import meaning_of_table
 from .columns import listed, stated_angle_unit
-from .drive_checks import HEADING_TOLERANCE, METRES_PER_DEGREE, angle_between, driven_course, geographic_unit
+from .drive_checks import HEADING_TOLERANCE, angle_between, driven_course, geographic_unit, rough_metres
 from .meaning import meaning_of, values_by_role
 from .receiver_logs import columns_of_record, is_record
 from .reprojection import lengths_in_metres, reproject_trajectory
@@ -172,9 +172,7 @@ def _from_table(columns, meaning, given, defaults, crs, angle_unit, label, notes
 
 def _in_seconds(trajectory, label):
     """The trajectory with its times in seconds, where the speed shows that they count thousandths or less."""
-    x, y = trajectory.x, trajectory.y
-    if trajectory.crs and horizontal_part(parse_crs(trajectory.crs)).is_geographic:
-        x, y = x * np.cos(np.radians(np.nanmedian(y))) * METRES_PER_DEGREE, y * METRES_PER_DEGREE
+    x, y = rough_metres(trajectory.x, trajectory.y, trajectory.crs)
     step, seconds = np.hypot(np.diff(x), np.diff(y)), np.diff(trajectory.time)
     speed = step[seconds > 0] / seconds[seconds > 0]
     speed = speed[np.isfinite(speed)]
@@ -265,9 +263,7 @@ def _angles(columns, x, y, crs, unit, notes):
     found = {role: columns.get(role) for role in ("roll", "pitch", "heading")}
     if all(values is None for values in found.values()):
         return [None, None, None]
-    if crs and horizontal_part(parse_crs(crs)).is_geographic:
-        x = x * np.cos(np.radians(np.nanmedian(y))) * METRES_PER_DEGREE
-        y = y * METRES_PER_DEGREE
+    x, y = rough_metres(x, y, crs)
     heading = found["heading"]
     good = np.isfinite(x) & np.isfinite(y) & np.isfinite(np.nan if heading is None else heading)
     if good.sum() > 2:

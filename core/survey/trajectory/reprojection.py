@@ -9,10 +9,9 @@ import numpy as np
 
 from ...common.errors import RoadExtractionError
 from ...io.crs import check_metric, horizontal_part, parse_crs, same_crs
-from ...io.units import in_metres, plane_wkt
+from ...io.units import FOOT, in_metres, plane_wkt
 from .trajectory import Trajectory
 
-FOOT = 0.3048         # m, of heights whose foot is not said; both differ by 2 mm a kilometre
 HEADING_STEP = 10.0  # m ahead of a position, reprojected with it for the heading
 
 
@@ -117,7 +116,7 @@ def lengths_in_metres(crs: str, places: tuple[np.ndarray, np.ndarray, np.ndarray
             if role != "z":
                 raise RoadExtractionError(f"{label} gives positions in feet, and its CRS {horizontal_part(parse_crs(crs)).name} is not in feet. "
                                           "Give the CRS in feet that they are in: Import trajectory takes it.")
-            unit = FOOT
+            unit = FOOT   # which one is not said; they differ by 2 mm in a kilometre of height
         factors.append(1.0 if known.get(role) == "metres" else unit)
     return wkt, tuple(values if factor == 1.0 else values * factor for values, factor in zip(places, factors)), ()
 
