@@ -82,9 +82,16 @@ def test_other_intensities_are_read_as_they_are_without_a_word(tmp_path, values)
     np.testing.assert_array_equal(found, stored)
 
 
-@pytest.mark.parametrize("name, values", [("Reflectance", DECIBELS.astype("f4")), ("Amplitude", (DECIBELS + 30).astype("f4")),
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("per_decibel", [1, 10, 100])
+def test_values_that_no_file_has_overflow_nothing(tmp_path, per_decibel):
+    read(cloud(tmp_path / "cloud.laz", wrapped(per_decibel * DECIBELS)))
+
+
+@pytest.mark.parametrize("name, values", [("Reflectance", DECIBELS.astype("f4")), ("reflectivity", DECIBELS.astype("f4")),
+                                          ("Amplitude", (DECIBELS + 30).astype("f4")),
                                           ("reflectance [0.01 dB]", np.rint(100 * DECIBELS).astype("i2")), ("Reflectance", REFLECTANCE.astype("f8"))],
-                         ids=["dB", "positive dB", "hundredths of dB", "linear"])
+                         ids=["dB", "reflectivity", "positive dB", "hundredths of dB", "linear"])
 def test_a_field_of_the_usual_name_stands_in_for_an_intensity_that_is_empty(tmp_path, name, values):
     found, note = read(cloud(tmp_path / "cloud.laz", 0, **{name: values}))
     check_linear(found)
