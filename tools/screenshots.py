@@ -152,8 +152,8 @@ def corrections(dock):
         dock.tool.add(to_map.transform(line.interpolate(share * line.length()).asPoint()))
     wait(1)
     dock.tool.finish()
-    dock.go(dock.road_map, -1)
-    dock.go(dock.road_map, -1)
+    dock.at = -1
+    dock.go(dock.road_map)  # the first place, with what was decided there
     wait(2)
     needed(dock.layer is not None and dock.layer.featureCount() >= 3, "the corrections were not kept")
     keep(iface.mainWindow(), "window_corrections")
