@@ -159,6 +159,6 @@ def _refuse_moved(beside, label):
     beside = np.asarray(beside, float)
     if np.count_nonzero(np.abs(beside) > OFFSET_TOLERANCE) > 0.5 * len(beside):
         raise RoadExtractionError(
-            f"{label} lie {np.median(np.abs(beside)):.2f} m beside the offsets they carry from the trajectory. It is another one, or it was moved to "
-            "where the scanners were when they were made, as a warning said then. Run Road map, which makes all layers with the trajectory as it "
-            "was moved, or give every stage the trajectory that belongs to the cloud.")
+            f"{label} lie {np.median(np.abs(beside)):.2f} m beside the offsets they carry from the trajectory. They were made with another "
+            "trajectory, or with one that was moved to the scanners, as a warning said then. Run Road map, which makes all layers with the moved "
+            "trajectory, or give every stage the trajectory that belongs to the cloud.")

@@ -7555,8 +7555,8 @@
         </message>
         <message>
             <location filename="../../desktop/review/doubtful.py" />
-            <source>{count} lane(s), {widths} m wide</source>
-            <translation>{count} Fahrstreifen, {widths} m breit</translation>
+            <source>a lane of {width:.1f} m {direction}</source>
+            <translation>ein Fahrstreifen von {width:.1f} m {direction}</translation>
         </message>
         <message>
             <location filename="../../desktop/review/doubtful.py" />
