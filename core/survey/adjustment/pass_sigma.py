@@ -10,6 +10,7 @@ import numpy as np
 from ...common.schemas import PASS_SIGMA
 from ...curves.robust import MAD_TO_SIGMA
 from ..frame.sigma_along import SigmaAlong
+from .register import MAX_OFFSET
 
 if TYPE_CHECKING:
     import laspy
@@ -44,7 +45,7 @@ def sigma_of_passes(offsets: list[PassOffsets]) -> SigmaAlong | None:
     if not len(stations):
         return None
     order = np.argsort(stations, kind="stable")
-    stations, left = stations[order], np.concatenate([pair.left[own] for pair, own in known])[order]
+    stations, left = stations[order], np.concatenate([_apart(pair)[own] for pair, own in known])[order]
     one, other = (np.concatenate([np.full(own.sum(), getattr(pair, name)) for pair, own in known])[order] for name in ("one", "other"))
     places = np.unique(stations)
     bounds = np.searchsorted(stations, places - SIGMA_REACH), np.searchsorted(stations, places + SIGMA_REACH, side="right")
@@ -53,6 +54,12 @@ def sigma_of_passes(offsets: list[PassOffsets]) -> SigmaAlong | None:
         apart = min(np.sqrt(np.mean(left[first:end] ** 2)), MAD_TO_SIGMA * np.median(np.abs(left[first:end])))
         found.append(apart / np.sqrt(2 * len({*one[first:end].tolist(), *other[first:end].tolist()})))
     return SigmaAlong(tuple(places.tolist()), tuple(map(float, found)))
+
+
+def _apart(pair):
+    """(N,) m across that two passes lie apart; in any direction where it is more than drift, as roads that cross are off along this one too."""
+    anywhere = np.hypot(pair.left, np.nan_to_num(pair.along))
+    return np.where(anywhere > MAX_OFFSET, anywhere, pair.left)
 
 
 def to_record(sigma: dict[int, SigmaAlong]) -> list[laspy.VLR]:
