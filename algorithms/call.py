@@ -12,6 +12,7 @@ from pathlib import Path
 
 from ..core.common.errors import RoadExtractionError
 from ..core.common.parallel import cancellation_scope
+from ..core.execution.address_space import claim_memory, is_lack_of_memory, out_of_memory
 from .algorithm import WARNINGS
 from .cloud_files import cloud_files, survey_name
 from .destinations import UnfinishedFiles, UnfinishedLayers, bring_back, check_suffix, check_writable, destination_path
@@ -282,9 +283,10 @@ class Call:
     def commit_files(self):
         """Give the files their names, each with a note of where it comes from; that note, for the layers."""
         provenance = provenance_now(self.algorithm.ID, self.values(), self.warnings, self.names_only)
+        crs = next((features.crs for _, features in self._layers if features.crs), "")
         for path in self._files.unfinished():
             sign_file(path, provenance)
-            sign_report(path, lambda: run_facts(self, provenance))
+            sign_report(path, lambda: run_facts(self.algorithm, self.survey, self.surveyed(), crs, provenance))
         self._files.commit()
         return provenance
 
@@ -315,23 +317,31 @@ def run(call, progress):
     """
     counted = CountedWarnings(progress)
     try:
+        claim_memory()
         call.check_destinations()
         with cancellation_scope(progress):
             results = call.algorithm.work(call, counted) or {}
         results[WARNINGS], call.warnings = len(counted.texts), counted.texts
         return call.finish(results)
-    except RoadExtractionError as error:
-        raise RoadExtractionError(call.in_users_names(str(error))) from error
-    except OSError as error:
-        if error.strerror is None:
+    except Exception as error:
+        reason = _reason(error)
+        if not reason:
             raise
-        full = tr("Free some space there; the variable TMPDIR (Windows: TEMP) names the folder for temporary files.")
-        raise RoadExtractionError(call.in_users_names(
-            f"{error.strerror}: {error.filename or tr('while writing')}." + f" {full}" * (error.errno == errno.ENOSPC))) from error
-    except MemoryError as error:
-        raise RoadExtractionError(tr("Not enough memory for this step; close other programs or process fewer files at once.")) from error
+        raise RoadExtractionError(call.in_users_names(reason)) from error
     finally:
         call.discard_unfinished()
+
+
+def _reason(error):
+    """What ended a run, in one sentence where it lies outside of the program; otherwise ""."""
+    if isinstance(error, RoadExtractionError):
+        return str(error)
+    if is_lack_of_memory(error):
+        return out_of_memory()
+    if isinstance(error, OSError) and error.strerror is not None:
+        full = tr("Free some space there; the variable TMPDIR (Windows: TEMP) names the folder for temporary files.")
+        return f"{error.strerror}: {error.filename or tr('while writing')}." + f" {full}" * (error.errno == errno.ENOSPC)
+    return ""
 
 
 def existing_file(path, label):

@@ -14,10 +14,10 @@ def add_corrections(algorithm):
     algorithm.add_layer(
         "CORRECTIONS", tr("Corrections"),
         tr("What an analyst decided at doubtful places: points or lines with the fields action (accept, delete, move, draw, take) and target "
-           "(edge, marking, lane); note, of a line that is drawn kind and pattern, and of a second reading that is taken its field "
-           "other. A row is about what this run finds within half a metre of it (of a lane, a metre; what is moved, two), whatever its "
-           "number. A row without geometry lies at its road, station_m "
-           "and offset_m. What matches nothing is listed in log and report. The window of doubtful places writes this layer."), optional=True)
+           "(edge, marking, lane). Further fields: note; kind and pattern of a line that is drawn; other of a second reading that is taken. "
+           "A row concerns what this run finds within half a metre of it, whatever its number; for lanes it is one metre, for move two. "
+           "A row without geometry lies at its road, station_m and offset_m. "
+           "What matches nothing is listed in log and report. The window of doubtful places writes this layer."), optional=True)
 
 
 def corrections_of(call):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,7 +10,7 @@ from ..core.common.texts import told
 from .texts import tr
 
 if TYPE_CHECKING:
-    from .call import Call
+    from .algorithm import Algorithm
     from .provenance import Provenance
 
 MOST_FILES = 5     # that are named
@@ -25,33 +25,41 @@ def sign_report(path: str, facts: Callable[[], list[tuple[str, str]]]) -> None:
         Path(path).write_text(with_facts(Path(path).read_text(encoding="utf-8"), facts()), encoding="utf-8")
 
 
-def run_facts(call: Call, provenance: Provenance) -> list[tuple[str, str]]:
-    """(name, value) of what tells a run from others; names of files without their folders, since a report is handed on."""
-    files = [Path(path).name for path in call.surveyed()]
+def run_facts(algorithm: Algorithm, survey: str, clouds: Sequence[str], crs: str, provenance: Provenance) -> list[tuple[str, str]]:
+    """(name, value) of what tells a run from others; names of files without their folders, since a report is handed on.
+
+    Parameters
+    ----------
+    algorithm : that ran
+    survey : name of the survey
+    clouds : paths of its point clouds
+    crs : WKT of the results, "" where unknown
+    provenance : of the run
+    """
+    files = [Path(path).name for path in clouds]
     named = ", ".join(files[:MOST_FILES]) + (tr(" and {count} more").format(count=len(files) - MOST_FILES) if len(files) > MOST_FILES else "")
-    facts = [(tr("Survey"), call.survey), (tr("Point clouds"), named), *_inputs(call, provenance.values), (tr("CRS"), _crs_name(call)),
-             (tr("Made"), f"{provenance.ended:%Y-%m-%d %H:%M} UTC, {provenance.program}"), (tr("Settings"), _settings(call, provenance.values)),
+    facts = [(tr("Survey"), survey), (tr("Point clouds"), named), *_inputs(algorithm, provenance.values), (tr("CRS"), _crs_name(crs)),
+             (tr("Made"), f"{provenance.ended:%Y-%m-%d %H:%M} UTC, {provenance.program}"), (tr("Settings"), _settings(algorithm, provenance.values)),
              *((tr("Warning"), told(text)) for text in provenance.warnings)]
     return [(name, value) for name, value in facts if value]
 
 
-def _inputs(call, values):
+def _inputs(algorithm, values):
     """Files and layers that were given, by the name of their parameter."""
-    for spec in call.algorithm.inputs():
+    for spec in algorithm.inputs():
         value = values.get(spec.name)
         if spec.name != "POINT_CLOUDS" and not hasattr(spec, "field") and isinstance(value, str) and ("/" in value or "\\" in value):
             yield spec.label, value.replace("\\", "/").rsplit("/", 1)[-1]
 
 
-def _settings(call, values):
+def _settings(algorithm, values):
     """What was set otherwise than by default."""
-    changed = [f"{spec.label}: {values[spec.name]}" for spec in call.algorithm.inputs()
+    changed = [f"{spec.label}: {values[spec.name]}" for spec in algorithm.inputs()
                if hasattr(spec, "field") and spec.name in values and values[spec.name] not in (None, "", spec.default)]
     return "; ".join(changed) or tr("as they are by default")
 
 
-def _crs_name(call):
+def _crs_name(wkt):
     from ..core.io.crs import parse_crs
 
-    known = next((features.crs for _, features in call.layers if features.crs), "")
-    return parse_crs(known).name if known else ""
+    return parse_crs(wkt).name if wkt else ""

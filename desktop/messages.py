@@ -10,11 +10,11 @@ from qgis.core import (
     QgsCoordinateTransform,
     QgsCsException,
     QgsMapLayer,
-    QgsMessageOutput,
     QgsProject,
     QgsRectangle,
 )
-from qgis.PyQt.QtWidgets import QPushButton
+from qgis.gui import QgsMessageViewer
+from qgis.PyQt.QtWidgets import QPushButton, QWidget
 
 from ..processing_provider.dependencies import how_to_install, install_command, missing_in_short
 from ..processing_provider.texts import tr
@@ -30,7 +30,8 @@ def all_is_there(iface) -> bool:
         return True
     copy = _button(tr("Copy command"), lambda: QgsApplication.clipboard().setText(install_command()))
     copy.setToolTip(install_command())
-    _say(iface, missing, Qgis.MessageLevel.Warning, copy, _button(tr("How to install…"), lambda: show_text("Lanewright", how_to_install())))
+    how = _button(tr("How to install…"), lambda: show_text(iface.mainWindow(), "Lanewright", how_to_install()))
+    _say(iface, missing, Qgis.MessageLevel.Warning, copy, how)
     return False
 
 
@@ -52,7 +53,7 @@ def tell_result(iface, title: str, layers: Sequence[QgsMapLayer], warnings: Sequ
         buttons.append(_button(tr("Show it"), lambda: _show(canvas, extent)))
     if warnings:
         shown = tr("1 warning…") if len(warnings) == 1 else tr("{count} warnings…").format(count=len(warnings))
-        buttons.append(_button(shown, lambda: show_text(title, "\n\n".join(warnings))))
+        buttons.append(_button(shown, lambda: show_text(iface.mainWindow(), title, "\n\n".join(warnings))))
     if buttons:
         level = Qgis.MessageLevel.Warning if warnings else Qgis.MessageLevel.Success
         _say(iface, tr("{title} is done, {count} layers.").format(title=title, count=len(layers)), level, *buttons)
@@ -70,11 +71,11 @@ def extent_of(layers: Iterable[QgsMapLayer], crs) -> QgsRectangle:
     return whole
 
 
-def show_text(title: str, text: str) -> None:
+def show_text(parent: QWidget, title: str, text: str) -> None:
     """A window of QGIS with a text to read and to copy from."""
-    window = QgsMessageOutput.createMessageOutput()
+    window = QgsMessageViewer(parent)
     window.setTitle(title)
-    window.setMessage(text, Qgis.StringFormat.PlainText)
+    window.setMessageAsPlainText(text)
     window.showMessage(False)
 
 

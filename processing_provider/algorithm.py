@@ -19,6 +19,7 @@ from ..algorithms.call import run
 from ..algorithms.catalogue import toolbox_number
 from ..algorithms.parameters import TrajectorySpec, choice_refused, number_refused
 from ..core.common.errors import Cancelled, RoadExtractionError
+from ..core.execution.address_space import lack_of_memory
 from ..core.io.local_files import offline
 from .call import QgisCall
 from .dependencies import missing_packages
@@ -90,13 +91,13 @@ class LanewrightAlgorithm(QgsProcessingAlgorithm):
         return "\n".join(lines)
 
     def canExecute(self):
-        missing = missing_packages()
-        return (not missing, missing)
+        lacking = what_is_lacking()
+        return (not lacking, lacking)
 
     def checkParameterValues(self, parameters, context):
-        missing = missing_packages()
-        if missing:
-            return False, missing
+        lacking = what_is_lacking()
+        if lacking:
+            return False, lacking
         try:
             check_files(self, parameters, context)
         except RoadExtractionError as error:
@@ -113,9 +114,9 @@ class LanewrightAlgorithm(QgsProcessingAlgorithm):
 
     def processAlgorithm(self, parameters, context, feedback):
         # canExecute is asked by the desktop only
-        missing = missing_packages()
-        if missing:
-            raise QgsProcessingException(missing)
+        lacking = what_is_lacking()
+        if lacking:
+            raise QgsProcessingException(lacking)
         try:
             check_files(self, parameters, context)
         except RoadExtractionError as error:
@@ -150,6 +151,11 @@ class LanewrightAlgorithm(QgsProcessingAlgorithm):
                 context.setLayersToLoadOnCompletion(to_load)
         note_run(self.declaration, call.survey, began, failure=failure)
         return None, failure
+
+
+def what_is_lacking():
+    """One sentence on the memory or the packages without which no algorithm can begin; "" where all is there."""
+    return told(lack_of_memory()) or missing_packages()  # without memory, packages seem to be missing
 
 
 def group_of_layers(values, project):

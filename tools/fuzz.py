@@ -1,9 +1,10 @@
-"""Feeds every reader broken files: fuzz.py [--seconds 60] [--seed 0] [--keep FOLDER] [--only KIND]
+"""Feeds every reader broken files: fuzz.py [--seconds 60 | --runs 500] [--seed 0] [--keep FOLDER] [--only KIND]
 
 Seconds are of the processor's, shared among the readers (fuzz_readers.py). Bytes of whole files are changed, cut, doubled and filled up;
 where atheris is installed (`make fuzz` does that where it can be), what reaches code that no file had reached before is changed further,
 and kept for the next time. A reader may accept a file or refuse it with one sentence (RoadExtractionError); anything else, a run of more
 than ten seconds and memory beyond reason included, is printed once for each place in the code, with the file that caused it.
+With --runs each reader is fed so many files, which are the same every time: nothing that earlier runs kept is used, and no clock is looked at.
 """
 
 import argparse
@@ -115,23 +116,27 @@ class Attempts:
         return {"tried": self.tried, "refused": self.refused, "problems": len(self.problems)}
 
 
-def mutate_at_random(attempts, seconds, rng):
+def until(options):
+    """A function that says of Attempts whether they are enough: by their number where that is given, or by the seconds from now on."""
+    end = time.process_time() + options.seconds
+    return lambda attempts: attempts.tried >= options.runs if options.runs else time.process_time() > end
+
+
+def mutate_at_random(attempts, is_enough, rng):
     """Try files that are broken without looking where they get to."""
-    end = time.process_time() + seconds
-    while time.process_time() < end:
+    while not is_enough(attempts):
         attempts.one(broken(attempts.kind.seeds[int(rng.integers(0, len(attempts.kind.seeds)))], rng))
 
 
-def mutate_by_coverage(attempts, seconds, rng, corpus, report):
+def mutate_by_coverage(attempts, is_enough, rng, corpus, report):
     """Try files that libFuzzer breaks, with `broken` for one in three; does not return."""
     corpus.mkdir(parents=True, exist_ok=True)
     for number, content in enumerate(attempts.kind.seeds):
         (corpus / f"seed{number}").write_bytes(content)
-    end = time.process_time() + seconds
 
     def one(content):
         attempts.one(content)
-        if time.process_time() > end:
+        if is_enough(attempts):
             report.write_text(json.dumps(attempts.report()))
             sys.stdout.flush()
             os._exit(0)
@@ -142,7 +147,7 @@ def mutate_by_coverage(attempts, seconds, rng, corpus, report):
             return broken(content, np.random.default_rng(seed))[:longest]
         return atheris.Mutate(content, longest)
 
-    atheris.Setup(["fuzz", str(corpus), f"-max_len={LONGEST}", f"-seed={int(rng.integers(1, 2**31))}", "-timeout=60", "-rss_limit_mb=0",
+    atheris.Setup(["fuzz", str(corpus), f"-max_len={LONGEST}", f"-seed={int(rng.integers(1, 2**31))}", "-timeout=600", "-reload=0", "-rss_limit_mb=0",
                    "-verbosity=0", "-print_final_stats=0", f"-artifact_prefix={attempts.keep}/{attempts.title.replace(' ', '_')}_"],
                   one, custom_mutator=changed)
     atheris.Fuzz()
@@ -159,8 +164,9 @@ def fuzz(title, options, folder):
     quiet()
     attempts, rng = Attempts(title, kind, folder, options.keep), np.random.default_rng([options.seed, len(title)])
     if atheris:
-        mutate_by_coverage(attempts, options.seconds, rng, options.corpus / title.replace(" ", "_"), options.report)
-    mutate_at_random(attempts, options.seconds, rng)
+        corpus = folder / "corpus" if options.runs else options.corpus / title.replace(" ", "_")
+        mutate_by_coverage(attempts, until(options), rng, corpus, options.report)
+    mutate_at_random(attempts, until(options), rng)
     options.report.write_text(json.dumps(attempts.report()))
 
 
@@ -173,8 +179,10 @@ def quiet():
 
 def in_a_process_of_its_own(title, options, seconds, report):
     """What `fuzz` counts; a reader that takes its process with it is a problem too."""
-    code = subprocess.run([sys.executable, __file__, "--only", title, "--seconds", str(seconds), "--seed", str(options.seed), "--keep", options.keep,
-                           "--corpus", options.corpus, "--report", report], stderr=None if options.verbose else subprocess.DEVNULL).returncode
+    given = {"--only": title, "--seconds": seconds, "--runs": options.runs, "--seed": options.seed, "--keep": options.keep,
+             "--corpus": options.corpus, "--report": report}
+    code = subprocess.run([sys.executable, __file__, *(str(word) for pair in given.items() for word in pair)],
+                          env={**os.environ, "PYTHONHASHSEED": "0"}, stderr=None if options.verbose else subprocess.DEVNULL).returncode
     if code or not report.exists():
         print(f"{title}: the process ended with {code}; --verbose says why, and libFuzzer keeps the file in {options.keep}.")
         return {"tried": 0, "refused": 0, "problems": 1}
@@ -184,6 +192,7 @@ def in_a_process_of_its_own(title, options, seconds, report):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seconds", type=float, default=60.0)
+    parser.add_argument("--runs", type=int, default=0, help="files for each reader, instead of seconds")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--keep", type=Path, default=Path("build/fuzz/found"))
     parser.add_argument("--corpus", type=Path, default=Path("build/fuzz/corpus"))

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The tests, in two parts: the core and the library where qgis cannot be imported, then the plugin inside QGIS with calls of
-# the real qgis_process; between them, where no tests are chosen, a minute of `make fuzz`. Each part is spread over the processor's cores, one file of tests at a
-# time, those with slow tests first. Arguments go to pytest, for example: tools/test.sh -k curbs, or
+# the real qgis_process; between them, where no tests are chosen, broken files of `make fuzz`, the same every
+# time. Each part is spread over the processor's cores, one file of tests at a time, those with slow tests first. Arguments go to pytest, for example: tools/test.sh -k curbs, or
 # tools/test.sh -m 'not slow'. LANEWRIGHT_TEST_WORKERS=0 runs everything in one process, for a debugger.
 # A test that takes more than 10 minutes is ended, with the stacks of all threads. A process that dies, which QGIS does once in
 # many runs, ends its part, for pytest-xdist 3.8 would wait for the new process for ever; the part then runs once more.
@@ -35,7 +35,7 @@ echo "== core and library, where qgis cannot be imported"
 LANEWRIGHT_WITHOUT_QGIS=1 run "${part[@]}" -p no:pytest_qgis -o addopts='--import-mode=importlib -p no:cacheprovider' tests/core tests/library "$@"
 if [ "$chosen" -eq 0 ]; then
   echo "== readers fed with broken files"
-  tools/fuzz.sh --seconds 60
+  tools/fuzz.sh --runs 100
 fi
 echo "== the plugin inside QGIS, and real qgis_process"
 run "${part[@]}" tests --ignore tests/core --ignore tests/library "$@"

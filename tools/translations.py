@@ -24,9 +24,11 @@ FEWEST_LETTERS = 8  # of a sentence of the core: what is shorter would be found 
 FEWEST_WORDS = 3  # of a phrase of the core that is put into a sentence elsewhere
 # Errors that tell a programmer, not a user
 OF_PROGRAMMERS = {"ValueError", "TypeError", "KeyError", "IndexError", "AttributeError", "AssertionError", "RuntimeError", "OSError"}
-NO_SENTENCES = ("core/report", "core/common/schemas.py", "core/common/words.py")  # their texts are translated as those of a dialog
-# Patterns, names of columns, commands
-NO_PROSE = re.compile(r"[\\]|<[?x!]|^(pixel|line|mapx|mapy|mapz|name|enable|check) \w+ \w+|^pip |^1 hit|^SELECT |lanewright [A-Z{l]")
+# The texts of the first are translated as those of a dialog, the last holds names of columns in many languages
+NO_SENTENCES = ("core/report", "core/common/schemas.py", "core/common/words.py", "core/survey/trajectory/columns.py")
+# Patterns, XML, CRSs, names of columns, commands
+NO_PROSE = re.compile(r"[\\]|<[?x!]|^ *<[A-Za-z]|^[+]proj=|^[A-Z_]+\[|"
+                      r"^(pixel|line|mapx|mapy|mapz|name|enable|check) \w+ \w+|^pip |^1 hit|^SELECT |lanewright [A-Z{l]")
 NAMED = {"FAULTS", "title", "signed"}  # tables and attributes of the core whose shortest texts are shown too
 # Texts that stand in a class or a table and are translated where they are shown
 IN_A_CLASS = {"TITLE", "SUMMARY", "HELP", "GROUP", "TAGS", "GROUPS"}
@@ -121,6 +123,8 @@ def phrases_of(tree):
             left_out.add(node.value)
         if isinstance(node, ast.JoinedStr):
             left_out |= {part for part in node.values if isinstance(part, ast.Constant)}
+        if isinstance(node, ast.Attribute) and node.attr == "split":
+            left_out.add(node.value)
         if isinstance(node, ast.BinOp) and template_of(node) is not None:
             left_out |= {node.left, node.right}
     for node in ast.walk(tree):

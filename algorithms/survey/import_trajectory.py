@@ -17,7 +17,7 @@ class ImportTrajectory(Algorithm):
         "Columns may come in any order, with or without a header, in degrees, radians or degrees with minutes and seconds. Rows are sorted by time; "
         "repeated and unusable rows are dropped and counted. The dialog shows what was understood of a file, and lets you assign its columns.\n\n"
         "Times are GPS seconds. Clock times are read where the file says what the clock shows: GPS time as it is, UTC with the leap seconds "
-        "of its date. Other clock times, and seconds since 1970, are refused, since nobody can tell them apart."
+        "of its date. Other clock times, and seconds since 1970, are refused, as their leap seconds are unknown."
     )
     TAGS = ("trajectory", "sbet", "applanix", "csv", "gps time", "nmea", "gpx", "rtklib")
 

@@ -11,7 +11,7 @@ SIDE = Field("side", str, "Side (left/right)")
 STATUS = Field("status", str, "Status")
 CONFIDENCE = Field("confidence", float, "Confidence (0 to 1)", needed=False)
 # JSON: {"nats": by how much it is less probable, "lanes": [{"offset_m", "width_m", "direction"}, ...]}, of a marking line {"nats", "kind"}
-OTHER = Field("other", str, "Second reading that is hardly less probable (JSON)", needed=False)
+OTHER = Field("other", str, "Second reading that is almost as probable (JSON)", needed=False)
 STATION = Field("station_m", float, "Station (m)")
 OFFSET = Field("offset_m", float, "Offset, left positive (m)")
 HEIGHT = Field("height_m", float, "Height (m)")

@@ -48,6 +48,8 @@ def _words():
         # corrections
         "accept": tr("accept"), "delete": tr("delete"), "move": tr("move"), "draw": tr("draw"), "target.edge": tr("road edge"),
         "marking": tr("marking"),
+        # where scanners lie
+        "ahead": tr("ahead"), "behind": tr("behind"), "above": tr("above"), "below": tr("below"),
         # the roadside
         "guard_rail": tr("guard rail"), "barrier": tr("barrier"), "wall": tr("Wall"), "fence": tr("fence"), "hedge": tr("hedge"),
         "gutter": tr("Gutter"), "pole": tr("pole"), "sign": tr("sign"), "trunk": tr("Tree trunk"),

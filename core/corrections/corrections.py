@@ -165,8 +165,8 @@ def _second_reading(text: Any, target: str, number: int) -> tuple[tuple[tuple[fl
             return (), str(found["kind"])
     except (ValueError, KeyError, TypeError):
         pass
-    raise RoadExtractionError(f"Row {number} of the corrections is to take a second reading of a {target}, and its field other holds none of that. "
-                              "Copy it from the field other of the lane or marking line.")
+    raise RoadExtractionError(f"Row {number} of the corrections is to take a second reading of a {target}, but its field other holds none. "
+                              "Copy the field other of that lane or marking line.")
 
 
 def _in_crs(features: Features, crs: str) -> list[Any]:

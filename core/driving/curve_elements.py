@@ -10,8 +10,8 @@ import numpy as np
 from ..countries.model import Country
 from ..countries.neutral import NEUTRAL
 from ..curves.base import Arc
+from ..io.units import FOOT
 
-FOOT = 0.3048
 MAX_CURVE_RADIUS = 5000.0    # m: flatter arcs are straights to any driver
 MIN_TURN = np.radians(1.0)
 MAX_TURN = np.pi * 0.95   # the tangents of a half circle do not meet

@@ -119,7 +119,7 @@ class LaneTrack:
         return float(np.median(self.width[:rows] if head else self.width[-rows:]))
 
     def in_doubt(self, weights: EstimateWeights = EstimateWeights()) -> np.ndarray:
-        """(N,) bool, where a second reading is hardly less probable, or the lane lies beside where its own borders show it."""
+        """(N,) bool, where a second reading is almost as probable, or the lane lies beside where its own borders show it."""
         behind = np.array([np.inf if one is None else one.nats for one in self.second])
         found = (behind < weights.doubt) | (np.abs(self.aside) > SAME_LANE)
         for first, end in mask_runs(~found):

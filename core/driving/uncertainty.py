@@ -12,7 +12,7 @@ it takes all of it, and what the width of lanes is off by.
 The line is off by most of what the places of its lane lie beside it on average over some metres: the borders show the lane there and the line
 passes it. Where the curvature changes, as from a straight into a hairpin bend, places and line are as good as an arc over some metres, which lies
 beside the lane. A place that is a guess is off by what the guess may be: as far as the lane was moved from where its own borders show it, and, where
-a second reading of the road is hardly less probable, as far as the lanes of that one lie beside, with its probability. What passes differ by that
+a second reading of the road is almost as probable, as far as the lanes of that one lie beside, with its probability. What passes differ by that
 were laid on each other comes last.
 
 A piece of a line says the mean along it, and a line is cut where it changes much. It holds against the points of the survey: what they are off

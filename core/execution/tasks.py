@@ -11,6 +11,7 @@ from typing import Any
 
 from ..common.errors import Cancelled, RoadExtractionError
 from ..common.memory import free_memory
+from .address_space import is_lack_of_memory
 from .phase import Phase, Recipe, named
 from .plain import read_plain, write_plain
 
@@ -73,12 +74,10 @@ class Tasks:
             return {"refused": str(error)}
         except Cancelled:
             return {"cancelled": "the caller has ended the phase"}
-        except MemoryError:
-            return {"memory": "out of memory"}
-        except OSError as error:
-            return {"disk": str(error)}
-        except Exception:
-            return {"bug": traceback.format_exc()}
+        except Exception as error:
+            if is_lack_of_memory(error):
+                return {"memory": "out of memory"}
+            return {"disk": str(error)} if isinstance(error, OSError) else {"bug": traceback.format_exc()}
         return {}
 
     def forget(self) -> None:

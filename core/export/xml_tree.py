@@ -149,6 +149,7 @@ class _Reading:
     def __init__(self, path, root_tag, kind):
         self.path, self.root_tag, self.kind = path, root_tag, kind
         self.root, self.open, self.count, self.last_tag = None, [], 0, 0
+        self.in_utf8 = False
         self.encoding = self._encoding()
         self.parser = parser = ParserCreate("utf-8" if self.encoding else None)
         parser.StartElementHandler, parser.EndElementHandler = self._start, self._end
@@ -175,6 +176,9 @@ class _Reading:
             raise RoadExtractionError(f"{self.path} is not written in the encoding {self.encoding} that it declares. Save it again as UTF-8, and say "
                                       "so in its first line.") from problem
         except ExpatError as problem:
+            if self.in_utf8 and not _is_utf8(self.path):
+                raise RoadExtractionError(f"{self.path} is not written in UTF-8, though it names no other encoding. Save it again as UTF-8, or "
+                                          "name its encoding in its first line.") from problem
             raise RoadExtractionError(f"{self.path} is not well-formed XML: {problem}. Is it {self.kind}, and whole?") from problem
         return self.root
 
@@ -200,6 +204,7 @@ class _Reading:
                                       "its first line.")
         if codec is not None and codec.name.startswith(("utf-16", "utf-32")):
             return "utf-8"   # the declaration itself is written in single bytes: some programs state what they have in memory
+        self.in_utf8 = codec is None or codec.name == "utf-8"
         return "" if codec is None or codec.name in NATIVE else codec.name
 
     def _refuse(self, why):
@@ -242,3 +247,14 @@ class _Reading:
         if len(element.text) + len(text) > MAX_TEXT:
             self._refuse(f"has a text of more than {MAX_TEXT:,} characters")
         element.text += text
+
+
+def _is_utf8(path):
+    decoder = codecs.getincrementaldecoder("utf-8")()
+    try:
+        with open(path, "rb") as file:
+            while chunk := file.read(CHUNK):
+                decoder.decode(chunk)
+    except UnicodeError:
+        return False
+    return True

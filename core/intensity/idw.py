@@ -5,18 +5,16 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from scipy import sparse
 
 from ..common.memory import ScratchBuffers
 from ..common.order_statistics import order_by
+from ..common.setting import check_limits, setting
 from ..lazy import cv2
 from ..survey.store.records import COORDINATE_SCALE, Points
-
-if TYPE_CHECKING:
-    from .image import ImageSettings
 
 DISTANCE_OFFSET = 1e-3        # m added to a distance, so that a point on a cell's centre has a finite weight
 DISTANCES_AT_ONCE = 1 << 19   # distances computed at a time: what fits the processor's cache
@@ -26,6 +24,25 @@ RADIUS_ROUNDING = 2e-6        # of the weight at the radius: a point exactly on 
 
 
 _thread = threading.local()   # the kernels of each thread
+
+
+@dataclass(frozen=True)
+class ImageSettings:
+    """How the image is interpolated.
+
+    cell_size : m; paint of 0.15 m survives at 0.04
+    power : of the distance
+    beta : share of the weight that follows brightness; 0 is plain inverse distance
+    radius_cells : search radius, in cells
+    """
+
+    cell_size: float = setting(0.04, 0.005, 10.0, "The cell size", "m")
+    power: float = setting(2.0, 0.1, 10.0, "The power of the distance")
+    beta: float = setting(0.5, 0.0, 1.0, "The weight of brightness")
+    radius_cells: float = setting(2.0, 0.71, 10.0, "The search radius", "cells")
+
+    def __post_init__(self) -> None:
+        check_limits(self)
 
 
 @dataclass

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import nullcontext
-from dataclasses import dataclass
 from os import PathLike
 
 import numpy as np
@@ -12,12 +11,11 @@ import numpy as np
 from ..common.errors import RoadExtractionError
 from ..common.order_statistics import quantiles
 from ..common.progress import Progress
-from ..common.setting import check_limits, setting
 from ..execution.phase import Phase
 from ..io.geotiff import GEOTIFF_TILE, NODATA, new_geotiff
 from ..survey.store.records import COORDINATE_SCALE, Points
 from ..survey.store.road_points import RoadPoints
-from .idw import WeightedSums, interpolation_sums, lattice_cell, reach_of
+from .idw import ImageSettings, WeightedSums, interpolation_sums, lattice_cell, reach_of
 from .tiled_image import TILE_MEMORY, TiledImage
 
 RANKING_WINDOW = 20.0   # m of station over which intensities are ranked for the brightness rule
@@ -32,25 +30,6 @@ TILES_AHEAD = 16        # the sums of a piece are kept while they are needed aga
 
 PieceKey = tuple[int, int]      # road, number of the piece along it
 Extent = tuple[int, int, int, int]   # first and last column, first and last row of the lattice
-
-
-@dataclass(frozen=True)
-class ImageSettings:
-    """How the image is interpolated.
-
-    cell_size : m; paint of 0.15 m survives at 0.04
-    power : of the distance
-    beta : share of the weight that follows brightness; 0 is plain inverse distance
-    radius_cells : search radius, in cells
-    """
-
-    cell_size: float = setting(0.04, 0.005, 10.0, "The cell size", "m")
-    power: float = setting(2.0, 0.1, 10.0, "The power of the distance")
-    beta: float = setting(0.5, 0.0, 1.0, "The weight of brightness")
-    radius_cells: float = setting(2.0, 0.71, 10.0, "The search radius", "cells")
-
-    def __post_init__(self) -> None:
-        check_limits(self)
 
 
 def make_intensity_image(road_points: RoadPoints, settings: ImageSettings = ImageSettings(), progress: Progress = Progress(),

@@ -103,20 +103,23 @@ def check_place(wkt: str, place: tuple[float, float], what: str) -> str:
             raise RoadExtractionError(
                 f"{what} has x and y exchanged: x is about {x:.0f} and y about {y:.0f}, and in its CRS {crs.name} only the place with y as the "
                 f"easting lies in the area of this CRS ({_named(area)}). Export it with the easting as x and the northing as y, and run again.")
-    where = f", at {_degrees(there)}, outside the area of this CRS ({_named(area)})" if beside > MIN_EXCHANGED and area else ""
+    outside = beside > MIN_EXCHANGED and area
     if beside > MAX_OUTSIDE_AREA and max(abs(x), abs(y)) < MAX_LOCAL:
         return (f"{what} says that it is in {crs.name}, but its coordinates (about {x:.0f}, {y:.0f}) are those of a local system, or lack their "
                 "leading digits. They are taken as metres as they are; the results lie elsewhere on a map until the coordinates are complete.")
     if not there.true_to_scale:
-        lengths = (f"Lengths in it are {there.scale:.3f} times those on the ground" if there.scale == there.scale
-                   else f"It has no place with x about {x:.0f} and y about {y:.0f}")
-        zone = f", such as UTM zone {_utm_zone(there)}," if there.scale == there.scale and not where else ""
+        known = there.scale == there.scale
+        named = f"{crs.name}, at {_degrees(there)}, outside the area of this CRS ({_named(area)})" if outside else crs.name
+        lengths = (f"It has no place with x about {x:.0f} and y about {y:.0f}" if not known
+                   else f"Lengths in it are {there.scale:.3f} times those on the ground" if outside
+                   else f"Lengths in it are {there.scale:.3f} times those on the ground at {_degrees(there)}")
+        zone = f", such as UTM zone {_utm_zone(there)}," if known and not outside else ""
         raise RoadExtractionError(
-            f"{what} is in {crs.name}{where}. {lengths}{'' if where or there.scale != there.scale else f' at {_degrees(there)}'}, and roads are "
-            f"measured in metres on the ground. Reproject the data to a CRS that is made for this place{zone} or correct the CRS.")
+            f"{what} is in {named}. {lengths}, and roads are measured in metres on the ground. Reproject the data to a CRS that is made for this "
+            f"place{zone} or correct the CRS.")
     if beside > MAX_OUTSIDE_AREA:
-        return (f"{what} lies{where.replace('this CRS', 'its CRS ' + crs.name, 1).replace(',', '', 1)}: if the survey was not made there, its CRS is "
-                "wrong, and the results carry it.")
+        return (f"{what} lies at {_degrees(there)}, outside the area of its CRS {crs.name} ({_named(area)}): if the survey was not made there, its "
+                "CRS is wrong, and so is that of the results. Correct it in the data.")
     return ""
 
 

@@ -13,6 +13,7 @@ import re
 from collections import Counter
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -25,9 +26,13 @@ MAX_NUMBER = 1e20          # beyond time in nanoseconds; larger numbers count as
 FIELDS_PER_CHUNK = 200_000  # fields parsed at a time where some are words
 DELIMITERS = (";", "\t", "|", ",", " ")
 MIXED = re.compile(rb"[ ]*[,;|\t ][ ]*")                # between columns where a row has several delimiters
+# Encodings of tables beside UTF-8, and what words beyond ASCII are in them. Latin letters in these bytes stand beside small letters of ASCII.
+_EAST_ASIA = re.compile("[\u3000-\u30ff\u4e00-\u9fff\uac00-\ud7a3\uff00-\uff60°℃㎡]+")
+_CYRILLIC = re.compile("[а-яёіїєґў]{2,}|[А-ЯЁІЇЄҐЎ][а-яёіїєґў]+|[А-ЯЁІЇЄҐЎ]{2,}|[°№]")
+ENCODINGS = (("gb2312", _EAST_ASIA), ("cp932", _EAST_ASIA), ("cp949", _EAST_ASIA), ("gb18030", _EAST_ASIA), ("cp1251", _CYRILLIC))
 UNIT_SUFFIX = r"(?: ?(?:m|cm|mm|km|s|sec|ms|us|ns|ft|deg|rad|gon|°))?"
 # What stands for a number without being one: dates, clock times, degrees with minutes and seconds
-VALUE_PATTERN = re.compile(r"\d{1,4}[-/.]\d{1,2}[-/.]\d{1,4}([ T]\d{1,2}:.*)?$|"
+VALUE_PATTERN = re.compile(r"\d{1,4}[-/.]\d{1,2}[-/.]\d{1,4}([ T]\d{1,2}:.*)?$|\d{4} ?年.*[日时時分秒\d]$|"
                            r"\d{1,2}:\d{2}(:\d{2}([.,]\d*)?)?( ?[ap]\.?m\.?)?(Z|[+-]\d{2}:?\d{2})?$|"
                            r"[NSEW]? ?[+-]?\d{1,3} ?[°dº:] ?\d{1,2}|[NSEW]? ?[+-]?\d{1,3} \d{1,2}[ .]\d{1,2}([.,]\d*)? ?[NSEW]?$", re.IGNORECASE)
 
@@ -141,10 +146,28 @@ def _text_bytes(path):
     if b"\0" in data[:SAMPLE_BYTES]:
         raise RoadExtractionError(
             f"{path} is a binary file. A trajectory is read from text (CSV, TXT) or from Applanix SBET (.out, records of 136 bytes).")
-    data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n").rstrip(b"\x1a\0 \t\n") + b"\n"
+    data = _in_utf8(data.replace(b"\r\n", b"\n").replace(b"\r", b"\n").rstrip(b"\x1a\0 \t\n") + b"\n")
     for written, plain in ((b"\xc2\xa0", b" "), (b"\xe2\x80\xaf", b" "), (b"\xe2\x80\x99", b"'"), (b"\xe2\x88\x92", b"-")):
         data = data.replace(written, plain)  # narrow and fixed blanks, the typographic apostrophe and minus
     return data
+
+
+def _in_utf8(data):
+    """The text in UTF-8 where all of its words beyond ASCII are words of East Asia or in Cyrillic in the encoding of these."""
+    if data.isascii() or _decodes(data, "utf-8"):
+        return data
+    for encoding, words in ENCODINGS:
+        if _decodes(data, encoding) and all(map(words.fullmatch, re.findall(r"[a-z]?[^\0-\x7f]+[a-z]?", data.decode(encoding)))):
+            return data.decode(encoding).encode()
+    return data
+
+
+def _decodes(data, encoding):
+    try:
+        data.decode(encoding)
+    except UnicodeDecodeError:
+        return False
+    return True
 
 
 def _without_quotes(data):
@@ -185,7 +208,7 @@ def _recognise_format(lines):
     """(delimiter, number of columns, style of numbers) that explain the most lines; None where none does."""
     lines = lines[:SAMPLE_LINES]
     styles = [style for style in STYLES if not style.grouping or any(map(style.grouped.search, lines))]
-    best = (0, 0, False, None)
+    best = (0, False, 0, False, None)
     for delimiter in DELIMITERS:
         split = [fields for fields in (_fields(line, delimiter) for line in lines) if len(fields) >= MIN_NUMBER_COLUMNS]
         for style in styles:
@@ -196,8 +219,10 @@ def _recognise_format(lines):
                 continue
             columns, count = counts.most_common(1)[0]
             more_numbers = sum(2 * _numbers_among(fields, style) - columns for fields in split if len(fields) == columns)  # than words
-            best = max(best, (count, more_numbers, style.decimal == ".", (delimiter, columns, style)), key=lambda found: found[:3])
-    return best[3]
+            # between tabs that hold nothing but numbers, blanks stand within numbers
+            whole = delimiter == "\t" and all(_numbers_among(fields, style) == columns for fields in split if _is_row(fields, columns, style))
+            best = max(best, (count, whole, more_numbers, style.decimal == ".", (delimiter, columns, style)), key=lambda found: found[:4])
+    return best[4]
 
 
 def _refuse_ambiguous_commas(first_row, above, path):
@@ -248,9 +273,19 @@ def finite_or_nan(values: np.ndarray) -> np.ndarray:
     return np.where(np.abs(values) < MAX_NUMBER, values, np.nan)
 
 
+def as_number(value: Any) -> float:
+    """The number in a field, with a decimal point or comma; NaN where it holds none."""
+    try:
+        return float(value.replace(",", ".") if isinstance(value, str) else value)
+    except (TypeError, ValueError):
+        return np.nan
+
+
 def _fill_empty(body, mark):
     """Write nan into empty fields, and remove a delimiter at the end of a line."""
-    body = re.sub(rb"[ ]*" + re.escape(mark) + rb"[ ]*", mark, body) if b" " in body else body
+    if b" " in body:
+        body = re.sub(rb"[ ]*" + re.escape(mark) + rb"[ ]*", mark, body)
+        body = re.sub(rb"^[ ]+|[ ]+$", b"", body, flags=re.MULTILINE)
     body = body.replace(mark + b"\n", b"\n")
     for _ in range(2):
         body = body.replace(mark + mark, mark + b"nan" + mark)

@@ -16,6 +16,7 @@ from ..common.errors import RoadExtractionError
 from .crs import horizontal_part, parse_crs
 
 MARK = "Metric form of "        # begins the remark, before the WKT of the file's CRS
+FOOT, US_SURVEY_FOOT = 0.3048, 1200 / 3937   # m, both exact (NIST Special Publication 811, appendix B.6)
 NO_PLACE = (0.0, 1.0, 0.0, 0.0, 0.0, 1.0)   # of a raster without georeferencing, as GDAL gives it
 SAME_UNIT = 1e-9                # relative, between units that are written with other digits; two definitions of the foot differ by 2e-6
 

@@ -11,7 +11,8 @@ import re
 from pathlib import Path
 
 from ..common.errors import RoadExtractionError
-from .control_points import ControlPoints, as_number, control_points, names_columns
+from ..io.text_table import as_number
+from .control_points import ControlPoints, control_points, names_columns
 from .source_image import SourceImage
 
 MAX_TABLE_BYTES = 20_000_000  # a table of control points has a few thousand bytes

@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 
 from ..common.errors import RoadExtractionError
+from ..io.text_table import as_number
 from ..io.units import in_metres
 from .source_image import SourceImage
 
@@ -146,7 +147,8 @@ def _rows_of_image(rows, image, column, what):
         return rows
     own = PurePath(image.path)
     seen = [PurePath(text(row, column).replace("\\", "/")) for row in rows]
-    for same in (lambda path: path.name.lower() == own.name.lower(), lambda path: path.stem.lower() == own.stem.lower()):
+    for same in (lambda path: path.name == own.name,
+                 lambda path: path.name.lower() == own.name.lower(), lambda path: path.stem.lower() == own.stem.lower()):
         kept = [row for row, path in zip(rows, seen) if same(path)]
         if kept:
             return kept
@@ -253,14 +255,6 @@ def _that_lies_like_an_image(fits, values, image):
 def _enable(values, column):
     """The fifth column of the QGIS georeferencer, zeros and ones, where there is one."""
     return {"enable": column} if column < values.shape[1] and np.isin(values[:, column], (0, 1)).all() else {}
-
-
-def as_number(value: Any) -> float:
-    """The number in a field, with a decimal point or comma; NaN where it holds none."""
-    try:
-        return float(str(value).strip().replace(",", "."))
-    except ValueError:
-        return np.nan
 
 
 def _numbers(rows, column):

@@ -26,21 +26,24 @@ from ..driving.driving_lines import DrivingSettings, make_driving_lines
 from ..driving.lanes_layer import lanes_to_features
 from ..execution.choice import ExecutionSettings
 from ..intensity.correction import IntensitySettings, correct_intensity
-from ..intensity.image import ImageSettings, check_fits, make_intensity_image
+from ..intensity.idw import ImageSettings
+from ..intensity.image import check_fits, make_intensity_image
 from ..io.geotiff import IntensityImage
-from ..markings.lines.fit import MarkingLineSettings, fit_marking_lines
+from ..markings.lines.fit import fit_marking_lines
+from ..markings.lines.geometry import MarkingLineSettings
 from ..markings.lines.naming import named_by_estimate, named_by_lines
 from ..markings.lines.painted_lines import lines_to_features
 from ..markings.objects.cluster import ClusterSettings, cluster_markings
 from ..markings.objects.marking_objects import markings_to_features
 from ..markings.outliers.remove import OutlierSettings, remove_outliers
-from ..markings.paint.extract import MarkingSettings, extract_markings
+from ..markings.paint.extract import extract_markings
+from ..markings.paint.settings import MarkingSettings
+from ..road.common.curb_limits import CurbSettings
 from ..road.common.curb_points import CurbPoints, curb_points_to_features
 from ..road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
 from ..road.edges.fit import EdgeSettings
 from ..road.edges.road_edges import RoadEdges, edges_to_features
-from ..road.profiles.detect import CurbSettings
-from ..road.scanlines.detect import ScanlineBoundarySettings
+from ..road.scanlines.candidates import ScanlineBoundarySettings
 from ..road.scanlines.section_planes import ScanlineSettings
 from ..road.surface.extract import SurfaceSettings, extract_road_surface
 from ..road.surface.road_surface import SurfaceOutlines, surface_to_features

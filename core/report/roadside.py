@@ -14,7 +14,7 @@ from .page import Page
 
 if TYPE_CHECKING:
     from ..common.features import Features
-    from ..inventory.roadside.find import Roadside
+    from ..inventory.roadside.shared import Roadside
 
 KIND_COLOURS = dict(guard_rail="#5b6b8c", barrier="#b08a3e", wall="#8c4b3c", fence="#e08020", hedge="#3f8f3a", gutter="#2b8cbe",
                     pole="#7f7f7f", sign="#c9a400", trunk="#6b4a2b")

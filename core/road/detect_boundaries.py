@@ -12,6 +12,7 @@ from ..common.parallel import InBackground
 from ..common.progress import Progress
 from ..survey.lattice.scan_lattice import find_lattice
 from .agreement import CurbEvidence, measure_agreement, select_curb_points
+from .common.curb_limits import CurbSettings
 from .common.curb_points import CurbPoints
 from .common.decimation import LevelGround, PointDecimation
 from .common.occlusion import OcclusionGrid
@@ -20,9 +21,9 @@ from .curb_returns.detect import with_curb_returns
 from .edges.fit import EdgeSettings, fit_road_edges
 from .edges.road_edges import RoadEdges
 from .in_line_of_both import with_pieces_of_both
-from .profiles.detect import CurbSettings, detect_curbs
-from .scanlines.candidates import GAP_FILL_REACH
-from .scanlines.detect import ScanlineBoundarySettings, curbs_from_scanlines
+from .profiles.detect import detect_curbs
+from .scanlines.candidates import GAP_FILL_REACH, ScanlineBoundarySettings
+from .scanlines.detect import curbs_from_scanlines
 from .scanlines.section_planes import ScanlineSettings
 from .scanlines.source import SurveyScanlines
 from .surface.measured_ground import MeasuredGround

@@ -12,10 +12,10 @@ from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from ..execution.phase import Executor
 from ..io.cloud_crs import check_projected, crs_note, unit_note
-from ..io.crs import crs_name
-from ..io.units import as_in_file
+from ..io.crs import crs_name, parse_crs
+from ..io.units import FOOT, US_SURVEY_FOOT, as_in_file
 from .adjustment.adjust import adjust_passes
-from .adjustment.beside import compare_carriageways
+from .adjustment.beside import compare_carriageways, said_of_levels
 from .clock_check import check_clock
 from .fit.scanners import lay_scanners
 from .fit.trajectory_fit import fitted_trajectory
@@ -32,6 +32,7 @@ from .reading.survey_reader import SurveyReader
 from .store.records import COORDINATE_SCALE, SURVEY_POINT, point_dtype
 from .store.section_store import SECTION_LENGTH, SectionStore
 from .survey import Survey, SurveySettings
+from .trajectory.meaning import EARTH_RADIUS
 from .trajectory.reprojection import reproject_trajectory
 from .trajectory.time_systems import align_time, wrapped_week
 from .trajectory.trajectory import refuse_standstill
@@ -46,7 +47,6 @@ SECTION_LENGTHS = SECTION_LENGTH, 10.0, 25.0   # m that it may be long
 PARTS_PROGRESS = 0.85        # of reading, where the points are put in order afterwards
 LOWEST_SENSOR = 0.5          # m above the road: no scanner rides lower, but lines and places drawn on the road lie within
 HIGHEST_SENSOR = 5.0         # m above the road: vehicles are up to 4 m high (Directive 96/53/EC), and a mast on a roof adds some
-FEET = 0.3048, 1200 / 3937   # m, of the international foot and of that of surveys in the United States
 
 
 @dataclass(frozen=True)
@@ -181,6 +181,8 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
         for file in shared.ordered.iterdir():
             file.unlink()
         survey.put_in_order(shared.ordered, shared.ordering, progress.part(1.0, 1.0))
+    for said in said_of_levels(survey.frame) if len(frame.roads) > 1 else ():
+        progress.warn(said)
     if settings.fit_passes and has_time and len(frame.roads) > 1:
         compare_carriageways(survey, progress.part(1.0, 1.0))
     # what the user says overrules what lies beside the trajectory
@@ -316,20 +318,35 @@ def _what_to_try(low, high, x, y, crs, trajectory_crs, reach):
     if _runs_through(low, high, y, x, reach):
         return ("In one of them x and y are exchanged: where the trajectory's x is its easting or it is in longitude and latitude, export the cloud "
                 "with the easting as x; otherwise name the trajectory's columns the other way round, or swap them.")
-    if any(_runs_through(low * foot, high * foot, x, y, reach) for foot in FEET):
+    if any(_runs_through(low * foot, high * foot, x, y, reach) for foot in (FOOT, US_SURVEY_FOOT)):
         if not as_in_file(crs)[1].metric:
             return "The trajectory was taken to be in feet like the cloud, and seems to be in metres: give it its own CRS, as Import trajectory does."
         return ("The cloud's coordinates are the trajectory's in feet: give each the CRS that it is in (the parameter CRS is that of clouds that "
                 "carry none), or convert the cloud to metres.")
-    if any(_runs_through(low, high, x * foot, y * foot, reach) for foot in FEET):
+    if any(_runs_through(low, high, x * foot, y * foot, reach) for foot in (FOOT, US_SURVEY_FOOT)):
         return ("The trajectory's coordinates are the cloud's in feet: give it the CRS in feet that it is in, as Import trajectory does, or convert "
                 "it to metres.")
     if (np.abs(high[:2]) <= 180).all() and (np.abs(low[:2]) <= 180).all() and (high - low)[:2].max() < 1.0:
         return "The cloud's coordinates look like degrees: reproject it to a projected CRS, such as the UTM zone of the survey."
+    if EARTH_RADIUS[0] < np.linalg.norm((low + high) / 2) < EARTH_RADIUS[1]:
+        return ("The cloud's coordinates are as far from 0, 0, 0 as the ground is from the centre of the earth: reproject it from those "
+                "earth-centred coordinates to a projected CRS, such as the UTM zone of the survey.")
+    if crs and _runs_through(low, high, *_angles_exchanged(x, y, crs), reach):
+        return ("The trajectory's longitude and latitude are exchanged: it runs through the cloud where each is taken for the other. Name its "
+                "columns the other way round, and run again.")
     if trajectory_crs:
         return f"Both were taken to be in {crs_name(crs)}. Check that they belong to one survey, and the CRS of the trajectory."
     cloud = f"The cloud is in {crs_name(crs)}, the trajectory" if crs else "The trajectory"
     return f"{cloud} carries no CRS. Give it the one its coordinates are in (Import trajectory does), and check that both belong to one survey."
+
+
+def _angles_exchanged(x, y, crs):
+    """x and y of a trajectory, had its longitude and latitude been exchanged."""
+    from pyproj import Transformer
+
+    to_degrees = Transformer.from_crs(crs, parse_crs(crs).geodetic_crs, always_xy=True)
+    lon, lat = to_degrees.transform(x, y)
+    return to_degrees.transform(lat, lon, direction="INVERSE")
 
 
 def _no_overlap(files, frame, reader, corridor):

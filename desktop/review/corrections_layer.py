@@ -22,6 +22,7 @@ from ...core.common.errors import RoadExtractionError
 from ...core.common.schemas import CORRECTIONS
 from ...processing_provider.layers import qgis_fields
 from ...processing_provider.results.origin import OUTPUT
+from ...processing_provider.results.road_maps import RoadMap
 from ...processing_provider.styling import STYLES, apply_style
 from ...processing_provider.texts import tr
 
@@ -90,6 +91,16 @@ def new_corrections_layer(project: QgsProject, path: str, crs: QgsCoordinateRefe
     project.addMapLayer(layer, False)
     project.layerTreeRoot().insertLayer(0, layer)
     return layer
+
+
+def lay_above(layer: QgsVectorLayer, road_map: RoadMap, project: QgsProject) -> None:
+    """Move corrections to the top of the layer tree where a road map lies above them: its image and surface would hide them."""
+    root = project.layerTreeRoot()
+    order = [node.layerId() for node in root.findLayers()]
+    if order.index(layer.id()) > min(order.index(one.id()) for one in road_map.layers):
+        node = root.findLayer(layer.id())
+        root.insertChildNode(0, node.clone())
+        node.parent().removeChildNode(node)
 
 
 def add_correction(layer: QgsVectorLayer, line: QgsGeometry, crs: QgsCoordinateReferenceSystem, former: QgsFeature | None = None,

@@ -37,13 +37,13 @@ from ...core.corrections.corrections import taken_reading
 from ...processing_provider.results.attributes import WORDS
 from ...processing_provider.results.road_maps import RoadMap, clouds_of
 from ...processing_provider.texts import tr
-from .corrections_layer import add_correction, correction_at, corrections_of_survey, move_of, new_corrections_layer, take_back
+from .corrections_layer import add_correction, correction_at, corrections_of_survey, lay_above, move_of, new_corrections_layer, take_back
 from .doubtful import Doubt, DoubtfulPiece, doubts_of
 from .line_tool import LineTool
 
 LEAST_VIEW = 30.0   # m of ground shown about a place
 FILE = "corrections.gpkg"
-CHOSEN = "#ff00c8"  # pieces that the buttons are about
+CHOSEN = "#6eff00c8"  # pieces that the buttons are about
 SEEN = "lanewright/seen"  # custom property of a layer: keys of pieces that were accepted and that no correction could be about, one a line
 
 
@@ -73,6 +73,7 @@ class DoubtDock(QDockWidget):
         # beside the Results Viewer, which opens with the first report: below it the list had room for three lines
         iface.addTabifiedDockWidget(Qt.DockWidgetArea.RightDockWidgetArea, self, [], True)
         self.visibilityChanged.connect(lambda visible: self._highlight() if visible else self._unlight())
+        QgsProject.instance().layersWillBeRemoved.connect(self._forget)
 
     def _build(self):
         self.where = QLabel()
@@ -101,7 +102,7 @@ class DoubtDock(QDockWidget):
         self.accept_button = self._button(tr("Accept"), tr("It is right as it is"), lambda: self.decide("accept"), "A")
         self.delete_button = self._button(tr("Delete"), tr("There is nothing of that kind here"), lambda: self.decide("delete"), "D")
         self.move_button = self._button(tr("Move…"), tr("Draw where it belongs, within 2 m of where it is"), self.begin_move, "M")
-        self.other_button = self._button(tr("Other reading"), tr("Take the second reading of the program, which is hardly less likely"),
+        self.other_button = self._button(tr("Other reading"), tr("Take the second reading of the program, which is almost as likely"),
                                          lambda: self.decide("take"), "O")
         self.draw_button = self._button(tr("Draw"), tr("Draw what is missing"), lambda: None)
         menu = QMenu(self)
@@ -119,7 +120,6 @@ class DoubtDock(QDockWidget):
                                        lambda: self.run_wanted.emit(self.road_map, self.layer))
         body = QWidget()
         column = QVBoxLayout(body)
-        column.setContentsMargins(6, 6, 6, 6)
         column.addLayout(_row(back, ahead, self.where))
         column.addLayout(_row(self.kinds, self.order))
         column.addWidget(self.undecided)
@@ -146,9 +146,18 @@ class DoubtDock(QDockWidget):
 
     def remove(self) -> None:
         """Take the window out of QGIS."""
+        QgsProject.instance().layersWillBeRemoved.disconnect(self._forget)
         self._stop_drawing()
         self._unlight()
         self.iface.removeDockWidget(self)
+
+    def _forget(self, removed):
+        """Forget a road map of which layers leave the project: nothing of them can be shown or corrected any more."""
+        if self.road_map is not None and self.road_map.has_any(removed):
+            self._stop_drawing()
+            self.road_map, self._of, self.places, self.at = None, None, [], -1
+            self._fill()
+            self.where.clear()
 
     # -- from place to place ----------------------------------------------------------------------
 
@@ -171,6 +180,8 @@ class DoubtDock(QDockWidget):
             self.at = (self.at + step) % len(self.places) if self.at >= 0 else 0 if step > 0 else len(self.places) - 1
             if not self.undecided.isChecked() or not self._is_done(self.place):
                 break
+        if self._pending is not None and self._pending[2] is not None and not self.tool.vertices:
+            self._stop_drawing()  # a piece of the place before was to be moved
         self._fill()
         self.list.setFocus()  # for the keys
         if self.place is not None:
@@ -216,8 +227,7 @@ class DoubtDock(QDockWidget):
 
     def _former(self, piece):
         """The correction that was made of a piece, None where there is none."""
-        layer = self.layer
-        if layer is None:
+        if (layer := self.layer) is None:
             return None
         return correction_at(layer, piece.line, self.places[0].crs, piece.target) or \
             move_of(layer, piece.line, self.places[0].crs, piece.target, piece.road, piece.station)
@@ -226,8 +236,7 @@ class DoubtDock(QDockWidget):
         return str(self.road_map.layers[0].customProperty(SEEN) or "").split("\n")
 
     def _zoom(self, place):
-        canvas = self.iface.mapCanvas()
-        extent = QgsRectangle(place.extent)
+        canvas, extent = self.iface.mapCanvas(), QgsRectangle(place.extent)
         extent.grow(max(0.15 * max(extent.width(), extent.height()), (LEAST_VIEW - max(extent.width(), extent.height())) / 2))
         try:
             shown = QgsCoordinateTransform(place.crs, canvas.mapSettings().destinationCrs(), QgsProject.instance()).transformBoundingBox(extent)
@@ -257,9 +266,7 @@ class DoubtDock(QDockWidget):
         self._unlight()
         for piece in self.chosen if self.isVisible() else ():
             band = QgsRubberBand(self.iface.mapCanvas(), Qgis.GeometryType.Line)
-            colour = QColor(CHOSEN)
-            colour.setAlpha(110)
-            band.setColor(colour)
+            band.setColor(QColor(CHOSEN))
             band.setWidth(7)
             band.setToGeometry(piece.line, self.place.crs)
             self.bands.append(band)
@@ -288,8 +295,8 @@ class DoubtDock(QDockWidget):
         return path if not path or path.lower().endswith(".gpkg") else f"{path}.gpkg"
 
     def _layer_to_write(self):
-        layer = self.layer
-        if layer is not None:
+        if (layer := self.layer) is not None:
+            lay_above(layer, self.road_map, QgsProject.instance())
             return layer
         path = self.ask_for_file()
         if not path:
@@ -316,7 +323,11 @@ class DoubtDock(QDockWidget):
         if seen:
             self.road_map.layers[0].setCustomProperty(SEEN, "\n".join([*filter(None, self._seen()), *seen]))
         self.note.clear()
-        last, count = max(place.pieces.index(piece) for piece in pieces), len(place.pieces)
+        self._go_on(max(place.pieces.index(piece) for piece in pieces))
+
+    def _go_on(self, last):
+        """To the next piece that is not decided, after the row that was decided last, here or at the next place."""
+        place, count = self.place, len(self.place.pieces)
         left = [row % count for row in range(last + 1, last + 1 + count) if not self._decision(place.pieces[row % count])]
         self._fill(left[0] if left else last)
         if not left and len(self.places) > 1:
@@ -338,6 +349,7 @@ class DoubtDock(QDockWidget):
             self.tool.clear()
         self._pending = action, target, piece
         self.iface.mapCanvas().setMapTool(self.tool)
+        self.iface.mapCanvas().setFocus()  # for Backspace and Esc
         self._hint("")
 
     def _hint(self, text):
@@ -353,15 +365,18 @@ class DoubtDock(QDockWidget):
             add_correction(layer, line, self.iface.mapCanvas().mapSettings().destinationCrs(), None if piece is None else self._former(piece),
                            action=action, target=target, note=self.note.text() or None, **of)
             self.note.clear()
-        row = self.list.currentRow()
         self._stop_drawing()
-        self._fill(max(row, 0))
+        if piece is not None and layer is not None and piece in self.place.pieces:
+            self._go_on(self.place.pieces.index(piece))
+        else:
+            self._fill(max(self.list.currentRow(), 0))
 
     def _stop_drawing(self):
         self._pending = None
         self.hint.hide()
         self.tool.clear()
         self.iface.mapCanvas().unsetMapTool(self.tool)
+        self.list.setFocus()  # for the keys
 
     def undo(self) -> None:
         """Take back the correction that was made last."""
@@ -370,8 +385,7 @@ class DoubtDock(QDockWidget):
 
     def _tell(self):
         """How many corrections there are, and what to do with them."""
-        layer = self.layer
-        count = 0 if layer is None else layer.featureCount()
+        count = 0 if (layer := self.layer) is None else layer.featureCount()
         self.undo_button.setEnabled(count > 0)
         self.run_button.setEnabled(count > 0)
         self.kept.setText(tr("No corrections yet.") if not count else

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -14,6 +15,7 @@ from .missing_parts import Missing, grown_surface, lane_ends, missing_edges, war
 from .section import title_of
 
 TARGETS = {"ROAD_EDGES": "edge", "MARKING_LINES": "marking", "DRIVING_LINES": "lane", "LANES": "lane"}  # what a correction calls them
+LINES = {"edge": tr("Edge line"), "centre": tr("Centre line"), "lane": tr("Lane line")}
 GUESSED = ("bridged", "inferred")
 DECIDED = ("accepted", "drawn")  # an analyst has seen these
 UNSURE = 0.85       # confidence below which a piece is doubtful: more than one in seven of those are wrong
@@ -104,11 +106,24 @@ def _doubtful_rows(road_map, output):
         if why and not feature.geometry().isEmpty():
             target = TARGETS[output]
             other = str(row.get("other") or "")
-            why += tr("; another reading is hardly less likely") if other else ""
+            if other:
+                why += tr("; almost as likely: {reading}").format(reading=second_reading(other))
             found.append(DoubtfulPiece(f"{title_of(layer, feature)}: {why}", target, target, course_of(feature.geometry()),
                                        int(_number(row.get("road")) or 0), _number(row.get("station_m")) or 0.0, _number(row.get("offset_m")),
                                        (_number(row.get("length_m")) or 0.0) * _share_wrong(row), other))
     return found
+
+
+def second_reading(other: str) -> str:
+    """What the field `other` says, in words."""
+    try:
+        reading = json.loads(other)
+        lanes = [f"{float(lane['width_m']):.1f}" for lane in reading.get("lanes", ())]
+        if lanes:
+            return tr("{count} lane(s), {widths} m wide").format(count=len(lanes), widths=" | ".join(lanes))
+        return LINES[reading["kind"]]
+    except (ValueError, TypeError, KeyError, AttributeError):  # the field can be edited
+        return tr("another reading")
 
 
 def _missing_piece(missing: Missing):
@@ -157,12 +172,13 @@ def course_of(geometry: QgsGeometry) -> QgsGeometry:
 
 
 def _gathered(pieces, crs):
-    """Pieces that begin within SAME_PLACE of the first of them are one place."""
+    """Pieces that begin within SAME_PLACE of the first of them are one place, in which a warning that names both sides of a road stands once."""
     groups: list[list[DoubtfulPiece]] = []
     for piece in pieces:
         first = groups[-1][0] if groups else None
         if first is not None and first.road == piece.road and piece.station - first.station <= SAME_PLACE:
-            groups[-1].append(piece)
+            if piece.kind != "warning" or piece.text not in [other.text for other in groups[-1]]:
+                groups[-1].append(piece)
         else:
             groups.append([piece])
     return [_place(group, crs) for group in groups]

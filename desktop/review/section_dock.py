@@ -75,13 +75,24 @@ class SectionDock(QDockWidget):
         self.setWidget(body)
         iface.addDockWidget(Qt.DockWidgetArea.BottomDockWidgetArea, self)
         self.visibilityChanged.connect(self._hide_line)
+        QgsProject.instance().layersWillBeRemoved.connect(self._forget)
 
     def remove(self) -> None:
         """Take the window and its line out of QGIS."""
+        QgsProject.instance().layersWillBeRemoved.disconnect(self._forget)
         if self.iface.mapCanvas().mapTool() is self.tool:
             self.iface.mapCanvas().unsetMapTool(self.tool)
         self._hide_line(False)
         self.iface.removeDockWidget(self)
+
+    def _forget(self, removed):
+        """Show nothing any more of a road map of which layers leave the project."""
+        if self.road_map is None or not self.road_map.has_any(removed):
+            return
+        self._stop_reading()
+        self.section = self.road_map = None
+        self._hide_line(False)
+        self.view.show_section(np.empty((0, 3)), [], tr("Click on the road in the map."))
 
     # -- where ------------------------------------------------------------------------------------
 

@@ -13,12 +13,13 @@ from qgis.PyQt.QtWidgets import QToolTip, QWidget
 from ...processing_provider.texts import tr
 from .section import HALF_WIDTH, Crossing
 
-LEFT, RIGHT, TOP, BOTTOM = 46, 10, 16, 34  # pixels about the picture
+LEFT, RIGHT, TOP, BOTTOM = 46, 10, 16, 18  # pixels about the picture, without its caption
 LEAST_HEIGHT = 0.6       # m that the picture shows at least
 HEIGHT_ABOVE, HEIGHT_BELOW = 0.8, 0.5  # m shown above and below the lines on the road
 ZOOM = 1.25              # of a turn of the wheel
 NEAREST = 1.0            # m of width that zooming ends at
 PAPER, INK, LABEL = QColor("#ffffff"), QColor("#222222"), QColor(255, 255, 255, 215)
+CAPTION = int(Qt.AlignmentFlag.AlignHCenter | Qt.AlignmentFlag.AlignTop | Qt.TextFlag.TextWordWrap)
 SCANLINE, CORNER = QColor("#e07b00"), QColor("#8e24aa")
 
 
@@ -48,7 +49,16 @@ class SectionView(QWidget):
     # -- metres and pixels --------------------------------------------------------------------------
 
     def _frame(self):
-        return QRectF(LEFT, TOP, max(self.width() - LEFT - RIGHT, 10), max(self.height() - TOP - BOTTOM, 10))
+        return QRectF(LEFT, TOP, max(self.width() - LEFT - RIGHT, 10), max(self._caption().top() - BOTTOM - TOP, 10))
+
+    def _caption(self):
+        """The lines below the picture, as many as the caption needs at this width."""
+        whole = QRectF(0, 0, self.width(), self.height())
+        needed = QFontMetricsF(self._small(), self).boundingRect(whole, CAPTION, caption())
+        return QRectF(0, self.height() - needed.height(), self.width(), needed.height())
+
+    def _small(self):
+        return QFont(self.font().family(), 8)
 
     def _at(self, offset, z):
         """Pixels of metres; left of the road is on the left."""
@@ -90,7 +100,7 @@ class SectionView(QWidget):
         self._draw_corners(painter)
 
     def _draw_axes(self, painter, frame):
-        painter.setFont(QFont(self.font().family(), 8))
+        painter.setFont(self._small())
         for value in _ticks(self.centre - self.half, self.centre + self.half, frame.width() / 60):
             x, _ = self._at(value, self.low)
             painter.setPen(QPen(QColor("#e2e2e2")))
@@ -103,8 +113,7 @@ class SectionView(QWidget):
             painter.drawLine(QPointF(frame.left(), y), QPointF(frame.right(), y))
             painter.setPen(INK)
             painter.drawText(QRectF(0, y - 7, LEFT - 4, 14), int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter), f"{value:.2f}")
-        painter.drawText(QRectF(frame.left(), frame.bottom() + 16, frame.width(), 16), int(Qt.AlignmentFlag.AlignHCenter),
-                         tr("left ← offset from the place that was clicked (m) → right; heights in m; orange: scanline; ○ bottom, △ top of a curb"))
+        painter.drawText(self._caption(), CAPTION, caption())
         painter.drawRect(frame)
 
     def _draw_points(self, painter, frame):
@@ -133,7 +142,7 @@ class SectionView(QWidget):
             painter.drawPolyline(QPolygonF([QPointF(*self._at(offset, z)) for offset, z in line]))
 
     def _draw_crossings(self, painter, frame):
-        painter.setFont(QFont(self.font().family(), 8))
+        painter.setFont(self._small())
         shown = [crossing for crossing in self.crossings if abs(crossing.offset - self.centre) <= self.half]
         for crossing in shown:
             x, y = self._at(crossing.offset, crossing.z if math.isfinite(crossing.z) else self.low)
@@ -202,6 +211,11 @@ class SectionView(QWidget):
         elif frame.contains(event.pos()) and len(self.points):
             offset, z = self._metres(event.pos().x(), event.pos().y())
             QToolTip.showText(QCursor.pos(), f"{offset:+.2f} m, {z:.3f} m", self)
+
+
+def caption() -> str:
+    """What the axes and signs of the picture mean."""
+    return tr("left ← offset from the place that was clicked (m) → right; heights in m; orange: scanline; ○ bottom, △ top of a curb")
 
 
 def _ticks(low, high, most):

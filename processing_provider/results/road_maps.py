@@ -65,6 +65,10 @@ class RoadMap:
         """The layer that is a result, None where there is none."""
         return self.layers[self.outputs.index(output)] if output in self.outputs else None
 
+    def has_any(self, names: Iterable[str]) -> bool:
+        """Whether any of these ids of layers is one of its own."""
+        return not {layer.id() for layer in self.layers}.isdisjoint(names)
+
     @property
     def is_a_map(self) -> bool:
         """Whether it has lines of a road."""

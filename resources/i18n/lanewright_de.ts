@@ -205,8 +205,8 @@
         </message>
         <message>
             <location filename="../../algorithms/algorithm.py" />
-            <source>Only for point clouds that carry no CRS of their own; it is written into everything made from them.</source>
-            <translation>Nur für Punktwolken ohne eigenes KBS; es wird in alles geschrieben, was aus ihnen entsteht.</translation>
+            <source>Only for point clouds that carry no CRS of their own, or contradict themselves; it is written into everything made from them.</source>
+            <translation>Nur für Punktwolken, die kein eigenes KBS tragen oder sich widersprechen; es wird in alles geschrieben, was aus ihnen entsteht.</translation>
         </message>
         <message>
             <location filename="../../algorithms/algorithm.py" />
@@ -1105,8 +1105,8 @@
         </message>
         <message>
             <location filename="../../algorithms/corrections.py" />
-            <source>What an analyst decided at doubtful places: points or lines with the fields action (accept, delete, move, draw) and target (edge, marking, lane); note, and of a line that is drawn kind and pattern, where they are wanted. A row is about what this run finds within half a metre of it (of a lane, a metre; what is moved, two), whatever its number. A row without geometry lies at its road, station_m and offset_m. What matches nothing is listed in log and report. The window of doubtful places writes this layer.</source>
-            <translation>Was an zweifelhaften Stellen entschieden wurde: Punkte oder Linien mit den Feldern action (accept, delete, move, draw) und target (edge, marking, lane); dazu note und, bei einer gezeichneten Linie, kind und pattern, wo sie gewünscht sind. Eine Zeile gilt dem, was dieser Lauf im Umkreis von einem halben Meter findet (bei Fahrstreifen ein Meter, beim Verschieben zwei), gleich welche Nummer es hat. Eine Zeile ohne Geometrie liegt bei ihrem road, station_m und offset_m. Was zu nichts passt, steht in Protokoll und Bericht. Das Fenster der zweifelhaften Stellen schreibt diesen Layer.</translation>
+            <source>What an analyst decided at doubtful places: points or lines with the fields action (accept, delete, move, draw, take) and target (edge, marking, lane). Further fields: note; kind and pattern of a line that is drawn; other of a second reading that is taken. A row concerns what this run finds within half a metre of it, whatever its number; for lanes it is one metre, for move two. A row without geometry lies at its road, station_m and offset_m. What matches nothing is listed in log and report. The window of doubtful places writes this layer.</source>
+            <translation>Was an zweifelhaften Stellen entschieden wurde: Punkte oder Linien mit den Feldern action (accept, delete, move, draw, take) und target (edge, marking, lane). Weitere Felder: note; kind und pattern einer gezeichneten Linie; other einer zweiten Lesart, die genommen wird. Eine Zeile gilt dem, was dieser Lauf im Umkreis von einem halben Meter findet, gleich welche Nummer es hat; bei Fahrstreifen ist es ein Meter, bei move sind es zwei. Eine Zeile ohne Geometrie liegt bei ihrem road, station_m und offset_m. Was zu nichts passt, steht in Protokoll und Bericht. Das Fenster der zweifelhaften Stellen schreibt diesen Layer.</translation>
         </message>
         <message>
             <location filename="../../algorithms/corrections.py" />
@@ -1142,6 +1142,11 @@
             <location filename="../../algorithms/destinations.py" />
             <source>{label} cannot be written to {path}: {reason}. Choose another place, or close the program that holds it.</source>
             <translation>{label} kann nicht nach {path} geschrieben werden: {reason}. Einen anderen Ort wählen oder das Programm schließen, das die Datei hält.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/destinations.py" />
+            <source>{path} cannot be written: {reason}. Close the program that holds it, or choose another file.</source>
+            <translation>{path} lässt sich nicht schreiben: {reason}. Das Programm schließen, das die Datei offen hält, oder eine andere Datei wählen.</translation>
         </message>
         <message>
             <location filename="../../algorithms/destinations.py" />
@@ -1520,8 +1525,8 @@
         </message>
         <message>
             <location filename="../../algorithms/export/check_map.py" />
-            <source>OpenDRIVE: only where the file does not say it. Lanelet2: in metres, such as that of the survey; empty takes the UTM zone of the map.</source>
-            <translation>OpenDRIVE: nur wo die Datei es nicht sagt. Lanelet2: in Metern, etwa das der Vermessung; leer nimmt die UTM-Zone der Karte.</translation>
+            <source>OpenDRIVE: only where the file does not say it. Lanelet2: projected, such as that of the survey; empty takes the UTM zone of the map.</source>
+            <translation>OpenDRIVE: nur wo die Datei es nicht sagt. Lanelet2: projiziert, etwa das der Vermessung; leer nimmt die UTM-Zone der Karte.</translation>
         </message>
         <message>
             <location filename="../../algorithms/export/check_map.py" />
@@ -1555,8 +1560,8 @@
         </message>
         <message>
             <location filename="../../algorithms/export/export_cad.py" />
-            <source>DXF has no place for the CRS; LandXML names it. Cross-sections, surfaces and texts are not there.</source>
-            <translation>DXF hat keinen Platz für das KBS; LandXML nennt es. Querprofile, Flächen und Texte sind nicht darin.</translation>
+            <source>DXF has no place for the CRS; LandXML names it. Both have the units of the layers' CRS, such as US survey feet. Cross-sections, surfaces and texts are not there.</source>
+            <translation>DXF hat keinen Platz für das KBS; LandXML nennt es. Beide haben die Einheiten des KBS der Layer, etwa US-Survey-Fuß. Querprofile, Flächen und Texte sind nicht darin.</translation>
         </message>
         <message>
             <location filename="../../algorithms/export/export_cad.py" />
@@ -1790,6 +1795,11 @@
         </message>
         <message>
             <location filename="../../algorithms/export/export_lanelet2.py" />
+            <source>The layer of lanes has no CRS: the map has local coordinates, and latitudes and longitudes about 0.</source>
+            <translation>Der Layer der Fahrstreifen hat kein KBS: Die Karte hat lokale Koordinaten sowie Breiten und Längen um 0.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_lanelet2.py" />
             <source>not stated</source>
             <translation>nicht angegeben</translation>
         </message>
@@ -2020,8 +2030,8 @@
         </message>
         <message>
             <location filename="../../algorithms/export/import_lanelet2.py" />
-            <source>Latitude and longitude are taken as WGS 84. A map with local_x and local_y alone gets layers in these coordinates, without CRS.</source>
-            <translation>Breite und Länge gelten als WGS 84. Eine Karte, die nur local_x und local_y hat, ergibt Layer in diesen Koordinaten, ohne KBS.</translation>
+            <source>Latitude and longitude are taken as WGS 84. A map with local_x and local_y alone, or whose latitudes and longitudes are all about 0, gets layers in local coordinates, without CRS.</source>
+            <translation>Breite und Länge gelten als WGS 84. Eine Karte, die nur local_x und local_y hat oder deren Breiten und Längen alle um 0 liegen, ergibt Layer in lokalen Koordinaten, ohne KBS.</translation>
         </message>
         <message>
             <location filename="../../algorithms/export/import_lanelet2.py" />
@@ -2030,8 +2040,8 @@
         </message>
         <message>
             <location filename="../../algorithms/export/import_lanelet2.py" />
-            <source>In metres, such as that of the survey. Empty takes the UTM zone of the map.</source>
-            <translation>In Metern, etwa das der Vermessung. Leer nimmt die UTM-Zone der Karte.</translation>
+            <source>Projected, such as that of the survey. Empty takes the UTM zone of the map.</source>
+            <translation>Projiziert, etwa das der Vermessung. Leer nimmt die UTM-Zone der Karte.</translation>
         </message>
         <message>
             <location filename="../../algorithms/export/import_opendrive.py" />
@@ -2050,8 +2060,8 @@
         </message>
         <message>
             <location filename="../../algorithms/export/import_opendrive.py" />
-            <source>Lanes of a section are a piece; lanes of roads in a junction are connectors. Sidewalks are no lanes: a road edge is drawn where one begins. Files that declare entities, or are not what a map can be, are refused.</source>
-            <translation>Der Fahrstreifen eines Abschnitts ist ein Stück; Fahrstreifen von Straßen in einem Knoten sind Verbindungen. Gehwege sind keine Fahrstreifen: Wo einer beginnt, wird ein Fahrbahnrand gezeichnet. Dateien, die Entitäten vereinbaren oder keine Karte sein können, werden abgelehnt.</translation>
+            <source>Lanes of a section are a piece; lanes of roads in a junction are connectors. Sidewalks are no lanes: a road edge is drawn where one begins, with the height of its curb. Gaps of reference lines, borders that fold back in a tight curve, and widths below 0 are named with their road; folds are cut off. Files that declare entities, or are not what a map can be, are refused.</source>
+            <translation>Der Fahrstreifen eines Abschnitts ist ein Stück; Fahrstreifen von Straßen in einem Knoten sind Verbindungen. Gehwege sind keine Fahrstreifen: Wo einer beginnt, wird ein Fahrbahnrand gezeichnet, mit der Höhe seines Bordsteins. Lücken von Referenzlinien, Grenzen, die sich in einer engen Kurve zurückfalten, und Breiten unter 0 werden mit ihrer Straße genannt; Falten werden abgeschnitten. Dateien, die Entitäten vereinbaren oder keine Karte sein können, werden abgelehnt.</translation>
         </message>
         <message>
             <location filename="../../algorithms/export/import_opendrive.py" />
@@ -3275,8 +3285,8 @@
         </message>
         <message>
             <location filename="../../algorithms/overlay/georeference_image.py" />
-            <source>In place of a layer: the .points file of QGIS's georeferencer, or a CSV with the columns pixel, line, easting, northing in any order.</source>
-            <translation>Statt eines Layers: die .points-Datei des Georeferenzierers von QGIS oder eine CSV mit den Spalten pixel, line, easting, northing in beliebiger Reihenfolge.</translation>
+            <source>In place of a layer: the .points file of QGIS's georeferencer, the gcp_list.txt of OpenDroneMap, or a CSV with the columns pixel, line, easting, northing in any order. Where rows name images, those of this image are used.</source>
+            <translation>Statt eines Layers: die .points-Datei des Georeferenzierers von QGIS, die gcp_list.txt von OpenDroneMap oder eine CSV mit den Spalten pixel, line, easting, northing in beliebiger Reihenfolge. Nennen die Zeilen Bilder, gelten die dieses Bildes.</translation>
         </message>
         <message>
             <location filename="../../algorithms/overlay/georeference_image.py" />
@@ -3285,8 +3295,8 @@
         </message>
         <message>
             <location filename="../../algorithms/overlay/georeference_image.py" />
-            <source>Only for control points that name none of their own. It must be projected, in metres.</source>
-            <translation>Nur für Passpunkte, die selbst keines nennen. Es muss projiziert sein, in Metern.</translation>
+            <source>Only for control points that name none of their own. It must be projected.</source>
+            <translation>Nur für Passpunkte, die selbst keines nennen. Es muss projiziert sein.</translation>
         </message>
         <message>
             <location filename="../../algorithms/overlay/georeference_image.py" />
@@ -3492,6 +3502,31 @@
             <location filename="../../algorithms/progress.py" />
             <source>About {number} min left</source>
             <translation>Noch etwa {number} min</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/report_head.py" />
+            <source>as they are by default</source>
+            <translation>wie voreingestellt</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/report_head.py" />
+            <source>Made</source>
+            <translation>Ausgeführt</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/report_head.py" />
+            <source>Settings</source>
+            <translation>Einstellungen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/report_head.py" />
+            <source> and {count} more</source>
+            <translation> und {count} weitere</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/report_head.py" />
+            <source>Warning</source>
+            <translation>Warnung</translation>
         </message>
         <message>
             <location filename="../../algorithms/road/boundaries_from_scanlines.py" />
@@ -4045,13 +4080,18 @@
         </message>
         <message>
             <location filename="../../algorithms/survey/import_trajectory.py" />
-            <source>Reads the driven trajectory from a CSV or TXT file, an Applanix SBET, or a point or line layer.</source>
-            <translation>Liest die gefahrene Trajektorie aus einer CSV- oder TXT-Datei, einem Applanix-SBET oder einem Punkt- oder Linienlayer.</translation>
+            <source>Reads the driven trajectory from a CSV or TXT file, an Applanix SBET, a log or track of a receiver, or a point or line layer.</source>
+            <translation>Liest die gefahrene Trajektorie aus einer CSV- oder TXT-Datei, einem Applanix-SBET, einem Protokoll oder Track eines Empfängers oder einem Punkt- oder Linienlayer.</translation>
         </message>
         <message>
             <location filename="../../algorithms/survey/import_trajectory.py" />
-            <source>Columns may come in any order, with or without a header, in degrees or radians. Rows are sorted by time; repeated and unusable rows are dropped and counted. The dialog shows what was understood of a file, and lets you assign its columns.</source>
-            <translation>Spalten dürfen in beliebiger Reihenfolge stehen, mit oder ohne Kopfzeile, in Grad oder Radiant. Zeilen werden nach der Zeit sortiert; doppelte und unbrauchbare Zeilen fallen weg und werden gezählt. Der Dialog zeigt, was von einer Datei verstanden wurde, und lässt ihre Spalten zuordnen.</translation>
+            <source>Columns may come in any order, with or without a header, in degrees, radians or degrees with minutes and seconds. Rows are sorted by time; repeated and unusable rows are dropped and counted. The dialog shows what was understood of a file, and lets you assign its columns.</source>
+            <translation>Spalten dürfen in beliebiger Reihenfolge stehen, mit oder ohne Kopfzeile, in Grad, Radiant oder Grad mit Minuten und Sekunden. Zeilen werden nach der Zeit sortiert; doppelte und unbrauchbare Zeilen fallen weg und werden gezählt. Der Dialog zeigt, was von einer Datei verstanden wurde, und lässt ihre Spalten zuordnen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/import_trajectory.py" />
+            <source>Times are GPS seconds. Clock times are read where the file says what the clock shows: GPS time as it is, UTC with the leap seconds of its date. Other clock times, and seconds since 1970, are refused, as their leap seconds are unknown.</source>
+            <translation>Zeiten sind GPS-Sekunden. Uhrzeiten werden gelesen, wo die Datei sagt, was die Uhr zeigt: GPS-Zeit, wie sie ist, UTC mit den Schaltsekunden des Datums. Andere Uhrzeiten und Sekunden seit 1970 werden abgelehnt, da ihre Schaltsekunden nicht bekannt sind.</translation>
         </message>
         <message>
             <location filename="../../algorithms/survey/import_trajectory.py" />
@@ -4070,6 +4110,21 @@
         </message>
         <message>
             <location filename="../../algorithms/survey/import_trajectory.py" />
+            <source>nmea</source>
+            <translation>nmea</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/import_trajectory.py" />
+            <source>gpx</source>
+            <translation>gpx</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/import_trajectory.py" />
+            <source>rtklib</source>
+            <translation>rtklib</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/import_trajectory.py" />
             <source>Imported trajectory</source>
             <translation>Eingelesene Trajektorie</translation>
         </message>
@@ -4080,8 +4135,8 @@
         </message>
         <message>
             <location filename="../../algorithms/survey/import_trajectory.py" />
-            <source>A CSV or TXT file, an SBET (.out), or a layer of points or lines with heights.</source>
-            <translation>Eine CSV- oder TXT-Datei, ein SBET (.out) oder ein Layer aus Punkten oder Linien mit Höhen.</translation>
+            <source>A CSV or TXT file, an SBET (.out), a log (NMEA, RTKLIB, NovAtel), a GPX or KML track, or a layer of points or lines with heights.</source>
+            <translation>Eine CSV- oder TXT-Datei, ein SBET (.out), ein Protokoll (NMEA, RTKLIB, NovAtel), ein Track (GPX, KML) oder ein Layer aus Punkten oder Linien mit Höhen.</translation>
         </message>
         <message>
             <location filename="../../algorithms/survey/import_trajectory.py" />
@@ -4090,8 +4145,8 @@
         </message>
         <message>
             <location filename="../../algorithms/survey/import_trajectory.py" />
-            <source>Of a text file, one word a column from the left: time, x, y, z, roll, pitch, heading, lon, lat, or - for a column that is left out; such as time,y,x,z. Empty recognises them by their names, or by their numbers where they have none.</source>
-            <translation>Einer Textdatei, ein Wort je Spalte von links: time, x, y, z, roll, pitch, heading, lon, lat oder - für eine Spalte, die wegbleibt; etwa time,y,x,z. Leer werden sie an ihren Namen erkannt oder, wo sie keine haben, an ihren Zahlen.</translation>
+            <source>Of a text file, one word a column from the left: time, x, y, z, roll, pitch, heading, lon, lat, or - for a column that is left out; such as time,y,x,z. A column of clock times is gps or utc, by what its clock shows, and week or date where these stand apart. Empty recognises them by their names, or by their numbers where they have none.</source>
+            <translation>Einer Textdatei, ein Wort je Spalte von links: time, x, y, z, roll, pitch, heading, lon, lat oder - für eine Spalte, die wegbleibt; etwa time,y,x,z. Eine Spalte mit Uhrzeiten ist gps oder utc, je nachdem, was die Uhr zeigt, und week oder date, wo diese für sich stehen. Leer werden sie an ihren Namen erkannt oder, wo sie keine haben, an ihren Zahlen.</translation>
         </message>
         <message>
             <location filename="../../algorithms/survey/import_trajectory.py" />
@@ -4569,9 +4624,19 @@
             <translation>{label} hat keine Zeilen. Den Layer wählen, der die gefahrenen Positionen enthält.</translation>
         </message>
         <message>
-            <location filename="../../algorithms/trajectory_source.py" />
-            <source>{label} is a table with the columns {names}; {missing} cannot be found among them. Name them time, x, y, z, roll, pitch, heading.</source>
-            <translation>{label} ist eine Tabelle mit den Spalten {names}; {missing} ist darunter nicht zu finden. Sie time, x, y, z, roll, pitch, heading nennen.</translation>
+            <location filename="../../algorithms/vector_source.py" />
+            <source>too few vertices</source>
+            <translation>zu wenige Stützpunkte</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/vector_source.py" />
+            <source>coordinates that lie nowhere on earth</source>
+            <translation>Koordinaten, die nirgends auf der Erde liegen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/vector_source.py" />
+            <source>{label} cannot be used: {count} of its {total} features have {problem}, the first of them feature {id}. Repair or delete them.</source>
+            <translation>{label} lässt sich nicht verwenden: {count} von {total} Objekten haben {problem}, das erste davon ist Objekt {id}. Sie reparieren oder löschen.</translation>
         </message>
         <message>
             <location filename="../../algorithms/vector_source.py" />
@@ -4822,6 +4887,26 @@
             <location filename="../../core/common/words.py" />
             <source>move</source>
             <translation>verschieben</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>ahead</source>
+            <translation>vorn</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>behind</source>
+            <translation>hinten</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>above</source>
+            <translation>oberhalb</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>below</source>
+            <translation>unterhalb</translation>
         </message>
         <message>
             <location filename="../../core/common/words.py" />
@@ -6345,11 +6430,6 @@
         </message>
         <message>
             <location filename="../../core/report/road_map.py" />
-            <source>Made</source>
-            <translation>Ausgeführt</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
             <source>Per m³, mean of occupied cubes</source>
             <translation>Je m³, Mittel der besetzten Würfel</translation>
         </message>
@@ -6600,6 +6680,11 @@
         </message>
         <message>
             <location filename="../../desktop/cloud_widget.py" />
+            <source>no times</source>
+            <translation>keine Zeiten</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/cloud_widget.py" />
             <source>Point clouds of the project</source>
             <translation>Punktwolken des Projekts</translation>
         </message>
@@ -6617,6 +6702,26 @@
             <location filename="../../desktop/cloud_widget.py" />
             <source>{count} files, {size} MB</source>
             <translation>{count} Dateien, {size} MB</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/cloud_widget.py" />
+            <source>{count} points</source>
+            <translation>{count} Punkte</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/cloud_widget.py" />
+            <source>{width} × {height} m</source>
+            <translation>{width} × {height} m</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/cloud_widget.py" />
+            <source>scanned {begin} to {end} (GPS time)</source>
+            <translation>gescannt {begin} bis {end} (GPS-Zeit)</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/cloud_widget.py" />
+            <source>times {begin:.0f} to {end:.0f} s</source>
+            <translation>Zeiten {begin:.0f} bis {end:.0f} s</translation>
         </message>
         <message>
             <location filename="../../desktop/columns_widget.py" />
@@ -6687,6 +6792,26 @@
             <location filename="../../desktop/columns_widget.py" />
             <source>latitude</source>
             <translation>Breite (Grad)</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/columns_widget.py" />
+            <source>time, GPS clock</source>
+            <translation>Zeit, GPS-Uhr</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/columns_widget.py" />
+            <source>time, UTC clock</source>
+            <translation>Zeit, UTC-Uhr</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/columns_widget.py" />
+            <source>GPS week</source>
+            <translation>GPS-Woche</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/columns_widget.py" />
+            <source>date</source>
+            <translation>Datum</translation>
         </message>
         <message>
             <location filename="../../desktop/columns_widget.py" />
@@ -6790,8 +6915,28 @@
         </message>
         <message>
             <location filename="../../desktop/dialogs/batch_dialog.py" />
+            <source>Folder of the surveys</source>
+            <translation>Ordner der Vermessungen</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/dialogs/batch_dialog.py" />
+            <source>Add the surveys of a folder…</source>
+            <translation>Vermessungen eines Ordners hinzufügen…</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/dialogs/batch_dialog.py" />
+            <source>One row for each folder with point clouds, and the trajectory that lies beside them</source>
+            <translation>Eine Zeile für jeden Ordner mit Punktwolken, und die Trajektorie, die neben ihnen liegt</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/dialogs/batch_dialog.py" />
             <source>Batch: {title}</source>
             <translation>Batch: {title}</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/dialogs/batch_dialog.py" />
+            <source>{count} surveys in {folder}.</source>
+            <translation>{count} Vermessungen in {folder}.</translation>
         </message>
         <message>
             <location filename="../../desktop/dialogs/batch_dialog.py" />
@@ -6995,6 +7140,16 @@
         </message>
         <message>
             <location filename="../../desktop/menu.py" />
+            <source>Name files without their folders</source>
+            <translation>Dateien ohne ihre Ordner nennen</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/menu.py" />
+            <source>Results keep the names of the files they were made from, but not the folders; for layers that are given away</source>
+            <translation>Ergebnisse behalten die Namen der Dateien, aus denen sie entstanden, aber nicht die Ordner; für Layer, die weitergegeben werden</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/menu.py" />
             <source>Manual</source>
             <translation>Handbuch</translation>
         </message>
@@ -7010,18 +7165,58 @@
         </message>
         <message>
             <location filename="../../desktop/menu.py" />
-            <source>There is no road map in this project yet: run Road map first.</source>
-            <translation>In diesem Projekt gibt es noch keine Straßenkarte: zuerst „Straßenkarte“ ausführen.</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/menu.py" />
             <source>No report has been written since QGIS was started.</source>
             <translation>Seit dem Start von QGIS wurde noch kein Bericht geschrieben.</translation>
         </message>
         <message>
             <location filename="../../desktop/menu.py" />
+            <source>There is no road map in this project yet: run Road map, or drop the GeoPackage of one into the project.</source>
+            <translation>In diesem Projekt gibt es noch keine Straßenkarte: „Straßenkarte“ ausführen oder das GeoPackage einer Straßenkarte in das Projekt ziehen.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/menu.py" />
+            <source>Run this stage again…</source>
+            <translation>Diesen Schritt erneut ausführen…</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/menu.py" />
             <source>Nothing has been run since QGIS was started.</source>
             <translation>Seit dem Start von QGIS ist nichts gelaufen.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/menu.py" />
+            <source>No web browser could be started. The report is the file {path}.</source>
+            <translation>Es ließ sich kein Webbrowser starten. Der Bericht ist die Datei {path}.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/messages.py" />
+            <source>Copy command</source>
+            <translation>Befehl kopieren</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/messages.py" />
+            <source>How to install…</source>
+            <translation>Wie installieren…</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/messages.py" />
+            <source>1 warning…</source>
+            <translation>1 Warnung…</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/messages.py" />
+            <source>Show it</source>
+            <translation>Anzeigen</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/messages.py" />
+            <source>{count} warnings…</source>
+            <translation>{count} Warnungen…</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/messages.py" />
+            <source>{title} is done, {count} layers.</source>
+            <translation>{title} ist fertig, {count} Layer.</translation>
         </message>
         <message>
             <location filename="../../desktop/overlay/image_pairs.py" />
@@ -7190,6 +7385,26 @@
         </message>
         <message>
             <location filename="../../desktop/review/doubt_dock.py" />
+            <source>The place before</source>
+            <translation>Die vorige Stelle</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/doubt_dock.py" />
+            <source>The next place</source>
+            <translation>Die nächste Stelle</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/doubt_dock.py" />
+            <source>The most doubtful first</source>
+            <translation>Die zweifelhafteste zuerst</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/doubt_dock.py" />
+            <source>Only what is not done</source>
+            <translation>Nur was nicht erledigt ist</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/doubt_dock.py" />
             <source>What is doubtful here. The buttons are about what is selected.</source>
             <translation>Was hier zweifelhaft ist. Die Knöpfe gelten dem, was ausgewählt ist.</translation>
         </message>
@@ -7230,6 +7445,16 @@
         </message>
         <message>
             <location filename="../../desktop/review/doubt_dock.py" />
+            <source>Other reading</source>
+            <translation>Andere Lesart</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/doubt_dock.py" />
+            <source>Take the second reading of the program, which is almost as likely</source>
+            <translation>Die zweite Lesart des Programms nehmen, die fast ebenso wahrscheinlich ist</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/doubt_dock.py" />
             <source>Draw</source>
             <translation>Zeichnen</translation>
         </message>
@@ -7265,18 +7490,8 @@
         </message>
         <message>
             <location filename="../../desktop/review/doubt_dock.py" />
-            <source>Click along the line where it belongs. The right button ends it, Backspace takes a click back, Esc stops.</source>
-            <translation>Entlang der Linie klicken, wo sie hingehört. Die rechte Taste beendet sie, die Rücktaste nimmt einen Klick zurück, Esc bricht ab.</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/review/doubt_dock.py" />
-            <source>The place before</source>
-            <translation>Die vorige Stelle</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/review/doubt_dock.py" />
-            <source>The next place</source>
-            <translation>Die nächste Stelle</translation>
+            <source>Everything</source>
+            <translation>Alles</translation>
         </message>
         <message>
             <location filename="../../desktop/review/doubt_dock.py" />
@@ -7295,8 +7510,8 @@
         </message>
         <message>
             <location filename="../../desktop/review/doubt_dock.py" />
-            <source>Nothing in this road map is doubtful: all of it was measured.</source>
-            <translation>Nichts an dieser Straßenkarte ist zweifelhaft: Alles wurde gemessen.</translation>
+            <source>Nothing of this is doubtful in the road map: all of it was measured.</source>
+            <translation>Nichts davon ist in der Straßenkarte zweifelhaft: Alles wurde gemessen.</translation>
         </message>
         <message>
             <location filename="../../desktop/review/doubt_dock.py" />
@@ -7305,8 +7520,18 @@
         </message>
         <message>
             <location filename="../../desktop/review/doubt_dock.py" />
-            <source>&lt;b&gt;Place {at} of {count}&lt;/b&gt;, road {road}, station {station:.0f} m</source>
-            <translation>&lt;b&gt;Stelle {at} von {count}&lt;/b&gt;, Straße {road}, Station {station:.0f} m</translation>
+            <source>A line takes two clicks at least.</source>
+            <translation>Eine Linie braucht mindestens zwei Klicks.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/doubt_dock.py" />
+            <source>&lt;b&gt;Place {at} of {count}&lt;/b&gt;, {done} done; road {road}, station {station:.0f} m</source>
+            <translation>&lt;b&gt;Stelle {at} von {count}&lt;/b&gt;, {done} erledigt; Straße {road}, Station {station:.0f} m</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/doubt_dock.py" />
+            <source>Click along the line where it belongs. The right button ends it, Backspace takes a click back, Esc stops.</source>
+            <translation>Entlang der Linie klicken, wo sie hingehört. Die rechte Taste beendet sie, die Rücktaste nimmt einen Klick zurück, Esc bricht ab.</translation>
         </message>
         <message>
             <location filename="../../desktop/review/doubt_dock.py" />
@@ -7320,6 +7545,11 @@
         </message>
         <message>
             <location filename="../../desktop/review/doubtful.py" />
+            <source>; another reading is almost as likely</source>
+            <translation>; eine andere Lesart ist fast ebenso wahrscheinlich</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/doubtful.py" />
             <source>the two boundary methods lie {apart:.0f} cm apart</source>
             <translation>die beiden Verfahren für die Ränder liegen {apart:.0f} cm auseinander</translation>
         </message>
@@ -7327,6 +7557,26 @@
             <location filename="../../desktop/review/doubtful.py" />
             <source>confidence {sure:.2f}</source>
             <translation>Vertrauen {sure:.2f}</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/missing_parts.py" />
+            <source>Road surface, {length:.0f} m: grown, no edge was found on one side at least</source>
+            <translation>Straßenoberfläche, {length:.0f} m: gewachsen, auf mindestens einer Seite wurde kein Rand gefunden</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/missing_parts.py" />
+            <source>Lane {lane} ends here, {left:.0f} m before the end of the road</source>
+            <translation>Fahrstreifen {lane} endet hier, {left:.0f} m vor dem Ende der Straße</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/missing_parts.py" />
+            <source>No road edge on the {side} for {length:.0f} m</source>
+            <translation>Kein Straßenrand auf der Seite {side} über {length:.0f} m</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/missing_parts.py" />
+            <source>Warning: {text}</source>
+            <translation>Warnung: {text}</translation>
         </message>
         <message>
             <location filename="../../desktop/review/section_dock.py" />
@@ -7370,8 +7620,13 @@
         </message>
         <message>
             <location filename="../../desktop/review/section_dock.py" />
-            <source>The point clouds of this road map are not known: it was not made by Road map in this project.</source>
-            <translation>Die Punktwolken dieser Straßenkarte sind nicht bekannt: Sie wurde nicht in diesem Projekt mit Straßenkarte gemacht.</translation>
+            <source>The point clouds of this road map are not there, so only its lines are shown.</source>
+            <translation>Die Punktwolken dieser Straßenkarte sind nicht da, daher werden nur ihre Linien gezeigt.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/section_dock.py" />
+            <source>Where is {name}? The folder of the point clouds of this road map</source>
+            <translation>Wo ist {name}? Der Ordner der Punktwolken dieser Straßenkarte</translation>
         </message>
         <message>
             <location filename="../../desktop/review/section_dock.py" />
@@ -7392,6 +7647,11 @@
             <location filename="../../desktop/review/section_view.py" />
             <source>left ← offset from the place that was clicked (m) → right; heights in m; orange: scanline; ○ bottom, △ top of a curb</source>
             <translation>links ← Abstand von der angeklickten Stelle (m) → rechts; Höhen in m; orange: Scanlinie; ○ Unter-, △ Oberkante eines Bordsteins</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/runs_window.py" />
+            <source>Open in the browser</source>
+            <translation>Im Browser öffnen</translation>
         </message>
         <message>
             <location filename="../../desktop/sample_run.py" />
@@ -7459,11 +7719,6 @@
             <translation>{low:g} bis {high:g}</translation>
         </message>
         <message>
-            <location filename="../../library/progress.py" />
-            <source>Warning: {text}</source>
-            <translation>Warnung: {text}</translation>
-        </message>
-        <message>
             <location filename="../../processing_provider/algorithm.py" />
             <source>{label}: {file} holds neither a layer nor a table of positions. Choose the layer or the CSV, TXT or SBET file of the drive.</source>
             <translation>{label}: {file} enthält weder einen Layer noch eine Tabelle von Positionen. Den Layer oder die CSV-, TXT- oder SBET-Datei der Befahrung wählen.</translation>
@@ -7484,6 +7739,11 @@
             <translation>{label} kann nicht verwendet werden: {problem}</translation>
         </message>
         <message>
+            <location filename="../../processing_provider/database.py" />
+            <source>The result could not be written: {reason}. Is the disk full or the file open elsewhere?</source>
+            <translation>Das Ergebnis konnte nicht geschrieben werden: {reason}. Ist der Datenträger voll oder die Datei anderswo geöffnet?</translation>
+        </message>
+        <message>
             <location filename="../../processing_provider/dependencies.py" />
             <source> (in the OSGeo4W Shell)</source>
             <translation> (in der OSGeo4W-Shell)</translation>
@@ -7500,18 +7760,18 @@
         </message>
         <message>
             <location filename="../../processing_provider/dependencies.py" />
-            <source>Missing Python package(s): {names}. To install: {command} Then start QGIS again.</source>
-            <translation>Es fehlen Python-Pakete: {names}. Zum Installieren: {command} Danach QGIS neu starten.</translation>
+            <source>{missing} To install: {command}{where}. Then start QGIS again.</source>
+            <translation>{missing} Zum Installieren: {command}{where}. Danach QGIS neu starten.</translation>
         </message>
         <message>
             <location filename="../../processing_provider/dependencies.py" />
-            <source>shapely {version} is installed and version 2 or newer is needed. To install: {command} Then start QGIS again.</source>
-            <translation>shapely {version} ist installiert, gebraucht wird Version 2 oder neuer. Zum Installieren: {command} Danach QGIS neu starten.</translation>
+            <source>Missing Python package(s): {names}.</source>
+            <translation>Es fehlen Python-Pakete: {names}.</translation>
         </message>
         <message>
-            <location filename="../../processing_provider/layers.py" />
-            <source>The result could not be written: {reason}. Is the disk full or the file open elsewhere?</source>
-            <translation>Das Ergebnis konnte nicht geschrieben werden: {reason}. Ist der Datenträger voll oder die Datei anderswo geöffnet?</translation>
+            <location filename="../../processing_provider/dependencies.py" />
+            <source>shapely {version} is installed and version 2 or newer is needed.</source>
+            <translation>shapely {version} ist installiert, gebraucht wird Version 2 oder neuer.</translation>
         </message>
         <message>
             <location filename="../../processing_provider/layers.py" />
@@ -7552,6 +7812,11 @@
             <location filename="../../processing_provider/results/attributes.py" />
             <source>drawn by hand</source>
             <translation>von Hand gezeichnet</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/attributes.py" />
+            <source>take the second reading</source>
+            <translation>die zweite Lesart nehmen</translation>
         </message>
         <message>
             <location filename="../../processing_provider/results/attributes.py" />
@@ -7627,6 +7892,11 @@
             <location filename="../../core/common/schemas.py" />
             <source>Confidence (0 to 1)</source>
             <translation>Vertrauen (0 bis 1)</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>Second reading that is almost as probable (JSON)</source>
+            <translation>Zweite Lesart, die fast ebenso wahrscheinlich ist (JSON)</translation>
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />
@@ -7890,36 +8160,6 @@
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />
-            <source>PC x</source>
-            <translation>PC x</translation>
-        </message>
-        <message>
-            <location filename="../../core/common/schemas.py" />
-            <source>PC y</source>
-            <translation>PC y</translation>
-        </message>
-        <message>
-            <location filename="../../core/common/schemas.py" />
-            <source>PT x</source>
-            <translation>PT x</translation>
-        </message>
-        <message>
-            <location filename="../../core/common/schemas.py" />
-            <source>PT y</source>
-            <translation>PT y</translation>
-        </message>
-        <message>
-            <location filename="../../core/common/schemas.py" />
-            <source>PI x</source>
-            <translation>PI x</translation>
-        </message>
-        <message>
-            <location filename="../../core/common/schemas.py" />
-            <source>PI y</source>
-            <translation>PI y</translation>
-        </message>
-        <message>
-            <location filename="../../core/common/schemas.py" />
             <source>RMSE of the arc (m)</source>
             <translation>RMSE des Bogens (m)</translation>
         </message>
@@ -7935,8 +8175,8 @@
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />
-            <source>Action (accept/delete/move/draw)</source>
-            <translation>Aktion (accept/delete/move/draw)</translation>
+            <source>Action (accept/delete/move/draw/take)</source>
+            <translation>Aktion (accept/delete/move/draw/take)</translation>
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />
@@ -7952,6 +8192,11 @@
             <location filename="../../core/common/schemas.py" />
             <source>Pattern of a line that is drawn (solid/dashed)</source>
             <translation>Muster einer gezeichneten Linie (solid/dashed)</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>Second reading that is taken (JSON)</source>
+            <translation>Zweite Lesart, die genommen wird (JSON)</translation>
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />
@@ -8312,6 +8557,11 @@
             <location filename="../../resources/styles/corrections.qml" />
             <source>Drawn</source>
             <translation>Gezeichnet</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/corrections.qml" />
+            <source>Second reading taken</source>
+            <translation>Zweite Lesart genommen</translation>
         </message>
         <message>
             <location filename="../../resources/styles/cross_sections.qml" />

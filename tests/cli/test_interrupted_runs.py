@@ -166,3 +166,18 @@ def test_a_layer_is_the_one_of_before_or_the_new_one_whenever_a_run_is_killed(tm
         sys.path.pop(0)
     assert kill_runs.check(4, tmp_path) == []
     assert not [path for path in tmp_path.iterdir() if path.suffix == ".previous"]
+
+
+@pytest.mark.parametrize("gib", [1.2, 0.4])
+def test_a_run_that_may_not_have_its_memory_ends_with_one_sentence_and_leaves_nothing(survey, tmp_path, gib):
+    """As under `ulimit -v` or on a shared computer."""
+    if not sys.platform.startswith("linux"):
+        pytest.skip("this system limits no address space")
+    folder = scratch(tmp_path)
+    limited = ["sh", "-c", f'ulimit -v {int(gib * 2**20)}; exec "$@"', "sh", QGIS_PROCESS, "run"]
+    call = subprocess.run([*limited, *map(str, road_map(survey))], cwd=tmp_path,
+                          stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=120, env={**os.environ, **folder})
+    assert call.returncode == 1, call.stderr
+    assert call.stderr.count("memory") == 1 and f"may use {int(gib * 2**20) * 1024 // 10**6} MB" in call.stderr, call.stderr
+    assert "Traceback" not in call.stderr
+    assert files(tmp_path) == {"scratch"} and not list((tmp_path / "scratch").iterdir())

@@ -161,7 +161,7 @@ def test_the_other_reading_of_a_lane_is_taken_by_one_key_and_goes_into_the_corre
         road=0, station_m=80.0, length_m=8.0, lane=1, direction=1, status="inferred", confidence=0.55, other=reading)))
     assert lane.featureCount() == 1
     at_first.go(road_maps(QgsProject.instance())[0])
-    assert "another reading" in at_first.list.item(0).text() and at_first.other_button.isEnabled()
+    assert "almost as likely: 2 lane(s), 3.5 | 3.5 m wide" in at_first.list.item(0).text() and at_first.other_button.isEnabled()
     {action.shortcut().toString(): action for action in at_first.actions()}["O"].trigger()
     layer, = corrections_layers(QgsProject.instance())
     row, = layer.getFeatures()
@@ -218,3 +218,38 @@ def test_of_a_lane_the_middle_between_its_borders_is_kept(window):
 
     line = course_of(next(layer.getFeatures()).geometry())
     assert line.length() == pytest.approx(20.0) and line.boundingBox().height() == pytest.approx(0.0, abs=1e-6)
+
+
+def test_a_project_that_is_closed_takes_its_doubtful_places_along(at_first):
+    at_first.accept_button.click()
+    QgsProject.instance().clear()
+    assert at_first.place is None and at_first.list.count() == 0 and at_first.where.text() == "" and not at_first.bands
+    assert not any(button.isEnabled() for button in (at_first.accept_button, at_first.draw_button, at_first.undo_button, at_first.run_button))
+    at_first.kinds.setCurrentIndex(1)  # nothing left to begin again with
+
+
+def test_after_a_move_the_next_piece_waits_to_be_decided_and_keys_work(at_first):
+    at_first.move_button.click()
+    main = at_first.iface.mainWindow()
+    assert main.focusWidget() is at_first.iface.mapCanvas(), "Backspace and Esc are for the line"
+    for x in (10, 18):
+        at_first.tool.add(QgsPointXY(EAST + x, NORTH + 1))
+    at_first.tool.finish()
+    assert at_first.list.currentRow() == 1 and at_first.place.station == 10 and main.focusWidget() is at_first.list
+
+
+def test_a_move_that_was_only_begun_ends_at_the_next_place(at_first):
+    at_first.move_button.click()
+    at_first.go(at_first.road_map)
+    assert not at_first.hint.isVisible() and at_first.iface.mapCanvas().mapTool() is not at_first.tool
+
+
+def test_corrections_are_seen_on_a_map_that_was_made_again(at_first):
+    project = QgsProject.instance()
+    at_first.accept_button.click()
+    again = added(project, "ROAD_EDGES", ROAD_EDGES, ("LINESTRING Z (10 0 100, 18 0 100)", dict(road=0, station_m=10.0, length_m=8.0, side="left",
+                                                                                                 status="bridged")), run=run_at(12))
+    project.layerTreeRoot().insertLayer(0, again)
+    at_first.go(road_maps(project, again)[0])
+    at_first.accept_button.click()
+    assert project.layerTreeRoot().layerOrder()[0] is corrections_layers(project)[0]

@@ -8,7 +8,7 @@ from lanewright.core.common.messages import RoadPlace, places_in
 from lanewright.core.common.schemas import DRIVING_LINES, LANES, PASSES, ROAD_EDGES, ROAD_SURFACE
 from lanewright.core.corrections.corrections import Correction
 from lanewright.core.road.surface.point_spacing import ThinMargin, said_of_thin
-from lanewright.desktop.review.doubtful import doubts_of
+from lanewright.desktop.review.doubtful import doubts_of, second_reading
 from lanewright.processing_provider.results.road_maps import road_maps
 from lanewright.processing_provider.results.runs import Run
 from road_map_layers import EAST, NORTH, added, run_at
@@ -64,7 +64,7 @@ def test_a_lane_that_ends_before_its_road_is_a_place(project):
 
 def test_places_that_a_warning_names_are_places(project):
     places = doubts_of(street(project, WARNING, "The trajectory is rough."), ["warning"])
-    assert [(place.station, len(place.pieces)) for place in places] == [(60.0, 2)]
+    assert [(place.station, len(place.pieces)) for place in places] == [(60.0, 1)], "both sides of a road, one place: it stands once"
     assert places[0].reasons[0].startswith("Warning: The points are too few")
 
 
@@ -90,3 +90,11 @@ def test_within_a_place_the_most_doubtful_piece_comes_first(project):
           piece(12, 32, lane=2, status="measured", confidence=0.4))
     place, = doubts_of(road_maps(project)[0])
     assert "Lane 2" in place.reasons[0] and place.doubt == pytest.approx(20 * 0.01 + 20 * 0.6)
+
+
+@pytest.mark.parametrize("other, words", [
+    ('{"nats": 2.81, "lanes": [{"offset_m": 1.9, "width_m": 2.48, "direction": 1}]}', "1 lane(s), 2.5 m wide"),
+    ('{"nats": 0.4, "kind": "centre"}', "Centre line"), ('{"kind": "wall"}', "another reading"), ("[1]", "another reading"),
+    ("?", "another reading")])
+def test_the_second_reading_of_a_piece_is_said_in_words(other, words):
+    assert second_reading(other) == words

@@ -9,8 +9,8 @@ from lanewright.desktop.messages import tell_result
 from lanewright.desktop.runs_window import RunsWindow
 from lanewright.processing_provider.results import run_table
 from qgis.core import QgsCoordinateReferenceSystem, QgsFeature, QgsGeometry, QgsRectangle, QgsVectorLayer
-from qgis.gui import QgsMapCanvas, QgsMessageBar
-from qgis.PyQt.QtWidgets import QMainWindow, QPushButton
+from qgis.gui import QgsMapCanvas, QgsMessageBar, QgsMessageViewer
+from qgis.PyQt.QtWidgets import QMainWindow, QPushButton, QTextEdit
 
 
 @pytest.fixture
@@ -20,7 +20,7 @@ def window(qgis_app):
     canvas.resize(400, 300)
     canvas.setDestinationCrs(QgsCoordinateReferenceSystem("EPSG:32650"))
     canvas.setExtent(QgsRectangle(0, 0, 100, 100))
-    return SimpleNamespace(main=main, mapCanvas=lambda: canvas, messageBar=lambda: bar)
+    return SimpleNamespace(mainWindow=lambda: main, mapCanvas=lambda: canvas, messageBar=lambda: bar)
 
 
 def road(east):
@@ -52,12 +52,21 @@ def test_the_map_stays_at_a_result_that_is_seen_and_a_button_shows_all_of_it(win
     assert window.mapCanvas().extent().contains(layer.extent())
 
 
-def test_warnings_are_said_by_number_and_can_be_read(window, monkeypatch):
-    read = []
-    monkeypatch.setattr(messages, "show_text", lambda title, text: read.append(text))
+def test_warnings_are_said_by_number_and_can_be_read(window):
     tell_result(window, "Road map", [road(60)], ["The trajectory is rough.", "No paint was found."])
     buttons(window)["2 warnings…"].click()
-    assert read == ["The trajectory is rough.\n\nNo paint was found."]
+    shown, = window.mainWindow().findChildren(QgsMessageViewer)
+    assert shown.windowTitle() == "Road map"
+    assert shown.findChild(QTextEdit).toPlainText() == "The trajectory is rough.\n\nNo paint was found."
+
+
+def test_how_a_missing_package_is_installed_can_be_read(window, monkeypatch):
+    monkeypatch.setattr(messages, "missing_in_short", lambda: "Missing Python package(s): laspy.")
+    monkeypatch.setattr(messages, "how_to_install", lambda: "pip install laspy")
+    assert not messages.all_is_there(window)
+    buttons(window)["How to install…"].click()
+    shown, = window.mainWindow().findChildren(QgsMessageViewer)
+    assert "pip install laspy" in shown.findChild(QTextEdit).toPlainText()
 
 
 def test_the_table_of_the_runs_opens_in_qgis(qgis_app, monkeypatch):

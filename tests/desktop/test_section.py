@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from lanewright.core.common.schemas import CURB_POINTS, DRIVING_LINES, ROAD_EDGES
 from lanewright.core.road.scanlines.from_points import slice_lines
+from lanewright.desktop.review import section_view
 from lanewright.desktop.review.doubtful import doubts_of, reason
 from lanewright.desktop.review.section import Crossing, Section, corners, crossings, middle_of, section_at
 from lanewright.desktop.review.section_view import SectionView
@@ -103,6 +104,15 @@ def test_titles_of_lines_cover_neither_each_other_nor_the_rim(qgis_app):
     boxes = view._label_boxes(shown, frame, QFontMetricsF(view.font(), view))
     assert all(frame.left() <= box.left() and box.right() <= frame.right() for box in boxes)
     assert not any(one.intersects(other) for number, one in enumerate(boxes) for other in boxes[:number])
+
+
+@pytest.mark.parametrize("width", [340, 600, 1200])
+def test_what_the_axes_mean_is_read_whole_however_narrow_the_window(qgis_app, width):
+    view = SectionView()
+    view.resize(width, 300)
+    place = view._caption()
+    words = QFontMetricsF(view._small(), view).boundingRect(place, section_view.CAPTION, section_view.caption())
+    assert place.contains(words) and view._frame().bottom() < place.top() and view._frame().height() > 100
 
 
 @pytest.mark.parametrize("row, why", [

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from lanewright.core.common.schemas import DRIVING_LINES
 from lanewright.desktop.review import section_dock
-from qgis.core import QgsPointXY
+from qgis.core import QgsPointXY, QgsProject
 from qgis.gui import QgsMapCanvas
 from qgis.PyQt.QtCore import QCoreApplication, QElapsedTimer
 from qgis.PyQt.QtWidgets import QMainWindow
@@ -81,3 +81,12 @@ def test_who_is_asked_where_the_point_clouds_are_is_asked_once(dock, tmp_path):
     show(dock, 10)
     settled(dock)
     assert len(dock.view.points) == 3
+
+
+def test_a_project_that_is_closed_leaves_an_empty_section(dock):
+    show(dock, 10)
+    settled(dock)
+    QgsProject.instance().clear()
+    dock.step(1.0)
+    dock.thickness.setValue(1.0)
+    assert len(dock.view.points) == 0 and not dock.view.crossings and "Click on the road" in dock.view.message

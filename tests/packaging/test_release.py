@@ -158,7 +158,9 @@ def test_nothing_is_fetched_or_sent():
 
 
 WORKERS = [ROOT / "core" / "execution" / name for name in ("interpreter.py", "processes.py", "worker.py", "cluster.py", "cluster_task.py")]
-FOLDERS_OF_RUNS = [ROOT / "core" / "execution" / "work_folder.py", ROOT / "core" / "survey" / "open_survey.py"]   # which these remove, too
+# Which remove folders that a run made for itself: its work folder, its shared points, and the hidden ones of results that are not finished
+FOLDERS_OF_RUNS = [ROOT / name for name in ("core/execution/work_folder.py", "core/survey/open_survey.py", "core/io/unfinished.py",
+                                            "algorithms/destinations.py")]
 
 
 def test_no_input_is_ever_run():

@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.io.geotiff import IntensityImage
-from lanewright.core.markings.paint.extract import MARKING_METHODS, extract_markings
+from lanewright.core.markings.paint.extract import extract_markings
+from lanewright.core.markings.paint.settings import MARKING_METHODS
 from lanewright.core.pipeline.road_map import RoadMapSettings
 from lanewright.core.road.detect_boundaries import draw_boundaries
 from lanewright.core.survey.open_survey import open_survey

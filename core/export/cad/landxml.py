@@ -12,12 +12,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...io.crs import horizontal_part, parse_crs
-from ...io.units import SAME_UNIT, as_in_file
+from ...io.units import FOOT, SAME_UNIT, US_SURVEY_FOOT, as_in_file
 from ..opendrive.geometry import PlanElement
 from ..xml_tree import XmlElement, xml_text
 from .alignments import Alignment, elements_without_reversal
 
-FEET_IN_LANDXML = {"USSurveyFoot": 1200 / 3937, "foot": 0.3048}   # m
+FEET_IN_LANDXML = {"USSurveyFoot": US_SURVEY_FOOT, "foot": FOOT}
 NAMESPACE = "http://www.landxml.org/schema/LandXML-1.2"
 
 

@@ -11,6 +11,7 @@ from .model import Lanelet, LaneletMap, Way
 
 OSM_KIND = "a Lanelet2 map in the XML of OpenStreetMap"
 MAX_ID = 2**63   # ids are whole numbers of 64 bits with a sign; those that editors give to what is new are negative
+ALL_IDS = 2**64   # of 64 bits; without a sign, as some programs write them, the larger ones are negative ones
 
 
 def read_lanelet2(path: str, progress: Progress = Progress()) -> LaneletMap:
@@ -76,12 +77,12 @@ def lanelets_of(root: XmlElement) -> LaneletMap:
 def _id(element, name):
     text = element.get(name)
     try:
-        value = int(text) if len(text) <= 20 else MAX_ID
+        value = int(text) if len(text) <= 20 else ALL_IDS
     except ValueError:
-        value = MAX_ID
-    if abs(value) >= MAX_ID:
-        raise RoadExtractionError(f"Line {element.line}: {name} of <{element.tag}> is {text[:40]!r}; a whole number is needed.")
-    return value
+        value = ALL_IDS
+    if not -MAX_ID < value < ALL_IDS:
+        raise RoadExtractionError(f"Line {element.line}: {name} of <{element.tag}> is {text[:40]!r}; a whole number of 64 bits is needed.")
+    return value if value < MAX_ID else value - ALL_IDS
 
 
 def _tags(element):

@@ -13,7 +13,7 @@ from ..driven_middles import with_driven_middles
 from ..lane_uncertainty import sigma_of_lanes
 from ..sources import NearestValues, RoadMapSource
 from .heights import add_heights
-from .junctions import link_roads
+from .junctions import DraftRoad, link_roads
 from .model import OPEN_END, MapLane, MapRoad, OpenDriveMap, RoadMark
 from .network import LaneNetwork
 from .road_objects import add_objects
@@ -57,19 +57,6 @@ class OpenDriveSettings:
 
     def __post_init__(self) -> None:
         check_limits(self)
-
-
-@dataclass
-class DraftRoad:
-    """A road with the cells that its lanes come from.
-
-    road; strip : slices; numbers : lane of every cell of every slice; single : whether it is a way through a junction
-    """
-
-    road: MapRoad
-    strip: list[Slice]
-    numbers: list[list[int]]
-    single: bool
 
 
 @dataclass

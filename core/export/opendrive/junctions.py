@@ -3,13 +3,25 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from typing import TYPE_CHECKING, NamedTuple
+from dataclasses import dataclass
+from typing import NamedTuple
 
-from .model import Connection, Junction, OpenDriveMap, RoadLink
+from .model import Connection, Junction, MapRoad, OpenDriveMap, RoadLink
 from .network import travel
+from .strips import Slice
 
-if TYPE_CHECKING:
-    from .exporter import DraftRoad
+
+@dataclass
+class DraftRoad:
+    """A road with the cells that its lanes come from.
+
+    road; strip : slices; numbers : lane of every cell of every slice; single : whether it is a way through a junction
+    """
+
+    road: MapRoad
+    strip: list[Slice]
+    numbers: list[list[int]]
+    single: bool
 
 
 class _Place(NamedTuple):

@@ -73,7 +73,8 @@ class _Faults:
         if self.jumps:
             road, s, metres = max(self.jumps, key=lambda jump: jump[2])
             found.append(f"The reference lines of {len({jump[0] for jump in self.jumps})} roads have gaps or kinks, at which borders of lanes jump "
-                         f"by more than {BORDER_JUMP:g} m. The largest is of road {road} at s {s:.1f} m, with {metres:.3f} m.")
+                         f"by more than {BORDER_JUMP:g} m. The largest is of road {road} at s {s:.1f} m, with {metres:.3f} m. "
+                         "Correct them where the map was made.")
         if self.folds:
             road, lane, place = self.folds[0]
             found.append(f"{len(self.folds)} borders of lanes fold back over themselves, as a curve is tighter there than the border is far from "
@@ -82,7 +83,7 @@ class _Faults:
         if self.negative:
             road, lane, width, s = self.negative[0]
             found.append(f"{len(self.negative)} lanes have a width below 0, which was taken as 0. The first is lane {lane} of road {road} with "
-                         f"{width:.2f} m at s {s:.1f} m.")
+                         f"{width:.2f} m at s {s:.1f} m. Correct them where the map was made.")
         return found
 
 

@@ -68,7 +68,7 @@ def fit_reference(points: np.ndarray, tolerance: float, ends: tuple[float | None
             pose = pose._replace(heading=pose.heading + np.pi)
             points = np.concatenate([points[:back.last - place], [pose[:2]]])
             fit = _Fit(points, tolerance, (ends[0], pose.heading), turn_tolerance)
-            after = PlanElement(0.0, *pose, element.length, element.kind, tuple(-value for value in element.values[::-1]))
+            after = PlanElement(0.0, pose.x, pose.y, pose.heading, element.length, element.kind, tuple(-value for value in element.values[::-1]))
     elements = fit.run()
     return PlanView(_in_order([*elements, after] if after is not None else elements)) if elements is not None else None
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -13,20 +13,19 @@ from ...common.progress import Progress
 from ...countries.catalogue import country
 from ..borders import BorderLayers, RoadBorders
 from ..surface_grid import SLICE_LENGTH
-from .chains import Chain, find_chains
+from .chains import find_chains
 from .divide import things_of
 from .faces import along_faces
 from .gaps import gaps_by_window, judged, pulses_at
 from .ground import GROUND_CELL, local_ground
 from .gutters import find_gutters
-from .poles import Pole, find_poles
+from .poles import find_poles
 from .settings import RoadsideSettings
-from .shared import told_once
+from .shared import Roadside, SideEdges, SideLine, told_once
 from .uprights import UPRIGHT_SLICE, Uprights, find_uprights
 from .view import level_views, lines_of_sight
 
 if TYPE_CHECKING:
-    from ...survey.frame.road_frame import RoadFrame
     from ...survey.survey import Survey
 
 ROADSIDE_WINDOW = 20.0            # m of road looked at at a time; results do not depend on it
@@ -39,62 +38,6 @@ BEYOND_TRACK = 2.0       # m from the track that count as carriageway where no l
 BEFORE_EDGE = 3.0        # m inside the carriageway's edge where what hides things beside the road stands: parked vehicles
 MAX_EDGE_GAP = 30.0      # m along the road over which an edge is taken to go on
 EDGE_LOOK_UP = 5.0          # m along the road between the places where the edge is looked up
-
-
-@dataclass(frozen=True)
-class SideLine:
-    """A line beside the road.
-
-    kind : guard_rail, barrier, wall, fence, hedge or gutter
-    chain : Chain
-    foot : m, lower end of what is seen of it above the ground
-    from_edge : m from the carriageway's edge, outward positive; NaN where no layer says where it is
-    """
-
-    kind: str
-    chain: Chain
-    foot: float
-    from_edge: float
-
-
-@dataclass(frozen=True)
-class SideEdges:
-    """Offsets of the carriageway's edges along a road, interpolated between places EDGE_LOOK_UP apart."""
-
-    s: np.ndarray
-    right: np.ndarray
-    left: np.ndarray
-    known: bool
-
-    def of(self, side: int, s: np.ndarray) -> np.ndarray:
-        """(N,) m, offset of the edge of a side."""
-        return np.interp(s, self.s, self.left if side > 0 else self.right)
-
-    def middle(self, s: np.ndarray) -> np.ndarray:
-        """(N,) m, offset of the middle between the edges."""
-        return 0.5 * (self.of(1, s) + self.of(-1, s))
-
-    def beyond(self, side: int, s: np.ndarray, d: np.ndarray) -> float:
-        """m, median distance of (N,) places beyond the edge of a side; NaN where no layer says where it is."""
-        return float(np.median(side * (d - self.of(side, s)))) if self.known else np.nan
-
-
-@dataclass
-class Roadside:
-    """What was found beside the roads of a survey.
-
-    lines : in order of road, side and station
-    poles : {road: list of Pole}
-    edges : {road: SideEdges}
-    """
-
-    lines: list[SideLine]
-    poles: dict[int, list[Pole]]
-    edges: dict[int, SideEdges]
-    frame: RoadFrame
-    crs: str
-    settings: RoadsideSettings
-    notes: list[str] = field(default_factory=list)
 
 
 def find_roadside(survey: Survey, layers: BorderLayers = BorderLayers(), settings: RoadsideSettings = RoadsideSettings(),

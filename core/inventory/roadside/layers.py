@@ -12,7 +12,7 @@ from ...common.schemas import ROADSIDE, ROADSIDE_OBJECTS
 from .uprights import FIRST_BIN, HEIGHT_BIN
 
 if TYPE_CHECKING:
-    from .find import Roadside
+    from .shared import Roadside
 
 DRAWN_TOLERANCE = 0.03   # m to which lines are simplified
 ON_GROUND = (FIRST_BIN + 1) * HEIGHT_BIN  # m: what is seen from here down stands on the ground, for grass hides the rest

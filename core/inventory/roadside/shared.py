@@ -2,16 +2,73 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import shapely
 
-if TYPE_CHECKING:
-    from .find import Roadside, SideLine
+from ...survey.frame.road_frame import RoadFrame
+from .chains import Chain
+from .poles import Pole
+from .settings import RoadsideSettings
 
 SAME_THING = 0.5       # m within which what two roads see is one thing: half of what two rails of a median are apart
+
+
+@dataclass(frozen=True)
+class SideEdges:
+    """Offsets of the carriageway's edges along a road, interpolated between places EDGE_LOOK_UP apart."""
+
+    s: np.ndarray
+    right: np.ndarray
+    left: np.ndarray
+    known: bool
+
+    def of(self, side: int, s: np.ndarray) -> np.ndarray:
+        """(N,) m, offset of the edge of a side."""
+        return np.interp(s, self.s, self.left if side > 0 else self.right)
+
+    def middle(self, s: np.ndarray) -> np.ndarray:
+        """(N,) m, offset of the middle between the edges."""
+        return 0.5 * (self.of(1, s) + self.of(-1, s))
+
+    def beyond(self, side: int, s: np.ndarray, d: np.ndarray) -> float:
+        """m, median distance of (N,) places beyond the edge of a side; NaN where no layer says where it is."""
+        return float(np.median(side * (d - self.of(side, s)))) if self.known else np.nan
+
+
+@dataclass(frozen=True)
+class SideLine:
+    """A line beside the road.
+
+    kind : guard_rail, barrier, wall, fence, hedge or gutter
+    chain : Chain
+    foot : m, lower end of what is seen of it above the ground
+    from_edge : m from the carriageway's edge, outward positive; NaN where no layer says where it is
+    """
+
+    kind: str
+    chain: Chain
+    foot: float
+    from_edge: float
+
+
+@dataclass
+class Roadside:
+    """What was found beside the roads of a survey.
+
+    lines : in order of road, side and station
+    poles : {road: list of Pole}
+    edges : {road: SideEdges}
+    """
+
+    lines: list[SideLine]
+    poles: dict[int, list[Pole]]
+    edges: dict[int, SideEdges]
+    frame: RoadFrame
+    crs: str
+    settings: RoadsideSettings
+    notes: list[str] = field(default_factory=list)
 
 
 def told_once(found: Roadside) -> tuple[list[SideLine], dict]:

@@ -18,7 +18,7 @@ from ...curves.robust import median
 from ..cells.scan_tracks import MIN_TRACK_GAP
 from ..objects.classify import LINE_KINDS
 from ..objects.marking_objects import MarkingObjects, Outlines
-from ..paint.spacing import MAX_TRACK_GAP
+from ..paint.morphology import MAX_TRACK_GAP
 from .lines_beside import StretchLookup
 
 if TYPE_CHECKING:

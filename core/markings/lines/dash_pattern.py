@@ -10,7 +10,7 @@ import numpy as np
 from ...countries.neutral import NEUTRAL
 
 if TYPE_CHECKING:
-    from .linking import LinkedLine
+    from .strands import LinkedLine
 
 MAX_WORN_HOLE = 0.8            # m: a shorter hole is wear within a dash
 MIN_GAP_PER_DASH = 0.4         # of the dash length: road markings leave gaps of half a dash (6 m and 3 m) or more

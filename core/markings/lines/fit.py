@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -11,10 +10,7 @@ import numpy as np
 
 from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
-from ...common.setting import check_limits, setting
 from ...countries.catalogue import country
-from ...countries.neutral import NEUTRAL
-from ...curves.model_selection import CURVES
 from ...survey.store.road_columns import columns_of_roads
 from ..objects.marking_objects import MarkingObjects
 from .between_tracks import with_unseen_paint
@@ -22,12 +18,12 @@ from .common_trend import CommonTrend
 from .dash_pattern import same_dash_pattern
 from .edges_beside import edges_beside
 from .few_tracks import painted_strands
-from .geometry import LineShape, fit_line_shapes
-from .linking import LinkedLine, link_lines, link_over_long_gaps, without_strays
+from .geometry import LineShape, MarkingLineSettings, fit_line_shapes
+from .linking import link_lines, link_over_long_gaps, without_strays
 from .naming import named_by_estimate
 from .painted_lines import PaintedLines, painted_lines_of
 from .selection import SelectedLine, crossings, hatching_bars, hatching_borders, select_lines
-from .strands import line_paint
+from .strands import LinkedLine, line_paint
 
 if TYPE_CHECKING:
     from ...road.edges.road_edges import RoadEdges
@@ -38,35 +34,6 @@ if TYPE_CHECKING:
 
 LINES_SHARE = 0.65         # of the work; the rest is the estimate that names the lines
 PAINT_BESIDE_PIECE = 2.0   # m of station before and after a piece whose paint counts for its offset
-
-
-@dataclass(frozen=True)
-class MarkingLineSettings:
-    """How marking lines are linked and which curve is fitted.
-
-    curve : one of core.curves.model_selection.CURVES; degree : of the polynomial
-    max_gap : m along the road over which paint of one line is linked
-    max_bridge : m over which it is linked where the line's own dash pattern or a neighbouring line continues
-    min_paint : m of paint without which there is no line (unless it fits another one's dashes)
-    country : whose dashes are looked for; one of core.countries.COUNTRIES
-    """
-
-    curve: str = "automatic"
-    degree: int = setting(2, 0, 9, "The polynomial's degree")
-    max_gap: float = setting(13.0, 0.1, 100.0, "The longest gap that is linked", "m")
-    max_bridge: float = setting(30.0, 0.1, 200.0, "The longest gap that is bridged", "m")
-    min_paint: float = setting(4.0, 0.0, 100.0, "The least paint of a line", "m")
-    country: str = NEUTRAL.name
-
-    def __post_init__(self):
-        check_limits(self)
-        country(self.country)
-        if self.curve not in CURVES:
-            raise RoadExtractionError(f"There is no curve called {self.curve!r}. Choose one of {', '.join(CURVES)}.")
-        if self.max_gap > self.max_bridge:
-            raise RoadExtractionError(
-                f"Gaps are linked up to {self.max_gap} m and bridged up to {self.max_bridge} m; the second must not "
-                "be below the first.")
 
 
 def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, frame: RoadFrame,

@@ -10,9 +10,12 @@ import numpy as np
 
 from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
+from ...common.setting import check_limits, setting
+from ...countries.catalogue import country
+from ...countries.neutral import NEUTRAL
 from ...curves.bspline import fit_splines, smooth_profiles
 from ...curves.curve_fit import CurveFit
-from ...curves.model_selection import fit_curve, fit_curves
+from ...curves.model_selection import CURVES, fit_curve, fit_curves
 from ...curves.robust import median
 from ...survey.frame.frame_lines import LINE_VERTEX_SPACING
 from .common_trend import weighted_medians
@@ -22,14 +25,42 @@ if TYPE_CHECKING:
     from ...survey.frame.road import Road
     from .common_trend import CommonTrend
     from .edges_beside import EdgesBeside
-    from .fit import MarkingLineSettings
-    from .linking import LinkedLine
+    from .strands import LinkedLine
 
 MIN_POINTS_PER_PLACE = 3     # points that a place must have to count, where there are enough such places
 MIN_GUIDED_GAP = 4.0         # m: in a longer gap the curve is guided parallel to the other lines
 GUIDE_SPACING = 2.0          # m between guiding places
 KEPT_DISTANCE = 0.1          # m within which a line keeps its distance from what it runs along, as MAX_STRAY_OFFSET of its own pieces
 LINE_HEIGHT_SMOOTHING = 3.0  # m
+
+
+@dataclass(frozen=True)
+class MarkingLineSettings:
+    """How marking lines are linked and which curve is fitted.
+
+    curve : one of core.curves.model_selection.CURVES; degree : of the polynomial
+    max_gap : m along the road over which paint of one line is linked
+    max_bridge : m over which it is linked where the line's own dash pattern or a neighbouring line continues
+    min_paint : m of paint without which there is no line (unless it fits another one's dashes)
+    country : whose dashes are looked for; one of core.countries.COUNTRIES
+    """
+
+    curve: str = "automatic"
+    degree: int = setting(2, 0, 9, "The polynomial's degree")
+    max_gap: float = setting(13.0, 0.1, 100.0, "The longest gap that is linked", "m")
+    max_bridge: float = setting(30.0, 0.1, 200.0, "The longest gap that is bridged", "m")
+    min_paint: float = setting(4.0, 0.0, 100.0, "The least paint of a line", "m")
+    country: str = NEUTRAL.name
+
+    def __post_init__(self):
+        check_limits(self)
+        country(self.country)
+        if self.curve not in CURVES:
+            raise RoadExtractionError(f"There is no curve called {self.curve!r}. Choose one of {', '.join(CURVES)}.")
+        if self.max_gap > self.max_bridge:
+            raise RoadExtractionError(
+                f"Gaps are linked up to {self.max_gap} m and bridged up to {self.max_bridge} m; the second must not "
+                "be below the first.")
 
 
 @dataclass

@@ -10,7 +10,7 @@ import numpy as np
 from ...survey.frame.row_table import RowSpans
 
 if TYPE_CHECKING:
-    from .linking import LinkedLine
+    from .strands import LinkedLine
 
 LOOKUP_CELL = 1.0   # m of station by which they are looked up
 

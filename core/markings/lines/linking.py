@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,12 +19,11 @@ from ...common.groups import linked_groups
 from ...common.parallel import check_cancelled
 from ...curves.robust import median
 from .common_trend import MAX_LINE_SLOPE, CommonTrend, weighted_medians
-from .edges_beside import LEVEL_REACH
 from .lines_beside import lines_beside
+from .strands import LinkedLine
 
 if TYPE_CHECKING:
     from .edges_beside import EdgesBeside
-    from .strands import Strand
 
 END_WINDOW = 6.0                           # m of a strand's end that say where it goes
 MIN_PAINT_BESIDE_GAP = 3.0                 # m that either side of a long gap must have
@@ -37,78 +35,6 @@ DOUBLE_LINE_SPACING = (0.19, 0.50)         # m between the middles of the two li
 TWIN_REACH = 2.0                           # m before and after a place at which the other line of a double line is looked for
 MIDDLE_SHARE = (0.25, 0.75)                # of the way from one line of a double to the other: its middle
 COST_WITHOUT_LINK = 2.01                   # the worst possible link costs 1 for its mismatch and 1 for its gap
-
-
-@dataclass
-class LinkedLine:
-    """Strands of one painted line in order of station."""
-
-    strands: list[Strand]
-
-    @property
-    def first(self) -> float:
-        return self.strands[0].first
-
-    @property
-    def last(self) -> float:
-        return self.strands[-1].last
-
-    @cached_property
-    def painted(self) -> float:
-        """Metres of paint."""
-        return sum(strand.length for strand in self.strands)
-
-    @cached_property
-    def middle(self) -> float:
-        """Metres across, the median offset of all places."""
-        return median(self._places[1])
-
-    @cached_property
-    def by_station(self) -> tuple[np.ndarray, np.ndarray]:
-        """s, d of all places in order of station."""
-        s, d, *_ = self._places
-        order = np.argsort(s, kind="stable")
-        return s[order], d[order]
-
-    @cached_property
-    def mean_width(self) -> float:
-        """Metres of paint across, on average."""
-        return float(np.average([strand.width for strand in self.strands], weights=[strand.length for strand in self.strands]))
-
-    @cached_property
-    def _ends_of_strands(self):
-        """Where strands begin, and how far they and those before them reach."""
-        return np.array([strand.first for strand in self.strands]), np.maximum.accumulate([strand.last for strand in self.strands])
-
-    def strands_between(self, first: float, last: float) -> list[Strand]:
-        """Its strands from the first to the last one that reach into the road between two stations."""
-        begin, reach = self._ends_of_strands
-        return self.strands[int(np.searchsorted(reach, first)):int(np.searchsorted(begin, last, side="right"))]
-
-    def near(self, first: float, last: float) -> tuple[np.ndarray, np.ndarray]:
-        """s, d of the places from one station to another, in order of station."""
-        s, d = self.by_station
-        inside = slice(np.searchsorted(s, first), np.searchsorted(s, last, side="right"))
-        return s[inside], d[inside]
-
-    def places(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """s, d, z, weight of all places."""
-        return self._places
-
-    def end_places(self, at_start: bool) -> tuple[np.ndarray, np.ndarray]:
-        """s, d of the places within LEVEL_REACH of the first or the last point, the outermost place at least."""
-        return self._end_places[at_start]
-
-    @cached_property
-    def _end_places(self):
-        s, d, *_ = self._places
-        away = s.max() - s, s - s.min()
-        return [(s[near], d[near]) for near in (a <= LEVEL_REACH for a in away)]
-
-    @cached_property
-    def _places(self):
-        return tuple(np.concatenate([getattr(strand, name) for strand in self.strands])
-                     for name in ("s", "d", "z", "weight"))
 
 
 @dataclass(frozen=True)

@@ -106,7 +106,7 @@ def _line_kinds(estimates):
 
 
 def _second_kinds(estimates):
-    """{number of a marking line: its second kind as JSON}, of lines that are hardly less probable to separate something else along most of them."""
+    """{number of a marking line: its second kind as JSON}, of lines that are almost as probable to separate something else along most of them."""
     behind: dict[int, list[tuple[float, np.ndarray]]] = {}
     for road in estimates.roads.values():
         c, estimate = road.estimate.candidates, road.estimate

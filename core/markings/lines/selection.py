@@ -16,7 +16,8 @@ from ...curves.robust import median
 from ..objects.classify import LANE_CLEARANCE
 from .dash_pattern import LinePiece, line_pieces, merged_pieces, stretches
 from .lines_beside import StretchLookup, lines_beside
-from .linking import DOUBLE_LINE_SPACING, MAX_STRAY_OFFSET, LinkedLine
+from .linking import DOUBLE_LINE_SPACING, MAX_STRAY_OFFSET
+from .strands import LinkedLine
 
 if TYPE_CHECKING:
     from ..objects.marking_objects import MarkingObjects

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,6 +14,7 @@ from ...common.parallel import check_cancelled
 from ...curves.robust import median, percentiles
 from ...survey.store.records import COORDINATE_SCALE
 from ..objects.classify import LINE_KINDS
+from .edges_beside import LEVEL_REACH
 
 if TYPE_CHECKING:
     from ...survey.store.columns import Columns
@@ -55,6 +57,78 @@ class Strand:
     @property
     def length(self) -> float:
         return self.last - self.first
+
+
+@dataclass
+class LinkedLine:
+    """Strands of one painted line in order of station."""
+
+    strands: list[Strand]
+
+    @property
+    def first(self) -> float:
+        return self.strands[0].first
+
+    @property
+    def last(self) -> float:
+        return self.strands[-1].last
+
+    @cached_property
+    def painted(self) -> float:
+        """Metres of paint."""
+        return sum(strand.length for strand in self.strands)
+
+    @cached_property
+    def middle(self) -> float:
+        """Metres across, the median offset of all places."""
+        return median(self._places[1])
+
+    @cached_property
+    def by_station(self) -> tuple[np.ndarray, np.ndarray]:
+        """s, d of all places in order of station."""
+        s, d, *_ = self._places
+        order = np.argsort(s, kind="stable")
+        return s[order], d[order]
+
+    @cached_property
+    def mean_width(self) -> float:
+        """Metres of paint across, on average."""
+        return float(np.average([strand.width for strand in self.strands], weights=[strand.length for strand in self.strands]))
+
+    @cached_property
+    def _ends_of_strands(self):
+        """Where strands begin, and how far they and those before them reach."""
+        return np.array([strand.first for strand in self.strands]), np.maximum.accumulate([strand.last for strand in self.strands])
+
+    def strands_between(self, first: float, last: float) -> list[Strand]:
+        """Its strands from the first to the last one that reach into the road between two stations."""
+        begin, reach = self._ends_of_strands
+        return self.strands[int(np.searchsorted(reach, first)):int(np.searchsorted(begin, last, side="right"))]
+
+    def near(self, first: float, last: float) -> tuple[np.ndarray, np.ndarray]:
+        """s, d of the places from one station to another, in order of station."""
+        s, d = self.by_station
+        inside = slice(np.searchsorted(s, first), np.searchsorted(s, last, side="right"))
+        return s[inside], d[inside]
+
+    def places(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """s, d, z, weight of all places."""
+        return self._places
+
+    def end_places(self, at_start: bool) -> tuple[np.ndarray, np.ndarray]:
+        """s, d of the places within LEVEL_REACH of the first or the last point, the outermost place at least."""
+        return self._end_places[at_start]
+
+    @cached_property
+    def _end_places(self):
+        s, d, *_ = self._places
+        away = s.max() - s, s - s.min()
+        return [(s[near], d[near]) for near in (a <= LEVEL_REACH for a in away)]
+
+    @cached_property
+    def _places(self):
+        return tuple(np.concatenate([getattr(strand, name) for strand in self.strands])
+                     for name in ("s", "d", "z", "weight"))
 
 
 def line_paint(records: Columns, markings: MarkingObjects, road: int) -> tuple[Columns, np.ndarray]:

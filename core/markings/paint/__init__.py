@@ -8,7 +8,8 @@ from __future__ import annotations
 from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "extract": ("MarkingSettings", "extract_markings"),
+    "extract": ("extract_markings",),
     "peaks": ("PeakSettings",),
     "point_segments": ("SegmentSettings",),
+    "settings": ("MarkingSettings",),
 })

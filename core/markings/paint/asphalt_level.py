@@ -19,7 +19,7 @@ from .gutters import COARSE_CELLS, RimBands, gutter_cells
 from .threshold_bins import HISTOGRAM_LIMITS, MAX_BIN_WIDTH, AsphaltBin, OtsuSplit, otsu
 
 if TYPE_CHECKING:
-    from .extract import MarkingSettings
+    from .settings import MarkingSettings
 
 BACKGROUND_LIMIT = 2.5      # spreads: brighter cells, and those darker by twice as much, are no background
 BACKGROUND_SQUARES = 11     # squares of 20 cm: the background is the mean of 2.2 m around each

@@ -16,7 +16,7 @@ import numpy as np
 from ...lazy import cv2
 from ..cells.road_grid import CELL_SIZE
 from ..cells.scan_tracks import fill_gaps
-from .spacing import MAX_TRACK_GAP
+from .morphology import MAX_TRACK_GAP
 
 BAND_CELLS = 2       # bands of 8 cm inwards from the rim
 GUTTER_BANDS = 9     # 0.72 m: no gutter is wider

@@ -23,17 +23,16 @@ from .fading import without_fading_areas, without_fading_rims
 from .faint_lines import faint_lines
 from .gutters import RimBands, edge_distance, rim_distance
 from .mask import painted_pixels
-from .morphology import morphology
+from .morphology import morphology, track_spacing
 from .noisy import CellAverages, ViewSamples, noisy_paint_cells, views
 from .raised import raised_cells
-from .spacing import track_spacing
 from .threshold_bins import MIN_BIN_CELLS, AsphaltBin, OtsuSplit, asphalt_bins, bin_edges, split_bins
 
 if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame
     from ...survey.store.columns import Columns
     from ...survey.store.road_points import RoadPoints
-    from .extract import MarkingSettings
+    from .settings import MarkingSettings
 
 RIM_WIDTH = 0.60         # m from the rim of the road: gutters; asphalt is taken from the cells inside
 THRESHOLD_WINDOW = 500   # cells: thresholds are taken from 20 m of road

@@ -12,6 +12,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...common.errors import RoadExtractionError
+from ...common.setting import check_limits, setting
+
+USUAL_HEIGHT, USUAL_SLOPE = 0.05, 60.0  # m and degrees: such a step is a curb wherever it is seen
 TEXTURE_SIGMA = 0.0025      # m, of heights averaged along a curb, however many: texture of the surfaces, footprint, registration
 SIGNIFICANT_SIGMAS = 4.0    # of what is left of the noise, by which a faint step must rise
 LEAST_HEIGHT = 0.025        # m: lower steps are dropped curbs and seams
@@ -67,3 +71,37 @@ class CurbLimits:
         """
         left = np.hypot(noise / np.sqrt(max(count, 1)), TEXTURE_SIGMA)
         return bool(height >= max(self.least_height, SIGNIFICANT_SIGMAS * left) and slope >= self.least_slope and scatter <= MAX_FAINT_SCATTER)
+
+
+@dataclass(frozen=True)
+class CurbSettings:
+    """How curbs are recognised.
+
+    Attributes
+    ----------
+    block_length : m of road per curb point; 0 = 0.5 to 2.0, shorter in sharp bends
+    profile_width : m of road per profile
+    point_spacing : m, width of the cells of the pseudo scan-lines
+    layer_jump : m of height between ground and what is above it
+    slope : degrees, least slope of a curb face; 0 = as the noise allows
+    min_height, max_height : m, road to top of curb; 0 for the least height = as the noise allows
+    """
+
+    block_length: float = setting(0.0, 0.25, 10.0, "The block length", "m", "for automatic")
+    profile_width: float = setting(0.25, 0.05, 2.0, "The profile width", "m")
+    point_spacing: float = setting(0.025, 0.01, 0.1, "The point spacing", "m")
+    layer_jump: float = setting(0.05, 0.01, 0.5, "The layer jump", "m")
+    slope: float = setting(0.0, 10.0, 89.0, "The slope", "°", "for automatic")
+    min_height: float = setting(0.0, 0.01, 0.95, "The minimum curb height", "m", "for automatic")
+    max_height: float = setting(0.35, 0.02, 1.0, "The maximum curb height", "m")
+
+    def __post_init__(self) -> None:
+        check_limits(self)
+        if not self.min_height < self.max_height:
+            raise RoadExtractionError(f"Curbs from {self.min_height} m to {self.max_height} m were asked for; the maximum "
+                                      "must be above the minimum.")
+
+    @property
+    def limits(self) -> CurbLimits:
+        """The least height and slope of curbs."""
+        return CurbLimits.of(self.min_height, self.slope, min(USUAL_HEIGHT, self.max_height), USUAL_SLOPE)

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame
     from ...survey.open_survey import Survey
     from ...survey.store.records import Points
-    from ..profiles.detect import CurbSettings
+    from .curb_limits import CurbSettings
 
 SIDE_SIGNS = {"left": 1, "right": -1}   # side -> sign of its offsets
 BLOCK_SECTION_LENGTH = 20.0   # m of road for which the length of blocks is decided

@@ -24,7 +24,7 @@ from .tracking import PlanStepChain, group_lines
 if TYPE_CHECKING:
     from ...survey.frame.passes import Pass
     from ...survey.frame.road import Road
-    from ..profiles.detect import CurbSettings
+    from ..common.curb_limits import CurbSettings
     from .main_curbs import SearchLimit
 
 MIN_RETURN_LENGTH = 1.0       # m of a line

@@ -39,7 +39,7 @@ from .steps import PlanSteps, measure_plan_steps
 from .tracking import join_chains, link_plan_steps
 
 if TYPE_CHECKING:
-    from ..profiles.detect import CurbSettings
+    from ..common.curb_limits import CurbSettings
 
 KIND_TITLES = {"main": "of the road's own", "corner": "of corners", "side_street": "of side streets", "island": "of islands"}
 INNER_MARGIN = 0.5            # m from a main curb from which the ground inside is certainly road, if it lies within

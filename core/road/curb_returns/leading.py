@@ -22,7 +22,7 @@ from .ground.raster import averaged, ground_raster
 from .steps import PlanSteps
 
 if TYPE_CHECKING:
-    from ..profiles.detect import CurbSettings
+    from ..common.curb_limits import CurbSettings
     from .main_curbs import KnownPlaces, SearchLimit
 
 LED_KINDS = "main", "corner", "side_street"   # the other curbs have no ends

@@ -7,7 +7,7 @@ from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
     "averaged_steps": ("find_averaged_steps",),
-    "detect": ("CurbSettings", "detect_curbs"),
+    "detect": ("detect_curbs",),
     "principal_points": ("find_principal_points",),
     "steps": ("find_steps",),
 })

@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 from contextlib import closing
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
-from ...common.setting import check_limits, setting
 from ...execution.phase import Phase
 from ..common.corners import CurbSteps
-from ..common.curb_limits import CurbLimits
+from ..common.curb_limits import CurbSettings
 from ..common.curb_points import CurbPoints, curb_points_at
 from ..common.decimation import POINTS_PER_LEVEL_CELL, PointDecimation
 from ..common.hidden_curb import hidden_points
@@ -44,47 +41,12 @@ if TYPE_CHECKING:
 MIN_TRACK_DISTANCE = 0.6      # m from the track: no curb is nearer
 PASS_MERGE_ACROSS = 0.12      # m across, and
 PASS_MERGE_HEIGHT = 0.10      # m of height between the same step seen in two passes
-USUAL_HEIGHT, USUAL_SLOPE = 0.05, 60.0  # m and degrees: such a step is a curb wherever it is seen
 MAX_BLOCK_LENGTH = 2.0        # m, automatic blocks on straight road, and
 MIN_BLOCK_LENGTH = 0.5        # m, in sharp bends
 MAX_BLOCK_TURN = np.radians(1.0)   # turn of the road within a block
 MAX_BLOCK_BEND = 0.015        # m off its own straight line above which a block is divided
 CHAIN_END_STEPS = 3           # profiles that give the end point of a chain
 MAIN_CURB_PROGRESS = 0.6      # share of the work
-
-
-@dataclass(frozen=True)
-class CurbSettings:
-    """How curbs are recognised.
-
-    Attributes
-    ----------
-    block_length : m of road per curb point; 0 = 0.5 to 2.0, shorter in sharp bends
-    profile_width : m of road per profile
-    point_spacing : m, width of the cells of the pseudo scan-lines
-    layer_jump : m of height between ground and what is above it
-    slope : degrees, least slope of a curb face; 0 = as the noise allows
-    min_height, max_height : m, road to top of curb; 0 for the least height = as the noise allows
-    """
-
-    block_length: float = setting(0.0, 0.25, 10.0, "The block length", "m", "for automatic")
-    profile_width: float = setting(0.25, 0.05, 2.0, "The profile width", "m")
-    point_spacing: float = setting(0.025, 0.01, 0.1, "The point spacing", "m")
-    layer_jump: float = setting(0.05, 0.01, 0.5, "The layer jump", "m")
-    slope: float = setting(0.0, 10.0, 89.0, "The slope", "°", "for automatic")
-    min_height: float = setting(0.0, 0.01, 0.95, "The minimum curb height", "m", "for automatic")
-    max_height: float = setting(0.35, 0.02, 1.0, "The maximum curb height", "m")
-
-    def __post_init__(self) -> None:
-        check_limits(self)
-        if not self.min_height < self.max_height:
-            raise RoadExtractionError(f"Curbs from {self.min_height} m to {self.max_height} m were asked for; the maximum "
-                                      "must be above the minimum.")
-
-    @property
-    def limits(self) -> CurbLimits:
-        """The least height and slope of curbs."""
-        return CurbLimits.of(self.min_height, self.slope, min(USUAL_HEIGHT, self.max_height), USUAL_SLOPE)
 
 
 def detect_curbs(survey: Survey, settings: CurbSettings = CurbSettings(), progress: Progress = Progress(),

@@ -17,7 +17,7 @@ from ..common.sides import SIDE_SIGNS, OutermostTrack, expected_height, side_pro
 
 if TYPE_CHECKING:
     from ...survey.open_survey import Survey
-    from .detect import CurbSettings
+    from ..common.curb_limits import CurbSettings
 
 PRINCIPAL_POINTS = [ROAD, PASS, SIDE, STATION, OFFSET, HEIGHT]
 

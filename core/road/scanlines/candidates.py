@@ -12,20 +12,20 @@ The paper on normalized scanlines (ISPRS Archives, 2020), section 3 and table 1,
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...common.errors import RoadExtractionError
 from ...common.rows import Rows
 from ...common.runs import best_within
+from ...common.setting import check_limits, setting
 from ...lazy import cv2
 from ..common.corners import FACE_MARGIN, MAX_ROAD_SLOPE, ROAD_SIDE_LENGTH
+from ..common.curb_limits import CurbLimits
 from .grid import LINE_SEPARATION, MAX_GROUND_DEPTH, SCANLINE_RESOLUTION, HeightGrid, row_of_lines
 from .scanlines import Scanlines
 
-if TYPE_CHECKING:
-    from .detect import ScanlineBoundarySettings
-
+USUAL_STEP_HEIGHT, USUAL_ANGLE = 0.03, 60.0  # m and degrees of table 1 of the paper: such a step is a curb wherever it is seen
 MIN_RISE_SHARE = 0.7      # of min_height: the planes measure the height of the curb more exactly later
 MAX_ROUGHNESS_SHARE = 0.4  # of a rise: standard deviation of the road before it
 MIN_ROAD_CELLS = 6        # cells of road before a rise
@@ -38,6 +38,50 @@ NEIGHBOUR_LINES, MIN_LINES_SHOWING = 2, 3  # scanlines on either side; scanlines
 HEIGHT_WEIGHT = 2.0       # m across that a metre of height counts as, so that low faces have enough vertices
 PLACE_CELL = 0.10         # m across, cells in which the surroundings of candidates are marked
 PLACES_PER_BATCH = 8192   # places processed at a time; they fit into the cache of the processor
+
+
+@dataclass(frozen=True)
+class ScanlineBoundarySettings:
+    """The parameters of table 1 of the paper.
+
+    Attributes
+    ----------
+    search_width : m across within which the height must change
+    sensor_height : m from the trajectory down to the road; 0 = from the data
+    clipping_height : m above the road; higher points are not used
+    min_height : m of height change; 0 = as the noise allows
+    distance_across, distance_along : m on either side of a candidate from which its planes are fitted
+    ransac_distance : m from a plane to its inliers
+    vertical_angle, horizontal_angle : degrees between the normal of a plane and Z: at least that of a face, at most
+        that of road and sidewalk; 0 for the face = as the noise allows
+    max_gap : m between corners that are connected
+    """
+
+    search_width: float = setting(0.10, 0.04, 0.5, "The search width", "m")
+    sensor_height: float = setting(0.0, 0.0, 10.0, "The sensor height", "m")
+    clipping_height: float = setting(0.45, 0.05, 2.0, "The clipping height", "m")
+    min_height: float = setting(0.0, 0.01, 0.5, "The minimum height", "m", "for automatic")
+    distance_across: float = setting(0.50, 0.15, 2.0, "The distance across", "m")
+    distance_along: float = setting(0.40, 0.1, 2.0, "The distance along", "m")
+    ransac_distance: float = setting(0.005, 0.001, 0.1, "The RANSAC distance", "m")
+    vertical_angle: float = setting(0.0, 20.0, 90.0, "The vertical angle", "°", "for automatic")
+    horizontal_angle: float = setting(20.0, 1.0, 45.0, "The horizontal angle", "°")
+    max_gap: float = setting(2.5, 0.0, 100.0, "The longest connected gap", "m")
+
+    def __post_init__(self):
+        """Check the limits of all settings, and that pairs of settings are in order."""
+        check_limits(self)
+        if self.clipping_height <= self.min_height:
+            raise RoadExtractionError(f"The clipping height is {self.clipping_height} m and the minimum height {self.min_height} m; "
+                                      "the clipping height must be above the minimum height.")
+        if 0 < self.vertical_angle <= self.horizontal_angle:
+            raise RoadExtractionError(f"The vertical angle is {self.vertical_angle}° and the horizontal angle {self.horizontal_angle}°; "
+                                      "the vertical angle must be above the horizontal one.")
+
+    @property
+    def limits(self) -> CurbLimits:
+        """The least height and slope of curbs."""
+        return CurbLimits.of(self.min_height, self.vertical_angle, min(USUAL_STEP_HEIGHT, self.clipping_height), USUAL_ANGLE)
 
 
 @dataclass

@@ -24,7 +24,7 @@ from .candidates import CurbCandidates, ScanlineSamples
 from .grid import LINE_SEPARATION, nearest_distance
 
 if TYPE_CHECKING:
-    from .detect import ScanlineBoundarySettings
+    from .candidates import ScanlineBoundarySettings
 
 RANSAC_TRIALS = 32            # few are enough: most samples of a class belong to its plane
 RANSAC_SEED = 20

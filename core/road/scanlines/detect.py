@@ -11,16 +11,12 @@ The paper on normalized scanlines (ISPRS Archives, 2020), section 3 and table 1.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
-from ...common.setting import check_limits, setting
 from ...execution.phase import Phase
-from ..common.curb_limits import CurbLimits
 from ..common.curb_points import CurbPoints, curb_points_at
 from ..common.hidden_curb import hidden_points
 from ..common.in_line import with_pieces_in_line
@@ -33,7 +29,7 @@ from ..edges.fit import EDGE_VERTEX_SPACING, MAX_EDGE_JUMP, MAX_EDGE_SKEW, MIN_E
 from ..edges.road_edges import EdgePiece, RoadEdges, joined_pieces
 from ..edges.uncertainty import edge_sigma
 from ..profiles.detect import MIN_TRACK_DISTANCE, PASS_MERGE_ACROSS, PASS_MERGE_HEIGHT, block_bounds, block_numbers
-from .candidates import NEIGHBOUR_LINES, find_candidates, gap_fill_rows, samples_near
+from .candidates import NEIGHBOUR_LINES, ScanlineBoundarySettings, find_candidates, gap_fill_rows, samples_near
 from .corners import CurbCorners, corners_of, plane_fit_rows
 from .grid import LINE_SEPARATION, height_grid, nearest_distance
 
@@ -43,56 +39,11 @@ if TYPE_CHECKING:
 
 MAX_USUAL_NOISE = 0.005  # m: a higher scatter about the planes is rough ground, such as a verge
 MAX_MEASURED_GAP = 1.0   # m between consecutive corners of a measured line; wider gaps are bridged
-USUAL_STEP_HEIGHT, USUAL_ANGLE = 0.03, 60.0  # m and degrees of table 1 of the paper: such a step is a curb wherever it is seen
 SAME_CURB_DISTANCE = 0.3  # m across within which a sloped face is part of an upright one
 CORNER_BLOCK = 0.5       # m of road per corner of the CORNERS output
 
 _POINT = [("s", float), ("d", float), ("x", float), ("y", float), ("z", float), ("height", float), ("chain", int),
           ("support", int)]
-
-
-@dataclass(frozen=True)
-class ScanlineBoundarySettings:
-    """The parameters of table 1 of the paper.
-
-    Attributes
-    ----------
-    search_width : m across within which the height must change
-    sensor_height : m from the trajectory down to the road; 0 = from the data
-    clipping_height : m above the road; higher points are not used
-    min_height : m of height change; 0 = as the noise allows
-    distance_across, distance_along : m on either side of a candidate from which its planes are fitted
-    ransac_distance : m from a plane to its inliers
-    vertical_angle, horizontal_angle : degrees between the normal of a plane and Z: at least that of a face, at most
-        that of road and sidewalk; 0 for the face = as the noise allows
-    max_gap : m between corners that are connected
-    """
-
-    search_width: float = setting(0.10, 0.04, 0.5, "The search width", "m")
-    sensor_height: float = setting(0.0, 0.0, 10.0, "The sensor height", "m")
-    clipping_height: float = setting(0.45, 0.05, 2.0, "The clipping height", "m")
-    min_height: float = setting(0.0, 0.01, 0.5, "The minimum height", "m", "for automatic")
-    distance_across: float = setting(0.50, 0.15, 2.0, "The distance across", "m")
-    distance_along: float = setting(0.40, 0.1, 2.0, "The distance along", "m")
-    ransac_distance: float = setting(0.005, 0.001, 0.1, "The RANSAC distance", "m")
-    vertical_angle: float = setting(0.0, 20.0, 90.0, "The vertical angle", "°", "for automatic")
-    horizontal_angle: float = setting(20.0, 1.0, 45.0, "The horizontal angle", "°")
-    max_gap: float = setting(2.5, 0.0, 100.0, "The longest connected gap", "m")
-
-    def __post_init__(self):
-        """Check the limits of all settings, and that pairs of settings are in order."""
-        check_limits(self)
-        if self.clipping_height <= self.min_height:
-            raise RoadExtractionError(f"The clipping height is {self.clipping_height} m and the minimum height {self.min_height} m; "
-                                      "the clipping height must be above the minimum height.")
-        if 0 < self.vertical_angle <= self.horizontal_angle:
-            raise RoadExtractionError(f"The vertical angle is {self.vertical_angle}° and the horizontal angle {self.horizontal_angle}°; "
-                                      "the vertical angle must be above the horizontal one.")
-
-    @property
-    def limits(self) -> CurbLimits:
-        """The least height and slope of curbs."""
-        return CurbLimits.of(self.min_height, self.vertical_angle, min(USUAL_STEP_HEIGHT, self.clipping_height), USUAL_ANGLE)
 
 
 def curbs_from_scanlines(source: SurveyScanlines | LayerScanlines, settings: ScanlineBoundarySettings = ScanlineBoundarySettings(),

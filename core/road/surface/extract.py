@@ -6,7 +6,7 @@ and between the limits of the road belong to its surface.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,12 +17,12 @@ from ...common.setting import check_limits, setting
 from ...execution.phase import Phase
 from ...survey.store.road_points import RoadPoints
 from ...survey.store.section_store import STRETCH_POINTS
-from .ground_grid import ROW_LENGTH, GroundCells
-from .limits import edge_offsets, rows_with_edge
+from .ground_grid import ROW_LENGTH
+from .limits import Carriageway, edge_offsets, rows_with_edge
 from .measured_ground import WINDOW_ROWS, MeasuredGround
 from .openings import cells_driven, opened_limits, street_ground
 from .outline import outlines
-from .pavement_edge import GrownLimit, grown_limit
+from .pavement_edge import grown_limit
 from .point_spacing import Margins, said_of_thin
 from .region_growing import follow_road, smooth_road
 from .road_points import surface_about, surface_points
@@ -57,32 +57,6 @@ class SurfaceSettings:
     def __post_init__(self):
         """Check the limits of all settings."""
         check_limits(self)
-
-
-@dataclass
-class Carriageway:
-    """The surface of one road in rows of station.
-
-    Attributes
-    ----------
-    cells : GroundCells of the road, R rows and C columns
-    height : (R, C) float32 m, local z of the smoothed road
-    ground : (R, C) bool, cells that show the road itself
-    right, left : (R,) m, offsets of its limits; NaN in rows without road
-    right_bounded, left_bounded : (R,) bool, rows in which a measured or bridged edge is the limit
-    tolerance : m above or below the height
-    grown : {side: GrownLimit} of the sides on which edges are missing
-    """
-
-    cells: GroundCells
-    height: np.ndarray
-    ground: np.ndarray
-    right: np.ndarray
-    left: np.ndarray
-    right_bounded: np.ndarray
-    left_bounded: np.ndarray
-    tolerance: float
-    grown: dict[str, GrownLimit] = field(default_factory=dict)
 
 
 def extract_road_surface(survey: Survey, edges: RoadEdges | None = None, settings: SurfaceSettings = SurfaceSettings(),

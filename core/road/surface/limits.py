@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...common.runs import stretch_of
 from ..edges.fit import MAX_EDGE_JUMP
+from .ground_grid import GroundCells
+from .pavement_edge import GrownLimit
 
 if TYPE_CHECKING:
     from ..edges.road_edges import RoadEdges
@@ -15,6 +18,32 @@ if TYPE_CHECKING:
 MAX_OPENING = 30.0       # m of missing edge that is closed by a straight line
 EDGE_CONTINUATION = 5.0  # m by which the offset of an edge holds before its first and after its last vertex
 MAX_BRIDGED_SKEW = 0.15  # m across per m along of a gap, beside MAX_EDGE_JUMP: tapers widen by 1 in 10 and less
+
+
+@dataclass
+class Carriageway:
+    """The surface of one road in rows of station.
+
+    Attributes
+    ----------
+    cells : GroundCells of the road, R rows and C columns
+    height : (R, C) float32 m, local z of the smoothed road
+    ground : (R, C) bool, cells that show the road itself
+    right, left : (R,) m, offsets of its limits; NaN in rows without road
+    right_bounded, left_bounded : (R,) bool, rows in which a measured or bridged edge is the limit
+    tolerance : m above or below the height
+    grown : {side: GrownLimit} of the sides on which edges are missing
+    """
+
+    cells: GroundCells
+    height: np.ndarray
+    ground: np.ndarray
+    right: np.ndarray
+    left: np.ndarray
+    right_bounded: np.ndarray
+    left_bounded: np.ndarray
+    tolerance: float
+    grown: dict[str, GrownLimit] = field(default_factory=dict)
 
 
 def edge_offsets(edges: RoadEdges | None, road: int, stations: np.ndarray) -> dict[str, tuple[np.ndarray, np.ndarray]]:

@@ -15,8 +15,7 @@ from ...execution.phase import Phase
 from ...survey.frame.road import CORRIDOR
 from ...survey.store.spill_file import SpillFile, StoredColumn
 from ..common.sides import ahead_of_vehicle
-from .ground_grid import COLUMN_WIDTH, ROW_LENGTH, GroundCells, ground_cells, ground_columns
-from .pavement_edge import PROFILE_COLUMN, PROFILE_ROW, SurfaceProfiles
+from .ground_grid import COLUMN_WIDTH, PROFILE_COLUMN, PROFILE_ROW, ROW_LENGTH, GroundCells, SurfaceProfiles, ground_cells, ground_columns
 
 if TYPE_CHECKING:
     from ...survey.open_survey import Survey

@@ -12,7 +12,7 @@ from .ground_grid import COLUMN_WIDTH, ROW_LENGTH
 
 if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame
-    from .extract import Carriageway
+    from .limits import Carriageway
 
 MIN_SURFACE_STATUS_LENGTH = 5.0  # m: shorter changes of status are not drawn
 

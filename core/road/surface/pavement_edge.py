@@ -6,79 +6,21 @@ are our own.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ...common.memory import by_rows
-from ...survey.store.records import Points
 from .edge_path import cheapest_path
 from .ground_change import HalfProfiles, other_ground_begins
-from .ground_grid import GroundCells, ground_cells, known_median
+from .ground_grid import PROFILE_COLUMN, PROFILE_ROW, GroundCells, SurfaceProfiles, known_median
 from .pavement_limit import pavement_limits
 
-PROFILE_ROW, PROFILE_COLUMN = 1.0, 0.1  # m along and across the road, size of a cell
-FARTHEST_AHEAD = 25.0        # m from the vehicle of points whose brightness counts: across a bend a place is seen from far away too, nearly dark
 POOLED_ROWS, ROWS_PER_STEP = 5, 2  # rows of cells that make one profile, and rows from one profile to the next: 5 m every 2 m
 MAX_MISS = 1.5               # m by which a profile may miss the edge and say so, farther is no worse
 BLIND_SHARE = 0.3            # of the miss of a limit farther out than a profile that ends where nothing was measured
 WIDENING_COST = 1.5            # m of misses that a change of the edge by 1 m must save: three profiles (6 m) in a row
 LARGEST_WIDENING_COST = 3.0    # m of misses that any change must save: a street joins over at least five profiles (10 m)
-
-
-@dataclass
-class SurfaceProfiles:
-    """The ground across the road: P rows of 1 m length with K cells of 0.1 m.
-
-    Attributes
-    ----------
-    stations : (P,) m, middles of the rows
-    offsets : (K,) m, middles of the cells, ascending
-    height : (P, K) m above the expected height of the road under the vehicle
-    rough : (P, K) m
-    brightness, scatter : (P, K) counts, as in GroundCells; NaN where nothing was measured
-    count : (P, K) points
-    """
-
-    stations: np.ndarray
-    offsets: np.ndarray
-    height: np.ndarray
-    rough: np.ndarray
-    brightness: np.ndarray
-    scatter: np.ndarray
-    count: np.ndarray
-
-    NAMES = ("height", "rough", "brightness", "scatter", "count")
-
-    @classmethod
-    def of(cls, points: Points, start: float, length: float, reach: float,
-           road_height: Callable[[np.ndarray], np.ndarray], ahead: Callable[[Points], np.ndarray]) -> SurfaceProfiles:
-        """The rows of a window of the road.
-
-        Parameters
-        ----------
-        points : Points of the window
-        start, length : m, station at which it begins, and its length, whole numbers
-        reach : m either side of the reference line
-        road_height : function of (N,) stations in m; (N,) local z of the road under the vehicle, accurate to decimetres
-        ahead : function of N Points; (N,) m by which they lay ahead of the vehicle when they were measured
-
-        Returns
-        -------
-        SurfaceProfiles
-        """
-        first_row, rows = int(round(start / PROFILE_ROW)), int(round(length / PROFILE_ROW))
-        cells = ground_cells(points, first_row, rows, reach, road_height, PROFILE_ROW, PROFILE_COLUMN,
-                             lambda seen: np.abs(ahead(seen)) <= FARTHEST_AHEAD)
-        above = cells.height - road_height(cells.stations)[:, None]
-        return cls(cells.stations, cells.offsets, *(v.astype(np.float32) for v in (above, cells.rough, cells.brightness, cells.scatter, cells.count)))
-
-    def side(self, sign: int | float) -> SurfaceProfiles:
-        """The cells of one side, 1 left or -1 right, outward from the reference line, as views; offsets count outward."""
-        middle = int(np.searchsorted(self.offsets, 0.0))
-        outward = slice(middle, None) if sign > 0 else slice(middle - 1, None, -1)
-        return SurfaceProfiles(self.stations, sign * self.offsets[outward], *(getattr(self, name)[:, outward] for name in self.NAMES))
 
 
 @dataclass(frozen=True)

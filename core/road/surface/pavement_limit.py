@@ -18,7 +18,7 @@ from .edge_path import cheapest_path
 from .ground_grid import known_median
 
 if TYPE_CHECKING:
-    from .pavement_edge import SurfaceProfiles
+    from .ground_grid import SurfaceProfiles
 
 ROAD_CELLS = 20              # cells of road from which its look is continued: 2 m
 INNER_CELLS, OUTER_CELLS = 12, 10  # cells inside and outside the place where the ground changes in which the limit is searched

@@ -20,9 +20,9 @@ from ...common.runs import stretch_of
 from ..common.in_line import GapLine
 from ..edges.fit import EDGE_VERTEX_SPACING, IN_LINE_GAP_FACTOR, MAX_EDGE_JUMP, MIN_HIDDEN_SHARE, EdgeSettings
 from ..edges.road_edges import EdgePiece, RoadEdges
-from .extract import Carriageway, SurfaceSettings, find_carriageway
+from .extract import SurfaceSettings, find_carriageway
 from .ground_grid import COLUMN_WIDTH, ROW_LENGTH
-from .limits import MAX_BRIDGED_SKEW, edge_offsets
+from .limits import MAX_BRIDGED_SKEW, Carriageway, edge_offsets
 
 if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .materials import LABEL
+from .scene import Hits
 from .vehicle import Drive, attitude
 
 if TYPE_CHECKING:
@@ -27,29 +28,6 @@ _HALF_RANGE = 11.0     # m, at which the strength is one half
 OBSTACLE = 99      # `strip` of a hit on an obstacle
 LONGEST = 70.0    # m, range of the scanners
 _HIGHEST = np.sin(np.radians(50.0))  # steeper upward pulses meet nothing on this street
-
-
-@dataclass
-class Hits:
-    """The first intersection of each of N pulses.
-
-    Attributes
-    ----------
-    distance : (N,) m, inf where a pulse meets nothing
-    station, offset : (N,) m, as the scene locates places
-    cosine : (N,) of the incidence angle
-    strip : (N,) integer, 0 for the carriageway, others for the strips beside it, OBSTACLE for obstacles
-    label : (N,) uint8 of obstacles, 0 for the ground
-    brightness : (N,) 0 to 1, of obstacles
-    """
-
-    distance: np.ndarray
-    station: np.ndarray
-    offset: np.ndarray
-    cosine: np.ndarray
-    strip: np.ndarray
-    label: np.ndarray
-    brightness: np.ndarray
 
 
 def cast(scene: SurveyedScene, origin: np.ndarray, direction: np.ndarray, station: float, rng: np.random.Generator, reach: float) -> Hits:

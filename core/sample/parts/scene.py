@@ -3,14 +3,37 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
 if TYPE_CHECKING:
     from .materials import Texture
-    from .scanner import Hits
     from .truth import Truth
+
+
+@dataclass
+class Hits:
+    """The first intersection of each of N pulses.
+
+    Attributes
+    ----------
+    distance : (N,) m, inf where a pulse meets nothing
+    station, offset : (N,) m, as the scene locates places
+    cosine : (N,) of the incidence angle
+    strip : (N,) integer, 0 for the carriageway, others for the strips beside it, OBSTACLE for obstacles
+    label : (N,) uint8 of obstacles, 0 for the ground
+    brightness : (N,) 0 to 1, of obstacles
+    """
+
+    distance: np.ndarray
+    station: np.ndarray
+    offset: np.ndarray
+    cosine: np.ndarray
+    strip: np.ndarray
+    label: np.ndarray
+    brightness: np.ndarray
 
 
 class Followed(Protocol):

@@ -10,7 +10,7 @@ import numpy as np
 import shapely
 
 from ..parts.materials import LABEL, Texture
-from ..parts.scanner import Hits
+from ..parts.scene import Hits
 from .ground import Ground
 from .marks import Areas, PlanPaint
 from .path import Path

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from ..parts.axis import RoadAxis
     from ..parts.beside import RunningThing
     from ..parts.paint import Paint
-    from ..parts.scanner import Hits
+    from ..parts.scene import Hits
     from ..parts.truth import Truth
 
 

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..parts.scanner import LONGEST, Hits
+from ..parts.scanner import LONGEST
+from ..parts.scene import Hits
 
 if TYPE_CHECKING:
     from .street import Scene

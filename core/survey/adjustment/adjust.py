@@ -127,9 +127,9 @@ def _report_offsets(road, offsets, found, progress):
         plan, up = (f"{100 * np.median(v):.1f} cm (at most {100 * v.max():.1f})" if len(v) else "an unknown distance" for v in apart)
         said = f"Road {road}: its passes lay {plan} beside and {up} above each other"
         if max((float(v.max()) for v in apart if len(v)), default=0.0) > MAX_OFFSET:
-            progress.warn(f"{said}, which is more than navigation drifts within a survey, as drives of different years or datums do. They were laid "
-                          "on each other, each moved by its share; nothing shows which of them is right, so all that is drawn may be off by half of "
-                          "that. Process the files of each drive by itself, or measure control points.")
+            progress.warn(f"{said}, which is more than navigation drifts within a survey. Drives of different years or datums lie so far apart. They "
+                          "were laid on each other, each moved by its share. Nothing shows which of them is right, so the map may be off by half of "
+                          "that distance. Process the files of each drive by itself, or measure control points.")
         else:
             progress.info(f"{said}, as navigation drifts between two drives. They were laid on each other, each moved by its share.")
     elif all(len(v) for v in _separations(offsets)):

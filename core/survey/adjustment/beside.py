@@ -21,6 +21,8 @@ from .remaining import named_places, stretches_of
 FARTHEST_BESIDE = 30.0                    # m between the tracks of two carriageways
 LEAST_PARALLEL = np.cos(np.radians(15))  # cosine of the angle between them, at least
 SHORTEST_BESIDE = 50.0                    # m beside each other, shorter than which it is a junction
+SAME_GROUND, SHARE_ALONG = 12.0, 0.8     # m between tracks over one road, and share of the shorter one that they run along each other
+EVEN_RISE = 0.15                          # m by which one may vary in height above the other: navigation drifts by less, ramps climb by more
 SHARE_BETWEEN = 0.25, 0.75               # of the way from one track to the other: what both drives see well
 HEIGHT_CELL = 0.25                        # m, of the cells that heights are compared in
 FLAT_CELL_RANGE = 0.03                    # m between the highest and the lowest point of a flat cell
@@ -63,23 +65,51 @@ def compare_carriageways(survey: Any, progress: Progress = Progress()) -> None:
 
 def roads_beside(frame: Any) -> list[Beside]:
     """Pairs of roads that run beside each other for SHORTEST_BESIDE and more on one level; `up` is not known yet."""
+    found = []
+    for one, other, s, place, offset, rise in _parallel(frame):
+        known = np.flatnonzero(np.abs(rise) < LEVEL_SEPARATION)
+        if len(known) * CORRECTION_STEP >= SHORTEST_BESIDE:
+            way = np.sign(np.cos(frame.road(one).heading(s[known]) - frame.road(other).heading(place[known])))
+            found.append(Beside(one, other, s[known], place[known], -way * offset[known], np.full(len(known), np.nan)))
+    return found
+
+
+def said_of_levels(frame: Any) -> list[str]:
+    """Warnings about roads that were driven along each other at another height, always by the same: one road, with heights of two kinds.
+
+    A bridge or a second deck climbs to its height somewhere, and roads on a slope lie farther apart.
+    """
+    said = []
+    for one, other, s, _, offset, rise in _parallel(frame):
+        known = np.flatnonzero((np.abs(offset) < SAME_GROUND) & (np.abs(rise) >= LEVEL_SEPARATION))
+        length = min(np.ptp([p.span for p in frame.passes_of(road)]) for road in (one, other))
+        if len(known) * CORRECTION_STEP < max(SHORTEST_BESIDE, SHARE_ALONG * length):
+            continue
+        middle = float(np.median(rise[known]))
+        if np.quantile(np.abs(rise[known] - middle), SHARE_ALONG) < EVEN_RISE:
+            first, last = s[known].min() - CORRECTION_STEP / 2, s[known].max() + CORRECTION_STEP / 2
+            said.append(
+                f"Roads {one} and {other} run along each other at stations {first:.0f} to {last:.0f} m of road {one}, and one lies "
+                f"{abs(middle):.2f} m above the other all along, as no bridge does. They seem to be one road with heights of two kinds (above the "
+                "ellipsoid and above sea level), and the map shows it twice. Bring the drives to one kind of heights, or process the files of each "
+                "drive by itself.")
+    return said
+
+
+def _parallel(frame):
+    """Yield (road, other road, stations, places, offsets and m that the first lies higher) where roads run beside or above each other."""
     tracks = [shapely.linestrings(np.c_[p.x, p.y]) for p in frame.passes]
     near = shapely.STRtree(tracks).query(tracks, predicate="dwithin", distance=FARTHEST_BESIDE).T
     roads = np.array([p.road for p in frame.passes])
-    found = []
     for one, other in sorted({(int(a), int(b)) for a, b in roads[near] if a < b}):
         spans = np.array([p.span for p in frame.passes_of(one)])
         s = np.arange(np.floor(spans.min() / CORRECTION_STEP), np.ceil(spans.max() / CORRECTION_STEP)) * CORRECTION_STEP + CORRECTION_STEP / 2
         x, y = frame.road(one).to_map(s, np.zeros(len(s)))
         place, offset = frame.road(other).locate(x, y, corridor=FARTHEST_BESIDE)
         known = np.flatnonzero(np.isfinite(offset))
-        turn = np.cos(frame.road(one).heading(s[known]) - frame.road(other).heading(place[known]))
+        known = known[np.abs(np.cos(frame.road(one).heading(s[known]) - frame.road(other).heading(place[known]))) > LEAST_PARALLEL]
         rise = frame.track_height(one, s[known]) - frame.track_height(other, place[known])
-        known = known[(np.abs(turn) > LEAST_PARALLEL) & (np.abs(rise) < LEVEL_SEPARATION)]
-        if len(known) * CORRECTION_STEP >= SHORTEST_BESIDE:
-            way = np.sign(np.cos(frame.road(one).heading(s[known]) - frame.road(other).heading(place[known])))
-            found.append(Beside(one, other, s[known], place[known], -way * offset[known], np.full(len(known), np.nan)))
-    return found
+        yield one, other, s[known], place[known], offset[known], rise
 
 
 def _height_apart(survey, pair, k):

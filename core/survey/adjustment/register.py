@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from scipy.fft import irfft, next_fast_len, rfft
 from scipy.ndimage import gaussian_filter1d, maximum_filter1d, median_filter, minimum_filter1d
 
 from ...common.parallel import ordered_map
@@ -142,31 +143,31 @@ def _box_sum(values, cells):
     return cv2.boxFilter(values, cv2.CV_32F, (cells, 1), normalize=False, borderType=cv2.BORDER_CONSTANT)
 
 
-def _shifted(one, other, lag):
-    """The overlapping cells of two strips when `other` is moved by `lag` cells."""
-    size = one.shape[1]
-    return one[:, max(lag, 0):size + min(lag, 0)], other[:, max(-lag, 0):size - max(lag, 0)]
-
-
 def correlation_sums(one: Strips, other: Strips, lags: np.ndarray = LAGS) -> np.ndarray:
-    """(2, 4, L) per channel and lag: sums of products, of squares of either strip, and counts, over the cells known in both."""
+    """(2, 4, L) per channel and lag: sums of products, of squares of either strip, and counts, over the cells known in both.
+
+    All lags at once, by Fourier transforms along the rows (the correlation theorem); whole numbers, so that what they leave is rounded away.
+    """
+    cells = one.heights.shape[1]
+    size = next_fast_len(cells + int(np.abs(lags).max()), real=True)
     found = np.zeros((2, 4, len(lags)))
     for k, name in enumerate(CHANNELS):
-        known = [np.isfinite(getattr(strips, name)) for strips in (one, other)]
-        # integers sum exactly, in whatever order the library adds them
-        values = [np.where(there, np.rint(getattr(strips, name) * CHANNEL_SCALE[name]), 0.0) for there, strips in zip(known, (one, other))]
-        known = [there.astype(float) for there in known]
-        squares = [v * v for v in values]
-        for j, lag in enumerate(lags.tolist()):
-            for i, pair in enumerate((values, (squares[0], known[1]), (known[0], squares[1]), known)):
-                found[k, i, j] = np.vdot(*map(np.ascontiguousarray, _shifted(pair[0], pair[1], lag)))
+        spectra = []
+        for strips in (one, other):
+            known = np.isfinite(getattr(strips, name))
+            values = np.where(known, np.rint(getattr(strips, name) * CHANNEL_SCALE[name]), 0.0).astype(float)
+            spectra.append([rfft(part, size, axis=1) for part in (values, values * values, known.astype(float))])
+        (a, a2, there), (b, b2, seen) = spectra
+        for i, (left, right) in enumerate(((a, b), (a2, seen), (there, b2), (there, seen))):
+            found[k, i] = np.rint(irfft((left * right.conj()).sum(axis=0), size)[lags])
     return found
 
 
 def height_offset(one: Strips, other: Strips, lag: int) -> float:
     """Median height of `one` above `other` moved by `lag`, of flat cells, m; NaN for too few cells."""
-    off = np.subtract(*_shifted(one.heights, other.heights, lag))
-    level = np.maximum(*map(np.abs, _shifted(one.steps, other.steps, lag))) < FLAT_STEP
+    a, b = (slice(max(way * lag, 0), one.heights.shape[1] + min(way * lag, 0)) for way in (1, -1))
+    off = one.heights[:, a] - other.heights[:, b]
+    level = np.maximum(np.abs(one.steps[:, a]), np.abs(other.steps[:, b])) < FLAT_STEP
     off = off[level & np.isfinite(off)]
     return float(np.median(off)) if len(off) >= MIN_SHARED_CELLS else np.nan
 

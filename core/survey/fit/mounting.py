@@ -25,9 +25,11 @@ from ..las.validity import valid_points
 from ..lattice.rotation_rate import MIN_ROTATION_PEAK, ROTATION_WINDOW, rotation_spectrum, strongest_rotation
 from ..trajectory.trajectory import Trajectory
 
-PLACES_READ, PLACE_POINTS = 8, 50_000   # places in the files that are looked at, and points read at each
+PLACES_READ = 6                     # places in the files that are looked at
 TURNS_WINDOW = 0.05                 # s: some turns of every mirror, in which a vehicle on the road hardly sways
-MIN_TURNS_POINTS, MAX_TURNS_POINTS = 60, 400
+PLACE_WINDOWS = 5                   # windows that points are read of at a place, the first and last of them not whole
+BLOCK_POINTS, PLACE_POINTS = 5_000, 50_000   # read at a time, and at most at a place
+MIN_TURNS_POINTS, MAX_TURNS_POINTS = 60, 200
 MAX_WINDOWS = 80                    # of a scanner, evenly over the survey
 MIN_WINDOWS = 8                     # good ones that a scanner's place needs
 PLANE_ROUNDS, RATE_ROUNDS = 8, 3
@@ -66,7 +68,7 @@ class _Sample:
 
 
 def read_places(files: Sequence[CloudHeader], scanner_field: str | None = "automatic") -> _Sample:
-    """First returns at PLACES_READ places spread evenly over the points of the files.
+    """First returns of PLACE_WINDOWS of time, or more, at each of PLACES_READ places spread evenly over the points of the files.
 
     Parameters
     ----------
@@ -76,18 +78,12 @@ def read_places(files: Sequence[CloudHeader], scanner_field: str | None = "autom
     ends = np.cumsum([file.count for file in files])
     census, parts = ScannerCensus(), []
     with ParallelCloudReader(SAMPLED_LAYERS) as reader:
-        wanted: dict[int, set[int]] = {}
+        starts = set()
         for at in ((np.arange(PLACES_READ) + 0.5) / PLACES_READ * ends[-1]).astype(np.int64).tolist():
             number = int(np.searchsorted(ends, at, side="right"))
-            wanted.setdefault(number, set()).add(at - int(ends[number] - files[number].count))
-        for number, places in wanted.items():
-            ranges = [(first, count) for _, first, count in reader.ranges([files[number]], PLACE_POINTS)]
-            starts = np.array([first for first, _ in ranges])
-            for k in sorted({int(np.searchsorted(starts, at, side="right")) - 1 for at in places}):
-                for block in reader.points(files[number], *ranges[k], PLACE_POINTS):
-                    parts.append(_first_returns(block))
-                    # a file in one piece is not decoded further than one place
-                    break
+            starts.add((number, reader.chunk_start(files[number], at - int(ends[number] - files[number].count))))
+        for number, start in sorted(starts):
+            parts += _read_place(reader, files[number], start, -(-PLACES_READ * PLACE_WINDOWS // len(starts)))
     time, place, source, channel = (np.concatenate(column) for column in zip(*parts))
     for name, values in (("point_source_id", source), ("scanner_channel", channel)):
         census.take(name, times_by_value(values, time))
@@ -98,6 +94,18 @@ def read_places(files: Sequence[CloudHeader], scanner_field: str | None = "autom
         scanner = numbers_by_value(values, int(column.max(initial=0)) + 1)[column]
     order = np.argsort(time, kind="stable")
     return _Sample(time[order], place[order], scanner[order])
+
+
+def _read_place(reader, file, start, windows):
+    """[`_first_returns`] of points of a file from the beginning of a chunk on, as many as some windows hold."""
+    parts, seen = [], {}
+    for block in reader.following(file, start, BLOCK_POINTS):
+        parts.append(_first_returns(block))
+        for window, count in zip(*np.unique(np.floor(parts[-1][0] / TURNS_WINDOW), return_counts=True)):
+            seen[window] = seen.get(window, 0) + count
+        if sum(count >= MIN_TURNS_POINTS for count in seen.values()) >= windows or sum(len(part[0]) for part in parts) >= PLACE_POINTS:
+            break
+    return parts
 
 
 def _first_returns(block):

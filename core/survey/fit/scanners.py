@@ -36,11 +36,11 @@ from ..adjustment.register import (
 )
 from ..store.records import COORDINATE_SCALE, to_units
 
-LOOK_WINDOWS, SCANNER_WINDOWS = 4, 16   # of the survey in which scanners are looked at, and measured: an error of a mounting is the same in all
+LOOK_WINDOWS, SCANNER_WINDOWS = 3, 16   # of the survey in which scanners are looked at, and measured: an error of a mounting is the same in all
 # m ahead, left and up that scanners may differ by without a move: along lines nothing is drawn sharply; less than the faces that are looked for
 MAX_SCANNER_OFFSETS = 2 * AGREEMENT_PLAN, AGREEMENT_PLAN, 0.010
 SIDES = "right", "left"
-SAID_AS = ("ahead", "behind"), ("to the left", "to the right"), ("above", "below")
+SAID_AS = ("ahead", "behind"), ("left", "right"), ("above", "below")
 SAID_M = 0.005           # m
 
 
@@ -73,7 +73,7 @@ def lay_scanners(survey: Any, progress: Progress = Progress(), folder: Path | No
     -------
     m across, one sigma that stays open: how far the middle of the scanners may be off; 0 where they agree
     """
-    if len(survey.scanners) < 2 or not any(map(_apart, scanner_offsets(survey, LOOK_WINDOWS))):
+    if len(survey.scanners) < 2 or _agree_at_a_look(survey):
         return 0.0
     offsets = scanner_offsets(survey, SCANNER_WINDOWS)
     if not any(map(_apart, offsets)):
@@ -90,6 +90,27 @@ def lay_scanners(survey: Any, progress: Progress = Progress(), folder: Path | No
     return sigma
 
 
+def _agree_at_a_look(survey):
+    """Whether scanners agree in the first windows that show all of their moves, or in all LOOK_WINDOWS together.
+
+    An error of a mounting is the same all along a survey, so that one window clears a scanner.
+    """
+    seen: dict[int, list] = {}
+    for window in _windows(survey, LOOK_WINDOWS):
+        for number, evidence in _window_evidence(survey, window).items():
+            seen.setdefault(number, []).append(evidence)
+        offsets = [_offsets(number, evidence) for number, evidence in seen.items()]
+        if len(offsets) == len(survey.scanners) - 1 and not any(map(_apart, offsets)) and all(map(_all_shown, offsets)):
+            return True
+    return not any(_apart(_offsets(number, evidence)) for number, evidence in seen.items())
+
+
+def _all_shown(one):
+    """Whether moves of a scanner are known: on both sides those across and up, on one that along the way."""
+    known = np.isfinite(one.moves)
+    return bool(known[:, 1:].all() and known[:, 0].any())
+
+
 def _apart(one):
     """Whether a scanner lies measurably beside the first."""
     known = np.nan_to_num(np.abs(one.moves))
@@ -103,10 +124,10 @@ def _said(survey, one, sigma):
         return (f"{names} lie more than {100 * MAX_OFFSET:.0f} cm apart, too far to lay them on each other: curbs and lines are doubled. Calibrate "
                 "the mounting of the scanners anew, or process the points of one scanner alone.")
     right, left = (", ".join(f"{100 * abs(metres):.1f} cm {words[int(metres < 0)]}" for metres, words in zip(side, SAID_AS) if abs(metres) > SAID_M)
-                   or "nothing that shows" for side in np.nan_to_num(-one.moves))
-    return (f"{names} differ all along the survey: what the first sees lies {left} of what the other sees on the left of the vehicle, and {right} on "
-            "the right, as with a wrong lever arm or boresight angles. They were laid on each other, each moved by its share; nothing shows which of "
-            f"them is right, so all that is drawn may be off by {100 * sigma:.1f} cm (one sigma). Calibrate the mounting of the scanners anew.")
+                   or "nothing that is measurable" for side in np.nan_to_num(-one.moves))
+    return (f"{names} differ all along the survey, as with a wrong lever arm or boresight angles. On the left of the vehicle, points of the first "
+            f"are displaced from those of the other by {left}, on the right by {right}. Each was moved by its share. Nothing shows which of them is "
+            f"right, so the map may be off by {100 * sigma:.1f} cm (one sigma). Calibrate the mounting of the scanners anew.")
 
 
 def _shares(offsets):

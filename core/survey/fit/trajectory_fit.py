@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...common.progress import Progress
+from ...io.units import FOOT
 from ..estimation.growth import MAX_UNEXPLAINED
 from ..frame.road import CORRIDOR
 from ..las.reader import CloudHeader
@@ -21,7 +22,6 @@ from .mounting import Mounting, read_places, scanner_mountings, usual_lever, veh
 HALF_VEHICLE = 1.275    # m: no vehicle on the road is wider than 2.55 m (Directive 96/53/EC), so no scanner rides farther beside its middle
 VEHICLE_HEIGHT = 4.0    # m (the same), so no scanner rides farther above or below a trajectory that is on the vehicle
 BELOW_ROAD = 0.5        # m below the road, beyond which a trajectory is no line on it either
-FOOT = 0.3048           # m
 CLEARLY_BETTER = 0.5    # of what one move leaves, below which another is taken
 SINGLE_STEPS = tuple(2.0**-k for k in range(6))   # m from number to number of single precision, from 262 km on
 ROUNDING_SAMPLES, MIN_ROUNDED_VALUES = 20_000, 200   # points looked at, and different values of them, or points lie on lines
@@ -101,7 +101,7 @@ def _other_heights(sample, trajectory, mountings, progress):
         for stretch, said in ((FOOT, "in feet where x and y are in metres"), (1.0 / FOOT, "in metres where x and y are in feet")):
             other = scanner_mountings(sample, trajectory, stretch)
             if len(other) >= len(mountings) and len(_met(other)) == len(other):
-                progress.warn(f"The heights of cloud and trajectory seem to be {said}: the rays of the scanner meet in one place only if heights are "
+                progress.warn(f"The heights of cloud and trajectory seem to be {said}: the laser beams meet in the scanner only if heights are "
                               f"multiplied by {stretch:.4g}. Curbs are missed, and heights and slopes are wrong by that factor. Convert the heights "
                               "of both, and run again.")
                 return True
@@ -122,10 +122,10 @@ def _at_height(trajectory: Trajectory, mountings: Sequence[Mounting], progress: 
         return trajectory
     worst = float(up[np.argmax(np.abs(up))])
     where = "" if far.all() else f" at {np.count_nonzero(far)} of {len(far)} places looked at"
-    progress.warn(f"The trajectory lies {abs(worst):.2f} m {'below' if worst > 0 else 'above'} the scanners{where}, as the rays of their mirrors "
+    progress.warn(f"The trajectory lies {abs(worst):.2f} m {'below' if worst > 0 else 'above'} the scanners{where}, as their laser beams "
                   f"show: {'below the road' if worst > 0 else 'no vehicle is so high'}. Heights of cloud and trajectory seem to be of two kinds "
-                  "(above the ellipsoid and above sea level), or one of them is wrong. The trajectory's were moved to the scanners'; the map has the "
-                  "heights of the cloud.")
+                  "(above the ellipsoid and above sea level), or one of them is wrong. The trajectory was moved to the height of the scanners; the "
+                  "map has the heights of the cloud. Export both with one kind of heights.")
     metres = np.full(len(trajectory), np.median(up)) if np.ptp(up) < ONE_MOVE * abs(worst) else np.interp(trajectory.time, at, up)
     return replace(trajectory, z=trajectory.z + metres)
 
@@ -142,8 +142,8 @@ def _on_way(trajectory: Trajectory, mountings: Sequence[Mounting], progress: Pro
     x, y = (np.interp(at[np.argmax(far)], trajectory.time, getattr(trajectory, name)) for name in "xy")
     where = "" if far.all() else f" at {np.count_nonzero(far)} of {len(far)} places looked at"
     progress.warn(f"The trajectory runs {abs(worst):.2f} m to the {'right' if worst > 0 else 'left'} of the way that the scanners took{where} "
-                  f"(first near x {x:.0f}, y {y:.0f}), as the rays of their mirrors show; no vehicle is so wide. It may be that of another lane or "
-                  "drive, or in another datum than the cloud. It was moved to where the scanners were; check that both files belong together.")
+                  f"(first near x {x:.0f}, y {y:.0f}), as their laser beams show; no vehicle is so wide. It may belong to another lane or "
+                  "drive, or be in another datum than the cloud. It was moved to where the scanners were; check that both files belong together.")
     return _moved_aside(trajectory, mountings, at, lever[:, 1])
 
 

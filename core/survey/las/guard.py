@@ -9,14 +9,12 @@ from __future__ import annotations
 
 import os
 import struct
-from typing import BinaryIO
 
 import numpy as np
 
 from .mending import MendedHeader, count_note, mend, opened, sampled_places
-from .records_of_file import COMPRESSED_BIT, LASZIP_RECORD, LASZIP_USER, VLR_HEADER_SIZE, HeaderFields, base_size
+from .records_of_file import VARIABLE_CHUNKS, VLR_HEADER_SIZE, HeaderFields, base_size
 
-VARIABLE_CHUNKS = 0xFFFFFFFF
 MAX_CHUNK_SIZE = 50_000_000  # points; LASzip writes 50,000
 CHUNKED_COMPRESSOR = 2       # of the other point formats, where each chunk begins anew
 LAYERED_COMPRESSOR = 3       # of point formats 6 and above: a chunk holds its values layer by layer
@@ -53,15 +51,14 @@ def find_damage(path: str | os.PathLike[str], mended: MendedHeader | None = None
         if not fields.compressed:
             there = (size - fields.points_at) // fields.record_size if fields.record_size else 0
             return f"its header promises {fields.count:,} points, and {there:,} are there" if fields.count > there else ""
-        record = _laszip_record(file, fields.header_size, fields.vlrs, fields.points_at)
-        if record is None:
+        compression = _compression(file)
+        if compression is None:
             return "it is compressed, but the record that describes the compression is missing"
-        chunk_size, items = _chunk_size(record), _item_sizes(record)
-        if sum(items) != fields.record_size:
-            return f"its header states {fields.record_size} bytes per point, the compressor {sum(items)}"
-        if chunk_size != VARIABLE_CHUNKS and not 0 < chunk_size <= MAX_CHUNK_SIZE:
-            return f"its compressor states chunks of {chunk_size:,} points"
-        return _chunk_table_damage(file, fields.points_at, size, record)
+        if compression.point_size != fields.record_size:
+            return f"its header states {fields.record_size} bytes per point, the compressor {compression.point_size}"
+        if compression.chunk_size != VARIABLE_CHUNKS and not 0 < compression.chunk_size <= MAX_CHUNK_SIZE:
+            return f"its compressor states chunks of {compression.chunk_size:,} points"
+        return _chunk_table_damage(file, fields.points_at, size, compression)
 
 
 def with_points_of_chunks(path: str | os.PathLike[str], mended: MendedHeader) -> MendedHeader:
@@ -74,8 +71,8 @@ def with_points_of_chunks(path: str | os.PathLike[str], mended: MendedHeader) ->
         fields = HeaderFields.read(file)
         if fields is None or not fields.compressed:
             return mended
-        record, begin, table = _chunks(file)
-        count = _points_of(file, record, begin, table, fields)
+        compression, begin, table = _chunks(file)
+        count = _points_of(file, compression, begin, table, fields)
     if count == fields.count:
         return mended
     return mended.with_count(fields, count, "" if count in fields.counts else count_note(fields.count, count))
@@ -109,9 +106,9 @@ def _integers_at(file, place):
     return np.frombuffer(file.read(12), "<i4")
 
 
-def _points_of(file, record, begin, table, fields):
+def _points_of(file, compression, begin, table, fields):
     """The points in the chunks of a file; the header's number where they do not tell."""
-    size, compressor = _chunk_size(record), struct.unpack_from("<H", record)[0]
+    size, compressor = compression.chunk_size, compression.compressor
     if size == VARIABLE_CHUNKS:
         return sum(points for points, _ in table)
     if not table or compressor not in (CHUNKED_COMPRESSOR, LAYERED_COMPRESSOR):
@@ -120,27 +117,27 @@ def _points_of(file, record, begin, table, fields):
     file.seek(begin + sum(nbytes for _, nbytes in table[:-1]))
     chunk = file.read(length)
     if compressor == LAYERED_COMPRESSOR:
-        raw = sum(_item_sizes(record))
+        raw = compression.point_size
         return full + struct.unpack_from("<I", chunk, raw)[0] if len(chunk) >= raw + 4 else fields.count
     stated = next((count for count in fields.counts if full < count <= full + size), 0)
     if min(size, stated - full if stated else size) > MAX_DECODED:
         return stated or fields.count
-    if stated and not _holds(record, chunk[:length - max(FLUSHED_BYTES, length // 100)], stated - full):
+    if stated and not _holds(compression, chunk[:length - max(FLUSHED_BYTES, length // 100)], stated - full):
         return stated
     low, high = max(stated - full, 1), size + 1   # points that can be decoded, and that cannot
     while high - low > 1:
         middle = (low + high) // 2
-        low, high = (middle, high) if _holds(record, chunk, middle) else (low, middle)
+        low, high = (middle, high) if _holds(compression, chunk, middle) else (low, middle)
     return full + low
 
 
-def _holds(record, chunk, points):
+def _holds(compression, chunk, points):
     """Whether so many points can be decoded from the bytes of a chunk."""
     import lazrs
 
-    buffer = np.empty(points * sum(_item_sizes(record)), np.uint8)
+    buffer = np.empty(points * compression.point_size, np.uint8)
     try:
-        lazrs.decompress_points_with_chunk_table(chunk, record, buffer, [(points, len(chunk))])
+        lazrs.decompress_points_with_chunk_table(chunk, compression.data, buffer, [(points, len(chunk))])
     except lazrs.LazrsError:
         return False
     return True
@@ -149,9 +146,8 @@ def _holds(record, chunk, points):
 def points_per_chunk(path: str | os.PathLike[str]) -> int:
     """Points that are compressed together in an undamaged file: 1 in a LAS file, 0 where the number varies."""
     with open(path, "rb") as file:
-        compressed, record, _ = _compression(file)
-        size = _chunk_size(record) if compressed else 1
-        return 0 if size == VARIABLE_CHUNKS else size
+        compression = _compression(file)
+    return 1 if compression is None else 0 if compression.chunk_size == VARIABLE_CHUNKS else compression.chunk_size
 
 
 def chunks_of(path: str | os.PathLike[str]) -> tuple[bytes, int, list[tuple[int, int]]]:
@@ -164,61 +160,27 @@ def chunks_of(path: str | os.PathLike[str]) -> tuple[bytes, int, list[tuple[int,
     table : [(points, bytes)] of each chunk
     """
     with open(path, "rb") as file:
-        return _chunks(file)
+        compression, begin, table = _chunks(file)
+        return compression.data, begin, table
 
 
 def _chunks(file):
-    """As `chunks_of`, of an open file."""
+    """(Compression, first byte, [(points, bytes)] of each chunk) of an open file."""
     import lazrs
 
-    file.seek(0)
-    _, record, points_at = _compression(file)
+    compression, points_at = _compression(file), HeaderFields.read(file).points_at
     file.seek(points_at)
-    return record, points_at + 8, lazrs.read_chunk_table(file, lazrs.LazVlr(record))
+    return compression, points_at + 8, lazrs.read_chunk_table(file, lazrs.LazVlr(compression.data))
 
 
 def _compression(file):
-    """Whether a file's points are compressed, its LASzip record, and the byte at which its points begin."""
-    head = file.read(227)
-    header_size, points_at, vlrs = struct.unpack_from("<HII", head, 94)
-    return bool(head[104] & COMPRESSED_BIT), _laszip_record(file, header_size, vlrs, points_at), points_at
+    """The Compression of the points of an open LAS or LAZ file; None where they are not compressed, or the record of it is missing."""
+    fields = HeaderFields.read(file)
+    records = fields.records(file, os.fstat(file.fileno()).st_size) if fields.compressed else ()
+    return next((record.compression for record in records if record.at < fields.points_at and record.compression is not None), None)
 
 
-def _laszip_record(file: BinaryIO, header_size: int, vlrs: int, points_at: int) -> bytes | None:
-    """The LASzip record; None where there is none, or it is too short."""
-    at = header_size
-    for _ in range(vlrs):
-        file.seek(at)
-        head = file.read(VLR_HEADER_SIZE)
-        if len(head) < VLR_HEADER_SIZE or at >= points_at:
-            break
-        user, record, length = struct.unpack_from("<2x16sHH", head)
-        if user.rstrip(b"\0") == LASZIP_USER and record == LASZIP_RECORD:
-            data = file.read(length)
-            whole = len(data) >= 34 and len(data) >= 34 + 6 * struct.unpack_from("<H", data, 32)[0]
-            return data if whole else None
-        at += VLR_HEADER_SIZE + length
-    return None
-
-
-def _chunk_size(record):
-    """Points in a chunk."""
-    return struct.unpack_from("<I", record, 12)[0]
-
-
-def _item_sizes(record):
-    """Bytes of each item of a point."""
-    count = struct.unpack_from("<H", record, 32)[0]
-    return [struct.unpack_from("<H", record, 36 + 6 * item)[0] for item in range(count)]
-
-
-def _item_types(record):
-    """LASzip's type of each item of a point."""
-    count = struct.unpack_from("<H", record, 32)[0]
-    return [struct.unpack_from("<H", record, 34 + 6 * item)[0] for item in range(count)]
-
-
-def _chunk_table_damage(file, points_at, size, record):
+def _chunk_table_damage(file, points_at, size, compression):
     """What is wrong with the table of chunks, or with the chunks."""
     file.seek(points_at)
     place = file.read(8)
@@ -235,15 +197,15 @@ def _chunk_table_damage(file, points_at, size, record):
     if chunks > at - points_at:  # a chunk has at least one byte
         return f"it states {chunks:,} chunks in {at - points_at:,} bytes"
     file.seek(at)
-    return _chunk_damage(file, points_at + 8, at, record)
+    return _chunk_damage(file, points_at + 8, at, compression)
 
 
-def _chunk_damage(file, first, end, record):
+def _chunk_damage(file, first, end, compression):
     """What is wrong with the chunks: they must fit before their table."""
     import lazrs
 
     try:
-        table = lazrs.read_chunk_table_only(file, lazrs.LazVlr(record))
+        table = lazrs.read_chunk_table_only(file, lazrs.LazVlr(compression.data))
     except BaseException as problem:  # a panic of the decoder is not an Exception
         if isinstance(problem, (KeyboardInterrupt, SystemExit, GeneratorExit)):
             raise
@@ -253,15 +215,15 @@ def _chunk_damage(file, first, end, record):
         return f"its chunks should take {taken:,} bytes, and there are {end - first:,}"
     if end > first and not taken:
         return f"its table of chunks is empty, and there are {end - first:,} bytes of points"
-    return _layer_damage(file, first, record, table) if struct.unpack_from("<H", record)[0] == LAYERED_COMPRESSOR else ""
+    return _layer_damage(file, first, compression, table) if compression.compressor == LAYERED_COMPRESSOR else ""
 
 
-def _layer_damage(file, first, record, table):
+def _layer_damage(file, first, compression, table):
     """What is wrong with the lengths of the layers, which each chunk states after its first, uncompressed point, or with its points."""
-    raw = sum(_item_sizes(record))
-    layers = sum(LAYERS_OF_ITEM.get(kind, size) for kind, size in zip(_item_types(record), _item_sizes(record)))
+    raw = compression.point_size
+    layers = sum(LAYERS_OF_ITEM.get(kind, size) for kind, size in compression.items)
     head = raw + 4 + 4 * layers  # the number of points, and the lengths
-    counted = _chunk_size(record) == VARIABLE_CHUNKS
+    counted = compression.chunk_size == VARIABLE_CHUNKS
     at = first
     for points, length in table:
         file.seek(at)

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 INTENSITY_SOURCES = "intensity", "rgb"
 COLOUR_FIELDS = "red", "green", "blue"
 LUMINANCE_WEIGHTS = 0.2126, 0.7152, 0.0722   # of red, green and blue (ITU-R BT.709-6, section 3.2)
-USUAL_FIELDS = "reflectance", "amplitude", "intensity"   # parts of names of extra fields that hold what a scanner received, the best first
+USUAL_FIELDS = "reflect", "amplitude", "intensity"   # parts of names of extra fields that hold what a scanner received, the best first
 MAX_INTENSITY = 65535
 SIGN = 2**15
 EMPTY_MIDDLE = 0.001      # share of values in the middle half of 16 bits, at most, where values with a sign were wrapped
@@ -26,6 +26,7 @@ LEAST_SHARE = 0.01        # of values in the uppermost quarter, which were negat
 USUAL_SPREAD = 20.0       # dB between dark asphalt and paint or signs, at one range and another
 MAX_SPREAD = 60.0         # dB that no survey exceeds
 VALUES_PER_DECIBEL = 1, 10, 100   # as exporters store it
+MAX_POWER = 290.0         # of ten, with which a double can be multiplied
 TOP, TOP_STEP = 30_000, 5.0   # intensity of the brightest points, and dB to which they are rounded, so that samples agree
 
 
@@ -66,7 +67,8 @@ class IntensitySource:
         return self._converted(np.arange(MAX_INTENSITY + 1, dtype=np.uint16).view(np.int16).astype(float))
 
     def _converted(self, values):
-        linear = 10.0 ** (values / (10.0 * self.per_decibel)) if self.per_decibel else values - self.zero
+        # no decibels are beyond what doubles hold, but the table has values that no file has
+        linear = 10.0 ** np.minimum(values / (10.0 * self.per_decibel), MAX_POWER) if self.per_decibel else values - self.zero
         return np.clip(np.rint(np.nan_to_num(linear * self.factor)), 0, MAX_INTENSITY).astype(np.uint16)
 
 

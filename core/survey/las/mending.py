@@ -16,7 +16,7 @@ from typing import BinaryIO
 
 import numpy as np
 
-from .records_of_file import EVLR_HEADER_SIZE, VLR_HEADER_SIZE, HeaderFields, Record, base_size, extra_bytes_described, readable_extra_bytes
+from .records_of_file import EVLR_HEADER_SIZE, HeaderFields, Record, base_size, extra_bytes_described, readable_extra_bytes
 
 MAX_RECORD_SIZE = 65535     # bytes of a point
 SAMPLED_RECORDS = 1000     # of those behind the last point that a header states, to see whether they are points too
@@ -85,7 +85,7 @@ def mend(path: str | os.PathLike[str]) -> MendedHeader:
             return MendedHeader()
         patches: list[tuple[int, bytes]] = []
         notes: list[str] = []
-        records, extended = list(_records(file, stated, size)), list(_extended(file, stated, size))
+        records, extended = list(stated.records(file, size)), list(_extended(file, stated, size))
         if len(extended) < stated.evlrs:
             patches.append((EVLR_COUNT_AT, struct.pack("<I", len(extended))))
             notes.append(f"{stated.evlrs - len(extended):,} of its {stated.evlrs:,} extended records lie beyond its end and are left out")
@@ -113,17 +113,6 @@ def count_note(stated: int, there: int) -> str:
         ". If it was copied or downloaded, compare its length with the original's" if there < stated else "")
 
 
-def _records(file, fields, size):
-    """The variable length records before the points, the last as far as it is there."""
-    at = fields.header_size
-    for _ in range(fields.vlrs):
-        record = Record.read(file, at, VLR_HEADER_SIZE, size)
-        if record is None:
-            return
-        yield record
-        at += VLR_HEADER_SIZE + len(record.data)
-
-
 def _extended(file, fields, size):
     """The extended records behind the points that lie in the file."""
     at = fields.first_evlr
@@ -143,8 +132,8 @@ def _lengths(fields, records, size):
     described = base + extra_bytes_described(records)
     if fields.compressed:
         # the decoder cannot do without the record that says of what its points consist
-        sizes = [record.item_sizes for record in records if record.item_sizes]
-        return replace(fields, record_size=sum(sizes[0])) if sizes and base <= sum(sizes[0]) <= MAX_RECORD_SIZE else fields
+        point_size = next((record.compression.point_size for record in records if record.compression is not None), 0)
+        return replace(fields, record_size=point_size) if base <= point_size <= MAX_RECORD_SIZE else fields
     behind = records[-1].end if records else fields.header_size
     end = fields.end_of_points(size)
 

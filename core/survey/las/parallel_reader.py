@@ -108,10 +108,10 @@ class ParallelCloudReader:
 
     def times(self, file: CloudHeader) -> Iterator[np.ndarray]:
         """Yield (N,) gps_time in seconds of a few points at several places of a file, its first and last points among them."""
-        for points in self.samples(file):
+        for points in self._samples(file):
             yield np.array(points["gps_time"], float)
 
-    def samples(self, file: CloudHeader) -> Iterator[Any]:
+    def _samples(self, file):
         """Yield a few points at several places of a file, its first and last among them, as laspy point records; the next may overwrite one."""
         loads: list[Callable[[], Any]]
         if file.chunk:
@@ -124,6 +124,29 @@ class ParallelCloudReader:
             loads = [loads[k] for k in np.unique(np.linspace(0, len(loads) - 1, SAMPLED_PLACES).astype(int))]
         for load in loads:
             yield load()
+
+    def chunk_start(self, file: CloudHeader, at: int) -> int:
+        """Index of the first point of the chunk that holds the point `at`."""
+        if file.chunk:
+            return at - at % file.chunk
+        ends = np.cumsum(self._layout(file)[1][2][:, 0])
+        k = int(np.searchsorted(ends, at, side="right"))
+        return int(ends[k - 1]) if k else 0
+
+    def following(self, file: CloudHeader, start: int, count: int) -> Iterator[Any]:
+        """Yield `count` points after another as laspy point records, or chunk after chunk where their size varies; the next may overwrite one.
+
+        They begin with the first point of a chunk, which is decoded no further than the points are asked for.
+        """
+        if file.chunk:
+            for first in range(start, file.count, count):
+                yield self._read_points(file, first, count)
+            return
+        first = start
+        for end in np.minimum(np.cumsum(self._layout(file)[1][2][:, 0]), file.count).tolist():
+            if end > first:
+                yield self._load(file, first, end - first)
+                first = end
 
     def _read_points(self, file, first, count):
         return read_points(self._reader(file), file.path, first, count)

@@ -12,6 +12,7 @@ import numpy as np
 VLR_HEADER_SIZE, EVLR_HEADER_SIZE = 54, 60  # bytes
 LASZIP_USER, LASZIP_RECORD = b"laszip encoded", 22204
 COMPRESSED_BIT = 0x80        # of the point format
+VARIABLE_CHUNKS = 0xFFFFFFFF  # as the size of chunks: each has its own number of points
 EXTRA_BYTES_USER, EXTRA_BYTES_RECORD, EXTRA_BYTES_SIZE = b"LASF_Spec", 4, 192
 CRS_USER, CRS_TEXTS = b"LASF_Projection", (2111, 2112, 34737)   # whose records are text: WKT, and names of the GeoKeys
 MAX_NAME = 24    # bytes of a name to which a number is added, of the 32 that a name may have
@@ -87,10 +88,50 @@ class HeaderFields:
         """(3,) map coordinates."""
         return np.frombuffer(self.head, "<f8", 6, 179)[::2]
 
+    def records(self, file: BinaryIO, size: int) -> Iterator[Record]:
+        """The variable length records before the points of a file of so many bytes, the last as far as it is there."""
+        at = self.header_size
+        for _ in range(self.vlrs):
+            record = Record.read(file, at, VLR_HEADER_SIZE, size)
+            if record is None:
+                return
+            yield record
+            at += VLR_HEADER_SIZE + len(record.data)
+
     def end_of_points(self, size: int) -> int:
         """The byte before which the points end at the latest, in a file of so many bytes."""
         after = [self.first_waveform] + [self.first_evlr] * bool(self.evlrs)
         return min([size, *(at for at in after if self.points_at <= at <= size)])
+
+
+@dataclass(frozen=True)
+class Compression:
+    """How the points of a file are compressed, as the LASzip record says.
+
+    data : the record
+    """
+
+    data: bytes
+
+    @property
+    def compressor(self) -> int:
+        """Number of the kind of chunks."""
+        return struct.unpack_from("<H", self.data)[0]
+
+    @property
+    def chunk_size(self) -> int:
+        """Points of a chunk; VARIABLE_CHUNKS where each has its own number."""
+        return struct.unpack_from("<I", self.data, 12)[0]
+
+    @property
+    def items(self) -> list[tuple[int, int]]:
+        """(type, bytes) of each item of a point."""
+        return [struct.unpack_from("<HH", self.data, 34 + 6 * k) for k in range(struct.unpack_from("<H", self.data, 32)[0])]
+
+    @property
+    def point_size(self) -> int:
+        """Bytes of a point."""
+        return sum(size for _, size in self.items)
 
 
 @dataclass(frozen=True)
@@ -147,12 +188,10 @@ class Record:
         return self.user == EXTRA_BYTES_USER and self.number == EXTRA_BYTES_RECORD
 
     @property
-    def item_sizes(self) -> list[int]:
-        """Bytes of each item of a compressed point, where it is the record that tells them."""
-        if self.user != LASZIP_USER or self.number != LASZIP_RECORD or len(self.data) < 34:
-            return []
-        count = struct.unpack_from("<H", self.data, 32)[0]
-        return [struct.unpack_from("<H", self.data, 36 + 6 * k)[0] for k in range(count)] if len(self.data) >= 34 + 6 * count else []
+    def compression(self) -> Compression | None:
+        """What it says of compressed points; None where it is another record, or too short."""
+        laszip = self.user == LASZIP_USER and self.number == LASZIP_RECORD and len(self.data) >= 34
+        return Compression(self.data) if laszip and len(self.data) >= 34 + 6 * struct.unpack_from("<H", self.data, 32)[0] else None
 
     def mended(self) -> Record:
         """The same with a user and a CRS that laspy can decode; itself where nothing is wrong."""

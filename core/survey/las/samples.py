@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .parallel_reader import ParallelCloudReader
+from .parallel_reader import POINTS_PER_SAMPLE, SAMPLED_PLACES, ParallelCloudReader
 from .reader import CloudHeader
 
 COARSE_COORDINATES = 0.02        # m: coordinates in steps of more scatter by more than half a centimetre, which is what curbs and lines are told by
@@ -48,7 +48,9 @@ def sample_files(files: Sequence[CloudHeader]) -> list[FileSample]:
     with ParallelCloudReader(("z", "intensity", "all_extra_bytes")) as reader:
         for file in files:
             if file.count:
-                parts = [_sample(points) for points in reader.samples(file)]
+                places = np.linspace(0, file.count - 1, SAMPLED_PLACES).astype(int).tolist()
+                starts = sorted({reader.chunk_start(file, at) for at in places})
+                parts = [_sample(next(reader.following(file, start, POINTS_PER_SAMPLE))) for start in starts]
                 raw, intensity = (np.concatenate([part[k] for part in parts]) for k in (0, 1))
                 found.append(FileSample(file, raw, intensity, {name: np.concatenate([part[2][name] for part in parts]) for name in parts[0][2]}))
     return found
@@ -78,7 +80,7 @@ def coarse_coordinates(samples: Sequence[FileSample]) -> str:
             continue
         k = int(np.argmax(np.where(told, steps, 0.0)))
         listed = ", ".join(f"{steps[axis]:.3g} m in {name}" for axis, name in enumerate("xyz") if told[axis])
-        cause = f"at {abs(float(ends[0, k])):,.0f} m that is the step of numbers of 32 bits, through which they were passed" if short[k] else \
+        cause = f"at {abs(float(ends[0, k])):,.0f} m that is the step of 32-bit numbers, in which some program kept them" if short[k] else \
             f"that is the scale in the header of the file ({scales[k]:g} m)"
         return (f"The coordinates of {sample.file.path} lie in steps of {listed}: {cause}. Edges and markings are no better than that. Export "
                 "the cloud again with coordinates of 64 bits and a scale of 0.001 m.")

@@ -10,13 +10,13 @@ from pathlib import Path
 import numpy as np
 
 from ...common.errors import RoadExtractionError
-from ...io.crs import horizontal_part, parse_crs
 from ...io.text_table import read_number_table
 from .columns import ROLES, listed
-from .drive_checks import METRES_PER_DEGREE
+from .drive_checks import rough_metres
 from .meaning import TOLD_CLOCKS, Meaning, meaning_of
 from .receiver_logs import is_record
 from .table_columns import CHECKED_ROWS, TableColumn, first_row, titled_columns
+from .time_systems import ADJUSTED_OFFSET, SECONDS_PER_DAY, SECONDS_PER_WEEK
 from .trajectory import Trajectory
 from .unnamed_columns import MIN_MAP_COORDINATE, columns_from_numbers
 from .written_values import hold_times
@@ -24,8 +24,6 @@ from .written_values import hold_times
 ASSIGNABLE = (*ROLES, "lon", "lat", *TOLD_CLOCKS, "week", "date")
 LEFT_OUT = ("-", "", "skip")
 FIRST_GPS_SECONDS, LAST_GPS_SECONDS = 0.6e9, 1.7e9     # s since 1980: 1999 to 2033
-FIRST_ADJUSTED = -0.4e9                                # s, the same less a billion
-WEEK, DAY = 604_800.0, 86_400.0
 
 
 def assigned_columns(text: str, count: int, path: str | os.PathLike[str]) -> dict[str, int]:
@@ -158,9 +156,9 @@ def time_system_by_size(time: np.ndarray) -> str:
     first, last = float(np.nanmin(time)), float(np.nanmax(time))
     if FIRST_GPS_SECONDS < first and last < LAST_GPS_SECONDS:
         return "gps"
-    if first < 0 and first > FIRST_ADJUSTED or WEEK < first and last < LAST_GPS_SECONDS - 1e9:
+    if first < 0 and first > FIRST_GPS_SECONDS - ADJUSTED_OFFSET or SECONDS_PER_WEEK < first and last < LAST_GPS_SECONDS - ADJUSTED_OFFSET:
         return "adjusted"
-    if 0 <= first and DAY < last <= WEEK:
+    if 0 <= first and SECONDS_PER_DAY < last <= SECONDS_PER_WEEK:
         return "week"
     return ""
 
@@ -180,10 +178,7 @@ class TrajectoryFacts:
 
 def facts_of(trajectory: Trajectory) -> TrajectoryFacts:
     """Length, duration, speed and heights of a Trajectory, in metres also where it is in degrees."""
-    x, y = trajectory.x, trajectory.y
-    crs = parse_crs(trajectory.crs)
-    if crs is not None and horizontal_part(crs).is_geographic:
-        x, y = x * np.cos(np.radians(np.nanmedian(y))) * METRES_PER_DEGREE, y * METRES_PER_DEGREE
+    x, y = rough_metres(trajectory.x, trajectory.y, trajectory.crs)
     step = np.hypot(np.diff(x), np.diff(y))
     seconds = np.diff(trajectory.time) if trajectory.has_time else np.full(len(step), np.nan)
     moving = np.isfinite(step) & (seconds > 0)

@@ -37,7 +37,7 @@ COLUMN_NAMES = {
 # Single letters count as words of their own, the others also where they are written together.
 ROLE_WORDS = {
     "time": ("time times timestamp timetag seconds second secs sec sow tow itow sod gpst utc clock epoch stamp datetime zeit uhrzeit zeitpunkt "
-             "zeitstempel temps heure tiempo hora tempo tijd время 时间 时刻 時刻 時間",
+             "zeitstempel temps heure tiempo hora tempo tijd время 时间 时刻 時刻 時間 日時 日期时间",
              "gps gnss of week day the in adjusted adj standard offset unix posix local system receiver since start elapsed date log ins imu "
              "sensor measurement relative absolute mean gpszeit von woche tag"),
     "x": ("easting east eastings x e este est ost rechtswert oost 东坐标 東座標",
@@ -80,6 +80,9 @@ _UNITS = {
     ("seconds", 1e-6): "us µs μs usec microseconds", ("seconds", 1e-9): "ns nsec nanoseconds", ("sexagesimal", 1.0): "d m s|dms|d:m:s|ddd mm ss",
 }
 UNIT_NAMES = {word: Unit(*unit) for unit, words in _UNITS.items() for word in (words.split("|") if "|" in words else words.split())}
+# Degrees, minutes and seconds in one number: DDMMSS.ss, DD.MMSSss of pocket calculators, DDMM.mmmm of receivers
+PACKED_ANGLES = ((re.compile(r"d{2,3}m{2}s{2}(\.s+)?"), Unit("packed seconds")), (re.compile(r"d{1,3}\.m{2}s{2,}"), Unit("packed seconds", 1e4)),
+                 (re.compile(r"d{2,3}m{2}(\.m+)?"), Unit("packed minutes")))
 MAX_HEADER_LINES = 15   # above a table, in which the names of its columns are sought
 LONGEST_NAME, MOST_NAMES = 40, 25   # of names of columns in a message
 SEPARATORS = (",", ";", r"\t", r"\|", r"\s{2,}", r"\s+")
@@ -179,7 +182,8 @@ def unit_named(text: str) -> Unit:
     behind = re.fullmatch(r"(\D+?)\s*[*x]\s*(\d[\d.]*(?:e-?\d+)?|10\^?-\d+)", words)
     words = f"{behind[2]} {behind[1]}" if behind else words
     number = re.match(r"(\d[\d.]*(?:e-?\d+)?|10\^?-\d+)\s*\*?\s*(?=\D)", words)
-    unit = UNIT_NAMES.get(words[number.end():] if number else words)
+    packed = next((unit for form, unit in PACKED_ANGLES if form.fullmatch(words)), None)
+    unit = packed or UNIT_NAMES.get(words[number.end():] if number else words)
     if unit is None:
         return Unit()
     factor = 1.0

@@ -4,12 +4,26 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...io.crs import horizontal_part, parse_crs
 from .trajectory import MAX_VEHICLE_SPEED
 
 METRES_PER_DEGREE = 111_000.0   # of latitude, rounded
 HEADING_TOLERANCE = 10.0        # degrees between the heading and the course driven, median
 MIN_COURSE_STEP = 1.0           # m of driving between two courses: the positions of a standing vehicle scatter in all directions
 MAX_COURSE_ROWS = 5000          # courses of a drive
+
+
+def rough_metres(x: np.ndarray, y: np.ndarray, crs: str) -> tuple[np.ndarray, np.ndarray]:
+    """(N,) x and y in metres, of longitude and latitude as far as speeds and courses need it.
+
+    Parameters
+    ----------
+    x, y : (N,) in the CRS
+    crs : WKT or "EPSG:n"; "" where unknown, which is taken to be metric
+    """
+    if crs and horizontal_part(parse_crs(crs)).is_geographic:
+        return x * np.cos(np.radians(np.nanmedian(y))) * METRES_PER_DEGREE, y * METRES_PER_DEGREE
+    return x, y
 
 
 def driven_course(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...common.errors import RoadExtractionError
-from .columns import Unit, candidates_by_role, listed
+from .columns import LONGEST_NAME, Unit, candidates_by_role, listed
 from .table_columns import CHECKED_ROWS, TableColumn, first_row, with_week
 from .time_systems import unix_time_found
 from .written_values import (
@@ -22,6 +22,7 @@ from .written_values import (
     hold_times,
     leap_seconds,
     whole_minutes,
+    whole_seconds,
 )
 
 EARTH_RADIUS = 6.33e6, 6.42e6    # m from the centre of the earth to its surface, with mountains
@@ -31,7 +32,6 @@ LARGEST_SECONDS = 1e10           # times beyond it are counted in smaller units
 LEAST_EVEN = 0.95                # of the steps of a column that may be time are near the usual one
 COUNTS_OTHERS = re.compile(r"id\b|\b(no|nr)\b|num|count|index|station|chainage|dist|length|km|frame|image|photo|row|line|record", re.IGNORECASE)
 NEVER_BEFORE = 1.46e9            # GPS seconds, April 2026: no clock of a computer is trusted that is behind this
-LONG = 40                        # characters of a field in a message
 TOLD_CLOCKS = {"gps": "GPS", "utc": "UTC"}          # words of Columns that say what a clock shows
 
 
@@ -145,6 +145,10 @@ def _angle(columns, k, most):
         texts = column.written()
         if hold_angles(texts):
             values = angles_of(texts)
+    elif column.unit.name == "packed minutes":
+        return whole_minutes(values)
+    elif column.unit.name == "packed seconds":
+        return whole_minutes(whole_seconds(values * column.unit.factor))
     elif column.unit.name == "radians" or (column.unit.name == "degrees" and column.unit.factor != 1.0):
         factor = column.unit.factor if column.unit.name == "degrees" else np.degrees(column.unit.factor)
         # np.degrees gives the last bit that a product would not
@@ -169,8 +173,8 @@ def _time(columns, meaning, label, notes, doubts):
     place = meaning.place
     column = columns[place["time"]]
     clock_parts = [columns[place[role]].values for role in ("hour", "minute") if role in place]
-    told = "hhmmss" in column.title.lower() or ("date" in place and "utc" in column.title.lower() and not column.unit.name)
-    texts = _hours_minutes_seconds(column.values, *clock_parts, told=told) if not column.is_text else None
+    named = "hhmmss" in column.title.lower() or ("date" in place and "utc" in column.title.lower() and not column.unit.name)
+    texts = _hours_minutes_seconds(column.values, *clock_parts, named=named) if not column.is_text else None
     if texts is not None:
         columns = [*columns]
         columns[place["time"]] = column = replace(column, values=np.full(len(texts), np.nan), written=lambda: texts, first=texts[0])
@@ -179,28 +183,39 @@ def _time(columns, meaning, label, notes, doubts):
     if "utc" in column.title.lower():
         doubts.append(f"The column {listed([column.title])} of {label} counts seconds of UTC by its name; no leap seconds were added. If points and "
                       "lines come out shifted along the road, export the trajectory with GPS time.")
+    seconds = _counted_seconds(column, label, doubts)
+    if "week" in place and place["week"] != place["time"]:
+        return with_week(seconds, columns[place["week"]].values)
+    return _from_1970(seconds, column.title, meaning.clock, label, notes)
+
+
+def _counted_seconds(column, label, doubts):
+    """(N,) seconds of a column that counts them, or smaller units."""
     seconds = column.values * column.unit.factor if column.unit.name == "seconds" else column.values
     largest = np.nanmax(np.abs(seconds), initial=0.0)
     if column.unit.name != "seconds" and largest > LARGEST_SECONDS:
         factor = next((10.0**-power for power in (3, 6, 9) if largest * 10.0**-power < LARGEST_SECONDS), 1.0)
         seconds = seconds * factor
-        doubts.append(f"The times of {label} are so large that they are taken to count {factor:.0e} s.")
-    if "week" in place and place["week"] != place["time"]:
-        return with_week(seconds, columns[place["week"]].values)
-    first = seconds[np.isfinite(seconds)][:1]
-    later_than_now = len(first) and first[0] > max(NEVER_BEFORE, clock.time() - UNIX_EPOCH + 86_400.0)
-    if len(first) and (meaning.clock == "UTC" or later_than_now or any(word in column.title.lower() for word in ("unix", "posix"))):
-        if meaning.clock == "UTC" and first[0] > UNIX_EPOCH:
-            return _added_leap_seconds(seconds - UNIX_EPOCH, label, notes)
-        if meaning.clock == "UTC":
-            raise RoadExtractionError(f"Columns says utc of {listed([column.title or 'a column'])}, but {first[0]:.1f} is no date and no count "
-                                      "from 1970, so the leap seconds are not known. Write time in place of utc.")
-        raise RoadExtractionError(unix_time_found(float(first[0]), f"{label} counts"))
+        doubts.append(f"The times of {label} are so large that they are taken as counts of {factor:g} s.")
     return seconds
 
 
-def _hours_minutes_seconds(values, hour=None, minute=None, told=False):
-    """(N,) texts of clock times that stand in three columns, or in one as hhmmss; None for other times. A date or name may have `told` that."""
+def _from_1970(seconds, title, shown, label, notes):
+    """(N,) GPS seconds of what counts from 1970 in UTC, where the clock is said to have `shown` UTC; other seconds as they are."""
+    first = seconds[np.isfinite(seconds)][:1]
+    later_than_now = len(first) and first[0] > max(NEVER_BEFORE, clock.time() - UNIX_EPOCH + 86_400.0)
+    if len(first) and (shown == "UTC" or later_than_now or any(word in title.lower() for word in ("unix", "posix"))):
+        if shown == "UTC" and first[0] > UNIX_EPOCH:
+            return _added_leap_seconds(seconds - UNIX_EPOCH, label, notes)
+        if shown == "UTC":
+            raise RoadExtractionError(f"Columns says utc of {listed([title or 'a column'])}, but {first[0]:.1f} is no date and no count "
+                                      "from 1970, so the leap seconds are not known. Write time in place of utc.")
+        raise RoadExtractionError(unix_time_found(float(first[0]), f"The times of {label} seem to count"))
+    return seconds
+
+
+def _hours_minutes_seconds(values, hour=None, minute=None, named=False):
+    """(N,) texts of clock times that stand in three columns, or in one as hhmmss; None for other times. `named` where a date or name says so."""
     if hour is None or minute is None:
         known = values[np.isfinite(values)]
         step = np.diff(known)
@@ -208,7 +223,7 @@ def _hours_minutes_seconds(values, hour=None, minute=None, told=False):
             return None
         # from 59 s to the next minute such a number goes up by 40 more than the seconds do, and other times never do
         over = np.floor(known[1:] / 100) > np.floor(known[:-1] / 100)
-        if not told and (not over.any() or over.all()) or not (step[over] > 40.0).all() or not (step[~over] < 40.0).all():
+        if not named and (not over.any() or over.all()) or not (step[over] > 40.0).all() or not (step[~over] < 40.0).all():
             return None
         hour, minute, values = values // 10_000, values // 100 % 100, values % 100
     return [f"{h:02.0f}:{m:02.0f}:{s:09.6f}" if h + m + s == h + m + s else "" for h, m, s in zip(hour, minute, values)]
@@ -226,8 +241,9 @@ def _from_clock(columns, meaning, label, notes):
         times = clock_times([f"{day.split('.')[0] if day[:8].isdigit() else day} {text}" for day, text in zip(days, texts)]) or times
     if times is None:
         raise RoadExtractionError(
-            f"The column {listed([column.title])} of {label} should be the time, but holds {column.first[:LONG]!r}, which is neither a number nor a "
-            f"clock time. The first row reads {first_row(columns)}. Rename the column, or say which is which in Columns of Import trajectory.")
+            f"The column {listed([column.title])} of {label} should be the time, but holds {column.first[:LONGEST_NAME]!r}, which is neither a "
+            f"number nor a clock time. The first row reads {first_row(columns)}. Rename the column, or say which is "
+            "which in Columns of Import trajectory.")
     return _gps_seconds(times, column, meaning, "" if date is None else date.title, label, notes)
 
 
@@ -252,8 +268,8 @@ def _gps_seconds(times, column, meaning, date_title, label, notes):
         why = f"it is not said whether the clock shows GPS time, UTC, which differs {apart}, or local time"
         advice = "name the column GPS time or UTC, or write gps or utc in place of time in Columns of Import trajectory, if you know what it shows"
     raise RoadExtractionError(
-        f"The column {listed([column.title or 'without a name'])} of {label} holds clock times such as {column.first[:LONG]!r}. GPS seconds are "
-        f"needed, and {why}. Export the trajectory with GPS time in seconds; or {advice}.")
+        f"The column {listed([column.title or 'without a name'])} of {label} holds clock times such as {column.first[:LONGEST_NAME]!r}. GPS seconds "
+        f"are needed, and {why}. Export the trajectory with GPS time in seconds; or {advice}.")
 
 
 def _added_leap_seconds(utc, label, notes):

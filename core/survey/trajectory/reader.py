@@ -17,7 +17,7 @@ from ...io.text_table import SAMPLE_BYTES, finite_or_nan, read_number_table
 from .accuracy_file import accuracy_across
 from .assigned_columns import meaning_of_table
 from .columns import listed, stated_angle_unit
-from .drive_checks import HEADING_TOLERANCE, METRES_PER_DEGREE, angle_between, driven_course, geographic_unit
+from .drive_checks import HEADING_TOLERANCE, angle_between, driven_course, geographic_unit, rough_metres
 from .meaning import meaning_of, values_by_role
 from .receiver_logs import columns_of_record, is_record
 from .reprojection import lengths_in_metres, reproject_trajectory
@@ -172,9 +172,7 @@ def _from_table(columns, meaning, given, defaults, crs, angle_unit, label, notes
 
 def _in_seconds(trajectory, label):
     """The trajectory with its times in seconds, where the speed shows that they count thousandths or less."""
-    x, y = trajectory.x, trajectory.y
-    if trajectory.crs and horizontal_part(parse_crs(trajectory.crs)).is_geographic:
-        x, y = x * np.cos(np.radians(np.nanmedian(y))) * METRES_PER_DEGREE, y * METRES_PER_DEGREE
+    x, y = rough_metres(trajectory.x, trajectory.y, trajectory.crs)
     step, seconds = np.hypot(np.diff(x), np.diff(y)), np.diff(trajectory.time)
     speed = step[seconds > 0] / seconds[seconds > 0]
     speed = speed[np.isfinite(speed)]
@@ -182,7 +180,7 @@ def _in_seconds(trajectory, label):
     factor = next((10.0**-power for power in (3, 6, 9) if SLOWEST_DRIVE < fastest * 10.0**power < MAX_VEHICLE_SPEED), 1.0)
     if not trajectory.has_time or not 0.0 < fastest < SLOWEST_DRIVE or factor == 1.0:
         return trajectory
-    note = f"The times of {label} are taken to count {factor:.0e} s: in seconds the drive would be {fastest:.2g} m/s fast at most."
+    note = f"The times of {label} are taken as counts of {factor:g} s: in seconds the drive would be at most {fastest:.2g} m/s fast."
     return replace(trajectory, time=trajectory.time * factor, doubts=(*trajectory.doubts, note))
 
 
@@ -234,6 +232,9 @@ def _plane_coordinates(columns, time, crs, label, notes):
             raise RoadExtractionError(
                 f"{label} has the CRS {horizontal_part(known).name}, but its coordinates look like longitude and latitude "
                 f"(about {np.nanmedian(x):.4f}, {np.nanmedian(y):.4f}). Set its CRS to EPSG:4326.")
+        if not geographic and not unit and geographic_unit(y, x, time) == "degrees" and _farthest(y) > 90.0:
+            raise RoadExtractionError(f"{label} has x and y that look like latitude and longitude (about {np.nanmedian(x):.4f}, "
+                                      f"{np.nanmedian(y):.4f}), in this order. Name the columns latitude and longitude.")
         if not geographic and not unit:
             return x, y, "" if known is None else known.to_wkt()
     elif "lon" in columns and "lat" in columns:
@@ -241,8 +242,11 @@ def _plane_coordinates(columns, time, crs, label, notes):
         unit = geographic_unit(x, y, time)
         if not unit and (np.abs(np.stack([x, y])) > 360).any():
             raise RoadExtractionError(
-                f"{label} has longitude and latitude up to {_farthest(x):.0f}, {_farthest(y):.0f}; these are not degrees. "
-                "Name the columns x and y when they are metres.")
+                f"{label} has longitude and latitude up to {_farthest(x):.0f}, {_farthest(y):.0f}; these are not degrees. Write their unit behind "
+                "their names, such as latitude (ddmm.mmmm) or latitude (1e-7 deg), or name the columns x and y where they are metres.")
+        if _farthest(y) > 90.0 >= _farthest(x):
+            raise RoadExtractionError(f"{label} has latitudes up to {_farthest(y):.4f}°, and there are none beyond 90°, while its longitudes reach "
+                                      f"{_farthest(x):.4f}°: the two are exchanged. Name the columns the other way round.")
     else:
         raise RoadExtractionError(f"{label} has no x and y, nor longitude and latitude. Name its columns time, x, y, z.")
     if unit == "radians":
@@ -259,9 +263,7 @@ def _angles(columns, x, y, crs, unit, notes):
     found = {role: columns.get(role) for role in ("roll", "pitch", "heading")}
     if all(values is None for values in found.values()):
         return [None, None, None]
-    if crs and horizontal_part(parse_crs(crs)).is_geographic:
-        x = x * np.cos(np.radians(np.nanmedian(y))) * METRES_PER_DEGREE
-        y = y * METRES_PER_DEGREE
+    x, y = rough_metres(x, y, crs)
     heading = found["heading"]
     good = np.isfinite(x) & np.isfinite(y) & np.isfinite(np.nan if heading is None else heading)
     if good.sum() > 2:

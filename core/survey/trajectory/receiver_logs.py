@@ -11,6 +11,7 @@ from xml.parsers.expat import ExpatError, ParserCreate
 import numpy as np
 
 from ...common.errors import RoadExtractionError
+from ...io.text_table import as_number
 from .columns import Unit
 from .table_columns import TableColumn, with_week
 from .written_values import hemisphere_signs, whole_minutes
@@ -86,11 +87,17 @@ def _day_of(fields):
 
 def _columns_of_log(rows, fields):
     """TableColumns with the names that the table of names knows."""
-    clocked = "clock" in fields
-    offset = 1 if clocked else 2
+    offset = 1 if "clock" in fields else 2   # what stands in a row before the fields of its sentence
     text = {what: [row[k + offset] if len(row) > k + offset else "" for row in rows] for what, k in fields.items()}
-    number = {what: np.array([_number(value) for value in values]) for what, values in text.items()}
-    bad = np.array([value in NO_SOLUTION for value in text.get("status", [""] * len(rows))]) | (number.get("quality", np.ones(len(rows))) == 0)
+    number = {what: np.array([as_number(value) for value in values]) for what, values in text.items()}
+    time = _clock_column([row[0] for row in rows], text["clock"]) if "clock" in fields else _gps_column(rows, number)
+    return [time, *_place_columns(text, number)]
+
+
+def _place_columns(text, number):
+    """Latitude, longitude, height and angles; without a place where the receiver had no solution."""
+    rows = len(text["lat"])
+    bad = np.array([value in NO_SOLUTION for value in text.get("status", [""] * rows)]) | (number.get("quality", np.ones(rows)) == 0)
     for axis in ("lat", "lon"):
         if f"{axis}_side" in text:
             signs = hemisphere_signs(text[f"{axis}_side"])
@@ -98,28 +105,26 @@ def _columns_of_log(rows, fields):
         number[axis] = np.where(bad, np.nan, number[axis])
     if "geoid" in number and np.isfinite(number["geoid"]).any():
         number["z"] = number["z"] + number["geoid"]
-    columns = [TableColumn(title, number[what], Unit("degrees" if what in ("lat", "lon", "roll", "pitch", "heading") else "metres"),
-                           lambda what=what: text[what], text[what][0])
-               for what, title in (("lat", "latitude"), ("lon", "longitude"), ("z", "ellipsoidal height" if "geoid" in number else "height"),
-                                   ("roll", "roll"), ("pitch", "pitch"), ("heading", "heading")) if what in number]
-    if clocked:
-        # the sentences before the first date are of the same day, or of no known one
-        days = [row[0] for row in rows]
-        first = next((day for day in days if day), "")
-        times = [f"{day or first} {clock[:2]}:{clock[2:4]}:{clock[4:]}".strip() if re.match(r"\d{6}", clock) else ""
-                 for day, clock in zip(days, text["clock"])]
-        return [TableColumn("UTC", np.full(len(rows), np.nan), Unit(), lambda: times, next((time for time in times if time), "")), *columns]
-    week, seconds = (np.array([_number(row[k]) for row in rows]) for k in (0, 1))
+    return [TableColumn(title, number[what], Unit("degrees" if what in ("lat", "lon", "roll", "pitch", "heading") else "metres"),
+                        lambda what=what: text[what], text[what][0])
+            for what, title in (("lat", "latitude"), ("lon", "longitude"), ("z", "ellipsoidal height" if "geoid" in number else "height"),
+                                ("roll", "roll"), ("pitch", "pitch"), ("heading", "heading")) if what in number]
+
+
+def _clock_column(days, clocks):
+    """The time of sentences with hhmmss.ss of UTC; those before the first date are of the same day, or of no known one."""
+    first = next((day for day in days if day), "")
+    times = [f"{day or first} {clock[:2]}:{clock[2:4]}:{clock[4:]}".strip() if re.match(r"\d{6}", clock) else "" for day, clock in zip(days, clocks)]
+    return TableColumn("UTC", np.full(len(times), np.nan), Unit(), lambda: times, next((time for time in times if time), ""))
+
+
+def _gps_column(rows, number):
+    """The time of logs with the week and its seconds among their fields, otherwise in their headers."""
     if "seconds" in number:
         week, seconds = number["week"], number["seconds"]
-    return [TableColumn("GPS time", with_week(seconds, week), Unit("seconds"), first=str(seconds[0])), *columns]
-
-
-def _number(value):
-    try:
-        return float(value)
-    except ValueError:
-        return np.nan
+    else:
+        week, seconds = (np.array([as_number(row[k]) for row in rows]) for k in (0, 1))
+    return TableColumn("GPS time", with_week(seconds, week), Unit("seconds"), first=str(seconds[0]))
 
 
 def read_track(path: Path) -> list[TableColumn]:
@@ -154,7 +159,7 @@ def read_track(path: Path) -> list[TableColumn]:
 
 def _column_of_track(rows, k, title, unit):
     texts = [row[k] for row in rows]
-    return TableColumn(title, np.array([_number(text) for text in texts]), Unit(unit), lambda: texts, next((text for text in texts if text), ""))
+    return TableColumn(title, np.array([as_number(text) for text in texts]), Unit(unit), lambda: texts, next((text for text in texts if text), ""))
 
 
 class _TrackReader:

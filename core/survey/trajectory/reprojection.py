@@ -9,10 +9,9 @@ import numpy as np
 
 from ...common.errors import RoadExtractionError
 from ...io.crs import check_metric, horizontal_part, parse_crs, same_crs
-from ...io.units import in_metres, plane_wkt
+from ...io.units import FOOT, in_metres, plane_wkt
 from .trajectory import Trajectory
 
-FOOT = 0.3048         # m, of heights whose foot is not said; both differ by 2 mm a kilometre
 HEADING_STEP = 10.0  # m ahead of a position, reprojected with it for the heading
 
 
@@ -61,7 +60,8 @@ def reproject_trajectory(trajectory: Trajectory, target_wkt: str) -> Trajectory:
             raise ProjError("some positions lie where the projection is not defined")
     except ProjError as problem:
         raise RoadExtractionError(
-            f"The trajectory is in {source.name} and cannot be brought to {target.name} ({problem}). Check the CRS of the trajectory.") from problem
+            f"The trajectory is in {source.name} and cannot be brought to {target.name} ({problem}). Check the CRS of the trajectory"
+            f"{', and that its longitude and latitude are not exchanged' if source.is_geographic else ''}.") from problem
     x, y = np.where(known, x, np.nan), np.where(known, y, np.nan)
     heading = _reproject_heading(trajectory, source, transformer, x, y)
     note = f"The trajectory was reprojected from {source.name} to {target.name}."
@@ -116,7 +116,7 @@ def lengths_in_metres(crs: str, places: tuple[np.ndarray, np.ndarray, np.ndarray
             if role != "z":
                 raise RoadExtractionError(f"{label} gives positions in feet, and its CRS {horizontal_part(parse_crs(crs)).name} is not in feet. "
                                           "Give the CRS in feet that they are in: Import trajectory takes it.")
-            unit = FOOT
+            unit = FOOT   # which one is not said; they differ by 2 mm in a kilometre of height
         factors.append(1.0 if known.get(role) == "metres" else unit)
     return wkt, tuple(values if factor == 1.0 else values * factor for values, factor in zip(places, factors)), ()
 

@@ -86,7 +86,7 @@ def smoothed_track(trajectory: Trajectory) -> TrackShape:
     first = trajectory.time[noisy[0][0].start]
     return TrackShape(
         replace(trajectory, **columns), left,
-        (f"The positions of the trajectory scatter by {100 * worst:.0f} cm from row to row, as those of a receiver that nobody filtered "
+        (f"The positions of the trajectory scatter by {100 * worst:.0f} cm from row to row, as those of an unfiltered receiver "
         f"({share:.0f} % of the rows, from {first:.1f} s on); no vehicle shakes so. They were smoothed over {SMOOTH_TIME:g} s, and the way driven "
         f"is known to about {100 * left:.1f} cm. Give the trajectory that was adjusted together with the inertial unit.",))
 
@@ -126,7 +126,7 @@ def curved_track(trajectory: Trajectory) -> TrackShape:
         joined, sigma,
         (f"The vertices of the trajectory lie up to {worst[1]:.0f} m apart in bends, which straight lines between them miss by up to "
          f"{worst[0]:.2f} m (near {place}). {done}; the way driven is known to about {max(100 * sigma, 1):.0f} cm. Export the trajectory with ten "
-         "and more positions a second.",))
+         "or more positions a second.",))
 
 
 def _pieces(trajectory):

@@ -7,11 +7,11 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ...io.text_table import NumberTable, finite_or_nan
+from ...io.text_table import NumberTable, as_number, finite_or_nan
 from .columns import MAX_HEADER_LINES, Unit, candidates_by_role, listed, split_header, unit_named, unit_of_name, units_above
+from .time_systems import SECONDS_PER_WEEK
 from .written_values import degrees_of, hold_times
 
-SECONDS_PER_GPS_WEEK = 604_800.0
 FIRST_WHOLE_WEEK, LAST_WEEK = 1024.0, 4096.0  # weeks since 1980; smaller ones are those of old receivers, which begin anew after 1024
 LEAST_NAMED = 2         # roles in the line of names
 CHECKED_ROWS = 200      # by which it is told whether a column takes several fields
@@ -78,18 +78,9 @@ def columns_of_rows(titles: Sequence[str], rows: Sequence[Sequence[object]]) -> 
     for k, title in enumerate(titles):
         given = [row[k] for row in rows]
         texts = ["" if value is None else str(value) for value in given]
-        numbers = finite_or_nan(np.array([_number(value) for value in given], float))
+        numbers = finite_or_nan(np.array([as_number(value) for value in given], float))
         found.append(TableColumn(title, numbers, unit_of_name(title), texts.copy, next((text for text in texts if text), "")))
     return found
-
-
-def _number(value):
-    if isinstance(value, str):
-        value = value.strip().replace(",", ".") if value.count(",") == 1 and "." not in value else value
-    try:
-        return float(value)
-    except (TypeError, ValueError):
-        return np.nan
 
 
 def first_row(columns: Sequence[TableColumn]) -> str:
@@ -140,7 +131,7 @@ def _possible_spans(role, fields):
         yield 1, ""   # the clock behind it has a name of its own, unless the names are too few
     if together > 1:
         yield together, "time"
-    elif role == "time" and len(fields) > 1 and _week(fields[0].values) and _within(fields[1].values, 0.0, SECONDS_PER_GPS_WEEK + 1.0):
+    elif role == "time" and len(fields) > 1 and _week(fields[0].values) and _within(fields[1].values, 0.0, SECONDS_PER_WEEK + 1.0):
         yield 2, "week"
     elif role in ("lon", "lat") and len(fields) > 2:
         degrees, minutes, seconds = (column.values[:CHECKED_ROWS] for column in fields[:3])
@@ -178,9 +169,9 @@ def _week(values):
 
 def with_week(seconds: np.ndarray, week: np.ndarray) -> np.ndarray:
     """(N,) GPS seconds since 1980 of seconds of the week; the same seconds where weeks are not counted since 1980."""
-    if not _week(week) or not _within(week, FIRST_WHOLE_WEEK, LAST_WEEK) or not _within(seconds, 0.0, SECONDS_PER_GPS_WEEK + 1.0):
+    if not _week(week) or not _within(week, FIRST_WHOLE_WEEK, LAST_WEEK) or not _within(seconds, 0.0, SECONDS_PER_WEEK + 1.0):
         return seconds
-    return seconds + week * SECONDS_PER_GPS_WEEK
+    return seconds + week * SECONDS_PER_WEEK
 
 
 def _together(names, spans, units, fields):

@@ -134,7 +134,7 @@ def _offsets(first, last, cloud, system):
 
 
 def unix_time_found(seconds: float, what: str) -> str:
-    """The sentence on a time that counts from 1970; `what` is who counts."""
+    """The sentence on a time that counts from 1970; `what` is its beginning, on who counts."""
     utc = seconds - UNIX_EPOCH
     leap = float(leap_seconds(np.array([utc]))[0])
     return (f"{what} Unix time: {seconds:.0f} s since 1970 are GPS {utc + leap:.0f} s where they count UTC, which differs from GPS time by "
@@ -146,7 +146,7 @@ def _unix_hint(first, last, cloud_first, cloud_last):
     """A sentence where the trajectory would cover the scan if it counted from 1970; otherwise ""."""
     for shift in (0.0, -ADJUSTED_OFFSET):
         if min(last - UNIX_EPOCH + shift, cloud_last) - max(first - UNIX_EPOCH + shift, cloud_first) > -LEAP_SECONDS[5]:
-            return unix_time_found(first, "It seems to count")
+            return unix_time_found(first, "Its times seem to count")
     return ""
 
 

@@ -12,6 +12,7 @@ from .time_systems import unwrap_time
 
 MAX_VEHICLE_SPEED = 70.0    # m/s of a survey vehicle
 MIN_POSITION_JUMP = 2.0     # m: shorter steps are not outliers, whatever their speed
+LONGEST_STEP = 100_000.0    # m between positions without time: far beyond what is left out of a drive, and within a zone of a projection
 MOST_OUTLIERS = 10, 0.02    # rows, and of all rows: more are no outliers but another drive at the same time
 MIN_ORIGIN_DISTANCE = 1000.0  # m: a drive whose positions are all farther from the origin of the coordinates does not pass through it
 
@@ -118,6 +119,10 @@ def clean_trajectory(trajectory: Trajectory) -> Trajectory:
         notes.append(f"{np.count_nonzero(jumps)} trajectory rows lay farther from the drive than a vehicle can get, and were dropped.")
         trajectory = trajectory.rows(~jumps)
     refuse_standstill(trajectory)
+    step = np.hypot(np.diff(trajectory.x), np.diff(trajectory.y))
+    if not trajectory.has_time and step.max() > LONGEST_STEP:
+        raise RoadExtractionError(f"The trajectory has no time and leaps {step.max() / 1000:,.0f} km from one position to the next. Remove the "
+                                  "positions that do not belong to the drive, or give each drive by itself.")
     return replace(trajectory, notes=tuple(notes))
 
 
@@ -143,7 +148,7 @@ def _refuse_two_drives(trajectory, rows):
     raise RoadExtractionError(
         f"The trajectory is at two places at once: row {rows[first] + 1} of its positions at {trajectory.time[first]:.3f} s and row "
         f"{rows[second] + 1} at {trajectory.time[second]:.3f} s lie {apart[first]:.0f} m apart, and so do {at_once.sum():,} of {len(rows):,} rows. "
-        "Two receivers or two days seem to have been put together: give each drive its own trajectory, or times that go on.")
+        "Two receivers or two days seem to have been put together: give each drive its own trajectory, or times that continue.")
 
 
 def _zero_rows(trajectory, good):
@@ -154,9 +159,14 @@ def _zero_rows(trajectory, good):
 
 
 def _outlier_rows(trajectory):
-    """(N,) bool: single rows that a vehicle could neither reach from the row before nor leave for the row after."""
+    """(N,) bool: single rows that a vehicle could neither reach from the row before nor leave for the row after; without time, far ones."""
     outlier = np.zeros(len(trajectory), bool)
-    if len(trajectory) < 3 or not trajectory.has_time:
+    if len(trajectory) < 3:
+        return outlier
+    if not trajectory.has_time:
+        far = np.hypot(np.diff(trajectory.x), np.diff(trajectory.y)) > LONGEST_STEP
+        outlier[1:-1] = far[:-1] & far[1:]
+        outlier[[0, -1]] = far[0] and not far[1], far[-1] and not far[-2]
         return outlier
     seconds, dx, dy = (np.diff(a) for a in (trajectory.time, trajectory.x, trajectory.y))
     step = np.hypot(dx, dy)

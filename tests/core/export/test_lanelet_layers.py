@@ -60,7 +60,14 @@ def test_ids_of_64_bits_with_a_sign_are_read(tmp_path, first):
     assert left[0, 1] - right[0, 1] == pytest.approx(3.5, abs=0.1)
 
 
-@pytest.mark.parametrize("id", ["9223372036854775808", "-9223372036854775808", "9" * 5000, "1.5", ""])
+@pytest.mark.parametrize("first", [2**63 - 3, 2**63, 2**64 - 7])
+def test_ids_of_64_bits_without_a_sign_are_read(tmp_path, first):
+    text = LANELET.format(ids=range(first, first + 7), places=[degrees(8.4, 49.0, *place) for place in CORNERS])
+    lanes = layers_of_lanelets(read(tmp_path, text)).lanes
+    assert list(lanes.lane_id) == [str(first + 6 - 2**64)] and len(lanes.borders(0)[0]) > 1
+
+
+@pytest.mark.parametrize("id", ["18446744073709551616", "-9223372036854775808", "9" * 5000, "1.5", ""])
 def test_what_is_no_id_is_named_with_its_line(tmp_path, id):
     text = LANELET.format(ids=[id, *range(2, 8)], places=[degrees(8.4, 49.0, *place) for place in CORNERS])
     with pytest.raises(RoadExtractionError, match="Line 2: id of <node>"):

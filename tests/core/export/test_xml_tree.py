@@ -59,6 +59,13 @@ def test_an_encoding_that_is_none_or_another_is_named(tmp_path, encoding, said):
         read_xml(str(path), "OpenDRIVE", "an OpenDRIVE file")
 
 
+def test_a_file_in_an_encoding_that_it_does_not_name_is_told_so(tmp_path):
+    path = tmp_path / "map.xodr"
+    path.write_bytes(STREET.format("Straße").encode("latin-1"))
+    with pytest.raises(RoadExtractionError, match="is not written in UTF-8, though it names no other encoding"):
+        read_xml(str(path), "OpenDRIVE", "an OpenDRIVE file")
+
+
 def test_entities_are_refused_in_every_encoding(tmp_path):
     path = tmp_path / "map.xodr"
     path.write_bytes(('<?xml version="1.0" encoding="utf-32"?>' + HOSTILE["a billion laughs"][0]).encode("utf-32"))

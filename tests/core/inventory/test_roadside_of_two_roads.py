@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 from drives import drive, joined, straight
 from lanewright.core.inventory.roadside.chains import Chain
-from lanewright.core.inventory.roadside.find import Roadside, SideEdges, SideLine
 from lanewright.core.inventory.roadside.poles import Pole
 from lanewright.core.inventory.roadside.settings import RoadsideSettings
-from lanewright.core.inventory.roadside.shared import told_once
+from lanewright.core.inventory.roadside.shared import Roadside, SideEdges, SideLine, told_once
 from lanewright.core.inventory.roadside.uprights import LOW_BINS, UPRIGHT_SLICE, Uprights
 from lanewright.core.survey.frame.build import build_frame
 

@@ -182,6 +182,15 @@ def test_of_several_images_only_the_rows_of_the_image_in_hand_are_used(above, tm
         read_control_points(path, image())
 
 
+def test_images_whose_names_differ_in_capitals_alone_are_several(tmp_path):
+    other = [line.split() for line in listed("", "ENzpli", "FLOWN.TIF").splitlines()]
+    path = tmp_path / "gcp_list.txt"
+    path.write_text("EPSG:32650\n" + "".join(" ".join([*row[:3], str(5000 - float(row[3])), *row[4:]]) + "\n" for row in other)
+                    + listed("", "ENzpli"))
+    points = read_control_points(path, image())
+    np.testing.assert_allclose([points.pixel, points.line, points.easting], [PIXEL, LINE, EASTING])
+
+
 def test_words_above_a_list_that_are_no_crs_are_shown(tmp_path):
     assert "'WGS84 UTM 77N'" in refusal(listed("WGS84 UTM 77N\n", "ENzpli"), tmp_path)
 

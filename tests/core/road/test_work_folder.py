@@ -9,8 +9,8 @@ from lanewright.core.common.errors import Cancelled, RoadExtractionError
 from lanewright.core.common.progress import Progress
 from lanewright.core.execution import work_folder
 from lanewright.core.execution.choice import ExecutionSettings
+from lanewright.core.road.common.curb_limits import CurbSettings
 from lanewright.core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
-from lanewright.core.road.profiles.detect import CurbSettings
 from lanewright.core.survey import open_survey as opening
 from lanewright.core.survey.open_survey import SurveySettings, open_survey
 

@@ -304,7 +304,7 @@ def test_a_street_all_in_feet_that_no_crs_tells_of_is_warned_of(street, tmp_path
                      z=trajectory.z / unit)
     heard = Heard()
     open_survey([write_cloud(tmp_path / "feet.laz", *feet, crs=crs)], driven, progress=heard)
-    assert any(re.search("as if cloud and trajectory were in feet.*set CRS", text) for text in heard.warnings) == warned
+    assert any(re.search("as if cloud and trajectory were in feet.*Set the parameter CRS", text) for text in heard.warnings) == warned
     assert not any("The times of the points" in text for text in heard.warnings)
 
 

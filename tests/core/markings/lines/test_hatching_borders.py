@@ -2,9 +2,8 @@
 
 import numpy as np
 import pytest
-from lanewright.core.markings.lines.linking import LinkedLine
 from lanewright.core.markings.lines.selection import hatching_borders
-from lanewright.core.markings.lines.strands import Strand
+from lanewright.core.markings.lines.strands import LinkedLine, Strand
 
 BARS = np.array([(s, s + 0.4, 0.5, 1.4) for s in np.arange(24.5, 40.0, 1.5)])
 

@@ -9,9 +9,9 @@ from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.progress import Progress
 from lanewright.core.intensity.image import make_intensity_image, write_intensity_image
 from lanewright.core.io.geotiff import IntensityImage
-from lanewright.core.markings.paint import extract as extraction
 from lanewright.core.markings.paint import windows
-from lanewright.core.markings.paint.extract import MarkingSettings, extract_markings
+from lanewright.core.markings.paint.extract import extract_markings
+from lanewright.core.markings.paint.settings import MARKING_METHODS, MarkingSettings
 from lanewright.core.survey.frame.build import build_frame
 from lanewright.core.survey.store.records import ROAD_POINT, to_units
 from lanewright.core.survey.store.road_points import RoadPoints
@@ -312,7 +312,7 @@ def test_a_noisy_scanner_that_measured_forty_metres_of_a_quiet_street_is_known_t
     assert BAR(paint.s, paint.d).mean() > 0.75
 
 
-@pytest.mark.parametrize("method", extraction.MARKING_METHODS)
+@pytest.mark.parametrize("method", MARKING_METHODS)
 def test_points_without_a_corrected_intensity_among_corrected_ones_hide_no_paint(tmp_path, method):
     line = strip(10, 70, 1.0, 1.15)
     records = street(FRAME, [line])

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from lanewright.core.markings.paint.extract import MarkingSettings
 from lanewright.core.markings.paint.morphology import morphology
+from lanewright.core.markings.paint.settings import MarkingSettings
 
 SPOT = np.array([(row, column) for row in range(3) for column in range(3)])   # cells that one point brightens
 

@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from lanewright.core.markings.paint.extract import MarkingSettings
+from lanewright.core.markings.paint.settings import MarkingSettings
 from lanewright.core.markings.paint.threshold_bins import AsphaltBin, OtsuSplit
 from lanewright.core.markings.paint.windows import WindowExtractor, bins_about
 

@@ -5,13 +5,14 @@ from contextlib import closing
 import numpy as np
 import pytest
 import shapely
+from lanewright.core.road.common.curb_limits import CurbSettings
 from lanewright.core.road.common.curb_points import CurbPoints, curb_points_at
 from lanewright.core.road.common.decimation import PointDecimation
 from lanewright.core.road.common.occlusion import OCCLUSION_CELL, OcclusionGrid
 from lanewright.core.road.common.sides import expected_height
 from lanewright.core.road.curb_returns.detect import with_curb_returns
 from lanewright.core.road.curb_returns.main_islands import island_stretches
-from lanewright.core.road.profiles.detect import CurbSettings, detect_curbs
+from lanewright.core.road.profiles.detect import detect_curbs
 from street_plans import LENGTH, scan, sidewalks, survey_along
 
 ISLAND, CURB = (10.0, 30.0, 4.0, 6.0), 9.0     # m: an island from 10 to 30 along and 4 to 6 across, the curb of the road

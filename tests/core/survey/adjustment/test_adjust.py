@@ -153,14 +153,6 @@ def test_cobbles_fit_again_one_stone_farther_and_move_nothing():
     assert np.isnan(offsets.left).all()
 
 
-def test_drives_half_a_metre_apart_are_warned_of_and_not_moved():
-    survey, heard = twice(left=0.36), Heard()
-    store = survey.store
-    adjust_passes(survey, heard)
-    assert survey.store is store
-    assert "more than 30 cm" in heard.warned[0] and "0 to 80 m" in heard.warned[0]
-
-
 @pytest.mark.slow
 def test_the_fit_does_not_depend_on_where_sections_are_cut():
     one, other = twice(left=0.05, up=0.02), twice(left=0.05, up=0.02, section_length=7.0)

@@ -82,9 +82,16 @@ def test_other_intensities_are_read_as_they_are_without_a_word(tmp_path, values)
     np.testing.assert_array_equal(found, stored)
 
 
-@pytest.mark.parametrize("name, values", [("Reflectance", DECIBELS.astype("f4")), ("Amplitude", (DECIBELS + 30).astype("f4")),
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("per_decibel", [1, 10, 100])
+def test_values_that_no_file_has_overflow_nothing(tmp_path, per_decibel):
+    read(cloud(tmp_path / "cloud.laz", wrapped(per_decibel * DECIBELS)))
+
+
+@pytest.mark.parametrize("name, values", [("Reflectance", DECIBELS.astype("f4")), ("reflectivity", DECIBELS.astype("f4")),
+                                          ("Amplitude", (DECIBELS + 30).astype("f4")),
                                           ("reflectance [0.01 dB]", np.rint(100 * DECIBELS).astype("i2")), ("Reflectance", REFLECTANCE.astype("f8"))],
-                         ids=["dB", "positive dB", "hundredths of dB", "linear"])
+                         ids=["dB", "reflectivity", "positive dB", "hundredths of dB", "linear"])
 def test_a_field_of_the_usual_name_stands_in_for_an_intensity_that_is_empty(tmp_path, name, values):
     found, note = read(cloud(tmp_path / "cloud.laz", 0, **{name: values}))
     check_linear(found)
@@ -104,7 +111,7 @@ def test_coordinates_through_numbers_of_32_bits_are_told_with_their_step(tmp_pat
     x = 500_000 + RNG.uniform(0, 200, COUNT)
     assert coarse(cloud(tmp_path / "fine.laz", x=x)) == ""
     told = coarse(cloud(tmp_path / "coarse.laz", x=x.astype(np.float32).astype(float)))
-    assert "0.031 m in x" in told and "32 bits" in told and "coarse.laz" in told
+    assert "0.031 m in x" in told and "32-bit numbers" in told and "coarse.laz" in told
 
 
 @pytest.mark.parametrize("scale, says", [(0.1, "0.1 m in x, 0.1 m in y, 0.1 m in z"), (0.01, "")])

@@ -5,7 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from drives import ahead, bend, chain, drive
+from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.survey.trajectory.shape import shaped_trajectory
+from lanewright.core.survey.trajectory.trajectory import Trajectory, clean_trajectory
 
 BENT = chain(ahead(80), bend(250, 60), ahead(60))
 
@@ -55,3 +57,17 @@ def test_a_gap_between_two_drives_is_no_bend():
 def test_a_jump_of_a_receiver_is_no_bend():
     driven = drive(chain(ahead(100)))
     assert not shaped_trajectory(replace(driven, y=driven.y + np.where(driven.time > driven.time[200], 0.5, 0.0))).said
+
+
+@pytest.mark.parametrize("stray", [0, 5, 9])
+def test_a_vertex_of_a_drawn_drive_on_another_continent_is_left_out(stray):
+    x = 500_000.0 + 10.0 * np.arange(10)
+    x[stray] += 9e6
+    cleaned = clean_trajectory(Trajectory(np.arange(10.0), x, np.full(10, 5.4e6), np.full(10, 20.0), has_time=False))
+    assert len(cleaned) == 9 and np.ptp(cleaned.x) <= 90.0 and "farther from the drive" in cleaned.notes[-1]
+
+
+def test_a_drawn_drive_on_two_continents_is_refused():
+    x = np.r_[500_000.0 + np.arange(10.0), 9_500_000.0 + np.arange(10.0)]
+    with pytest.raises(RoadExtractionError, match="leaps 9,000 km"):
+        clean_trajectory(Trajectory(np.arange(20.0), x, np.full(20, 5.4e6), np.full(20, 20.0), has_time=False))

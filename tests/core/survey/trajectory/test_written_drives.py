@@ -73,6 +73,8 @@ TIMES = {
             clock("%m/%d/%Y", UTC_CLOCKS), clock("%H:%M:%S.%f", UTC_CLOCKS), LAT_DMS, LON_DMS, GEO[2], [1] * ROWS, mark="  "), GPS),
     "seconds of the day beside a date": ("Date,Time[s],x,y,z\n" + rows(clock("%Y-%m-%d"), (OF_DAY, S3), *MAP), OF_DAY),
     "both clock and seconds": ("UTC Time,SOW,x,y,z\n" + rows(clock("%H:%M:%S.%f", UTC_CLOCKS), (OF_WEEK, S3), *MAP), OF_WEEK),
+    "UTC with the signs of China, in the encoding of China": (("UTC时间,东坐标,北坐标,高程\n" + rows(
+        clock("%Y年%m月%d日 %H时%M分%S.%f秒", UTC_CLOCKS), *MAP)).encode("gb18030"), GPS),
     "RTKLIB": ("% program : x\n%  GPST                  latitude(deg) longitude(deg)  height(m)   Q  ns\n"
                + rows(clock("%Y/%m/%d %H:%M:%S.%f"), *GEO, [1] * ROWS, [12] * ROWS, mark="   "), GPS),
     "RTKLIB, UTC": ("%  UTC                   latitude(deg) longitude(deg)  height(m)   Q  ns\n"
@@ -152,6 +154,16 @@ PLACES = {
         [f"{v:.3f}".replace(".", ",") for v in GPS], grouped(X, ".", ","), grouped(Y, ".", ","), [COMMA(f"{v:.4f}") for v in Z],
         [COMMA(f"{v:.3f}") for v in ROLL], [COMMA(f"{v:.3f}") for v in PITCH], mark=";"),
     "groups of three, comma": "time\tE\tN\tH\n" + rows((GPS, S3), grouped(X, ","), grouped(Y, ","), MAP[2], mark="\t"),
+    "groups of three, blank, between tabs": "Temps\tEst\tNord\tAltitude\n" + COMMA(rows(
+        (GPS, S3), grouped(X, " "), grouped(Y, " "), MAP[2], mark="\t")),
+    "commas between columns filled up with blanks": "    TIME,    EASTING,   NORTHING,  HEIGHT\n   (sec),        (m),        (m),     (m)\n\n" + rows(
+        (GPS, "  {:14.5f}"), *((values, "{:13.4f}") for values in (X, Y, Z))),
+    "degrees, minutes and seconds in one number": "time,Latitude(ddmmss.ssss),Longitude(dddmmss.ssss),Height\n" + rows(
+        (GPS, S3), dms(LAT, "{0}{1:02d}{2:09.6f}"), dms(LON, "{0}{1:02d}{2:09.6f}"), GEO[2]),
+    "degrees as pocket calculators show them": "time,lat [DD.MMSSSS],lon [DDD.MMSSSS],h\n" + rows(
+        (GPS, S3), *([f"{whole}.{part[:2]}{part[2:].replace('.', '')}" for whole, part in (text.split("|") for text in dms(
+            angle, "{0}|{1:02d}{2:09.6f}"))] for angle in (LAT, LON)), GEO[2]),
+    "degrees and minutes by name": "time,lat [ddmm.mmmm],lon [dddmm.mmmm],h\n" + rows((GPS, S3), nmea_angle(LAT, 2), nmea_angle(LON, 3), GEO[2]),
     "exponents": "time x y z\n" + rows((GPS, S3), *((values, "{:.12E}") for values in (X, Y, Z)), mark=" ").replace("E", "D"),
     "units behind numbers": "time;x;y;z\n" + rows((GPS, "{:.3f} s"), (X, "{:.4f} m"), (Y, "{:.4f} m"), (Z, "{:.4f} m"), mark=";"),
     "signs before numbers": "time,x,y,z\n" + rows((GPS, "{:+.3f}"), *((values, "{:+.4f}") for values in (X, Y, Z))),
@@ -162,6 +174,9 @@ PLACES = {
     "remarks": "# made on Monday\n% by hand\n; with care\ntime,x,y,z\n" + rows((GPS, S3), *MAP) + "# end of file\n40 rows\n",
     "mark of UTF-8": "\ufefftime,x,y,z\n" + rows((GPS, S3), *MAP),
     "UTF-16": ("time,x,y,z\n" + rows((GPS, S3), *MAP)).encode("utf-16"),
+    "GB 18030": ("GPS时间,东坐标,北坐标,高程\n" + rows((GPS, S3), *MAP)).encode("gb18030"),
+    "Shift-JIS": ("GPS時刻,東座標,北座標,標高\n" + rows((GPS, S3), *MAP)).encode("cp932"),
+    "Windows-1251": ("Время;X;Y;Высота\n" + rows((GPS, S3), *MAP, mark=";")).encode("cp1251"),
     "Latin-1": ("Zeit;Ost;Nord;Höhe\n" + rows((GPS, S3), *MAP, mark=";")).encode("latin-1"),
 }
 
@@ -169,6 +184,13 @@ PLACES = {
 @pytest.mark.parametrize("written", PLACES)
 def test_places_are_read_however_they_are_written(tmp_path, written):
     check(read(tmp_path, PLACES[written]), GPS)
+
+
+@pytest.mark.parametrize("names, says", [("time,Latitude,Longitude,Height", "none beyond 90°.*are exchanged"),
+                                         ("time,y,x,z", "look like latitude and longitude.*in this order")])
+def test_longitudes_and_latitudes_that_are_exchanged_are_named(tmp_path, names, says):
+    with pytest.raises(RoadExtractionError, match=says):
+        read(tmp_path, names + "\n" + rows((GPS, S3), GEO[1], GEO[0], GEO[2]))
 
 
 def test_rows_of_dashes_and_stars_cost_themselves_alone(tmp_path):
