@@ -58,15 +58,19 @@ def _misses(places, segments, farthest):
     """(across, in height) of (N, 3) places against (M, 6) segments from end to end, where one lies nearer than `farthest` metres."""
     lines = shapely.linestrings(segments.reshape(-1, 2, 3)[:, :, :2])
     points, tree = shapely.points(places[:, :2]), shapely.STRtree(lines)
-    _, across = tree.query_nearest(points, max_distance=None if np.isinf(farthest) else farthest, return_distance=True, all_matches=False)
     which, near = tree.query(points, predicate="dwithin", distance=SAME_BORDER)
     first, last = segments[near, :3], segments[near, 3:]
     run = (last - first)[:, :2]
     share = np.clip(((places[which, :2] - first[:, :2]) * run).sum(1) / np.maximum((run**2).sum(1), 1e-12), 0.0, 1.0)
+    across = np.full(len(places), np.inf)
+    np.minimum.at(across, which, np.hypot(*(places[which] - first - share[:, None] * (last - first)).T[:2]))
+    far = np.flatnonzero(np.isinf(across))   # the nearest of all segments is looked for only where none lies near
+    found, away = tree.query_nearest(points[far], max_distance=None if np.isinf(farthest) else farthest, return_distance=True, all_matches=False)
+    across[far[found[0]]] = away
     # where borders of several roads lie on each other, the one at the place's own height is its own
     rise = np.full(len(places), np.inf)
     np.minimum.at(rise, which, np.abs(places[which, 2] - first[:, 2] - share * (last - first)[:, 2]))
-    return _summary(across), _summary(rise[np.isfinite(rise)])
+    return _summary(across[np.isfinite(across)]), _summary(rise[np.isfinite(rise)])
 
 
 def _summary(values):

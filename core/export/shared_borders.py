@@ -6,11 +6,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import dijkstra
+from scipy.sparse.csgraph import connected_components, dijkstra
 from scipy.spatial import cKDTree
 
 from ..driving.lanes_layer import Lanes
-from .sources import RoadMapSource, is_stated
+from .sources import LEAST_CURB, RoadMapSource, is_stated
 
 WIDEST_DOUBLE = 0.5       # m between the stripes of a double line at the most; what is wider is a median
 SAME_VERTEX = 0.001       # m in plan between vertices that are one
@@ -82,7 +82,7 @@ def share_borders(lanes: Lanes) -> SharedBorders:
     Maps for planners and simulators know one border between two lanes. A double line has two stripes, each the border of its lane; and a lane
     placed where paint was missing may lie some centimetres beside the measured one. Vertices of one cross-section that face each other move to
     their middle. Where the common border ends, its lanes come back to their own borders along SHARED_FADE. On a map from elsewhere what lies
-    apart stays apart.
+    apart stays apart, and a curb between two lanes keeps its bottom and its top.
 
     Parameters
     ----------
@@ -94,10 +94,13 @@ def share_borders(lanes: Lanes) -> SharedBorders:
     """
     rows = np.concatenate([lanes.left, lanes.right])
     nodes, first = numbered(rows)
+    count = len(lanes.left)
+    if is_stated(lanes):
+        first, nodes = first[nodes], _levels(lanes, nodes, rows)
+        first = first[np.unique(nodes, return_index=True)[1]]
     places = rows[first]
     # a place has one height, that of all lanes beside it
     places[:, 2] = np.bincount(nodes, rows[:, 2]) / np.bincount(nodes)
-    count = len(lanes.left)
     pairs, beyond = (np.empty((0, 2), int), np.empty(0)) if is_stated(lanes) else _facing(lanes, nodes, places)
     if not len(pairs):
         return SharedBorders(replace(lanes, left=places[nodes[:count]], right=places[nodes[count:]]), np.zeros((len(lanes), 2)), 0.0)
@@ -128,6 +131,21 @@ def numbered(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     np.minimum.at(first, near[:, 1], near[:, 0])
     first, nodes = np.unique(first, return_inverse=True)
     return nodes, first
+
+
+def _levels(lanes, nodes, rows):
+    """(V,) number of each of (V, 3) vertices' place and height: of a curb the bottom and the top are two; where a lane leads on there is one."""
+    order = np.lexsort((rows[:, 2], nodes))
+    apart = (np.diff(nodes[order]) > 0) | (np.diff(rows[order, 2]) > LEAST_CURB)
+    level = np.empty(len(rows), int)
+    level[order] = np.append(0, np.cumsum(apart))
+    row_of, count = {name: k for k, name in enumerate(lanes.lane_id)}, len(lanes.left)
+    ends = [(lanes.start[k + 1] - 1, lanes.start[row_of[name]]) for k, names in enumerate(lanes.successors) for name in names if name in row_of]
+    led = np.array(ends, int).reshape(-1, 2)
+    led = np.concatenate([led, led + count])
+    one, other = level[led[nodes[led[:, 0]] == nodes[led[:, 1]]]].T
+    size = int(level.max()) + 1
+    return connected_components(coo_matrix((np.ones(len(one)), (one, other)), shape=(size, size)), directed=False)[1][level]
 
 
 def _inward(lanes, nodes, count):

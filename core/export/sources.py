@@ -18,6 +18,7 @@ MOST_OVERLAP = 0.5       # share of a lane that may lie on lanes of another road
 SAME_LEVEL = 2.0         # m of height within which two roads are no bridge
 FARTHEST_PLACE = 1e8     # m from the origin of a CRS: twice around the world
 LEAST_LED = 0.001        # m
+LEAST_CURB = 0.005       # m of height between the bottom and the top of a curb: less is none that a map states
 FARTHEST_LAYER = 50.0    # m from the lanes: a layer that lies farther away is of another survey
 
 

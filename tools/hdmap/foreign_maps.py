@@ -67,6 +67,8 @@ class Original:
             if end - start < 3 * FROM_END:
                 continue
             s = np.linspace(start + FROM_END, end - FROM_END, max(int((end - start) / STEP), 1) + 1)
+            corners = np.array([start + _number(one, "sOffset") for tag in ("width", "border") for one in section.iter(tag)])
+            s = np.unique(np.append(s, corners[(corners > s[0]) & (corners < s[-1])]))
             plan = np.array([_plan(pieces, at) for at in s])
             for side, group in ((1, "left"), (-1, "right")):
                 inner = np.array([_value(centre, at) for at in s])

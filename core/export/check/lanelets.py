@@ -10,6 +10,7 @@ import shapely
 from ...common.progress import Progress
 from ..lanelet.model import Lanelet, LaneletMap, Way
 from ..lanelet.routing import LaneletNetwork, same_way
+from ..sources import LEAST_CURB
 from .findings import Findings, metres
 from .rules import NO_BORDERS, YES_OR_NO, add_rule_findings, participant_tags, way_tags
 
@@ -247,6 +248,13 @@ class _LaneletCheck:
         d = sum((line[1] - line[0] if at == 0 else line[-1] - line[-2]) for line in middle)
         return float(np.arctan2(d[1], d[0]))
 
+    def _one_height(self, way, other) -> bool:
+        """Whether two ways at one place are no bottom and top of a curb."""
+        places, line = self.places[self.whole.rows(way)], shapely.linestrings(self.places[self.whole.rows(other)])
+        feet = shapely.line_interpolate_point(line, shapely.line_locate_point(line, shapely.points(places)))
+        rise = places[:, 2] - shapely.get_z(feet)
+        return not np.median(np.abs(rise)) > LEAST_CURB
+
     def twins(self) -> None:
         """Borders that lie on each other and are two ways, and lanelets between the same borders."""
         between: dict[tuple[int | None, int | None], int] = {}
@@ -262,7 +270,9 @@ class _LaneletCheck:
             return
         tree = shapely.STRtree(shapely.buffer(np.array(lines, object), TWIN_DISTANCE))
         for k, j in tree.query(lines, predicate="within").T:
-            if k != j and (k < j or not shapely.within(lines[j], shapely.buffer(lines[k], TWIN_DISTANCE))) and not (
+            if k == j or not self._one_height(ways[k], ways[j]):
+                continue
+            if (k < j or not shapely.within(lines[j], shapely.buffer(lines[k], TWIN_DISTANCE))) and not (
                     lines[k].length < LONGEST_FORK and lines[k].distance(lines[j].boundary) < LONGEST_FORK):
                 self.findings.add("border twice", f"ways {ways[k].id} and {ways[j].id}", "They lie at one place; neighbours should share one.",
                                   self.at(ways[k]))

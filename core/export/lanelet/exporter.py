@@ -11,9 +11,10 @@ import shapely
 from ...common.setting import check_limits, setting
 from ..lane_uncertainty import sigma_of_lanes
 from ..painted_objects import stop_lines, walked_crossings
-from ..sources import NearestValues, RoadMapSource
+from ..sources import LEAST_CURB, NearestValues, RoadMapSource, is_stated
 
 SAME_PLACE = 0.001      # m: vertices nearer than this are one node
+SAME_RISE = 0.1         # m in height
 HIGH_CURB = 0.10        # m: lower ones can be driven over, as the format means by `low`
 THICK_LINE = 0.18       # m of paint from which a line is thick: above the narrow and below the broad lines of most countries
 NEAREST_EDGE = 0.5      # m from a border within which a road edge tells its height
@@ -89,7 +90,7 @@ class _Drafting:
     def __init__(self, source: RoadMapSource, settings: LaneletSettings) -> None:
         self.source, self.settings, self.lanes = source, settings, source.lanes
         lanes = source.lanes
-        every, numbers = _numbered(np.concatenate([lanes.left, lanes.right]))
+        every, numbers = _numbered(np.concatenate([lanes.left, lanes.right]), LEAST_CURB if is_stated(lanes) else SAME_RISE)
         self.draft = LaneletDraft(every)
         self.left, self.right = numbers[:len(lanes.left)], numbers[len(lanes.left):]
         self.way_of: dict[tuple[int, ...], int] = {}
@@ -200,11 +201,11 @@ class _Drafting:
                 "type": "lanelet", "subtype": "crosswalk", "location": self.settings.location, "one_way": "no", "participant:pedestrian": "yes"}))
 
 
-def _numbered(places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """((N, 3) places, each once; (V,) number of each of V vertices): vertices nearer than SAME_PLACE are one."""
+def _numbered(places: np.ndarray, rise: float) -> tuple[np.ndarray, np.ndarray]:
+    """((N, 3) places, each once; (V,) number of each of V vertices): vertices nearer than SAME_PLACE, and `rise` in height, are one."""
     points = shapely.points(places[:, :2])
     near = shapely.STRtree(points).query(points, predicate="dwithin", distance=SAME_PLACE)
-    near = near[:, np.abs(places[near[0], 2] - places[near[1], 2]) < 100 * SAME_PLACE]
+    near = near[:, np.abs(places[near[0], 2] - places[near[1], 2]) < rise]
     first = np.arange(len(places))
     np.minimum.at(first, near[0], near[1])
     every, numbers = np.unique(first, return_inverse=True)

@@ -12,7 +12,7 @@ from ...common.setting import check_limits, setting
 from ..driven_middles import with_driven_middles
 from ..lane_uncertainty import sigma_of_lanes
 from ..sources import NearestValues, RoadMapSource
-from .heights import add_heights
+from .heights import add_heights, heights_above_road
 from .junctions import DraftRoad, link_roads
 from .model import OPEN_END, MapLane, MapRoad, OpenDriveMap, RoadMark
 from .network import LaneNetwork
@@ -178,9 +178,10 @@ class _Drafting:
         numbers = add_lanes(road, shape, strip, centres, CURVES_SHARE * tolerance, directions)
         add_heights(road, shape, tolerance)
         status: dict[str, float] = defaultdict(float)
-        for one, ids, section, centre in zip(strip, numbers, road.sections, centres):
+        for row, (one, ids, section, centre) in enumerate(zip(strip, numbers, road.sections, centres)):
             for k, (cell, id) in enumerate(zip(one.cells, ids)):
                 self._describe(section.lanes[id], cell)
+                section.lanes[id].heights = heights_above_road(shape, row, k)
                 section.lanes[id].marks = [self._mark_between(one, k if id > 0 else k + 1, id)]
                 status[str(self.lanes.status[cell.piece])] += cell.length
             # where lane 0 lies apart from them, the innermost border is that of the empty lane between
@@ -258,7 +259,8 @@ class _Drafting:
             curb = MapLane(beyond, "curb", type(lanes[id].width).constant(CURB_WIDTH), [RoadMark(0.0, "none")])
             heights = self.curb_heights.at(border[:, :2] + self.origin[:2], NEAREST_CURB)
             if np.isfinite(heights).any():
-                curb.heights = np.array([[0.0, 0.0, round(float(np.nanmedian(heights)), 3)]])
+                rise = np.array([0.0, 0.0, round(float(np.nanmedian(heights)), 3)])
+                curb.heights = rise + np.array([[at, inner, inner] for at, inner, _ in lanes[id].heights] or [[0.0, 0.0, 0.0]])
             lanes[beyond] = curb
 
 

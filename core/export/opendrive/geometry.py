@@ -55,18 +55,17 @@ class Cubics:
 
     def least(self, length: float) -> tuple[float, float]:
         """(least value, where) over [0, length], from the ends and the turning points of every piece."""
-        best = (np.inf, 0.0)
-        ends = np.append(self.rows[1:, 0], length)
-        for (start, a, b, c, d), end in zip(self.rows, ends):
-            if end < start:
-                continue
-            turning = np.roots([3 * d, 2 * c, b]) if d or c else np.empty(0)
-            at = [0.0, end - start, *(float(t.real) for t in turning if abs(t.imag) < 1e-12 and 0 < t.real < end - start)]
-            for ds in at:
-                value = a + ds * (b + ds * (c + ds * d))
-                if value < best[0]:
-                    best = (value, start + ds)
-        return best
+        start, a, b, c, d = self.rows.T
+        span = np.append(start[1:], length) - start
+        with np.errstate(divide="ignore", invalid="ignore"):   # where the slope b + 2 c ds + 3 d ds^2 is 0
+            q = -(c + np.copysign(np.sqrt(c**2 - 3 * b * d), c))
+            turning = np.stack([q / (3 * d), b / q], axis=1)
+            inside = (turning > 0) & (turning < span[:, None])
+        ds = np.c_[np.zeros(len(span)), span, np.where(inside, turning, 0.0)]
+        value = a[:, None] + ds * (b[:, None] + ds * (c[:, None] + ds * d[:, None]))
+        value[span < 0] = np.inf
+        piece, at = np.unravel_index(np.argmin(value), value.shape)
+        return float(value[piece, at]), float(start[piece] + ds[piece, at])
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..sources import LEAST_CURB
 from .geometry import Cubics
 from .model import MapRoad
 from .profiles import fit_cubics, simplified
@@ -62,6 +63,16 @@ def add_heights(road: MapRoad, shape: RoadShape, tolerance: float) -> None:
             missed = np.abs(shape_height(road.shape, targets[:, 0], targets[:, 1]) - targets[:, 2])
             if missed.max(initial=0.0) <= tolerance:
                 return
+
+
+def heights_above_road(shape: RoadShape, number: int, cell: int) -> np.ndarray:
+    """(N, 3) metres from the start of a slice's section, heights of the inner and outer border of one of its lanes above the road."""
+    lift, s = shape.lifts[number][cell], shape.s[number][cell:cell + 2].mean(0) - shape.starts[number]
+    rows = [(0.0, lift[0])]
+    for at, value in zip(s, lift):
+        if abs(value - rows[-1][1]) > LEAST_CURB:
+            rows.append((max(float(at), 0.0), value))
+    return np.array([(at, value, value) for at, value in rows]) if lift.any() else np.empty((0, 3))
 
 
 def _at_reference(profiles, s):

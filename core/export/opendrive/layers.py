@@ -9,6 +9,7 @@ import numpy as np
 
 from ...common.progress import Progress
 from ..map_layers import LaneRows, MapLayers, MapLine, plan_length, without_repeats
+from ..sources import LEAST_CURB
 from .model import DRIVEN_TYPES, MapLane, OpenDriveMap
 from .network import LaneNetwork, travel
 from .surface import RoadSurface
@@ -22,7 +23,7 @@ NO_LANES = (*RAISED, "none", "rail", "tram")
 SHORTEST_SECTION = 0.005   # m: of shorter ones the ends would be one vertex
 NEGATIVE_WIDTH = -0.01     # m: less is the rounding of a file
 BORDER_JUMP = 0.01     # m: half of the tolerance of an export
-LEAST_CURB = 0.005     # m of height: less is none that the map states
+ROADS_NAMED = 20        # roads that one sentence names
 LEAST_WIDTH = 0.05     # m: lanes that are narrower everywhere are none
 
 
@@ -61,20 +62,17 @@ def layers_of_opendrive(whole: OpenDriveMap, crs: str = "", progress: Progress =
 class _Faults:
     """What is wrong with the geometry of the map.
 
-    folds : (road, lane, place) of borders; negative : (road, lane, least width, s); jumps : (road, s, metres by which borders jump there)
+    folds : (road, lane, place) of borders; negative : (road, lane, least width, s); jumps : (road, s, metres by which a border jumps there, its lane)
     """
 
-    jumps: list[tuple[str, float, float]] = field(default_factory=list)
+    jumps: list[tuple[str, float, float, int]] = field(default_factory=list)
     folds: list[tuple[str, int, np.ndarray]] = field(default_factory=list)
     negative: list[tuple[str, int, float, float]] = field(default_factory=list)
 
     def said(self) -> list[str]:
         found = []
         if self.jumps:
-            road, s, metres = max(self.jumps, key=lambda jump: jump[2])
-            found.append(f"The reference lines of {len({jump[0] for jump in self.jumps})} roads have gaps or kinks, at which borders of lanes jump "
-                         f"by more than {BORDER_JUMP:g} m. The largest is of road {road} at s {s:.1f} m, with {metres:.3f} m. "
-                         "Correct them where the map was made.")
+            found.append(self._said_jumps())
         if self.folds:
             road, lane, place = self.folds[0]
             found.append(f"{len(self.folds)} borders of lanes fold back over themselves, as a curve is tighter there than the border is far from "
@@ -85,6 +83,21 @@ class _Faults:
             found.append(f"{len(self.negative)} lanes have a width below 0, which was taken as 0. The first is lane {lane} of road {road} with "
                          f"{width:.2f} m at s {s:.1f} m. Correct them where the map was made.")
         return found
+
+    def _said_jumps(self) -> str:
+        """Every road with gaps or kinks, those with the largest first."""
+        roads: dict[str, list[tuple[str, float, float, int]]] = {}
+        for jump in sorted(self.jumps, key=lambda jump: -jump[2]):
+            roads.setdefault(jump[0], []).append(jump)
+        named = []
+        for jumps in list(roads.values())[:ROADS_NAMED]:
+            road, s, metres, lane = jumps[0]
+            named.append(f"road {road}, lane {lane}, by {metres:.3f} m at s {s:.1f} m" + (f" and less at {len(jumps) - 1} more" if jumps[1:] else ""))
+        rest = list(roads.values())[ROADS_NAMED:]
+        if rest:
+            named.append(f"{len(rest)} more roads, by at most {rest[0][0][2]:.3f} m")
+        return (f"Gaps or kinks of the reference line ({len(roads)} of the roads) make borders of lanes jump by more than {BORDER_JUMP:g} m: "
+                f"{'; '.join(named)}. Correct them where the map was made.")
 
 
 def _add_section(rows, lines, whole, network, surface, number, road_number, faults):

@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from scipy.linalg import solve_banded
 
 from .geometry import Cubics
 
 STIFFNESS = 1e-3      # weight of the bending against the deviations: it decides only where there are too few places
 MOST_PIECES = 400     # of one section
 SHORTEST_CUBIC = 0.1  # m of a piece
+BAND = 3              # unknowns beside each other that one piece joins: levels and slopes at both of its ends
 
 
 def fit_cubics(s: Sequence[np.ndarray], values: Sequence[np.ndarray], start: float, end: float, tolerance: float,
@@ -87,26 +89,25 @@ def _hermite(s, values, knots, ends):
     """(K,) levels and slopes at the knots by least squares; both ends are met, and their slopes where they are given."""
     count = len(knots)
     k = np.clip(np.searchsorted(knots, s, side="right") - 1, 0, count - 2)
-    h = np.diff(knots)
-    row = np.arange(len(s))
-    matrix = np.zeros((len(s), 2 * count))
-    for columns, weights in zip((k, count + k, k + 1, count + k + 1), _basis((s - knots[k]) / h[k], h[k])):
-        matrix[row, columns] = weights
+    h, j = np.diff(knots), np.arange(count - 1)
+    fit = np.stack(_basis((s - knots[k]) / h[k], h[k]), axis=1)
     # bending of every piece: the integral of the squared second derivative, by its values at both ends
-    stiff = np.zeros((2 * (count - 1), 2 * count))
-    j = np.arange(count - 1)
-    for at, (a, b) in enumerate((((-6, -4), (6, -2)), ((6, 2), (-6, 4)))):
-        rows = 2 * j + at
-        stiff[rows, j], stiff[rows, count + j] = a[0] / h**2, a[1] / h
-        stiff[rows, j + 1], stiff[rows, count + j + 1] = b[0] / h**2, b[1] / h
+    bending = [np.stack([a / h**2, b / h, c / h**2, d / h], axis=1) for a, b, c, d in ((-6, -4, 6, -2), (6, 2, -6, 4))]
+    weights = np.concatenate([fit, *(STIFFNESS * one for one in bending)])
+    columns = 2 * np.concatenate([k, j, j])[:, None] + np.arange(4)   # level and slope of a knot lie side by side, so that the system has a band
     known = np.full(2 * count, np.nan)
-    known[[0, count - 1]], known[[count, 2 * count - 1]] = _at_ends(s, values, knots), ends
-    fixed, free = np.flatnonzero(np.isfinite(known)), np.flatnonzero(np.isnan(known))
-    system = np.concatenate([matrix, STIFFNESS * stiff])
-    target = np.concatenate([values, np.zeros(len(stiff))]) - system[:, fixed] @ known[fixed]
-    found = known
-    found[free] = np.linalg.lstsq(system[:, free], target, rcond=None)[0]
-    return found[:count], found[count:]
+    known[[0, -2]], known[[1, -1]] = _at_ends(s, values, knots), ends
+    fixed = np.isfinite(known)
+    target = np.append(values, np.zeros(2 * len(j))) - (weights * np.where(fixed, known, 0.0)[columns]).sum(1)
+    weights = np.where(fixed[columns], 0.0, weights)
+    size, side = 2 * count, np.arange(4)
+    place = (BAND + side[:, None] - side) * size + columns[:, None, :]   # of each product of two weights in the band
+    products = weights[:, :, None] * weights[:, None, :]
+    band = np.bincount(place.ravel(), products.ravel(), (2 * BAND + 1) * size).reshape(-1, size)
+    right = np.where(fixed, known, 0.0) + np.bincount(columns.ravel(), (weights * target[:, None]).ravel(), size)
+    band[BAND, fixed] = 1.0
+    found = solve_banded((BAND, BAND), band, right)
+    return found[::2], found[1::2]
 
 
 def _at_ends(s, values, knots):

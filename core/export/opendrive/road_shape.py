@@ -35,6 +35,7 @@ LEAST_CHORD = 1.0        # m of a border's end, along which it goes straight on
 @dataclass
 class RoadShape:
     """plan : reference line; s, t, z : for each slice a (borders, n) array of its vertices; starts : (sections + 1,) metres.
+    lifts : for each slice (cells, n) metres that its lanes lie above the road, as beyond a curb; z is that of the road
 
     courses : for each slice and border (3, n) s, t, z that reach from the start of its section to its end at least, s rising: sections are cut
         square, lanes are not
@@ -44,6 +45,7 @@ class RoadShape:
     s: list[np.ndarray]
     t: list[np.ndarray]
     z: list[np.ndarray]
+    lifts: list[np.ndarray]
     starts: np.ndarray
     courses: list[list[np.ndarray]]
 
@@ -88,10 +90,10 @@ def shape_of(strip: list[Slice], centres: list[int], tolerance: float) -> RoadSh
         if max(before, after) < LEAST_STEP:
             break
         plan, along = plan.lengthened(before, after), along + before
-    z_all = [np.stack(one.borders())[..., 2] for one in strip]
+    z_all, lifts = (list(values) for values in zip(*(one.levels(centre) for one, centre in zip(strip, centres))))
     starts = np.array([0.0, *_cuts(strip, centres, s_all), plan.length])
     courses = [[_course(strip, k, j, (s_all, t_all, z_all), starts[k:k + 2]) for j in range(len(strip[k].cells) + 1)] for k in range(len(strip))]
-    return RoadShape(plan, s_all, t_all, z_all, starts, courses)
+    return RoadShape(plan, s_all, t_all, z_all, lifts, starts, courses)
 
 
 def _frame(plan, strip, near):

@@ -9,6 +9,7 @@ import numpy as np
 import shapely
 
 from ...driving.lanes_layer import Lanes
+from ..sources import LEAST_CURB
 
 SAME_VERTEX = 0.001      # m in plan between vertices that are one
 SAME_VERTEX_RISE = 0.3   # m in height: a border between road and curb has two
@@ -62,6 +63,14 @@ class Slice:
     def nodes(self) -> list[tuple[int, ...]]:
         """Numbers of the vertices of its borders, from left to right."""
         return [self.cells[0].left_nodes, *(cell.right_nodes for cell in self.cells)]
+
+    def levels(self, centre: int) -> tuple[np.ndarray, np.ndarray]:
+        """((borders, n) heights of the road, (cells, n) metres that cells lie above it): the road goes on below curbs, from border `centre` on."""
+        left, right = np.stack([cell.left[:, 2] for cell in self.cells]), np.stack([cell.right[:, 2] for cell in self.cells])
+        step = left[1:] - right[:-1]
+        lift = np.concatenate([np.zeros((1, left.shape[1])), np.cumsum(np.where(np.abs(step) > LEAST_CURB, step, 0.0), axis=0)])
+        lift = lift - lift[min(centre, len(self.cells) - 1)]
+        return np.concatenate([left[:1] - lift[:1], right - lift]), lift
 
     def split(self, row: int) -> tuple[Slice, Slice]:
         """The slice cut at a vertex, linked as it was."""

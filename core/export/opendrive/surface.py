@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import shapely
 
-from .geometry import Cubics
 from .model import MapRoad
 
 BORDER_STEP = 1.0   # m between the places at which borders are computed
@@ -28,6 +27,7 @@ class RoadSurface:
 
     def __init__(self, road: MapRoad) -> None:
         self.road = road
+        self._axis: tuple[np.ndarray, ...] = (np.empty(0),)   # s, and what all borders there share
 
     def stations(self, number: int, step: float = BORDER_STEP) -> np.ndarray:
         """(N,) metres of s at which a section is cut: evenly, wherever a function of it changes, and closer where a border bends."""
@@ -35,7 +35,7 @@ class RoadSurface:
         bend = np.abs(road.plan.at(np.linspace(first, last, max(int((last - first) / step), 1) + 1))[2]).max()
         step = min(step, max(float(np.sqrt(8 * SAGITTA / max(bend, 1e-9))), LEAST_BORDER_STEP))
         even = np.linspace(first, last, max(int(np.ceil((last - first) / step - 1e-9)), 1) + 1)
-        own = [lane.width.rows[:, 0] + first for lane in road.sections[number].lanes.values()]
+        own = [rows[:, 0] + first for lane in road.sections[number].lanes.values() for rows in (lane.width.rows, lane.heights)]
         heights = road.elevation.rows[:, 0], road.superelevation.rows[:, 0], road.shape[:, 0]
         knots = np.concatenate([even, [element.s for element in road.plan.elements], road.lane_offset.rows[:, 0], *heights, *own])
         knots = np.unique(knots[(knots >= first) & (knots <= last)])
@@ -73,11 +73,13 @@ class RoadSurface:
     def places(self, s: np.ndarray, t: np.ndarray, height: np.ndarray | float = 0.0) -> np.ndarray:
         """(N, 3) coordinates of the file at s and t: the t axis rolled by the superelevation, the shape laid on it."""
         road = self.road
-        plan, heading, _ = road.plan.at(s)
-        roll = road.superelevation.at(s)
-        flat, lift = t * np.cos(roll), t * np.sin(roll)
-        z = road.elevation.at(s) + lift + shape_height(road.shape, s, t) + height
-        return np.c_[plan[:, 0] - np.sin(heading) * flat, plan[:, 1] + np.cos(heading) * flat, z]
+        if not np.array_equal(self._axis[0], s):
+            plan, heading, _ = road.plan.at(s)
+            roll = road.superelevation.at(s)
+            self._axis = s.copy(), *plan.T, np.sin(heading), np.cos(heading), np.sin(roll), np.cos(roll), road.elevation.at(s)
+        _, x, y, sine, cosine, rise, run, level = self._axis
+        flat = t * run
+        return np.stack([x - sine * flat, y + cosine * flat, level + t * rise + shape_height(road.shape, s, t) + height], axis=1)
 
     def borders(self, number: int, id: int, s: np.ndarray, offsets: dict[int, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
         """((N, 3) inner, (N, 3) outer) border of a lane along the road."""
@@ -85,14 +87,14 @@ class RoadSurface:
         lift = self.lifts(number, id, s)
         return self.places(s, inner, lift[0]), self.places(s, offsets[id], lift[1])
 
-    def jumps(self) -> list[tuple[float, float]]:
-        """(s, metres) where the reference line has a gap or a kink, and how far the farthest border jumps there."""
+    def jumps(self) -> list[tuple[float, float, int]]:
+        """(s, metres, lane) where the reference line has a gap or a kink, how far the farthest border jumps there, and whose it is."""
         found = []
         for s, gap, turn in self.road.plan.jumps(GAP, KINK):
             number = max((k for k, section in enumerate(self.road.sections) if section.s <= s), default=-1)
             if number >= 0:
-                farthest = max(float(np.abs(t).max()) for t in self.offsets(number, np.array([s])).values())
-                found.append((s, gap + 2 * farthest * float(np.sin(turn / 2))))
+                farthest, lane = max((abs(float(t[0])), id) for id, t in self.offsets(number, np.array([s])).items())
+                found.append((s, gap + 2 * farthest * float(np.sin(turn / 2)), lane))
         return found
 
     def inside(self, number: int, id: int) -> int:
@@ -146,20 +148,25 @@ def _crossing(points, a, b):
 
 
 def shape_height(shape: np.ndarray, s: np.ndarray, t: np.ndarray) -> np.ndarray:
-    """(N,) metres of the lateral shape at s and t: a cubic in t at each given s, linear between them."""
+    """(N,) metres of the lateral shape at s and t: a cubic in t at each given s, linear between them.
+
+    Right of the first t its cubic goes on straight.
+    """
     if not len(shape):
         return np.zeros(len(s))
-    given = np.unique(shape[:, 0])
-    profiles = [Cubics(rows[np.argsort(rows[:, 1])][:, 1:]) for rows in (shape[shape[:, 0] == at] for at in given)]
-    values = np.stack([_within(profile, t) for profile in profiles])
+    rows = shape[np.lexsort((shape[:, 1], shape[:, 0]))]
+    given, first, count = np.unique(rows[:, 0], return_index=True, return_counts=True)
+    starts = np.full((len(given), count.max()), np.inf)
+    starts[np.repeat(np.arange(len(given)), count), np.arange(len(rows)) - np.repeat(first, count)] = rows[:, 1]
+
+    def value(k: np.ndarray) -> np.ndarray:
+        piece = np.maximum((starts[k] <= t[:, None] + 1e-9).sum(1) - 1, 0)
+        _, start, a, b, c, d = rows[first[k] + piece].T
+        dt = t - start
+        return np.where(t < starts[k, 0], a + b * dt, a + dt * (b + dt * (c + dt * d)))
+
     k = np.clip(np.searchsorted(given, s, side="right") - 1, 0, max(len(given) - 2, 0))
     if len(given) == 1:
-        return values[0]
+        return value(k)
     share = np.clip((s - given[k]) / (given[k + 1] - given[k]), 0.0, 1.0)
-    column = np.arange(len(s))
-    return values[k, column] * (1 - share) + values[k + 1, column] * share
-
-
-def _within(profile, t):
-    """A profile's value; right of its first t the first piece goes on."""
-    return profile.at(np.maximum(t, profile.rows[0, 0])) + profile.rows[0, 2] * np.minimum(t - profile.rows[0, 0], 0.0)
+    return value(k) * (1 - share) + value(k + 1) * share

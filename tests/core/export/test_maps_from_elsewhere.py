@@ -6,15 +6,18 @@ import numpy as np
 import pytest
 import shapely
 from lanewright.core.driving.lanes_layer import lanes_from_features
+from lanewright.core.export.check.lanelets import check_lanelets
 from lanewright.core.export.inferred_ways import with_inferred_ways
 from lanewright.core.export.lanelet.exporter import draft_lanelets
-from lanewright.core.export.lanelet.layers import layers_of_lanelets
+from lanewright.core.export.lanelet.layers import layers_of_lanelets, node_places
 from lanewright.core.export.lanelet.reader import read_lanelet2
 from lanewright.core.export.lanelet.writer import lanelet2_text, to_degrees
 from lanewright.core.export.opendrive.exporter import draft_opendrive
 from lanewright.core.export.opendrive.layers import layers_of_opendrive
+from lanewright.core.export.opendrive.profiles import fit_cubics
 from lanewright.core.export.opendrive.reader import read_opendrive
 from lanewright.core.export.opendrive.reference_line import fit_reference
+from lanewright.core.export.opendrive.surface import shape_height
 from lanewright.core.export.opendrive.writer import opendrive_text
 from lanewright.core.export.shared_borders import with_shared_borders
 from lanewright.core.export.sources import RoadMapSource, checked
@@ -69,7 +72,7 @@ MAPS = {
 
 def taken_in(folder, text):
     """Layers of a file, and its lanes as they are read from the layer of areas."""
-    found = layers_of_opendrive(read_opendrive(written(folder, opendrive([text]))), "EPSG:25832")
+    found = layers_of_opendrive(read_opendrive(written(folder, opendrive(text if isinstance(text, list) else [text]))), "EPSG:25832")
     return found, lanes_from_features(found.lane_areas())
 
 
@@ -150,7 +153,47 @@ def test_a_border_that_folds_back_in_a_tight_curve_is_cut_and_named(tmp_path):
 
 def test_a_gap_and_a_kink_of_a_reference_line_are_named(tmp_path):
     found, _ = taken_in(tmp_path, MAPS["gaps and kinks of a reference line"])
-    assert "road 1 at s 20.0 m, with 0.020 m" in found.notes[0]
+    assert "road 1, lane -2, by 0.020 m at s 20.0 m." in found.notes[0]
+
+
+def test_every_road_with_a_kink_is_named_those_with_the_largest_first(tmp_path):
+    kinked = [geometry(0, 0, y, 0, 20) + geometry(20, 20, y, turn, 10) + geometry(30, 20 + 10 * np.cos(turn), y + 10 * np.sin(turn), turn + 0.003, 10)
+              for y, turn in ((0, 0.01), (50, 0.03))]
+    found, _ = taken_in(tmp_path, [road(lines, 40, id) for lines, id in zip(kinked, ("4", "5"))])
+    assert "(2 of the roads)" in found.notes[0]
+    assert "road 5, lane -2, by 0.109 m at s 20.0 m and less at 1 more; road 4, lane -2, by 0.036 m at s 20.0 m and less at 1 more." in found.notes[0]
+
+
+def test_a_curb_between_lanes_keeps_its_bottom_and_its_top(tmp_path):
+    raised = '<height sOffset="0" inner="0.12" outer="0.12"/>'
+    lanes = section(left=lane(1), right=lane(-1) + lane(-2, "biking", 1.5, more=raised) + lane(-3, "shoulder", 1.0))
+    _, lanes = taken_in(tmp_path, road(LINE, 40, lanes=lanes, profile='<elevation s="0" a="5" b="0.01" c="0" d="0"/>'))
+    for others in given_out(tmp_path, lanes):
+        assert len(others) == 4
+        for kind, level in (("driving", 5.0), ("bicycle", 5.12), ("shoulder", 5.0)):
+            for k in np.flatnonzero(others.type == kind):
+                for border in others.borders(k):
+                    x = border[:, 0] - lanes.left[:, 0].min()
+                    np.testing.assert_allclose(border[:, 2], level + 0.01 * x, atol=0.002)
+
+
+def test_a_curb_between_lanelets_is_no_border_twice(tmp_path):
+    lanes = section(right=lane(-1) + lane(-2, "biking", 1.5, more='<height sOffset="0" inner="0.12" outer="0.12"/>'))
+    _, lanes = taken_in(tmp_path, road(LINE, 40, lanes=lanes))
+    draft = draft_lanelets(with_shared_borders(checked(RoadMapSource(lanes))))
+    whole = read_lanelet2(written(tmp_path, lanelet2_text(draft, to_degrees(draft.nodes, lanes.crs)), "out.osm"))
+    assert len(whole.lanelets) == 2 and "border twice" not in check_lanelets(whole, *node_places(whole, lanes.crs)).counts()
+
+
+def test_the_work_for_heights_and_widths_grows_with_their_length():
+    """Widths with jumps need hundreds of pieces, shapes hundreds of cross-sections."""
+    s = np.linspace(0.0, 300.0, 1200)
+    start = time.process_time()
+    fit_cubics([s] * 3, [np.floor(s / 3.0) % 2] * 3, 0.0, 300.0, 0.01)
+    shape = np.array([[at, t, 0.1 * t, 0.0, 0.0, 0.0] for at in s for t in (-3.5, 0.0, 3.5)])
+    for _ in range(100):
+        np.testing.assert_allclose(shape_height(shape, s, np.full(len(s), 3.5)), 0.35)
+    assert time.process_time() - start < 3.0
 
 
 def test_a_width_below_0_is_taken_as_0_and_named(tmp_path):
