@@ -30,6 +30,7 @@ NO_SENTENCES = ("core/report", "core/common/schemas.py", "core/common/words.py",
 NO_PROSE = re.compile(r"[\\]|<[?x!]|^ *<[A-Za-z]|^[+]proj=|^[A-Z_]+\[|"
                       r"^(pixel|line|mapx|mapy|mapz|name|enable|check) \w+ \w+|^pip |^1 hit|^SELECT |lanewright [A-Z{l]")
 NAMED = {"FAULTS", "title", "signed"}  # tables and attributes of the core whose shortest texts are shown too
+UNSAID = {"_WORDS"}  # tables of the core that hold what other software says
 # Texts that stand in a class or a table and are translated where they are shown
 IN_A_CLASS = {"TITLE", "SUMMARY", "HELP", "GROUP", "TAGS", "GROUPS"}
 
@@ -115,6 +116,8 @@ def phrases_of(tree):
     for node in ast.walk(tree):
         if isinstance(node, ast.Assign) and any(isinstance(target, ast.Name) and target.id in NAMED for target in node.targets):
             yield from (inner.value for inner in ast.walk(node.value) if isinstance(inner, ast.Constant) and isinstance(inner.value, str))
+        if isinstance(node, ast.Assign) and any(isinstance(target, ast.Name) and target.id in UNSAID for target in node.targets):
+            left_out |= set(ast.walk(node.value))
         name = node.exc.func.id if isinstance(node, ast.Raise) and isinstance(node.exc, ast.Call) and isinstance(node.exc.func, ast.Name) else ""
         is_tr = isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "tr"
         if is_tr or isinstance(node, ast.Assert) or name in OF_PROGRAMMERS:

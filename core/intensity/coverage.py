@@ -28,7 +28,7 @@ def check_image_shows(image: IntensityImage, road_points: RoadPoints) -> None:
     if image.eight_bit:
         raise RoadExtractionError(
             f"{image.path} is the 8-bit picture for viewing; its grey values are stretched and cut off. Give the intensity image itself.")
-    places = [(x, y) for _, x, y, _ in sample_road_points(road_points)]
+    places = [(x, y) for _, x, y, *_ in sample_road_points(road_points)]
     if not places:
         return
     x, y = (np.concatenate(part) for part in zip(*places))

@@ -1,7 +1,8 @@
 """Check that the result of an earlier stage belongs to the trajectory it is used with.
 
 Stations start where the road of a trajectory begins. With another trajectory, or another part of the same one, every
-station in a file refers to another position.
+station in a file refers to another position. Offsets are counted from its way: where a trajectory beside its scanners was
+moved to them as the points were read, offsets in a file are those of the way as moved.
 """
 
 from __future__ import annotations
@@ -19,17 +20,18 @@ if TYPE_CHECKING:
     from .store.road_points import RoadPoints
 
 STATION_TOLERANCE = 1.0    # m: far more than rounding, far less than the shift of another drive
+OFFSET_TOLERANCE = 1.0     # m: more than passes are moved by onto each other, less than a trajectory is moved by to its scanners (HALF_VEHICLE)
 # m from the roads: the widest corridor and an arm of a side street beyond it; the nodes compared are 5 m apart
 REACH_OF_ROADS, NODES_APART = 200.0, 50
 CHECKED_SECTIONS, CHECKED_POINTS_PER_SECTION = 50, 200  # evenly over the file
 
 
 def check_features_on_roads(features: Features, frame: RoadFrame, label: str) -> None:
-    """Refuse features whose field `station_m` disagrees with their position in the road frame.
+    """Refuse features whose fields `station_m` and `offset_m` disagree with their position in the road frame.
 
     Parameters
     ----------
-    features : Features with the fields `road` and `station_m`
+    features : Features with the fields `road` and `station_m`, and maybe `offset_m`
     frame : RoadFrame
     label : name of the input, as at the beginning of a sentence
 
@@ -40,12 +42,17 @@ def check_features_on_roads(features: Features, frame: RoadFrame, label: str) ->
     """
     import shapely
 
-    agree = []
+    agree, beside = [], []
     for geometry, row in features:
-        if row.get("station_m") is not None:
-            x, y = shapely.get_coordinates(geometry).T[:2]
-            agree.append(_station_agrees(frame, row["road"], x, y, row["station_m"]))
+        if row.get("station_m") is None:
+            continue
+        s, d = _located(frame, row["road"], *shapely.get_coordinates(geometry).T[:2])
+        known = np.isfinite(s)
+        agree.append(bool(known.any()) and abs(_outside(s[known], row["station_m"])) <= STATION_TOLERANCE)
+        if agree[-1] and row.get("offset_m") is not None:
+            beside.append(_outside(d[known], row["offset_m"]))
     _refuse_mismatch(agree, label, "features")
+    _refuse_moved(beside, label)
 
 
 def keep_near_roads(features: Features, frame: RoadFrame, label: str) -> str:
@@ -90,7 +97,7 @@ def keep_near_roads(features: Features, frame: RoadFrame, label: str) -> str:
 
 
 def check_road_points_on_roads(road_points: RoadPoints, frame: RoadFrame, label: str) -> None:
-    """Refuse road points whose stations disagree with their positions in the road frame, judged by a sample.
+    """Refuse road points whose stations or offsets disagree with their positions in the road frame, judged by a sample.
 
     Parameters
     ----------
@@ -103,37 +110,40 @@ def check_road_points_on_roads(road_points: RoadPoints, frame: RoadFrame, label:
     RoadExtractionError
         If more than half of the sampled points disagree.
     """
-    agree = [np.abs(_stations(frame, road, x, y) - s) <= STATION_TOLERANCE for road, x, y, s in sample_road_points(road_points)]
+    agree, beside = [], []
+    for road, x, y, s, d in sample_road_points(road_points):
+        there, offset = _located(frame, road, x, y)
+        agree.append(np.abs(there - s) <= STATION_TOLERANCE)
+        beside.append((d - offset)[agree[-1]])
     _refuse_mismatch(np.concatenate(agree) if agree else [], label, "points looked at")
+    _refuse_moved(np.concatenate(beside) if beside else [], label)
 
 
-def sample_road_points(road_points: RoadPoints) -> Iterator[tuple[int, np.ndarray, np.ndarray, np.ndarray]]:
+def sample_road_points(road_points: RoadPoints) -> Iterator[tuple[int, np.ndarray, np.ndarray, np.ndarray, np.ndarray]]:
     """A sample of road points, evenly over the file.
 
     Yields
     ------
-    road number, (N,) x and y in map coordinates, and (N,) stations in metres, section by section
+    road number, (N,) x and y in map coordinates, and (N,) stations and offsets in metres, section by section
     """
     keys = road_points.all_sections()
     for k in np.unique(np.linspace(0, len(keys) - 1, CHECKED_SECTIONS).astype(int)) if keys else ():
         road, number = keys[k]
         points = road_points.section(road, number)
         rows = np.unique(np.linspace(0, len(points) - 1, CHECKED_POINTS_PER_SECTION).astype(int))
-        yield road, points.x[rows] + road_points.origin[0], points.y[rows] + road_points.origin[1], points.s[rows]
+        yield road, points.x[rows] + road_points.origin[0], points.y[rows] + road_points.origin[1], points.s[rows], points.d[rows]
 
 
-def _station_agrees(frame, road, x, y, station):
-    """Whether the stations of the vertices of a feature include its field `station_m`."""
-    s = _stations(frame, road, x, y)
-    s = s[np.isfinite(s)]
-    return len(s) > 0 and s.min() - STATION_TOLERANCE <= station <= s.max() + STATION_TOLERANCE
+def _outside(values, carried):
+    """m that a number lies above the range of (N,) values, negative below it; 0 within."""
+    return float(carried - np.clip(carried, values.min(), values.max()))
 
 
-def _stations(frame, road, x, y):
-    """(N,) stations of map coordinates on a road; NaN beside it, or if there is no such road."""
+def _located(frame, road, x, y):
+    """(N,) stations and offsets of map coordinates on a road; NaN beside it, or if there is no such road."""
     if road is None or not 0 <= road < len(frame.roads):
-        return np.full(len(x), np.nan)
-    return frame.road(road).locate(*frame.to_local(x, y))[0]
+        return np.full(len(x), np.nan), np.full(len(x), np.nan)
+    return frame.road(road).locate(*frame.to_local(x, y))
 
 
 def _refuse_mismatch(agree, label, what):
@@ -142,3 +152,13 @@ def _refuse_mismatch(agree, label, what):
         raise RoadExtractionError(
             f"{label} and the trajectory do not belong together: only {np.count_nonzero(agree)} of {len(agree)} {what} lie "
             "at the station they carry. Give the trajectory that they were made with, whole.")
+
+
+def _refuse_moved(beside, label):
+    """Refuse what lies beside its offsets, (N,) m to the left, for the most part."""
+    beside = np.asarray(beside, float)
+    if np.count_nonzero(np.abs(beside) > OFFSET_TOLERANCE) > 0.5 * len(beside):
+        raise RoadExtractionError(
+            f"{label} lie {np.median(np.abs(beside)):.2f} m beside the offsets they carry from the trajectory. It is another one, or it was moved to "
+            "where the scanners were when they were made, as a warning said then. Run Road map, which makes all layers with the trajectory as it "
+            "was moved, or give every stage the trajectory that belongs to the cloud.")

@@ -795,11 +795,6 @@
         </message>
         <message>
             <location filename="../../algorithms/call.py" />
-            <source>Not enough memory for this step; close other programs or process fewer files at once.</source>
-            <translation>Der Arbeitsspeicher reicht für diesen Schritt nicht; andere Programme schließen oder weniger Dateien auf einmal verarbeiten.</translation>
-        </message>
-        <message>
-            <location filename="../../algorithms/call.py" />
             <source>{label} names {path}, which is not a file. Choose the LAS or LAZ file itself.</source>
             <translation>{label} nennt {path}, das ist keine Datei. Die LAS- oder LAZ-Datei selbst wählen.</translation>
         </message>
@@ -815,6 +810,11 @@
         </message>
         <message>
             <location filename="../../algorithms/call.py" />
+            <source>while writing</source>
+            <translation>beim Schreiben</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/call.py" />
             <source>{label} would be written over {path}, which is read as {input}: inputs are never changed. Give it another name.</source>
             <translation>„{label}“ würde {path} überschreiben, das als „{input}“ gelesen wird: Eingaben werden nie verändert. Bitte einen anderen Namen wählen.</translation>
         </message>
@@ -822,11 +822,6 @@
             <location filename="../../algorithms/call.py" />
             <source>{first} and {second} would both be written to {path}, and one would be lost. Give each a file of its own, or name the layers in one GeoPackage: ogr:dbname='map.gpkg' table="road_edges" (geom).</source>
             <translation>{first} und {second} würden beide nach {path} geschrieben, und eines ginge verloren. Jedem eine eigene Datei geben oder die Layer in einem GeoPackage benennen: ogr:dbname='map.gpkg' table="road_edges" (geom).</translation>
-        </message>
-        <message>
-            <location filename="../../algorithms/call.py" />
-            <source>while writing</source>
-            <translation>beim Schreiben</translation>
         </message>
         <message>
             <location filename="../../algorithms/choice_words.py" />
@@ -7590,6 +7585,11 @@
         </message>
         <message>
             <location filename="../../desktop/review/section_dock.py" />
+            <source>Click on the road in the map.</source>
+            <translation>Klicken Sie in der Karte auf die Straße.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/section_dock.py" />
             <source>No line of a road map lies near: click on a road that Lanewright mapped.</source>
             <translation>Keine Linie einer Straßenkarte liegt in der Nähe: Klicken Sie auf eine Straße, die Lanewright kartiert hat.</translation>
         </message>
@@ -7637,11 +7637,6 @@
             <location filename="../../desktop/review/section_dock.py" />
             <source>No points were read.</source>
             <translation>Es wurden keine Punkte gelesen.</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/review/section_view.py" />
-            <source>Click on the road in the map.</source>
-            <translation>Klicken Sie in der Karte auf die Straße.</translation>
         </message>
         <message>
             <location filename="../../desktop/review/section_view.py" />

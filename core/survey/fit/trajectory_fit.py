@@ -22,6 +22,7 @@ from .mounting import Mounting, read_places, scanner_mountings, usual_lever, veh
 HALF_VEHICLE = 1.275    # m: no vehicle on the road is wider than 2.55 m (Directive 96/53/EC), so no scanner rides farther beside its middle
 VEHICLE_HEIGHT = 4.0    # m (the same), so no scanner rides farther above or below a trajectory that is on the vehicle
 BELOW_ROAD = 0.5        # m below the road, beyond which a trajectory is no line on it either
+SIGMA_OF_OTHER_HEIGHTS = 0.12   # m: of edges in surveys stretched or turned upside down, 95 % lay within three times that of the true ones
 CLEARLY_BETTER = 0.5    # of what one move leaves, below which another is taken
 SINGLE_STEPS = tuple(2.0**-k for k in range(6))   # m from number to number of single precision, from 262 km on
 ROUNDING_SAMPLES, MIN_ROUNDED_VALUES = 20_000, 200   # points looked at, and different values of them, or points lie on lines
@@ -66,8 +67,8 @@ def fitted_trajectory(files: Sequence[CloudHeader], trajectory: Trajectory, scan
     sample = read_places(files, scanner_field)
     shape = replace(shape, sigma=float(np.hypot(shape.sigma, _rounding(sample.place, progress))))
     mountings = [one for one in scanner_mountings(sample, shape.trajectory) if np.hypot(*usual_lever([one])[0][:2]) < CORRIDOR]
-    if not mountings or _other_heights(sample, shape.trajectory, mountings, progress):
-        return FittedTrajectory(given, shape.sigma, bool(mountings))
+    if mountings and _other_heights(sample, shape.trajectory, mountings, progress):
+        return FittedTrajectory(given, float(np.hypot(shape.sigma, SIGMA_OF_OTHER_HEIGHTS)), True)
     if not (mountings := _met(mountings)):
         return FittedTrajectory(given, shape.sigma, False)
     level = _at_height(shape.trajectory, mountings, progress)

@@ -196,7 +196,7 @@ def read_header(path: str | os.PathLike[str], given: str = "") -> CloudHeader:
             tuple(map(float, low)), tuple(map(float, high)), tuple(map(float, header.scales)),
             cloud_crs(header), "gps_time" in names, "scanner_channel" in names,
             bool(header.global_encoding.gps_time_type.value), points_per_chunk(path), "red" in names,
-            tuple(f"{path}: {note}." for note in (*mended.notes, *overflow)), units, crs_of_records(header)[1])
+            tuple(f"The file {path} contradicts its header: {note}." for note in (*mended.notes, *overflow)), units, crs_of_records(header)[1])
 
 
 def _overflow(header):

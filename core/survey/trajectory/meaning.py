@@ -266,7 +266,7 @@ def _gps_seconds(times, column, meaning, date_title, label, notes):
         advice = "add the date"
     else:
         why = f"it is not said whether the clock shows GPS time, UTC, which differs {apart}, or local time"
-        advice = "name the column GPS time or UTC, or write gps or utc in place of time in Columns of Import trajectory, if you know what it shows"
+        advice = "call the column GPS time or UTC, or write gps or utc in place of time in Columns of Import trajectory, if you know what it shows"
     raise RoadExtractionError(
         f"The column {listed([column.title or 'without a name'])} of {label} holds clock times such as {column.first[:LONGEST_NAME]!r}. GPS seconds "
         f"are needed, and {why}. Export the trajectory with GPS time in seconds; or {advice}.")

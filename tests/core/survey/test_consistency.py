@@ -28,7 +28,7 @@ def another_drive(change):
 def curbs_along(frame):
     curbs = Features("PointZ", CURB_POINTS)
     for s, x, y in zip(STATIONS, *frame.to_map(0, STATIONS, np.full(len(STATIONS), 4.0))):
-        curbs.add(shapely.Point(x, y, 100.0), road=0, station_m=s)
+        curbs.add(shapely.Point(x, y, 100.0), road=0, station_m=s, offset_m=4.0)
     return curbs
 
 
@@ -64,6 +64,15 @@ def test_with_another_drive_they_are_refused(street, other):
         check_features_on_roads(curbs_along(street), stranger, "Curb points")
     with pytest.raises(RoadExtractionError, match="Give the trajectory that they were made with"):
         check_road_points_on_roads(points_along(street), stranger, "The points")
+
+
+@pytest.mark.parametrize("metres", [3.0, -1.4])
+def test_what_was_made_with_a_trajectory_moved_to_its_scanners_is_refused_with_the_one_given(metres):
+    given, moved = build_frame(drive(chain(ahead(180)))), build_frame(drive(chain(ahead(180)), 10.0, 50.0, 1000.0, 2.0, EAST, NORTH + metres))
+    with pytest.raises(RoadExtractionError, match=f"Curb points lie {abs(metres):.2f} m beside the offsets"):
+        check_features_on_roads(curbs_along(moved), given, "Curb points")
+    with pytest.raises(RoadExtractionError, match="Run Road map, which makes all layers with the trajectory as it was moved"):
+        check_road_points_on_roads(points_along(moved), given, "The points")
 
 
 def test_a_road_that_is_not_there_is_another_drive_s(street):

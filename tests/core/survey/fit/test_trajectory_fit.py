@@ -96,11 +96,12 @@ def raised(measured, path, heights):
 def test_heights_in_feet_beside_metres_are_named(tmp_path):
     found, warned = told(*raised(mirror_drive(PAIR, seconds=5.0), tmp_path / "feet.laz", lambda z: z / 0.3048))
     assert found.seen and len(warned) == 1 and "in feet where x and y are in metres" in warned[0]
+    assert found.sigma > 0.1
 
 
 def test_heights_that_are_upside_down_are_named(tmp_path):
-    _, warned = told(*raised(mirror_drive(PAIR, seconds=5.0), tmp_path / "down.laz", lambda z: -z))
-    assert len(warned) == 1 and "upside down" in warned[0]
+    found, warned = told(*raised(mirror_drive(PAIR, seconds=5.0), tmp_path / "down.laz", lambda z: -z))
+    assert len(warned) == 1 and "upside down" in warned[0] and found.sigma > 0.1
 
 
 def test_coordinates_that_went_through_single_precision_are_named(tmp_path):
