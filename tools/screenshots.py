@@ -140,12 +140,11 @@ def corrections(dock):
     dock.accept_button.click()
     wait(1)
     # a zebra crossing has no edge lines
-    for row, piece in enumerate(dock.place.pieces):
-        dock.list.item(row).setSelected(piece.target == "marking")
+    dock.list.setCurrentRow(next((row for row, piece in enumerate(dock.place.pieces) if piece.target == "marking"), 0))
     dock.note.setText({"de": "Zebrastreifen"}.get(os.environ["LANEWRIGHT_LANG"], "zebra crossing"))
     dock.delete_button.click()
     wait(1)
-    dock.go(dock.group)
+    dock.go(dock.road_map)
     line = dock.place.pieces[0].line
     dock.begin_draw("edge")
     to_map = QgsCoordinateTransform(dock.place.crs, iface.mapCanvas().mapSettings().destinationCrs(), QgsProject.instance())
@@ -153,8 +152,8 @@ def corrections(dock):
         dock.tool.add(to_map.transform(line.interpolate(share * line.length()).asPoint()))
     wait(1)
     dock.tool.finish()
-    dock.go(dock.group, -1)
-    dock.go(dock.group, -1)
+    dock.at = -1
+    dock.go(dock.road_map)  # the first place, with what was decided there
     wait(2)
     needed(dock.layer is not None and dock.layer.featureCount() >= 3, "the corrections were not kept")
     keep(iface.mainWindow(), "window_corrections")

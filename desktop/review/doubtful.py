@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 from qgis.core import Qgis, QgsCoordinateReferenceSystem, QgsGeometry, QgsLineString, QgsPointXY, QgsRectangle
 
+from ...processing_provider.results.attributes import DIRECTIONS
 from ...processing_provider.results.road_maps import RoadMap
 from ...processing_provider.texts import tr
 from .missing_parts import Missing, grown_surface, lane_ends, missing_edges, warned_places
@@ -118,9 +119,10 @@ def second_reading(other: str) -> str:
     """What the field `other` says, in words."""
     try:
         reading = json.loads(other)
-        lanes = [f"{float(lane['width_m']):.1f}" for lane in reading.get("lanes", ())]
+        lanes = [tr("a lane of {width:.1f} m {direction}").format(width=float(lane["width_m"]), direction=DIRECTIONS[lane["direction"]])
+                 for lane in reading.get("lanes", ())]
         if lanes:
-            return tr("{count} lane(s), {widths} m wide").format(count=len(lanes), widths=" | ".join(lanes))
+            return ", ".join(lanes)
         return LINES[reading["kind"]]
     except (ValueError, TypeError, KeyError, AttributeError):  # the field can be edited
         return tr("another reading")

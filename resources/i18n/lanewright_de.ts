@@ -7540,8 +7540,8 @@
         </message>
         <message>
             <location filename="../../desktop/review/doubtful.py" />
-            <source>; another reading is almost as likely</source>
-            <translation>; eine andere Lesart ist fast ebenso wahrscheinlich</translation>
+            <source>another reading</source>
+            <translation>eine andere Lesart</translation>
         </message>
         <message>
             <location filename="../../desktop/review/doubtful.py" />
@@ -7552,6 +7552,16 @@
             <location filename="../../desktop/review/doubtful.py" />
             <source>confidence {sure:.2f}</source>
             <translation>Vertrauen {sure:.2f}</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/doubtful.py" />
+            <source>{count} lane(s), {widths} m wide</source>
+            <translation>{count} Fahrstreifen, {widths} m breit</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/doubtful.py" />
+            <source>; almost as likely: {reading}</source>
+            <translation>; fast ebenso wahrscheinlich: {reading}</translation>
         </message>
         <message>
             <location filename="../../desktop/review/missing_parts.py" />

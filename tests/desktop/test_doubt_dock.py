@@ -161,7 +161,7 @@ def test_the_other_reading_of_a_lane_is_taken_by_one_key_and_goes_into_the_corre
         road=0, station_m=80.0, length_m=8.0, lane=1, direction=1, status="inferred", confidence=0.55, other=reading)))
     assert lane.featureCount() == 1
     at_first.go(road_maps(QgsProject.instance())[0])
-    assert "almost as likely: 2 lane(s), 3.5 | 3.5 m wide" in at_first.list.item(0).text() and at_first.other_button.isEnabled()
+    assert "a lane of 3.5 m along the road, a lane of 3.5 m against" in at_first.list.item(0).text() and at_first.other_button.isEnabled()
     {action.shortcut().toString(): action for action in at_first.actions()}["O"].trigger()
     layer, = corrections_layers(QgsProject.instance())
     row, = layer.getFeatures()

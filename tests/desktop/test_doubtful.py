@@ -93,7 +93,7 @@ def test_within_a_place_the_most_doubtful_piece_comes_first(project):
 
 
 @pytest.mark.parametrize("other, words", [
-    ('{"nats": 2.81, "lanes": [{"offset_m": 1.9, "width_m": 2.48, "direction": 1}]}', "1 lane(s), 2.5 m wide"),
+    ('{"nats": 2.81, "lanes": [{"offset_m": 1.9, "width_m": 2.48, "direction": 1}]}', "a lane of 2.5 m along the road"),
     ('{"nats": 0.4, "kind": "centre"}', "Centre line"), ('{"kind": "wall"}', "another reading"), ("[1]", "another reading"),
     ("?", "another reading")])
 def test_the_second_reading_of_a_piece_is_said_in_words(other, words):

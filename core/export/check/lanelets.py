@@ -248,7 +248,7 @@ class _LaneletCheck:
         d = sum((line[1] - line[0] if at == 0 else line[-1] - line[-2]) for line in middle)
         return float(np.arctan2(d[1], d[0]))
 
-    def _one_height(self, way, other) -> bool:
+    def _one_height(self, way: Way, other: Way) -> bool:
         """Whether two ways at one place are no bottom and top of a curb."""
         places, line = self.places[self.whole.rows(way)], shapely.linestrings(self.places[self.whole.rows(other)])
         feet = shapely.line_interpolate_point(line, shapely.line_locate_point(line, shapely.points(places)))
