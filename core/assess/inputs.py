@@ -11,7 +11,7 @@ import shapely
 
 from ..common.errors import RoadExtractionError
 from ..io.crs import check_metric, horizontal_part, parse_crs, same_crs
-from ..io.crs_place import check_place
+from ..io.crs_place import check_extent
 from .matching import MAX_ROAD_DISTANCE, TrajectoryStationing, sample_lines, single_lines
 
 MAX_LAYER_DISTANCE = 100.0  # m between the extents of two layers of one road
@@ -86,8 +86,8 @@ def common_crs(layers: Sequence[AssessedLayer]) -> str:
         try:
             check_metric(crs, layer.label)
             if len(layer.geometries):
-                west, south, east, north = shapely.total_bounds(layer.geometries).tolist()
-                check_place(layer.crs, ((west + east) / 2, (south + north) / 2), layer.label)
+                bounds = shapely.total_bounds(layer.geometries)
+                check_extent(layer.crs, bounds[:2], bounds[2:], layer.label)
             return layer.crs
         except RoadExtractionError as problem:
             refused = refused or problem

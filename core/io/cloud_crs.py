@@ -9,7 +9,7 @@ import numpy as np
 
 from ..common.errors import RoadExtractionError
 from .crs import check_metric, horizontal_part, parse_crs, same_crs
-from .crs_place import check_place
+from .crs_place import check_extent
 from .units import as_in_file, in_metres, unit_names
 
 SUSPICIOUS_SENSOR_HEIGHT = 5.0, 15.0  # m: higher than any survey vehicle; 1.5 to 4.5 m expressed in feet
@@ -62,21 +62,19 @@ def check_projected(files: Sequence[Any], given: str = "", trajectory_crs: str =
         return ""
     wkt = in_metres(wkt if wkt in known or len(wkt) > 20 else crs.to_wkt())[0]
     check_metric(parse_crs(wkt), "The point cloud")
-    check_place(wkt, _middle(files), "The point cloud")
+    check_extent(wkt, *_bounds(files), "The point cloud")
     return wkt
 
 
-def _middle(files):
-    """(x, y) in the middle of the clouds."""
+def _bounds(files):
+    """(3,) least and (3,) greatest coordinates of the clouds."""
     held = [file for file in files if file.count]
-    low, high = np.min([file.minimum for file in held], axis=0), np.max([file.maximum for file in held], axis=0)
-    return tuple(((low + high) / 2)[:2].tolist())
+    return np.min([file.minimum for file in held], axis=0), np.max([file.maximum for file in held], axis=0)
 
 
 def _in_degrees(files):
     """Whether the clouds' coordinates can only be longitude and latitude: valid degrees, and a survey less than a degree wide."""
-    low = np.min([file.minimum for file in files if file.count], axis=0)
-    high = np.max([file.maximum for file in files if file.count], axis=0)
+    low, high = _bounds(files)
     return bool((np.abs([low[0], high[0]]) <= 180).all() and (np.abs([low[1], high[1]]) <= 90).all() and (high - low)[:2].max() < 1.0)
 
 
@@ -96,7 +94,7 @@ def crs_note(files: Sequence[Any], given: str, crs: str) -> str:
     if not crs:
         return ("The point cloud carries no CRS, and neither do the results: they lie in its own coordinates. Where these are "
                 "map coordinates, give their CRS by the parameter CRS (such as EPSG:25832) and run again.")
-    notes = [check_place(crs, _middle(files), "The point cloud")]
+    notes = [check_extent(crs, *_bounds(files), "The point cloud")]
     own = next((file.crs for file in files if file.crs), "")
     if given and own and not same_crs(parse_crs(given), parse_crs(own)):
         notes.append(f"The point cloud says that it is in {horizontal_part(parse_crs(own)).name}; the parameter CRS "

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -121,6 +122,42 @@ def check_place(wkt: str, place: tuple[float, float], what: str) -> str:
         return (f"{what} lies at {_degrees(there)}, outside the area of its CRS {crs.name} ({_named(area)}): if the survey was not made there, its "
                 "CRS is wrong, and so is that of the results. Correct it in the data.")
     return ""
+
+
+def check_extent(wkt: str, low: Sequence[float], high: Sequence[float], what: str) -> str:
+    """As `check_place`, of what lies between two corners.
+
+    Single points astray move one corner, and the middle with it: what is right at the middle or at either corner is not refused.
+
+    Parameters
+    ----------
+    wkt : metric CRS
+    low, high : (2,) or (3,) least and greatest coordinates, metres
+    what : the subject of the message, such as "The point cloud"
+
+    Returns
+    -------
+    As `check_place`
+
+    Raises
+    ------
+    RoadExtractionError
+        If `check_place` refuses the middle and both corners.
+    """
+    corners = np.array([low, high])[:, :2]
+    notes, refusals = [], []
+    for place in (corners.mean(axis=0), *corners):
+        try:
+            note = check_place(wkt, tuple(place.tolist()), what)
+        except RoadExtractionError as problem:
+            refusals.append(problem)
+            continue
+        if not note:
+            return ""
+        notes.append(note)
+    if notes:
+        return notes[0]
+    raise refusals[0]
 
 
 def _area_of_use(wkt, by_code):

@@ -1,9 +1,10 @@
 """Surveys where their CRS holds, beside it, and with exchanged coordinates."""
 
+import numpy as np
 import pytest
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.io.crs import parse_crs
-from lanewright.core.io.crs_place import check_place, place_on_ground
+from lanewright.core.io.crs_place import check_extent, check_place, place_on_ground
 from lanewright.core.io.units import in_metres
 from pyproj import Proj, Transformer
 
@@ -55,3 +56,12 @@ def test_a_local_system_that_bears_the_name_of_a_grid_is_taken_with_a_word(code)
 
 def test_a_survey_far_outside_its_zone_is_taken_with_a_word_where_lengths_hold():
     assert "outside the area of its CRS OSGB36" in check_place("EPSG:27700", (610_530.0, 2_710_120.0), "The point cloud")
+
+
+@pytest.mark.parametrize("low, high", [((2e6, 0), (0, 0)), ((0, 0), (0, 2e6))])
+def test_a_point_astray_moves_a_survey_to_no_other_place(low, high):
+    """A point 2,000 km away, where a clock that jumps puts it, is one corner of the bounds."""
+    wkt, place = at("EPSG:32650", 118.1, 24.5)
+    assert check_extent(wkt, np.subtract(place, low), np.add(place, high), "The point cloud") == ""
+    with pytest.raises(RoadExtractionError, match="outside the area"):
+        check_extent(wkt, np.add(place, (2e6, 0)), np.add(place, (4e6, 0)), "The point cloud")
