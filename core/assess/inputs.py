@@ -86,8 +86,7 @@ def common_crs(layers: Sequence[AssessedLayer]) -> str:
         try:
             check_metric(crs, layer.label)
             if len(layer.geometries):
-                bounds = shapely.total_bounds(layer.geometries)
-                check_extent(layer.crs, bounds[:2], bounds[2:], layer.label)
+                check_extent(layer.crs, shapely.total_bounds(layer.geometries).reshape(2, 2), layer.label)
             return layer.crs
         except RoadExtractionError as problem:
             refused = refused or problem

@@ -62,7 +62,7 @@ def check_projected(files: Sequence[Any], given: str = "", trajectory_crs: str =
         return ""
     wkt = in_metres(wkt if wkt in known or len(wkt) > 20 else crs.to_wkt())[0]
     check_metric(parse_crs(wkt), "The point cloud")
-    check_extent(wkt, *_bounds(files), "The point cloud")
+    check_extent(wkt, _bounds(files), "The point cloud")
     return wkt
 
 
@@ -94,7 +94,7 @@ def crs_note(files: Sequence[Any], given: str, crs: str) -> str:
     if not crs:
         return ("The point cloud carries no CRS, and neither do the results: they lie in its own coordinates. Where these are "
                 "map coordinates, give their CRS by the parameter CRS (such as EPSG:25832) and run again.")
-    notes = [check_extent(crs, *_bounds(files), "The point cloud")]
+    notes = [check_extent(crs, _bounds(files), "The point cloud")]
     own = next((file.crs for file in files if file.crs), "")
     if given and own and not same_crs(parse_crs(given), parse_crs(own)):
         notes.append(f"The point cloud says that it is in {horizontal_part(parse_crs(own)).name}; the parameter CRS "

@@ -124,7 +124,7 @@ def check_place(wkt: str, place: tuple[float, float], what: str) -> str:
     return ""
 
 
-def check_extent(wkt: str, low: Sequence[float], high: Sequence[float], what: str) -> str:
+def check_extent(wkt: str, bounds: Sequence[Sequence[float]], what: str) -> str:
     """As `check_place`, of what lies between two corners.
 
     Single points astray move one corner, and the middle with it: what is right at the middle or at either corner is not refused.
@@ -132,7 +132,7 @@ def check_extent(wkt: str, low: Sequence[float], high: Sequence[float], what: st
     Parameters
     ----------
     wkt : metric CRS
-    low, high : (2,) or (3,) least and greatest coordinates, metres
+    bounds : (2,) or (3,) least coordinates and greatest coordinates, metres
     what : the subject of the message, such as "The point cloud"
 
     Returns
@@ -144,7 +144,7 @@ def check_extent(wkt: str, low: Sequence[float], high: Sequence[float], what: st
     RoadExtractionError
         If `check_place` refuses the middle and both corners.
     """
-    corners = np.array([low, high])[:, :2]
+    corners = np.array(bounds)[:, :2]
     notes, refusals = [], []
     for place in (corners.mean(axis=0), *corners):
         try:

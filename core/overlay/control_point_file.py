@@ -9,6 +9,7 @@ from __future__ import annotations
 import csv
 import re
 from pathlib import Path
+from typing import Any
 
 from ..common.errors import RoadExtractionError
 from ..io.text_table import as_number
@@ -105,9 +106,8 @@ def _wkt(named, path):
     # OpenDroneMap writes "WGS84 UTM 32N" for what EPSG calls "WGS 84 / UTM zone 32N"
     words = UTM_WORDS.match(named)
     try:
-        found = parse_crs(f"{words['datum'].replace('_', ' ')} / UTM zone {int(words['zone'])}{words['half'].upper()}" if words else named)
-        assert found is not None
-        return found.to_wkt()
+        crs: Any = parse_crs(f"{words['datum'].replace('_', ' ')} / UTM zone {int(words['zone'])}{words['half'].upper()}" if words else named)
+        return crs.to_wkt()
     except RoadExtractionError as problem:
         raise RoadExtractionError(f"{path} names a CRS that is not understood: {named[:60]!r}. Correct that line (EPSG:number) or remove it "
                                   "and give the CRS.") from problem
