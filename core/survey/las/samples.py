@@ -75,8 +75,10 @@ def coarse_coordinates(samples: Sequence[FileSample]) -> str:
         steps, scales = sample.steps, np.abs(sample.file.scales)
         ends = np.array([sample.file.minimum, sample.file.maximum], np.float32)
         short = (np.abs(steps - np.abs(np.spacing(ends))) <= scales).any(axis=0)
-        told = (steps > COARSE_COORDINATES) & (short | np.isclose(steps, scales, rtol=0.01))
-        if not told.any():
+        coarse = steps > COARSE_COORDINATES
+        told = coarse & (short | np.isclose(steps, scales, rtol=0.01))
+        # Coarse steps on another axis that neither explains are those of a raster on which the points lie, as after thinning by voxels
+        if not told.any() or (coarse & ~told).any():
             continue
         k = int(np.argmax(np.where(told, steps, 0.0)))
         listed = ", ".join(f"{steps[axis]:.3g} m in {name}" for axis, name in enumerate("xyz") if told[axis])
