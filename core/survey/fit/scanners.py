@@ -42,6 +42,7 @@ MAX_SCANNER_OFFSETS = 2 * AGREEMENT_PLAN, AGREEMENT_PLAN, 0.010
 SIDES = "right", "left"
 SAID_AS = ("ahead", "behind"), ("left", "right"), ("above", "below")
 SAID_M = 0.005           # m
+SIGNIFICANT = 3.0        # sigma
 
 
 @dataclass(frozen=True)
@@ -51,12 +52,14 @@ class ScannerOffsets:
     scanner : its number
     beside : (2, 3) m left of the track at which each move was measured, negative on the right
     moves : (2, 3) m ahead, left and up that bring its points onto those of the first scanner; NaN where nothing shows it
+    sigma : (2, 3) m, of the moves: how far they differ between windows of road, of which all show the same mounting; 0 of one window
     far : whether they lie farther apart than could be measured
     """
 
     scanner: int
     beside: np.ndarray
     moves: np.ndarray
+    sigma: np.ndarray
     far: bool
 
 
@@ -112,9 +115,9 @@ def _all_shown(one):
 
 
 def _apart(one):
-    """Whether a scanner lies measurably beside the first."""
+    """Whether a scanner lies measurably beside the first: by more than is harmless, and than windows of road differ by."""
     known = np.nan_to_num(np.abs(one.moves))
-    return one.far or bool((known > MAX_SCANNER_OFFSETS).any())
+    return one.far or bool((known > MAX_SCANNER_OFFSETS + SIGNIFICANT * one.sigma).any())
 
 
 def _said(survey, one, sigma):
@@ -237,18 +240,37 @@ def _side_evidence(first, other, side):
 
 def _offsets(number, evidence):
     """ScannerOffsets of the evidence of windows."""
-    beside, moves, far = np.zeros((len(SIDES), 3)), np.full((len(SIDES), 3), np.nan), False
+    beside, moves, sigma, far = np.zeros((len(SIDES), 3)), np.full((len(SIDES), 3), np.nan), np.zeros((len(SIDES), 3)), False
     for side in range(len(SIDES)):
-        across, along, up, weights = zip(*(one[side] for one in evidence))
-        found, at_limit = best_offsets(np.sum(across, axis=0))
-        # as with passes: a face looks different from another side, so it counts only where no paint shows it
-        channel = next((name for name in CHANNELS[::-1] if np.isfinite(found[CHANNELS.index(name)])), CHANNELS[0])
+        seen = [one[side] for one in evidence]
+        moves[side], channel, at_limit = _moves_of(seen)
+        far |= at_limit
         for axis, name in enumerate((channel, channel, "heights")):
-            total, place = (sum(one[name][k] for one in weights) for k in (0, 1))
+            total, place = (sum(weights[name][k] for *_, weights in seen) for k in (0, 1))
             beside[side, axis] = place / total if total else STRIP_HALF_WIDTH * (side - 0.5)
-        moves[side, 1] = found[CHANNELS.index(channel)]
-        moves[side, 0] = best_offsets(np.sum(along, axis=0))[0][CHANNELS.index("paint")]
-        known = [one for one in up if np.isfinite(one)]
-        moves[side, 2] = np.median(known) if known else np.nan
-        far |= bool(at_limit.any())
-    return ScannerOffsets(number, beside, moves, far)
+        if len(seen) > 1:
+            sigma[side] = _jackknife([_moves_of(seen[:k] + seen[k + 1:])[0] for k in range(len(seen))])
+    return ScannerOffsets(number, beside, moves, sigma, far)
+
+
+def _moves_of(seen):
+    """(3,) m ahead, left and up, the channel that shows the second, and whether it is beyond what can be measured, of one side of windows."""
+    across, along, up, _ = zip(*seen)
+    found, at_limit = best_offsets(np.sum(across, axis=0))
+    # as with passes: a face looks different from another side, so it counts only where no paint shows it
+    channel = next((name for name in CHANNELS[::-1] if np.isfinite(found[CHANNELS.index(name)])), CHANNELS[0])
+    known = [one for one in up if np.isfinite(one)]
+    ahead = best_offsets(np.sum(along, axis=0))[0][CHANNELS.index("paint")]
+    return np.array([ahead, found[CHANNELS.index(channel)], np.median(known) if known else np.nan]), channel, bool(at_limit.any())
+
+
+def _jackknife(left_out):
+    """(3,) sigma of an estimate from (N, 3) estimates without one window each (Tukey 1958).
+
+    Infinite where half of these show nothing: the estimate then hangs on single windows.
+    """
+    values = np.array(left_out)
+    count = np.isfinite(values).sum(axis=0)
+    mean = np.nansum(values, axis=0) / np.maximum(count, 1)
+    sigma = np.sqrt((count - 1) / np.maximum(count, 1) * np.nansum(np.square(values - mean), axis=0))
+    return np.where(2 * count > len(values), sigma, np.inf)
