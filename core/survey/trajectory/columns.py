@@ -30,16 +30,18 @@ COLUMN_NAMES = {
     # of what several columns hold together
     "week": ("gpsweek", "week", "weekno", "weeknumber", "gpsweeknumber", "wn", "wnc", "gpswoche"),
     "date": ("date", "gpsdate", "utcdate", "datum", "calendardate", "fecha", "日期", "日付"),
-    "hour": ("hour", "hours", "hh", "gpshour", "utchour", "stunde", "heure"), "minute": ("minute", "minutes", "min", "gpsminute", "utcminute"),
+    "year": ("year", "yyyy", "yr"), "month": ("month", "mon", "mm"), "day": ("day", "dd"),
+    "hour": ("hour", "hours", "hh", "gpshour", "utchour"), "minute": ("minute", "minutes", "min", "gpsminute", "utcminute", "mm"),
     "ecef_x": (), "ecef_y": (), "ecef_z": (),
 }
 # A longer name has a role where all its words are of these, and one is of the first kind: "GPS Time of Week", "altitude_ellipsoidal".
 # Single letters count as words of their own, the others also where they are written together.
 ROLE_WORDS = {
-    "time": ("time times timestamp timetag seconds second secs sec sow tow itow sod gpst utc clock epoch stamp datetime zeit uhrzeit zeitpunkt "
-             "zeitstempel temps heure tiempo hora tempo tijd время 时间 时刻 時刻 時間 日時 日期时间",
+    "time": ("time times timestamp timetag seconds second secs sec ss sow tow itow sod gpst utc clock epoch stamp datetime zeit uhrzeit zeitpunkt "
+             "zeitstempel temps sekunde sekunden seconde secondes segundo segundos mjd jd julian datenum "
+             "heure tiempo hora tempo tijd время 时间 时刻 時刻 時間 日時 日期时间",
              "gps gnss of week day the in adjusted adj standard offset unix posix local system receiver since start elapsed date log ins imu "
-             "sensor measurement relative absolute mean gpszeit von woche tag"),
+             "sensor measurement relative absolute mean gpszeit von woche tag modified excel serial matlab days number"),
     "x": ("easting east eastings x e este est ost rechtswert oost 东坐标 東座標",
           "utm grid map coord coordinate coordinates position pos local projected gps gnss ins imu sensor antenna scanner vehicle platform world"),
     "y": ("northing north northings y n norte nord hochwert noord 北坐标 北座標",
@@ -56,7 +58,9 @@ ROLE_WORDS = {
     "lat": ("latitude lat latitud latitudine breite 纬度 緯度 широта",
             "gps gnss ins imu wgs84 wgs geodetic geographic decimal dd position pos coord coordinate sensor vehicle platform geographische n"),
     "week": ("week wn wnc woche", "gps gnss number no nr"),
-    "date": ("date datum", "gps gnss utc calendar local"), "hour": ("hour hours", "gps utc local"), "minute": ("minute minutes", "gps utc local"),
+    "date": ("date datum", "gps gnss utc calendar local"), "year": ("year jahr année año anno ano 年", "gps utc local"),
+    "month": ("month monat mois mes mese mês 月", "gps utc local"), "day": ("day tag jour día dia giorno 日", "gps utc local of month"),
+    "hour": ("hour hours stunde heure hora ora 时 時", "gps utc local"), "minute": ("minute minutes minuto 分", "gps utc local"),
     **{f"ecef_{axis}": (axis, "ecef earth centred centered geocentric cartesian wgs84 itrf xyz coord coordinate position pos")
        for axis in ("x", "y", "z")},
 }

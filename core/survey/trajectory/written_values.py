@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
 
 import numpy as np
+
+from ...common.errors import RoadExtractionError
 
 _DATE = r"(?P<date>\d{4}[-/.]\d{1,2}[-/.]\d{1,2}|\d{1,2}[-/.]\d{1,2}[-/.]\d{4}|\d{8})"
 _CLOCK = r"(?P<hour>\d{1,2}):(?P<minute>\d{2})(?::(?P<second>\d{2}(?:[.,]\d*)?))?\s*(?P<half>[ap]\.?m\.?)?"
@@ -25,26 +27,38 @@ MONTHS = ("jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", 
 LOOKED_AT = 50          # texts of a column by which it is told what they are
 MOST = 0.9              # of them
 GPS_EPOCH = datetime(1980, 1, 6)
+SECONDS_PER_WEEK, SECONDS_PER_DAY = 604800.0, 86400.0
 UNIX_EPOCH = 315_964_800.0   # s from 1970 to the start of GPS time
 # Days on which a second was inserted into UTC since GPS time began (IERS Bulletin C); none is announced after the last
 LEAP_DAYS = ("1981-07-01", "1982-07-01", "1983-07-01", "1985-07-01", "1988-01-01", "1990-01-01", "1991-01-01", "1992-07-01", "1993-07-01",
              "1994-07-01", "1996-01-01", "1997-07-01", "1999-01-01", "2006-01-01", "2009-01-01", "2012-07-01", "2015-07-01", "2017-01-01")
 
 
+# Days from the beginning of a count to that of GPS time; of several that may be, the first
+DAY_COUNTS = {"modified Julian days": 44244.0, "days of a spreadsheet": 29226.0, "days of MATLAB": 723186.0, "Julian days": 2444244.5}
+DAYS_OF_SURVEYS = 3648.0, 25563.0   # since 1980: those of 1990 to 2050, by which counts of days are told apart
+MOST_STEP = 4e-4        # days are counted where times go up by less, which as days is 35 s: no receiver writes 2500 positions a second
+COARSEST = 1e-3         # s: the last decimal of a day, in which a vehicle drives 2 cm
+USUAL_SPEED = 20.0      # m/s, for messages
+
+
 @dataclass(frozen=True)
 class ClockTimes:
-    """Clock times that were written as text.
+    """Clock times that were written as text, or as days.
 
     seconds : (N,) since 6 January 1980 as the clock counts, or since its midnight where no date is written; NaN where a text is no time
     dated : whether dates are written
     zone : "UTC" or "GPS" where the texts say so, "" otherwise; times with an offset from UTC are brought to UTC
     order_known : whether day and month can be told apart
+    kind, first : what was written, and the first of them
     """
 
     seconds: np.ndarray
     dated: bool
     zone: str
     order_known: bool
+    kind: str = "clock times"
+    first: str = ""
 
 
 def hold_times(texts: Sequence[str]) -> bool:
@@ -84,7 +98,7 @@ def clock_times(texts: Sequence[str]) -> ClockTimes | None:
             value -= (60 * int(zone[1:3]) + int(zone[-2:])) * 60.0 * (1 if zone[0] == "+" else -1)
         seconds[row] = value
     zone = "" if "" in zones or not zones else "GPS" if all(name.startswith("GPS") for name in zones) else "UTC"
-    return ClockTimes(seconds, bool(dates), zone, order_known)
+    return ClockTimes(seconds, bool(dates), zone, order_known, first=next(filter(None, texts), ""))
 
 
 def _since_midnight(match):
@@ -116,6 +130,37 @@ def _midnight(date, day_first):
         return (datetime(*map(int, parts)) - GPS_EPOCH).total_seconds()
     except ValueError:
         return np.nan
+
+
+def counted_days(values: np.ndarray, texts: Callable[[], Sequence[str]], what: str) -> ClockTimes | None:
+    """The clock times of (N,) days and their shares, as MJD or spreadsheets count them; None of values that count seconds.
+
+    Parameters
+    ----------
+    values : (N,) numbers
+    texts : gives the (N,) texts as they are written
+    what : the beginning of a message
+
+    Raises
+    ------
+    RoadExtractionError
+        If they go up like days, but are of no known count, or have too few decimals.
+    """
+    steps = np.diff(values)
+    steps = steps[steps > 0]
+    if not len(steps) or not np.median(steps) < MOST_STEP:
+        return None
+    first = values[np.isfinite(values)][0]
+    kind = next((kind for kind, origin in DAY_COUNTS.items() if DAYS_OF_SURVEYS[0] <= first - origin < DAYS_OF_SURVEYS[1]), "")
+    last_decimal = SECONDS_PER_DAY * 10.0 ** -max(len(re.split("[.,]", text)[-1]) for text in texts()[:LOOKED_AT])
+    said = f"{what} goes up by {np.median(steps):.2g} from row to row as if it counted days, "
+    if not kind:
+        raise RoadExtractionError(f"{said}but {first:.10g} is no day of a known count (MJD, Julian days, a spreadsheet). GPS seconds are needed: "
+                                  "export the trajectory with these.")
+    if last_decimal > COARSEST:
+        raise RoadExtractionError(f"{said}and its last decimal is {last_decimal:.2g} s, in which a vehicle at {USUAL_SPEED:.0f} m/s drives "
+                                  f"{USUAL_SPEED * last_decimal:.2g} m. Export the trajectory with GPS seconds, or with 8 decimals of a day or more.")
+    return ClockTimes((values - DAY_COUNTS[kind]) * SECONDS_PER_DAY, True, "", True, kind, f"{first:.10g}")
 
 
 def leap_seconds(seconds: np.ndarray) -> np.ndarray:
