@@ -6,6 +6,7 @@ from contextlib import closing
 import numpy as np
 import pytest
 import shapely
+from lanewright.algorithms.destinations import table_of
 from lanewright.algorithms.vector_source import in_file_units, read_features, scaled_wkb, vertices_of
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.features import Features
@@ -14,7 +15,6 @@ from lanewright.core.io.crs import parse_crs, same_crs
 from lanewright.core.io.units import in_metres
 from lanewright.core.road.scanlines.layer import LineSpool
 from lanewright.library import gdal_module, measured_lines
-from lanewright.algorithms.destinations import table_of
 from lanewright.library.layer_files import LayerFile, file_and_table, write_layer
 from pyproj import CRS
 
@@ -40,7 +40,8 @@ def edges(count=2):
     ("map.gpkg", "map.gpkg", ""), ("map.gpkg|layername=lanes", "map.gpkg", "lanes"),
     ("ogr:dbname='/data/the map.gpkg' table=\"lanes\" (geom)", "/data/the map.gpkg", "lanes"),
     (table_of("/home/O'Neil/map.gpkg", "lanes"), "/home/O'Neil/map.gpkg", "lanes"),
-    (table_of(r"C:\data\map.gpkg", "lanes"), r"C:\data\map.gpkg", "lanes"), ("ogr:dbname='C:\\data\\map.gpkg' table=\"lanes\"", r"C:\data\map.gpkg", "lanes"),
+    (table_of(r"C:\data\map.gpkg", "lanes"), r"C:\data\map.gpkg", "lanes"),
+    ("ogr:dbname='C:\\data\\map.gpkg' table=\"lanes\"", r"C:\data\map.gpkg", "lanes"),
 ])
 def test_a_layer_is_named_as_in_qgis(value, file, table):
     assert file_and_table(value) == (file, table)
