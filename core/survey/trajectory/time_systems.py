@@ -14,11 +14,8 @@ TIME_SYSTEMS = ("automatic", "gps", "adjusted", "week", "day")
 TIME_SYSTEM_NAMES = {"as it is": "the cloud's own seconds", "gps": "GPS seconds since 1980", "adjusted": "adjusted GPS seconds (GPS less 1e9)",
                      "week": "seconds of the week", "day": "seconds of the day"}
 TIME_TOLERANCE = 1.0  # s between the ends of the times of cloud and trajectory, which may be rounded
-TAI_TO_GPS = 19.0     # s by which TAI is ahead of GPS time (IS-GPS-200)
-GPS_TO_UTC = [float(len(LEAP_DAYS) - years) for years in range(5)]   # s since the last leap second, and before each of the four before it
-# s between two clocks: GPS and UTC, TAI and UTC, TAI and GPS
-CLOCK_SHIFTS = (*GPS_TO_UTC, *(TAI_TO_GPS + shift for shift in GPS_TO_UTC[:3]), TAI_TO_GPS)
-LARGEST_SHIFT = max(CLOCK_SHIFTS)
+TAI_TO_GPS = 19.0     # source: s by which TAI is ahead of GPS time (IS-GPS-200)
+LARGEST_SHIFT = TAI_TO_GPS + len(LEAP_DAYS)   # derived: s between two clocks, TAI and UTC
 
 
 def unwrap_time(time: np.ndarray) -> np.ndarray:
@@ -164,7 +161,8 @@ def _leap_hint(first, last, cloud_first, cloud_last):
     early, late = first - cloud_first, cloud_last - last
     if max(early, late) <= TIME_TOLERANCE or max(early, late) > LARGEST_SHIFT + TIME_TOLERANCE:
         return ""
-    for leap in CLOCK_SHIFTS:
+    gps_to_utc = [float(len(LEAP_DAYS) - years) for years in range(5)]   # since the last leap second, and before each of the last four
+    for leap in (*gps_to_utc, *(TAI_TO_GPS + shift for shift in gps_to_utc[:3]), TAI_TO_GPS):
         for shift in (leap, -leap):
             if first + shift - cloud_first <= 0.1 and cloud_last - last - shift <= 0.1:
                 said = f"The scan begins {early:.1f} s before the trajectory" if early > late else f"The scan ends {late:.1f} s after the trajectory"

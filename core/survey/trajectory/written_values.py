@@ -34,12 +34,11 @@ LEAP_DAYS = ("1981-07-01", "1982-07-01", "1983-07-01", "1985-07-01", "1988-01-01
              "1994-07-01", "1996-01-01", "1997-07-01", "1999-01-01", "2006-01-01", "2009-01-01", "2012-07-01", "2015-07-01", "2017-01-01")
 
 
-# Days from the beginning of a count to that of GPS time; of several that may be, the first
-DAY_COUNTS = {"modified Julian days": 44244.0, "days of a spreadsheet": 29226.0, "days of MATLAB": 723186.0, "Julian days": 2444244.5}
-DAYS_OF_SURVEYS = 3648.0, 25563.0   # since 1980: those of 1990 to 2050, by which counts of days are told apart
-MOST_STEP = 4e-4        # days are counted where times go up by less, which as days is 35 s: no receiver writes 2500 positions a second
-COARSEST = 1e-3         # s: the last decimal of a day, in which a vehicle drives 2 cm
-USUAL_SPEED = 20.0      # m/s, for messages
+# Where counts of days begin, in the Gregorian calendar; of several that may be, the first that gives a day of FIRST_SURVEY or later
+DAY_COUNTS = {"modified Julian days": "1858-11-17", "days of a spreadsheet": "1899-12-30", "days of MATLAB": "-0001-12-31",
+              "Julian days": "-4713-11-24T12"}
+FIRST_SURVEY, LAST_SURVEY = "1990-01-01", "2050-01-01"
+SHORTEST_STEP = 5e-4    # weight: s from row to row; no trajectory has 2000 positions a second, and a vehicle drives a centimetre in it
 
 
 @dataclass(frozen=True)
@@ -148,19 +147,24 @@ def counted_days(values: np.ndarray, texts: Callable[[], Sequence[str]], what: s
     """
     steps = np.diff(values)
     steps = steps[steps > 0]
-    if not len(steps) or not np.median(steps) < MOST_STEP:
+    if not len(steps) or not np.median(steps) < SHORTEST_STEP:
         return None
     first = values[np.isfinite(values)][0]
-    kind = next((kind for kind, origin in DAY_COUNTS.items() if DAYS_OF_SURVEYS[0] <= first - origin < DAYS_OF_SURVEYS[1]), "")
+    kind = next((kind for kind, begins in DAY_COUNTS.items() if _days_from(begins, FIRST_SURVEY) <= first < _days_from(begins, LAST_SURVEY)), "")
     last_decimal = SECONDS_PER_DAY * 10.0 ** -max(len(re.split("[.,]", text)[-1]) for text in texts()[:LOOKED_AT])
     said = f"{what} goes up by {np.median(steps):.2g} from row to row as if it counted days, "
     if not kind:
         raise RoadExtractionError(f"{said}but {first:.10g} is no day of a known count (MJD, Julian days, a spreadsheet). GPS seconds are needed: "
                                   "export the trajectory with these.")
-    if last_decimal > COARSEST:
-        raise RoadExtractionError(f"{said}and its last decimal is {last_decimal:.2g} s, in which a vehicle at {USUAL_SPEED:.0f} m/s drives "
-                                  f"{USUAL_SPEED * last_decimal:.2g} m. Export the trajectory with GPS seconds, or with 8 decimals of a day or more.")
-    return ClockTimes((values - DAY_COUNTS[kind]) * SECONDS_PER_DAY, True, "", True, kind, f"{first:.10g}")
+    if last_decimal / 2 > SHORTEST_STEP:   # by half of it times are rounded
+        raise RoadExtractionError(f"{said}and its last decimal is {last_decimal:.2g} s, while a vehicle drives centimetres in a thousandth of a "
+                                  "second. Export the trajectory with GPS seconds, or with 8 decimals of a day or more.")
+    seconds = (values - _days_from(DAY_COUNTS[kind], GPS_EPOCH)) * SECONDS_PER_DAY
+    return ClockTimes(seconds, True, "", True, kind, f"{first:.10g}")
+
+
+def _days_from(begins, day):
+    return (np.datetime64(day) - np.datetime64(begins)) / np.timedelta64(1, "D")
 
 
 def leap_seconds(seconds: np.ndarray) -> np.ndarray:

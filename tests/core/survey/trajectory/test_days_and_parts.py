@@ -36,7 +36,7 @@ def test_days_and_parts_of_a_time_are_read_where_it_is_said_what_the_clock_shows
 
 @pytest.mark.parametrize("days, decimals, says", [
     (29226 + GPS / DAY, 10, "holds days of a spreadsheet such as '4448.*gps or utc"),
-    (44244 + GPS / DAY, 6, "last decimal is 0.086 s, in which .* drives 1.7 m"),
+    (44244 + GPS / DAY, 6, "last decimal is 0.086 s"),
     (287 + GPS / DAY % 1, 10, "287.99.* is no day of a known count")])
 def test_days_of_which_the_clock_the_decimals_or_the_count_do_not_do_are_refused_and_shown(tmp_path, days, decimals, says):
     with pytest.raises(RoadExtractionError, match=says):
