@@ -50,7 +50,7 @@ from ..road.surface.road_surface import SurfaceOutlines, surface_to_features
 from ..survey.open_survey import SurveySettings, open_survey
 from ..survey.point_density import CubeDensity, cube_densities
 from ..survey.store.records import Points
-from ..survey.store.road_columns import columns_of_roads
+from ..survey.store.road_points import columns_of_roads
 from .stages import INTENSITY_STAGES, Extent, Stages
 
 if TYPE_CHECKING:
@@ -220,7 +220,7 @@ def _tell_corrections(corrections, progress):
     """Say in the log how many corrections were made, and list those that match nothing."""
     progress.info(f"Corrections: {len(corrections)}, of which {len(corrections) - len(corrections.unmatched)} were made.")
     if corrections.unmatched:
-        progress.warn(f"{len(corrections.unmatched)} corrections match nothing in this run any more: "
+        progress.warn(f"Corrections that match nothing in this run any more ({len(corrections.unmatched)}): "
                       + "; ".join(one.described() for one in corrections.unmatched) + ".")
 
 

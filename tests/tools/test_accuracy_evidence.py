@@ -11,8 +11,8 @@ from shapely import LineString
 pytest.importorskip("osgeo.gdal")
 
 from accuracy.evidence import EVIDENCE, confidence_figures  # noqa: E402
+from accuracy.results import results  # noqa: E402
 from accuracy.streets import driving_figures  # noqa: E402
-from accuracy.streets_page import evidence_section  # noqa: E402
 from lanewright.core.markings.cross_section.weights import EstimateWeights  # noqa: E402
 
 TRUE_LANE = LineString([(0, 0), (100, 0)])
@@ -47,11 +47,12 @@ def test_figures_of_driving_lines_can_be_saved():
     assert "driven" not in found
 
 
-def test_the_page_says_what_a_street_loses_without_some_evidence():
+def test_the_results_say_what_a_street_loses_without_some_evidence():
     whole = dict(lanes=(95.0, 100.0), lanes_5=(90.0, 100.0), driven=(99.0, 100.0), lanes_right=(98.0, 100.0), directions=(100.0, 100.0))
     evidence = {"": whole, **{name: whole for name in EVIDENCE}, "where arrows lie": dict(whole, directions=(60.0, 100.0))}
-    text = evidence_section([dict(name="a street", evidence=evidence, confidence={"4": (970.0, 1000.0, 990.0)})])
-    arrows = next(line for line in text.splitlines() if line.startswith("| where arrows lie"))
-    assert "-40.0" in arrows and arrows.endswith("| a street |")
-    assert next(line for line in text.splitlines() if line.startswith("| stop lines")).endswith("| none |")
-    assert "| 0.95 to 1.00 | 0.99 | 0.97 | 100 |" in text
+    table = results([dict(name="a street", kind="simulated", text="", points=1, streets={"as surveyed": whole}, evidence=evidence,
+                          confidence={"4": (970.0, 1000.0, 990.0)})])
+    assert table.get("evidence", "all", "where arrows lie", "directions right") == -40.0
+    assert table.get("evidence", "all", "where arrows lie", "felt by") == "a street"
+    assert table.get("evidence", "all", "stop lines", "felt by") == "none"
+    assert [table.get("confidence", "all", "0.95 to 1.00", name) for name in ("said", "right", "m")] == [0.99, 0.97, 100.0]
