@@ -19,7 +19,6 @@ SAME_SECTION_ALONG = 0.1  # m along the road between vertices of one cross-secti
 MOST_LANE_OVERLAP = 0.35  # m that a lane placed where paint is missing may lie on its neighbour: a tenth of a lane
 LEAST_STRIPE_GAP = 0.12   # m between the middles of two stripes at the least: what is nearer is one line measured twice
 TOLD_MOVE = 0.05          # m from which the user is told
-TOLD_RISE = 0.02          # m in height from which the user is told of a map from elsewhere: the tolerance of an export
 SHARED_FADE = 10.0        # m of border beyond a common one in which it comes back to its own place
 MOST_MET = 0.01          # m by which a way of a map from elsewhere may miss its lane and is led there: half of the tolerance of an export
 FACING_TRIED = 4          # vertices around one that may face it
@@ -44,7 +43,7 @@ def with_shared_borders(source: RoadMapSource) -> RoadMapSource:
         notes.append(f"Maps have one border between two lanes: facing borders, as of a double line, were led along their middle, moved by up to "
                      f"{found.moved:.2f} m.")
     rise = np.abs(np.concatenate([found.lanes.left - source.lanes.left, found.lanes.right - source.lanes.right])[:, 2])
-    if is_stated(source.lanes) and len(rise) and rise.max() > TOLD_RISE:
+    if is_stated(source.lanes) and len(rise) and rise.max() > 2 * MOST_MET:
         row = int(np.argmax(rise)) % len(source.lanes.left)
         name = source.lanes.lane_id[int(np.searchsorted(source.lanes.start, row, side="right")) - 1]
         x, y, _ = source.lanes.left[row]

@@ -9,8 +9,7 @@ from ..common.texts import told, tr
 from ..export.check.findings import FAULTS, Findings, SameFindings
 from .page import Page
 
-MOST_ROWS = 200        # of findings that the report lists; the layer has all
-PLACES_IN_REPORT = 20   # of one finding that it names
+MOST_ROWS = 200   # of findings that the report lists; the layer has all
 
 
 def map_check_report(found: Findings, path: str, notes: Sequence[str] = ()) -> str:
@@ -38,7 +37,7 @@ def map_check_report(found: Findings, path: str, notes: Sequence[str] = ()) -> s
     page.note(tr("One row for the same finding at many places, those at the fewest places first; what was seen is the largest. The layer has a "
                  "point for each place, with its row."))
     page.table((tr("Row"), tr("Fault"), tr("Places"), tr("Where"), tr("What was seen"), "x", "y"),
-               [(row, told(one.worst.fault), one.count, places_of_findings(one, PLACES_IN_REPORT), told(one.worst.text), *one.worst.place[:2])
+               [(row, told(one.worst.fault), one.count, places_of_findings(one, MOST_ROWS // 10), told(one.worst.text), *one.worst.place[:2])
                 for row, one in enumerate(groups[:MOST_ROWS], start=1)], (0, None, 0, None, None, 2, 2))
     if len(groups) > MOST_ROWS:
         page.note(tr("The first {shown} of {count}; the layer has all of them.").format(shown=MOST_ROWS, count=len(groups)))

@@ -13,7 +13,7 @@ STIFFNESS = 1e-3      # weight of the bending against the deviations: it decides
 MOST_PIECES = 400     # of one section
 SHORTEST_CUBIC = 0.1  # m of a piece
 LEAST_STEP = 0.001    # m along the road between places that count
-STEP_RUN = 0.005  # m along the road of a steep piece that stands for a step
+STEP_RUN = 0.005      # m along the road between places that are not of one step
 BAND = 3              # unknowns beside each other that one piece joins: levels and slopes at both of its ends
 
 

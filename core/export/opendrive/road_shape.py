@@ -26,7 +26,6 @@ LEAST_STRETCH = 0.1      # of a border against the reference line: less is besid
 END_ROUNDS = 4
 SAME_LINE = 0.02         # m by which lane 0 may jump from section to section and still go on
 MOST_LEAD = 0.5          # m aside to which lane 0 is led back along a section that lies beside it
-MOST_STEP_ASKEW = 0.01   # m along the road by which a step across it may be askew: half of the tolerance of an export
 LEAST_CHORD = 1.0        # m of a border's end, along which it goes straight on
 
 
@@ -120,7 +119,7 @@ def _finer(one, s):
 
 def _square_steps(s):
     """Two vertices of every border nearly at one place are a step across the road: give all borders the same (borders, n) s there."""
-    for k in np.flatnonzero((np.diff(s.mean(0)) < STEP_RUN) & (np.ptp(s[:, :-1], axis=0) < MOST_STEP_ASKEW)):
+    for k in np.flatnonzero((np.diff(s.mean(0)) < STEP_RUN) & (np.ptp(s[:, :-1], axis=0) < 2 * STEP_RUN)):
         s[:, k:k + 2] = s[:, k:k + 2].mean() + LEAST_STEP * np.array([-1.0, 1.0])
 
 
