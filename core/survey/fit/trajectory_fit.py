@@ -96,9 +96,13 @@ def _other_heights(sample, trajectory, mountings, progress):
         for stretch, said in ((FOOT, "in feet where x and y are in metres"), (1.0 / FOOT, "in metres where x and y are in feet")):
             other = scanner_mountings(sample, trajectory, stretch)
             if len(other) >= len(mountings) and len(_met(other)) == len(other):
-                progress.warn(f"The heights of cloud and trajectory seem to be {said}: the laser beams meet in the scanner only if heights are "
+                up, height = float(usual_lever(other)[0][2]), float(np.median(trajectory.z))
+                # from a trajectory that is stretched alike the scanners lie where they ride on the vehicle
+                alone = abs(up) > max(VEHICLE_HEIGHT, abs(up - (1.0 - stretch) * height))
+                of = "the cloud alone" if alone else "cloud and trajectory"
+                progress.warn(f"The heights of {of} seem to be {said}: the laser beams meet in the scanner only if heights are "
                               f"multiplied by {stretch:.4g}. Curbs are missed, and heights and slopes are wrong by that factor. Convert the heights "
-                              "of both, and run again.")
+                              f"of {'the cloud' if alone else 'both'}, and run again.")
                 return True
     if all(one.ground > 0 for one in mountings):
         progress.warn(f"The road lies {np.mean([one.ground for one in mountings]):.1f} m above the scanners, as if heights were counted downwards or "

@@ -100,6 +100,13 @@ def test_heights_in_feet_beside_metres_are_named(tmp_path):
     assert found.sigma > 0.1
 
 
+def test_heights_of_the_cloud_alone_in_feet_are_named_as_such(tmp_path):
+    measured = mirror_drive(PAIR, seconds=5.0)
+    path, _ = raised(measured, tmp_path / "feet.laz", lambda z: z / 0.3048)
+    _, warned = told(path, measured.trajectory())
+    assert len(warned) == 1 and "heights of the cloud alone seem to be in feet" in warned[0]
+
+
 def test_heights_that_are_upside_down_are_named(tmp_path):
     found, warned = told(*raised(mirror_drive(PAIR, seconds=5.0), tmp_path / "down.laz", lambda z: -z))
     assert len(warned) == 1 and "upside down" in warned[0] and found.sigma > 0.1
