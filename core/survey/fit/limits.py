@@ -32,9 +32,9 @@ ONE_MOVE, MOST = 0.20, 0.9   # weight: m at this share of the windows, as naviga
 CLEARLY_BETTER = 0.5     # weight: of what one move leaves, below which another is taken
 
 # Where heights are in another unit or upside down, curbs are looked for at heights that they do not have. Their edges are then drawn along
-# another line of the curb: its top, the back of its stone, the rim of its gutter. Nothing in such a survey says which
-CURB_AND_GUTTER = 0.45   # source: m across; stones of 15 cm (DIN 483, HB 15 × 30), and beside them gutters that are usually 30 cm wide
-SIGMA_OF_OTHER_HEIGHTS = CURB_AND_GUTTER / 12.0**0.5   # derived: m; any place within is as likely
+# another line of the curb: its top, the back of its stone, the rim of its gutter. Nothing in such a survey says which, so that any place within
+# the stone (15 cm: DIN 483, HB 15 × 30) and its gutter (30 cm are usual) is as likely
+SIGMA_OF_OTHER_HEIGHTS = (0.15 + 0.30) / 12.0**0.5   # derived: m
 
 # Scanners against each other
 # cost: windows of the survey in which scanners are looked at, and measured, as an error of a mounting is the same in all
