@@ -1,10 +1,9 @@
 """The figures of all surveys as docs/accuracy.md."""
 
 from . import published
-from .ablations import ABLATIONS
 from .poorer_page import poorer_section, sigma_section
 from .roadside import roadside_section
-from .streets_page import evidence_section, otherwise_section, streets_section
+from .streets_page import confidence_section, otherwise_section, streets_section
 from .tables import label, mean, number, table, triple
 
 STAGES = {"Road surface": ("survey", "curbs", "edges", "surface"), "Marking extraction": ("intensity", "image", "markings"),
@@ -13,10 +12,10 @@ STAGES = {"Road surface": ("survey", "curbs", "edges", "surface"), "Marking extr
 
 def page(figures, samples):
     every, figures = figures, [f for f in figures if f["steps"]]
-    sections = (_intro(every, samples), streets_section(every), otherwise_section(every), evidence_section(every),
+    sections = (_intro(every, samples), streets_section(every), otherwise_section(every), confidence_section(every),
                 poorer_section(every), sigma_section(every), roadside_section(every), _road_points(figures), _cells(figures),
                 _classes(figures), _seconds(figures),
-                _markings(figures), _methods(figures), _driving(figures), _boundaries(figures), _ablation(figures, samples))
+                _markings(figures), _methods(figures), _driving(figures), _boundaries(figures))
     return "\n\n".join(section for section in sections if section) + "\n"
 
 
@@ -181,41 +180,3 @@ def _boundaries(figures):
             "half of it and lies within 10 cm of the true curb bottom. The paper states no tolerance. Curbs hidden by parked cars count as "
             "missed unless we bridge them rightly; dropped curbs are left out.\n\n"
             + table(head, rows, words=2) + ("\n\n" + " ".join(notes) if notes else ""))
-
-
-def _ablation(figures, samples):
-    figures = _with(figures, "ablations")
-    if not figures:
-        return ""
-    whole = [_scores(f["whole"]) for f in figures]
-    rows = [["**the whole chain**", *(number(mean([s[k] for s in whole])) for k in range(4))]]
-    unused, better_off = [], []
-    for k, ablation in enumerate(ABLATIONS):
-        pairs = [(base, _scores(f["ablations"][k])) for base, f in zip(whole, figures) if f["ablations"][k]]
-        if not pairs:
-            unused.append(ablation.text)
-            continue
-        refused = sum("refused" in f["ablations"][k] for f in figures if f["ablations"][k])
-        cells, changes = [], []
-        for column in range(4):
-            steps = [new[column] - base[column] for base, new in pairs if base[column] is not None and new[column] is not None]
-            change = mean(steps)
-            changes.append((change or 0.0) * (-1 if column == 3 else 1))
-            cells.append("–" if change is None else "·" if abs(change) < 0.05 else f"{change:+.1f}")
-        if max(changes) >= 0.5:
-            better_off.append(ablation.text)
-        rows.append([ablation.text + (f" (refused on {refused})" if refused else ""), *cells])
-    note = ("\n\nMost of these steps were made for surveys harder than these: worn paint, noisy or unlike scanners, islands and verges. "
-            "A · says that nothing here needs the step, not that it is not needed." if samples else "")
-    note += "".join(f"\n\nOne figure is better here than that of the whole chain: “{text}”." for text in better_off)
-    note += "".join(f"\n\nNot told by these surveys: {text[0].lower() + text[1:]}." for text in unused)
-    return ("## What each improvement brings\n\nEach is switched off alone, everything else at its default; the first row is the mean over "
-            "the surveys, the others the change in points (· is less than 0.05). A minus is what the improvement is worth; for miscoding, a plus."
-            "\n\n" + table(["switched off", "boundaries, F at 10 cm", "markings, F1", "driving lines, recall at 10 cm",
-                            "driving lines, miscoding at 10 cm"], rows) + note)
-
-
-def _scores(judged):
-    """F of boundaries, F1 of markings, recall and miscoding of driving lines; None where there is none."""
-    b, m, d = (judged.get(name) for name in ("boundaries", "markings", "driving"))
-    return [b and b["total"]["10"]["f1"], m and m["tolerant"]["f1"], d and d["recall"]["10"], d and d["miscoding"]["10"]]

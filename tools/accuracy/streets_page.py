@@ -1,6 +1,6 @@
 """The sections of the page on streets of every kind, and on streets surveyed otherwise."""
 
-from .evidence import BINS, EVIDENCE
+from .confidence import BINS
 from .streets import STEP, harmonic, percent, pooled
 from .tables import label, number, table
 
@@ -81,37 +81,8 @@ def change(before, after):
     return "·" if abs(after - before) < 0.05 else f"{after - before:+.1f}"
 
 
-def evidence_section(figures):
-    """What each kind of evidence brings to lines and lanes, pooled over the surveys by length, and how right the confidence is."""
-    # saved figures may be of a version that left out other evidence
-    figures = [f for f in figures if {"", *EVIDENCE} <= set(f.get("evidence") or ())]
-    if not figures:
-        return ""
-    names = ("lanes_5", "lanes", "driven", "lanes_right", "directions")
-
-    def scores(name):
-        return [percent(pooled([f["evidence"][name] for f in figures]), one) for one in names]
-
-    whole = scores("")
-    rows = [["**everything**", *(number(value) for value in whole), ""]]
-    for name in EVIDENCE:
-        felt = [f["name"] for f in figures if _differs(f["evidence"][""], f["evidence"][name])]
-        rows.append([name, *(change(before, after) for before, after in zip(whole, scores(name))), ", ".join(felt) or "none"])
-    return ("## What each kind of evidence brings to lines and lanes\n\nLines and lanes are one estimate from many kinds of evidence. Here each "
-            "kind is left out alone, everything else as it is; the first row is pooled over the surveys by length, the others are the change "
-            "in points. A minus is what the evidence is worth. Evidence that few surveys feel counts there: the last column names those whose "
-            "driving lines (15 cm), miscoding or directions change by more than half a point.\n\n"
-            + table(["left out", "driving lines 5 cm", "15 cm", "driven lanes 15 cm", "drawn lanes right, 15 cm", "directions right", "felt by"],
-                    rows)
-            + "\n\n" + _confidence(figures))
-
-
-def _differs(before, after):
-    pairs = [(percent(before, name), percent(after, name)) for name in ("lanes", "lanes_right", "directions")]
-    return any((a is None) != (b is None) or a is not None and abs(a - b) > 0.5 for a, b in pairs)
-
-
-def _confidence(figures):
+def confidence_section(figures):
+    """How right the confidence of lanes is, pooled over the surveys."""
     total = pooled([f.get("confidence") or {} for f in figures])
     rows = []
     for k in sorted(total, key=int, reverse=True):
@@ -119,6 +90,8 @@ def _confidence(figures):
         if count:
             span = f"{BINS[int(k)]:.2f} to {min(BINS[int(k) + 1], 1.0):.2f}"
             rows.append([span, number(said / count, 2), number(right / count, 2), number(count * STEP, 0)])
-    return ("Pieces of lanes carry a `confidence`: how often such pieces were right. The curve from what the estimate holds for probable to that "
-            "share was fitted on other simulated streets, not on these. Of what is drawn here with some "
-            "confidence, the share that lies within 15 cm of a true driving line:\n\n" + table(["said", "mean", "right", "m of driving lines"], rows))
+    if not rows:
+        return ""
+    return ("## Confidence of lanes\n\nPieces of lanes carry a `confidence`: how often such pieces were right. The curve from what the estimate "
+            "holds for probable to that share was fitted on other simulated streets, not on these. Of what is drawn here with some confidence, the "
+            "share that lies within 15 cm of a true driving line:\n\n" + table(["said", "mean", "right", "m of driving lines"], rows))

@@ -1,7 +1,6 @@
-"""`make accuracy`: what each kind of evidence brings to lines and lanes, and how right their confidence is."""
+"""`make accuracy`: how right the confidence of lanes is."""
 
 import json
-from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -10,21 +9,13 @@ from shapely import LineString
 
 pytest.importorskip("osgeo.gdal")
 
-from accuracy.evidence import EVIDENCE, confidence_figures  # noqa: E402
+from accuracy.confidence import confidence_figures  # noqa: E402
 from accuracy.streets import driving_figures  # noqa: E402
-from accuracy.streets_page import evidence_section  # noqa: E402
-from lanewright.core.markings.cross_section.weights import EstimateWeights  # noqa: E402
+from accuracy.streets_page import confidence_section  # noqa: E402
 
 TRUE_LANE = LineString([(0, 0), (100, 0)])
 CASE = SimpleNamespace(truth=SimpleNamespace(driving=[TRUE_LANE], area=None))
 TRACK = np.array([[0.0, -20.0], [100.0, -20.0]])
-
-
-@pytest.mark.parametrize("name", EVIDENCE)
-def test_leaving_out_evidence_changes_weights_that_there_are(name):
-    change = EVIDENCE[name]
-    if isinstance(change, dict):
-        assert replace(EstimateWeights(), **change) != EstimateWeights()
 
 
 def test_the_confidence_of_a_lane_is_compared_with_the_share_of_it_that_is_right():
@@ -47,11 +38,7 @@ def test_figures_of_driving_lines_can_be_saved():
     assert "driven" not in found
 
 
-def test_the_page_says_what_a_street_loses_without_some_evidence():
-    whole = dict(lanes=(95.0, 100.0), lanes_5=(90.0, 100.0), driven=(99.0, 100.0), lanes_right=(98.0, 100.0), directions=(100.0, 100.0))
-    evidence = {"": whole, **{name: whole for name in EVIDENCE}, "where arrows lie": dict(whole, directions=(60.0, 100.0))}
-    text = evidence_section([dict(name="a street", evidence=evidence, confidence={"4": (970.0, 1000.0, 990.0)})])
-    arrows = next(line for line in text.splitlines() if line.startswith("| where arrows lie"))
-    assert "-40.0" in arrows and arrows.endswith("| a street |")
-    assert next(line for line in text.splitlines() if line.startswith("| stop lines")).endswith("| none |")
+def test_the_page_says_how_often_sure_lanes_are_right():
+    text = confidence_section([dict(name="a street", confidence={"4": (970.0, 1000.0, 990.0)}), dict(name="a street without")])
     assert "| 0.95 to 1.00 | 0.99 | 0.97 | 100 |" in text
+    assert not confidence_section([dict(name="a street without")])
