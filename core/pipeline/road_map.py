@@ -50,7 +50,7 @@ from ..road.surface.road_surface import SurfaceOutlines, surface_to_features
 from ..survey.open_survey import SurveySettings, open_survey
 from ..survey.point_density import CubeDensity, cube_densities
 from ..survey.store.records import Points
-from ..survey.store.road_columns import columns_of_roads
+from ..survey.store.road_points import columns_of_roads
 from .stages import INTENSITY_STAGES, Extent, Stages
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ from ...common.progress import Progress
 from ...execution.phase import Executor, NoSource, Phase
 from ...execution.threads import THREADS
 from ...survey.store.records import COORDINATE_SCALE
-from ...survey.store.road_columns import columns_of_roads
+from ...survey.store.road_points import columns_of_roads
 from .components import components, occupied
 from .road_grid import CELL_UNITS
 from .scan_tracks import track_reach

@@ -11,7 +11,7 @@ import numpy as np
 from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
 from ...countries.catalogue import country
-from ...survey.store.road_columns import columns_of_roads
+from ...survey.store.road_points import columns_of_roads
 from ..objects.marking_objects import MarkingObjects
 from .between_tracks import with_unseen_paint
 from .common_trend import CommonTrend

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy import ndimage
 
-from ...survey.store.point_subset import packed_mask
 from ...survey.store.records import COORDINATE_SCALE, Points
+from ...survey.store.road_points import packed_mask
 from ...survey.store.section_store import Stretch
 from .ground_grid import COLUMN_WIDTH, GROUND_POINTS_PER_BATCH, ROW_LENGTH
 

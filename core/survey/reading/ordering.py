@@ -9,8 +9,7 @@ from typing import Any
 from ...common.progress import Progress
 from ...execution.phase import Executor, Phase, Recipe
 from ..store.section_store import STRETCH_POINTS, SectionStore, Stretch
-from ..store.spill_file import close_parts
-from ..store.store_index import StoreIndex
+from ..store.spill_file import StoreIndex, close_parts
 from .finishing import Finishing
 
 

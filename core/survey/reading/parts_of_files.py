@@ -17,7 +17,7 @@ from ..las.parallel_reader import ParallelCloudReader
 from ..las.reader import CloudHeader
 from ..las.time_slots import TimeSlots
 from ..store.section_store import SectionStore
-from ..store.store_index import StoreIndex
+from ..store.spill_file import StoreIndex
 from .blocks import BlockReader, BlockSummary, PointChoice
 
 PART_POINTS = 1_200_000   # points of a part, about: a second or two of a worker's time, some 20 MB of its file

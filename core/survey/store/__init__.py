@@ -7,9 +7,7 @@ from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
     "columns": ("Columns",),
-    "point_subset": ("PointSubset",),
     "records": ("COORDINATE_SCALE", "Points", "ROAD_POINT", "SURVEY_POINT", "to_units"),
-    "road_columns": ("columns_of_roads",),
-    "road_points": ("RoadPoints",),
+    "road_points": ("PointSubset", "RoadPoints", "columns_of_roads"),
     "section_store": ("SectionStore",),
 })

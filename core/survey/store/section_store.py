@@ -14,14 +14,12 @@ from uuid import uuid4
 
 import numpy as np
 
-from ...common.memory import ScratchBuffers
-from ...common.order_statistics import bucket_argsort
+from ...common.memory import ScratchBuffers, column_buffers
+from ...common.order_statistics import RADIX_BITS, above_least, bucket_argsort, order_by
 from ...common.parallel import check_cancelled
 from .columns import Columns, columns_in_order
-from .records import COORDINATE_SCALE, Points
-from .spill_file import SpillFile, close_parts, new_part
-from .store_index import Key, StoreIndex
-from .stored_section import StoredSection
+from .records import COORDINATE_SCALE, Points, take_rows
+from .spill_file import Key, SpillFile, StoredColumn, StoreIndex, close_parts, new_part
 
 SECTION_LENGTH = 5.0       # m of station; results do not depend on it
 MEMORY_LIMIT = 64 * 2**20  # bytes of records in memory before they are spilled
@@ -294,7 +292,6 @@ class SectionStore:
 
     def with_column(self, name: str, folder: Path | None = None) -> SectionStore:
         """A store of the same points in which one column is set anew, section by section; it shares all other columns with this one."""
-        from .column_overlay import ColumnOverlay
 
         return ColumnOverlay(self, name, folder)
 
@@ -393,3 +390,246 @@ def _unit_at(station):
     while unit * COORDINATE_SCALE < station:
         unit += 1
     return min(max(unit, LEAST_UNIT), MOST_UNIT)
+
+
+# The points of one section of a store, before and after they are sorted.
+
+class StoredSection:
+    """The points of one section: some parts in memory, others in files; one part once they are sorted.
+
+    Points are moved column by column, since a column that was just read is still in the processor's cache.
+
+    Attributes
+    ----------
+    dtype : structured dtype of the points
+    in_order : whether the points are in canonical order
+    parts : Columns of points in memory, and {name: StoredColumn} of points in files
+    """
+
+    __slots__ = ("parts", "in_order", "dtype")
+
+    def __init__(self, dtype: np.dtype, in_order: bool):
+        self.dtype, self.in_order = dtype, in_order
+        self.parts: list[Columns | dict[str, StoredColumn]] = []
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes in memory."""
+        return sum(part.nbytes for part in self.parts if isinstance(part, Columns))
+
+    @property
+    def size(self) -> int:
+        """Points."""
+        return sum(map(self._count, self.parts))
+
+    def spill(self, file: SpillFile) -> None:
+        """Write the parts in memory to the file, as one part."""
+        waiting = [part for part in self.parts if isinstance(part, Columns)]
+        if waiting:
+            stored = {name: file.put(_concatenate_into_buffer([part[name] for part in waiting])) for name in self.dtype.names or ()}
+            self.parts = [part for part in self.parts if not isinstance(part, Columns)]
+            self.parts.append(stored)
+
+    def sort(self, file: SpillFile | None, finish: Callable[[Columns], np.ndarray | None] | None) -> None:
+        """Finish the points and sort them into one part, which is in the file if any of them were in one.
+
+        Parameters
+        ----------
+        file : that takes it
+        finish : function of Columns, in no order, which it may change; it returns a mask of the points to keep, or None for all
+        """
+        records, order = self._sorted(finish)
+        spilled = [part for part in self.parts if not isinstance(part, Columns)]
+        arrays: dict[str, np.ndarray] = {}
+        stored: dict[str, StoredColumn] = {}
+        sorted_buffer = column_buffers.of(len(order))
+        for name in self.dtype.names or () if len(order) else ():
+            column = records[name]
+            if file is None or not spilled:
+                arrays[name] = column.take(order)
+                continue
+            for part in spilled:
+                part[name].file.release(part[name])
+            stored[name] = file.put(np.take(column, order, out=sorted_buffer("moved", column.dtype), mode="clip"))
+        self.parts, self.in_order = [], True
+        if len(order):
+            self.parts = [stored if spilled else Columns(arrays, self.dtype)]
+
+    def written_in_order(self, file: SpillFile, finish: Callable[[Columns], np.ndarray | None] | None) -> dict[str, StoredColumn] | None:
+        """Write the points, in canonical order, to a file; this section stays as it is. None where `finish` keeps no point.
+
+        Parameters
+        ----------
+        file, finish : as of `sort`
+        """
+        if self.in_order:
+            return {name: file.put(part[name] if isinstance(part, Columns) else part[name].file.get(part[name]))
+                    for part in self.parts for name in self.dtype.names or ()} or None
+        records, order = self._sorted(finish)
+        buffer = column_buffers.of(len(order))
+        return {name: file.put(np.take(records[name], order, out=buffer("moved", self.dtype[name]), mode="clip"))
+                for name in self.dtype.names or () if len(order)} or None
+
+    def _sorted(self, finish):
+        """The points of all parts, finished, in working memory of this thread, and the rows to keep, in canonical order."""
+        count = self.size
+        buffer = column_buffers.of(count)
+        records = Columns({}, self.dtype, count, lambda name: self._fill(name, buffer(name, self.dtype[name])))
+        mask = None if finish is None else finish(records)
+        return records, canonical_order(records, mask)
+
+    def _count(self, part):
+        return len(part) if isinstance(part, Columns) else part[self.dtype.names[0]].packing.size
+
+    def _fill(self, name, column):
+        """Fill a column with the values of all parts."""
+        first = 0
+        for part in self.parts:
+            out = column[first:first + self._count(part)]
+            if isinstance(part, Columns):
+                out[:] = part[name]
+            else:
+                part[name].file.get(part[name], out)
+            first += len(out)
+        return column
+
+
+def _concatenate_into_buffer(columns):
+    """Arrays of a column one after the other, in a buffer of this thread that the next call overwrites."""
+    return np.concatenate(columns, out=column_buffers.of(sum(map(len, columns)))("column", columns[0].dtype))
+
+
+# The order in which a section returns its points, each once: it does not depend on the order of the files, nor on how far these overlap.
+
+SORT_CHUNK = 1 << 15   # points sorted at a time: they fit the processor's cache
+STATION_CELL_BITS = 7  # bits of the number of a cell of stations; points are sorted into cells first (fewer than a byte holds)
+# Sort keys, the most significant last: the first set differs between nearly all points, the second between all that are not identical.
+PLACE_KEYS = "z", "d", "s"
+ALL_KEYS = "returns", "source", "y", "x", "intensity", "time", *PLACE_KEYS
+
+
+def canonical_order(records: np.ndarray | Columns, mask: np.ndarray | None = None) -> np.ndarray:
+    """Indices that sort records by station, offset, height, time and the remaining columns.
+
+    A record that is the same as another in all of them is the same point from two files, as where tiles overlap: one of them is taken.
+
+    Parameters
+    ----------
+    records : (N,) of at least the columns `ALL_KEYS`
+    mask : (N,) bool, the records to be sorted; all by default
+
+    Returns
+    -------
+    (M,) intp, no two of them of equal records
+    """
+    if not len(records):
+        return np.empty(0, np.intp)
+    along, across = records["s"], records["d"]
+    cell = above_least(along)
+    cell >>= max(int(cell.max()).bit_length() - STATION_CELL_BITS, 0)
+    order, ends = bucket_argsort(cell, 2**STATION_CELL_BITS, mask)
+    tied_parts, first = [np.empty(0, np.intp)], 0
+    for end in _chunk_ends(ends):
+        rows = order[first:end]
+        s, d = above_least(along.take(rows)), above_least(across.take(rows))
+        d >>= max(int(d.max()).bit_length() - RADIX_BITS, 0)
+        by_place = order_by(d, s)
+        order[first:end] = rows.take(by_place)
+        tied_parts.append(_same_as_next(s.take(by_place), d.take(by_place)) + first)
+        first = end
+    # Few points share the station and the leading bits of the offset: only these are sorted by the other columns.
+    tied = np.concatenate(tied_parts)
+    for names in (PLACE_KEYS, ALL_KEYS):
+        if len(tied):
+            places = np.union1d(tied, tied + 1)
+            some = take_rows(records, order[places])
+            keys = [some[name] for name in names]
+            by_keys = np.lexsort(keys)
+            order[places] = order[places[by_keys]]
+            tied = places[_same_as_next(*(key[by_keys] for key in keys))]
+    return np.delete(order, tied) if len(tied) else order
+
+
+def _same_as_next(*keys):
+    """Indices of the rows whose keys equal those of the next row."""
+    return np.flatnonzero(np.logical_and.reduce([key[1:] == key[:-1] for key in keys]))
+
+
+def _chunk_ends(ends):
+    """Where runs of cells end that hold about SORT_CHUNK points each."""
+    last = np.searchsorted(ends, np.arange(SORT_CHUNK, ends[-1] + SORT_CHUNK, SORT_CHUNK))
+    return np.unique(ends[last.clip(max=len(ends) - 1)]).tolist()
+
+
+# A store of which one column is set anew.
+
+class ColumnOverlay(SectionStore):
+    """The points of a store with one column replaced; it holds no points itself and joins two stores.
+
+    Parameters
+    ----------
+    points : SectionStore, closed with this one; it stays an attribute
+    name : of the column
+    folder : where its values go that are not kept in memory, so that others can read them; None for a temporary file without a name
+    """
+
+    def __init__(self, points: SectionStore, name: str, folder: Path | None = None):
+        super().__init__(points.dtype, points.section_length, points.memory_limit)
+        self.points, self._name = points, name
+        # of as many points as the store keeps ready, not of as many bytes
+        share = points.dtype[name].itemsize / points.dtype.itemsize
+        self._column = SectionStore([(name, points.dtype[name])], points.section_length, points.memory_limit, folder=folder,
+                                    cache_limit=int(share * CACHE_LIMIT))
+
+    @property
+    def count(self) -> int:
+        return self._column.count
+
+    def put(self, road: int, section: int, records: np.ndarray) -> None:
+        """Set the column of one section, (N,) in the order of its points."""
+        self._column.put(road, section, Columns({self._name: records}, self._column.dtype))
+
+    def append(self, road: int, records: Any) -> None:
+        """Refused: the points are those of another store."""
+        raise TypeError("The points of this store are those of another; a column can be put, points cannot be added.")
+
+    def roads(self) -> list[int]:
+        return self.points.roads()
+
+    def sections(self, road: int) -> list[int]:
+        return self.points.sections(road)
+
+    def in_stretch(self, stretch: Stretch) -> list[Key]:
+        return self.points.in_stretch(stretch)
+
+    def shared(self) -> dict[str, Any]:
+        """As `SectionStore.contents` of the column alone, and the folder that its values lie in then."""
+        return dict(column=self._column.index(), folder=str(self._column.folder))
+
+    def adopt_shared(self, column: StoreIndex, folder: str) -> None:
+        """Add the values of `shared`."""
+        self._column.adopt(column, Path(folder))
+
+    def size(self, road: int, section: int) -> int:
+        return self.points.size(road, section)
+
+    def _read(self, road, section):
+        column, points = self._column.section(road, section), self.points.section(road, section)
+
+        def of(name):
+            return column if name == self._name else points
+
+        return Columns({}, self.dtype, len(points), lambda name: of(name)[name],
+                       load_rows=lambda name, rows: of(name).column_rows(name, rows)), False
+
+    def column(self, road: int, section: int, name: str, rows: np.ndarray) -> np.ndarray:
+        return self.section(road, section).take(rows)[name]
+
+    def clear_cache(self) -> None:
+        self._column.clear_cache()
+        self.points.clear_cache()
+
+    def close(self) -> None:
+        super().close()
+        self._column.close()
+        self.points.close()

@@ -186,7 +186,7 @@ def test_no_pulse_goes_through_a_car(street, true_points):
 
 def test_a_thing_in_the_way_takes_the_pulse_from_the_ground_behind_it(street):
     from lanewright.core.sample.parts.scanner import OBSTACLE, cast
-    from lanewright.core.sample.streets.trace import cast_ground
+    from lanewright.core.sample.streets.street import cast_ground
 
     drive = street.drives[0]
     origin, direction, times, _ = street.scanners[0].pulses(drive, np.arange(200, 240))

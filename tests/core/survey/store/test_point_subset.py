@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from lanewright.core.survey.store.point_subset import PointSubset
 from lanewright.core.survey.store.records import ROAD_POINT, SURVEY_POINT, to_units
+from lanewright.core.survey.store.road_points import PointSubset
 from lanewright.core.survey.store.section_store import SectionStore
 
 

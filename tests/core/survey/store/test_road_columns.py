@@ -6,7 +6,7 @@ import tracemalloc
 import numpy as np
 import pytest
 from lanewright.core.survey.store.records import ROAD_POINT, SURVEY_POINT, join_columns, to_units
-from lanewright.core.survey.store.road_columns import columns_of_roads
+from lanewright.core.survey.store.road_points import columns_of_roads
 from lanewright.core.survey.store.section_store import SectionStore
 
 PER_METRE = 400

@@ -6,9 +6,8 @@ import warnings
 
 import numpy as np
 import pytest
-from lanewright.core.survey.store.canonical_order import canonical_order
 from lanewright.core.survey.store.records import SURVEY_POINT, join_columns, to_units
-from lanewright.core.survey.store.section_store import SectionStore
+from lanewright.core.survey.store.section_store import SectionStore, canonical_order
 
 
 def records(count=4000, seed=4, length=200.0):

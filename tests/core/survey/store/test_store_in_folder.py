@@ -5,7 +5,7 @@ import pytest
 from lanewright.core.survey.store import spill_file
 from lanewright.core.survey.store.records import SURVEY_POINT, point_dtype
 from lanewright.core.survey.store.section_store import SectionStore
-from lanewright.core.survey.store.store_index import StoreIndex
+from lanewright.core.survey.store.spill_file import StoreIndex
 
 IN_MEMORY, SPILLED = 1 << 30, 1 << 16
 
