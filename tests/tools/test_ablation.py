@@ -30,6 +30,7 @@ def test_a_switch_replaces_what_there_is_and_puts_it_back(switch):
     with replaced(switch.swaps):
         assert all(original_of(place)[0] is not old for (place, _), old in zip(switch.swaps, before))
     assert [original_of(place)[0] for place, _ in switch.swaps] == before
+    assert "," not in switch.name   # names are listed with commas between
     assert switch.swaps or switch.settings != DEFAULT and switch.stage in STAGES
 
 
@@ -65,7 +66,7 @@ def test_results_are_compared_by_value():
 
 
 def test_the_weight_of_a_rule_is_what_nothing_else_uses():
-    whole, alone = SWITCHES["pieces in line"], SWITCHES["pieces in line, of both methods"]
+    whole, alone = SWITCHES["pieces in line"], SWITCHES["pieces in line of both methods"]
     assert weight(whole)[0] > weight(alone)[0] > 20
     # its lines across gaps serve road edges too
     assert weight(replace(alone, rule=("road.common.in_line:GapLine",)))[0] < 60

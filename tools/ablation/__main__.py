@@ -69,11 +69,13 @@ def _chosen(names, known, what):
 def _surveys(arguments):
     """Folders of the surveys; sample scenes are made where they are not there yet."""
     scenes = [] if arguments.scenes == "none" else _chosen(arguments.scenes, {**SAMPLES, **OTHERS}, "scene")
-    made = arguments.results / "surveys"
-    missing = [name for name in scenes if not (made / name / "about.json").exists()]
-    if missing:
-        print(f"Making {', '.join(missing)} …", flush=True)
-        make_samples(made, missing)
+    made, code = arguments.results / "surveys", _code(CORE / "sample")
+    for name in scenes:
+        made_by = made / name / "made_by.txt"
+        if not made_by.exists() or made_by.read_text() != code:
+            print(f"Making {name} …", flush=True)
+            make_samples(made, [name])
+            made_by.write_text(code)
     return [made / name for name in scenes] + [survey for folder in arguments.surveys for survey in surveys_in(folder)]
 
 
@@ -92,10 +94,10 @@ def _measured(folder, surveys, variants, rules, groups):
     return found
 
 
-def _code():
-    """A digest of the core that comments do not change: results of another core are measured anew."""
+def _code(folder=CORE):
+    """A digest of the core, or a part of it, that comments do not change: what another core gave is made anew."""
     digest = hashlib.sha256()
-    for path in sorted(CORE.rglob("*.py")):
+    for path in sorted(folder.rglob("*.py")):
         digest.update(ast.dump(ast.parse(path.read_text(encoding="utf-8"))).encode())
     return digest.hexdigest()[:16]
 

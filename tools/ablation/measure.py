@@ -21,8 +21,9 @@ from lanewright.core.road.detect_boundaries import draw_boundaries
 from lanewright.core.road.edges.road_edges import edges_to_features
 from lanewright.core.road.surface.extract import extract_road_surface
 from lanewright.core.survey.open_survey import open_survey
-from lanewright.core.survey.store.road_columns import columns_of_roads
+from lanewright.core.survey.store.road_points import columns_of_roads
 from lanewright.core.survey.trajectory.reader import read_trajectory
+from osgeo import gdal
 
 from .swap import Watch, replaced
 from .switches import DEFAULT
@@ -141,6 +142,8 @@ def measure(folder, variant, switches, groups, into, code):
     if not missing and "figures" in known or "refused" in known:
         return
     into.parent.mkdir(parents=True, exist_ok=True)
+    # every raster made in memory would be said to lack a CRS
+    gdal.PushErrorHandler("CPLQuietErrorHandler")
     with TemporaryDirectory() as scratch:
         began = time.monotonic()
         try:

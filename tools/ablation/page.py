@@ -19,6 +19,8 @@ Lines and numbers are those that nothing else uses.
 
 ## The maps with every rule
 
+Other variants stand in `ablation.csv`.
+
 """
 SILENT = """
 
@@ -85,9 +87,10 @@ def page(switches, groups, results):
     measured = {name: [known["off"][name]["outcome"] for known in results.values() if name in known.get("off", {})]
                 for name in (*switches, *groups)}
     heavy = {name: weight(switch) for name, switch in switches.items()}
+    first = {survey: (variant, known) for (survey, variant), known in reversed(results.items())}
     maps = [[survey, variant, *(number(scores(known["figures"])[figure]) for figure in FIGURES)] if "figures" in known
-            else [survey, variant, f"no map: {known.get('refused', 'not measured')}", *[""] * (len(FIGURES) - 1)]
-            for (survey, variant), known in results.items()]
+            else [survey, variant, f"no map: {known['refused']}", *[""] * (len(FIGURES) - 1)]
+            for survey, (variant, known) in reversed(first.items())]
     rows, silent = [], []
     for name, outcomes in measured.items():
         if not outcomes:

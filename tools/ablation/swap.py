@@ -14,6 +14,7 @@ import numpy as np
 from .switches import Around
 
 PREFIX = "lanewright.core."
+NUMBERS = bool, int, float, np.generic
 HOLDERS = "lanewright.", "accuracy."   # modules that may have imported a function of the core
 
 
@@ -134,8 +135,10 @@ def same(one, other):
         return one.keys() == other.keys() and all(same(one[key], other[key]) for key in one)
     if is_dataclass(one) and type(one) is type(other):
         return all(same(getattr(one, field.name), getattr(other, field.name)) for field in fields(one))
-    if isinstance(one, (str, bytes, bool, int, float, set, frozenset, type(None), slice, np.generic)):
-        return type(other) in (type(one), np.bool_, bool, int, float) and bool(one == other or one != one and other != other)
+    if isinstance(one, NUMBERS) and isinstance(other, NUMBERS):
+        return bool(one == other or one != one and other != other)
+    if type(one) is type(other) and isinstance(one, (str, set, slice)):
+        return one == other
     try:
         return pickle.dumps(one) == pickle.dumps(other)
     except Exception:

@@ -41,7 +41,8 @@ def paint(case, polygons, names=None):
 
     With the `names` of the polygons' classes the counts say, too, of how many true cells with paint (`classed`) the class is right (`named`).
     """
-    named = None if names is None else [str(name).replace("_", " ") for name in names]
+    known = {_plain(name): name for name in case.truth.classes}
+    named = None if names is None else [known.get(_plain(name), _plain(name)) for name in names]
     found = assess_markings(polygons, case.truth.markings, result_classes=named, reference_classes=case.truth.classes, area=case.truth.area,
                             seen=case.seen)
     classes = {name: 100.0 * one.found_beside / one.reference for name, one in found.by_class.items() if one.reference}
@@ -51,6 +52,11 @@ def paint(case, polygons, names=None):
     if names is not None:
         counts.update(named=sum(one.same for one in found.by_class.values()), classed=sum(one.found for one in found.by_class.values()))
     return dict(strict=rates(found.strict), tolerant=rates(tolerant), classes=classes, counts=counts)
+
+
+def _plain(name):
+    """Class names of other truths as ours: edge line is edge, hatching is hatch."""
+    return str(name).replace("_", " ").removesuffix(" line").removesuffix(" crossing").removesuffix("ing")
 
 
 def markings(case, features):
