@@ -18,16 +18,29 @@ from .parameters import FileOutput, LayerOutput, RasterOutput, ReportOutput
 from .texts import tr
 
 SHAPEFILE = (".shp", ".shx", ".dbf", ".prj", ".cpg", ".qix", ".sbn", ".sbx")
-DATABASE = re.compile(r"dbname='(?P<path>[^']+)'")
+# QGIS puts a stroke before an apostrophe in the path; people leave it out
+DATABASE = re.compile(r"dbname='(?P<path>.+?)(?<!\\)'(?=\s|$)(?: *table=\"(?P<table>[^\"]+)\")?")
+
+
+def package_and_table(value):
+    """(path, table or "") of `ogr:dbname='map.gpkg' table="lanes" (geom)`, QGIS's way to name a layer of a GeoPackage; None of other values."""
+    database = DATABASE.search(value) if value.startswith("ogr:") else None
+    return None if database is None else (re.sub(r"\\([\\'])", r"\1", database["path"]), database["table"] or "")
+
+
+def table_of(path, table):
+    """The destination that names a table of a GeoPackage."""
+    return f"ogr:dbname='{_quoted(path)}' table=\"{table}\" (geom)"
+
+
+def _quoted(path):
+    return str(path).replace("\\", "\\\\").replace("'", "\\'")
 
 
 def destination_path(value):
     """The file a destination value names, or None where it is no file (memory layers, databases)."""
-    text = value or ""
-    database = DATABASE.search(text)
-    if database:
-        text = database["path"] if text.startswith("ogr:") else ""
-    text = text.split("|")[0]
+    package = package_and_table(value or "")
+    text = package[0] if package else (value or "").split("|")[0]
     if not text or text == "TEMPORARY_OUTPUT" or text.startswith(("memory:", "postgres:", "ogr:", "mssql:", "oracle:")):
         return None
     return Path(text)
@@ -35,9 +48,12 @@ def destination_path(value):
 
 def at_path(value, path):
     """(destination value with another file, the file that it named as text)."""
-    database = DATABASE.search(value)
-    start, end = database.span("path") if database else (0, len(value.split("|")[0]))
-    return f"{value[:start]}{path}{value[end:]}", value[start:end]
+    package = package_and_table(value)
+    if package is None:
+        file = value.split("|")[0]
+        return f"{path}{value[len(file):]}", file
+    start, end = DATABASE.search(value).span("path")
+    return f"{value[:start]}{_quoted(path)}{value[end:]}", package[0]
 
 
 def check_suffix(path, spec, vector_suffixes):

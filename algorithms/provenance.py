@@ -19,7 +19,7 @@ UNNAMED = ("", "OTHER", "laspy")                 # what writers put there when t
 SECRET = re.compile(r"(password|passwd|pwd|authcfg)\s*=\s*('[^']*'|\"[^\"]*\"|[^\s&;]+)", re.IGNORECASE)
 CREDENTIALS = re.compile(r"(://[^/\s:@]+):[^@/\s]+@")
 # A folder, where a value begins with a path or names that of a database; texts that only hold a stroke, such as a WKT, are none
-FOLDER = re.compile(r"(?P<before>^(?:file://)?|dbname=')(?P<folder>(?:[A-Za-z]:)?[^|'\"<>\[\]\n]*[\\/])(?=[^\\/])")
+FOLDER = re.compile(r"(?P<before>^(?:file://)?|dbname=')(?P<folder>(?:[A-Za-z]:)?(?:[^|'\"<>\[\]\n]|(?<=[\w\\])'(?=\w))*[\\/])(?=[^\\/])")
 SENTENCE = re.compile(r"(\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ): " + PROGRAM + r" (\S+), (\w+)(?: ([A-Z_]+))?, ({.*})", re.DOTALL)
 
 

@@ -14,6 +14,7 @@ from qgis.core import (
     QgsProject,
 )
 
+from ..algorithms.destinations import table_of
 from ..processing_provider.texts import tr
 
 LENGTH = 120.0  # m of street: seconds to make, and long enough for every kind of marking
@@ -85,8 +86,7 @@ def _loaded(path, table=""):
     """An output that is put into the project when it is ready."""
     from qgis.core import QgsProcessingOutputLayerDefinition
 
-    sink = f"ogr:dbname='{path}' table=\"{table}\" (geom)" if table else str(path)
-    return QgsProcessingOutputLayerDefinition(sink, QgsProject.instance())
+    return QgsProcessingOutputLayerDefinition(table_of(path, table) if table else str(path), QgsProject.instance())
 
 
 def _remove(folder):

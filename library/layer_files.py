@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import logging
-import re
 from contextlib import contextmanager
 from pathlib import Path
 
+from ..algorithms.destinations import package_and_table
 from ..algorithms.vector_source import LINE, POINT, POLYGON, TABLE, UNKNOWN, VectorSource, crs_to_write, plain_value
 from ..core.common.errors import RoadExtractionError
 from ..core.io.local_files import OFFLINE, VECTOR_DRIVERS, check_crs_of_geojson
@@ -17,15 +17,12 @@ GEOMETRIES = {"PointZ": "3D Point", "LineStringZ": "3D LineString", "PolygonZ": 
               "MultiPolygonZ": "3D MultiPolygon", "None": "None"}
 KINDS = {"Point": POINT, "LineString": LINE, "Polygon": POLYGON, "None": TABLE}
 COLUMN_TYPES = {int: "int64", float: "float", str: "str"}
-# QGIS's way to name one layer of a GeoPackage as a destination
-DATABASE = re.compile(r"ogr:dbname='(?P<path>[^']+)' *table=\"(?P<table>[^\"]+)\"")
 
 
 def file_and_table(value):
     """(path, table or "") of `map.gpkg`, `map.gpkg|layername=lanes` or `ogr:dbname='map.gpkg' table="lanes" (geom)`."""
-    database = DATABASE.match(value)
-    if database:
-        return database["path"], database["table"]
+    if package := package_and_table(value):
+        return package
     path, *options = value.split("|")
     names = [option.partition("=")[2] for option in options if option.startswith("layername=")]
     return path, names[0] if names else ""

@@ -39,7 +39,7 @@ class LanewrightAlgorithm(QgsProcessingAlgorithm):
     def __init__(self, declaration):
         super().__init__()
         self.declaration = declaration
-        self.group_of_inputs = ""  # of the layer tree
+        self.group_of_inputs = None  # of the layer tree
 
     # -- what QGIS asks ---------------------------------------------------------------------
 
@@ -109,7 +109,7 @@ class LanewrightAlgorithm(QgsProcessingAlgorithm):
 
     def prepareAlgorithm(self, parameters, context, feedback):
         """On the main thread, where the layer tree may be looked at."""
-        self.group_of_inputs = group_of_layers(parameters.values(), context.project()) if context.project() is not None else ""
+        self.group_of_inputs = group_of_layers(parameters.values(), context.project()) if context.project() is not None else None
         return super().prepareAlgorithm(parameters, context, feedback)
 
     def processAlgorithm(self, parameters, context, feedback):
@@ -159,15 +159,15 @@ def what_is_lacking():
 
 
 def group_of_layers(values, project):
-    """The group in which the first of these layers stands that is of one of our runs, "" where there is none."""
+    """The group in which the first of these layers stands that is of one of our runs, "" where it stands in none; None without such a layer."""
     for value in values:
         if isinstance(value, QgsProcessingFeatureSourceDefinition):
             value = value.source.staticValue()
         layer = project.mapLayer(value) if isinstance(value, str) else value if isinstance(value, QgsMapLayer) else None
         run = None if layer is None else road_map_of(layer, project)
-        if run is not None and run.group is not None:
-            return run.group.name()
-    return ""
+        if run is not None:
+            return "" if run.group is None else run.group.name()
+    return None
 
 
 def out_of_range(definitions, parameters):

@@ -79,17 +79,20 @@ def check_metric(crs: Any, what: str) -> None:
         raise RoadExtractionError(
             f"{what} is in the geographic CRS {flat.name} (degrees). Road geometry needs metres: reproject it to a "
             "projected CRS, such as the UTM zone of the survey, and run again.")
-    units = {axis.unit_name for axis in flat.axis_info if axis.direction.lower() not in ("up", "down")}
-    if units - {"metre", "meter", "m"}:
+    units = _not_metres(axis for axis in flat.axis_info if axis.direction.lower() not in ("up", "down"))
+    if units:
         raise RoadExtractionError(
-            f"{what} is in {flat.name}, whose unit is {', '.join(sorted(units))}. Lanewright works in metres: "
+            f"{what} is in {flat.name}, whose unit is {', '.join(units)}. Lanewright works in metres: "
             "reproject it to a metric CRS and run again.")
-    if crs.is_compound:
-        vertical = {axis.unit_name for axis in crs.sub_crs_list[-1].axis_info}
-        if vertical - {"metre", "meter", "m"}:
-            raise RoadExtractionError(
-                f"{what} has heights in {', '.join(sorted(vertical))} ({crs.sub_crs_list[-1].name}). Lanewright works "
-                "in metres: convert the heights and run again.")
+    vertical = _not_metres(crs.sub_crs_list[-1].axis_info) if crs.is_compound else []
+    if vertical:
+        raise RoadExtractionError(f"{what} has heights in {', '.join(vertical)} ({crs.sub_crs_list[-1].name}). Lanewright works in metres: convert "
+                                  "the heights and run again.")
+
+
+def _not_metres(axes):
+    """The names of the units of axes that are no metres."""
+    return sorted({axis.unit_name for axis in axes if axis.unit_conversion_factor != 1.0})
 
 
 def same_crs(a: Any, b: Any) -> bool:

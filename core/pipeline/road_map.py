@@ -220,7 +220,7 @@ def _tell_corrections(corrections, progress):
     """Say in the log how many corrections were made, and list those that match nothing."""
     progress.info(f"Corrections: {len(corrections)}, of which {len(corrections) - len(corrections.unmatched)} were made.")
     if corrections.unmatched:
-        progress.warn(f"{len(corrections.unmatched)} corrections match nothing in this run any more: "
+        progress.warn(f"Corrections that match nothing in this run any more ({len(corrections.unmatched)}): "
                       + "; ".join(one.described() for one in corrections.unmatched) + ".")
 
 

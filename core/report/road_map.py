@@ -200,7 +200,7 @@ def _corrections(page, corrections):
     page.heading(tr("Corrections"))
     lost = {one.row for one in corrections.unmatched}
     if lost:
-        page.warning(tr("{count} corrections match nothing in this run; they were left out. Look at these places and delete or renew the "
+        page.warning(tr("Corrections that match nothing in this run and were left out: {count}. Look at these places and delete or renew the "
                         "rows.").format(count=len(lost)))
     page.table((tr("Row"), tr("Action"), tr("Target"), tr("Road"), tr("Station (m)"), tr("Offset (m)"), tr("Note"), tr("Made")),
                [(one.row, word(one.action), word(one.target, "target"), one.road if one.on_a_road else "–", one.station if one.on_a_road else "–",

@@ -2,7 +2,8 @@
 
 Stations start where the road of a trajectory begins. With another trajectory, or another part of the same one, every
 station in a file refers to another position. Offsets are counted from its way: where a trajectory beside its scanners was
-moved to them as the points were read, offsets in a file are those of the way as moved.
+moved to them as the points were read, offsets in a file are those of the way as moved. One that was moved in height alone shows
+as a road on which its vehicle cannot have driven.
 """
 
 from __future__ import annotations
@@ -13,6 +14,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..common.errors import RoadExtractionError
+from .estimation.resection import HEIGHT_RANGE_ABOVE
+from .fit.limits import LOWEST_SENSOR
 
 if TYPE_CHECKING:
     from ..common.features import Features
@@ -27,7 +30,7 @@ CHECKED_SECTIONS, CHECKED_POINTS_PER_SECTION = 50, 200  # evenly over the file
 
 
 def check_features_on_roads(features: Features, frame: RoadFrame, label: str) -> None:
-    """Refuse features whose fields `station_m` and `offset_m` disagree with their position in the road frame.
+    """Refuse features whose fields `station_m` and `offset_m` disagree with their position in the road frame, or that lie at heights of another.
 
     Parameters
     ----------
@@ -42,17 +45,20 @@ def check_features_on_roads(features: Features, frame: RoadFrame, label: str) ->
     """
     import shapely
 
-    agree, beside = [], []
+    agree, beside, above = [], [], []
     for geometry, row in features:
         if row.get("station_m") is None:
             continue
-        s, d = _located(frame, row["road"], *shapely.get_coordinates(geometry).T[:2])
+        x, y, z = shapely.get_coordinates(geometry, include_z=True).T
+        s, d = _located(frame, row["road"], x, y)
         known = np.isfinite(s)
+        if known.any():
+            above.append(np.median(_above(frame, row["road"], s[known], z[known])))
         agree.append(bool(known.any()) and abs(_outside(s[known], row["station_m"])) <= STATION_TOLERANCE)
         if agree[-1] and row.get("offset_m") is not None:
             beside.append(_outside(d[known], row["offset_m"]))
     _refuse_mismatch(agree, label, "features")
-    _refuse_moved(beside, label)
+    _refuse_moved(beside, above, label)
 
 
 def keep_near_roads(features: Features, frame: RoadFrame, label: str) -> str:
@@ -97,7 +103,7 @@ def keep_near_roads(features: Features, frame: RoadFrame, label: str) -> str:
 
 
 def check_road_points_on_roads(road_points: RoadPoints, frame: RoadFrame, label: str) -> None:
-    """Refuse road points whose stations or offsets disagree with their positions in the road frame, judged by a sample.
+    """Refuse road points whose stations, offsets or heights disagree with their positions in the road frame, judged by a sample.
 
     Parameters
     ----------
@@ -110,28 +116,31 @@ def check_road_points_on_roads(road_points: RoadPoints, frame: RoadFrame, label:
     RoadExtractionError
         If more than half of the sampled points disagree.
     """
-    agree, beside = [], []
-    for road, x, y, s, d in sample_road_points(road_points):
+    agree, beside, above = [], [], []
+    for road, x, y, s, d, z in sample_road_points(road_points):
         there, offset = _located(frame, road, x, y)
         agree.append(np.abs(there - s) <= STATION_TOLERANCE)
         beside.append((d - offset)[agree[-1]])
+        if agree[-1].any():
+            above.append(_above(frame, road, s[agree[-1]], z[agree[-1]]))
     _refuse_mismatch(np.concatenate(agree) if agree else [], label, "points looked at")
-    _refuse_moved(np.concatenate(beside) if beside else [], label)
+    _refuse_moved(*(np.concatenate(column) if column else [] for column in (beside, above)), label)
 
 
-def sample_road_points(road_points: RoadPoints) -> Iterator[tuple[int, np.ndarray, np.ndarray, np.ndarray, np.ndarray]]:
+def sample_road_points(road_points: RoadPoints) -> Iterator[tuple[int, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]]:
     """A sample of road points, evenly over the file.
 
     Yields
     ------
-    road number, (N,) x and y in map coordinates, and (N,) stations and offsets in metres, section by section
+    road number, (N,) x and y in map coordinates, (N,) stations and offsets in metres, and (N,) z, section by section
     """
     keys = road_points.all_sections()
     for k in np.unique(np.linspace(0, len(keys) - 1, CHECKED_SECTIONS).astype(int)) if keys else ():
         road, number = keys[k]
         points = road_points.section(road, number)
         rows = np.unique(np.linspace(0, len(points) - 1, CHECKED_POINTS_PER_SECTION).astype(int))
-        yield road, points.x[rows] + road_points.origin[0], points.y[rows] + road_points.origin[1], points.s[rows], points.d[rows]
+        yield road, points.x[rows] + road_points.origin[0], points.y[rows] + road_points.origin[1], points.s[rows], points.d[rows], \
+            points.z[rows] + road_points.origin[2]
 
 
 def _outside(values, carried):
@@ -146,6 +155,11 @@ def _located(frame, road, x, y):
     return frame.road(road).locate(*frame.to_local(x, y))
 
 
+def _above(frame, road, s, z):
+    """(N,) m of the trajectory above z at stations of a road; NaN where there is no height, as of what was drawn on the map."""
+    return np.where(z == 0.0, np.nan, frame.track_height(road, s) + frame.origin[2] - z)
+
+
 def _refuse_mismatch(agree, label, what):
     agree = np.asarray(agree, bool)
     if len(agree) and agree.mean() < 0.5:
@@ -154,11 +168,18 @@ def _refuse_mismatch(agree, label, what):
             "at the station they carry. Give the trajectory that they were made with, whole.")
 
 
-def _refuse_moved(beside, label):
-    """Refuse what lies beside its offsets, (N,) m to the left, for the most part."""
-    beside = np.asarray(beside, float)
+def _refuse_moved(beside, above, label):
+    """Refuse what lies beside its offsets, (N,) m to the left, or where no vehicle is, (M,) m below the trajectory, for the most part."""
+    beside, above = np.asarray(beside, float), np.asarray(above, float)
+    above = above[np.isfinite(above)]
     if np.count_nonzero(np.abs(beside) > OFFSET_TOLERANCE) > 0.5 * len(beside):
         raise RoadExtractionError(
             f"{label} lie {np.median(np.abs(beside)):.2f} m beside the offsets they carry from the trajectory. They were made with another "
             "trajectory, or with one that was moved to the scanners, as a warning said then. Run Road map, which makes all layers with the moved "
             "trajectory, or give every stage the trajectory that belongs to the cloud.")
+    if np.count_nonzero((above < -LOWEST_SENSOR) | (above > HEIGHT_RANGE_ABOVE[1])) > 0.5 * len(above):
+        apart = float(np.median(above))
+        raise RoadExtractionError(
+            f"{label} lie {abs(apart):.2f} m {'below' if apart > 0 else 'above'} the trajectory, where its vehicle cannot have driven. They were "
+            "made with another trajectory, or with one that was moved to the height of the scanners, as a warning said then. Run Road map, which "
+            "makes all layers with the moved trajectory, or give every stage a trajectory with the heights of the cloud.")

@@ -116,7 +116,7 @@ def inspect_survey(paths: Sequence[str | Path], trajectory: Trajectory | None = 
             progress.report(done / total)
     found = counter.inspection(files, wkt, trajectory, progress)
     samples = sample_files(files)
-    found.notes[:0] = copies + [note for note in (coarse_coordinates(samples), intensity_source_of(samples, INTENSITY_SOURCES[0])[1]) if note]
+    found.notes[:0] = copies + [note for note in (coarse_coordinates(samples)[0], intensity_source_of(samples, INTENSITY_SOURCES[0])[1]) if note]
     return found
 
 

@@ -17,6 +17,7 @@ from ..io.units import FOOT, US_SURVEY_FOOT, as_in_file
 from .adjustment.adjust import adjust_passes
 from .adjustment.beside import compare_carriageways, said_of_levels
 from .clock_check import check_clock
+from .fit.limits import LOWEST_SENSOR
 from .fit.scanners import lay_scanners
 from .fit.trajectory_fit import fitted_trajectory
 from .frame.build import build_frame
@@ -45,7 +46,6 @@ INGEST_PROGRESS = 0.7        # of the work, where the passes are adjusted afterw
 SECTION_POINTS = 250_000      # points of a section, about, and
 SECTION_LENGTHS = SECTION_LENGTH, 10.0, 25.0   # m that it may be long
 PARTS_PROGRESS = 0.85        # of reading, where the points are put in order afterwards
-LOWEST_SENSOR = 0.5          # m above the road: no scanner rides lower, but lines and places drawn on the road lie within
 HIGHEST_SENSOR = 5.0         # m above the road: vehicles are up to 4 m high (Directive 96/53/EC), and a mast on a roof adds some
 
 
@@ -116,7 +116,8 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     _check_extent(files, frame, crs, trajectory.crs)
     samples = sample_files(files)
     intensity, intensity_note = intensity_source_of(samples, settings.intensity_from)
-    for note in (coarse_coordinates(samples), intensity_note):
+    coarse_note, rounding = coarse_coordinates(samples)
+    for note in (coarse_note, intensity_note):
         if note:
             progress.warn(note)
     store = SectionStore(point_dtype(SURVEY_POINT, frame.farthest), settings.section_length or section_length(files, frame),
@@ -186,7 +187,7 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     if settings.fit_passes and has_time and len(frame.roads) > 1:
         compare_carriageways(survey, progress.part(1.0, 1.0))
     # what the user says overrules what lies beside the trajectory
-    if across := max(settings.trajectory_sigma or trajectory.sigma_across, fitted.sigma, mounted):
+    if across := max(settings.trajectory_sigma or trajectory.sigma_across, float(np.hypot(fitted.sigma, rounding)), mounted):
         # what passes differ by is part of the same error
         differ = survey.frame.pass_sigma
         survey.frame.pass_sigma = {road: differ.get(road, SigmaAlong.everywhere(0.0)).at_least(across) for road in range(len(frame.roads))}

@@ -6,6 +6,8 @@ from pathlib import Path
 
 from qgis.core import QgsProcessingAlgorithm, QgsProcessingParameterDefinition
 
+from ...algorithms.destinations import table_of
+
 LAST_OUTPUT = "/Processing/LastOutputPath"  # QGIS's own setting
 
 
@@ -28,7 +30,7 @@ def destinations(algorithm: QgsProcessingAlgorithm, folder: str, survey: str = "
     for definition in outputs_by_default(algorithm):
         table = table_name(definition)
         if definition.type() == "sink":
-            found[definition.name()] = f"ogr:dbname='{Path(folder) / (survey or algorithm.name())}.gpkg' table=\"{table}\" (geom)"
+            found[definition.name()] = table_of(Path(folder) / f"{survey or algorithm.name()}.gpkg", table)
         else:
             name = f"{survey}_{table}" if survey else table
             found[definition.name()] = str(Path(folder) / f"{name}.{definition.defaultFileExtension()}")

@@ -19,8 +19,9 @@ from qgis.core import (
 )
 
 from ...core.common.errors import RoadExtractionError
-from ...core.common.schemas import CORRECTIONS
+from ...core.common.schemas import CORRECTIONS, OTHER
 from ...processing_provider.layers import qgis_fields
+from ...processing_provider.results.attributes import explain_readings
 from ...processing_provider.results.origin import OUTPUT
 from ...processing_provider.results.road_maps import RoadMap
 from ...processing_provider.styling import STYLES, apply_style
@@ -136,6 +137,8 @@ def add_correction(layer: QgsVectorLayer, line: QgsGeometry, crs: QgsCoordinateR
     else:
         _, (feature,) = layer.dataProvider().addFeatures([feature])
         layer.updateExtents()
+    if values.get(OTHER.name):
+        explain_readings(layer)
     layer.triggerRepaint()
     return feature.id()
 

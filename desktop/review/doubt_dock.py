@@ -389,7 +389,7 @@ class DoubtDock(QDockWidget):
         self.undo_button.setEnabled(count > 0)
         self.run_button.setEnabled(count > 0)
         self.kept.setText(tr("No corrections yet.") if not count else
-                          tr("{count} corrections in {file}. They come into the map when it is made again.").format(
+                          tr("Corrections in {file}: {count}. They come into the map when it is made again.").format(
                               count=count, file=Path(layer.source().split("|")[0]).name))
 
 

@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
 from qgis.core import Qgis, QgsCoordinateReferenceSystem, QgsGeometry, QgsLineString, QgsPointXY, QgsRectangle
 
-from ...processing_provider.results.attributes import DIRECTIONS
+from ...processing_provider.results.attributes import second_reading
 from ...processing_provider.results.road_maps import RoadMap
 from ...processing_provider.texts import tr
 from .missing_parts import Missing, grown_surface, lane_ends, missing_edges, warned_places
 from .section import title_of
 
 TARGETS = {"ROAD_EDGES": "edge", "MARKING_LINES": "marking", "DRIVING_LINES": "lane", "LANES": "lane"}  # what a correction calls them
-LINES = {"edge": tr("Edge line"), "centre": tr("Centre line"), "lane": tr("Lane line")}
 GUESSED = ("bridged", "inferred")
 DECIDED = ("accepted", "drawn")  # an analyst has seen these
 UNSURE = 0.85       # confidence below which a piece is doubtful: more than one in seven of those are wrong
@@ -113,19 +111,6 @@ def _doubtful_rows(road_map, output):
                                        int(_number(row.get("road")) or 0), _number(row.get("station_m")) or 0.0, _number(row.get("offset_m")),
                                        (_number(row.get("length_m")) or 0.0) * _share_wrong(row), other))
     return found
-
-
-def second_reading(other: str) -> str:
-    """What the field `other` says, in words."""
-    try:
-        reading = json.loads(other)
-        lanes = [tr("a lane of {width:.1f} m {direction}").format(width=float(lane["width_m"]), direction=DIRECTIONS[lane["direction"]])
-                 for lane in reading.get("lanes", ())]
-        if lanes:
-            return ", ".join(lanes)
-        return LINES[reading["kind"]]
-    except (ValueError, TypeError, KeyError, AttributeError):  # the field can be edited
-        return tr("another reading")
 
 
 def _missing_piece(missing: Missing):

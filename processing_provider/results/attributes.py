@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Sequence
 from typing import Any
 
 from qgis.core import QgsEditorWidgetSetup, QgsVectorLayer
 
+from ...core.common.schemas import OTHER
 from ..texts import tr
 from .tip_picture import tip_picture
 
@@ -32,6 +34,7 @@ WORDS = {
     "target": {"edge": tr("road edge"), "marking": tr("marking"), "lane": tr("lane")},
     "outcome": {"correct": tr("correct"), "missed": tr("missed"), "false": tr("false"), "excluded": tr("excluded")},
 }
+LINE_KINDS = {"edge": tr("Edge line"), "centre": tr("Centre line"), "lane": tr("Lane line")}
 DIRECTIONS = {1: tr("along the road"), -1: tr("against the road"), 0: tr("not driven")}
 
 # Result -> what a feature is, in an expression of QGIS; fields are named in quotes
@@ -94,6 +97,8 @@ def explain_attributes(layer: QgsVectorLayer, output: str, schema: Sequence[Any]
             continue
         # A scratch layer's own fields cannot carry them
         layer.setFieldAlias(index, short_alias(tr(column.alias)))
+        if column.name == OTHER.name:
+            explain_readings(layer)
         setup = widget_of(column)
         if setup is not None:
             layer.setEditorWidgetSetup(index, setup)
@@ -101,6 +106,27 @@ def explain_attributes(layer: QgsVectorLayer, output: str, schema: Sequence[Any]
     if title:
         layer.setDisplayExpression(title)
         layer.setMapTipTemplate(map_tip(layer))
+
+
+def explain_readings(layer: QgsVectorLayer) -> None:
+    """Show the values of the field `other`, which are JSON, in words: by a map of those that the layer has now, which needs no plugin."""
+    index = layer.fields().lookupField(OTHER.name)
+    values = sorted(str(value) for value in layer.uniqueValues(index) if value)
+    layer.setFieldAlias(index, layer.attributeAlias(index).removesuffix(" (JSON)"))
+    layer.setEditorWidgetSetup(index, QgsEditorWidgetSetup("ValueMap", {"map": [{second_reading(value): value} for value in values]}))
+
+
+def second_reading(other: str) -> str:
+    """A value of the field `other` in words."""
+    try:
+        reading = json.loads(other)
+        lanes = [tr("a lane of {width:.1f} m {direction}").format(width=float(lane["width_m"]), direction=DIRECTIONS[lane["direction"]])
+                 for lane in reading.get("lanes", ())]
+        if lanes:
+            return ", ".join(lanes)
+        return LINE_KINDS[reading["kind"]]
+    except (ValueError, TypeError, KeyError, AttributeError):  # the field can be edited
+        return tr("another reading")
 
 
 def short_alias(alias: str) -> str:

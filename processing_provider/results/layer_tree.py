@@ -45,14 +45,14 @@ def place_layer(layer: QgsMapLayer, project: QgsProject, output: str, run: Run) 
     layer.setCustomProperty(OUTPUT, output)
     describe_origin(layer, run.provenance, output)
     this = road_map_of(layer, project)
-    if this is None or this.group is None:
+    if this is None:
         return
     former = [one for one in runs_of(project) if one.group is not None and one.survey == this.survey != "" and layer not in one.layers]
     if replaces_last_run():
         _remove_former(layer, output, former, project)
     else:
         _hide_former(output, this, former, project)
-    if output in IMAGES:
+    if output in IMAGES and this.group is not None:
         _lay_under_map(layer, this, project)
 
 

@@ -20,7 +20,7 @@ class Run:
 
     provenance : what its layers say of it
     survey : name of the survey, "" where none is known
-    group : name of the layer group
+    group : name of the layer group, "" for none
     """
 
     provenance: Provenance
@@ -28,7 +28,7 @@ class Run:
     group: str
 
 
-def run_of(provenance: Provenance, clouds: list[str], whole: bool, context: QgsProcessingContext, group: str = "") -> Run:
+def run_of(provenance: Provenance, clouds: list[str], whole: bool, context: QgsProcessingContext, group: str | None = None) -> Run:
     """The run that has just ended.
 
     Parameters
@@ -38,10 +38,10 @@ def run_of(provenance: Provenance, clouds: list[str], whole: bool, context: QgsP
     whole : whether it makes a map in one call. Each such run has a group of its own, named by survey and time;
         the stages of a survey share one, since together they make one map
     context : of the run; the stages of a model have one in common
-    group : that its inputs stand in, "" for none; a stage puts its result beside them
+    group : that its inputs stand in, "" where they stand in none; a stage puts its result beside them. None where they are no layers of ours
     """
     store = context.temporaryLayerStore()  # an object of Qt, which keeps a value for whoever comes next
     survey = survey_name(clouds) or str(store.property(SURVEY_OF_RUN) or "")
     store.setProperty(SURVEY_OF_RUN, survey)
     name = survey or GROUP
-    return Run(provenance, survey, f"{name}, {datetime.now():%Y-%m-%d %H:%M:%S}" if whole else group or name)
+    return Run(provenance, survey, f"{name}, {datetime.now():%Y-%m-%d %H:%M:%S}" if whole else name if group is None else group)

@@ -22,7 +22,7 @@ NUMBERS = {
     "countries": 15,
     "io": 23,
     "curves": 42,
-    "survey": 433,
+    "survey": 430,
     "road": 523,
     "intensity": 49,
     "markings": 448,

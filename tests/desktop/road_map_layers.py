@@ -39,6 +39,7 @@ def added(project, output, schema, *rows, kind="LineStringZ", run=None):
     run = run or run_at(8)
     project.addMapLayer(layer, False)
     root = project.layerTreeRoot()
-    (root.findGroup(run.group) or root.insertGroup(0, run.group)).insertLayer(0, layer)
+    group = root.findGroup(run.group) or root.insertGroup(0, run.group) if run.group else root
+    group.insertLayer(0, layer)
     place_layer(layer, project, output, run)
     return layer

@@ -8,6 +8,7 @@ from lanewright.core.common.schemas import DRIVING_LINES, LANES, ROAD_EDGES
 from lanewright.desktop.review.corrections_layer import corrections_layers
 from lanewright.desktop.review.doubt_dock import DoubtDock
 from lanewright.processing_provider.layers import QgisSource
+from lanewright.processing_provider.results.attributes import second_reading
 from lanewright.processing_provider.results.road_maps import road_maps
 from qgis.core import QgsPointXY, QgsProject, QgsRectangle
 from qgis.gui import QgsMapCanvas, QgsMapToolPan, QgsMessageBar
@@ -72,7 +73,7 @@ def test_what_is_accepted_is_kept_in_a_layer_that_road_map_reads_and_the_next_pl
     assert at_first.place.station == 10, "a lane is left to decide"
     at_first.accept_button.click()
     assert corrections() == [("accept", "edge", 0, 10.0, pytest.approx(8.0)), ("accept", "lane", 0, 14.0, pytest.approx(8.0))]
-    assert at_first.place.station == 80 and "2 corrections in corrections.gpkg" in at_first.kept.text()
+    assert at_first.place.station == 80 and "corrections.gpkg: 2." in at_first.kept.text()
 
 
 def test_delete_takes_one_piece_and_the_next_piece_waits_to_be_decided(at_first):
@@ -166,6 +167,8 @@ def test_the_other_reading_of_a_lane_is_taken_by_one_key_and_goes_into_the_corre
     layer, = corrections_layers(QgsProject.instance())
     row, = layer.getFeatures()
     assert (row["action"], row["target"], row["other"]) == ("take", "lane", reading)
+    shown = at_first.layer.editorWidgetSetup(at_first.layer.fields().lookupField("other"))
+    assert shown.config()["map"] == [{second_reading(reading): reading}], "the table shows it in words"
     at_first.list.setCurrentRow(1)
     assert not at_first.other_button.isEnabled(), "the edge has one reading alone"
 

@@ -1,5 +1,7 @@
 """Stages after a road map: their inputs are chosen by what layers are, and a stage is run again with what its run was given."""
 
+from dataclasses import replace
+
 import pytest
 from lanewright.core.common.schemas import CORRECTIONS, DRIVING_LINES, MARKING_LINES, MARKINGS, ROAD_EDGES
 from lanewright.desktop.dialogs.stage_inputs import layer_lists, stage_again
@@ -81,6 +83,18 @@ def test_the_result_of_a_stage_goes_beside_its_inputs(two_runs, project):
     group = group_of_layers([drive, 3.75, None, old["MARKING_LINES"].id()], project)
     assert group == "B12, 8:00"
     assert run_of(run_at(10).provenance, [], False, QgsProcessingContext(), group).group == "B12, 8:00"
+
+
+def test_the_result_of_a_stage_goes_to_the_root_where_its_inputs_were_dragged_to_and_hides_the_one_it_renews(project):
+    old = added(project, "DRIVING_LINES", DRIVING_LINES, LINE, run=replace(run_at(8, algorithm="drivinglines"), group=""))
+    context = QgsProcessingContext()
+    context.setProject(project)
+    group = group_of_layers([old.id()], project)
+    run = run_of(run_at(10, algorithm="drivinglines").provenance, [], False, context, group)
+    assert run.group == "" and group_of_layers([QgsVectorLayer("Point", "mine", "memory")], project) is None
+    new = added(project, "DRIVING_LINES", DRIVING_LINES, LINE, run=run)
+    visible = {name: project.layerTreeRoot().findLayer(layer.id()).isVisible() for name, layer in (("old", old), ("new", new))}
+    assert visible == {"old": False, "new": True} and not project.layerTreeRoot().findGroups()
 
 
 def test_corrections_are_offered_for_their_survey_alone(project, tmp_path):

@@ -53,7 +53,7 @@ def test_an_edge_is_deleted_another_kept_and_what_matches_nothing_is_listed(surv
     assert (after["CORRECTIONS_MADE"], after["CORRECTIONS_UNMATCHED"]) == (1, 1)
     assert any("no road here" in text for text in said.warnings)
     report = (tmp_path / "after.html").read_text(encoding="utf-8")
-    assert "1 corrections match nothing" in report and "a wall" in report
+    assert "that match nothing in this run and were left out: 1." in report and "a wall" in report
     passes, _ = rows(before["PASSES"])
     assert [row["direction"] for _, row in passes] == [1] and passes[0][1]["length_m"] > 60
 

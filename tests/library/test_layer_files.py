@@ -6,6 +6,7 @@ from contextlib import closing
 import numpy as np
 import pytest
 import shapely
+from lanewright.algorithms.destinations import table_of
 from lanewright.algorithms.vector_source import in_file_units, read_features, scaled_wkb, vertices_of
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.features import Features
@@ -38,6 +39,9 @@ def edges(count=2):
 @pytest.mark.parametrize("value, file, table", [
     ("map.gpkg", "map.gpkg", ""), ("map.gpkg|layername=lanes", "map.gpkg", "lanes"),
     ("ogr:dbname='/data/the map.gpkg' table=\"lanes\" (geom)", "/data/the map.gpkg", "lanes"),
+    (table_of("/home/O'Neil/map.gpkg", "lanes"), "/home/O'Neil/map.gpkg", "lanes"),
+    (table_of(r"C:\data\map.gpkg", "lanes"), r"C:\data\map.gpkg", "lanes"),
+    ("ogr:dbname='C:\\data\\map.gpkg' table=\"lanes\"", r"C:\data\map.gpkg", "lanes"),
 ])
 def test_a_layer_is_named_as_in_qgis(value, file, table):
     assert file_and_table(value) == (file, table)

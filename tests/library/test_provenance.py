@@ -4,6 +4,7 @@ import json
 
 import fiona
 import pytest
+from lanewright.algorithms.destinations import table_of
 from lanewright.algorithms.provenance import provenance_now
 from lanewright.library import run
 
@@ -16,6 +17,8 @@ def test_names_of_files_stay_and_their_folders_go():
     told = json.loads(provenance_now("roadmap", VALUES, ["/home/anna/Kunde Müller/a.laz is dark."], names_only=True).parameters)
     assert told["POINT_CLOUDS"] == ["a.laz", "b.laz", "c.laz"] and told["ROAD_EDGES"] == "map.gpkg|layername=edges"
     assert "dbname='map.gpkg'" in told["MARKINGS"] and told["CRS"].endswith("UTM zone 50N']") and told["WHERE"] == "'use' = 'a/b'"
+    quoted = {"A": "/home/O'Neil/x/a.laz", "B": table_of("/home/O'Neil/map.gpkg", "a")}
+    assert json.loads(provenance_now("roadmap", quoted, names_only=True).parameters) == {"A": "a.laz", "B": "ogr:dbname='map.gpkg' table='a' (geom)"}
     assert (told["COUNTRY"], told["MAX_GAP"]) == ("germany", 2.5)
     assert provenance_now("roadmap", VALUES, ["/home/anna/Kunde Müller/a.laz is dark."], names_only=True).warnings == ("a.laz is dark.",)
     assert "/home/anna" in provenance_now("roadmap", VALUES).parameters

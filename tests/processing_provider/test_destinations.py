@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from drives import write_cloud
 from lanewright.algorithms import destinations
-from lanewright.algorithms.destinations import UnfinishedFiles, UnfinishedLayers, bring_back, check_suffix, check_writable, destination_path
+from lanewright.algorithms.destinations import UnfinishedFiles, UnfinishedLayers, bring_back, check_suffix, check_writable, destination_path, table_of
 from lanewright.algorithms.driving.road_map import RoadMap
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.io.unfinished import ABANDONED_TIME
@@ -62,6 +62,8 @@ def test_the_temporary_name_ends_as_the_file_does_since_drivers_go_by_it(tmp_pat
 @pytest.mark.parametrize("value, path", [
     ("lines.gpkg", "lines.gpkg"),
     ("ogr:dbname='/data/all.gpkg' table=\"lanes\" (geom)", "/data/all.gpkg"),
+    ("ogr:dbname='/home/O\\'Neil/all.gpkg' table=\"lanes\" (geom)", "/home/O'Neil/all.gpkg"),
+    ("ogr:dbname='/home/O'Neil/all.gpkg' table=\"lanes\" (geom)", "/home/O'Neil/all.gpkg"),
     ("/data/all.gpkg|layername=lanes", "/data/all.gpkg"),
     ("TEMPORARY_OUTPUT", None),
     ("memory:", None),
@@ -196,6 +198,19 @@ def test_what_killed_runs_left_goes_after_a_day_and_what_a_run_of_today_writes_s
         os.utime(path, (long_ago, long_ago))
     UnfinishedLayers().begin(tmp_path / "map.gpkg")
     assert not left[0].parent.exists() and left[1].exists()
+
+
+def test_a_layer_is_written_into_a_folder_with_an_apostrophe_in_its_name(provider, tmp_path):
+    folder = tmp_path / "O'Neil's roads"
+    folder.mkdir()
+    (folder / "drive.csv").write_text("time,x,y,z\n" + "".join(f"{k},{500000 + k},4000000,10\n" for k in range(20)))
+    algorithm, feedback = provider.algorithm("importtrajectory").create(), QgsProcessingFeedback()
+    for _ in range(2):  # the second time the table is there
+        results, done = algorithm.run({"INPUT": str(folder / "drive.csv"), "INPUT_CRS": "EPSG:32650",
+                                       "OUTPUT": table_of(folder / "map.gpkg", "drive")}, QgsProcessingContext(), feedback)
+        assert done, feedback.textLog()
+        assert QgsVectorLayer(results["OUTPUT"], "drive", "ogr").featureCount() == 20
+    assert sorted(os.listdir(folder)) == ["drive.csv", "map.gpkg"] and os.listdir(tmp_path) == [folder.name]
 
 
 def made_table(path, table, rows):

@@ -7,13 +7,15 @@ from shapely import LineString, Polygon, box
 
 pytest.importorskip("osgeo.gdal")
 
-from accuracy import judge, published  # noqa: E402
+from accuracy import judge  # noqa: E402
 from accuracy.figures import figures_of  # noqa: E402
 from accuracy.page import page  # noqa: E402
+from accuracy.results import results  # noqa: E402
 from accuracy.surveys import _make_sample, read_case, surveys_in  # noqa: E402
 from lanewright.core.common.features import Features, Field  # noqa: E402
 from lanewright.core.sample.survey import SampleSettings  # noqa: E402
 from make_sample import write_layers  # noqa: E402
+from results_table import Results  # noqa: E402
 
 
 @pytest.fixture(scope="module")
@@ -36,21 +38,26 @@ def test_a_made_survey_is_found_and_says_that_it_is_simulated(measured):
 def test_every_method_is_measured(measured):
     _, figures = measured
     assert set(figures["boundaries"]) == {"profiles", "scanlines", "both"}
-    assert set(figures["methods"]) == set(published.METHODS)
+    assert set(figures["methods"]) == {"intensity-peaks", "point-segments", "multi-threshold"}
     assert figures["whole"]["markings"]["tolerant"]["f1"] > 90
     assert figures["methods"]["multi-threshold"]["polygons"]["tolerant"] == figures["whole"]["markings"]["tolerant"]
     assert figures["boundaries"]["profiles"]["total"] == figures["whole"]["boundaries"]["total"]
 
 
 @pytest.mark.slow
-def test_the_page_sets_published_figures_beside_ours_and_survives_json(measured):
+def test_the_results_hold_published_figures_beside_ours_and_the_page_is_the_same_from_the_file(measured, tmp_path):
     _, figures = measured
-    text = page(json.loads(json.dumps([figures])), samples=True)
-    assert "Streets of every kind" in text and "surveyed otherwise" not in text
-    assert "short (simulated)" in text and "**simulated**" in text
-    for part in ("table 4.2", "table 4.12", "table 4.13", "table 4.14", "table 4.15", "table 3", "76.9 / 91.3 / 83.4"):
-        assert part in text
-    assert "nan" not in text and "None" not in text
+    table = results(json.loads(json.dumps([figures])))
+    table.write(tmp_path / "accuracy.csv")
+    again = Results.read(tmp_path / "accuracy.csv")
+    text = page(again, samples=True)
+    assert text == page(table, samples=True)
+    assert "| short (simulated) |" in text and "**simulated**" in text and "the thesis, on other, real roads, has 92.0" in text
+    assert again.get("methods", "thesis, mean of data sets 1, 4, 5", "intensity-peaks", "polygons tolerant f1") == 83.42
+    for name in ("survey", "seconds", "whole", "methods", "boundaries"):
+        assert "short" in again.names(name) and any(of.startswith(("thesis", "paper")) for of in again.names(name))
+    assert "Not measured." in text
+    assert "nan" not in text and "None" not in text and "nan" not in (tmp_path / "accuracy.csv").read_text()
 
 
 def test_truth_of_another_kind_is_read(tmp_path):

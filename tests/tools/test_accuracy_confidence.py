@@ -10,8 +10,8 @@ from shapely import LineString
 pytest.importorskip("osgeo.gdal")
 
 from accuracy.confidence import confidence_figures  # noqa: E402
+from accuracy.results import results  # noqa: E402
 from accuracy.streets import driving_figures  # noqa: E402
-from accuracy.streets_page import confidence_section  # noqa: E402
 
 TRUE_LANE = LineString([(0, 0), (100, 0)])
 CASE = SimpleNamespace(truth=SimpleNamespace(driving=[TRUE_LANE], area=None))
@@ -38,7 +38,7 @@ def test_figures_of_driving_lines_can_be_saved():
     assert "driven" not in found
 
 
-def test_the_page_says_how_often_sure_lanes_are_right():
-    text = confidence_section([dict(name="a street", confidence={"4": (970.0, 1000.0, 990.0)}), dict(name="a street without")])
-    assert "| 0.95 to 1.00 | 0.99 | 0.97 | 100 |" in text
-    assert not confidence_section([dict(name="a street without")])
+def test_the_results_say_how_often_sure_lanes_are_right():
+    table = results([dict(name="a street", kind="simulated", text="", points=1, streets={"as surveyed": dict(lanes=(95.0, 100.0))},
+                          confidence={"4": (970.0, 1000.0, 990.0)})])
+    assert [table.get("confidence", "all", "0.95 to 1.00", name) for name in ("said", "right", "m")] == [0.99, 0.97, 100.0]

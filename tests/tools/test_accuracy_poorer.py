@@ -10,7 +10,7 @@ from shapely import LineString, box
 pytest.importorskip("osgeo.gdal")
 
 from accuracy.poorer import POORER  # noqa: E402
-from accuracy.poorer_page import poorer_section, sigma_section  # noqa: E402
+from accuracy.results import results  # noqa: E402
 from accuracy.streets import judged, percent  # noqa: E402
 
 CHANGES = {one.name: one.change for one in POORER}
@@ -78,23 +78,23 @@ WHOLE = {"curbs": (90.0, 100.0), "lanes": (98.0, 100.0), "edges_sigma": (70.0, 1
 
 
 def street(name, **poorer):
-    return {"name": name, "kind": "simulated", "points": 1000, "streets": {"as surveyed": WHOLE}, "poorer": poorer}
+    return {"name": name, "kind": "simulated", "text": "", "points": 1000, "streets": {"as surveyed": WHOLE}, "poorer": poorer}
 
 
-def test_the_page_says_of_each_street_what_a_lack_costs():
-    text = poorer_section([street("one", thin={"curbs": (80.0, 100.0)}, timeless={"refused": "No road."})])
-    assert "| survey | as surveyed | thin | timeless |" in text
-    assert "| one (simulated) | 90.0 | -10.0 | no map |" in text and "| one (simulated) | 98.0 | lost | no map |" in text
-    assert "Markings" not in text and "All, by length" not in text
-    assert poorer_section([{"streets": {"as surveyed": WHOLE}}]) == ""
+def test_the_results_say_of_each_street_what_is_left_when_something_lacks():
+    table = results([street("one", thin={"curbs": (80.0, 100.0)}, timeless={"refused": "No road."})])
+    assert table.get("streets", "one", "thin", "curbs") == table.get("streets", "one", "thin", "all edges") == 80.0
+    assert table.get("streets", "one", "thin", "driving lines 15 cm") is None
+    assert table.get("streets", "one", "timeless", "refused") == "No road."
 
 
-def test_the_page_pools_streets_by_length_and_counts_those_without_a_map():
-    text = poorer_section([street("one", thin={"curbs": (80.0, 100.0), "lanes": (98.0, 100.0)}), street("two", thin={"refused": "No road."})])
-    assert "| thin (no map of 1) | -10.0 | – | – | – | · |" in text
+def test_the_results_pool_streets_by_length_and_count_those_without_a_map():
+    table = results([street("one", thin={"curbs": (80.0, 100.0), "lanes": (98.0, 100.0)}), street("two", thin={"refused": "No road."})])
+    assert table.get("changes", "all", "thin", "curbs") == -10.0 and table.get("changes", "all", "thin", "driving lines 15 cm") == 0.0
+    assert table.get("changes", "all", "thin", "surveys") == 2 and table.get("changes", "all", "thin", "no map") == 1
 
 
-def test_the_page_says_which_share_lies_within_sigma():
-    given = [street("one")]
-    assert "| one (simulated) | 70.0 | – |" in sigma_section(given)
-    assert sigma_section([{"name": "", "kind": "", "streets": {"as surveyed": {}}}]) == ""
+def test_the_results_say_which_share_lies_within_sigma():
+    table = results([street("one")])
+    assert table.get("streets", "one", "as surveyed", "road edges within sigma") == 70.0
+    assert table.get("streets", "one", "as surveyed", "driving lines within sigma") is None

@@ -3,12 +3,12 @@
 import sys
 from pathlib import Path
 
-import pytest
 from shapely import LineString
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tools"))
 
-from accuracy.roadside import judged_roadside, roadside_section  # noqa: E402
+from accuracy.results import results  # noqa: E402
+from accuracy.roadside import judged_roadside  # noqa: E402
 from accuracy.surveys import Truth  # noqa: E402
 
 WALL, RAIL = LineString([(0, 5, 1), (40, 5, 1)]), LineString([(0, -5, 1), (60, -5, 1)])
@@ -27,17 +27,22 @@ def test_a_line_is_right_beside_a_true_one_of_its_kind_alone():
     assert found["roadside"] == (703, 1000) and found["roadside_right"] == (700, 900)
 
 
-def test_the_table_says_how_many_metres_are_wrong():
+def test_the_results_say_how_many_metres_are_wrong():
     truth = Truth(roadside=[(WALL, dict(kind="wall"))], has={"roadside"})
-    figures = [dict(name="one", kind="simulated", has=["roadside"], streets={"as surveyed": judged_roadside(truth, [line(40, 5, "wall")])}),
-               dict(name="none", kind="simulated", has=["roadside"], streets={"as surveyed": judged_roadside(
+    figures = [dict(name="one", kind="simulated", text="", points=1, streets={"as surveyed": judged_roadside(truth, [line(40, 5, "wall")])}),
+               dict(name="none", kind="simulated", text="", points=1, streets={"as surveyed": judged_roadside(
                    Truth(has={"roadside"}), [line(12, 5, "fence")])})]
-    rows = roadside_section(figures).splitlines()
-    assert rows[-3].split("|")[-4:-1] == [" 100.0 ", " 100.0 ", " 0.0 "]
-    assert rows[-2].split("|")[-4:-1] == [" – ", " 0.0 ", " 12.0 "]
-    assert rows[-1].startswith("| **all, by length** | 40 |") and "76.9" in rows[-1]
+    table = results(figures)
+
+    def row(name):
+        figures = ("roadside", "roadside right", "roadside m", "roadside m wrong")
+        return [value if value is None else round(value, 1) for value in (table.get("streets", name, "as surveyed", figure) for figure in figures)]
+
+    assert row("one") == [100.0, 100.0, 40.0, 0.0]
+    assert row("none") == [None, 0.0, None, 12.0]
+    assert row("all") == [100.0, 76.9, 40.0, 12.0]
 
 
-@pytest.mark.parametrize("has", [[], ["markings"]])
-def test_without_a_truth_of_the_roadside_there_is_no_section(has):
-    assert roadside_section([dict(name="one", kind="real", has=has, streets={"as surveyed": {}})]) == ""
+def test_a_survey_without_a_truth_of_the_roadside_has_no_figures_of_it():
+    table = results([dict(name="one", kind="real", text="", points=1, streets={"as surveyed": {}})])
+    assert not [key for key in table.values if key[1] == "one" and key[3].startswith("roadside")]

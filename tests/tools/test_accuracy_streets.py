@@ -11,8 +11,9 @@ from shapely import LineString, Polygon, box
 
 pytest.importorskip("osgeo.gdal")
 
+from accuracy.page import page  # noqa: E402
+from accuracy.results import results  # noqa: E402
 from accuracy.streets import harmonic, judged, percent, pooled  # noqa: E402
-from accuracy.streets_page import otherwise_section, streets_section  # noqa: E402
 from accuracy.variants import VARIANTS, Variant  # noqa: E402
 from lanewright.core.sample.survey import SampleSettings, make_sample_survey  # noqa: E402
 
@@ -140,14 +141,21 @@ def test_points_of_a_variant_stay_on_the_way_of_its_vehicle(variant, tmp_path):
 def test_the_page_says_how_much_each_variant_changes():
     whole = {"curbs": (90.0, 100.0), "lanes": (98.0, 100.0), "lanes_right": (99.0, 100.0), "directions": (50.0, 50.0)}
     other = {"curbs": (88.0, 100.0), "lanes": (98.0, 100.0), "lanes_right": (98.0, 100.0), "directions": (50.0, 50.0)}
-    given = [{"name": "one", "kind": "simulated", "streets": {"as surveyed": whole, "mirrored": other}},
-             {"name": "two", "kind": "simulated", "streets": {"as surveyed": whole, "mirrored": {"refused": "No road."}}}]
-    table = streets_section(given)
-    assert "| one (simulated) | 90.0 |" in table and "**all, by length**" in table
-    text = otherwise_section(given)
-    assert "mirrored (no map of 1) | -2.0 | – | – | – | · | – | +1.0 | · |" in text
-    assert otherwise_section([{"streets": {"as surveyed": whole}}]) == ""
-    assert "Measured so far: one." in otherwise_section([given[0], {"name": "three", "streets": {"as surveyed": whole}}])
+    about = dict(kind="simulated", text="", points=1)
+    given = [{"name": "one", **about, "streets": {"as surveyed": whole, "mirrored": other, "driven the other way": other}},
+             {"name": "two", **about, "streets": {"as surveyed": whole, "mirrored": {"refused": "No road."}}}]
+    table = results(given)
+    text = page(table, samples=True)
+    assert "| one (simulated) | 90.0 |" in text and "**all, by length**" in text
+    assert "| mirrored (no map of 1) | -2.0 | – | – | – | · | – | +1.0 | · |" in text
+    assert "| driven the other way (1 of 2 surveys) | -2.0 | – | – | – | · | – | +1.0 | – |" in text
+    assert table.get("streets", "two", "mirrored", "refused") == "No road."
+    assert "Not measured." in page(results([{"name": "one", **about, "streets": {"as surveyed": whole}}]), samples=True)
+
+
+def test_a_street_without_a_map_is_on_the_page_with_the_reason():
+    given = [{"name": "one", "kind": "real", "text": "", "points": 1, "streets": {"as surveyed": {"refused": "No road."}}}]
+    assert "| one (real) | no map: No road. |" in page(results(given), samples=False)
 
 
 def test_variants_are_those_that_the_page_tells_of():

@@ -13,7 +13,9 @@ from bench import meaning, measures, surveys  # noqa: E402
 from bench.chain import Watch  # noqa: E402
 from bench.measures import MEASURES, PARTS  # noqa: E402
 from bench.page import page  # noqa: E402
-from bench.rows import ROWS, reached  # noqa: E402
+from bench.results import results  # noqa: E402
+from bench.rows import ROWS  # noqa: E402
+from results_table import Results  # noqa: E402
 
 CHAIN = dict(wall=8.1, cpu=12.0, peak=1024.0, points=18_000_000, road_points=13_000_000, length=200.0, bar_off=0.04,
              seconds=dict(survey=4.0, curbs=1.0, edges=0.1, lines=0.1, driving=0.1), silence=(0.8, "Detecting curbs …"), found={})
@@ -29,9 +31,13 @@ def a_round(others=0.0, **more):
     return {name: dict(dict(peak=500.0, load=0.1, took=10.0, others=others), **f) for name, f in figures.items()}
 
 
-def a_page(*rounds, size="full"):
+def a_table(*rounds, size="full"):
     same = dict(sor_pcl=dict(same=0.9999, ours=900_000, theirs=900_010))
-    return page(json.loads(json.dumps(dict(size=size, machine=MACHINE, rounds=rounds, meaning=same, took=600.0))))
+    return results(json.loads(json.dumps(dict(size=size, machine=MACHINE, rounds=rounds, meaning=same, took=600.0))))
+
+
+def a_page(*rounds, size="full"):
+    return page(a_table(*rounds, size=size))
 
 
 def row(text, unit=""):
@@ -41,27 +47,38 @@ def row(text, unit=""):
 def test_figures_are_ratios_within_a_round_and_the_median_decides():
     slow = {name: dict(f, wall=f["wall"] * 3) if "wall" in f else f for name, f in a_round().items()}
     rounds = [a_round(), a_round(profiles=dict(CHAIN, wall=12.0)), slow]
-    middle, least, most, verdict = reached(row("whole road map", "× reading"), rounds)
-    assert (middle, least, most, verdict) == (pytest.approx(2.7), pytest.approx(2.7), 4.0, "yes")
-    assert reached(row("outliers", "PCL"), rounds)[::3] == (0.5, "yes")
-    assert reached(row("outliers", "Open3D"), rounds) is None
+    whole, table = row("whole road map", "× reading"), a_table(*rounds)
+    spread = [table.get("goals", whole.text, whole.unit, name) for name in ("median", "least", "most")]
+    assert spread == [pytest.approx(2.7), pytest.approx(2.7), 4.0] and whole.reached(rounds) == "yes"
+    assert row("outliers", "PCL").values(rounds) == [0.5] * 3 and row("outliers", "PCL").reached(rounds) == "yes"
+    assert row("outliers", "Open3D").values(rounds) == [] and row("outliers", "Open3D").reached(rounds) is None
 
 
-def test_a_figure_above_what_is_asked_is_said_to_be():
-    assert reached(row("peak memory, dense"), [a_round(profiles=dict(CHAIN, peak=1300.0))])[3] == "no"
-    assert "| no |" in a_page(a_round(profiles=dict(CHAIN, peak=1300.0)))
+def test_the_page_opens_with_the_goals_that_are_not_reached():
+    heavy = a_round(profiles=dict(CHAIN, peak=1300.0))
+    assert row("peak memory, dense").reached([heavy]) == "no"
+    text = "| peak memory, dense 200 m | GiB | ≤ 1.2 |"
+    first, _, second = a_page(heavy).partition("## Reached")
+    assert text in first and text not in second and text in a_page(a_round()).partition("## Reached")[2]
+
+
+def test_the_page_is_the_same_from_the_table_that_was_saved(tmp_path):
+    table = a_table(a_round(), a_round(profiles=dict(CHAIN, wall=12.0)))
+    table.write(tmp_path / "benchmarks.csv")
+    assert page(Results.read(tmp_path / "benchmarks.csv")).count("(2.70–4.00)") == page(table).count("(2.70–4.00)") == 1
 
 
 @pytest.mark.parametrize("wall,share,verdict", [(5.5, 10 / 11, "yes"), (6.0, 10 / 12, "no")])
 def test_two_cores_that_take_little_more_than_half_the_time_of_one_reach_the_goal(wall, share, verdict):
     figures = a_round(alone_both=dict(CHAIN, wall=10.0, cores=1), both=dict(CHAIN, wall=wall, cores=2))
-    assert reached(row("of the default, threads"), [figures])[::3] == (pytest.approx(share), verdict)
+    assert row("of the default, threads").values([figures]) == [pytest.approx(share)]
+    assert row("of the default, threads").reached([figures]) == verdict
     assert "| ≥ 0.9 |" in a_page(figures)
 
 
 def test_what_runs_on_one_core_each_lose_side_by_side_is_the_ceiling_of_efficiency():
     figures = a_round(alone_both=dict(CHAIN, wall=9.0), side_by_side=dict(wall=10.0, cpu=9.8))
-    assert reached(row("ceiling"), [figures])[::3] == (pytest.approx(0.9), "")
+    assert row("ceiling").values([figures]) == [pytest.approx(0.9)] and row("ceiling").reached([figures]) is None
 
 
 @pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="cores are chosen on Linux only")

@@ -3,7 +3,7 @@
 import csv
 
 from accuracy.streets import harmonic, percent
-from accuracy.tables import number, table
+from results_table import markdown, number
 
 from .weight import weight
 
@@ -103,10 +103,10 @@ def page(switches, groups, results):
         else:
             counts = [sum(one == outcome for one in outcomes) for outcome in (*NOT_FELT, "another map")]
             silent.append([name, ", ".join(filter(None, switches[name].rule)), lines, numbers, street, *counts])
-    return (ABOUT + table(["survey", "variant", *FIGURES], maps, words=2)
+    return (ABOUT + markdown(["survey", "variant", *FIGURES], maps, words=2)
             + "\n\n## Felt\n\nChanges in points, of the variant of each survey that changes most.\n\n"
-            + table(["off", "made for", "lines", "numbers", "tried", "felt by"],
+            + markdown(["off", "made for", "lines", "numbers", "tried", "felt by"],
                     [[name, street, lines, numbers, tried, felt] for name, lines, numbers, street, tried, felt in rows], words=2)
-            + SILENT + table(["off", "where", "made for", "lines", "numbers", *NOT_FELT, "no figure"],
+            + SILENT + markdown(["off", "where", "made for", "lines", "numbers", *NOT_FELT, "no figure"],
                              [[name, where, street, lines, numbers, *counts] for name, where, lines, numbers, street, *counts in silent], words=3)
             + "\n")

@@ -1,8 +1,9 @@
 """`make accuracy`: every method over surveys with truth, into docs/accuracy.md beside the published figures.
 
 surveys (what is measured on) → chain (what is run) → judge (how right it is) → figures
-(all numbers of one survey) → page (the document). Beside the steps, the road map as a whole: otherwise (of a street
-and of its variants) and poorer (with something lacking) → streets (how right it is, by length) → streets_page, poorer_page.
+(all numbers of one survey) → results (one table of all figures, docs/accuracy.csv) → page (what is quoted of it, in page.md).
+Beside the steps, the road map as a whole: otherwise (of a street and of its variants) and poorer (with something lacking) →
+streets (how right it is, by length).
 """
 
 import sys

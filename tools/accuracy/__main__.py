@@ -11,6 +11,7 @@ from pathlib import Path
 from . import ROOT
 from .figures import figures_of
 from .page import page
+from .results import results
 from .surveys import make_samples, surveys_in
 
 BUILD = ROOT / "build" / "accuracy"
@@ -19,8 +20,8 @@ BUILD = ROOT / "build" / "accuracy"
 def main():
     parser = argparse.ArgumentParser(prog="make accuracy", description="Accuracy of every method over surveys with truth.")
     parser.add_argument("--surveys", type=Path, help="a folder of surveys with truth (default: the sample scenes, made anew)")
-    parser.add_argument("--page", type=Path, help="where the page is written (default: docs/accuracy.md for the sample scenes, "
-                                                  "accuracy.md in the folder of surveys otherwise)")
+    parser.add_argument("--page", type=Path, help="where the page is written, its figures beside it as CSV (default: "
+                                                  "docs/accuracy.md for the sample scenes, accuracy.md in the folder of surveys otherwise)")
     parser.add_argument("--quick", action="store_true", help="without the ablation, the image resolutions and the streets surveyed otherwise")
     parser.add_argument("--only", default="", metavar="NAME,NAME", help="measure these surveys alone; the page has the last figures of the others")
     parser.add_argument("--one", type=Path, help=argparse.SUPPRESS)
@@ -58,8 +59,11 @@ def main():
             figures[survey.name] = json.loads(into.read_text())
         saved.write_text(json.dumps(list(figures.values()), indent=1))
     where = arguments.page or (ROOT / "docs" / "accuracy.md" if arguments.surveys is None else folder / "accuracy.md")
-    where.write_text(page([figures[survey.name] for survey in found if survey.name in figures], arguments.surveys is None), encoding="utf-8")
-    print(f"{where} written after {time.monotonic() - began:.0f} s.")
+    table = results([figures[survey.name] for survey in found if survey.name in figures])
+    beside = where.with_suffix(".csv")
+    table.write(beside)
+    where.write_text(page(table, arguments.surveys is None, beside.name), encoding="utf-8")
+    print(f"{where} and {beside.name} written after {time.monotonic() - began:.0f} s.")
 
 
 if __name__ == "__main__":

@@ -2,7 +2,8 @@
 
 surveys (what is measured on) → prepare (the points that peers get too) → measures (ours) and
 peer_measures (theirs), each in a process of its own → rounds (in turns, several times) →
-meaning (do both say the same?) → rows (the table) → page (the document).
+meaning (do both say the same?) → rows (the goals) → results (one table of all figures, docs/benchmarks.csv) →
+page (what is quoted of it, in page.md).
 """
 
 import sys

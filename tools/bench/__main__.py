@@ -10,6 +10,7 @@ from .machine import machine
 from .measures import LATER, MEASURES, PARTS, in_this_process, measure
 from .page import page
 from .prepare import prepared
+from .results import results
 from .surveys import make_far_survey, make_surveys
 
 READS = 3   # of laspy a round, so that the floor is no matter of luck
@@ -20,15 +21,18 @@ def main():
     if arguments.child:
         in_this_process(arguments.child, arguments.size, arguments.cores)
         return
-    results = BUILD / f"results-{arguments.size}.json"
+    saved = BUILD / f"results-{arguments.size}.json"
     if not arguments.page_only:
         BUILD.mkdir(parents=True, exist_ok=True)
-        results.write_text(json.dumps(_run(arguments), indent=1))
-    text = page(json.loads(results.read_text()))
+        saved.write_text(json.dumps(_run(arguments), indent=1))
+    table = results(json.loads(saved.read_text()))
     whole = arguments.size == "full" and set(arguments.parts) >= set(PARTS) - set(LATER)
     where = arguments.page or (ROOT / "docs" / "benchmarks.md" if whole else BUILD / f"benchmarks-{arguments.size}.md")
+    beside = where.with_suffix(".csv")
+    text = page(table, beside.name)
+    table.write(beside)
     where.write_text(text, encoding="utf-8")
-    print(text if not whole else "", f"{where} written.", sep="\n")
+    print(text if not whole else "", f"{where} and {beside.name} written.", sep="\n")
 
 
 def _arguments():
@@ -40,7 +44,8 @@ def _arguments():
                         help="default: all but far, 40 km of road, and cancel, which presses Cancel at many moments; each takes a quarter of an hour")
     parser.add_argument("--rounds", type=int, help="default 3, 1 with --quick")
     parser.add_argument("--cores", type=int, default=cores, help="processor cores that ours and theirs get (default %(default)s)")
-    parser.add_argument("--page", type=lambda text: ROOT / text, help="where the page is written (default docs/benchmarks.md, where all was run)")
+    parser.add_argument("--page", type=lambda text: ROOT / text, help="where the page is written, its figures as CSV beside it "
+                                                                         "(default docs/benchmarks.md, where all was run)")
     parser.add_argument("--page-only", action="store_true", help="write the page anew from the figures of the last run")
     parser.add_argument("--child", choices=sorted(MEASURES), help=argparse.SUPPRESS)
     parser.add_argument("--size", dest="size", help=argparse.SUPPRESS)

@@ -20,6 +20,13 @@ class Row:
         """Its values, one a round in which all it needs was measured."""
         return [self.value(r) for r in rounds if all(name in r and "missing" not in r[name] for name in self.needs)]
 
+    def reached(self, rounds):
+        """yes or no by the median; None where there is no goal or it was not measured."""
+        values = self.values(rounds)
+        if not values or self.goal is None:
+            return None
+        return "yes" if (median(values) >= self.goal if self.least else median(values) <= self.goal) else "no"
+
 
 def _against_reading(name, part=None, read="read"):
     """Wall seconds of a measurement, or of some of its stages, over those of laspy's read."""
@@ -45,7 +52,7 @@ def _points_per_second(one, other):
 READ = "× reading"
 ROWS = (
     Row("placing decoded points in the road frame", READ, 0.35, _against_reading("placing"), ("read", "placing")),
-    Row("the same, chosen, packed and stored by section", READ, None, _against_reading("storing"), ("read", "storing")),
+    Row("the same points chosen, packed and stored by section", READ, None, _against_reading("storing"), ("read", "storing")),
     Row("profiles and curbs", READ, 0.4, _against_reading("profiles", ("curbs", "edges")), ("read", "profiles")),
     Row("normalized scanlines and boundaries on them, in memory", READ, 4.0, _against_reading("scanlines"), ("read", "scanlines")),
     Row("intensity image of 4 cm, 50 m of road", "× gdal_grid (invdistnn)", 0.25, _over("image_ours", "image_gdal", "wall"),
@@ -60,19 +67,19 @@ ROWS = (
     Row("**whole road map**, boundaries by profiles, LAZ", READ, 2.8, _against_reading("profiles"), ("read", "profiles")),
     Row("**whole road map**, boundaries by profiles, LAS", READ + " the LAZ", 1.5, _against_reading("las"), ("read", "las")),
     Row("**whole road map**, boundaries by both methods (the default), LAZ", READ, 3.5, _against_reading("both"), ("read", "both")),
-    Row("the same by worker processes, one a core", READ, None, _against_reading("workers"), ("read", "workers")),
+    Row("whole road map by both methods and worker processes, one a core", READ, None, _against_reading("workers"), ("read", "workers")),
     Row("2 km in tiles, as many points, boundaries by profiles", READ + " these tiles", 5.0, _against_reading("tiles", read="read_long"),
         ("read_long", "tiles")),
-    Row("the same by worker processes, one a core", READ + " these tiles", None, _against_reading("tiles_workers", read="read_long"),
+    Row("2 km in tiles by worker processes, one a core", READ + " these tiles", None, _against_reading("tiles_workers", read="read_long"),
         ("read_long", "tiles_workers")),
     Row("parallel efficiency of the default, threads", "T₁ / n Tₙ", 0.9, _efficiency("alone_both", "both"), ("alone_both", "both"), least=True),
     Row("parallel efficiency of the default, worker processes", "T₁ / n Tₙ", 0.9, _efficiency("alone_workers", "workers"),
         ("alone_workers", "workers"), least=True),
-    Row("ceiling: independent runs of it on one core each, side by side on all cores", "T₁ / T₁ side by side", None,
+    Row("ceiling of efficiency: independent runs on one core each, side by side on all cores", "T₁ / T₁ side by side", None,
         _over("alone_both", "side_by_side", "wall"), ("alone_both", "side_by_side")),
     Row("2 km in tiles by a Dask cluster on this computer, one worker a core", READ + " these tiles", None,
         _against_reading("dask_all", read="read_long"), ("read_long", "dask_all")),
-    Row("parallel efficiency of it", "T₁ / n Tₙ", 0.85, _efficiency("dask_one", "dask_all"), ("dask_one", "dask_all"), least=True),
+    Row("parallel efficiency of the Dask cluster", "T₁ / n Tₙ", 0.85, _efficiency("dask_one", "dask_all"), ("dask_one", "dask_all"), least=True),
     Row("points per second by worker processes, 40 km in tiles", "× 2 km", 0.9, _points_per_second("far", "tiles_workers"),
         ("far", "tiles_workers"), least=True),
     Row("peak memory, dense 200 m", "GiB", 1.2, lambda r: r["profiles"]["peak"] / 1024, ("profiles",)),
@@ -86,12 +93,3 @@ ROWS = (
     Row("progress bar, farthest from the time passed (both)", "% of the whole", None, lambda r: 100 * r["both"]["bar_off"], ("both",)),
     Row("longest time in which Cancel is not asked for (both)", "s", 2.0, lambda r: r["both"]["silence"][0], ("both",)),
 )
-
-
-def reached(row, rounds):
-    """(median, least, most, "yes", "no" or "") of a row; None where it was not measured."""
-    values = row.values(rounds)
-    if not values:
-        return None
-    middle = median(values)
-    return middle, min(values), max(values), "" if row.goal is None else "yes" if (middle >= row.goal if row.least else middle <= row.goal) else "no"

@@ -14,8 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...curves.robust import MAD_TO_SIGMA
+from ..estimation.growth import MAX_RAY_MISFIT
 from ..estimation.poses import vehicle_axes
-from ..estimation.resection import EXPECTED_HEIGHT, MIN_SHARE_IN_FRONT, resected
+from ..estimation.resection import EXPECTED_HEIGHT, MIN_SHARE_IN_FRONT, RESECTION_ROUNDS, resected
 from ..estimation.rough.first_track import DENSITY_ROUNDS, DENSITY_WIDTH, GROUND_WEIGHT_DEPTH, LOWEST_SHARE
 from ..estimation.rough.samples import SAMPLED_LAYERS
 from ..las.parallel_reader import ParallelCloudReader
@@ -24,20 +25,18 @@ from ..las.scanners import ScannerCensus, numbers_by_value, times_by_value
 from ..las.validity import valid_points
 from ..lattice.rotation_rate import MIN_ROTATION_PEAK, ROTATION_WINDOW, rotation_spectrum, strongest_rotation
 from ..trajectory.trajectory import Trajectory
-
-PLACES_READ = 6                     # places in the files that are looked at
-TURNS_WINDOW = 0.05                 # s: some turns of every mirror, in which a vehicle on the road hardly sways
-PLACE_WINDOWS = 5                   # windows that points are read of at a place, the first and last of them not whole
-BLOCK_POINTS, PLACE_POINTS = 5_000, 50_000   # read at a time, and at most at a place
-MIN_TURNS_POINTS, MAX_TURNS_POINTS = 60, 200
-MAX_WINDOWS = 80                    # of a scanner, evenly over the survey
-MIN_WINDOWS = 8                     # good ones that a scanner's place needs
-PLANE_ROUNDS, RATE_ROUNDS = 8, 3
-PLACE_NOISE, ATTITUDE_NOISE = 0.03, 0.01   # m and radians by which points may lie off the plane
-MAX_OFF_PLANE = 0.15                # m, median: points of several mirrors, or of many beams, lie in no plane
-MAX_UPRIGHT = 0.8                   # of the plane's normal: what lies flatter is the ground
-MIN_WINDOW_SHARE = 0.5              # of the windows that must be good
-BELOW_SCANNER = 3.0                 # m about the scanner in plan, within which the ground below it lies
+from .limits import (
+    ATTITUDE_NOISE,
+    MAX_TURNS_POINTS,
+    MAX_UPRIGHT,
+    MIN_TURNS_POINTS,
+    MIN_WINDOWS,
+    PLACE_POINTS,
+    PLACE_WINDOWS,
+    PLACES_READ,
+    SIGNIFICANT,
+    TURNS_WINDOW,
+)
 
 
 @dataclass(frozen=True)
@@ -99,7 +98,7 @@ def read_places(files: Sequence[CloudHeader], scanner_field: str | None = "autom
 def _read_place(reader, file, start, windows):
     """[`_first_returns`] of points of a file from the beginning of a chunk on, as many as some windows hold."""
     parts, seen = [], {}
-    for block in reader.following(file, start, BLOCK_POINTS):
+    for block in reader.following(file, start, PLACE_POINTS // 10):
         parts.append(_first_returns(block))
         for window, count in zip(*np.unique(np.floor(parts[-1][0] / TURNS_WINDOW), return_counts=True)):
             seen[window] = seen.get(window, 0) + count
@@ -137,16 +136,15 @@ def scanner_mountings(sample: _Sample, trajectory: Trajectory, stretch: float = 
 
 def _in_vehicle_frame(sample, trajectory, stretch):
     """(N,) s, (N, 3) m ahead, left and up, and (N,) scanner of points evenly chosen from windows of time."""
-    window = np.floor((sample.time - sample.time[0]) / TURNS_WINDOW).astype(np.int64) if len(sample.time) else np.empty(0, np.int64)
-    kept = np.zeros(len(window), bool)
-    for number in np.unique(sample.scanner).tolist():
-        own = np.flatnonzero((sample.scanner == number) & (sample.time >= trajectory.time[0]) & (sample.time <= trajectory.time[-1]))
-        begin = np.flatnonzero(np.r_[True, np.diff(window[own]) > 0]) if len(own) else np.empty(0, int)
-        size = np.diff(np.append(begin, len(own)))
-        full = np.flatnonzero(size >= MIN_TURNS_POINTS)
-        for k in full[np.unique(np.linspace(0, len(full) - 1, min(MAX_WINDOWS, len(full))).astype(int))] if len(full) else ():
-            kept[own[begin[k]:begin[k] + size[k]:-(-size[k] // MAX_TURNS_POINTS)]] = True
-    rows = np.flatnonzero(kept)
+    driven = np.flatnonzero((sample.time >= trajectory.time[0]) & (sample.time <= trajectory.time[-1]))
+    # by scanner, then by time, as the sample is
+    driven = driven[np.argsort(sample.scanner[driven], kind="stable")]
+    windows = np.stack([sample.scanner[driven], np.floor(sample.time[driven] / TURNS_WINDOW)])
+    begin = np.flatnonzero((np.diff(windows, axis=1, prepend=np.nan) != 0).any(axis=0))
+    size = np.diff(np.append(begin, len(driven)))
+    rank = np.arange(len(driven)) - np.repeat(begin, size)
+    used = np.repeat(size >= MIN_TURNS_POINTS, size) & (rank % np.repeat(-(-size // MAX_TURNS_POINTS), size) == 0)
+    rows = np.sort(driven[used])
     time, place = sample.time[rows], sample.place[rows]
     away = place - np.stack([np.interp(time, trajectory.time, getattr(trajectory, name)) for name in "xyz"], axis=1)
     away[:, 2] *= stretch
@@ -173,10 +171,11 @@ def _mounting_of(number, time, place):
     """The Mounting of one scanner from the points that it saw, (N,) s and (N, 3) m in the frame of the vehicle; None where they do not show it."""
     if len(time) < MIN_WINDOWS * MIN_TURNS_POINTS:
         return None
-    _, window = np.unique(np.floor((time - time[0]) / TURNS_WINDOW), return_inverse=True)
+    _, window = np.unique(np.floor(time / TURNS_WINDOW), return_inverse=True)
     size = int(window[-1]) + 1
     middle, normal, off = _scan_plane(place, window, size)
-    if abs(normal[2]) > MAX_UPRIGHT or np.median(np.abs(off)) > MAX_OFF_PLANE:
+    # points of several mirrors, or of many beams, lie in no plane
+    if abs(normal[2]) > MAX_UPRIGHT or MAD_TO_SIGMA * np.median(np.abs(off)) > SIGNIFICANT:
         return None
     across = np.cross([0.0, 0.0, 1.0], normal)
     across /= np.linalg.norm(across)
@@ -188,16 +187,16 @@ def _mounting_of(number, time, place):
     middles = np.bincount(window, time, size) / np.bincount(window, minlength=size)
     found = max((_places(a, b, time - middles[window], window, middles, sign * rate) for sign in (1, -1)), key=lambda one: (one[2].sum(), -one[3]))
     u, v, good, misfit = found
-    if good.sum() < max(MIN_WINDOWS, MIN_WINDOW_SHARE * size):
+    if good.sum() < max(MIN_WINDOWS, size / 2):
         return None
     lever = middle + u[:, None] * across + v[:, None] * upright
     away = place - lever[window]
-    below = away[(np.hypot(*away.T[:2]) < BELOW_SCANNER) & good[window], 2]
+    below = away[(np.hypot(*away.T[:2]) < EXPECTED_HEIGHT) & good[window], 2]
     return Mounting(number, middles[good], lever[good], float(np.median(below)) if len(below) else np.nan, misfit)
 
 
 def _scan_plane(place, window, size):
-    """(W, 3) middles of the windows of places, the unit normal of the planes through them, and (N,) m off these, outliers weighted down.
+    """(W, 3) middles of the windows of places, the unit normal of the planes through them, and (N,) sigma off these, outliers weighted down.
 
     Each window has a plane of its own, parallel to the others: trajectories may wander against the scanner.
     """
@@ -206,14 +205,14 @@ def _scan_plane(place, window, size):
         return np.stack([np.bincount(window, weight * column, size) for column in values.T], axis=1) / np.bincount(window, weight, size)[:, None]
 
     far = np.linalg.norm(place - means(np.ones(len(place)), place)[window], axis=1)
-    variance = PLACE_NOISE**2 + (ATTITUDE_NOISE * far) ** 2
+    variance = MAX_RAY_MISFIT**2 + (ATTITUDE_NOISE * far) ** 2
     weight = 1.0 / variance
-    for _ in range(PLANE_ROUNDS):
+    for _ in range(DENSITY_ROUNDS):
         middle = means(weight, place)
         away = place - middle[window]
         normal = np.linalg.eigh((weight[:, None] * away).T @ away)[1][:, 0]
-        off = away @ normal
-        weight = 1.0 / variance / (1.0 + off**2 / variance / 4.0)
+        off = away @ normal / np.sqrt(variance)
+        weight = 1.0 / variance / (1.0 + off**2 / 4.0)
     return middle, normal if normal[0] >= 0 else -normal, off
 
 
@@ -237,7 +236,7 @@ def _rate(time, a, b, window, size):
 
 def _places(a, b, since, window, middles, rate):
     """(W,) m of the scanner along and up its plane, (W,) bool of good windows, and m of their misfit, by a rate that is made better."""
-    for _ in range(RATE_ROUNDS):
+    for _ in range(RESECTION_ROUNDS):
         u, v, phase, misfit, in_front = resected(a, b, 2 * np.pi * rate * since, window, len(middles))
         good = in_front >= MIN_SHARE_IN_FRONT
         apart = np.diff(middles)
@@ -249,8 +248,6 @@ def _places(a, b, since, window, middles, rate):
     return u, v, good, float(np.median(misfit[good])) if good.any() else np.inf
 
 
-def usual_lever(mountings: Sequence[Mounting]) -> tuple[np.ndarray, np.ndarray]:
-    """(3,) m ahead, left and up of the middle of the scanners from the trajectory, and (3,) one sigma of a window."""
-    middle = np.mean([np.median(one.lever, axis=0) for one in mountings], axis=0)
-    scatter = np.mean([MAD_TO_SIGMA * np.median(np.abs(one.lever - np.median(one.lever, axis=0)), axis=0) for one in mountings], axis=0)
-    return middle, scatter
+def usual_lever(mountings: Sequence[Mounting]) -> np.ndarray:
+    """(3,) m ahead, left and up of the middle of the scanners from the trajectory."""
+    return np.mean([np.median(one.lever, axis=0) for one in mountings], axis=0)

@@ -35,14 +35,11 @@ from ..adjustment.register import (
     height_offset,
 )
 from ..store.records import COORDINATE_SCALE, to_units
+from .limits import LOOK_WINDOWS, MAX_SCANNER_OFFSETS, SCANNER_WINDOWS, SIGNIFICANT
 
-LOOK_WINDOWS, SCANNER_WINDOWS = 3, 16   # of the survey in which scanners are looked at, and measured: an error of a mounting is the same in all
-# m ahead, left and up that scanners may differ by without a move: along lines nothing is drawn sharply; less than the faces that are looked for
-MAX_SCANNER_OFFSETS = 2 * AGREEMENT_PLAN, AGREEMENT_PLAN, 0.010
 SIDES = "right", "left"
 SAID_AS = ("ahead", "behind"), ("left", "right"), ("above", "below")
-SAID_M = 0.005           # m
-SIGNIFICANT = 3.0        # sigma
+SAID_M = 0.005           # m; less is not named in the warning
 
 
 @dataclass(frozen=True)
@@ -52,7 +49,7 @@ class ScannerOffsets:
     scanner : its number
     beside : (2, 3) m left of the track at which each move was measured, negative on the right
     moves : (2, 3) m ahead, left and up that bring its points onto those of the first scanner; NaN where nothing shows it
-    sigma : (2, 3) m, of the moves: how far they differ between windows of road, of which all show the same mounting; 0 of one window
+    sigma : (2, 3) m, of the moves: how far they differ between windows of road, of which all show the same mounting; infinite of one window
     far : whether they lie farther apart than could be measured
     """
 
@@ -102,16 +99,16 @@ def _agree_at_a_look(survey):
     for window in _windows(survey, LOOK_WINDOWS):
         for number, evidence in _window_evidence(survey, window).items():
             seen.setdefault(number, []).append(evidence)
-        offsets = [_offsets(number, evidence) for number, evidence in seen.items()]
-        if len(offsets) == len(survey.scanners) - 1 and not any(map(_apart, offsets)) and all(map(_all_shown, offsets)):
+        if len(seen) == len(survey.scanners) - 1 and all(map(_clear, seen.values())):
             return True
     return not any(_apart(_offsets(number, evidence)) for number, evidence in seen.items())
 
 
-def _all_shown(one):
-    """Whether moves of a scanner are known: on both sides those across and up, on one that along the way."""
-    known = np.isfinite(one.moves)
-    return bool(known[:, 1:].all() and known[:, 0].any())
+def _clear(evidence):
+    """Whether windows show all moves of a scanner, on both sides those across and up, on one that along the way, and none that matters."""
+    moves, _, far = zip(*(_moves_of(side) for side in zip(*evidence)))
+    known = np.isfinite(moves)
+    return bool(known[:, 1:].all() and known[:, 0].any() and not any(far) and not (np.abs(moves) > MAX_SCANNER_OFFSETS).any())
 
 
 def _apart(one):
@@ -190,22 +187,25 @@ def scanner_offsets(survey: Any, windows: int = SCANNER_WINDOWS) -> list[Scanner
 
 
 def _windows(survey, count):
-    """[(pass, station of the beginning)] of so many windows evenly along all passes."""
-    every = [(p, start) for p in survey.frame.passes for start in np.arange(p.span[0], p.span[1] - WINDOW_LENGTH, WINDOW_LENGTH)]
+    """[(pass, station of the beginning, m of length)] of so many windows evenly along all passes, without the first and the last."""
+    passes = survey.frame.passes
+    # in short surveys windows are shorter; three are not looked at: the first, the last, and what is left over at the end of a drive
+    length = min(WINDOW_LENGTH, sum(np.ptp(p.span) for p in passes) / (LOOK_WINDOWS + 3))
+    every = [(p, start, length) for p in passes for start in np.arange(p.span[0], p.span[1] - length, length)]
     return [every[k] for k in np.unique(np.linspace(0, len(every) - 1, count + 2).astype(int))[1:-1]] if every else []
 
 
 def _window_evidence(survey, window):
     """{scanner: [of each side (sums across, sums along, m up, m beside, weight of it)]} of a window, each scanner against the first."""
-    p, start = window
-    points = survey.window(p.road, start, start + WINDOW_LENGTH)
+    p, start, long = window
+    points = survey.window(p.road, start, start + long)
     own = np.flatnonzero(points.pass_number == p.number)
     s, d = points.s[own], points.d[own]
-    nodes = start + np.arange(int(WINDOW_LENGTH / ROW_CELL) + 1) * ROW_CELL
+    nodes = start + np.arange(int(long / ROW_CELL) + 1) * ROW_CELL
     h = points.z[own] - np.interp(s, nodes, survey.road_height(p.road, nodes))
     beside = p.direction * (d - p.at_station(s)[0])
     near = np.flatnonzero((np.abs(beside) < STRIP_HALF_WIDTH) & (h > MIN_CELL_HEIGHT) & (h < MAX_CELL_HEIGHT))
-    ahead = s - start if p.direction > 0 else start + WINDOW_LENGTH - s
+    ahead = s - start if p.direction > 0 else start + long - s
     ahead, beside, h = ahead[near], beside[near] + STRIP_HALF_WIDTH, h[near]
     scanner, intensity = points.scanner[own[near]], points.intensity[own[near]].astype(float)
 
@@ -214,8 +214,7 @@ def _window_evidence(survey, window):
         if len(rows) < MIN_SHARED_CELLS:
             return None
         return [Strips.of(fine[rows], coarse[rows], h[rows], intensity[rows], (round(width / ROW_CELL), round(length / LAG_CELL)))
-                for fine, coarse, length, width in ((beside, ahead, 2 * STRIP_HALF_WIDTH, WINDOW_LENGTH),
-                                                    (ahead, beside, WINDOW_LENGTH, 2 * STRIP_HALF_WIDTH))]
+                for fine, coarse, length, width in ((beside, ahead, 2 * STRIP_HALF_WIDTH, long), (ahead, beside, long, 2 * STRIP_HALF_WIDTH))]
 
     first, found = strips(0), {}
     for number in range(1, len(survey.scanners)):
@@ -240,16 +239,17 @@ def _side_evidence(first, other, side):
 
 def _offsets(number, evidence):
     """ScannerOffsets of the evidence of windows."""
-    beside, moves, sigma, far = np.zeros((len(SIDES), 3)), np.full((len(SIDES), 3), np.nan), np.zeros((len(SIDES), 3)), False
+    beside, moves, sigma, far = np.zeros((len(SIDES), 3)), np.full((len(SIDES), 3), np.nan), np.full((len(SIDES), 3), np.inf), False
     for side in range(len(SIDES)):
         seen = [one[side] for one in evidence]
         moves[side], channel, at_limit = _moves_of(seen)
-        far |= at_limit
         for axis, name in enumerate((channel, channel, "heights")):
             total, place = (sum(weights[name][k] for *_, weights in seen) for k in (0, 1))
             beside[side, axis] = place / total if total else STRIP_HALF_WIDTH * (side - 0.5)
         if len(seen) > 1:
-            sigma[side] = _jackknife([_moves_of(seen[:k] + seen[k + 1:])[0] for k in range(len(seen))])
+            left_out, _, still = zip(*(_moves_of(seen[:k] + seen[k + 1:]) for k in range(len(seen))))
+            sigma[side] = _jackknife(left_out)
+            far |= at_limit and 2 * sum(still) > len(seen)
     return ScannerOffsets(number, beside, moves, sigma, far)
 
 

@@ -17,20 +17,19 @@ from ..frame.road import CORRIDOR
 from ..las.reader import CloudHeader
 from ..trajectory.shape import shaped_trajectory
 from ..trajectory.trajectory import Trajectory, clean_trajectory
+from .limits import (
+    CLEARLY_BETTER,
+    HALF_VEHICLE,
+    LOWEST_SENSOR,
+    MOST,
+    ONE_MOVE,
+    PLACE_GAP,
+    PLACE_WINDOWS,
+    SIGMA_OF_OTHER_HEIGHTS,
+    USUAL_AHEAD,
+    VEHICLE_HEIGHT,
+)
 from .mounting import Mounting, read_places, scanner_mountings, usual_lever, vehicle_angles
-
-HALF_VEHICLE = 1.275    # m: no vehicle on the road is wider than 2.55 m (Directive 96/53/EC), so no scanner rides farther beside its middle
-VEHICLE_HEIGHT = 4.0    # m (the same), so no scanner rides farther above or below a trajectory that is on the vehicle
-BELOW_ROAD = 0.5        # m below the road, beyond which a trajectory is no line on it either
-SIGMA_OF_OTHER_HEIGHTS = 0.12   # m: of edges in surveys stretched or turned upside down, 95 % lay within three times that of the true ones
-CLEARLY_BETTER = 0.5    # of what one move leaves, below which another is taken
-SINGLE_STEPS = tuple(2.0**-k for k in range(6))   # m from number to number of single precision, from 262 km on
-ROUNDING_SAMPLES, MIN_ROUNDED_VALUES = 20_000, 200   # points looked at, and different values of them, or points lie on lines
-ROUNDED_TO = 0.0011     # m: files round coordinates once more, to a millimetre
-PLACE_GAP = 2.0         # s between windows, from which they are of another place
-MIN_PLACE_WINDOWS = 3
-USUAL_AHEAD = 3.0       # m ahead of a trajectory on the same vehicle that scanners ride, one sigma
-ONE_MOVE, MOST = 0.20, 0.9   # m that one move may leave at this share of the windows
 
 
 @dataclass(frozen=True)
@@ -65,8 +64,7 @@ def fitted_trajectory(files: Sequence[CloudHeader], trajectory: Trajectory, scan
     if not trajectory.has_time or not all(file.has_time for file in files if file.count):
         return FittedTrajectory(given, shape.sigma, False)
     sample = read_places(files, scanner_field)
-    shape = replace(shape, sigma=float(np.hypot(shape.sigma, _rounding(sample.place, progress))))
-    mountings = [one for one in scanner_mountings(sample, shape.trajectory) if np.hypot(*usual_lever([one])[0][:2]) < CORRIDOR]
+    mountings = [one for one in scanner_mountings(sample, shape.trajectory) if np.hypot(*usual_lever([one])[:2]) < CORRIDOR]
     if mountings and _other_heights(sample, shape.trajectory, mountings, progress):
         return FittedTrajectory(given, float(np.hypot(shape.sigma, SIGMA_OF_OTHER_HEIGHTS)), True)
     if not (mountings := _met(mountings)):
@@ -75,20 +73,6 @@ def fitted_trajectory(files: Sequence[CloudHeader], trajectory: Trajectory, scan
     # a trajectory far above its scanners swings over them, as the vehicle rolls
     moved = _on_way(level, mountings if level is shape.trajectory else _met(scanner_mountings(sample, level)), progress)
     return FittedTrajectory(given if moved is shape.trajectory else moved, shape.sigma, True)
-
-
-def _rounding(place, progress):
-    """m across, one sigma of the rounding of coordinates that went through single precision; it is said. 0 where they did not."""
-    steps = np.zeros(2)
-    for axis, values in enumerate(place.T[:2]):
-        some = values[::max(len(values) // ROUNDING_SAMPLES, 1)]
-        if len(np.unique(some)) > MIN_ROUNDED_VALUES:
-            steps[axis] = next((step for step in SINGLE_STEPS if np.abs(some / step - np.rint(some / step)).max() * step < ROUNDED_TO), 0.0)
-    if not steps.any():
-        return 0.0
-    progress.warn(f"The coordinates of the points come in steps of {steps[0]:.3g} m in x and {steps[1]:.3g} m in y, as those of single precision: "
-                  "what is drawn is blurred by that. Export the cloud anew with double precision, or with an offset near the survey.")
-    return float(steps.max() / np.sqrt(12.0))
 
 
 def _met(mountings):
@@ -102,9 +86,13 @@ def _other_heights(sample, trajectory, mountings, progress):
         for stretch, said in ((FOOT, "in feet where x and y are in metres"), (1.0 / FOOT, "in metres where x and y are in feet")):
             other = scanner_mountings(sample, trajectory, stretch)
             if len(other) >= len(mountings) and len(_met(other)) == len(other):
-                progress.warn(f"The heights of cloud and trajectory seem to be {said}: the laser beams meet in the scanner only if heights are "
+                up, height = float(usual_lever(other)[0][2]), float(np.median(trajectory.z))
+                # from a trajectory that is stretched alike the scanners lie where they ride on the vehicle
+                alone = abs(up) > max(VEHICLE_HEIGHT, abs(up - (1.0 - stretch) * height))
+                of = "the cloud alone" if alone else "cloud and trajectory"
+                progress.warn(f"The heights of {of} seem to be {said}: the laser beams meet in the scanner only if heights are "
                               f"multiplied by {stretch:.4g}. Curbs are missed, and heights and slopes are wrong by that factor. Convert the heights "
-                              "of both, and run again.")
+                              f"of {'the cloud' if alone else 'both'}, and run again.")
                 return True
     if all(one.ground > 0 for one in mountings):
         progress.warn(f"The road lies {np.mean([one.ground for one in mountings]):.1f} m above the scanners, as if heights were counted downwards or "
@@ -118,7 +106,7 @@ def _at_height(trajectory: Trajectory, mountings: Sequence[Mounting], progress: 
     at, lever = _places(mountings)
     above_road = -float(np.mean([one.ground for one in mountings]))
     up = lever[:, 2]
-    far = (np.abs(up) > VEHICLE_HEIGHT) | (up > above_road + BELOW_ROAD)
+    far = (np.abs(up) > VEHICLE_HEIGHT) | (up > above_road + LOWEST_SENSOR)
     if not far.any():
         return trajectory
     worst = float(up[np.argmax(np.abs(up))])
@@ -151,7 +139,7 @@ def _on_way(trajectory: Trajectory, mountings: Sequence[Mounting], progress: Pro
 def _windows(mountings):
     """(W,) s of the windows of all scanners, in order, and (W, 3) m from the trajectory to the middle of the scanners then."""
     time = np.concatenate([one.time for one in mountings])
-    lever = np.concatenate([one.lever - np.median(one.lever, axis=0) for one in mountings]) + usual_lever(mountings)[0]
+    lever = np.concatenate([one.lever - np.median(one.lever, axis=0) for one in mountings]) + usual_lever(mountings)
     order = np.argsort(time, kind="stable")
     return time[order], lever[order]
 
@@ -160,7 +148,7 @@ def _places(mountings):
     """(P,) s of places that were looked at, and (P, 3) m from the trajectory to the middle of the scanners there."""
     time, lever = _windows(mountings)
     cuts = [0, *(np.flatnonzero(np.diff(time) > PLACE_GAP) + 1).tolist(), len(time)]
-    places = [slice(i, j) for i, j in zip(cuts[:-1], cuts[1:]) if j - i >= MIN_PLACE_WINDOWS] or [slice(0, len(time))]
+    places = [slice(i, j) for i, j in zip(cuts[:-1], cuts[1:]) if j - i > PLACE_WINDOWS / 2] or [slice(0, len(time))]
     return np.array([time[one].mean() for one in places]), np.array([np.median(lever[one], axis=0) for one in places])
 
 

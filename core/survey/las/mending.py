@@ -20,7 +20,9 @@ from .records_of_file import EVLR_HEADER_SIZE, HeaderFields, Record, base_size, 
 
 MAX_RECORD_SIZE = 65535     # bytes of a point
 SAMPLED_RECORDS = 1000     # of those behind the last point that a header states, to see whether they are points too
-BOX_GROWTH, LEAST_BOX_REACH = 10.0, 1000.0   # a road goes on where the points stated end: so many times their extent, and so many metres, beyond it
+# derived: whole numbers of 32 bits within which points lie about those stated: the road goes on, but what is read as places and is none lies
+# anywhere, or, as text and floating-point numbers, near the upper end; one in eight of it in each axis lies as near by chance
+NEAR_STATED = 2**31 // 8
 COUNT_AT, LONG_COUNT_AT, RECORD_SIZE_AT, POINTS_AT, EVLR_COUNT_AT = 107, 247, 105, 96, 243
 
 
@@ -181,16 +183,15 @@ def _are_points(file, fields, first, end, rest):
     behind = sampled_places(file, fields, first, end)
     if not len(behind) or not behind.any(axis=1).mean() > 0.5:   # zeros that fill up a block
         return False
-    low, high = fields.minimum, fields.maximum
     if first:
-        stated = sampled_places(file, fields, 0, first) * fields.scales + fields.offsets
-        low, high = stated.min(axis=0), stated.max(axis=0)
-        reach = BOX_GROWTH * (high - low).max() + LEAST_BOX_REACH
-        low, high = low - reach, high + reach
-    elif not (np.isfinite([low, high]).all() and (low < high).any()):
-        return not rest
-    places = behind * fields.scales + fields.offsets
-    return bool(((places >= low) & (places <= high)).all(axis=1).mean() > 0.5)
+        inside = np.abs(behind - np.median(sampled_places(file, fields, 0, first), axis=0)) <= NEAR_STATED
+    else:
+        low, high = fields.minimum, fields.maximum
+        if not (np.isfinite([low, high]).all() and (low < high).any()):
+            return not rest
+        places = behind * fields.scales + fields.offsets
+        inside = (places >= low) & (places <= high)
+    return bool(inside.all(axis=1).mean() > 0.5)
 
 
 def sampled_places(file: BinaryIO, fields: HeaderFields, first: int, end: int) -> np.ndarray:

@@ -69,8 +69,13 @@ def _step(values):
     return float(np.quantile(gaps, SHARE_OF_OTHER_GAPS, method="lower")) if len(values) >= VALUES_FOR_STEP and len(gaps) >= GAPS_FOR_STEP else 0.0
 
 
-def coarse_coordinates(samples: Sequence[FileSample]) -> str:
-    """What to tell of coordinates that lie in steps of centimetres and more since their numbers hold no finer ones; "" where there are none."""
+def coarse_coordinates(samples: Sequence[FileSample]) -> tuple[str, float]:
+    """What to tell of coordinates that lie in steps of centimetres and more since their numbers hold no finer ones, and what that leaves open.
+
+    Returns
+    -------
+    The warning, "" where there are no such steps, and m across, one sigma: all points of a line may lie on one side of a step, so that of one point
+    """
     for sample in samples:
         steps, scales = sample.steps, np.abs(sample.file.scales)
         ends = np.array([sample.file.minimum, sample.file.maximum], np.float32)
@@ -85,5 +90,5 @@ def coarse_coordinates(samples: Sequence[FileSample]) -> str:
         cause = f"at {abs(float(ends[0, k])):,.0f} m that is the step of 32-bit numbers, in which some program kept them" if short[k] else \
             f"that is the scale in the header of the file ({scales[k]:g} m)"
         return (f"The coordinates of {sample.file.path} lie in steps of {listed}: {cause}. Edges and markings are no better than that. Export "
-                "the cloud again with coordinates of 64 bits and a scale of 0.001 m.")
-    return ""
+                "the cloud again with coordinates of 64 bits and a scale of 0.001 m.", float(np.where(told, steps, 0.0)[:2].max() / np.sqrt(12.0)))
+    return "", 0.0

@@ -137,14 +137,15 @@ def meaning_of_table(columns: Sequence[TableColumn], unmatched: Sequence[str] | 
     numbers = [k for k in range(len(columns)) if k not in clocks]
     try:
         place = {role: numbers[k] for role, k in columns_from_numbers(np.stack([columns[k].values for k in numbers], axis=1), path).items()}
-        if unmatched and "x" in place and np.nanmedian(np.abs(columns[place["x"]].values)) < MIN_MAP_COORDINATE:
-            raise RoadExtractionError("")   # small numbers are guessed by their order alone, which names that do not fit contradict
     except RoadExtractionError as refused:
-        if unmatched:
-            raise RoadExtractionError(
-                f"{path} names {len(unmatched)} columns ({listed(unmatched)}), but its rows have {len(columns)}, and the numbers do not show which "
-                f"is which. The first row reads {first_row(columns)}. Say which is which in Columns of Import trajectory.") from refused
-        raise RoadExtractionError(f"{refused} The first row reads {first_row(columns)}.") from refused
+        if not unmatched:
+            raise RoadExtractionError(f"{refused} The first row reads {first_row(columns)}.") from refused
+        place = {}
+    # small numbers are guessed by their order alone, which names that do not fit contradict
+    if unmatched and (not place or "x" in place and np.nanmedian(np.abs(columns[place["x"]].values)) < MIN_MAP_COORDINATE):
+        raise RoadExtractionError(
+            f"{path} names {len(unmatched)} columns ({listed(unmatched)}), but its rows have {len(columns)}, and the numbers do not show which "
+            f"is which. The first row reads {first_row(columns)}. Say which is which in Columns of Import trajectory.")
     if clocks and "time" not in place:
         place["time"] = clocks[0]
     listing = ", ".join(f"{role} in column {place[role] + 1}" for role in (*ROLES, "lon", "lat") if role in place)

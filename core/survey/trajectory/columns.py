@@ -9,57 +9,48 @@ from typing import NamedTuple
 
 ROLES = ("time", "x", "y", "z", "roll", "pitch", "heading")
 
-# Names without brackets, units, punctuation and capitals; the first that a table has is used.
-COLUMN_NAMES = {
-    "time": ("gpstime", "adjustedgpstime", "time", "timestamp", "t", "gpsseconds", "gpssec", "gpssow", "sow", "tow", "gpstow",
-             "secondsofweek", "secofweek", "weekseconds", "secondsofday", "secofday", "sod", "seconds", "sec",
-             "utctime", "utc", "epoch", "stamp", "zeit", "gpszeit"),
-    "x": ("easting", "east", "x", "e", "xcoord", "xcoordinate", "utmx", "utmeasting", "utme", "posx", "positionx", "px", "rechtswert",
-          "rechts", "ost", "xmap", "mapx", "eastingx"),
-    "y": ("northing", "north", "y", "n", "ycoord", "ycoordinate", "utmy", "utmnorthing", "utmn", "posy", "positiony", "py", "hochwert",
-          "hoch", "nord", "ymap", "mapy", "northingy"),
-    "z": ("z", "ellipsoidheight", "ellipsoidalheight", "ellheight", "hell", "height", "altitude", "alt", "elevation",
-          "elev", "orthometricheight", "orthoheight", "hortho", "h", "hgt", "zcoord", "zcoordinate", "posz", "positionz",
-          "pz", "up", "u", "hoehe", "höhe"),
-    "roll": ("roll", "rollangle"),
-    "pitch": ("pitch", "pitchangle"),
-    "heading": ("heading", "trueheading", "gridheading", "hdg", "yaw", "azimuth", "platformheading", "head", "headingangle",
-                "yawangle", "kurs"),
-    "lon": ("longitude", "lon", "long", "lng", "lambda", "laenge", "länge"),
-    "lat": ("latitude", "lat", "phi", "breite"),
-    # of what several columns hold together
-    "week": ("gpsweek", "week", "weekno", "weeknumber", "gpsweeknumber", "wn", "wnc", "gpswoche"),
-    "date": ("date", "gpsdate", "utcdate", "datum", "calendardate", "fecha", "日期", "日付"),
-    "hour": ("hour", "hours", "hh", "gpshour", "utchour", "stunde", "heure"), "minute": ("minute", "minutes", "min", "gpsminute", "utcminute"),
-    "ecef_x": (), "ecef_y": (), "ecef_z": (),
-}
-# A longer name has a role where all its words are of these, and one is of the first kind: "GPS Time of Week", "altitude_ellipsoidal".
-# Single letters count as words of their own, the others also where they are written together.
-ROLE_WORDS = {
-    "time": ("time times timestamp timetag seconds second secs sec sow tow itow sod gpst utc clock epoch stamp datetime zeit uhrzeit zeitpunkt "
-             "zeitstempel temps heure tiempo hora tempo tijd время 时间 时刻 時刻 時間 日時 日期时间",
-             "gps gnss of week day the in adjusted adj standard offset unix posix local system receiver since start elapsed date log ins imu "
-             "sensor measurement relative absolute mean gpszeit von woche tag"),
-    "x": ("easting east eastings x e este est ost rechtswert oost 东坐标 東座標",
-          "utm grid map coord coordinate coordinates position pos local projected gps gnss ins imu sensor antenna scanner vehicle platform world"),
-    "y": ("northing north northings y n norte nord hochwert noord 北坐标 北座標",
-          "utm grid map coord coordinate coordinates position pos local projected gps gnss ins imu sensor antenna scanner vehicle platform world"),
-    "z": ("height heights altitude alt elevation elev ele hgt ht z h hell ellh hae msl hmsl hoehe höhe hauteur altura altezza quota cota hoogte "
+# {role: (whole names, of which the first that a table has is used; words of which a longer name holds one, such as "time" of "GPS Time of Week";
+# words that may stand with these)}, without brackets, units, punctuation and capitals. Single letters count as words of their own, the others
+# also where they are written together.
+_PLATFORM = "gps gnss ins imu sensor antenna scanner vehicle platform position pos coord coordinate"
+_ON_MAP, _DATE = f"{_PLATFORM} utm grid map coordinates local projected world", "gps utc local"
+_ON_EARTH = f"{_PLATFORM} wgs84 wgs geodetic geographic geographische decimal dd"
+_TURNS = "angle true grid ins imu sensor vehicle platform euler"
+_NAMES = {
+    "time": ("gpstime adjustedgpstime time timestamp t gpsseconds gpssec gpssow sow tow gpstow secondsofweek secofweek weekseconds secondsofday "
+             "secofday sod seconds sec utctime utc epoch stamp zeit gpszeit",
+             "time times timestamp timetag seconds second secs sec ss sow tow itow sod gpst utc clock epoch stamp datetime zeit uhrzeit zeitpunkt "
+             "zeitstempel temps sekunde sekunden seconde secondes segundo segundos mjd jd julian datenum heure tiempo hora tempo tijd время 时间 "
+             "时刻 時刻 時間 日時 日期时间",
+             "gps gnss of week day the in adjusted adj standard offset unix posix local system receiver since start elapsed date log ins imu sensor "
+             "measurement relative absolute mean gpszeit von woche tag modified excel serial matlab days number"),
+    "x": ("easting east x e xcoord xcoordinate utmx utmeasting utme posx positionx px rechtswert rechts ost xmap mapx eastingx",
+          "easting east eastings x e este est ost rechtswert oost 东坐标 東座標", _ON_MAP),
+    "y": ("northing north y n ycoord ycoordinate utmy utmnorthing utmn posy positiony py hochwert hoch nord ymap mapy northingy",
+          "northing north northings y n norte nord hochwert noord 北坐标 北座標", _ON_MAP),
+    "z": ("z ellipsoidheight ellipsoidalheight ellheight hell height altitude alt elevation elev orthometricheight orthoheight hortho h hgt zcoord "
+          "zcoordinate posz positionz pz up u hoehe höhe",
+          "height heights altitude alt elevation elev ele hgt ht z h hell ellh hae msl hmsl hoehe höhe hauteur altura altezza quota cota hoogte "
           "высота 高程 高度 標高 楕円体高 大地高",
-          "ellipsoid ellipsoidal ell ellipsoidische ellipsoïdale ellipsoidale wgs84 wgs orthometric ortho orth above sea level mean "
-          "gps gnss ins imu sensor antenna scanner vehicle platform position pos coord coordinate up local geodetic map"),
-    "roll": ("roll rollwinkel rolio roulis rollio 横滚 横滚角 ロール", "angle ins imu sensor vehicle platform euler"),
-    "pitch": ("pitch nickwinkel tangage beccheggio cabeceo 俯仰 俯仰角 ピッチ", "angle ins imu sensor vehicle platform euler"),
-    "heading": ("heading yaw hdg azimuth kurs cap rumbo rotta 航向 航向角 方位角 方位", "angle true grid ins imu sensor vehicle platform euler"),
-    "lon": ("longitude lon lng longitud longitudine laenge länge longitudinal 经度 経度 долгота",
-            "gps gnss ins imu wgs84 wgs geodetic geographic decimal dd position pos coord coordinate sensor vehicle platform geographische e"),
-    "lat": ("latitude lat latitud latitudine breite 纬度 緯度 широта",
-            "gps gnss ins imu wgs84 wgs geodetic geographic decimal dd position pos coord coordinate sensor vehicle platform geographische n"),
-    "week": ("week wn wnc woche", "gps gnss number no nr"),
-    "date": ("date datum", "gps gnss utc calendar local"), "hour": ("hour hours", "gps utc local"), "minute": ("minute minutes", "gps utc local"),
-    **{f"ecef_{axis}": (axis, "ecef earth centred centered geocentric cartesian wgs84 itrf xyz coord coordinate position pos")
-       for axis in ("x", "y", "z")},
+          f"{_PLATFORM} ellipsoid ellipsoidal ell ellipsoidische ellipsoïdale ellipsoidale wgs84 wgs orthometric "
+          "ortho orth above sea level mean up local geodetic map"),
+    "roll": ("roll rollangle", "roll rollwinkel rolio roulis rollio 横滚 横滚角 ロール", _TURNS),
+    "pitch": ("pitch pitchangle", "pitch nickwinkel tangage beccheggio cabeceo 俯仰 俯仰角 ピッチ", _TURNS),
+    "heading": ("heading trueheading gridheading hdg yaw azimuth platformheading head headingangle yawangle kurs",
+                "heading yaw hdg azimuth kurs cap rumbo rotta 航向 航向角 方位角 方位", _TURNS),
+    "lon": ("longitude lon long lng lambda laenge länge",
+            "longitude lon lng longitud longitudine laenge länge longitudinal 经度 経度 долгота", f"{_ON_EARTH} e"),
+    "lat": ("latitude lat phi breite", "latitude lat latitud latitudine breite 纬度 緯度 широта", f"{_ON_EARTH} n"),
+    "week": ("gpsweek week weekno weeknumber gpsweeknumber wn wnc gpswoche", "week wn wnc woche", "gps gnss number no nr"),
+    "date": ("date gpsdate utcdate datum calendardate fecha 日期 日付", "date datum", "gps gnss utc calendar local"),
+    "year": ("year yyyy yr", "year jahr année año anno ano 年", _DATE),
+    "month": ("month mon mm", "month monat mois mes mese mês 月", _DATE),
+    "day": ("day dd", "day tag jour día dia giorno 日", f"{_DATE} of month"),
+    "hour": ("hour hours hh gpshour utchour", "hour hours stunde heure hora ora 时 時", _DATE),
+    "minute": ("minute minutes min gpsminute utcminute mm", "minute minutes minuto 分", _DATE),
+    **{f"ecef_{axis}": ("", axis, "ecef earth centred centered geocentric cartesian wgs84 itrf xyz coord coordinate position pos") for axis in "xyz"},
 }
+ROLE_NAMES = {role: tuple(tuple(words.split()) for words in names) for role, names in _NAMES.items()}
 EARTH_CENTRED = {"ecef", "geocentric", "centred", "centered"}   # one of these tells a coordinate from one on a map
 # Behind a name in brackets these say what a column is of; other words there change nothing.
 QUALIFYING = EARTH_CENTRED | {"sd", "std", "stdev", "sigma", "rms", "rmse", "error", "accuracy", "velocity", "speed", "rate", "bias", "gps", "gpst",
@@ -108,7 +99,7 @@ def candidates_by_role(names: Sequence[str]) -> dict[str, list[int]]:
     for place, name in enumerate(names):
         for role, rank in _roles_of_name(str(name)).items():
             found.setdefault(role, []).append((rank, place))
-    return {role: [place for _, place in sorted(found[role])] for role in COLUMN_NAMES if role in found}
+    return {role: [place for _, place in sorted(found[role])] for role in ROLE_NAMES if role in found}
 
 
 @cache
@@ -118,7 +109,7 @@ def _roles_of_name(name):
     plain, every = "".join(words), [*words, *within]
     earth = bool(EARTH_CENTRED & set(every))
     roles = {}
-    for role, usual in COLUMN_NAMES.items():
+    for role, (usual, *_) in ROLE_NAMES.items():
         whole = _is_of(role, every) or _is_of(role, [plain, *within])
         if role.startswith("ecef") != earth:
             continue
@@ -131,7 +122,7 @@ def _roles_of_name(name):
 
 @cache
 def _grammar(role):
-    core, further = (words.split() for words in ROLE_WORDS[role])
+    _, core, further = ROLE_NAMES[role]
     whole = "|".join(sorted((re.escape(word) for word in core if len(word) > 1), key=len, reverse=True)) or "(?!)"
     every = "|".join(sorted((re.escape(word) for word in (*core, *further) if len(word) > 1), key=len, reverse=True))
     return re.compile(f"(?:{every})*(?:{whole})(?:{every})*"), re.compile(f"(?:{every})+|[{''.join(word for word in further if len(word) == 1)}-]"), \
@@ -161,7 +152,7 @@ def _taken_apart(name):
     words = _split(re.sub(r"[\[(<][^\])>]*[\])>]?", " ", text))
     # "gps_week_seconds" is a time and no week in seconds
     if len(words) > 1 and words[-1] in UNIT_NAMES and not _is_of("time", words) and any(_is_of(role, words[:-1]) or "".join(words[:-1]) in usual
-                                                          for role, usual in COLUMN_NAMES.items()):
+                                                          for role, (usual, *_) in ROLE_NAMES.items()):
         unit = unit if unit.name else UNIT_NAMES[words[-1]]
         words = words[:-1]
     if "".join(words) == "itow" and not unit.name:

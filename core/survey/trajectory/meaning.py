@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 import re
-import time as clock
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from ...common.errors import RoadExtractionError
 from .columns import LONGEST_NAME, Unit, candidates_by_role, listed
 from .table_columns import CHECKED_ROWS, TableColumn, first_row, with_week
-from .time_systems import unix_time_found
+from .time_systems import is_to_come, unix_time_found
 from .written_values import (
     UNIX_EPOCH,
     angles_of,
     clock_times,
+    counted_days,
     hemisphere_signs,
     hold_angles,
     hold_times,
@@ -31,7 +31,6 @@ MEAN_SEA_LEVEL = ("ortho", "msl", "sea", "geoid")   # in names of heights
 LARGEST_SECONDS = 1e10           # times beyond it are counted in smaller units
 LEAST_EVEN = 0.95                # of the steps of a column that may be time are near the usual one
 COUNTS_OTHERS = re.compile(r"id\b|\b(no|nr)\b|num|count|index|station|chainage|dist|length|km|frame|image|photo|row|line|record", re.IGNORECASE)
-NEVER_BEFORE = 1.46e9            # GPS seconds, April 2026: no clock of a computer is trusted that is behind this
 TOLD_CLOCKS = {"gps": "GPS", "utc": "UTC"}          # words of Columns that say what a clock shows
 
 
@@ -62,8 +61,13 @@ def meaning_of(columns: Sequence[TableColumn], label: str, given: Sequence[str] 
     full = {role: [k for k in places if columns[k].first or not columns[k].is_text] for role, places in named.items()}
     _prefer_geodetic(columns, full, label, notes)
     place = {role: places[0] for role, places in full.items() if places and role not in given}
+    if "minute" in place:
+        place["minute"] = full["minute"][-1]                  # mm may be months too, which come first
+        full["time"] = [k for k in full.get("time", ()) if k != place.get("hour")]
     times = [k for k in full.get("time", ()) if not columns[k].is_text] or full.get("time", []) or \
         [k for k, column in enumerate(columns) if k not in place.values() and column.holds_texts and hold_times(column.written()[:CHECKED_ROWS])]
+    if not times:
+        times = [k for k in full.get("date", ()) if (columns[k].values % 1 > 0).any()]   # days of a spreadsheet, with the time as their share
     if times and "time" not in given:
         place["time"] = times[0]
     heights = full.get("z", [])
@@ -172,14 +176,15 @@ def _time(columns, meaning, label, notes, doubts):
     """(N,) seconds of GPS time, or as the column counts."""
     place = meaning.place
     column = columns[place["time"]]
-    clock_parts = [columns[place[role]].values for role in ("hour", "minute") if role in place]
-    named = "hhmmss" in column.title.lower() or ("date" in place and "utc" in column.title.lower() and not column.unit.name)
-    texts = _hours_minutes_seconds(column.values, *clock_parts, named=named) if not column.is_text else None
-    if texts is not None:
-        columns = [*columns]
-        columns[place["time"]] = column = replace(column, values=np.full(len(texts), np.nan), written=lambda: texts, first=texts[0])
+    times = _written_time(columns, place, label)
+    if times is not None:
+        titles = " ".join(columns[place[role]].title for role in ("time", "date", "year", "hour") if role in place).lower()
+        return _gps_seconds(times, column, titles, meaning.clock, label, notes)
     if column.holds_texts:
-        return _from_clock(columns, meaning, label, notes)
+        raise RoadExtractionError(
+            f"The column {listed([column.title])} of {label} should be the time, but holds {column.first[:LONGEST_NAME]!r}, which is neither a "
+            f"number nor a clock time. The first row reads {first_row(columns)}. Rename the column, or say which is "
+            "which in Columns of Import trajectory.")
     if "utc" in column.title.lower():
         doubts.append(f"The column {listed([column.title])} of {label} counts seconds of UTC by its name; no leap seconds were added. If points and "
                       "lines come out shifted along the road, export the trajectory with GPS time.")
@@ -187,6 +192,37 @@ def _time(columns, meaning, label, notes, doubts):
     if "week" in place and place["week"] != place["time"]:
         return with_week(seconds, columns[place["week"]].values)
     return _from_1970(seconds, column.title, meaning.clock, label, notes)
+
+
+def _written_time(columns, place, label):
+    """The ClockTimes of a table whose time is a clock, in one column or several, or counts days; None where it counts seconds."""
+    column = columns[place["time"]]
+    date = columns[place["date"]] if "date" in place and place["date"] != place["time"] else None
+    days = _days(columns, place, date)
+    if column.is_text:
+        texts = list(column.written())
+    else:
+        hour_and_minute = [columns[place[role]].values for role in ("hour", "minute") if role in place]
+        title = column.title.lower()
+        named = "hhmmss" in title or (days is not None and "utc" in title and not column.unit.name)
+        texts = _hours_minutes_seconds(column.values, *hour_and_minute, named=named)
+        if texts is None:
+            whole = date.values if date is not None and np.nanmax(column.values, initial=0.0) < 1.0 else 0.0
+            return counted_days(column.values + whole, column.written, f"The column {listed([column.title or 'without a name'])} of {label}")
+    times = clock_times(texts)
+    if times is not None and not times.dated and days is not None:
+        times = clock_times([f"{day} {text}" for day, text in zip(days, texts)]) or times
+    return times
+
+
+def _days(columns, place, date):
+    """(N,) dates as texts, of a column of dates or of a year, a month and a day; None where there are none."""
+    if date is not None:
+        return [day.split(".")[0] if day[:8].isdigit() else day for day in date.written()]
+    if not all(role in place for role in ("year", "month", "day")):
+        return None
+    year, month, day = (columns[place[role]].values for role in ("year", "month", "day"))
+    return [f"{y:04.0f}-{m:02.0f}-{d:02.0f}" for y, m, d in zip(np.where(year < 100, year + 2000, year), month, day)]
 
 
 def _counted_seconds(column, label, doubts):
@@ -202,21 +238,20 @@ def _counted_seconds(column, label, doubts):
 
 def _from_1970(seconds, title, shown, label, notes):
     """(N,) GPS seconds of what counts from 1970 in UTC, where the clock is said to have `shown` UTC; other seconds as they are."""
-    first = seconds[np.isfinite(seconds)][:1]
-    later_than_now = len(first) and first[0] > max(NEVER_BEFORE, clock.time() - UNIX_EPOCH + 86_400.0)
-    if len(first) and (shown == "UTC" or later_than_now or any(word in title.lower() for word in ("unix", "posix"))):
-        if shown == "UTC" and first[0] > UNIX_EPOCH:
-            return _added_leap_seconds(seconds - UNIX_EPOCH, label, notes)
-        if shown == "UTC":
-            raise RoadExtractionError(f"Columns says utc of {listed([title or 'a column'])}, but {first[0]:.1f} is no date and no count "
-                                      "from 1970, so the leap seconds are not known. Write time in place of utc.")
-        raise RoadExtractionError(unix_time_found(float(first[0]), f"The times of {label} seem to count"))
+    first = float(seconds[np.isfinite(seconds)][0]) if np.isfinite(seconds).any() else np.nan
+    if shown == "UTC" and first > UNIX_EPOCH:
+        return _added_leap_seconds(seconds - UNIX_EPOCH, label, notes)
+    if shown == "UTC":
+        raise RoadExtractionError(f"Columns says utc of {listed([title or 'a column'])}, but {first:.1f} is no date and no count "
+                                  "from 1970, so the leap seconds are not known. Write time in place of utc.")
+    if is_to_come(first) or any(word in title.lower() for word in ("unix", "posix")):
+        raise RoadExtractionError(unix_time_found(first, f"The times of {label} seem to count"))
     return seconds
 
 
 def _hours_minutes_seconds(values, hour=None, minute=None, named=False):
     """(N,) texts of clock times that stand in three columns, or in one as hhmmss; None for other times. `named` where a date or name says so."""
-    if hour is None or minute is None:
+    if hour is None or minute is None or np.nanmax(values, initial=0.0) > 61.0:
         known = values[np.isfinite(values)]
         step = np.diff(known)
         if not len(step) or known.min() < 0 or known.max() >= 240_000 or (known % 100 >= 60).any() or (known // 100 % 100 >= 60).any():
@@ -229,29 +264,11 @@ def _hours_minutes_seconds(values, hour=None, minute=None, named=False):
     return [f"{h:02.0f}:{m:02.0f}:{s:09.6f}" if h + m + s == h + m + s else "" for h, m, s in zip(hour, minute, values)]
 
 
-def _from_clock(columns, meaning, label, notes):
-    """(N,) GPS seconds of clock times, where it is known what the clock shows."""
-    place = meaning.place
-    column = columns[place["time"]]
-    date = columns[place["date"]] if "date" in place and place["date"] != place["time"] else None
-    texts = list(column.written())
-    times = clock_times(texts)
-    if times is not None and not times.dated and date is not None:
-        days = list(date.written())
-        times = clock_times([f"{day.split('.')[0] if day[:8].isdigit() else day} {text}" for day, text in zip(days, texts)]) or times
-    if times is None:
-        raise RoadExtractionError(
-            f"The column {listed([column.title])} of {label} should be the time, but holds {column.first[:LONGEST_NAME]!r}, which is neither a "
-            f"number nor a clock time. The first row reads {first_row(columns)}. Rename the column, or say which is "
-            "which in Columns of Import trajectory.")
-    return _gps_seconds(times, column, meaning, "" if date is None else date.title, label, notes)
-
-
-def _gps_seconds(times, column, meaning, date_title, label, notes):
-    words = f"{column.title} {date_title}".lower()
-    named = "UTC" if any(word in words for word in ("utc", "gmt", "zulu")) else "GPS" if "gps" in words else ""
+def _gps_seconds(times, column, titles, clock, label, notes):
+    """(N,) GPS seconds of ClockTimes, where it is known what the clock shows."""
+    named = "UTC" if any(word in titles for word in ("utc", "gmt", "zulu")) else "GPS" if "gps" in titles else ""
     contradict = {times.zone, named} == {"UTC", "GPS"}
-    shows = meaning.clock or ("" if contradict else times.zone or named)
+    shows = clock or ("" if contradict else times.zone or named)
     if shows == "GPS" and times.order_known:
         return times.seconds
     if shows == "UTC" and times.dated and times.order_known:
@@ -268,7 +285,7 @@ def _gps_seconds(times, column, meaning, date_title, label, notes):
         why = f"it is not said whether the clock shows GPS time, UTC, which differs {apart}, or local time"
         advice = "call the column GPS time or UTC, or write gps or utc in place of time in Columns of Import trajectory, if you know what it shows"
     raise RoadExtractionError(
-        f"The column {listed([column.title or 'without a name'])} of {label} holds clock times such as {column.first[:LONGEST_NAME]!r}. GPS seconds "
+        f"The column {listed([column.title or 'without a name'])} of {label} holds {times.kind} such as {times.first[:LONGEST_NAME]!r}. GPS seconds "
         f"are needed, and {why}. Export the trajectory with GPS time in seconds; or {advice}.")
 
 

@@ -224,38 +224,49 @@ def _plane_coordinates(columns, time, crs, label, notes):
     if "x" in columns and "y" in columns and ("lon" not in columns or (known is not None and not geographic)):
         x, y = columns["x"], columns["y"]
         unit = geographic_unit(x, y, time)
-        if geographic and not unit and (np.abs(np.stack([x, y])) > 360).any():
-            raise RoadExtractionError(
-                f"{label} has the CRS {horizontal_part(known).name} (degrees), but its coordinates reach "
-                f"{_farthest(x):.0f}, {_farthest(y):.0f}. Give the CRS that its x and y are in.")
-        if not geographic and known is not None and unit:
-            raise RoadExtractionError(
-                f"{label} has the CRS {horizontal_part(known).name}, but its coordinates look like longitude and latitude "
-                f"(about {np.nanmedian(x):.4f}, {np.nanmedian(y):.4f}). Set its CRS to EPSG:4326.")
-        if not geographic and not unit and geographic_unit(y, x, time) == "degrees" and _farthest(y) > 90.0:
-            raise RoadExtractionError(f"{label} has x and y that look like latitude and longitude (about {np.nanmedian(x):.4f}, "
-                                      f"{np.nanmedian(y):.4f}), in this order. Name the columns latitude and longitude.")
+        _check_map(x, y, unit, time, known, label)
         if not geographic and not unit:
             return x, y, "" if known is None else known.to_wkt()
     elif "lon" in columns and "lat" in columns:
         x, y = columns["lon"], columns["lat"]
         unit = geographic_unit(x, y, time)
-        if not unit and (np.abs(np.stack([x, y])) > 360).any():
-            raise RoadExtractionError(
-                f"{label} has longitude and latitude up to {_farthest(x):.0f}, {_farthest(y):.0f}; these are not degrees. Write their unit behind "
-                "their names, such as latitude (ddmm.mmmm) or latitude (1e-7 deg), or name the columns x and y where they are metres.")
-        if _farthest(y) > 90.0 >= _farthest(x):
-            raise RoadExtractionError(f"{label} has latitudes up to {_farthest(y):.4f}°, and there are none beyond 90°, while its longitudes reach "
-                                      f"{_farthest(x):.4f}°: the two are exchanged. Name the columns the other way round.")
+        _check_degrees(x, y, unit, label)
     else:
         raise RoadExtractionError(f"{label} has no x and y, nor longitude and latitude. Name its columns time, x, y, z.")
     if unit == "radians":
         x, y = np.degrees(x), np.degrees(y)
         notes.append(f"{label} gives longitude and latitude in radians.")
-    if known is None or not geographic:
+    if not geographic:
         known = parse_crs(WGS84)
         notes.append(f"{label} gives longitude and latitude; taken as WGS 84.")
     return x, y, known.to_wkt()
+
+
+def _check_map(x, y, unit, time, known, label):
+    """Refuse x and y that contradict their CRS, `known`, or are latitude and longitude; `unit` is that of angles, "" of what is none."""
+    geographic = known is not None and horizontal_part(known).is_geographic
+    if geographic and not unit and (np.abs(np.stack([x, y])) > 360).any():
+        raise RoadExtractionError(
+            f"{label} has the CRS {horizontal_part(known).name} (degrees), but its coordinates reach "
+            f"{_farthest(x):.0f}, {_farthest(y):.0f}. Give the CRS that its x and y are in.")
+    if not geographic and known is not None and unit:
+        raise RoadExtractionError(
+            f"{label} has the CRS {horizontal_part(known).name}, but its coordinates look like longitude and latitude "
+            f"(about {np.nanmedian(x):.4f}, {np.nanmedian(y):.4f}). Set its CRS to EPSG:4326.")
+    if not geographic and not unit and geographic_unit(y, x, time) == "degrees" and _farthest(y) > 90.0:
+        raise RoadExtractionError(f"{label} has x and y that look like latitude and longitude (about {np.nanmedian(x):.4f}, "
+                                  f"{np.nanmedian(y):.4f}), in this order. Name the columns latitude and longitude.")
+
+
+def _check_degrees(lon, lat, unit, label):
+    """Refuse longitudes and latitudes that are no angles, or exchanged."""
+    if not unit and (np.abs(np.stack([lon, lat])) > 360).any():
+        raise RoadExtractionError(
+            f"{label} has longitude and latitude up to {_farthest(lon):.0f}, {_farthest(lat):.0f}; these are not degrees. Write their unit behind "
+            "their names, such as latitude (ddmm.mmmm) or latitude (1e-7 deg), or name the columns x and y where they are metres.")
+    if _farthest(lat) > 90.0 >= _farthest(lon):
+        raise RoadExtractionError(f"{label} has latitudes up to {_farthest(lat):.4f}°, and there are none beyond 90°, while its longitudes reach "
+                                  f"{_farthest(lon):.4f}°: the two are exchanged. Name the columns the other way round.")
 
 
 def _angles(columns, x, y, crs, unit, notes):

@@ -3,10 +3,10 @@
 Between two vertices the vehicle is taken to be on the straight line between them. In a bend of radius R it was off it by up to the sagitta
 L²/8R of vertices L apart; at each vertex the line turns by about L/R, so the sagitta is L/8 times that turn. A spline through the vertices
 passes such bends; how far it is off shows where every second vertex is left out, and falls with the fourth power of the spacing (de Boor, A
-Practical Guide to Splines, ch. V).
+Practical Guide to Splines, ch. V). Every number below has where it comes from: see fit/limits.py.
 
 Positions of a receiver that nobody filtered scatter from row to row by more than any vehicle shakes. A cubic over a second follows the vehicle
-to millimetres (see VEHICLE_SNAP), so what is left is the noise.
+to centimetres (see VEHICLE_JERK), so what is left beyond that is the noise.
 """
 
 from __future__ import annotations
@@ -21,17 +21,20 @@ from ...curves.robust import MAD_TO_SIGMA
 from .drive_checks import HEADING_TOLERANCE, angle_between
 from .trajectory import Trajectory
 
-GAP_FACTOR, SHORTEST_PAUSE = 3.0, 1.0     # times the usual step of time, and s, beyond which the vehicle is not interpolated
-MAX_SAGITTA = 0.05      # m: bends are curved that straight lines between vertices miss by more
-LEFT_SAGITTA = 0.01     # m that the curved trajectory still misses
-MIN_SPACING = 1.5       # m between vertices, from which a bend of the least radius that vehicles drive, 6 m, is missed by MAX_SAGITTA
-MAX_VERTEX_TURN = np.radians(45.0)   # from vertex to vertex: what turns more cannot be told by its vertices
-MIN_SPLINE_ROWS = 3
-SPLINE_ORDER_SHARE = 1.0 / 16.0   # of the error with every second vertex that is left with all: (1/2)^4
-NOISE_TIME, SMOOTH_TIME = 1.0, 2.0   # s over which a cubic tells the noise, and removes it
-MIN_CUBIC_ROWS = 7      # in NOISE_TIME: trajectories with fewer than seven rows a second do not show it
-EVEN_STEPS = 0.2        # share by which steps of time may differ
-MAX_NOISE = 0.03        # m: springs and steering stay below (10 m/s³ of jerk that turns about twice a second leave 2 cm to a cubic over a second)
+GAP_FACTOR, SHORTEST_PAUSE = 3.0, 1.0     # weight: times the usual step of time, and s, beyond which the vehicle is not interpolated
+MAX_SAGITTA = 0.05      # weight: m; bends are curved that straight lines between vertices miss by more
+LEFT_SAGITTA = MAX_SAGITTA / 5   # derived: m that the curved trajectory still misses, which is nothing beside what is tolerated
+LEAST_RADIUS = 6.4      # source: m of the middle of a car that turns as sharply as it can (AASHTO, design vehicle P, 21 ft)
+MIN_SPACING = float(np.sqrt(8 * LEAST_RADIUS * MAX_SAGITTA))   # derived: m between vertices that miss such a bend by MAX_SAGITTA
+SHARPEST_TURN = np.radians(90.0) / 2   # derived: from vertex to vertex; every second one, which tells the error, then turns by a right angle
+MIN_SPLINE_ROWS = 3     # derived: vertices with a turn between them
+SPLINE_ORDER_SHARE = 1.0 / 16.0   # derived: of the error with every second vertex that is left with all, (1/2)^4
+NOISE_TIME, SMOOTH_TIME = 1.0, 2.0   # weight: s over which a cubic tells the noise, and removes it
+MIN_CUBIC_ROWS = 7      # derived: in NOISE_TIME; a cubic through four of them leaves three to tell the noise by
+EVEN_STEPS = 0.2        # weight: share by which steps of time may differ
+VEHICLE_JERK = 10.0     # weight: m/s³, as of somebody who brakes or steers hard
+# derived: m, root mean square of a motion with that jerk that turns once in NOISE_TIME; a cubic over that time leaves most of it
+MAX_NOISE = float(VEHICLE_JERK * (NOISE_TIME / (2 * np.pi)) ** 3 / np.sqrt(2.0))
 
 
 @dataclass(frozen=True)
@@ -111,7 +114,7 @@ def curved_track(trajectory: Trajectory) -> TrackShape:
             continue
         k = int(np.argmax(np.where(far, sagitta, 0.0)))
         worst = max(worst, (float(sagitta[k]), float(length[k]), piece.start + k))
-        sharp = far & (turn > MAX_VERTEX_TURN)
+        sharp = far & (turn > SHARPEST_TURN)
         unsafe += np.count_nonzero(sharp)
         curved, off = _through(rows, np.where(far, np.ceil(np.sqrt(sagitta / LEFT_SAGITTA)), 1).astype(int))
         sigma = max(sigma, off, float(sagitta[sharp].max(initial=0.0)) / 2)

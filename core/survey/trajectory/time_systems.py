@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
+import time
+
 import numpy as np
 
 from ...common.errors import RoadExtractionError
-from .written_values import UNIX_EPOCH, leap_seconds
+from .written_values import LEAP_DAYS, SECONDS_PER_DAY, SECONDS_PER_WEEK, UNIX_EPOCH, leap_seconds
 
-SECONDS_PER_WEEK, SECONDS_PER_DAY = 604800.0, 86400.0
 ADJUSTED_OFFSET = 1e9  # s by which adjusted standard GPS time is less than GPS time (ASPRS LAS 1.4)
 TIME_SYSTEMS = ("automatic", "gps", "adjusted", "week", "day")
 TIME_SYSTEM_NAMES = {"as it is": "the cloud's own seconds", "gps": "GPS seconds since 1980", "adjusted": "adjusted GPS seconds (GPS less 1e9)",
                      "week": "seconds of the week", "day": "seconds of the day"}
 TIME_TOLERANCE = 1.0  # s between the ends of the times of cloud and trajectory, which may be rounded
-# s between GPS and UTC now and in earlier years, between TAI and UTC, and between TAI and GPS
-LEAP_SECONDS = (18.0, 17.0, 16.0, 15.0, 14.0, 37.0, 36.0, 35.0, 19.0)
+TAI_TO_GPS = 19.0     # source: s by which TAI is ahead of GPS time (IS-GPS-200)
+LARGEST_SHIFT = TAI_TO_GPS + len(LEAP_DAYS)   # derived: s between two clocks, TAI and UTC
 
 
 def unwrap_time(time: np.ndarray) -> np.ndarray:
@@ -133,6 +134,11 @@ def _offsets(first, last, cloud, system):
     return [(name, float(offset)) for name, offset in options if name == system]
 
 
+def is_to_come(seconds: float) -> bool:
+    """Whether GPS seconds lie in the future: then they count from 1970, ten years before GPS time."""
+    return seconds > time.time() - UNIX_EPOCH + SECONDS_PER_DAY
+
+
 def unix_time_found(seconds: float, what: str) -> str:
     """The sentence on a time that counts from 1970; `what` is its beginning, on who counts."""
     utc = seconds - UNIX_EPOCH
@@ -145,7 +151,7 @@ def unix_time_found(seconds: float, what: str) -> str:
 def _unix_hint(first, last, cloud_first, cloud_last):
     """A sentence where the trajectory would cover the scan if it counted from 1970; otherwise ""."""
     for shift in (0.0, -ADJUSTED_OFFSET):
-        if min(last - UNIX_EPOCH + shift, cloud_last) - max(first - UNIX_EPOCH + shift, cloud_first) > -LEAP_SECONDS[5]:
+        if min(last - UNIX_EPOCH + shift, cloud_last) - max(first - UNIX_EPOCH + shift, cloud_first) > -LARGEST_SHIFT:
             return unix_time_found(first, "Its times seem to count")
     return ""
 
@@ -153,9 +159,10 @@ def _unix_hint(first, last, cloud_first, cloud_last):
 def _leap_hint(first, last, cloud_first, cloud_last):
     """A sentence where a shift by leap seconds would cover a scan that is not covered now; otherwise ""."""
     early, late = first - cloud_first, cloud_last - last
-    if max(early, late) <= TIME_TOLERANCE or max(early, late) > LEAP_SECONDS[5] + TIME_TOLERANCE:
+    if max(early, late) <= TIME_TOLERANCE or max(early, late) > LARGEST_SHIFT + TIME_TOLERANCE:
         return ""
-    for leap in LEAP_SECONDS:
+    gps_to_utc = [float(len(LEAP_DAYS) - years) for years in range(5)]   # since the last leap second, and before each of the last four
+    for leap in (*gps_to_utc, *(TAI_TO_GPS + shift for shift in gps_to_utc[:3]), TAI_TO_GPS):
         for shift in (leap, -leap):
             if first + shift - cloud_first <= 0.1 and cloud_last - last - shift <= 0.1:
                 said = f"The scan begins {early:.1f} s before the trajectory" if early > late else f"The scan ends {late:.1f} s after the trajectory"

@@ -115,6 +115,18 @@ def _plane(sample, time, others):
         pairs = [(map_like[0], map_like[1], "metres"), (map_like[1], map_like[0], "metres")]
     else:
         pairs = _geographic_pairs(sample, time, others) or _local_pairs(sample, time, others, size, rate)
+    agreeing = _agreeing_headings(sample, time, others, pairs)
+    if agreeing:
+        return min(agreeing)[4:]
+    if len(map_like) == 2:
+        return _usual_order(pairs[0], size), None
+    if pairs and pairs[0][2] != "metres":
+        return _longitude_first(pairs, sample), None
+    return (pairs[0] if pairs else None), None
+
+
+def _agreeing_headings(sample, time, others, pairs):
+    """[(by what the likeliest is the least, ..., pair, heading column)]: pairs of coordinates with the headings that confirm them."""
     agreeing = []
     for a, b, unit in pairs:
         x, y = sample[:, a].copy(), sample[:, b].copy()
@@ -131,13 +143,7 @@ def _plane(sample, time, others):
                 # roll and pitch agree with the course of a drive due north, so a wide range of values counts more than a close fit,
                 # and so does a height of 24 m with a course of 24 degrees: roll and pitch stand before the heading
                 agreeing.append((np.nanmax(np.abs(sample[:, h])) < 15.0, a > b, not _after_roll_and_pitch(sample, h), wrong, (a, b, unit), h))
-    if agreeing:
-        return min(agreeing)[4:]
-    if len(map_like) == 2:
-        return _usual_order(pairs[0], size), None
-    if pairs and pairs[0][2] != "metres":
-        return _longitude_first(pairs, sample), None
-    return (pairs[0] if pairs else None), None
+    return agreeing
 
 
 def _local_pairs(sample, time, others, size, rate):

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
 
 import numpy as np
+
+from ...common.errors import RoadExtractionError
 
 _DATE = r"(?P<date>\d{4}[-/.]\d{1,2}[-/.]\d{1,2}|\d{1,2}[-/.]\d{1,2}[-/.]\d{4}|\d{8})"
 _CLOCK = r"(?P<hour>\d{1,2}):(?P<minute>\d{2})(?::(?P<second>\d{2}(?:[.,]\d*)?))?\s*(?P<half>[ap]\.?m\.?)?"
@@ -25,26 +27,37 @@ MONTHS = ("jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", 
 LOOKED_AT = 50          # texts of a column by which it is told what they are
 MOST = 0.9              # of them
 GPS_EPOCH = datetime(1980, 1, 6)
+SECONDS_PER_WEEK, SECONDS_PER_DAY = 604800.0, 86400.0
 UNIX_EPOCH = 315_964_800.0   # s from 1970 to the start of GPS time
 # Days on which a second was inserted into UTC since GPS time began (IERS Bulletin C); none is announced after the last
 LEAP_DAYS = ("1981-07-01", "1982-07-01", "1983-07-01", "1985-07-01", "1988-01-01", "1990-01-01", "1991-01-01", "1992-07-01", "1993-07-01",
              "1994-07-01", "1996-01-01", "1997-07-01", "1999-01-01", "2006-01-01", "2009-01-01", "2012-07-01", "2015-07-01", "2017-01-01")
 
 
+# Where counts of days begin, in the Gregorian calendar; of several that may be, the first that gives a day of FIRST_SURVEY or later
+DAY_COUNTS = {"modified Julian days": "1858-11-17", "days of a spreadsheet": "1899-12-30", "days of MATLAB": "-0001-12-31",
+              "Julian days": "-4713-11-24T12"}
+FIRST_SURVEY, LAST_SURVEY = "1990-01-01", "2050-01-01"
+SHORTEST_STEP = 5e-4    # weight: s from row to row; no trajectory has 2000 positions a second, and a vehicle drives a centimetre in it
+
+
 @dataclass(frozen=True)
 class ClockTimes:
-    """Clock times that were written as text.
+    """Clock times that were written as text, or as days.
 
     seconds : (N,) since 6 January 1980 as the clock counts, or since its midnight where no date is written; NaN where a text is no time
     dated : whether dates are written
     zone : "UTC" or "GPS" where the texts say so, "" otherwise; times with an offset from UTC are brought to UTC
     order_known : whether day and month can be told apart
+    kind, first : what was written, and the first of them
     """
 
     seconds: np.ndarray
     dated: bool
     zone: str
     order_known: bool
+    kind: str = "clock times"
+    first: str = ""
 
 
 def hold_times(texts: Sequence[str]) -> bool:
@@ -84,7 +97,7 @@ def clock_times(texts: Sequence[str]) -> ClockTimes | None:
             value -= (60 * int(zone[1:3]) + int(zone[-2:])) * 60.0 * (1 if zone[0] == "+" else -1)
         seconds[row] = value
     zone = "" if "" in zones or not zones else "GPS" if all(name.startswith("GPS") for name in zones) else "UTC"
-    return ClockTimes(seconds, bool(dates), zone, order_known)
+    return ClockTimes(seconds, bool(dates), zone, order_known, first=next(filter(None, texts), ""))
 
 
 def _since_midnight(match):
@@ -116,6 +129,42 @@ def _midnight(date, day_first):
         return (datetime(*map(int, parts)) - GPS_EPOCH).total_seconds()
     except ValueError:
         return np.nan
+
+
+def counted_days(values: np.ndarray, texts: Callable[[], Sequence[str]], what: str) -> ClockTimes | None:
+    """The clock times of (N,) days and their shares, as MJD or spreadsheets count them; None of values that count seconds.
+
+    Parameters
+    ----------
+    values : (N,) numbers
+    texts : gives the (N,) texts as they are written
+    what : the beginning of a message
+
+    Raises
+    ------
+    RoadExtractionError
+        If they go up like days, but are of no known count, or have too few decimals.
+    """
+    steps = np.diff(values)
+    steps = steps[steps > 0]
+    if not len(steps) or not np.median(steps) < SHORTEST_STEP:
+        return None
+    first = values[np.isfinite(values)][0]
+    kind = next((kind for kind, begins in DAY_COUNTS.items() if _days_from(begins, FIRST_SURVEY) <= first < _days_from(begins, LAST_SURVEY)), "")
+    last_decimal = SECONDS_PER_DAY * 10.0 ** -max(len(re.split("[.,]", text)[-1]) for text in texts()[:LOOKED_AT])
+    said = f"{what} goes up by {np.median(steps):.2g} from row to row as if it counted days, "
+    if not kind:
+        raise RoadExtractionError(f"{said}but {first:.10g} is no day of a known count (MJD, Julian days, a spreadsheet). GPS seconds are needed: "
+                                  "export the trajectory with these.")
+    if last_decimal / 2 > SHORTEST_STEP:   # by half of it times are rounded
+        raise RoadExtractionError(f"{said}and its last decimal is {last_decimal:.2g} s, while a vehicle drives centimetres in a thousandth of a "
+                                  "second. Export the trajectory with GPS seconds, or with 8 decimals of a day or more.")
+    seconds = (values - _days_from(DAY_COUNTS[kind], GPS_EPOCH)) * SECONDS_PER_DAY
+    return ClockTimes(seconds, True, "", True, kind, f"{first:.10g}")
+
+
+def _days_from(begins, day):
+    return (np.datetime64(day) - np.datetime64(begins)) / np.timedelta64(1, "D")
 
 
 def leap_seconds(seconds: np.ndarray) -> np.ndarray:

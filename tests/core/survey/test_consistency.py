@@ -1,5 +1,7 @@
 """Results of earlier stages are told from those of another drive."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import shapely
@@ -36,6 +38,7 @@ def points_along(frame):
     records = np.zeros(len(STATIONS), ROAD_POINT)
     x, y = frame.road(0).to_map(STATIONS, np.full(len(STATIONS), -2.0))
     records["x"], records["y"], records["s"], records["d"] = to_units(x), to_units(y), to_units(STATIONS), to_units(-2.0)
+    records["z"] = to_units(100.0 - frame.origin[2])
     points = RoadPoints.empty_like(origin=frame.origin)
     points.store.append(0, records)
     return points
@@ -73,6 +76,24 @@ def test_what_was_made_with_a_trajectory_moved_to_its_scanners_is_refused_with_t
         check_features_on_roads(curbs_along(moved), given, "Curb points")
     with pytest.raises(RoadExtractionError, match="Run Road map, which makes all layers with the moved trajectory"):
         check_road_points_on_roads(points_along(moved), given, "The points")
+
+
+@pytest.mark.parametrize("metres, where", [(48.0, "50.00 m below"), (-48.0, "46.00 m above"), (-3.6, "1.60 m above")])
+def test_what_was_made_with_a_trajectory_moved_to_the_height_of_its_scanners_is_refused_with_the_one_given(metres, where):
+    """The heights of the trajectory are of another kind than those of the cloud, on whose road all layers lie."""
+    moved, given = drive(chain(ahead(180))), drive(chain(ahead(180)))
+    moved, given = build_frame(moved), build_frame(replace(given, z=given.z + metres))
+    with pytest.raises(RoadExtractionError, match=f"Curb points lie {where} the trajectory"):
+        check_features_on_roads(curbs_along(moved), given, "Curb points")
+    with pytest.raises(RoadExtractionError, match="moved to the height of the scanners"):
+        check_road_points_on_roads(points_along(moved), given, "The points")
+
+
+def test_layers_without_heights_are_taken(street):
+    curbs = curbs_along(street)
+    for flat in (shapely.force_2d(curbs.geometries), shapely.force_3d(shapely.force_2d(curbs.geometries))):
+        curbs.geometries[:] = list(flat)
+        check_features_on_roads(curbs, street, "Curb points")
 
 
 def test_a_road_that_is_not_there_is_another_drive_s(street):

@@ -57,6 +57,14 @@ def test_a_feature_says_what_it_is(qgis_app, output, row, said):
     assert said in evaluated(layer, layer.mapTipTemplate())
 
 
+def test_the_second_reading_is_shown_in_words_in_tables_and_forms(qgis_app):
+    reading = '{"nats": 0.4, "lanes": [{"offset_m": 1.9, "width_m": 3.24, "direction": -1}]}'
+    layer = loaded("DRIVING_LINES", lane=2, other=reading)
+    assert evaluated(layer, "[% represent_value(\"other\") %]") == "a lane of 3.2 m against the road"
+    assert "JSON" not in layer.attributeAlias(layer.fields().lookupField("other"))
+    assert next(layer.getFeatures())["other"] == reading, "Road map reads it"
+
+
 @pytest.mark.parametrize("output", sorted(set(TITLES) & set(SCHEMAS)))
 def test_every_title_can_be_evaluated(qgis_app, output):
     expression = QgsExpression(loaded(output).displayExpression())

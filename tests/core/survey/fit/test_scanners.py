@@ -17,9 +17,9 @@ class Heard(Progress):
         self.warned.append(text)
 
 
-def seen_by_two(moved=lambda x, y, z: (x, y, z), lost=0.1, seeds=(1, 2)):
+def seen_by_two(moved=lambda x, y, z: (x, y, z), lost=0.1, seeds=(1, 2), seconds=8.0):
     """A street driven once with two scanners, of which the points of the second lie elsewhere."""
-    drive = driven(8.0)
+    drive = driven(seconds)
     first, second = (scanned(drive=drive, pulses=60_000.0, yaw=yaw, clipped=8.0, noise=0.004, lost=lost, seed=seed)
                      for seed, yaw in zip(seeds, (45.0, -45.0)))
     x, y, z = moved(second.x, second.y, second.z)
@@ -50,6 +50,20 @@ def test_scanners_that_agree_stay_as_they_are_where_points_are_few(seed):
     """Windows of a thinned street differ by more than their mean says: none of it is an error of a mounting."""
     survey, heard = seen_by_two(lost=0.95, seeds=(seed, seed + 100)), Heard()
     assert lay_scanners(survey, heard) == 0.0 and not heard.warned
+
+
+@pytest.mark.parametrize("seed", [12, 13, 17, 18])
+def test_scanners_that_agree_stay_as_they_are_on_a_short_street(seed):
+    """What a single window of road shows is no evidence, as nothing tells how far it may be off."""
+    survey, heard = seen_by_two(lost=0.85, seeds=(seed, seed + 100), seconds=3.5), Heard()
+    assert lay_scanners(survey, heard) == 0.0 and not heard.warned
+
+
+@pytest.mark.parametrize("seconds", [1.8, 2.5, 3.5])
+def test_a_wrong_lever_arm_is_taken_out_on_a_short_street_too(seconds):
+    survey, heard = seen_by_two(lambda x, y, z: (x, y + 0.18, z), seconds=seconds), Heard()
+    assert lay_scanners(survey, heard) == pytest.approx(0.09, abs=0.01) and len(heard.warned) == 1
+    np.testing.assert_allclose(places_of(survey, 0), places_of(survey, 1), atol=0.008)
 
 
 @pytest.mark.parametrize("metres", [0.18, -0.06])

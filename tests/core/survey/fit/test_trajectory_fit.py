@@ -1,13 +1,16 @@
 """A trajectory that is not that of its scanners: told by the rays of their mirrors, moved to where they were, and said in one warning."""
 
+import warnings
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from drives import EAST, NORTH
 from lanewright.core.common.progress import Progress
 from lanewright.core.survey.fit.mounting import read_places, scanner_mountings
 from lanewright.core.survey.fit.trajectory_fit import fitted_trajectory
 from lanewright.core.survey.las.reader import read_headers
+from lanewright.core.survey.open_survey import open_survey
 from mirror_drives import Mirror, mirror_drive
 
 PAIR = Mirror(turn=-45.0, lever=(-2.4, 0.3, 0.1)), Mirror(turn=45.0, lever=(-2.4, -0.3, 0.1), ahead=0.7)
@@ -19,8 +22,6 @@ class Heard(Progress):
 
     def warn(self, text):
         self.warned.append(text)
-
-
 
 
 @pytest.fixture(scope="module")
@@ -99,14 +100,38 @@ def test_heights_in_feet_beside_metres_are_named(tmp_path):
     assert found.sigma > 0.1
 
 
+def test_heights_of_the_cloud_alone_in_feet_are_named_as_such(tmp_path):
+    measured = mirror_drive(PAIR, seconds=5.0)
+    path, _ = raised(measured, tmp_path / "feet.laz", lambda z: z / 0.3048)
+    _, warned = told(path, measured.trajectory())
+    assert len(warned) == 1 and "heights of the cloud alone seem to be in feet" in warned[0]
+
+
 def test_heights_that_are_upside_down_are_named(tmp_path):
     found, warned = told(*raised(mirror_drive(PAIR, seconds=5.0), tmp_path / "down.laz", lambda z: -z))
     assert len(warned) == 1 and "upside down" in warned[0] and found.sigma > 0.1
 
 
-def test_coordinates_that_went_through_single_precision_are_named(tmp_path):
-    measured = mirror_drive(PAIR, seconds=5.0)
+def test_times_of_broken_points_do_not_disturb_those_of_the_drive(straight):
+    """A few points of a file whose times were damaged on the way."""
+    path, trajectory = straight
+    sample = read_places(read_headers([path]))
+    broken = replace(sample, time=np.r_[-1e300, sample.time[:-2], 1e300])
+    with np.errstate(all="raise"), warnings.catch_warnings():
+        warnings.simplefilter("error")
+        found = scanner_mountings(broken, trajectory)
+    for one, mirror in zip(found, PAIR, strict=True):
+        np.testing.assert_allclose(np.median(one.lever, axis=0), mirror.lever, atol=0.03)
+
+
+def test_coordinates_of_32_bits_are_told_once_and_leave_the_street_as_uncertain_as_their_step(tmp_path):
+    measured = mirror_drive(PAIR, seconds=3.0)
+    origin = np.array([EAST, NORTH])
     rounded = measured.place.copy()
-    rounded[:, :2] = np.round(rounded[:, :2] / 0.0625) * 0.0625
-    found, warned = told(replace(measured, place=rounded).write(tmp_path / "street.laz"), measured.trajectory())
-    assert len(warned) == 1 and "single precision" in warned[0] and found.sigma == pytest.approx(0.018, abs=0.001)
+    rounded[:, :2] = (rounded[:, :2] + origin).astype(np.float32) - origin
+    heard = Heard()
+    survey = open_survey([replace(measured, place=rounded).write(tmp_path / "street.laz")], measured.trajectory(), progress=heard)
+    survey.store.close()
+    assert [text for text in heard.warned if "steps of" in text] == [text for text in heard.warned if "32-bit numbers" in text] and \
+        sum("steps of" in text for text in heard.warned) == 1
+    assert survey.frame.pass_sigma[0].metres == pytest.approx((0.5 / np.sqrt(12.0),))
