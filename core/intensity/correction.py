@@ -17,10 +17,20 @@ from ..survey.frame.road_frame import RoadFrame
 from ..survey.store.records import Points
 from ..survey.store.road_points import RoadPoints
 from ..survey.store.section_store import STRETCH_POINTS, Stretch
-from .asphalt_model import DISTANCE_BIN, MAX_DISTANCE, POINTS_AT_ONCE, AsphaltTable, BinCounts, IntensityHistograms, asphalt_of_histograms
+from .asphalt_model import (
+    ACROSS_TRACK,
+    DISTANCE_BIN,
+    MAX_DISTANCE,
+    POINTS_AT_ONCE,
+    UNKNOWN_DISTANCE,
+    AsphaltTable,
+    BinCounts,
+    IntensityHistograms,
+    VehicleDistances,
+    asphalt_of_histograms,
+)
 from .beams import Beams
 from .saturation import SCANNER_NUMBERS, Saturation
-from .vehicle_relative import ACROSS_TRACK, UNKNOWN_DISTANCE, VehicleDistances
 
 ENOUGH_POINTS_PER_METRE = 6_000   # of road: more do not improve the estimate of asphalt
 SAMPLE_STRIPE_LENGTH = 100    # units of 0.1 mm along the road: of denser roads, stripes of this length are sampled
