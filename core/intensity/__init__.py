@@ -9,7 +9,6 @@ from ..lazy import public
 
 __getattr__, __all__ = public(__name__, {
     "correction": ("IntensityReport", "IntensitySettings", "Saturation", "correct_intensity", "saturation_of"),
-    "coverage": ("check_image_shows",),
-    "image": ("ImageSettings", "check_fits", "make_intensity_image", "write_intensity_image"),
+    "image": ("ImageSettings", "check_fits", "check_image_shows", "make_intensity_image", "write_intensity_image"),
     "tiled_image": ("IntensityRaster", "TiledImage"),
 })

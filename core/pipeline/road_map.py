@@ -28,8 +28,7 @@ from ..driving.driving_lines import DrivingSettings, make_driving_lines
 from ..driving.lanes_layer import lanes_to_features
 from ..execution.choice import ExecutionSettings
 from ..intensity.correction import IntensitySettings, correct_intensity
-from ..intensity.idw import ImageSettings
-from ..intensity.image import check_fits, make_intensity_image
+from ..intensity.image import ImageSettings, check_fits, make_intensity_image
 from ..io.cloud_crs import check_projected
 from ..io.geotiff import IntensityImage
 from ..markings.lines.fit import fit_marking_lines
