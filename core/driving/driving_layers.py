@@ -14,7 +14,7 @@ from ..common.schemas import CURVE_ELEMENTS, DRIVING_LINES
 from ..countries.catalogue import country
 from ..countries.neutral import NEUTRAL
 from ..curves.base import Arc, Curve
-from .curve_elements import element_row
+from .alignment import element_row
 
 if TYPE_CHECKING:
     from ..survey.frame.road_frame import RoadFrame

@@ -18,10 +18,8 @@ from ..markings.lines.painted_lines import PaintedLines
 from ..markings.objects.marking_objects import MarkingObjects
 from ..road.edges.road_edges import RoadEdges
 from ..survey.frame.sigma_along import cuts_where_it_changes
-from .alignment import Element, lane_elements
-from .centreline import Course, element_of, lane_courses, track_pieces
+from .alignment import Course, Element, element_of, is_curve, lane_courses, lane_elements, track_pieces
 from .connectors import RoadLanes, connectors_between_roads
-from .curve_elements import is_curve
 from .driving_layers import CurveElements, DrivingLines
 from .heights import lane_heights
 from .lane_areas import lane_areas, make_lanes

@@ -9,7 +9,7 @@ import numpy as np
 from ..common.parallel import check_cancelled
 from ..markings.cross_section.sections import STATION_STEP, CrossSections
 from ..markings.cross_section.weights import CENTRE_LINE, CURB, EDGE_LINE, HATCHING, ISLAND, LANE_LINE, OTHER_LINE, SURFACE
-from .centreline import track_pieces
+from .alignment import track_pieces
 from .connectors import NEXT_LANE_GAP, NO_BORDER, connectors_on_road
 from .lane_track import LANE_STATUS, LaneTrack
 from .lanes_layer import Lanes

@@ -33,7 +33,7 @@ from .lane_track import MEASURED
 if TYPE_CHECKING:
     from ..markings.cross_section.roads import EstimatedRoad
     from ..survey.frame.road_frame import Road
-    from .centreline import Course
+    from .alignment import Course
     from .lane_track import LaneTrack
 
 BORDER_SHARE = 0.13            # of the RMS distance of a border's paint from its curve, that the border is off by

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 from counted_calls import calls
-from lanewright.core.driving.alignment import lane_elements
-from lanewright.core.driving.centreline import without_short_status
+from lanewright.core.driving.alignment import lane_elements, without_short_status
 from lanewright.core.driving.driving_lines import DrivingSettings, make_driving_lines
 from lanewright.core.driving.lane_areas import follow
 from lanewright.core.driving.lane_track import LaneTrack, connect
