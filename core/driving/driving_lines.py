@@ -24,10 +24,9 @@ from .driving_layers import CurveElements, DrivingLines
 from .heights import lane_heights
 from .lane_areas import lane_areas, make_lanes
 from .lane_track import LANE_STATUS, LaneTrack, connect
-from .lanes import estimated_lanes
+from .lanes import estimated_lanes, laid_out
 from .lanes_layer import Lanes
 from .settings import DrivingSettings
-from .tapers import laid_out
 from .uncertainty import lane_sigma
 
 if TYPE_CHECKING:
