@@ -22,12 +22,11 @@ from ..road.edges.road_edges import RoadEdges
 from ..survey.frame.sigma_along import cuts_where_it_changes
 from .alignment import Course, Element, element_of, is_curve, lane_courses, lane_elements, track_pieces
 from .connectors import RoadLanes, connectors_between_roads
-from .driving_layers import CurveElements, DrivingLines
 from .heights import lane_heights
 from .lane_areas import lane_areas, make_lanes
 from .lane_track import LANE_STATUS, MEASURED, LaneTrack, connect
 from .lanes import estimated_lanes, laid_out
-from .lanes_layer import Lanes
+from .layers import CurveElements, DrivingLines, Lanes
 from .settings import DrivingSettings
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from ..markings.cross_section.weights import CENTRE_LINE, CURB, EDGE_LINE, HATCH
 from .alignment import track_pieces
 from .connectors import NEXT_LANE_GAP, NO_BORDER, connectors_on_road
 from .lane_track import LANE_STATUS, LaneTrack
-from .lanes_layer import Lanes
+from .layers import Lanes
 from .shoulders import shoulders
 
 if TYPE_CHECKING:

@@ -23,9 +23,8 @@ from ..corrections.edges import correct_edges
 from ..corrections.lanes import correct_lanes
 from ..corrections.markings import correct_marking_lines, correct_markings
 from ..countries.catalogue import country
-from ..driving.driving_layers import curve_elements_to_features, driving_lines_to_features
 from ..driving.driving_lines import DrivingSettings, make_driving_lines
-from ..driving.lanes_layer import lanes_to_features
+from ..driving.layers import curve_elements_to_features, driving_lines_to_features, lanes_to_features
 from ..execution.choice import ExecutionSettings
 from ..intensity.correction import IntensitySettings, correct_intensity
 from ..intensity.image import ImageSettings, check_fits, make_intensity_image

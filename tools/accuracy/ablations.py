@@ -3,8 +3,8 @@
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from lanewright.core.driving.driving_layers import driving_lines_to_features
 from lanewright.core.driving.driving_lines import make_driving_lines
+from lanewright.core.driving.layers import driving_lines_to_features
 from lanewright.core.pipeline.road_map import RoadMapSettings
 from lanewright.core.road.common.tracking import StepChain
 from lanewright.core.road.surface.extract import extract_road_surface

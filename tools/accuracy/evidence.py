@@ -11,8 +11,8 @@ from functools import partial
 import numpy as np
 import shapely
 from lanewright.core.countries.neutral import NEUTRAL
-from lanewright.core.driving.driving_layers import driving_lines_to_features
 from lanewright.core.driving.driving_lines import make_driving_lines
+from lanewright.core.driving.layers import driving_lines_to_features
 from lanewright.core.markings.cross_section.roads import estimate_roads
 from lanewright.core.markings.cross_section.weights import EstimateWeights
 from lanewright.core.markings.lines.edges_beside import edges_beside
