@@ -21,9 +21,8 @@ from ..markings.objects.marking_objects import MarkingObjects
 from ..road.edges.road_edges import RoadEdges
 from ..survey.frame.sigma_along import cuts_where_it_changes
 from .alignment import Course, Element, element_of, is_curve, lane_courses, lane_elements, track_pieces
-from .connectors import RoadLanes, connectors_between_roads
 from .heights import lane_heights
-from .lane_areas import lane_areas, make_lanes
+from .lane_areas import RoadLanes, connectors_between_roads, lane_areas, make_lanes
 from .lane_track import LANE_STATUS, MEASURED, LaneTrack, connect
 from .lanes import estimated_lanes, laid_out
 from .layers import CurveElements, DrivingLines, Lanes
