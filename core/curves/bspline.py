@@ -14,9 +14,8 @@ from scipy.linalg.lapack import dpbsv
 from scipy.sparse import csc_matrix, csr_matrix
 
 from ..common.parallel import check_cancelled
-from .base import TabulatedCurve
+from .base import CurveFit, TabulatedCurve, bic_lower_bound, checked_points
 from .batched_lsq import batches
-from .curve_fit import CurveFit, bic_lower_bound, checked_points
 from .robust import MAD_TO_SIGMA, SOFT_L1_SCALE, median, row_medians
 
 SPLINE_DEGREE = 3

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .base import Curve
+from .base import Curve, CurveFit, checked_points
 from .batched_lsq import PointGroups, fit_batch
-from .curve_fit import CurveFit, checked_points
 from .line_circle import chords
 
 

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..common.errors import RoadExtractionError
-from .base import TabulatedCurve
+from .base import CurveFit, TabulatedCurve, checked_points
 from .batched_lsq import minimise
-from .curve_fit import CurveFit, checked_points
 
 MIN_ELLIPSE_TURN = np.radians(60.0)  # on a shorter arc an ellipse cannot be distinguished from a circle
 

@@ -6,9 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from .base import Arc
+from .base import Arc, CurveFit, checked_points
 from .batched_lsq import PointGroups, fit_batch
-from .curve_fit import CurveFit, checked_points
 
 
 def fit_line(x: np.ndarray, y: np.ndarray) -> CurveFit:

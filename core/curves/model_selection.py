@@ -9,11 +9,10 @@ import numpy as np
 
 from ..common.errors import RoadExtractionError
 from ..common.parallel import check_cancelled
-from .base import Arc, Curve
+from .base import Arc, Curve, CurveFit, bic_lower_bound
 from .batched_lsq import COARSE_POINTS, PointGroups
 from .bspline import Spline, fit_spline, fit_splines
 from .clothoid import Clothoid, fit_clothoid, fit_clothoids
-from .curve_fit import CurveFit, bic_lower_bound
 from .ellipse import MIN_ELLIPSE_TURN, Ellipse, fit_ellipse
 from .line_circle import fit_circle, fit_circles, fit_line, fit_lines
 from .polynomial import Polynomial, fit_polynomial

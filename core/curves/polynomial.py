@@ -7,8 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..common.errors import RoadExtractionError
-from .base import TabulatedCurve
-from .curve_fit import CurveFit, checked_points
+from .base import CurveFit, TabulatedCurve, checked_points
 from .line_circle import chord
 from .robust import robust_weights
 
