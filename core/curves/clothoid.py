@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from .base import Curve, CurveFit, checked_points
-from .batched_lsq import PointGroups, fit_batch
 from .line_circle import chords
+from .robust import PointGroups, fit_batch
 
 
 def _gauss(count):

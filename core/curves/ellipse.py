@@ -8,7 +8,7 @@ import numpy as np
 
 from ..common.errors import RoadExtractionError
 from .base import CurveFit, TabulatedCurve, checked_points
-from .batched_lsq import minimise
+from .robust import minimise
 
 MIN_ELLIPSE_TURN = np.radians(60.0)  # on a shorter arc an ellipse cannot be distinguished from a circle
 

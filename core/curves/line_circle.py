@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from .base import Arc, CurveFit, checked_points
-from .batched_lsq import PointGroups, fit_batch
+from .robust import PointGroups, fit_batch
 
 
 def fit_line(x: np.ndarray, y: np.ndarray) -> CurveFit:
