@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from .base import Curve, CurveFit, checked_points
-from .line_circle import chords
 from .robust import PointGroups, fit_batch
+from .simple_curves import chords
 
 
 def _gauss(count):
