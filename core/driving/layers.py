@@ -216,7 +216,7 @@ class DrivingLines:
     rmse : (P,) metres, of the lane's places from its curve
     station, end : (P,) metres along the road
     offset, width : (P,) metres, medians along the piece
-    sigma : (P,) metres, uncertainty of the place across the line, one sigma, see `uncertainty.py`
+    sigma : (P,) metres, uncertainty of the place across the line, one sigma, see `driving_lines.py`
     vertices : (V, 3) local metres in the direction of travel, one piece after the other
     start : (P + 1,) int, first vertex of each piece, and V
     crs : WKT, "" where unknown
