@@ -9,7 +9,7 @@ import numpy as np
 
 from ...common.progress import Progress
 from ...common.setting import check_limits, setting
-from ..driven_middles import with_driven_middles
+from ..shared_borders import with_driven_middles
 from ..sources import NearestValues, RoadMapSource, sigma_of_lanes
 from .heights import add_heights, heights_above_road
 from .junctions import DraftRoad, link_roads
