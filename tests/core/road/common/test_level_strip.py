@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from curbed_streets import driven, survey_of
 from lanewright.core.road.common.curb_points import curb_points_to_features
-from lanewright.core.road.common.decimation import PointDecimation
-from lanewright.core.road.common.level_strip import LevelStrip
+from lanewright.core.road.common.decimation import LevelStrip, PointDecimation
 from lanewright.core.road.common.occlusion import OcclusionGrid
 from lanewright.core.road.detect_boundaries import BoundarySettings, find_curb_points
 from lanewright.core.road.scanlines.source import SurveyScanlines
