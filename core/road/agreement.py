@@ -13,8 +13,8 @@ from .common.corners import CANDIDATE_HEIGHT_SHARE
 from .common.curb_limits import LEAST_HEIGHT
 from .common.curb_points import CurbPoints
 from .common.occlusion import OcclusionGrid
-from .common.side_chains import SideChains
 from .common.sides import SIDE_SIGNS
+from .common.tracking import SideChains
 from .edges.road_edges import EdgePiece, RoadEdges, joined_pieces
 
 COMPARISON_STEP = 0.5             # m along the road between places that are compared

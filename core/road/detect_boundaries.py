@@ -16,7 +16,7 @@ from .common.curb_limits import CurbSettings
 from .common.curb_points import CurbPoints
 from .common.decimation import LevelGround, PointDecimation
 from .common.occlusion import OcclusionGrid
-from .common.side_chains import SideChains
+from .common.tracking import SideChains
 from .curb_returns.detect import with_curb_returns
 from .edges.fit import EdgeSettings, fit_road_edges
 from .edges.road_edges import RoadEdges

@@ -15,9 +15,8 @@ from ...common.setting import check_limits, setting
 from ...curves.robust import MAD_TO_SIGMA
 from ...survey.frame.road_frame import RoadFrame
 from ..common.curb_points import CurbPoints
-from ..common.in_line import IN_LINE_ACROSS, LINE_FIT_LENGTH, MIN_BEND_LENGTH, GapLine
 from ..common.occlusion import HIDDEN_POINT_SPACING
-from ..common.tracking import MAX_JOINED_GAP
+from ..common.tracking import IN_LINE_ACROSS, LINE_FIT_LENGTH, MAX_JOINED_GAP, MIN_BEND_LENGTH, GapLine
 from .curb_returns import curb_return_lines, draw_curb_returns
 from .dropped_corners import dropped_corners
 from .road_edges import EdgePiece, RoadEdges, joined_pieces

@@ -14,10 +14,8 @@ from ..common.curb_limits import CurbSettings
 from ..common.curb_points import CurbPoints, curb_points_at
 from ..common.decimation import POINTS_PER_LEVEL_CELL, PointDecimation
 from ..common.hidden_curb import hidden_points
-from ..common.in_line import with_pieces_in_line
 from ..common.occlusion import OcclusionGrid
 from ..common.pseudo_scanlines import SPREAD_PROFILES
-from ..common.side_chains import SideChains
 from ..common.sides import (
     BLOCK_SECTION_LENGTH,
     MAX_CURB_OFFSET,
@@ -29,7 +27,16 @@ from ..common.sides import (
     side_profiles,
     work_sections,
 )
-from ..common.tracking import LOW_CURB_SHARE, NOISY_SHARE, curb_chains, drop_short_curbs, link_steps, select_along_road
+from ..common.tracking import (
+    LOW_CURB_SHARE,
+    NOISY_SHARE,
+    SideChains,
+    curb_chains,
+    drop_short_curbs,
+    link_steps,
+    select_along_road,
+    with_pieces_in_line,
+)
 from ..curb_returns.detect import with_curb_returns
 from .averaged_steps import AVERAGING_LENGTH, find_averaged_steps
 from .steps import find_steps

@@ -6,7 +6,8 @@ import pytest
 import shapely
 from curbed_streets import EAST, NORTH
 from lanewright.core.road import agreement
-from lanewright.core.road.common import in_line, tracking
+from lanewright.core.road.common import tracking
+from lanewright.core.road.common import tracking as in_line
 from lanewright.core.road.common.corners import CurbSteps
 from lanewright.core.road.common.tracking import StepChain
 from lanewright.core.road.curb_returns.main_curbs import KnownPlaces, SearchLimit
