@@ -17,18 +17,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..common.corners import MAX_ROAD_SLOPE
-from ..common.curb_limits import SIGNIFICANT_SIGMAS, TEXTURE_SIGMA
-from ..common.levels import (
+from ..common.corners import (
     BEHIND_FIT_LENGTH,
     BLURRED_FACE_HALF_WIDTH,
     MAX_AVERAGED_SCATTER,
+    MAX_ROAD_SLOPE,
     MIN_FILLED_SHARE,
     ROAD_FIT_LENGTH,
     STEEP_HALF_WIDTH,
     RunningSums,
     SideLines,
 )
+from ..common.curb_limits import SIGNIFICANT_SIGMAS, TEXTURE_SIGMA
 from ..common.tracking import HEIGHT_TOLERANCE
 from .following import FollowedEnds
 from .ground.raster import GroundRaster

@@ -16,15 +16,19 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..common.corners import MAX_BED_SLOPE, MAX_ROAD_SLOPE, MIN_BED_SLOPE, MIN_STEP_SIGMAS, CurbSteps
-from ..common.levels import (
+from ..common.corners import (
     BEHIND_FIT_LENGTH,
     BLURRED_FACE_HALF_WIDTH,
     MAX_AVERAGED_SCATTER,
+    MAX_BED_SLOPE,
+    MAX_ROAD_SLOPE,
+    MIN_BED_SLOPE,
     MIN_FILLED_SHARE,
     MIN_STEEP_SHARE,
+    MIN_STEP_SIGMAS,
     ROAD_FIT_LENGTH,
     STEEP_HALF_WIDTH,
+    CurbSteps,
     RunningSums,
 )
 from ..common.pseudo_scanlines import PseudoScanLines, seen_from
