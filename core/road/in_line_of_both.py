@@ -15,9 +15,8 @@ import numpy as np
 
 from ..common.runs import stretch_of
 from .common.curb_points import CurbPoints, curb_points_at
-from .common.hidden_curb import hidden_beside
 from .common.occlusion import OcclusionGrid
-from .common.sides import SIDE_SIGNS, expected_height
+from .common.sides import SIDE_SIGNS, expected_height, hidden_beside
 from .common.tracking import LINE_FIT_LENGTH, MAX_JOINED_GAP, MAX_LINE_GAP, PieceInLine, SideChains, StepsByStation, pieces_between
 from .curb_returns.main_curbs import main_curbs_of
 

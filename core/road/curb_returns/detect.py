@@ -19,9 +19,8 @@ from ...survey.frame.place_index import PlaceIndex
 from ...survey.frame.road import CORRIDOR
 from ..common.curb_points import CurbPoints, curb_points_at
 from ..common.decimation import POINTS_PER_LEVEL_CELL_IN_PLAN, PointDecimation
-from ..common.hidden_curb import hidden_beside
 from ..common.occlusion import OcclusionGrid
-from ..common.sides import MAX_LOOK_ALONG, SECTIONS_TOGETHER, SIDE_SIGNS, ahead_of_vehicle, expected_height, work_sections
+from ..common.sides import MAX_LOOK_ALONG, SECTIONS_TOGETHER, SIDE_SIGNS, ahead_of_vehicle, expected_height, hidden_beside, work_sections
 from ..common.tracking import MAX_JOINED_GAP
 from .beyond_corridor import with_curbs_beyond
 from .classify import CurbReturn, classify_curbs, is_curb_like

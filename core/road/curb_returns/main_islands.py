@@ -15,9 +15,8 @@ from scipy.spatial import cKDTree
 
 from ...common.runs import stretch_of
 from ..common.curb_points import CurbPoints
-from ..common.hidden_curb import MAX_HIDDEN_GAP
 from ..common.occlusion import OCCLUSION_CELL, OcclusionGrid
-from ..common.sides import SIDE_SIGNS, expected_height
+from ..common.sides import MAX_HIDDEN_GAP, SIDE_SIGNS, expected_height
 from .classify import MIN_ISLAND_SHARE, CurbReturn
 from .ground.behind import ISLAND_DROP_SHARE, MIN_EDGE_SHARE
 from .ground.level_ground import MAX_GROUND_SLOPE

@@ -13,7 +13,6 @@ from ..common.corners import CurbSteps
 from ..common.curb_limits import CurbSettings
 from ..common.curb_points import CurbPoints, curb_points_at
 from ..common.decimation import POINTS_PER_LEVEL_CELL, PointDecimation
-from ..common.hidden_curb import hidden_points
 from ..common.occlusion import OcclusionGrid
 from ..common.pseudo_scanlines import SPREAD_PROFILES
 from ..common.sides import (
@@ -23,6 +22,7 @@ from ..common.sides import (
     SIDE_SIGNS,
     OutermostTrack,
     expected_height,
+    hidden_points,
     join_sections,
     side_profiles,
     work_sections,

@@ -18,10 +18,18 @@ import numpy as np
 from ...common.progress import Progress
 from ...execution.phase import Phase
 from ..common.curb_points import CurbPoints, curb_points_at
-from ..common.hidden_curb import hidden_points
 from ..common.occlusion import HIDDEN_POINT_SPACING, MIN_OCCLUDER_HEIGHT, OcclusionGrid
 from ..common.pseudo_scanlines import MIN_SCANNER_NOISE
-from ..common.sides import MAX_CURB_OFFSET, SECTIONS_TOGETHER, SIDE_SIGNS, OutermostTrack, expected_height, fixed_sections, join_sections
+from ..common.sides import (
+    MAX_CURB_OFFSET,
+    SECTIONS_TOGETHER,
+    SIDE_SIGNS,
+    OutermostTrack,
+    expected_height,
+    fixed_sections,
+    hidden_points,
+    join_sections,
+)
 from ..common.tracking import SideChains, curb_chains, drop_short_curbs, link_apart, select_along_road, with_pieces_in_line
 from ..edges.fit import EDGE_VERTEX_SPACING, MAX_EDGE_JUMP, MAX_EDGE_SKEW, MIN_EDGE_LENGTH, MIN_HIDDEN_SHARE, EdgeCurve, without_outliers
 from ..edges.road_edges import EdgePiece, RoadEdges, joined_pieces
