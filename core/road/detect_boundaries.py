@@ -26,7 +26,7 @@ from .scanlines.candidates import GAP_FILL_REACH, ScanlineBoundarySettings
 from .scanlines.detect import curbs_from_scanlines
 from .scanlines.section_planes import ScanlineSettings
 from .scanlines.source import SurveyScanlines
-from .surface.measured_ground import MeasuredGround
+from .surface.ground_grid import MeasuredGround
 from .surface.pavement_lines import with_pavement_edges
 
 if TYPE_CHECKING:

@@ -17,9 +17,8 @@ from ...common.setting import check_limits, setting
 from ...execution.phase import Phase
 from ...survey.store.road_points import RoadPoints
 from ...survey.store.section_store import STRETCH_POINTS
-from .ground_grid import ROW_LENGTH
+from .ground_grid import ROW_LENGTH, WINDOW_ROWS, MeasuredGround
 from .limits import Carriageway, edge_offsets, rows_with_edge
-from .measured_ground import WINDOW_ROWS, MeasuredGround
 from .openings import cells_driven, opened_limits, street_ground
 from .outline import outlines
 from .pavement_edge import grown_limit

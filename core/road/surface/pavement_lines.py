@@ -27,7 +27,7 @@ from .limits import MAX_BRIDGED_SKEW, Carriageway, edge_offsets
 if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame
     from ...survey.open_survey import Survey
-    from .measured_ground import MeasuredGround
+    from .ground_grid import MeasuredGround
 
 AGREEING_LENGTH = 7.0       # m of road of which most must show the edge
 MIN_PAVEMENT_LENGTH = 10.0  # m of a line and of the curb beside it: rows are averages of 7 m, so what is shorter is a single observation

@@ -13,8 +13,9 @@ from lanewright.core.road.common.tracking import StepChain
 from lanewright.core.road.curb_returns.main_curbs import KnownPlaces, SearchLimit
 from lanewright.core.road.edges import curb_returns, dropped_corners, uncertainty
 from lanewright.core.road.edges.road_edges import EdgePiece, joined_pieces
-from lanewright.core.road.surface import limits, measured_ground, pavement_lines
-from lanewright.core.road.surface.measured_ground import WINDOW_ROWS, MeasuredGround
+from lanewright.core.road.surface import ground_grid as measured_ground
+from lanewright.core.road.surface import limits, pavement_lines
+from lanewright.core.road.surface.ground_grid import WINDOW_ROWS, MeasuredGround
 from lanewright.core.survey.frame.build import build_frame
 from lanewright.core.survey.trajectory.trajectory import Trajectory
 
