@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 import shapely
 from curbed_streets import EAST, NORTH
-from lanewright.core.road import agreement
+from lanewright.core.road import detect_boundaries as agreement
 from lanewright.core.road.common import tracking
 from lanewright.core.road.common import tracking as in_line
 from lanewright.core.road.common.corners import CurbSteps
