@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .curb_lines import CurbLines
+from .main_curbs import CurbLines
 from .steps import PlanSteps
 
 ROAD_WIDTH = 16.0     # m down from a step within which the first curb is looked for: two carriageways and a side street are no wider

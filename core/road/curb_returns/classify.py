@@ -15,9 +15,8 @@ from ..common.curb_limits import MIN_FAINT_LENGTH
 from ..common.sides import SIDE_SIGNS
 from ..common.tracking import MAX_CHAIN_SCATTER, MAX_JOINED_GAP, MAX_ROAD_ROUGHNESS, MIN_CURB_LENGTH
 from .behind_curbs import lies_behind
-from .curb_lines import CurbLines
 from .free_corners import is_free_corner
-from .main_curbs import OPENING_MARGIN
+from .main_curbs import OPENING_MARGIN, CurbLines
 from .steps import PlanSteps
 from .tracking import PlanStepChain, group_lines
 

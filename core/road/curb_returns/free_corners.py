@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .curb_lines import CurbLines
+from .main_curbs import CurbLines
 from .steps import PlanSteps
 
 MAX_CROSSING_GAP = 8.0        # m of dropped curb between a corner and the curb that goes on
