@@ -27,9 +27,8 @@ from .classify import CurbReturn, classify_curbs, is_curb_like
 from .far_sides import MIN_ISLAND_WIDTH, far_sides
 from .following import FollowedEnds, followed_steps
 from .ground.behind import ground_behind
-from .ground.level_ground import driven_ground, ground_slopes
-from .ground.raster import PLAN_CELL, averaged, ground_raster
 from .ground.steps_up import step_places
+from .ground_raster import PLAN_CELL, averaged, driven_ground, ground_raster, ground_slopes
 from .island_tops import on_island_tops
 from .leading import with_led_on
 from .main_curbs import MIN_OPENING_LENGTH, SEARCH_BEHIND_CURB, KnownPlaces, SearchLimit, main_curbs_of, main_runs, places_along

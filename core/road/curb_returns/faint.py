@@ -31,7 +31,7 @@ from ..common.corners import (
 from ..common.curb_limits import SIGNIFICANT_SIGMAS, TEXTURE_SIGMA
 from ..common.tracking import HEIGHT_TOLERANCE
 from .following import FollowedEnds
-from .ground.raster import GroundRaster
+from .ground_raster import GroundRaster
 from .steps import PlanSteps
 from .tracking import LINE_DIRECTION_LENGTH, MAX_HEIGHT_GRADE
 

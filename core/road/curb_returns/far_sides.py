@@ -10,7 +10,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from .ground.behind import GroundBehind
-from .ground.raster import GroundRaster
+from .ground_raster import GroundRaster
 from .steps import PlanSteps, line_directions, points_about
 
 EDGE_REACH = 0.25             # m either way of the last raised cell within which the edge of the top lies

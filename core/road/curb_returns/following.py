@@ -14,7 +14,7 @@ import numpy as np
 
 from ...common.rows import Rows
 from ..common.tracking import HEIGHT_TOLERANCE, MAX_ROAD_ROUGHNESS
-from .ground.raster import PLAN_CELL, GroundRaster
+from .ground_raster import PLAN_CELL, GroundRaster
 from .steps import LONG_HALF_LENGTH, PATCH_HALF_WIDTH, SHORT_HALF_LENGTH, PlanSteps, points_about, steps_of_points
 from .tracking import LINE_DIRECTION_LENGTH, MAX_HEIGHT_GRADE, MAX_PLAN_LINK, LineEnds, PlanStepChain
 

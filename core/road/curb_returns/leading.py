@@ -17,7 +17,7 @@ from ..common.sides import MAX_LOOK_ALONG, ahead_of_vehicle, expected_height
 from .classify import MIN_RETURN_STEPS, CurbReturn, classify_continuation
 from .faint import LED_LENGTH, LED_STEP, MAX_LAYER_HEIGHT, MAX_LED_LENGTH, led_on
 from .following import FollowedEnds
-from .ground.raster import averaged, ground_raster
+from .ground_raster import averaged, ground_raster
 from .main_curbs import CurbLines
 from .steps import PlanSteps
 

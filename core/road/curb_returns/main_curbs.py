@@ -14,7 +14,7 @@ from ...survey.frame.road import CORRIDOR
 from ..common.curb_points import CurbPoints
 from ..common.sides import SIDE_SIGNS, expected_height
 from ..common.tracking import MAX_JOINED_GAP
-from .ground.raster import PLAN_CELL
+from .ground_raster import PLAN_CELL
 
 if TYPE_CHECKING:
     from ...survey.frame.road import Road

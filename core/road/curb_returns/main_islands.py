@@ -19,8 +19,7 @@ from ..common.occlusion import OCCLUSION_CELL, OcclusionGrid
 from ..common.sides import MAX_HIDDEN_GAP, SIDE_SIGNS, expected_height
 from .classify import MIN_ISLAND_SHARE, CurbReturn
 from .ground.behind import ISLAND_DROP_SHARE, MIN_EDGE_SHARE
-from .ground.level_ground import MAX_GROUND_SLOPE
-from .ground.raster import PLAN_CELL
+from .ground_raster import MAX_GROUND_SLOPE, PLAN_CELL
 
 if TYPE_CHECKING:
     from ...survey.open_survey import Survey

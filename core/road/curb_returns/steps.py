@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 from ...common.rows import Rows
 from ..common.corners import BEHIND_LENGTH, FACE_MARGIN, REMEASURE_SKEW, ROAD_SIDE_LENGTH, StepPatches
 from ..common.pseudo_scanlines import expand_ranges
-from .ground.raster import PLAN_CELL, GroundRaster
+from .ground_raster import PLAN_CELL, GroundRaster
 
 SHORT_HALF_LENGTH = 0.30      # m either way along the curb of the points that measure one step, in dense scans,
 LONG_HALF_LENGTH = 0.90       # m, and in sparse ones

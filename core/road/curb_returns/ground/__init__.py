@@ -7,7 +7,5 @@ from ....lazy import public
 
 __getattr__, __all__ = public(__name__, {
     "behind": ("GroundBehind", "ground_behind"),
-    "level_ground": ("driven_ground", "ground_slopes"),
-    "raster": ("GroundRaster", "averaged", "ground_raster"),
     "steps_up": ("step_places",),
 })

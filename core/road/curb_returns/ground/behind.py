@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .raster import PLAN_CELL, GroundRaster
+from ..ground_raster import PLAN_CELL, GroundRaster
 
 ROAD_BEFORE = 1.25            # m before a step, where the slope of the road is taken: the step itself is not in it
 ISLAND_DROP_SHARE = 0.4       # share of a step's height that the ground behind an island may lie above its bottom

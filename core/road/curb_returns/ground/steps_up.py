@@ -6,8 +6,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from .level_ground import diamond, grown
-from .raster import PLAN_CELL, GroundRaster
+from ..ground_raster import PLAN_CELL, GroundRaster, diamond, grown
 
 MAX_CELLS_FROM_ROAD = 4       # cells from driven ground within which it may end at a step
 STEPS_PER_BATCH = 512         # steps that are measured together: they fit the processor's cache
