@@ -7,5 +7,4 @@ from ....lazy import public
 
 __getattr__, __all__ = public(__name__, {
     "behind": ("GroundBehind", "ground_behind"),
-    "steps_up": ("step_places",),
 })
