@@ -6,5 +6,4 @@ In: points of a stretch of road. Out: a raster of the ground, and the places and
 from ....lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "behind": ("GroundBehind", "ground_behind"),
 })
