@@ -23,10 +23,9 @@ from ..common.occlusion import OcclusionGrid
 from ..common.sides import MAX_LOOK_ALONG, SECTIONS_TOGETHER, SIDE_SIGNS, ahead_of_vehicle, expected_height, hidden_beside, work_sections
 from ..common.tracking import MAX_JOINED_GAP
 from .classify import CurbReturn, classify_curbs, is_curb_like
-from .following import FollowedEnds, followed_steps
+from .extended_curbs import FollowedEnds, followed_steps, with_led_on
 from .ground_raster import PLAN_CELL, averaged, driven_ground, ground_raster, ground_slopes
 from .islands import MIN_ISLAND_WIDTH, are_replaced, far_sides, ground_behind, on_island_tops, on_main_islands
-from .leading import with_led_on
 from .main_curbs import MIN_OPENING_LENGTH, SEARCH_BEHIND_CURB, KnownPlaces, SearchLimit, main_curbs_of, main_runs, places_along
 from .side_streets import with_curbs_beyond
 from .steps import PlanSteps, measure_plan_steps, step_places

@@ -22,7 +22,7 @@ from ..common.curb_limits import SIGNIFICANT_SIGMAS
 from ..common.decimation import POINTS_PER_LEVEL_CELL_IN_PLAN, PointDecimation
 from ..common.sides import expected_height
 from .classify import CurbReturn
-from .faint import LED_LENGTH, MAX_LAYER_HEIGHT
+from .extended_curbs import LED_LENGTH, MAX_LAYER_HEIGHT
 from .main_curbs import KnownPlaces
 from .steps import PlanSteps
 from .tracking import LINE_DIRECTION_LENGTH
