@@ -11,8 +11,7 @@ from ...survey.frame.road_frame import RoadFrame
 from ..common.curb_points import CurbPoints
 from ..common.pseudo_scanlines import expand_ranges
 from ..common.tracking import MAX_JOINED_GAP
-from .road_edges import EdgePiece
-from .uncertainty import CURB_RETURN, edge_sigma
+from .road_edges import CURB_RETURN, EdgePiece, edge_sigma
 
 RETURN_VERTEX_SPACING = 0.25  # m between vertices: the nose of an island has a radius below a metre
 MIN_CORNER_TURN = np.radians(50.0)  # from the chord before to the chord after a sharp corner

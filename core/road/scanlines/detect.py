@@ -32,8 +32,7 @@ from ..common.sides import (
 )
 from ..common.tracking import SideChains, curb_chains, drop_short_curbs, link_apart, select_along_road, with_pieces_in_line
 from ..edges.fit import EDGE_VERTEX_SPACING, MAX_EDGE_JUMP, MAX_EDGE_SKEW, MIN_EDGE_LENGTH, MIN_HIDDEN_SHARE, EdgeCurve, without_outliers
-from ..edges.road_edges import EdgePiece, RoadEdges, joined_pieces
-from ..edges.uncertainty import edge_sigma
+from ..edges.road_edges import EdgePiece, RoadEdges, edge_sigma, joined_pieces
 from ..profiles.detect import MIN_TRACK_DISTANCE, PASS_MERGE_ACROSS, PASS_MERGE_HEIGHT, block_bounds, block_numbers
 from .candidates import NEIGHBOUR_LINES, ScanlineBoundarySettings, find_candidates, gap_fill_rows, samples_near
 from .corners import CurbCorners, corners_of, plane_fit_rows
