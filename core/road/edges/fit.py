@@ -17,8 +17,7 @@ from ...survey.frame.road_frame import RoadFrame
 from ..common.curb_points import CurbPoints
 from ..common.occlusion import HIDDEN_POINT_SPACING
 from ..common.tracking import IN_LINE_ACROSS, LINE_FIT_LENGTH, MAX_JOINED_GAP, MIN_BEND_LENGTH, GapLine
-from .curb_returns import curb_return_lines, draw_curb_returns
-from .dropped_corners import dropped_corners
+from .corner_edges import curb_return_lines, draw_curb_returns, dropped_corners
 from .road_edges import EdgePiece, RoadEdges, edge_sigma, joined_pieces
 
 MEDIAN_WINDOW = 5.0           # m of running median

@@ -11,7 +11,8 @@ from lanewright.core.road.common import tracking as in_line
 from lanewright.core.road.common.corners import CurbSteps
 from lanewright.core.road.common.tracking import StepChain
 from lanewright.core.road.curb_returns.main_curbs import KnownPlaces, SearchLimit
-from lanewright.core.road.edges import curb_returns, dropped_corners
+from lanewright.core.road.edges import corner_edges as curb_returns
+from lanewright.core.road.edges import corner_edges as dropped_corners
 from lanewright.core.road.edges import road_edges as uncertainty
 from lanewright.core.road.edges.road_edges import EdgePiece, joined_pieces
 from lanewright.core.road.surface import ground_grid as measured_ground
