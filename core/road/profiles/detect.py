@@ -38,8 +38,7 @@ from ..common.tracking import (
     with_pieces_in_line,
 )
 from ..curb_returns.detect import with_curb_returns
-from .averaged_steps import AVERAGING_LENGTH, find_averaged_steps
-from .steps import find_steps
+from .steps import AVERAGING_LENGTH, find_averaged_steps, find_steps
 
 if TYPE_CHECKING:
     from ...survey.frame.road import Road
