@@ -14,9 +14,8 @@ import numpy as np
 from ..common.occlusion import MIN_OCCLUDER_HEIGHT
 from ..common.pseudo_scanlines import pseudo_scan_lines
 from ..common.sides import expected_height
-from .grid import SCANLINE_RESOLUTION
+from .grid import SCANLINE_RESOLUTION, Scanlines
 from .mesh import increasing
-from .scanlines import Scanlines
 
 if TYPE_CHECKING:
     from ...survey.open_survey import Survey

@@ -16,7 +16,7 @@ from ...common.progress import Progress
 from ...common.schemas import SCANLINES
 from ...common.setting import check_limits, setting
 from ...survey.lattice.scan_lattice import find_lattice
-from .scanlines import Scanlines
+from .grid import Scanlines
 from .section_planes import ScanlineSettings, all_scanlines
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ import numpy as np
 from ...common.setting import check_limits, setting
 from ...survey.las.writer import metres_of_file, new_laz, place_in_file
 from ...survey.store.records import COORDINATE_SCALE
-from .scanlines import Scanlines
+from .grid import Scanlines
 
 if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame

@@ -23,8 +23,8 @@ from ...execution.phase import Phase
 from ...survey.lattice.scan_lattice import ScanLattice, find_lattice, scanner_runs
 from ..common.sides import fixed_sections
 from .from_points import MIN_SLICE_LENGTH, point_scanlines
+from .grid import Scanlines
 from .mesh import MAX_EDGE, MAX_LINES_AHEAD, MAX_RIB, PlaneVertices, Ribs, increasing, plane_order, ribs_of, scanner_lines, slanting_edges
-from .scanlines import Scanlines
 
 if TYPE_CHECKING:
     from ...survey.open_survey import Survey

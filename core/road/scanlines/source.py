@@ -14,8 +14,7 @@ from ...execution.phase import Executor, Recipe
 from ...execution.threads import THREADS
 from ...survey.lattice.scan_lattice import ScanLattice, find_lattice
 from ...survey.reading.sensor_height import DEFAULT_SENSOR_HEIGHT, sensor_height_of
-from .grid import LINE_SEPARATION
-from .scanlines import Scanlines
+from .grid import LINE_SEPARATION, Scanlines
 from .section_planes import ScanlineSettings, scanline_runs
 
 if TYPE_CHECKING:

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.features import Features
+from lanewright.core.road.scanlines.grid import Scanlines
 from lanewright.core.road.scanlines.layer import (
     LineSpool,
     ScanlineLayerSettings,
@@ -15,7 +16,6 @@ from lanewright.core.road.scanlines.layer import (
     write_scanlines,
 )
 from lanewright.core.road.scanlines.resampling import ResampledPoints, ResamplingSettings, resample_scanlines
-from lanewright.core.road.scanlines.scanlines import Scanlines
 from lanewright.core.road.scanlines.section_planes import ScanlineSettings, all_scanlines
 from scanned_streets import CURB, scanned, survey_of
 
