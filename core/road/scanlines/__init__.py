@@ -8,8 +8,7 @@ from ...lazy import public
 __getattr__, __all__ = public(__name__, {
     "detect": ("ScanlineBoundarySettings", "boundary_lines", "curbs_from_scanlines"),
     "grid": ("Scanlines",),
-    "layer": ("ScanlineLayerSettings", "scanlines_from_features", "write_scanlines"),
-    "resampling": ("ResampledPoints", "ResamplingSettings"),
+    "layer": ("ResampledPoints", "ResamplingSettings", "ScanlineLayerSettings", "scanlines_from_features", "write_scanlines"),
     "section_planes": ("ScanlineSettings", "all_scanlines", "scanlines_of"),
     "source": ("LayerScanlines", "SurveyScanlines"),
 })
