@@ -29,9 +29,8 @@ from .edges.fit import EdgeSettings, fit_road_edges
 from .edges.road_edges import EdgePiece, RoadEdges, joined_pieces
 from .profiles.detect import detect_curbs
 from .scanlines.candidates import GAP_FILL_REACH, ScanlineBoundarySettings
-from .scanlines.detect import curbs_from_scanlines
+from .scanlines.detect import SurveyScanlines, curbs_from_scanlines
 from .scanlines.section_planes import ScanlineSettings
-from .scanlines.source import SurveyScanlines
 from .surface.ground_grid import MeasuredGround
 from .surface.pavement_lines import with_pavement_edges
 
