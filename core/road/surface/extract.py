@@ -17,13 +17,13 @@ from ...common.setting import check_limits, setting
 from ...execution.phase import Phase
 from ...survey.store.road_points import RoadPoints
 from ...survey.store.section_store import STRETCH_POINTS
+from .ground_change import follow_road, smooth_road
 from .ground_grid import ROW_LENGTH, WINDOW_ROWS, MeasuredGround
 from .limits import Carriageway, edge_offsets, rows_with_edge
 from .openings import cells_driven, opened_limits, street_ground
 from .outline import outlines
 from .pavement_edge import grown_limit
 from .point_spacing import Margins, said_of_thin
-from .region_growing import follow_road, smooth_road
 from .road_points import surface_about, surface_points
 from .road_surface import SurfaceOutlines
 
