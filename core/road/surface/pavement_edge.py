@@ -11,10 +11,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...common.memory import by_rows
-from .edge_path import cheapest_path
 from .ground_change import HalfProfiles, other_ground_begins
 from .ground_grid import PROFILE_COLUMN, PROFILE_ROW, GroundCells, SurfaceProfiles, known_median
-from .pavement_limit import pavement_limits
+from .pavement_limit import cheapest_path, pavement_limits
 
 POOLED_ROWS, ROWS_PER_STEP = 5, 2  # rows of cells that make one profile, and rows from one profile to the next: 5 m every 2 m
 MAX_MISS = 1.5               # m by which a profile may miss the edge and say so, farther is no worse
