@@ -19,10 +19,9 @@ from ...survey.store.road_points import RoadPoints
 from ...survey.store.section_store import STRETCH_POINTS
 from .ground_change import follow_road, smooth_road
 from .ground_grid import ROW_LENGTH, WINDOW_ROWS, MeasuredGround
-from .limits import Carriageway, edge_offsets, rows_with_edge
 from .openings import cells_driven, opened_limits, street_ground
 from .outline import outlines
-from .pavement_edge import grown_limit
+from .pavement_edge import Carriageway, edge_offsets, grown_limit, rows_with_edge
 from .point_spacing import Margins, said_of_thin
 from .road_points import surface_about, surface_points
 from .road_surface import SurfaceOutlines

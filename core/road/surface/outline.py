@@ -12,7 +12,7 @@ from .ground_grid import COLUMN_WIDTH, ROW_LENGTH
 
 if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame
-    from .limits import Carriageway
+    from .pavement_edge import Carriageway
 
 MIN_SURFACE_STATUS_LENGTH = 5.0  # m: shorter changes of status are not drawn
 

@@ -22,7 +22,7 @@ from ..edges.fit import EDGE_VERTEX_SPACING, IN_LINE_GAP_FACTOR, MAX_EDGE_JUMP, 
 from ..edges.road_edges import EdgePiece, RoadEdges
 from .extract import SurfaceSettings, find_carriageway
 from .ground_grid import COLUMN_WIDTH, ROW_LENGTH
-from .limits import MAX_BRIDGED_SKEW, Carriageway, edge_offsets
+from .pavement_edge import MAX_BRIDGED_SKEW, Carriageway, edge_offsets
 
 if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame

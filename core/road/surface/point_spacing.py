@@ -11,7 +11,7 @@ import numpy as np
 from .ground_grid import GroundCells
 
 if TYPE_CHECKING:
-    from .limits import Carriageway
+    from .pavement_edge import Carriageway
 
 # points per m² of ground. A face of 10 cm of curb is 2 to 4 cm broad in plan and has some ten points per metre then. On simulated surveys of which
 # a quarter and a tenth of the points was kept nearly all curbs were found where more lay at their foot, and few where fewer did.

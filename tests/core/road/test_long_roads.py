@@ -16,7 +16,8 @@ from lanewright.core.road.edges import corner_edges as dropped_corners
 from lanewright.core.road.edges import road_edges as uncertainty
 from lanewright.core.road.edges.road_edges import EdgePiece, joined_pieces
 from lanewright.core.road.surface import ground_grid as measured_ground
-from lanewright.core.road.surface import limits, pavement_lines
+from lanewright.core.road.surface import pavement_edge as limits
+from lanewright.core.road.surface import pavement_lines
 from lanewright.core.road.surface.ground_grid import WINDOW_ROWS, MeasuredGround
 from lanewright.core.survey.frame.build import build_frame
 from lanewright.core.survey.trajectory.trajectory import Trajectory
