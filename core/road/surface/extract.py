@@ -21,10 +21,9 @@ from ...survey.store.road_points import RoadPoints
 from ...survey.store.section_store import STRETCH_POINTS
 from .ground_change import ROUGHNESS_FACTOR, ROUGHNESS_FLOOR, follow_road, smooth_road
 from .ground_grid import COLUMN_WIDTH, ROW_LENGTH, WINDOW_ROWS, GroundCells, MeasuredGround
-from .outline import outlines
 from .pavement_edge import Carriageway, edge_offsets, grown_limit, rows_with_edge
 from .road_points import surface_about, surface_points
-from .road_surface import SurfaceOutlines
+from .road_surface import SurfaceOutlines, outlines
 
 if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame
