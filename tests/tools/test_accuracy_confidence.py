@@ -1,7 +1,6 @@
-"""`make accuracy`: what each kind of evidence brings to lines and lanes, and how right their confidence is."""
+"""`make accuracy`: how right the confidence of lanes is."""
 
 import json
-from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -10,21 +9,13 @@ from shapely import LineString
 
 pytest.importorskip("osgeo.gdal")
 
-from accuracy.evidence import EVIDENCE, confidence_figures  # noqa: E402
+from accuracy.confidence import confidence_figures  # noqa: E402
 from accuracy.results import results  # noqa: E402
 from accuracy.streets import driving_figures  # noqa: E402
-from lanewright.core.markings.cross_section.weights import EstimateWeights  # noqa: E402
 
 TRUE_LANE = LineString([(0, 0), (100, 0)])
 CASE = SimpleNamespace(truth=SimpleNamespace(driving=[TRUE_LANE], area=None))
 TRACK = np.array([[0.0, -20.0], [100.0, -20.0]])
-
-
-@pytest.mark.parametrize("name", EVIDENCE)
-def test_leaving_out_evidence_changes_weights_that_there_are(name):
-    change = EVIDENCE[name]
-    if isinstance(change, dict):
-        assert replace(EstimateWeights(), **change) != EstimateWeights()
 
 
 def test_the_confidence_of_a_lane_is_compared_with_the_share_of_it_that_is_right():
@@ -47,12 +38,7 @@ def test_figures_of_driving_lines_can_be_saved():
     assert "driven" not in found
 
 
-def test_the_results_say_what_a_street_loses_without_some_evidence():
-    whole = dict(lanes=(95.0, 100.0), lanes_5=(90.0, 100.0), driven=(99.0, 100.0), lanes_right=(98.0, 100.0), directions=(100.0, 100.0))
-    evidence = {"": whole, **{name: whole for name in EVIDENCE}, "where arrows lie": dict(whole, directions=(60.0, 100.0))}
-    table = results([dict(name="a street", kind="simulated", text="", points=1, streets={"as surveyed": whole}, evidence=evidence,
+def test_the_results_say_how_often_sure_lanes_are_right():
+    table = results([dict(name="a street", kind="simulated", text="", points=1, streets={"as surveyed": dict(lanes=(95.0, 100.0))},
                           confidence={"4": (970.0, 1000.0, 990.0)})])
-    assert table.get("evidence", "all", "where arrows lie", "directions right") == -40.0
-    assert table.get("evidence", "all", "where arrows lie", "felt by") == "a street"
-    assert table.get("evidence", "all", "stop lines", "felt by") == "none"
     assert [table.get("confidence", "all", "0.95 to 1.00", name) for name in ("said", "right", "m")] == [0.99, 0.97, 100.0]
