@@ -24,8 +24,7 @@ from lanewright.core.markings.paint import extract as extraction
 from lanewright.core.markings.paint import scatter
 from lanewright.core.markings.paint.extract import extract_markings
 from lanewright.core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
-from lanewright.core.road.surface import extract
-from lanewright.core.road.surface import ground_grid
+from lanewright.core.road.surface import extract, ground_grid
 from lanewright.core.road.surface.extract import extract_road_surface
 from lanewright.core.survey import open_survey as opening
 from lanewright.core.survey import point_density
