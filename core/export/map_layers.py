@@ -9,7 +9,7 @@ import shapely
 
 from ..common.features import Features
 from ..common.schemas import DRIVING_LINES, MARKING_LINES, ROAD_EDGES
-from ..driving.lanes_layer import Lanes, lanes_to_features
+from ..driving.layers import Lanes, lanes_to_features
 
 STATUS_OF_MAPS = "measured"
 

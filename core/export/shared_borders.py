@@ -10,7 +10,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components, dijkstra
 from scipy.spatial import cKDTree
 
-from ..driving.lanes_layer import Lanes
+from ..driving.layers import Lanes
 from .sources import LEAST_CURB, RoadMapSource, is_stated
 
 WIDEST_DOUBLE = 0.5       # m between the stripes of a double line at the most; what is wider is a median

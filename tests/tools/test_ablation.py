@@ -13,7 +13,7 @@ from ablation.measure import ALL_VARIANTS, STAGES, measure  # noqa: E402
 from ablation.page import page, write_csv  # noqa: E402
 from ablation.swap import Watch, original_of, replaced, same  # noqa: E402
 from ablation.switches import DEFAULT, SWITCHES, Switch, gives, nearest_steps, nth  # noqa: E402
-from ablation.weight import weight  # noqa: E402
+from ablation.weight import rule_parts, weight  # noqa: E402
 from accuracy.otherwise import street_figures  # noqa: E402
 from accuracy.surveys import _make_sample, read_case  # noqa: E402
 from accuracy.variants import Variant  # noqa: E402
@@ -68,8 +68,16 @@ def test_results_are_compared_by_value():
 def test_the_weight_of_a_rule_is_what_nothing_else_uses():
     whole, alone = SWITCHES["pieces in line"], SWITCHES["pieces in line of both methods"]
     assert weight(whole)[0] > weight(alone)[0] > 20
-    # its lines across gaps serve road edges too
-    assert weight(replace(alone, rule=("road.common.in_line:GapLine",)))[0] < 60
+    # lines across gaps serve road edges too
+    assert not any(name == "GapLine" for _, name in rule_parts(whole.rule))
+    assert any(name == "PieceInLine" for _, name in rule_parts(whole.rule))
+
+
+def test_a_rule_is_found_in_its_room_when_its_file_is_another():
+    assert original_of("curves.no_such_file:median")[0] is robust.median
+    # two files of the room have one of that name
+    with pytest.raises(LookupError):
+        original_of("road.no_such_room:_stays_up")
 
 
 def test_stations_that_begin_earlier_lengthen_the_drive_straight_back():

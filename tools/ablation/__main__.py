@@ -40,18 +40,17 @@ def main():
         folder, variant, into, what = arguments.one
         wanted = json.loads(Path(what).read_text())
         return measure(folder, variant, {name: SWITCHES[name] for name in wanted["rules"]}, wanted["groups"], Path(into), wanted["code"])
-    folders = _surveys(arguments)
     variants = _chosen(arguments.variants, ALL_VARIANTS, "variant")
     rules = [name for name, switch in SWITCHES.items()
              if not arguments.rules or any(one.startswith(part) for part in arguments.rules.split(",") for one in (name, switch.group))]
     if not rules:
         sys.exit(f"No rule is called {arguments.rules}; --list names them.")
     groups = {f"together: {names}": _chosen(names, SWITCHES, "rule") for names in arguments.together if names != "unfelt"}
-    results = _measured(arguments.results, folders, variants, rules, groups)
+    results = _measured(arguments.results, _surveys(arguments), variants, rules, groups)
     if "unfelt" in arguments.together:
         unfelt = [name for name in rules if not any(changes(known, name) for known in results.values())]
         groups[SILENT] = unfelt
-        results = _measured(arguments.results, folders, variants, rules, groups)
+        results = _measured(arguments.results, _surveys(arguments), variants, rules, groups)
     switches = {name: SWITCHES[name] for name in rules}
     write_csv(arguments.results / "ablation.csv", switches, groups, results)
     (arguments.results / "ablation.md").write_text(page(switches, groups, results), encoding="utf-8")
@@ -67,7 +66,7 @@ def _chosen(names, known, what):
 
 
 def _surveys(arguments):
-    """Folders of the surveys; sample scenes are made where they are not there yet."""
+    """Folders of the surveys, one after the other; a sample scene is made where it is not there yet."""
     scenes = [] if arguments.scenes == "none" else _chosen(arguments.scenes, {**SAMPLES, **OTHERS}, "scene")
     made, code = arguments.results / "surveys", _code(CORE / "sample")
     for name in scenes:
@@ -76,7 +75,9 @@ def _surveys(arguments):
             print(f"Making {name} …", flush=True)
             make_samples(made, [name])
             made_by.write_text(code)
-    return [made / name for name in scenes] + [survey for folder in arguments.surveys for survey in surveys_in(folder)]
+        yield made / name
+    for folder in arguments.surveys:
+        yield from surveys_in(folder)
 
 
 def _measured(folder, surveys, variants, rules, groups):

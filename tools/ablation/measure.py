@@ -26,7 +26,7 @@ from lanewright.core.survey.trajectory.reader import read_trajectory
 from osgeo import gdal
 
 from .swap import Watch, replaced
-from .switches import DEFAULT
+from .switches import DEFAULT, SWITCHES
 
 ALL_VARIANTS = {variant.name: variant for variant in (
     Variant("as surveyed"), *VARIANTS, Variant("thinned to a quarter", every=4), Variant("stations moved by 0.3 m", moved=0.3),
@@ -106,11 +106,20 @@ class Survey:
             figures["classes"] = paint["named"], paint["classed"]
         return figures
 
+    def _stages(self, switches):
+        return {stage for switch in switches for stage in (self.watch.felt[switch.name] | {switch.stage}) if stage}
+
+    def idle(self, switches):
+        """Why the map needs not be made without some rules: "not called", or "no effect" where they gave what stands in for them; "" otherwise."""
+        if self._stages(switches):
+            return ""
+        return "no effect" if any(switch.name in self.watch.called for switch in switches) else "not called"
+
     def without(self, switches):
         """What the map is without some rules: {"outcome": "not called", "no effect", "same map", "another map" or "refused", "figures": ...}."""
-        first = {stage for switch in switches for stage in (self.watch.felt[switch.name] | {switch.stage}) if stage}
-        if not first:
-            return dict(outcome="no effect" if any(switch.name in self.watch.called for switch in switches) else "not called")
+        if why := self.idle(switches):
+            return dict(outcome=why)
+        first = self._stages(switches)
         names, work = list(STAGES), self.work.copy()
         settings = next((switch.settings for switch in switches if switch.settings is not DEFAULT), DEFAULT)
         began = min(map(names.index, first))
@@ -134,6 +143,8 @@ def measure(folder, variant, switches, groups, into, code):
 
     folder : of the survey; variant : its name; switches : {name: Switch}; groups : {name: [names of switches]}; into : JSON file
     code : digest of the core; results of another one are measured anew
+
+    All other switches are watched too: `idle` names those that need not be tried, and why.
     """
     known = json.loads(into.read_text()) if into.exists() else {}
     known = known if known.get("code") == code else dict(code=code, off={})
@@ -147,12 +158,13 @@ def measure(folder, variant, switches, groups, into, code):
     with TemporaryDirectory() as scratch:
         began = time.monotonic()
         try:
-            survey = Survey(folder, ALL_VARIANTS[variant], scratch, [*switches.values()])
+            survey = Survey(folder, ALL_VARIANTS[variant], scratch, [*SWITCHES.values()])
         except RoadExtractionError as problem:
             into.write_text(json.dumps({**known, "refused": str(problem)}))
             return
         with closing(survey):
-            known.update(figures=survey.figures, seconds=time.monotonic() - began)
+            idle = {name: survey.idle([switch]) for name, switch in SWITCHES.items()}
+            known.update(figures=survey.figures, seconds=time.monotonic() - began, idle={name: why for name, why in idle.items() if why})
             for name in missing:
                 began = time.monotonic()
                 found = survey.without([switches[one] for one in wanted[name]])

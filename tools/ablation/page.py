@@ -5,6 +5,7 @@ import csv
 from accuracy.streets import harmonic, percent
 from results_table import markdown, number
 
+from .switches import SWITCHES
 from .weight import weight
 
 FIGURES = "curbs", "pavement", "markings", "5 cm", "15 cm", "off", "classes"
@@ -91,6 +92,7 @@ def page(switches, groups, results):
     maps = [[survey, variant, *(number(scores(known["figures"])[figure]) for figure in FIGURES)] if "figures" in known
             else [survey, variant, f"no map: {known['refused']}", *[""] * (len(FIGURES) - 1)]
             for survey, (variant, known) in reversed(first.items())]
+    idle = [name for name in SWITCHES if all(name in known.get("idle", {name: ""}) for known in results.values())]
     rows, silent = [], []
     for name, outcomes in measured.items():
         if not outcomes:
@@ -109,4 +111,5 @@ def page(switches, groups, results):
                     [[name, street, lines, numbers, tried, felt] for name, lines, numbers, street, tried, felt in rows], words=2)
             + SILENT + markdown(["off", "where", "made for", "lines", "numbers", *NOT_FELT, "no figure"],
                              [[name, where, street, lines, numbers, *counts] for name, where, lines, numbers, street, *counts in silent], words=3)
-            + "\n")
+            + f"\n\n## Without effect\n\nAll {len(SWITCHES)} rules were watched in these surveys. {len(idle)} were not called, or gave what stands "
+            f"in for them: {'; '.join(idle)}.\n")

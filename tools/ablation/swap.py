@@ -12,6 +12,7 @@ import lanewright.core
 import numpy as np
 
 from .switches import Around
+from .weight import module_of
 
 PREFIX = "lanewright.core."
 NUMBERS = bool, int, float, np.generic
@@ -27,8 +28,8 @@ def _all_loaded():
 
 def original_of(place):
     """What a place, "room.file:function" or "room.file:Class.method", holds, and the class if it is a method."""
-    module, _, name = place.partition(":")
-    owner = import_module(PREFIX + module)
+    path, _, name = place.partition(":")
+    owner = import_module(PREFIX + module_of(path, name))
     *classes, name = name.split(".")
     for one in classes:
         owner = getattr(owner, one)

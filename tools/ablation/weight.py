@@ -31,6 +31,20 @@ def _core():
 
 
 @cache
+def module_of(path, name):
+    """The file of a function or class, found in a file or room: in the one that is named or, where it has moved, in the room about it."""
+    nodes, _ = _core()
+    name = name.split(".")[0]
+    while True:
+        found = {module for module, known in nodes if known == name and f"{module}.".startswith(f"{path}.")}
+        if len(found) == 1:
+            return found.pop()
+        if found or "." not in path:
+            raise LookupError(f"{name} is in {', '.join(sorted(found)) or 'no file'} of {path}")
+        path = path.rpartition(".")[0]
+
+
+@cache
 def _uses(module, name):
     """What mentions a name, itself left out; a private name is its own file's."""
     nodes, users = _core()
@@ -42,10 +56,9 @@ def rule_parts(rule):
     nodes, _ = _core()
     parts = set()
     for one in filter(None, rule):
-        module, _, name = one.partition(":")
-        parts |= {key for key in nodes if (key == (module, name.split(".")[0]) if name else f"{key[0]}.".startswith(f"{module}."))}
-    files = {module for module, _ in parts}
-    beside = {key: users for key in nodes if key[0] in files and key not in parts and (users := _uses(*key))}
+        path, _, name = one.partition(":")
+        parts |= {(module_of(path, name), name.split(".")[0])} if name else {key for key in nodes if f"{key[0]}.".startswith(f"{path}.")}
+    beside = {key: users for key in nodes if key not in parts and (users := _uses(*key))}
     while more := {key for key, users in beside.items() if users <= parts} - parts:
         parts |= more
     return parts
@@ -57,10 +70,10 @@ def weight(switch):
     methods = [place.partition(":")[2] for place in switch.rule if "." in place.partition(":")[2]]
     found = {id(nodes[key]): nodes[key] for key in rule_parts([place for place in switch.rule if place.partition(":")[2] not in methods])}
     for place in switch.rule:
-        module, _, name = place.partition(":")
+        path, _, name = place.partition(":")
         if name in methods:
             one, method = name.split(".")
-            found.update((id(node), node) for node in nodes[module, one].body if getattr(node, "name", "") == method)
+            found.update((id(node), node) for node in nodes[module_of(path, name), one].body if getattr(node, "name", "") == method)
     numbers = sum(isinstance(node, (ast.Assign, ast.AnnAssign)) and node.value is not None
                   and any(isinstance(one, ast.Constant) and type(one.value) in (int, float) for one in ast.walk(node.value))
                   for node in found.values())

@@ -5,7 +5,7 @@ import pytest
 from lanewright.core.common.features import Features
 from lanewright.core.common.schemas import ROAD_EDGES
 from lanewright.core.driving.lane_track import MEASURED, LaneTrack
-from lanewright.core.driving.tapers import laid_out
+from lanewright.core.driving.lanes import laid_out
 from lined_streets import EAST, HEIGHT, Street
 from shapely.geometry import LineString
 
