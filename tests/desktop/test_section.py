@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from lanewright.core.common.schemas import CURB_POINTS, DRIVING_LINES, ROAD_EDGES
-from lanewright.core.road.scanlines.from_points import slice_lines
+from lanewright.core.road.scanlines.section_planes import slice_lines
 from lanewright.desktop.review import section_view
 from lanewright.desktop.review.doubtful import doubts_of, reason
 from lanewright.desktop.review.section import Crossing, Section, corners, crossings, middle_of, section_at
