@@ -7,9 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..sources import LEAST_CURB
-from .geometry import Cubics
+from .geometry import Cubics, fit_cubics, risen, simplified
 from .model import MapRoad
-from .profiles import fit_cubics, risen, simplified
 from .road_shape import RoadShape
 from .surface import shape_height
 

@@ -6,9 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .geometry import Cubics, PlanView
+from .geometry import LEAST_STEP, STEP_RUN, Cubics, PlanView, difference, fit_cubics, risen, simplified
 from .model import LaneSection, MapLane, MapRoad
-from .profiles import LEAST_STEP, STEP_RUN, difference, fit_cubics, risen, simplified
 from .reference_line import fit_reference, polynomial_reference
 from .strips import MOST_TURN, SLOPE_REACH, Slice
 

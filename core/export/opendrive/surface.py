@@ -8,9 +8,8 @@ import numpy as np
 import shapely
 
 from ..sources import LEAST_CURB
-from .geometry import Cubics
+from .geometry import LEAST_STEP, STEP_RUN, Cubics
 from .model import MapRoad
-from .profiles import LEAST_STEP, STEP_RUN
 
 BORDER_STEP = 1.0   # m between the places at which borders are computed
 SAGITTA = 0.0005    # m by which the chord between two of them may miss a curve

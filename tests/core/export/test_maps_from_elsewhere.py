@@ -15,8 +15,8 @@ from lanewright.core.export.lanelet.reader import read_lanelet2
 from lanewright.core.export.lanelet.writer import lanelet2_text, to_degrees
 from lanewright.core.export.map_layers import LaneRows
 from lanewright.core.export.opendrive.exporter import draft_opendrive
+from lanewright.core.export.opendrive.geometry import fit_cubics
 from lanewright.core.export.opendrive.layers import layers_of_opendrive
-from lanewright.core.export.opendrive.profiles import fit_cubics
 from lanewright.core.export.opendrive.reader import read_opendrive
 from lanewright.core.export.opendrive.reference_line import fit_reference
 from lanewright.core.export.opendrive.surface import shape_height

@@ -11,8 +11,8 @@ from lanewright.core.export.check.roads import check_opendrive
 from lanewright.core.export.fit_of_export import border_misses, driving_line_misses
 from lanewright.core.export.map_crs import crs_of_reference, reference_of_crs
 from lanewright.core.export.opendrive.exporter import OpenDriveSettings, draft_opendrive
+from lanewright.core.export.opendrive.geometry import fit_cubics
 from lanewright.core.export.opendrive.layers import layers_of_opendrive
-from lanewright.core.export.opendrive.profiles import fit_cubics
 from lanewright.core.export.opendrive.reader import read_opendrive
 from lanewright.core.export.opendrive.reference_line import fit_reference, polynomial_reference
 from lanewright.core.export.opendrive.writer import opendrive_text
