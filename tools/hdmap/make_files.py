@@ -60,8 +60,8 @@ def write(folder, name, one):
 
 def borders(path):
     """[road, section, lane, [[x, y], ...]] of every outer border as our own reader has it."""
+    from lanewright.core.export.opendrive.model import RoadSurface
     from lanewright.core.export.opendrive.reader import read_opendrive
-    from lanewright.core.export.opendrive.surface import RoadSurface
 
     found = []
     for road in read_opendrive(str(path)).roads:
@@ -78,9 +78,8 @@ def borders(path):
 def driven_lanes(path):
     """Every driven lane of a section as our own reader has it: its road and number, stations along the road, way it is driven (1 along), middle
     [[x, y, z], ...] in the file's coordinates, and the (road, number) of the lanes that follow it."""
-    from lanewright.core.export.opendrive.model import DRIVEN_TYPES, LaneNetwork, travel
+    from lanewright.core.export.opendrive.model import DRIVEN_TYPES, LaneNetwork, RoadSurface, travel
     from lanewright.core.export.opendrive.reader import read_opendrive
-    from lanewright.core.export.opendrive.surface import RoadSurface
 
     whole = read_opendrive(str(path))
     network, found = LaneNetwork(whole), []

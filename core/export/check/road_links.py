@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..opendrive.model import DRIVEN_TYPES, OPEN_END, LaneKey, LaneNetwork, MapRoad, OpenDriveMap, travel
-from ..opendrive.surface import RoadSurface
+from ..opendrive.model import DRIVEN_TYPES, OPEN_END, LaneKey, LaneNetwork, MapRoad, OpenDriveMap, RoadSurface, travel
 from .findings import Findings, metres
 
 MAX_GAP_AT_LINK = 0.05      # m between the borders of linked lanes

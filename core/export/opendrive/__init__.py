@@ -7,11 +7,10 @@ from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
     "exporter": ("OpenDriveDraft", "OpenDriveSettings", "draft_opendrive"),
-    "geometry": ("PlanView", "PlanElement", "Cubics"),
+    "geometry": ("Cubics", "PlanElement", "PlanView"),
     "layers": ("layers_of_opendrive",),
-    "model": ("Connection", "Junction", "MapLane", "MapRoad", "LaneSection", "OpenDriveMap", "RoadLink", "RoadMark"),
+    "model": ("Connection", "Junction", "LaneSection", "MapLane", "MapRoad", "OpenDriveMap", "RoadLink", "RoadMark", "RoadSurface"),
     "reader": ("read_opendrive",),
     "reference_line": ("fit_reference", "polynomial_reference"),
-    "surface": ("RoadSurface",),
     "writer": ("opendrive_text",),
 })

@@ -8,9 +8,8 @@ import numpy as np
 
 from ..sources import LEAST_CURB
 from .geometry import Cubics, fit_cubics, risen, simplified
-from .model import MapRoad
+from .model import MapRoad, shape_height
 from .road_shape import RoadShape
-from .surface import shape_height
 
 FLAT = 0.001             # m of height that a cross-section may miss without a crossfall of its own
 ROLLED = 0.001           # m by which a superelevation may move a border in plan: readers differ on whether it does
