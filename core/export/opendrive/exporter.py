@@ -12,9 +12,8 @@ import shapely
 from ...common.features import Features
 from ...common.progress import Progress
 from ...common.setting import check_limits, setting
-from ..painted_objects import stop_lines, walked_crossings
 from ..shared_borders import with_driven_middles
-from ..sources import NearestValues, RoadMapSource, sigma_of_lanes
+from ..sources import NearestValues, RoadMapSource, sigma_of_lanes, stop_lines, walked_crossings
 from .model import OPEN_END, Connection, Junction, LaneNetwork, MapLane, MapRoad, OpenDriveMap, RoadLink, RoadMark, travel
 from .road_shape import add_heights, add_lanes, centre_of, heights_above_road, shape_of
 from .strips import (
