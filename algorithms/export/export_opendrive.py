@@ -46,9 +46,8 @@ class ExportOpenDrive(Algorithm):
         from pathlib import Path
 
         from ...core.export.check.roads import check_opendrive
-        from ...core.export.fit_of_export import border_misses, driving_line_misses
         from ...core.export.inferred_ways import with_inferred_ways
-        from ...core.export.map_crs import reference_of_crs
+        from ...core.export.map_layers import border_misses, driving_line_misses, reference_of_crs
         from ...core.export.opendrive.exporter import draft_opendrive
         from ...core.export.opendrive.layers import layers_of_opendrive
         from ...core.export.opendrive.reader import read_opendrive

@@ -21,7 +21,7 @@ class ImportOpenDrive(Algorithm):
         add_map_layers(self)
 
     def work(self, call, progress):
-        from ...core.export.map_crs import crs_of_reference
+        from ...core.export.map_layers import crs_of_reference
         from ...core.export.opendrive.layers import layers_of_opendrive
         from ...core.export.opendrive.reader import read_opendrive
 

@@ -29,7 +29,7 @@ def write(folder, name, one):
     from lanewright.core.export.inferred_ways import with_inferred_ways
     from lanewright.core.export.lanelet.exporter import draft_lanelets
     from lanewright.core.export.lanelet.writer import lanelet2_text, to_degrees
-    from lanewright.core.export.map_crs import reference_of_crs
+    from lanewright.core.export.map_layers import reference_of_crs
     from lanewright.core.export.opendrive.exporter import OpenDriveSettings, draft_opendrive
     from lanewright.core.export.opendrive.writer import opendrive_text
     from lanewright.core.export.shared_borders import with_shared_borders

@@ -7,7 +7,7 @@ import shapely
 
 from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
-from ..map_crs import metric_wkt
+from ..map_layers import metric_wkt
 from ..opendrive.model import DRIVEN_TYPES, MARK_TYPES, ROAD_LANE_TYPES, MapRoad, OpenDriveMap, RoadSurface
 from .findings import Findings, metres
 from .road_links import check_links

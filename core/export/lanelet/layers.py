@@ -7,8 +7,7 @@ import numpy as np
 from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
 from ...io.crs import parse_crs
-from ..map_crs import LOCAL_CRS, metric_wkt, utm_of
-from ..map_layers import LaneRows, MapLayers, MapLine, without_repeats
+from ..map_layers import LOCAL_CRS, LaneRows, MapLayers, MapLine, metric_wkt, utm_of, without_repeats
 from .model import LaneletMap, LaneletNetwork
 
 PATTERN_OF_WAY = {"solid": "solid", "dashed": "dashed", "solid_solid": "double-solid",

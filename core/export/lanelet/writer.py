@@ -10,7 +10,7 @@ import numpy as np
 from ...common.errors import RoadExtractionError
 from ...io.crs import horizontal_part, parse_crs
 from ...io.units import as_in_file
-from ..map_crs import LOCAL_CRS
+from ..map_layers import LOCAL_CRS
 from .exporter import LaneletDraft
 
 NO_VERTICAL = "not stated by the survey; heights are written as they are"
