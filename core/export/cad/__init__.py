@@ -6,5 +6,4 @@ In: `RoadMapSource`. Out: a file.
 from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "dxf": ("dxf_lines", "write_dxf"),
 })
