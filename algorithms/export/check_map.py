@@ -85,8 +85,7 @@ def _roads(path, crs, progress):
 
 def _lanelets(path, crs, progress):
     from ...core.export.check.lanelets import check_lanelets
-    from ...core.export.lanelet.layers import node_places
-    from ...core.export.lanelet.reader import read_lanelet2
+    from ...core.export.lanelet_map import node_places, read_lanelet2
 
     whole = read_lanelet2(path, progress.part(0.0, 0.4))
     return check_lanelets(whole, *node_places(whole, crs), progress.part(0.4, 0.95)), ""

@@ -9,7 +9,7 @@ import numpy as np
 import shapely
 
 from ...common.progress import Progress
-from ..lanelet.model import Lanelet, LaneletMap, LaneletNetwork, Way, same_way
+from ..lanelet_map import Lanelet, LaneletMap, LaneletNetwork, Way, same_way
 from ..sources import LEAST_CURB
 from .findings import Findings, metres
 
