@@ -27,8 +27,7 @@ def write(folder, name, one):
     """The files of one road map, and the JSON with what must be found in them."""
     from lanewright.core.export.dxf import dxf_lines, write_dxf
     from lanewright.core.export.inferred_ways import with_inferred_ways
-    from lanewright.core.export.lanelet.exporter import draft_lanelets
-    from lanewright.core.export.lanelet.writer import lanelet2_text, to_degrees
+    from lanewright.core.export.lanelet_export import draft_lanelets, lanelet2_text, to_degrees
     from lanewright.core.export.map_layers import reference_of_crs
     from lanewright.core.export.opendrive.exporter import OpenDriveSettings, draft_opendrive
     from lanewright.core.export.opendrive.writer import opendrive_text

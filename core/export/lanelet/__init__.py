@@ -6,6 +6,4 @@ In: a file `.osm` or `Lanes`. Out: a `LaneletMap`, and from it layers or a file.
 from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "exporter": ("LaneletDraft", "LaneletSettings", "draft_lanelets"),
-    "writer": ("Degrees", "lanelet2_text", "to_degrees"),
 })

@@ -7,8 +7,7 @@ import pytest
 from lanewright.core.export.check.lanelets import check_lanelets
 from lanewright.core.export.check.roads import check_opendrive
 from lanewright.core.export.inferred_ways import UNDRIVEN_CONFIDENCE, with_inferred_ways
-from lanewright.core.export.lanelet.exporter import draft_lanelets
-from lanewright.core.export.lanelet.writer import lanelet2_text, to_degrees
+from lanewright.core.export.lanelet_export import draft_lanelets, lanelet2_text, to_degrees
 from lanewright.core.export.lanelet_map import node_places, read_lanelet2
 from lanewright.core.export.opendrive.exporter import draft_opendrive
 from lanewright.core.export.opendrive.reader import read_opendrive

@@ -8,8 +8,7 @@ import shapely
 from lanewright.core.driving.layers import lanes_from_features
 from lanewright.core.export.check.lanelets import check_lanelets
 from lanewright.core.export.inferred_ways import with_inferred_ways
-from lanewright.core.export.lanelet.exporter import draft_lanelets
-from lanewright.core.export.lanelet.writer import lanelet2_text, to_degrees
+from lanewright.core.export.lanelet_export import draft_lanelets, lanelet2_text, to_degrees
 from lanewright.core.export.lanelet_map import layers_of_lanelets, node_places, read_lanelet2
 from lanewright.core.export.map_layers import LaneRows, border_misses
 from lanewright.core.export.opendrive.exporter import draft_opendrive

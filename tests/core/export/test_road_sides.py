@@ -6,8 +6,7 @@ import shapely
 from lanewright.core.common.features import Features
 from lanewright.core.common.schemas import ROAD_EDGES
 from lanewright.core.export.dxf import dxf_lines
-from lanewright.core.export.lanelet.exporter import draft_lanelets
-from lanewright.core.export.lanelet.writer import lanelet2_text, to_degrees
+from lanewright.core.export.lanelet_export import draft_lanelets, lanelet2_text, to_degrees
 from lanewright.core.export.lanelet_map import layers_of_lanelets, read_lanelet2
 from lanewright.core.export.opendrive.exporter import draft_opendrive
 from lanewright.core.export.opendrive.layers import layers_of_opendrive
