@@ -76,7 +76,7 @@ def _is_lanelet2(path):
 def _roads(path, crs, progress):
     from ...core.export.check.roads import check_opendrive
     from ...core.export.map_layers import crs_of_reference
-    from ...core.export.opendrive.reader import read_opendrive
+    from ...core.export.opendrive.xodr import read_opendrive
 
     whole = read_opendrive(path, progress.part(0.0, 0.4))
     crs, note = crs_of_reference(whole.reference, crs)

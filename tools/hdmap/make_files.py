@@ -30,7 +30,7 @@ def write(folder, name, one):
     from lanewright.core.export.lanelet_export import draft_lanelets, lanelet2_text, to_degrees
     from lanewright.core.export.map_layers import reference_of_crs
     from lanewright.core.export.opendrive.exporter import OpenDriveSettings, draft_opendrive
-    from lanewright.core.export.opendrive.writer import opendrive_text
+    from lanewright.core.export.opendrive.xodr import opendrive_text
     from lanewright.core.export.shared_borders import with_shared_borders
 
     source = with_shared_borders(with_inferred_ways(one.source))
@@ -60,7 +60,7 @@ def write(folder, name, one):
 def borders(path):
     """[road, section, lane, [[x, y], ...]] of every outer border as our own reader has it."""
     from lanewright.core.export.opendrive.model import RoadSurface
-    from lanewright.core.export.opendrive.reader import read_opendrive
+    from lanewright.core.export.opendrive.xodr import read_opendrive
 
     found = []
     for road in read_opendrive(str(path)).roads:
@@ -78,7 +78,7 @@ def driven_lanes(path):
     """Every driven lane of a section as our own reader has it: its road and number, stations along the road, way it is driven (1 along), middle
     [[x, y, z], ...] in the file's coordinates, and the (road, number) of the lanes that follow it."""
     from lanewright.core.export.opendrive.model import DRIVEN_TYPES, LaneNetwork, RoadSurface, travel
-    from lanewright.core.export.opendrive.reader import read_opendrive
+    from lanewright.core.export.opendrive.xodr import read_opendrive
 
     whole = read_opendrive(str(path))
     network, found = LaneNetwork(whole), []

@@ -10,7 +10,6 @@ __getattr__, __all__ = public(__name__, {
     "geometry": ("Cubics", "PlanElement", "PlanView"),
     "layers": ("layers_of_opendrive",),
     "model": ("Connection", "Junction", "LaneSection", "MapLane", "MapRoad", "OpenDriveMap", "RoadLink", "RoadMark", "RoadSurface"),
-    "reader": ("read_opendrive",),
     "reference_line": ("fit_reference", "polynomial_reference"),
-    "writer": ("opendrive_text",),
+    "xodr": ("opendrive_text", "read_opendrive"),
 })

@@ -15,9 +15,8 @@ from lanewright.core.export.opendrive.exporter import draft_opendrive
 from lanewright.core.export.opendrive.geometry import fit_cubics
 from lanewright.core.export.opendrive.layers import layers_of_opendrive
 from lanewright.core.export.opendrive.model import shape_height
-from lanewright.core.export.opendrive.reader import read_opendrive
 from lanewright.core.export.opendrive.reference_line import fit_reference
-from lanewright.core.export.opendrive.writer import opendrive_text
+from lanewright.core.export.opendrive.xodr import opendrive_text, read_opendrive
 from lanewright.core.export.shared_borders import with_shared_borders
 from lanewright.core.export.sources import RoadMapSource, checked
 from map_files import geometry, lane, opendrive, road, street_section, written

@@ -10,8 +10,7 @@ from lanewright.core.export.lanelet_export import draft_lanelets, lanelet2_text,
 from lanewright.core.export.lanelet_map import node_places, read_lanelet2
 from lanewright.core.export.map_layers import reference_of_crs
 from lanewright.core.export.opendrive.exporter import draft_opendrive
-from lanewright.core.export.opendrive.reader import read_opendrive
-from lanewright.core.export.opendrive.writer import opendrive_text
+from lanewright.core.export.opendrive.xodr import opendrive_text, read_opendrive
 from lanewright.core.export.sources import RoadMapSource, checked
 from made_lanes import CRS, crossing, s_curve, street
 from map_files import written
