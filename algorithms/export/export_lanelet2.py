@@ -5,7 +5,7 @@ from ..parameters import ChoiceSpec, FlagSpec, SettingSpec
 from ..texts import told, tr
 from .inputs import add_road_map_layers, road_map_source
 
-LANELETS = "export.lanelet.exporter:LaneletSettings"
+LANELETS = "export.lanelet_export:LaneletSettings"
 LOCATIONS = ("urban", "nonurban")
 LANELET_SETTINGS = (
     SettingSpec("SPEED_LIMIT", LANELETS, "speed_limit", tr("Speed limit (km/h)"),

@@ -1,4 +1,4 @@
-"""Lanes of a road map as lanelets: nodes and ways that neighbours share."""
+"""Lanes of a road map as lanelets, nodes and ways that neighbours share, written as Lanelet2."""
 
 from __future__ import annotations
 
@@ -226,7 +226,7 @@ def _turn(middle: np.ndarray) -> str:
     return "left" if turn > TURN else "right" if turn < -TURN else "straight"
 
 
-# Writes Lanelet2 in the XML of OpenStreetMap.
+# Writing in the XML of OpenStreetMap, with latitude and longitude.
 
 NO_VERTICAL = "not stated by the survey; heights are written as they are"
 SQUARE = 100_000.0     # m: local coordinates of Autoware are those within a square of this size

@@ -1,4 +1,4 @@
-"""A map of Lanelet2 as objects: nodes as arrays, ways, lanelets."""
+"""A map of Lanelet2: its nodes, ways and lanelets as objects, read from a file, and as layers like ours."""
 
 from __future__ import annotations
 
@@ -163,7 +163,7 @@ def signed_area(left: np.ndarray, right: np.ndarray) -> float:
     return float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y) / 2)
 
 
-# Reads Lanelet2 maps in the XML of OpenStreetMap.
+# Reading from the XML of OpenStreetMap.
 
 OSM_KIND = "a Lanelet2 map in the XML of OpenStreetMap"
 MAX_ID = 2**63   # ids are whole numbers of 64 bits with a sign; those that editors give to what is new are negative

@@ -1,4 +1,4 @@
-"""What was read of a map from elsewhere, as layers like ours."""
+"""What was read of a map, as layers like ours, with its CRS, and how far they lie from those that it was made from."""
 
 from __future__ import annotations
 

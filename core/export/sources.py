@@ -1,4 +1,4 @@
-"""The layers of a road map on their way into another format: checked before anything is written."""
+"""The layers of a road map on their way into another format: checked, with the heights and uncertainty that maps state."""
 
 from __future__ import annotations
 

@@ -1,4 +1,9 @@
-"""The check of a Lanelet2 map: what is there, what is shared, what is driven where."""
+"""The check of a Lanelet2 map: what is there, what is shared, what is driven where, and tags that the format does not know.
+
+References
+----------
+Lanelet2, documents LaneletAndAreaTagging, LinestringTagging and RegulatoryElementTagging; Autoware's extensions of them.
+"""
 
 from __future__ import annotations
 
@@ -296,9 +301,7 @@ def _is_speed(text: str) -> bool:
         return False
 
 
-# Tags of a Lanelet2 map, and its rules of traffic and areas, held against what the format knows.
-#
-# References ---------- Lanelet2, documents LaneletAndAreaTagging, LinestringTagging and RegulatoryElementTagging; Autoware's extensions of them.
+# Tags, rules of traffic and areas, held against what the format knows.
 
 YES_OR_NO = ("yes", "no", "true", "false", "1", "0")
 NO_BORDERS = ("stop_line", "traffic_sign", "traffic_light", "light_bulbs", "arrow", "symbol", "pole", "post", "centerline", "trajectory", "building")

@@ -1,4 +1,4 @@
-"""Lanes of a road map as a map of OpenDRIVE."""
+"""Lanes of a road map as a map of OpenDRIVE, with links, junctions and objects."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A map of OpenDRIVE as objects: what the reader makes, the exporter fills, the writer writes and the check looks at."""
+"""A map of OpenDRIVE as objects, which lane follows which on it, and where lanes lie."""
 
 from __future__ import annotations
 

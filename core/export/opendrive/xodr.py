@@ -1,4 +1,4 @@
-"""Reads OpenDRIVE 1.1 to 1.8."""
+"""Reads OpenDRIVE 1.1 to 1.8, and writes 1.7 and 1.8."""
 
 from __future__ import annotations
 
@@ -185,7 +185,7 @@ def _junction(element):
     return junction
 
 
-# Writes OpenDRIVE 1.7 and 1.8.
+# Writing.
 
 FILLED_BY_PAINT = 8  # of version 1: from there on outlines may be filled by paint
 SOLID_LENGTH = 1.0   # m: a stripe without gaps is repeated from any length on

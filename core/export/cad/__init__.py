@@ -1,9 +1,0 @@
-"""For the design office: 3D polylines as DXF, alignments of fitted elements as LandXML.
-
-In: `RoadMapSource`. Out: a file.
-"""
-
-from ...lazy import public
-
-__getattr__, __all__ = public(__name__, {
-})

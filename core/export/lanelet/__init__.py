@@ -1,9 +1,0 @@
-"""Lanelet2: lanes between two shared lines of nodes with latitude and longitude.
-
-In: a file `.osm` or `Lanes`. Out: a `LaneletMap`, and from it layers or a file.
-"""
-
-from ...lazy import public
-
-__getattr__, __all__ = public(__name__, {
-})
