@@ -40,7 +40,7 @@ from ..markings.outliers.remove import OutlierSettings, remove_outliers
 from ..markings.paint.extract import extract_markings
 from ..markings.paint.settings import MarkingSettings
 from ..road.common.curb_limits import CurbSettings
-from ..road.common.curb_points import CurbPoints, curb_points_to_features
+from ..road.common.curb_points import CurbPoints
 from ..road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
 from ..road.edges.fit import EdgeSettings
 from ..road.edges.road_edges import RoadEdges, edges_to_features
@@ -145,7 +145,7 @@ class RoadMap:
 
 # RoadMap's attributes that are arrays in the road frame -> what makes layers of them
 CONVERTERS: dict[str, Callable[[Any, RoadFrame], Features]] = dict(
-    curb_points=curb_points_to_features, edges=edges_to_features, boundary_differences=edges_to_features, surface=surface_to_features)
+    curb_points=CurbPoints.to_features, edges=edges_to_features, boundary_differences=edges_to_features, surface=surface_to_features)
 
 
 def make_road_map(paths: Sequence[str | Path], trajectory: Trajectory, image_path: str | Path,

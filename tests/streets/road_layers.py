@@ -1,7 +1,7 @@
 """The stages of the road with their input and output as layers, in map coordinates, as the algorithms read and write them."""
 
 from lanewright.core.road import detect_boundaries as boundaries
-from lanewright.core.road.common.curb_points import curb_points_from_features, curb_points_to_features
+from lanewright.core.road.common.curb_points import CurbPoints
 from lanewright.core.road.edges import fit
 from lanewright.core.road.edges.road_edges import edges_from_features, edges_to_features
 from lanewright.core.road.profiles import detect as profiles
@@ -11,19 +11,19 @@ from lanewright.core.road.surface.road_surface import surface_to_features
 
 
 def detect_curbs(survey, *settings, **options):
-    return curb_points_to_features(profiles.detect_curbs(survey, *settings, **options), survey.frame)
+    return profiles.detect_curbs(survey, *settings, **options).to_features(survey.frame)
 
 
 def curbs_from_scanlines(source, *settings, **options):
-    return curb_points_to_features(scanlines.curbs_from_scanlines(source, *settings, **options), source.frame)
+    return scanlines.curbs_from_scanlines(source, *settings, **options).to_features(source.frame)
 
 
 def boundary_lines(corners, frame, *settings):
-    return edges_to_features(scanlines.boundary_lines(curb_points_from_features(corners, frame), frame, *settings), frame)
+    return edges_to_features(scanlines.boundary_lines(CurbPoints.from_features(corners, frame), frame, *settings), frame)
 
 
 def fit_road_edges(curb_points, frame, *settings, **options):
-    return edges_to_features(fit.fit_road_edges(curb_points_from_features(curb_points, frame), frame, *settings, **options), frame)
+    return edges_to_features(fit.fit_road_edges(CurbPoints.from_features(curb_points, frame), frame, *settings, **options), frame)
 
 
 def drawn_boundaries(survey, settings=boundaries.BoundarySettings(), **options):
