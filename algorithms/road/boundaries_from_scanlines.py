@@ -92,7 +92,6 @@ class BoundariesFromScanlines(Algorithm):
                       geometry="LineStringZ", optional=True)
 
     def work(self, call, progress):
-        from ...core.road.edges.road_edges import edges_to_features
         from ...core.road.scanlines.detect import CORNER_BLOCK, LayerScanlines, boundary_lines, curbs_from_scanlines
         from ...core.road.scanlines.layer import scanlines_from_features
         from ...core.survey.adjustment.pass_sigma import of_layer
@@ -106,4 +105,4 @@ class BoundariesFromScanlines(Algorithm):
         corners = curbs_from_scanlines(source, settings, CORNER_BLOCK, progress.part(0.3, 0.95))
         lines = boundary_lines(corners, frame, settings.max_gap, progress.part(0.95, 1.0))
         call.layer("CORNERS", corners.to_features(frame))
-        call.layer("BOUNDARIES", edges_to_features(lines, frame))
+        call.layer("BOUNDARIES", lines.to_features(frame))

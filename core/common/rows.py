@@ -28,15 +28,20 @@ class Rows:
     Fields without a default are arrays of one length, or what is indexed as they are; a field with a default holds for all things.
     """
 
+    @classmethod
+    def names(cls) -> tuple[str, ...]:
+        """Names of the fields that have one entry for each thing."""
+        return _entries(cls)
+
     def columns(self) -> list[np.ndarray]:
         """The arrays, in the order of the fields."""
-        return [getattr(self, name) for name in _entries(type(self))]
+        return [getattr(self, name) for name in self.names()]
 
     def __len__(self) -> int:
         return len(self.columns()[0])
 
     def __getitem__(self: AnyRows, which: Any) -> AnyRows:
-        return replace(self, **{name: getattr(self, name)[which] for name in _entries(type(self))})  # type: ignore[type-var]
+        return replace(self, **{name: getattr(self, name)[which] for name in self.names()})  # type: ignore[type-var]
 
     @classmethod
     def join(cls: type[AnyRows], parts: Sequence[AnyRows]) -> AnyRows:
@@ -111,16 +116,15 @@ class LayerRows(Rows):
 
     @classmethod
     def array_of(cls, name: str, values: Any) -> np.ndarray:
-        """The array of an attribute; numbers where it is no field of the layer."""
+        """The array of an attribute, of the type of its field."""
         one = _columns(cls).get(name)
-        return np.asarray(values, float if one is None else one.kind)
+        return np.asarray(values, None if one is None else one.kind)
 
     @classmethod
     def filled(cls: type[AnyLayerRows], count: int, crs: str = "", **values: Any) -> AnyLayerRows:
         """`count` entries: of each attribute an array, or a value that all share; what is not given is unknown."""
-        unknown = {name: one.unknown for name, one in _columns(cls).items()}
-        return cls(**{name: np.array(np.broadcast_to(cls.array_of(name, values.get(name, unknown.get(name))), count)) for name in _entries(cls)},
-                   crs=crs)
+        values = {**{name: one.unknown for name, one in _columns(cls).items()}, **values}
+        return cls(*(np.array(np.broadcast_to(cls.array_of(name, values.get(name, np.nan)), count)) for name in cls.names()), crs=crs)
 
     @classmethod
     def join(cls: type[AnyLayerRows], parts: Sequence[AnyLayerRows], crs: str = "") -> AnyLayerRows:
