@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..common.runs import mask_runs
+from ..common.arrays import mask_runs
 from ..markings.cross_section.sections import STATION_STEP, CrossSections
 from ..markings.cross_section.weights import EDGE_LINE
 from .lane_track import LaneTrack, spans_of

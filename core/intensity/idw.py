@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 from scipy import sparse
 
+from ..common.arrays import order_by
 from ..common.memory import ScratchBuffers
-from ..common.order_statistics import order_by
 from ..common.setting import check_limits, setting
 from ..lazy import cv2
 from ..survey.store.records import COORDINATE_SCALE, Points

@@ -8,8 +8,8 @@ from os import PathLike
 
 import numpy as np
 
+from ..common.arrays import quantiles
 from ..common.errors import RoadExtractionError
-from ..common.order_statistics import quantiles
 from ..common.progress import Progress
 from ..execution.phase import Phase
 from ..io.geotiff import GEOTIFF_TILE, NODATA, new_geotiff

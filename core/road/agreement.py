@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..common.runs import mask_runs, stretch_of
+from ..common.arrays import mask_runs, stretch_of
 from ..survey.frame.road_frame import RoadFrame
 from .common.corners import CANDIDATE_HEIGHT_SHARE
 from .common.curb_limits import LEAST_HEIGHT

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..common.runs import stretch_of
+from ..common.arrays import stretch_of
 from .common.curb_points import CurbPoints, curb_points_at
 from .common.hidden_curb import hidden_beside
 from .common.in_line import LINE_FIT_LENGTH, MAX_LINE_GAP, PieceInLine, StepsByStation, pieces_between

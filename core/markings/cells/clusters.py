@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ...common.groups import linked_groups
+from ...common.arrays import linked_groups
 from ...common.parallel import check_cancelled
 from ...common.progress import Progress
 from ...execution.phase import Executor, NoSource, Phase

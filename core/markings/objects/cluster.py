@@ -15,8 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import shapely
 
-from ...common.groups import members_of
-from ...common.order_statistics import order_by
+from ...common.arrays import members_of, order_by
 from ...common.parallel import check_cancelled
 from ...common.progress import Progress
 from ...common.setting import check_limits, setting

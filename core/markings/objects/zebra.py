@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ...common.groups import linked_groups, members_of
+from ...common.arrays import linked_groups, members_of
 from ...common.parallel import check_cancelled
 from ...curves.robust import percentiles
 from ...lazy import cv2

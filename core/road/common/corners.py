@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...common.rows import Rows
+from ...common.arrays import Rows
 from .curb_limits import LEAST_SLOPE
 from .pseudo_scanlines import TOP_QUANTILE_SIGMAS, PseudoScanLines, expand_ranges
 

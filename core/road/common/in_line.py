@@ -14,8 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.polynomial import Polynomial
 
+from ...common.arrays import stretch_of
 from ...common.parallel import check_cancelled
-from ...common.runs import stretch_of
 from .corners import CurbSteps
 from .tracking import (
     HEIGHT_TOLERANCE,

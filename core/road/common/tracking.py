@@ -14,8 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...common.groups import linked_groups
-from ...common.near_pairs import ROUNDING_TOLERANCE
+from ...common.arrays import ROUNDING_TOLERANCE, linked_groups
 from ...common.parallel import check_cancelled
 from .corners import CurbSteps
 from .curb_limits import MIN_FAINT_LENGTH, CurbLimits

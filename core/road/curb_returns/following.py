@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...common.rows import Rows
+from ...common.arrays import Rows
 from ..common.tracking import HEIGHT_TOLERANCE, MAX_ROAD_ROUGHNESS
 from .ground.raster import PLAN_CELL, GroundRaster
 from .steps import LONG_HALF_LENGTH, PATCH_HALF_WIDTH, SHORT_HALF_LENGTH, PlanSteps, points_about, steps_of_points

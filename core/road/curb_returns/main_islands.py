@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ...common.runs import stretch_of
+from ...common.arrays import stretch_of
 from ..common.curb_points import CurbPoints
 from ..common.hidden_curb import MAX_HIDDEN_GAP
 from ..common.occlusion import OCCLUSION_CELL, OcclusionGrid

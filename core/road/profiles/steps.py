@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...common.runs import best_within
+from ...common.arrays import best_within
 from ..common.corners import BEHIND_LENGTH, FACE_MARGIN, MAX_ROAD_SLOPE, MIN_STEP_SIGMAS, ROAD_SIDE_LENGTH, CurbSteps, measure_corners
 from ..common.pseudo_scanlines import TOP_QUANTILE_SIGMAS, PseudoScanLines
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...common.order_statistics import order_by
+from ...common.arrays import order_by
 from ...survey.store.records import COORDINATE_SCALE, Points
 from ..common.view_levels import at_one_level
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...common.runs import stretch_of
+from ...common.arrays import stretch_of
 from ..edges.fit import MAX_EDGE_JUMP
 from .ground_grid import GroundCells
 from .pavement_edge import GrownLimit

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from ...common.order_statistics import RADIX_BITS
+from ...common.arrays import RADIX_BITS
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ..store.records import COORDINATE_SCALE, take_rows

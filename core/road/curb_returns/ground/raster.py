@@ -12,7 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ....common.order_statistics import order_by
+from ....common.arrays import order_by
 from ...common.pseudo_scanlines import DEFAULT_SCANNER_NOISE, MIN_SCANNER_NOISE, lowest_layers
 
 PLAN_CELL = 0.10              # m
