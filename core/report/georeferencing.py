@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..common.texts import told, tr
-from ..common.words import word
+from ..common.texts import told, tr, word
 from ..io.crs import horizontal_part, parse_crs
 from ..io.gdal_errors import gdal_exceptions
 from ..io.local_files import open_raster
