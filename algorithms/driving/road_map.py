@@ -1,8 +1,18 @@
 """The whole chain in one call."""
 
 from ...core.common.errors import RoadExtractionError
-from ...core.common.features import Features
-from ...core.common.schemas import CURB_POINTS, CURVE_ELEMENTS, DRIVING_LINES, LANES, MARKING_LINES, MARKINGS, PASSES, ROAD_EDGES, ROAD_SURFACE
+from ...core.common.features import (
+    CURB_POINTS,
+    CURVE_ELEMENTS,
+    DRIVING_LINES,
+    LANES,
+    MARKING_LINES,
+    MARKINGS,
+    PASSES,
+    ROAD_EDGES,
+    ROAD_SURFACE,
+    Features,
+)
 from ..algorithm import Algorithm
 from ..corrections import add_corrections, corrections_of
 from ..markings.cluster_markings import CLUSTER_SETTINGS

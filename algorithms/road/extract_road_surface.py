@@ -1,6 +1,6 @@
 """The points and the outline of the road surface."""
 
-from ...core.common.schemas import ROAD_EDGES, ROAD_SURFACE
+from ...core.common.features import ROAD_EDGES, ROAD_SURFACE
 from ..algorithm import Algorithm
 from ..parameters import SettingSpec
 from ..survey_input import SURVEY_SETTINGS, check_layers_on_roads, open_survey_of

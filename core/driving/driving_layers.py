@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 
-from ..common.features import Features
-from ..common.schemas import CURVE_ELEMENTS, DRIVING_LINES
+from ..common.features import CURVE_ELEMENTS, DRIVING_LINES, Features
 from ..countries.catalogue import country
 from ..countries.neutral import NEUTRAL
 from ..curves.base import Arc, Curve

@@ -12,8 +12,7 @@ import numpy as np
 import shapely
 
 from ..common.errors import RoadExtractionError
-from ..common.features import Features
-from ..common.schemas import LANES
+from ..common.features import LANES, Features
 
 LANE_TYPES = ("driving", "shoulder", "parking", "bicycle", "hatched", "median", "connector")
 LEVEL_ORIGIN = (0.0, 0.0, 0.0)

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from lanewright.algorithms.trajectory_source import read_trajectory_source
 from lanewright.algorithms.vector_source import read_features
-from lanewright.core.common.schemas import SCANLINES
+from lanewright.core.common.features import SCANLINES
 from lanewright.core.road.scanlines.layer import scanlines_from_features
 from lanewright.core.survey.frame.build import build_frame
 from lanewright.processing_provider.layers import QgisSource

@@ -2,9 +2,8 @@
 
 import numpy as np
 import shapely
-from lanewright.core.common.features import Features
+from lanewright.core.common.features import MARKINGS, ROAD_EDGES, Features
 from lanewright.core.common.progress import Progress
-from lanewright.core.common.schemas import MARKINGS, ROAD_EDGES
 from lanewright.core.markings.lines.fit import fit_marking_lines
 from lanewright.core.markings.lines.geometry import MarkingLineSettings
 from lanewright.core.markings.lines.painted_lines import lines_to_features

@@ -1,8 +1,7 @@
 """Painted streets of known shape, and the drive through them."""
 
 import numpy as np
-from lanewright.core.common.features import Features
-from lanewright.core.common.schemas import MARKING_LINES
+from lanewright.core.common.features import MARKING_LINES, Features
 from lanewright.core.driving.driving_layers import curve_elements_to_features, driving_lines_to_features
 from lanewright.core.driving.driving_lines import DrivingSettings, make_driving_lines
 from lanewright.core.markings.lines.painted_lines import lines_from_features

@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import shapely
 
-from ...common.features import Features
-from ...common.schemas import NEAREST_PASS, ROAD_EDGES
+from ...common.features import NEAREST_PASS, ROAD_EDGES, Features
 from ...survey.frame.frame_lines import FrameLines, line_parts, lines_in_frame
 from ...survey.frame.placement import COORDINATE_DECIMALS, as_written, known
 from ...survey.frame.sigma_along import cuts_where_it_changes

@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...common.features import Features
+from ...common.features import HEIGHT, OFFSET, PASS, ROAD, SIDE, STATION, Features
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
-from ...common.schemas import HEIGHT, OFFSET, PASS, ROAD, SIDE, STATION
 from ..common.decimation import PointDecimation
 from ..common.sides import SIDE_SIGNS, OutermostTrack, expected_height, side_profiles, work_sections
 

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 
-from ...common.features import Features
-from ...common.schemas import PASSES
+from ...common.features import PASSES, Features
 from .passes import STANDSTILL_RADIUS, decimate_by_distance
 from .placement import COORDINATE_DECIMALS
 

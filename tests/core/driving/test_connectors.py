@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 from drives import ahead, bend, chain, drive, joined
-from lanewright.core.common.features import Features
-from lanewright.core.common.schemas import MARKING_LINES
+from lanewright.core.common.features import MARKING_LINES, Features
 from lanewright.core.driving.driving_lines import make_driving_lines
 from lanewright.core.markings.lines.painted_lines import lines_from_features
 from lanewright.core.survey.frame.build import build_frame

@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.common.features import Features
-from lanewright.core.common.schemas import MARKINGS
+from lanewright.core.common.features import MARKINGS, Features
 from lanewright.core.survey.frame.sigma_along import SigmaAlong
 from lined_streets import HEIGHT, Street
 from painted_streets import road_points, street

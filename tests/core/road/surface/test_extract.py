@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 import shapely
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.common.features import Features
-from lanewright.core.common.schemas import ROAD_EDGES
+from lanewright.core.common.features import ROAD_EDGES, Features
 from lanewright.core.road.surface.extract import SurfaceSettings
 from lanewright.core.survey.frame.build import build_frame
 from lanewright.core.survey.open_survey import Survey

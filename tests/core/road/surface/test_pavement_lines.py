@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 import shapely
-from lanewright.core.common.features import Features
-from lanewright.core.common.schemas import ROAD_EDGES
+from lanewright.core.common.features import ROAD_EDGES, Features
 from lanewright.core.road.edges.fit import EdgeSettings
 from lanewright.core.road.edges.road_edges import EdgePiece, edges_from_features, edges_to_features, joined_pieces
 from lanewright.core.road.surface import pavement_lines
