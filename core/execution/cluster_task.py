@@ -17,8 +17,7 @@ from typing import Any
 from uuid import uuid4
 
 from ..common.errors import Cancelled
-from ..common.memory import reuse_freed_memory, trim_heap
-from ..common.parallel import cancellation_scope
+from ..common.parallel import cancellation_scope, reuse_freed_memory, trim_heap
 from ..common.progress import Progress
 from .interpreter import IMPORTED
 from .tasks import Tasks

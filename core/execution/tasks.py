@@ -10,8 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ..common.errors import Cancelled, RoadExtractionError
-from ..common.memory import free_memory
-from .address_space import is_lack_of_memory
+from ..common.parallel import free_memory, is_lack_of_memory
 from .phase import Phase, Recipe, named
 from .plain import read_plain, write_plain
 

@@ -11,7 +11,7 @@ import numpy as np
 from scipy import sparse
 
 from ..common.arrays import order_by
-from ..common.memory import ScratchBuffers
+from ..common.parallel import ScratchBuffers
 from ..common.setting import check_limits, setting
 from ..lazy import cv2
 from ..survey.store.records import COORDINATE_SCALE, Points

@@ -13,8 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import median_filter
 
-from ...common.memory import by_rows
-from ...common.parallel import check_cancelled
+from ...common.parallel import by_rows, check_cancelled
 from .ground_grid import known_median
 from .pavement_limit import INNER_CELLS
 from .region_growing import MAX_HEIGHT_DEVIATION

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...common.memory import by_rows
+from ...common.parallel import by_rows
 from .edge_path import cheapest_path
 from .ground_change import HalfProfiles, other_ground_begins
 from .ground_grid import PROFILE_COLUMN, PROFILE_ROW, GroundCells, SurfaceProfiles, known_median

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...common.memory import ScratchBuffers
+from ...common.parallel import ScratchBuffers
 from ..store.records import COORDINATE_SCALE, to_units
 from .passes import MAX_TICKS, TIME_TICK
 from .reference_line import NODE_SPACING

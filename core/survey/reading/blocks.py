@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...common.memory import ScratchBuffers
+from ...common.parallel import ScratchBuffers
 from ..frame.projection import POINTS_PER_PROJECTION, RoadProjection
 from ..las.intensity_source import IntensitySource
 from ..las.scale import LasAxis

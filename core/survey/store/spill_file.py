@@ -22,7 +22,7 @@ from uuid import uuid4
 
 import numpy as np
 
-from ...common.memory import column_buffers, freed_on_demand
+from ...common.parallel import column_buffers, freed_on_demand
 from ...execution.plain import checksum
 
 PACKING_CHUNK = 1 << 15  # values packed at a time: they fit the processor's cache

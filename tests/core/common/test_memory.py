@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from lanewright.core.common import memory
-from lanewright.core.common.memory import by_rows, trim_heap
+from lanewright.core.common import parallel as memory
+from lanewright.core.common.parallel import by_rows, trim_heap
 
 BLOCK, BLOCKS = 100_000, 1000  # bytes; small blocks are kept by the C library, large ones are not
 

@@ -5,8 +5,8 @@ import sys
 from pathlib import Path
 
 import pytest
-from lanewright.core.execution import address_space
-from lanewright.core.execution.address_space import is_lack_of_memory, lack_of_memory, least_room, limited_memory
+from lanewright.core.common import parallel as address_space
+from lanewright.core.common.parallel import is_lack_of_memory, lack_of_memory, least_room, limited_memory
 
 resource = pytest.importorskip("resource")
 

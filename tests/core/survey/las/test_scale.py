@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.common.memory import ScratchBuffers
+from lanewright.core.common.parallel import ScratchBuffers
 from lanewright.core.survey.las.scale import LasAxis
 from lanewright.core.survey.store.records import COORDINATE_SCALE
 
