@@ -9,9 +9,7 @@ from ..lazy import public
 __getattr__, __all__ = public(__name__, {
     "choice": ("ExecutionSettings", "cluster_for", "executor_for"),
     "cluster": ("Cluster", "cluster_of"),
-    "phase": ("Executor", "Phase", "Recipe"),
-    "plain": ("digest", "is_whole", "read_plain", "write_plain"),
+    "phase": ("Executor", "Phase", "Recipe", "THREADS", "Threads", "digest", "is_whole", "read_plain", "write_plain"),
     "processes": ("WorkerProcesses",),
-    "threads": ("THREADS", "Threads"),
     "work_folder": ("KeptResults", "WorkFolder"),
 })

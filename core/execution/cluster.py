@@ -21,8 +21,7 @@ from ..common.parallel import POLL_INTERVAL
 from ..common.progress import Progress
 from . import cluster_task
 from .cluster_connection import all_paused, check_versions, check_workers, client_of, wait_for_workers
-from .phase import Phase, name_of
-from .plain import read_plain, write_plain
+from .phase import Phase, name_of, read_plain, write_plain
 from .tasks import ShippedPhase, items_together, raise_answer
 from .work_folder import WorkFolder, code_digest
 

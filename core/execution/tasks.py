@@ -11,8 +11,7 @@ from typing import Any
 
 from ..common.errors import Cancelled, RoadExtractionError
 from ..common.parallel import free_memory, is_lack_of_memory
-from .phase import Phase, Recipe, named
-from .plain import read_plain, write_plain
+from .phase import Phase, Recipe, named, read_plain, write_plain
 
 OPEN_PHASES = 2   # phases kept open in a worker: the current one and the one before
 WORK_ROUNDS = 8   # of work that a worker has in a phase at least, where its items come several together, so that all end at about the same time

@@ -11,9 +11,7 @@ from typing import TYPE_CHECKING
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from ..execution.choice import ExecutionSettings, cluster_for, executor_for
-from ..execution.phase import Executor
-from ..execution.plain import digest
-from ..execution.threads import THREADS
+from ..execution.phase import THREADS, Executor, digest
 from ..execution.work_folder import Heard, KeptResults, WorkFolder, code_digest
 from .las.copies import without_copies
 from .las.reader import read_headers

@@ -25,8 +25,7 @@ from lanewright.core.execution import cluster as executing
 from lanewright.core.execution import cluster_connection as connecting
 from lanewright.core.execution.choice import ExecutionSettings
 from lanewright.core.execution.cluster import cluster_of
-from lanewright.core.execution.phase import Phase
-from lanewright.core.execution.threads import Threads
+from lanewright.core.execution.phase import Phase, Threads
 from lanewright.core.execution.work_folder import KeptResults, WorkFolder
 from lanewright.core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
 from lanewright.core.road.scanlines.section_planes import all_scanlines

@@ -20,7 +20,7 @@ from ...common.parallel import check_cancelled
 from ...common.progress import Progress
 from ...common.setting import check_limits, setting
 from ...curves.robust import median
-from ...execution.threads import THREADS
+from ...execution.phase import THREADS
 from ...survey.store.records import COORDINATE_SCALE, Points
 from ..cells.clusters import connected_points
 from ..cells.components import occupied

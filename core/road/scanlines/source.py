@@ -10,8 +10,7 @@ import numpy as np
 
 from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
-from ...execution.phase import Executor, Recipe
-from ...execution.threads import THREADS
+from ...execution.phase import THREADS, Executor, Recipe
 from ...survey.lattice.scan_lattice import ScanLattice, find_lattice
 from ...survey.reading.sensor_height import DEFAULT_SENSOR_HEIGHT, sensor_height_of
 from .grid import LINE_SEPARATION

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...execution.phase import Executor, Recipe
-from ...execution.threads import THREADS
+from ...execution.phase import THREADS, Executor, Recipe
 from .columns import Columns
 from .records import ROAD_POINT, Points, join_columns, point_dtype
 from .section_store import ColumnOverlay, SectionStore, Stretch

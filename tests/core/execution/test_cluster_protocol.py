@@ -18,9 +18,7 @@ from lanewright.core.execution import cluster, cluster_connection, cluster_task,
 from lanewright.core.execution.choice import ExecutionSettings
 from lanewright.core.execution.cluster import Cluster
 from lanewright.core.execution.cluster_connection import check_address, client_of, is_loopback
-from lanewright.core.execution.phase import Phase
-from lanewright.core.execution.plain import read_plain, write_plain
-from lanewright.core.execution.threads import Threads
+from lanewright.core.execution.phase import Phase, Threads, read_plain, write_plain
 from lanewright.core.execution.work_folder import KeptResults, WorkFolder, code_digest
 from lanewright.core.survey.frame.build import build_frame
 

@@ -4,8 +4,7 @@ import weakref
 from collections import Counter
 
 import pytest
-from lanewright.core.execution.phase import NoSource, Phase
-from lanewright.core.execution.threads import Threads
+from lanewright.core.execution.phase import NoSource, Phase, Threads
 from lanewright.core.execution.work_folder import KeptResults, WorkFolder
 from lanewright.core.survey.las.time_slots import TimeSlots
 

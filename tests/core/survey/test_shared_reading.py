@@ -12,8 +12,8 @@ from lanewright.core.common.errors import Cancelled, RoadExtractionError
 from lanewright.core.common.progress import Progress
 from lanewright.core.execution import interpreter, processes
 from lanewright.core.execution.choice import ExecutionSettings
+from lanewright.core.execution.phase import Threads
 from lanewright.core.execution.processes import WorkerProcesses
-from lanewright.core.execution.threads import Threads
 from lanewright.core.survey import open_survey as opening
 from lanewright.core.survey.open_survey import open_survey
 from lanewright.core.survey.reading import ordering, survey_reader
