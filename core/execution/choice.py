@@ -7,8 +7,7 @@ from dataclasses import dataclass
 
 from ..common.progress import Progress
 from ..common.setting import check_limits, setting
-from .cluster import Cluster, cluster_of
-from .cluster_connection import check_address
+from .cluster import Cluster, check_address, cluster_of
 from .interpreter import find_interpreter
 from .phase import Executor, Threads
 from .processes import WorkerProcesses

@@ -21,8 +21,8 @@ from executed_stages import PHASES as STAGE_PHASES
 from executed_stages import found_by
 from lanewright.core.common.errors import Cancelled, RoadExtractionError
 from lanewright.core.common.progress import Progress
+from lanewright.core.execution import cluster as connecting
 from lanewright.core.execution import cluster as executing
-from lanewright.core.execution import cluster_connection as connecting
 from lanewright.core.execution.choice import ExecutionSettings
 from lanewright.core.execution.cluster import cluster_of
 from lanewright.core.execution.phase import Phase, Threads

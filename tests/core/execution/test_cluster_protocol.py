@@ -14,10 +14,10 @@ from executed_boundaries import boundaries, numbers_of
 from lanewright.core.common.errors import Cancelled, RoadExtractionError
 from lanewright.core.common.parallel import check_cancelled
 from lanewright.core.common.progress import Progress
-from lanewright.core.execution import cluster, cluster_connection, cluster_task, tasks
+from lanewright.core.execution import cluster, cluster_task, tasks
+from lanewright.core.execution import cluster as cluster_connection
 from lanewright.core.execution.choice import ExecutionSettings
-from lanewright.core.execution.cluster import Cluster
-from lanewright.core.execution.cluster_connection import check_address, client_of, is_loopback
+from lanewright.core.execution.cluster import Cluster, check_address, client_of, is_loopback
 from lanewright.core.execution.phase import Phase, Threads, read_plain, write_plain
 from lanewright.core.execution.work_folder import KeptResults, WorkFolder, code_digest
 from lanewright.core.survey.frame.build import build_frame
