@@ -24,7 +24,7 @@ from uuid import uuid4
 from ..common.errors import RoadExtractionError
 from ..common.parallel import POLL_INTERVAL
 from ..common.progress import Progress
-from . import cluster_task
+from .cluster_task import BEAT, items_done, look_around, sees_files
 from .interpreter import NEEDED
 from .phase import Phase, name_of, read_plain, write_plain
 from .tasks import ShippedPhase, items_together, raise_answer
@@ -63,7 +63,7 @@ def cluster_of(address: str, insecure: bool, work: WorkFolder | None, progress: 
             cluster = Cluster(client, work.path if work else None, sum(workers.values()))
         except OSError as error:
             raise (work.error(error) if work else _disk_error(tempfile.gettempdir(), error)) from error
-        check_workers(client, cluster.folder, cluster_task.BEAT, work is not None, progress)
+        check_workers(client, cluster.folder, BEAT, work is not None, progress)
     except BaseException:
         (cluster or client).close()
         raise
@@ -103,9 +103,9 @@ class Cluster:
         self.folder = Path(tempfile.mkdtemp(prefix="lanewright-")) if work is None else work / f"run-{uuid4().hex[:8]}"
         self.folder.mkdir(exist_ok=True)
         self._left = weakref.finalize(self, shutil.rmtree, self.folder, ignore_errors=True)
-        (self.folder / cluster_task.BEAT).write_text(str(CALLER_LOST), encoding="utf-8")
+        (self.folder / BEAT).write_text(str(CALLER_LOST), encoding="utf-8")
         self._numbers, self._closed = count(), threading.Event()
-        threading.Thread(target=_beat, args=(self.folder / cluster_task.BEAT, self._closed), daemon=True).start()
+        threading.Thread(target=_beat, args=(self.folder / BEAT, self._closed), daemon=True).start()
 
     def run(self, phase: Phase, items: Sequence[Any], progress: Progress = Progress(), keep: Sequence[Path] = ()) -> Iterator[Any]:
         """Yield the results of all items in their order; see `Executor`. Successive ones go to one worker together, the largest of these begin.
@@ -148,7 +148,7 @@ class Cluster:
     def sees(self, paths: Sequence[Path]) -> bool:
         """Whether every worker finds these files where this computer does, and can decode them."""
         sizes = {str(path): path.stat().st_size for path in paths}
-        return all(found is True for found in self.client.run(cluster_task.sees, sizes, on_error="return").values())
+        return all(found is True for found in self.client.run(sees_files, sizes, on_error="return").values())
 
     def new_file(self) -> Path:
         """A new name in the folder."""
@@ -188,7 +188,7 @@ class _Work:
             items = [self.cluster.new_file() for _ in some]
             for item, part in zip(items, some):
                 write_plain(item, part.item)
-            future = self.client.submit(cluster_task.do, str(self.shipped), [str(item) for item in items], [str(part.file) for part in some],
+            future = self.client.submit(items_done, str(self.shipped), [str(item) for item in items], [str(part.file) for part in some],
                                         self.code, pure=False, retries=0, priority=rank[size],
                                         key=f"{self.phase.function.__name__}-{uuid4().hex}")
             self.pending[future.key] = some, future, items
@@ -491,7 +491,7 @@ def check_workers(client: Any, folder: Path, word: str, named: bool, progress: P
     RoadExtractionError
         Naming the worker.
     """
-    for worker, found in client.run(cluster_task.look, str(folder), word, on_error="return").items():
+    for worker, found in client.run(look_around, str(folder), word, on_error="return").items():
         if isinstance(found, BaseException) or found["code"] != code_digest():
             raise RoadExtractionError(f"The worker {worker} has another {PACKAGE} than this computer, although maybe of the same version. Install "
                                       f"this one there: {INSTALL}, or pip install . in its folder.")

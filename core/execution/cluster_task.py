@@ -32,7 +32,7 @@ _watched: set[str] = set()
 _lock = threading.Lock()
 
 
-def look(folder: str, word: str, dask_worker: Any = None) -> dict[str, Any]:
+def look_around(folder: str, word: str, dask_worker: Any = None) -> dict[str, Any]:
     """What the caller must know of a worker.
 
     Parameters
@@ -60,13 +60,13 @@ def look(folder: str, word: str, dask_worker: Any = None) -> dict[str, Any]:
     return dict(code=code_digest(), problem=problem, memory=int(dask_worker.memory_manager.memory_limit or 0))
 
 
-def sees(sizes: dict[str, int]) -> bool:
+def sees_files(sizes: dict[str, int]) -> bool:
     """Whether this worker finds files of these sizes (bytes by path) and can decode point clouds."""
     return all(find_spec(name) is not None for name in IMPORTED) and all(
         os.path.exists(path) and os.path.getsize(path) == size for path, size in sizes.items())
 
 
-def do(phase: str, items: Sequence[str], results: Sequence[str], code: str) -> dict[str, str]:
+def items_done(phase: str, items: Sequence[str], results: Sequence[str], code: str) -> dict[str, str]:
     """Compute some items of a phase, one after the other, but for those whose results are there.
 
     Parameters

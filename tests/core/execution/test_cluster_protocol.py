@@ -234,12 +234,12 @@ def test_a_task_stops_when_its_phase_is_no_longer_wanted(tmp_path, monkeypatch):
 
 def test_a_result_that_is_there_is_not_computed_again(tmp_path):
     write_plain(tmp_path / "result.plain", 7)
-    assert cluster_task.do(str(tmp_path / "no phase"), [str(tmp_path / "no item")], [str(tmp_path / "result.plain")], code_digest()) == {}
+    assert cluster_task.items_done(str(tmp_path / "no phase"), [str(tmp_path / "no item")], [str(tmp_path / "result.plain")], code_digest()) == {}
     assert read_plain(tmp_path / "result.plain") == 7
 
 
 def test_a_worker_with_other_code_computes_nothing(tmp_path):
-    assert cluster_task.do(str(tmp_path / "phase"), [str(tmp_path / "item")], [str(tmp_path / "result")], "another") == {"code": code_digest()}
+    assert cluster_task.items_done(str(tmp_path / "phase"), [str(tmp_path / "item")], [str(tmp_path / "result")], "another") == {"code": code_digest()}
     assert not list(tmp_path.iterdir())
 
 
