@@ -24,10 +24,8 @@ from uuid import uuid4
 from ..common.errors import RoadExtractionError
 from ..common.parallel import POLL_INTERVAL
 from ..common.progress import Progress
-from .cluster_task import BEAT, items_done, look_around, sees_files
-from .interpreter import NEEDED
 from .phase import Phase, name_of, read_plain, write_plain
-from .tasks import ShippedPhase, items_together, raise_answer
+from .tasks import BEAT, NEEDED, ShippedPhase, items_done, items_together, look_around, raise_answer, sees_files
 from .work_folder import WorkFolder, code_digest
 
 BEAT_TIME = 2.0         # s between two signs of life of the caller

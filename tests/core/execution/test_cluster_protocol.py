@@ -14,8 +14,9 @@ from executed_boundaries import boundaries, numbers_of
 from lanewright.core.common.errors import Cancelled, RoadExtractionError
 from lanewright.core.common.parallel import check_cancelled
 from lanewright.core.common.progress import Progress
-from lanewright.core.execution import cluster, cluster_task, tasks
+from lanewright.core.execution import cluster, tasks
 from lanewright.core.execution import cluster as cluster_connection
+from lanewright.core.execution import tasks as cluster_task
 from lanewright.core.execution.choice import ExecutionSettings
 from lanewright.core.execution.cluster import Cluster, check_address, client_of, is_loopback
 from lanewright.core.execution.phase import Phase, Threads, read_plain, write_plain

@@ -10,7 +10,8 @@ from curbed_streets import street, survey_of
 from executed_boundaries import boundaries, numbers_of
 from lanewright.core.common.errors import Cancelled, RoadExtractionError
 from lanewright.core.common.progress import Progress
-from lanewright.core.execution import choice, interpreter, processes
+from lanewright.core.execution import choice, processes
+from lanewright.core.execution import tasks as interpreter
 from lanewright.core.execution.choice import ExecutionSettings, executor_for
 from lanewright.core.execution.phase import NoSource, Phase, Threads
 from lanewright.core.execution.processes import WorkerProcesses

@@ -10,7 +10,8 @@ from drives import ahead, bend, chain, contents, drive, joined, surveyed_points,
 from executed_boundaries import Heard
 from lanewright.core.common.errors import Cancelled, RoadExtractionError
 from lanewright.core.common.progress import Progress
-from lanewright.core.execution import interpreter, processes
+from lanewright.core.execution import processes
+from lanewright.core.execution import tasks as interpreter
 from lanewright.core.execution.choice import ExecutionSettings
 from lanewright.core.execution.phase import Threads
 from lanewright.core.execution.processes import WorkerProcesses
