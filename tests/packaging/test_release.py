@@ -154,10 +154,10 @@ def test_nothing_is_fetched_or_sent():
     network = re.compile(r"^\s*(?:import|from)\s+(?:urllib|requests|http|socket|ftplib|smtplib|aiohttp|dask|distributed)\b"
                          r"|QtNetwork|QgsNetwork|QgsBlockingNetwork", re.M)
     # the scheduler of a cluster that the user names is the one exception
-    assert [path.name for path in shipped() if network.search(path.read_text(encoding="utf-8"))] == ["cluster_connection.py"]
+    assert [path.name for path in shipped() if network.search(path.read_text(encoding="utf-8"))] == ["cluster.py"]
 
 
-WORKERS = [ROOT / "core" / "execution" / name for name in ("interpreter.py", "processes.py", "worker.py", "cluster.py", "cluster_task.py")]
+WORKERS = [ROOT / "core" / "execution" / name for name in ("tasks.py", "processes.py", "worker.py", "cluster.py")]
 # Which remove folders that a run made for itself: its work folder, its shared points, and the hidden ones of results that are not finished
 FOLDERS_OF_RUNS = [ROOT / name for name in ("core/execution/work_folder.py", "core/survey/open_survey.py", "core/io/unfinished.py",
                                             "algorithms/destinations.py")]
