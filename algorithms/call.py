@@ -174,10 +174,9 @@ class Call:
             return None
         from osgeo import gdal
 
-        from ..core.io.crs import parse_crs, same_crs
+        from ..core.io.crs import parse_crs, place_of_raster, same_crs
         from ..core.io.gdal_errors import gdal_exceptions
         from ..core.io.local_files import open_raster
-        from ..core.io.units import place_of_raster
 
         path = self.raster(name)
         with gdal_exceptions():

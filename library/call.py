@@ -53,8 +53,7 @@ class FileCall(Call):
         return self._value(name) or ""
 
     def crs(self, name="CRS"):
-        from ..core.io.crs import parse_crs
-        from ..core.io.units import in_metres
+        from ..core.io.crs import in_metres, parse_crs
 
         given = self._value(name)
         try:

@@ -90,7 +90,7 @@ def painted_of(call, name, progress):
 
     from ...core.assess.inputs import AssessedLayer
     from ...core.assess.raster_polygons import polygons_of_raster
-    from ...core.io.units import in_metres
+    from ...core.io.crs import in_metres
 
     source, path, crs = call.painted(name)
     if source is not None:

@@ -10,7 +10,7 @@ import numpy as np
 from ..countries.model import Country
 from ..countries.neutral import NEUTRAL
 from ..curves.base import Arc
-from ..io.units import FOOT
+from ..io.crs import FOOT
 
 MAX_CURVE_RADIUS = 5000.0    # m: flatter arcs are straights to any driver
 MIN_TURN = np.radians(1.0)

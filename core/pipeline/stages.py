@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..common.parallel import trim_heap
-from ..io.cloud_crs import check_projected
+from ..io.crs import check_projected
 from ..survey.frame.road import CORRIDOR
 from ..survey.las.reader import read_headers
 from ..survey.trajectory.reprojection import reproject_trajectory

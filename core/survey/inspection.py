@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from ..common.setting import check_limits, setting
-from ..io.cloud_crs import check_projected, crs_note
+from ..io.crs import check_projected, crs_note
 from .frame.build import build_frame
 from .las.copies import PER_METRE, distinct_rows, may_overlap, without_copies
 from .las.intensity_source import INTENSITY_SOURCES, intensity_source_of, without_intensity

@@ -11,9 +11,7 @@ import numpy as np
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from ..execution.phase import Executor
-from ..io.cloud_crs import check_projected, crs_note, unit_note
-from ..io.crs import crs_name, parse_crs
-from ..io.units import FOOT, US_SURVEY_FOOT, as_in_file
+from ..io.crs import FOOT, US_SURVEY_FOOT, as_in_file, check_projected, crs_name, crs_note, parse_crs, unit_note
 from .adjustment.adjust import adjust_passes
 from .adjustment.beside import compare_carriageways, said_of_levels
 from .clock_check import check_clock

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
-from ..io.units import as_in_file
+from ..io.crs import as_in_file
 from .adjustment import pass_sigma
 from .adjustment.corrections import PassCorrections
 from .las.reader import POINTS_PER_BLOCK, cloud_crs, open_cloud, read_blocks

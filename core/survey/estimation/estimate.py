@@ -10,7 +10,7 @@ import numpy as np
 
 from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
-from ...io.cloud_crs import check_projected, crs_note, unit_note
+from ...io.crs import check_projected, crs_note, unit_note
 from ..las.copies import without_copies
 from ..las.reader import read_headers
 from ..trajectory.trajectory import Trajectory

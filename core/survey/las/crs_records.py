@@ -6,8 +6,7 @@ from collections.abc import Mapping
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
-from ...io.crs import SAME_DATUM, horizontal_part, moved_by
-from ...io.units import SAME_UNIT
+from ...io.crs import SAME_DATUM, SAME_UNIT, horizontal_part, moved_by
 
 if TYPE_CHECKING:
     from pyproj import CRS

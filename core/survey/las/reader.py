@@ -12,7 +12,7 @@ import numpy as np
 
 from ...common.errors import Cancelled, RoadExtractionError
 from ...common.parallel import check_cancelled
-from ...io.units import METRES, FileUnits, in_metres
+from ...io.crs import METRES, FileUnits, in_metres
 from .crs_records import crs_of_records
 from .guard import find_damage, places_here_and_there, points_per_chunk, with_points_of_chunks
 from .mending import mend, opened
