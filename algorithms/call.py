@@ -175,8 +175,7 @@ class Call:
         from osgeo import gdal
 
         from ..core.io.crs import parse_crs, place_of_raster, same_crs
-        from ..core.io.gdal_errors import gdal_exceptions
-        from ..core.io.local_files import open_raster
+        from ..core.io.local_files import gdal_exceptions, open_raster
 
         path = self.raster(name)
         with gdal_exceptions():

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...common.errors import RoadExtractionError
 from ...io.crs import as_in_file, parse_crs
-from ...io.unfinished import unfinished_path
+from ...io.local_files import unfinished_path
 from ..store.records import COORDINATE_SCALE
 
 MAX_LAS_INTEGER = 2**31 - 2    # largest coordinate, as an integer about the offset, in a LAS file
