@@ -14,9 +14,7 @@ from ...common.errors import Cancelled, RoadExtractionError
 from ...common.parallel import check_cancelled
 from ...io.crs import METRES, FileUnits, in_metres
 from .crs_records import crs_of_records
-from .guard import find_damage, places_here_and_there, points_per_chunk, with_points_of_chunks
-from .mending import mend, opened
-from .records_of_file import HeaderFields
+from .header import HeaderFields, find_damage, mend, opened, places_here_and_there, points_per_chunk, with_points_of_chunks
 
 POINTS_PER_BLOCK = 400_000  # points decoded at a time
 CLOUD_SUFFIXES = (".las", ".laz")
