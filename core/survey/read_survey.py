@@ -22,8 +22,8 @@ from .frame.build import build_frame
 from .frame.road import CORRIDOR
 from .frame.sigma_along import SigmaAlong
 from .las.copies import distinct_rows, may_overlap
-from .las.intensity_source import check_coloured, intensity_source_of, without_intensity
 from .las.parallel_reader import ParallelCloudReader
+from .las.point_fields import check_coloured, intensity_source_of, without_intensity
 from .las.reader import CloudHeader
 from .las.samples import coarse_coordinates, sample_files
 from .reading.blocks import PointChoice, unwrap_week

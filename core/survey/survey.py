@@ -13,7 +13,7 @@ from ..common.progress import Progress
 from ..common.setting import check_limits, setting
 from ..execution.phase import THREADS, Executor, Recipe, read_plain, write_plain
 from .frame.road import CORRIDOR
-from .las.intensity_source import INTENSITY_SOURCES
+from .las.point_fields import INTENSITY_SOURCES
 from .las.reader import POINTS_PER_BLOCK, CloudHeader
 from .reading.blocks import KEPT_ABOVE_ROAD
 from .reading.finishing import Finishing

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..las.scanners import numbers_by_value
+from ..las.point_fields import numbers_by_value
 from ..store.columns import Columns
 from ..store.records import COORDINATE_SCALE, road_of
 from .blocks import KEPT_BELOW_ROAD, LEVEL_HEIGHT

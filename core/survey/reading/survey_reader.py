@@ -16,7 +16,7 @@ from ...common.parallel import POLL_INTERVAL
 from ...common.progress import Progress
 from ...execution.phase import Executor, Phase
 from ..las.parallel_reader import ParallelCloudReader
-from ..las.scanners import ScannerCensus
+from ..las.point_fields import ScannerCensus
 from ..las.time_slots import TimeSlots
 from .blocks import BlockReader, BlockSummary, ChosenPoints, HeightFilter, PointChoice
 from .parts_of_files import PART_POINTS, PartsOfFiles, join_parts, read_part

@@ -244,7 +244,7 @@ def test_coordinates_that_overflowed_the_integers_of_their_file_are_told(tmp_pat
 
 
 def test_an_intensity_elsewhere_is_named_by_its_fields(tmp_path):
-    from lanewright.core.survey.las.intensity_source import without_intensity
+    from lanewright.core.survey.las.point_fields import without_intensity
 
     path = written(street(1, "1.2", 3000, [("echo width", "u2")]), tmp_path / "cloud.laz")
     assert "(echo width)" in without_intensity(read_headers([path]), "intensity", ["echo width"])
