@@ -14,10 +14,9 @@ from ..common.progress import Progress
 from ..common.setting import check_limits, setting
 from ..io.crs import check_projected, crs_note
 from .frame.build import build_frame
-from .las.copies import PER_METRE, distinct_rows, may_overlap, without_copies
 from .las.point_fields import INTENSITY_SOURCES, ScannerCensus, intensity_source_of, without_intensity
 from .las.reader import POINTS_PER_BLOCK, read_blocks, read_headers
-from .las.samples import coarse_coordinates, sample_files
+from .las.samples import PER_METRE, coarse_coordinates, distinct_rows, may_overlap, sample_files, without_copies
 from .read_survey import match_clocks
 from .reading.sensor_height import HEIGHT_PEAK_REACH, OWN_TRACK_HALF_WIDTH, sensor_height_of
 from .survey import SurveySettings

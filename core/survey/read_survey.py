@@ -21,11 +21,10 @@ from .fit.trajectory_fit import fitted_trajectory
 from .frame.build import build_frame
 from .frame.road import CORRIDOR
 from .frame.sigma_along import SigmaAlong
-from .las.copies import distinct_rows, may_overlap
 from .las.parallel_reader import ParallelCloudReader
 from .las.point_fields import check_coloured, intensity_source_of, without_intensity
 from .las.reader import CloudHeader
-from .las.samples import coarse_coordinates, sample_files
+from .las.samples import coarse_coordinates, distinct_rows, may_overlap, sample_files
 from .reading.blocks import PointChoice, unwrap_week
 from .reading.survey_reader import SurveyReader
 from .store.records import COORDINATE_SCALE, SURVEY_POINT, point_dtype

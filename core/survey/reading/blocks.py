@@ -11,7 +11,7 @@ import numpy as np
 from ...common.parallel import ScratchBuffers
 from ..frame.projection import POINTS_PER_PROJECTION, RoadProjection
 from ..las.point_fields import EVER, IntensitySource, LasAxis, flagged, times_by_value, valid_points
-from ..las.time_slots import TimeSlots
+from ..las.samples import TimeSlots
 from ..store.columns import Columns
 from ..store.records import COORDINATE_SCALE, SURVEY_POINT, beside_road, fill_units, point_dtype, road_of, to_units
 from ..trajectory.time_systems import SECONDS_PER_WEEK

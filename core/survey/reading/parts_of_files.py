@@ -15,7 +15,7 @@ from ...execution.phase import Recipe
 from ..frame.road_frame import RoadFrame
 from ..las.parallel_reader import ParallelCloudReader
 from ..las.reader import CloudHeader
-from ..las.time_slots import TimeSlots
+from ..las.samples import TimeSlots
 from ..store.section_store import SectionStore
 from ..store.spill_file import StoreIndex
 from .blocks import BlockReader, BlockSummary, PointChoice

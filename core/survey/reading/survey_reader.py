@@ -17,7 +17,7 @@ from ...common.progress import Progress
 from ...execution.phase import Executor, Phase
 from ..las.parallel_reader import ParallelCloudReader
 from ..las.point_fields import ScannerCensus
-from ..las.time_slots import TimeSlots
+from ..las.samples import TimeSlots
 from .blocks import BlockReader, BlockSummary, ChosenPoints, HeightFilter, PointChoice
 from .parts_of_files import PART_POINTS, PartsOfFiles, join_parts, read_part
 from .sensor_height import DEFAULT_SENSOR_HEIGHT, estimate_sensor_height
