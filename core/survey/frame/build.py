@@ -10,8 +10,7 @@ from scipy.spatial import cKDTree
 from ..trajectory.shape import shaped_trajectory
 from ..trajectory.trajectory import Trajectory, clean_trajectory
 from .passes import LEVEL_SEPARATION, MAX_ROAD_LENGTH, TURN_REACH, Pass, decimate_by_distance, moving_rows, split_into_passes
-from .reference_line import FRAME_EXTENSION, JUNCTION_GAP, continue_line, reference_nodes, track_line
-from .road import Road
+from .road import FRAME_EXTENSION, JUNCTION_GAP, Road, continue_line, reference_nodes, track_line
 from .road_frame import RoadFrame
 
 MAX_PASS_DISTANCE = 12.0      # m between two passes over one carriageway (median)
