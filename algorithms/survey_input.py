@@ -155,7 +155,7 @@ def frame_of(call, crs, progress, road_points=None, layers=None):
     """
     from ..core.survey.adjustment.pass_sigma import of_layer
     from ..core.survey.consistency import check_road_points_on_roads
-    from ..core.survey.frame.build import build_frame
+    from ..core.survey.frame.road_frame import build_frame
     from ..core.survey.trajectory.reprojection import reproject_trajectory
 
     trajectory = reproject_trajectory(call.trajectory(), crs)

@@ -101,7 +101,7 @@ def _road_pass_station(trajectory):
     """(road, pass, station) of every row; None in stretches too short to be a pass."""
     import numpy as np
 
-    from ..core.survey.frame.build import build_frame
+    from ..core.survey.frame.road_frame import build_frame
 
     found = [(None, None, None)] * len(trajectory)
     for driven in build_frame(trajectory).passes:

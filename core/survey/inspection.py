@@ -13,7 +13,7 @@ from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from ..common.setting import check_limits, setting
 from ..io.crs import check_projected, crs_note
-from .frame.build import build_frame
+from .frame.road_frame import build_frame
 from .las.point_fields import INTENSITY_SOURCES, ScannerCensus, intensity_source_of, without_intensity
 from .las.reader import POINTS_PER_BLOCK, read_blocks, read_headers
 from .las.samples import PER_METRE, coarse_coordinates, distinct_rows, may_overlap, sample_files, without_copies

@@ -18,8 +18,8 @@ from .clock_check import check_clock
 from .fit.limits import LOWEST_SENSOR
 from .fit.scanners import lay_scanners
 from .fit.trajectory_fit import fitted_trajectory
-from .frame.build import build_frame
 from .frame.road import CORRIDOR
+from .frame.road_frame import build_frame
 from .frame.sigma_along import SigmaAlong
 from .las.parallel_reader import ParallelCloudReader
 from .las.point_fields import check_coloured, intensity_source_of, without_intensity

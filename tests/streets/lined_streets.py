@@ -7,7 +7,7 @@ from lanewright.core.driving.driving_lines import DrivingSettings, make_driving_
 from lanewright.core.markings.lines.painted_lines import lines_from_features
 from lanewright.core.markings.objects.marking_objects import markings_from_features
 from lanewright.core.road.edges.road_edges import edges_from_features
-from lanewright.core.survey.frame.build import build_frame
+from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.trajectory.trajectory import Trajectory
 from shapely.geometry import LineString
 

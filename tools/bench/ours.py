@@ -52,9 +52,9 @@ def read(size, survey="dense"):
 def placing(size):
     """Station and offset of points that are decoded already, from their raw coordinates and times."""
     from lanewright.core.common.parallel import ordered_map
-    from lanewright.core.survey.frame.build import build_frame
     from lanewright.core.survey.frame.projection import RoadProjection
     from lanewright.core.survey.frame.road import CORRIDOR
+    from lanewright.core.survey.frame.road_frame import build_frame
     from lanewright.core.survey.las.reader import POINTS_PER_BLOCK, read_blocks
     from lanewright.core.survey.reading.blocks import DECODED_LAYERS
     from lanewright.core.survey.trajectory.reader import read_trajectory

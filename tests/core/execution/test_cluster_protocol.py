@@ -21,7 +21,7 @@ from lanewright.core.execution.choice import ExecutionSettings
 from lanewright.core.execution.cluster import Cluster, check_address, client_of, is_loopback
 from lanewright.core.execution.phase import Phase, Threads, read_plain, write_plain
 from lanewright.core.execution.work_folder import KeptResults, WorkFolder, code_digest
-from lanewright.core.survey.frame.build import build_frame
+from lanewright.core.survey.frame.road_frame import build_frame
 
 
 class KilledWorker(Exception):

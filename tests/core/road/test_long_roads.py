@@ -14,7 +14,7 @@ from lanewright.core.road.edges import curb_returns, dropped_corners, uncertaint
 from lanewright.core.road.edges.road_edges import EdgePiece, joined_pieces
 from lanewright.core.road.surface import limits, measured_ground, pavement_lines
 from lanewright.core.road.surface.measured_ground import WINDOW_ROWS, MeasuredGround
-from lanewright.core.survey.frame.build import build_frame
+from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.trajectory.trajectory import Trajectory
 
 SHORT, LONG = 12, 48     # pieces of edge, one every 25 m

@@ -9,7 +9,7 @@ from lanewright.core.road.edges.road_edges import EdgePiece, edges_from_features
 from lanewright.core.road.surface import pavement_lines
 from lanewright.core.road.surface.extract import extract_road_surface
 from lanewright.core.road.surface.pavement_lines import AGREEING_LENGTH, with_pavement_edges
-from lanewright.core.survey.frame.build import build_frame
+from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.open_survey import Survey
 from lanewright.core.survey.store.records import SURVEY_POINT, to_units
 from lanewright.core.survey.store.section_store import SectionStore
