@@ -15,7 +15,7 @@ import shapely
 
 from ...common.features import MARKING_LINES, Features
 from ...curves.base import Curve
-from ...survey.frame.frame_lines import FrameLines, line_parts, lines_in_frame
+from ...survey.frame.placement import FrameLines, line_parts, lines_in_frame
 
 if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame

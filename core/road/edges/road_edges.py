@@ -14,8 +14,7 @@ import numpy as np
 import shapely
 
 from ...common.features import NEAREST_PASS, ROAD_EDGES, Features
-from ...survey.frame.frame_lines import FrameLines, line_parts, lines_in_frame
-from ...survey.frame.placement import COORDINATE_DECIMALS, as_written, known
+from ...survey.frame.placement import COORDINATE_DECIMALS, FrameLines, as_written, known, line_parts, lines_in_frame
 from ...survey.frame.sigma_along import cuts_where_it_changes
 
 if TYPE_CHECKING:
