@@ -17,7 +17,7 @@ from ..markings.cross_section.sections import STATION_STEP, CrossSections, secti
 from ..markings.lines.painted_lines import PaintedLines
 from ..markings.objects.marking_objects import MarkingObjects
 from ..road.edges.road_edges import RoadEdges
-from ..survey.frame.sigma_along import cuts_where_it_changes
+from ..survey.frame.row_table import cuts_where_it_changes
 from .alignment import Element, lane_elements
 from .centreline import Course, element_of, lane_courses, track_pieces
 from .connectors import RoadLanes, connectors_between_roads

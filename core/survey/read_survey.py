@@ -20,7 +20,7 @@ from .fit.scanners import lay_scanners
 from .fit.trajectory_fit import fitted_trajectory
 from .frame.road import CORRIDOR
 from .frame.road_frame import build_frame
-from .frame.sigma_along import SigmaAlong
+from .frame.row_table import SigmaAlong
 from .las.parallel_reader import ParallelCloudReader
 from .las.point_fields import check_coloured, intensity_source_of, without_intensity
 from .las.reader import CloudHeader

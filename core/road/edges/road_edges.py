@@ -15,7 +15,7 @@ import shapely
 
 from ...common.features import NEAREST_PASS, ROAD_EDGES, Features
 from ...survey.frame.placement import COORDINATE_DECIMALS, FrameLines, as_written, known, line_parts, lines_in_frame
-from ...survey.frame.sigma_along import cuts_where_it_changes
+from ...survey.frame.row_table import cuts_where_it_changes
 
 if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame

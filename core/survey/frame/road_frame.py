@@ -15,7 +15,7 @@ from ..trajectory.shape import shaped_trajectory
 from ..trajectory.trajectory import Trajectory, clean_trajectory
 from .passes import LEVEL_SEPARATION, MAX_ROAD_LENGTH, TURN_REACH, Pass, decimate_by_distance, moving_rows, split_into_passes
 from .road import CORRIDOR, FRAME_EXTENSION, JUNCTION_GAP, Road, continue_line, reference_nodes, track_line
-from .sigma_along import SigmaAlong
+from .row_table import SigmaAlong
 
 MAX_POINT_DISTANCE = 200.0    # m from the track: exceeds the widest corridor and the extension at the ends of a road
 

@@ -16,7 +16,7 @@ from .section_store import ColumnOverlay, SectionStore, Stretch
 from .spill_file import Key, StoreIndex
 
 if TYPE_CHECKING:
-    from ..frame.sigma_along import SigmaAlong
+    from ..frame.row_table import SigmaAlong
 
 
 @dataclass
