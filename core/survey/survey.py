@@ -16,8 +16,7 @@ from .frame.road import CORRIDOR
 from .las.point_fields import INTENSITY_SOURCES
 from .las.reader import POINTS_PER_BLOCK, CloudHeader
 from .reading.blocks import KEPT_ABOVE_ROAD
-from .reading.finishing import Finishing
-from .reading.ordering import UnorderedPoints
+from .reading.survey_reader import Finishing, UnorderedPoints
 from .store.records import Points, road_of
 from .store.section_store import MEMORY_LIMIT, SectionStore
 
