@@ -22,7 +22,7 @@ from ..estimation.rough.samples import SAMPLED_LAYERS
 from ..las.parallel_reader import ParallelCloudReader
 from ..las.point_fields import ScannerCensus, numbers_by_value, times_by_value, valid_points
 from ..las.reader import CloudHeader
-from ..lattice.rotation_rate import MIN_ROTATION_PEAK, ROTATION_WINDOW, rotation_spectrum, strongest_rotation
+from ..lattice.scan_lattice import MIN_ROTATION_PEAK, ROTATION_WINDOW, rotation_spectrum, strongest_rotation
 from ..trajectory.trajectory import Trajectory
 from .limits import (
     ATTITUDE_NOISE,
