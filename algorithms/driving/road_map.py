@@ -138,7 +138,7 @@ class RoadMap(Algorithm):
             layer = made[attribute] = road_map.layer(attribute)
             call.layer(name, layer if layer is not None else Features(geometry, fields, crs=road_map.crs))
         if call.wants("PASSES"):
-            from ...core.survey.frame.passes import passes_to_features
+            from ...core.survey.frame.placement import passes_to_features
 
             call.layer("PASSES", passes_to_features(road_map.frame, road_map.crs))
         call.layer("CURB_POINTS", road_map.layer("curb_points"))

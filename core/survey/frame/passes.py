@@ -11,15 +11,10 @@ from math import hypot
 from typing import TYPE_CHECKING
 
 import numpy as np
-import shapely
 from scipy.spatial import cKDTree
-
-from ...common.features import PASSES, Features
-from .placement import COORDINATE_DECIMALS
 
 if TYPE_CHECKING:
     from ..trajectory.trajectory import Trajectory
-    from .road_frame import RoadFrame
 
 TRACK_STEP = 2.0           # m between the positions that are compared
 SAME_CARRIAGEWAY = 12.0    # m: parallel tracks closer than this run on the same carriageway
@@ -336,29 +331,3 @@ class Pass:
         if self._span is None:
             self._span = float(self.s.min()), float(self.s.max())
         return self._span
-
-
-# The passes of a road frame as lines on the map.
-
-def passes_to_features(frame: RoadFrame, crs: str) -> Features:
-    """The layer PASSES in map coordinates: where the vehicle drove, as the run used it.
-
-    Parameters
-    ----------
-    frame : RoadFrame
-    crs : WKT, "" where unknown
-
-    Returns
-    -------
-    Features, LineStringZ, one row a pass in order of time, drawn as it was driven with a vertex every half metre
-    """
-    layer = Features("LineStringZ", list(PASSES), crs=crs)
-    for one in frame.passes:
-        rows = decimate_by_distance(one.x, one.y, STANDSTILL_RADIUS)
-        if len(rows) < 2:
-            continue
-        line = shapely.linestrings(np.round(np.c_[one.x, one.y, one.z][rows] + frame.origin, COORDINATE_DECIMALS))
-        timed = frame.has_time
-        layer.add(line, **{"pass": one.number}, road=one.road, direction=one.direction, station_m=float(one.s.min()), end_m=float(one.s.max()),
-                  length_m=float(line.length), begin_s=float(one.time[0]) if timed else None, finish_s=float(one.time[-1]) if timed else None)
-    return layer

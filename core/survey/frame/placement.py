@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import shapely
 
-if TYPE_CHECKING:
-    from .road_frame import RoadFrame
+from ...common.features import PASSES, Features
+from .passes import STANDSTILL_RADIUS, decimate_by_distance
+from .road_frame import RoadFrame
 
 COORDINATE_DECIMALS = 4  # of coordinates in layers: 0.1 mm
 
@@ -144,6 +145,30 @@ def line_parts(geometries: Sequence[Any]) -> tuple[list[Any], list[int]]:
     parts = [(part, row) for row, geometry in enumerate(geometries) if geometry is not None and not geometry.is_empty
              for part in getattr(geometry, "geoms", [geometry])]
     return [part for part, _ in parts], [row for _, row in parts]
+
+
+def passes_to_features(frame: RoadFrame, crs: str) -> Features:
+    """The layer PASSES in map coordinates: where the vehicle drove, as the run used it.
+
+    Parameters
+    ----------
+    frame : RoadFrame
+    crs : WKT, "" where unknown
+
+    Returns
+    -------
+    Features, LineStringZ, one row a pass in order of time, drawn as it was driven with a vertex every half metre
+    """
+    layer = Features("LineStringZ", list(PASSES), crs=crs)
+    for one in frame.passes:
+        rows = decimate_by_distance(one.x, one.y, STANDSTILL_RADIUS)
+        if len(rows) < 2:
+            continue
+        line = shapely.linestrings(np.round(np.c_[one.x, one.y, one.z][rows] + frame.origin, COORDINATE_DECIMALS))
+        timed = frame.has_time
+        layer.add(line, **{"pass": one.number}, road=one.road, direction=one.direction, station_m=float(one.s.min()), end_m=float(one.s.max()),
+                  length_m=float(line.length), begin_s=float(one.time[0]) if timed else None, finish_s=float(one.time[-1]) if timed else None)
+    return layer
 
 
 # Places by squares of the ground: those about a place are looked up there, not among all places of a whole road.

@@ -3,7 +3,7 @@
 import numpy as np
 import shapely
 from drives import ahead, chain, drive
-from lanewright.core.survey.frame.passes import passes_to_features
+from lanewright.core.survey.frame.placement import passes_to_features
 from lanewright.core.survey.frame.road_frame import build_frame
 
 
