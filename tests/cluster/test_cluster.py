@@ -21,10 +21,9 @@ from executed_stages import PHASES as STAGE_PHASES
 from executed_stages import found_by
 from lanewright.core.common.errors import Cancelled, RoadExtractionError
 from lanewright.core.common.progress import Progress
-from lanewright.core.execution import cluster as connecting
 from lanewright.core.execution import cluster as executing
 from lanewright.core.execution.choice import ExecutionSettings
-from lanewright.core.execution.cluster import cluster_of
+from lanewright.core.execution.cluster import client_of, cluster_of, own_versions
 from lanewright.core.execution.phase import Phase, Threads
 from lanewright.core.execution.work_folder import KeptResults, WorkFolder
 from lanewright.core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
@@ -115,7 +114,7 @@ def ends_soon_when_cancelled(cluster, phase, work):
 @pytest.mark.parametrize("phase", PHASES)
 def test_cancel_ends_within_two_seconds_and_leaves_the_workers_idle(cluster, sections_together, phase):
     ends_soon_when_cancelled(cluster, phase, boundaries)
-    with contextlib.closing(connecting.client_of(cluster.address)) as client:
+    with contextlib.closing(client_of(cluster.address)) as client:
         until = time.monotonic() + 10.0
         while any(client.processing().values()) and time.monotonic() < until:
             time.sleep(0.1)
@@ -211,7 +210,7 @@ def test_two_runs_at_once_in_one_work_folder_find_the_same(cluster, tmp_path):
 
 
 def test_other_packages_and_other_code_are_refused_by_name(cluster, monkeypatch):
-    own = connecting.own_versions()
+    own = own_versions()
     for name, version in dict(python="3.8.1", numpy="0.9", distributed="1.0").items():
         with monkeypatch.context() as patch:
             patch.setattr(connecting, "own_versions", lambda: {**own, name: version})
