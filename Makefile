@@ -1,6 +1,6 @@
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test bench accuracy package manual window lint translations test-newer test-hdmap test-cluster models fuzz
+.PHONY: help setup demo test bench accuracy ablation package manual window lint translations test-newer test-hdmap test-cluster models fuzz
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*## ' $(firstword $(MAKEFILE_LIST)) | sed -E 's/^([a-z-]+):.*## /make \1\t/' | expand -t 16
@@ -19,6 +19,9 @@ bench: setup ## time and memory of every stage beside PCL, Open3D, GDAL and lasp
 
 accuracy: setup ## every method over surveys with truth (SURVEYS=folder; default: the sample scenes; ONLY=name,name), into docs/accuracy.md
 	@tools/accuracy.sh $(if $(SURVEYS),--surveys "$(SURVEYS)") $(if $(ONLY),--only "$(ONLY)")
+
+ablation: setup ## what each rule brings: switched off in turn (ARGUMENTS="--scenes NAME,NAME --rules NAME,NAME --surveys FOLDER"), into build/ablation/
+	@tools/ablation.sh $(ARGUMENTS)
 
 package: ## the zip for QGIS's plugin manager, into dist/ (for plugins.qgis.org: REPOSITORY=https://… EMAIL=…)
 	@REPOSITORY="$(REPOSITORY)" EMAIL="$(EMAIL)" HOMEPAGE="$(HOMEPAGE)" TRACKER="$(TRACKER)" tools/package.sh

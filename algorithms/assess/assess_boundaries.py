@@ -91,6 +91,7 @@ class AssessBoundaries(Algorithm):
             common_crs,
             edges_that_compare,
             in_crs,
+            without_stray_vertices,
         )
         from ...core.assess.layers import boundary_layer
         from ...core.report.assessment import boundary_report
@@ -106,7 +107,7 @@ class AssessBoundaries(Algorithm):
         for layer in (result, reference):
             check_kind(layer, ("LineString", "Polygon"), tr("lines"))
         crs = common_crs((reference, result))
-        result, reference = in_crs(result, crs, warn), in_crs(reference, crs, warn)
+        result, reference = (without_stray_vertices(in_crs(layer, crs, warn), warn) for layer in (result, reference))
         check_overlap(result, reference)
         progress.report(0.2)
         frame, area = frame_of_drive(call, crs), area_of(call, crs, warn)

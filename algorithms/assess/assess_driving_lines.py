@@ -68,7 +68,7 @@ class AssessDrivingLines(Algorithm):
 
     def work(self, call, progress):
         from ...core.assess.driving_lines import match_lines
-        from ...core.assess.inputs import check_kind, check_overlap, check_reference, common_crs, in_crs
+        from ...core.assess.inputs import check_kind, check_overlap, check_reference, common_crs, in_crs, without_stray_vertices
         from ...core.assess.layers import driving_line_layer
         from ...core.assess.matching import stations_of_match
         from ...core.report.assessment import driving_report
@@ -84,7 +84,7 @@ class AssessDrivingLines(Algorithm):
         for layer in (result, reference):
             check_kind(layer, ("LineString", "Polygon"), tr("lines"))
         crs = common_crs((reference, result))
-        result, reference = in_crs(result, crs, warn), in_crs(reference, crs, warn)
+        result, reference = (without_stray_vertices(in_crs(layer, crs, warn), warn) for layer in (result, reference))
         check_overlap(result, reference)
         frame, area = frame_of_drive(call, crs), area_of(call, crs, warn)
         check_reference(reference, result, frame, area, warn=warn)

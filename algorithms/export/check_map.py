@@ -8,6 +8,7 @@ from ..texts import told, tr
 from .inputs import add_map_file, map_file
 
 MAP_FILTER = "HD maps (*.xodr *.osm *.XODR *.OSM *.xml);;All files (*.*)"
+ROWS_IN_LOG, PLACES_IN_LOG = 50, 3   # of findings that the log tells, and of the places of each
 NUMBERS = (("FINDINGS", tr("Findings")), ("FAULTS", tr("Kinds of faults")), ("LANES", tr("Driven lanes and pieces")),
            ("SUCCESSORS", tr("Links from one lane to the next")), ("NEIGHBOURS", tr("Pairs of lanes side by side")))
 
@@ -21,7 +22,8 @@ class CheckMap(Algorithm):
             "Lanelet2: missing nodes and members, types and tags that no reader knows, borders that cross, swap sides or lie there twice, lanelets "
             "that meet without sharing their nodes or meet head on, nodes that lie aside, rules of traffic that are not whole or that nobody "
             "obeys.\n\n"
-            "A schema validator looks at other things; use both.")
+            "The same finding at many places is one row of the report and one line of the log, with its count, its places and the largest; those at "
+            "the fewest places come first. A schema validator looks at other things; use both.")
     TAGS = ("OpenDRIVE", "Lanelet2", "HD map", "validation", "topology", "routing")
     LOOKS = {"OUTPUT": "FINDINGS"}
 
@@ -30,13 +32,15 @@ class CheckMap(Algorithm):
         self.add(CrsSpec("CRS", tr("CRS of the findings"), tr(
             "OpenDRIVE: only where the file does not say it. Lanelet2: projected, such as that of the survey; empty takes the UTM zone of the map."),
             optional=True))
-        self.add_sink("OUTPUT", tr("Findings"), tr("A point for each finding. Heights are the map's."), fields=MAP_FINDINGS, geometry="PointZ")
+        self.add_sink("OUTPUT", tr("Findings"), tr(
+            "A point for each finding, with the row of the report in which the same findings are one. Heights are the map's."),
+            fields=MAP_FINDINGS, geometry="PointZ")
         self.add_report()
         for name, label in NUMBERS:
             self.add_number(name, label)
 
     def work(self, call, progress):
-        from ...core.report.map_check import map_check_report
+        from ...core.report.map_check import map_check_report, places_of_findings
 
         path = map_file(call)
         found, note = (_lanelets if _is_lanelet2(path) else _roads)(path, call.crs(), progress)
@@ -46,8 +50,12 @@ class CheckMap(Algorithm):
         if call.wants("REPORT"):
             call.text("REPORT", map_check_report(found, path, [note] if note else []))
         counts = found.counts()
-        for fault, count in sorted(counts.items(), key=lambda item: -item[1]):
-            progress.warn(tr("{fault}: {count}").format(fault=told(fault), count=count))
+        groups, _ = found.groups()
+        for one in groups[:ROWS_IN_LOG]:
+            progress.warn(tr("{fault}: {count} ({places}). {text}").format(
+                fault=told(one.worst.fault), count=one.count, places=places_of_findings(one, PLACES_IN_LOG), text=told(one.worst.text)))
+        if len(groups) > ROWS_IN_LOG:
+            progress.warn(tr("The first {shown} of {count}; the layer has all of them.").format(shown=ROWS_IN_LOG, count=len(groups)))
         progress.info(tr("{findings} findings; {lanes} driven lanes and pieces, {successors} links to the next, {neighbours} pairs side by "
                          "side.").format(
             findings=len(found.found), lanes=found.lanes, successors=found.successors, neighbours=found.neighbours))

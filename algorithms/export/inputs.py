@@ -73,7 +73,7 @@ def road_map_source(call, progress):
     """The layers given, checked, as RoadMapSource."""
     from dataclasses import replace
 
-    from ...core.driving.lanes_layer import lanes_from_features
+    from ...core.driving.layers import lanes_from_features
     from ...core.export.sources import RoadMapSource, checked
 
     source = RoadMapSource(

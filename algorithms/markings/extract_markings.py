@@ -112,7 +112,7 @@ class ExtractMarkings(Algorithm):
         )
 
     def work(self, call, progress):
-        from ...core.intensity.coverage import check_image_shows
+        from ...core.intensity.image import check_image_shows
         from ...core.io.geotiff import IntensityImage
         from ...core.markings.paint.extract import extract_markings
         from ...core.survey.las.writer import write_road_points

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -11,6 +11,7 @@ import shapely
 
 from ..common.errors import RoadExtractionError
 from ..io.crs import check_extent, check_metric, horizontal_part, parse_crs, same_crs
+from ..survey.trajectory.trajectory import LONGEST_STEP
 from .matching import MAX_ROAD_DISTANCE, TrajectoryStationing, sample_lines, single_lines
 
 MAX_LAYER_DISTANCE = 100.0  # m between the extents of two layers of one road
@@ -138,6 +139,33 @@ def in_crs(layer: AssessedLayer, wkt: str, warn: Callable[[str], None] = _ignore
         raise RoadExtractionError(
             f"{layer.label} is in {horizontal_part(source).name} and cannot be brought to {horizontal_part(target).name}. Check its CRS.")
     return AssessedLayer(layer.label, moved, layer.rows, wkt)
+
+
+def without_stray_vertices(layer: AssessedLayer, warn: Callable[[str], None] = _ignore) -> AssessedLayer:
+    """A layer of lines without the vertices that lie on another continent than most: the work goes with the length of lines.
+
+    Parameters
+    ----------
+    layer : AssessedLayer in metres
+    warn : called with a sentence
+    """
+    places = shapely.get_coordinates(layer.geometries)
+    middle = np.median(places, axis=0) if len(places) else np.zeros(2)
+    far = np.hypot(*(places - middle).T) > LONGEST_STEP
+    if not far.any():
+        return layer
+    x, y = places[int(np.argmax(far))]
+    warn(f"{layer.label}: {np.count_nonzero(far):,} of {len(far):,} vertices lie more than {LONGEST_STEP / 1000:.0f} km from the others, the first "
+         f"at {x:.1f}, {y:.1f}. They were left out.")
+    return replace(layer, geometries=[_lines_near(shape, middle) for shape in layer.geometries])
+
+
+def _lines_near(shape, middle):
+    """The lines of a shape, without the vertices that are far from a place."""
+    lines, _ = single_lines([shape])
+    near = [places[np.hypot(*(places[:, :2] - middle).T) <= LONGEST_STEP]
+            for places in (shapely.get_coordinates(line, include_z=bool(shape.has_z)) for line in lines)]
+    return shapely.multilinestrings([shapely.linestrings(places) for places in near if len(places) > 1])
 
 
 def check_overlap(result: AssessedLayer, reference: AssessedLayer) -> None:

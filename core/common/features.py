@@ -142,7 +142,8 @@ CORRECTIONS = [Field("action", str, "Action (accept/delete/move/draw/take)"), Fi
                STATION, OFFSET, Field("note", str, "Note"), Field("kind", str, "Kind of a line that is drawn (edge/lane/centre)"),
                Field("pattern", str, "Pattern of a line that is drawn (solid/dashed)"),
                Field("other", str, "Second reading that is taken (JSON)")]
-MAP_FINDINGS = [Field("fault", str, "Fault"), Field("element", str, "Road, lane, way or relation"), Field("text", str, "What was seen")]
+MAP_FINDINGS = [Field("fault", str, "Fault"), Field("element", str, "Road, lane, way or relation"), Field("text", str, "What was seen"),
+                Field("row", int, "Row of the report"), Field("places", int, "Places with the same finding")]
 CROSS_SECTIONS = [ROAD, Field("section", int, "Section"), STATION, Field("part", str, "Part (carriageway/lane)"), Field("lane", int, "Lane"),
                   Field("type", str, "Type of the lane"), Field("direction", int, "Direction (1 along, -1 against the road, 0 not known)"),
                   Field("offset_m", float, "Offset of its middle, left positive (m)"), WIDTH,

@@ -9,11 +9,13 @@ import shapely
 from scipy.spatial import cKDTree
 
 from ..common.features import Features
-from ..driving.lanes_layer import Lanes
+from ..driving.layers import Lanes
 
 NEAR_MIDDLE = 1.0     # m from the middle of a lane within which a driving line is held against it
 LEFT_OUT_NEAR = 0.5   # m between a driving line and a place that is left out: lanes have vertices twice as near
 SAME_BORDER = 0.05    # m across within which heights are compared
+LEAST_CHORD = 1.0     # m of a border's end, along which it goes straight on
+BEYOND_END = 10.0     # m: a road of four lanes whose end is cut askew by 30 degrees
 
 
 class Misses(NamedTuple):
@@ -26,14 +28,37 @@ class Misses(NamedTuple):
 
 
 def border_misses(source: Lanes, exported: Lanes) -> tuple[Misses, Misses]:
-    """(across, in height) of the source's border vertices against the borders that are read back."""
-    vertices = np.concatenate([source.left, source.right])
-    pieces = []
-    for k in range(len(exported)):
-        for border in exported.borders(k):
-            pieces.append(np.concatenate([border[:-1], border[1:]], axis=1))
-    segments = np.concatenate(pieces) if pieces else np.empty((0, 6))
-    return _misses(vertices, segments, np.inf)
+    """(across, in height) of the source's border vertices from the borders that are read back, and of theirs from the source's.
+
+    What lies beyond the end of a border of the source is left out: an export ends lanes square to the road.
+    """
+    ours, theirs = ([border for k in range(len(lanes)) for border in lanes.borders(k)] for lanes in (source, exported))
+    ends = [end for border in ours for end in (_gone_on(border), _gone_on(border[::-1]))]
+    there, back = _distances(_joined(ours), _segments(theirs)), _distances(_joined(theirs), _segments(ours, True), apart_from=_segments(ends))
+    across, rise = (_summary(np.concatenate(both)) for both in zip(there, back))
+    return across, rise
+
+
+def _joined(lines):
+    return np.concatenate([np.empty((0, 3)), *lines])
+
+
+def _segments(lines, curved=False):
+    """(M, 7) both ends of every segment of lines, and by how much it misses the curve that bends like the lines at its ends, if `curved`."""
+    places, line = _joined(lines), np.repeat(np.arange(len(lines)), [len(one) for one in lines])
+    way, same = np.diff(places[:, :2], axis=0), line[1:] == line[:-1]
+    turn = np.abs((np.diff(np.arctan2(way[:, 1], way[:, 0])) + np.pi) % (2 * np.pi) - np.pi)
+    turn = np.concatenate([[np.nan], np.where(same[1:] & same[:-1], turn, np.nan), [np.nan]])
+    bow = np.nan_to_num(np.fmin(turn[:len(way)], turn[1:len(way) + 1])) * np.hypot(*way.T) / 8 * curved
+    return np.c_[places[:-1], places[1:], bow][same]
+
+
+def _gone_on(line):
+    """(2, 3) from the start of a line straight on beyond it."""
+    away = line - line[0]
+    far = np.hypot(*away.T[:2]) > LEAST_CHORD
+    way = away[np.argmax(far) if far.any() else -1]
+    return np.stack([line[0], line[0] - way * BEYOND_END / max(float(np.hypot(*way[:2])), 1e-9)])
 
 
 def driving_line_misses(driving_lines: Features | None, exported: Lanes, measured_only: bool = True,
@@ -51,26 +76,34 @@ def driving_line_misses(driving_lines: Features | None, exported: Lanes, measure
         places = places[cKDTree(apart_from).query(places[:, :2])[0] > LEFT_OUT_NEAR]
     if not len(places) or not middles:
         return _summary(np.empty(0))
-    return _misses(places, np.concatenate([np.concatenate([line[:-1], line[1:]], axis=1) for line in middles]), NEAR_MIDDLE)[0]
+    return _summary(_distances(places, _segments(middles), NEAR_MIDDLE)[0])
 
 
-def _misses(places, segments, farthest):
-    """(across, in height) of (N, 3) places against (M, 6) segments from end to end, where one lies nearer than `farthest` metres."""
-    lines = shapely.linestrings(segments.reshape(-1, 2, 3)[:, :, :2])
-    points, tree = shapely.points(places[:, :2]), shapely.STRtree(lines)
+def _distances(places, segments, farthest=np.inf, apart_from=np.empty((0, 7))):
+    """(across, in height) metres of (N, 3) places from (M, 7) segments, of those places from which one lies nearer than `farthest` metres.
+
+    apart_from : (K, 7) segments; places to which one of them is nearer are left out
+    """
+    every = np.concatenate([segments, apart_from])
+    points, tree = shapely.points(places[:, :2]), shapely.STRtree(shapely.linestrings(every[:, :6].reshape(-1, 2, 3)[:, :, :2]))
     which, near = tree.query(points, predicate="dwithin", distance=SAME_BORDER)
-    first, last = segments[near, :3], segments[near, 3:]
+    first, last = every[near, :3], every[near, 3:6]
     run = (last - first)[:, :2]
     share = np.clip(((places[which, :2] - first[:, :2]) * run).sum(1) / np.maximum((run**2).sum(1), 1e-12), 0.0, 1.0)
-    across = np.full(len(places), np.inf)
-    np.minimum.at(across, which, np.hypot(*(places[which] - first - share[:, None] * (last - first)).T[:2]))
-    far = np.flatnonzero(np.isinf(across))   # the nearest of all segments is looked for only where none lies near
+    away, mine = np.hypot(*(places[which] - first - share[:, None] * (last - first)).T[:2]), near < len(segments)
+    across, left_out = np.full((2, len(places)), np.inf)
+    np.minimum.at(across, which[mine], away[mine] - segments[near[mine], 6])
+    np.minimum.at(left_out, which[~mine], away[~mine])
+    far = np.flatnonzero(np.isinf(across) & np.isinf(left_out))   # the nearest of all segments is looked for only where none lies near
+    across[left_out < across] = np.inf
     found, away = tree.query_nearest(points[far], max_distance=None if np.isinf(farthest) else farthest, return_distance=True, all_matches=False)
-    across[far[found[0]]] = away
+    nearest = found[1] < len(segments)
+    across[far[found[0, nearest]]] = away[nearest] - segments[found[1, nearest], 6]
     # where borders of several roads lie on each other, the one at the place's own height is its own
     rise = np.full(len(places), np.inf)
-    np.minimum.at(rise, which, np.abs(places[which, 2] - first[:, 2] - share * (last - first)[:, 2]))
-    return _summary(across[np.isfinite(across)]), _summary(rise[np.isfinite(rise)])
+    np.minimum.at(rise, which[mine], np.abs(places[which, 2] - first[:, 2] - share * (last - first)[:, 2])[mine])
+    rise[np.isinf(across)] = np.inf
+    return np.maximum(across[np.isfinite(across)], 0.0), rise[np.isfinite(rise)]
 
 
 def _summary(values):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..common.features import Features
-from ..driving.lanes_layer import Lanes
+from ..driving.layers import Lanes
 
 MIN_SHARED = 0.5   # m along the road that a lane and its driving line must share
 

@@ -8,7 +8,7 @@ import numpy as np
 import shapely
 
 from ..common.features import DRIVING_LINES, MARKING_LINES, ROAD_EDGES, Features
-from ..driving.lanes_layer import Lanes, lanes_to_features
+from ..driving.layers import Lanes, lanes_to_features
 
 STATUS_OF_MAPS = "measured"
 

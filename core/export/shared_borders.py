@@ -9,7 +9,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components, dijkstra
 from scipy.spatial import cKDTree
 
-from ..driving.lanes_layer import Lanes
+from ..driving.layers import Lanes
 from .sources import LEAST_CURB, RoadMapSource, is_stated
 
 WIDEST_DOUBLE = 0.5       # m between the stripes of a double line at the most; what is wider is a median
@@ -42,6 +42,13 @@ def with_shared_borders(source: RoadMapSource) -> RoadMapSource:
     if found.moved > TOLD_MOVE:
         notes.append(f"Maps have one border between two lanes: facing borders, as of a double line, were led along their middle, moved by up to "
                      f"{found.moved:.2f} m.")
+    rise = np.abs(np.concatenate([found.lanes.left - source.lanes.left, found.lanes.right - source.lanes.right])[:, 2])
+    if is_stated(source.lanes) and len(rise) and rise.max() > 2 * MOST_MET:
+        row = int(np.argmax(rise)) % len(source.lanes.left)
+        name = source.lanes.lane_id[int(np.searchsorted(source.lanes.start, row, side="right")) - 1]
+        x, y, _ = source.lanes.left[row]
+        notes.append(f"Lanes of the map do not lead on at one height; their borders were led to the middle, moved by up to {rise.max():.2f} m at "
+                     f"lane {name} near x {x:.1f}, y {y:.1f}. Correct the heights where the map was made.")
     return replace(source, lanes=found.lanes, gaps=found.gaps, middles=(met.left + met.right) / 2, notes=notes)
 
 

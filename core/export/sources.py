@@ -11,7 +11,7 @@ import shapely
 
 from ..common.errors import RoadExtractionError
 from ..common.features import Features
-from ..driving.lanes_layer import Lanes
+from ..driving.layers import Lanes
 from ..io.crs import check_metric, parse_crs
 
 MOST_OVERLAP = 0.5       # share of a lane that may lie on lanes of another road: more is two roads at one place

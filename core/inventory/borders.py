@@ -9,7 +9,7 @@ import numpy as np
 import shapely
 
 from ..countries.model import Country
-from ..driving.lanes_layer import lanes_from_features
+from ..driving.layers import lanes_from_features
 from ..survey.frame.placement import FrameLines, line_parts, lines_in_frame
 
 if TYPE_CHECKING:

@@ -124,7 +124,8 @@ def check_road_points_on_roads(road_points: RoadPoints, frame: RoadFrame, label:
         if agree[-1].any():
             above.append(_above(frame, road, s[agree[-1]], z[agree[-1]]))
     _refuse_mismatch(np.concatenate(agree) if agree else [], label, "points looked at")
-    _refuse_moved(*(np.concatenate(column) if column else [] for column in (beside, above)), label)
+    across, down = (np.concatenate(column) if column else [] for column in (beside, above))
+    _refuse_moved(across, down, label)
 
 
 def sample_road_points(road_points: RoadPoints) -> Iterator[tuple[int, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]]:

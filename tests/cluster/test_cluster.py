@@ -213,10 +213,10 @@ def test_other_packages_and_other_code_are_refused_by_name(cluster, monkeypatch)
     own = own_versions()
     for name, version in dict(python="3.8.1", numpy="0.9", distributed="1.0").items():
         with monkeypatch.context() as patch:
-            patch.setattr(connecting, "own_versions", lambda: {**own, name: version})
+            patch.setattr(executing, "own_versions", lambda: {**own, name: version})
             with pytest.raises(RoadExtractionError, match=f"(?i)worker tcp.* has {name} .*{version}"):
                 cluster_of(cluster.address, False, None)
-    monkeypatch.setattr(connecting, "code_digest", lambda: "another")
+    monkeypatch.setattr(executing, "code_digest", lambda: "another")
     with pytest.raises(RoadExtractionError, match="another lanewright"):
         cluster_of(cluster.address, False, None)
 
@@ -230,8 +230,8 @@ def test_threads_and_allowed_failures_that_do_not_suit_are_said(new_cluster):
 
 
 def test_a_scheduler_without_workers_and_none_at_all_are_named(new_cluster, monkeypatch):
-    monkeypatch.setattr(connecting, "WORKERS_TIME", 0.5)
-    monkeypatch.setattr(connecting, "CONNECT_TIME", 1.0)
+    monkeypatch.setattr(executing, "WORKERS_TIME", 0.5)
+    monkeypatch.setattr(executing, "CONNECT_TIME", 1.0)
     with pytest.raises(RoadExtractionError, match="has no workers.*dask worker tcp"):
         cluster_of(new_cluster(workers=0).address, False, None)
     with pytest.raises(RoadExtractionError, match="No Dask scheduler answers at tcp://127.0.0.1:1"):

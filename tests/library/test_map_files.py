@@ -7,6 +7,7 @@ import made_lanes
 import pytest
 import shapely
 from lanewright.core.common.errors import RoadExtractionError
+from lanewright.core.common.progress import Progress
 from lanewright.library import run
 from map_files import geometry, lanelet_street, opendrive, road, street_section, written
 
@@ -51,13 +52,28 @@ def test_a_good_and_a_faulty_map_are_told_apart(tmp_path):
     assert "road length" in (tmp_path / "report.html").read_text()
 
 
+def test_the_same_finding_at_many_places_is_one_row_and_every_place_is_in_the_layer(tmp_path):
+    kinked = [road(geometry(0, 0, 20 * k, 0, 20) + geometry(20, 20, 20 * k, 0.02 + 0.001 * k, 20), 40, f"A{k}") for k in range(30)]
+    faulty = written(tmp_path, opendrive([*kinked, road(geometry(0, 0, -50, 0, 40), 45, "B")]))
+    said, progress = [], Progress()
+    progress.warn = said.append
+    results = run("checkhdmap", progress, INPUT=faulty, OUTPUT=tmp_path / "findings.gpkg", REPORT=tmp_path / "report.html")
+    with fiona.open(results["OUTPUT"]) as layer:
+        rows = [(found.properties["fault"], found.properties["row"], found.properties["places"]) for found in layer]
+    assert sorted(rows) == [("kink", 2, 30)] * 30 + [("road length", 1, 1)]
+    assert said == ["road length: 1 (road B). The road says 45.000 m; its geometries are 40.000 m.",
+                    "kink: 30 (road A0; road A1; road A2; and 27 more). The direction jumps by 0.049 rad at s = 20.00."]
+    report = (tmp_path / "report.html").read_text()
+    assert "0.049 rad" in report and "0.048 rad" not in report and "road A19; and 10 more" in report
+
+
 def test_what_is_no_map_is_refused_by_the_check(tmp_path):
     with pytest.raises(RoadExtractionError, match="neither as OpenDRIVE nor as Lanelet2"):
         run("checkhdmap", INPUT=written(tmp_path, "<gpx/>"), OUTPUT=tmp_path / "findings.gpkg")
 
 
 def lane_layer(folder, lanes, name="lanes.gpkg"):
-    from lanewright.core.driving.lanes_layer import lanes_to_features
+    from lanewright.core.driving.layers import lanes_to_features
     from lanewright.library.layer_files import write_layer
 
     write_layer(str(folder / name), "", lanes_to_features(lanes), lambda: None)
@@ -115,7 +131,7 @@ def test_a_name_that_belongs_to_another_format_is_refused(tmp_path):
 def spoilt_layer(folder, what):
     """A layer of lanes that is none, and other layers."""
     from lanewright.core.common.features import LANES, ROAD_EDGES, Features
-    from lanewright.core.driving.lanes_layer import lanes_to_features
+    from lanewright.core.driving.layers import lanes_to_features
     from lanewright.library.layer_files import write_layer
 
     lanes = lanes_to_features(made_lanes.street())

@@ -147,6 +147,18 @@ def test_a_result_in_another_crs_is_brought_over(provider, tmp_path):
         assert results["OUTPUT"].crs().authid() == UTM
 
 
+def test_a_vertex_on_another_continent_does_not_make_a_layer_one_without_a_scale(provider, tmp_path):
+    """The middle of its extent lies where the projection ends; refused are layers that lie there, not those with one stray vertex."""
+    stray = layer("MultiLineString", ["MultiLineString ((0 3.5, 100 3.5, 40000000 41000000), (0 -3.5, 100 -3.5))"])
+    results, report = run("assessboundaries", tmp_path, INPUT=stray, REFERENCE=street(), TRAJECTORY=drive())
+    assert (results["CORRECT"], results["MISSED"], results["FALSE"]) == (100, 0, 0) and "1 of 5 vertices lie more than 100 km" in report
+    mercator = QgsVectorLayer("LineString?crs=EPSG:3857", "far", "memory")
+    feature = QgsFeature(mercator.fields())
+    feature.setGeometry(QgsGeometry.fromWkt("LineString (1000000 6800000, 1000100 6800000)"))
+    mercator.dataProvider().addFeatures([feature])
+    assert "times those on the ground" in refusal("assessboundaries", INPUT=mercator, REFERENCE=mercator)
+
+
 def test_driving_lines_are_cut_where_they_leave_the_buffer(provider, tmp_path):
     made = layer("LineString", ["LineString (0 0, 75 0, 75 0.3, 100 0.3)"])
     reference = layer("LineString", ["LineString (100 0, 0 0)"])

@@ -2,8 +2,8 @@
 
 import numpy as np
 from lanewright.core.common.features import MARKING_LINES, Features
-from lanewright.core.driving.driving_layers import curve_elements_to_features, driving_lines_to_features
 from lanewright.core.driving.driving_lines import DrivingSettings, make_driving_lines
+from lanewright.core.driving.layers import curve_elements_to_features, driving_lines_to_features
 from lanewright.core.markings.lines.painted_lines import lines_from_features
 from lanewright.core.markings.objects.marking_objects import markings_from_features
 from lanewright.core.road.edges.road_edges import edges_from_features

@@ -1,25 +1,18 @@
 """`make accuracy`: surveys with truth in, a page out."""
 
 import json
-from importlib import import_module
-from inspect import signature
 
-import numpy as np
 import pytest
 from shapely import LineString, Polygon, box
 
 pytest.importorskip("osgeo.gdal")
 
 from accuracy import judge  # noqa: E402
-from accuracy.ablations import ABLATIONS, nearest_steps  # noqa: E402
-from accuracy.chain import STAGES, swapped  # noqa: E402
 from accuracy.figures import figures_of  # noqa: E402
 from accuracy.page import page  # noqa: E402
 from accuracy.results import results  # noqa: E402
 from accuracy.surveys import _make_sample, read_case, surveys_in  # noqa: E402
 from lanewright.core.common.features import Features, Field  # noqa: E402
-from lanewright.core.road.common.corners import CurbSteps  # noqa: E402
-from lanewright.core.road.common.curb_limits import CurbLimits  # noqa: E402
 from lanewright.core.sample.survey import SampleSettings  # noqa: E402
 from make_sample import write_layers  # noqa: E402
 from results_table import Results  # noqa: E402
@@ -63,7 +56,7 @@ def test_the_results_hold_published_figures_beside_ours_and_the_page_is_the_same
     assert again.get("methods", "thesis, mean of data sets 1, 4, 5", "intensity-peaks", "polygons tolerant f1") == 83.42
     for name in ("survey", "seconds", "whole", "methods", "boundaries"):
         assert "short" in again.names(name) and any(of.startswith(("thesis", "paper")) for of in again.names(name))
-    assert "Not measured." in text and "**Steps**" not in text
+    assert "Not measured." in text
     assert "nan" not in text and "None" not in text and "nan" not in (tmp_path / "accuracy.csv").read_text()
 
 
@@ -103,37 +96,3 @@ def test_paint_beyond_the_judged_area_costs_nothing_and_beside_the_road_it_does(
     far, near = (box(middle.x + away, middle.y, middle.x + away + 0.2, middle.y + 5) for away in (500, 0))
     assert judge.paint(case, [*case.truth.markings, far])["strict"]["precision"] == 100
     assert judge.paint(case, [*case.truth.markings, near])["strict"]["precision"] < 100
-
-
-@pytest.mark.parametrize("ablation", ABLATIONS, ids=lambda ablation: ablation.text[:40])
-def test_what_an_ablation_switches_off_is_there_to_be_switched_off(ablation):
-    assert ablation.first in STAGES and set(ablation.stages) <= set(STAGES)
-    assert ablation.swaps or ablation.stages or ablation.settings != ABLATIONS[0].settings
-    for module, name, stand_in in ablation.swaps:
-        original = getattr(import_module(f"lanewright.core.{module}"), name)
-        if isinstance(original, type):
-            original, stand_in = original.of, stand_in.of
-        # it can be called as the original is, with what may be left out and without
-        parameters = signature(original).parameters.values()
-        signature(stand_in).bind(*(p.name for p in parameters if p.default is p.empty))
-        signature(stand_in).bind(*(p.name for p in parameters if p.kind is not p.KEYWORD_ONLY))
-
-
-def test_a_step_is_back_in_its_place_after_an_error():
-    from lanewright.core.markings.paint import asphalt_level as levels
-
-    before = levels.gutter_cells
-    with pytest.raises(ValueError), swapped("markings.paint.asphalt_level", "gutter_cells", None):
-        assert levels.gutter_cells is None
-        raise ValueError
-    assert levels.gutter_cells is before
-
-
-def test_the_thesis_takes_the_step_nearest_the_vehicle_that_is_high_and_steep_enough():
-    names = ("s", "u", "h", "skew", "height", "run", "noise", "scanner_noise", "support", "behind")
-    values = {name: np.zeros(5) for name in names}
-    values.update(s=np.array([0.0, 0.0, 0.25, 0.25, 0.5]), u=np.array([4.0, 2.0, 3.0, 5.0, 3.0]),
-                  height=np.array([0.1, 0.1, 0.02, 0.1, 0.1]), run=np.array([0.02, 0.02, 0.01, 0.02, 0.5]))
-    chain, = nearest_steps(CurbSteps(profile=np.array([0, 0, 1, 1, 2]), **values), None, 0.25, CurbLimits(0.05, np.radians(60)))
-    np.testing.assert_array_equal(chain.steps, [1, 3])
-    assert (chain.start, chain.end) == (0.0, 0.25)

@@ -1,12 +1,10 @@
 """The chain stage by stage, so that one stage can be run again another way on what the others gave."""
 
 import time
-from contextlib import ExitStack, contextmanager
 from dataclasses import replace
-from importlib import import_module
 
-from lanewright.core.driving.driving_layers import driving_lines_to_features
 from lanewright.core.driving.driving_lines import make_driving_lines
+from lanewright.core.driving.layers import driving_lines_to_features
 from lanewright.core.intensity.correction import correct_intensity
 from lanewright.core.intensity.image import write_intensity_image
 from lanewright.core.io.geotiff import IntensityImage
@@ -88,37 +86,15 @@ STAGES = dict(curbs=_curbs, edges=_edges, surface=_surface, intensity=_intensity
               outliers=_outliers, clusters=_clusters, lines=_lines, driving=_driving)
 
 
-def run(work, first="curbs", last="driving", settings=RoadMapSettings(), swaps=(), stages=None):
-    """The work with the stages from `first` to `last` run anew.
-
-    Parameters
-    ----------
-    work : Work that holds what the stages before `first` gave; it is left as it is
-    swaps : ((module in core, name in it, what to put there), ...) while the stages run
-    stages : stage name to a function(work, settings) that takes its place
-    """
+def run(work, first="curbs", last="driving", settings=RoadMapSettings()):
+    """The work with the stages from `first` to `last` run anew; `work` holds what the stages before `first` gave, and is left as it is."""
     names = list(STAGES)
     done = work.copy()
-    with ExitStack() as stack:
-        for module, name, stand_in in swaps:
-            stack.enter_context(swapped(module, name, stand_in))
-        for name in names[names.index(first):names.index(last) + 1]:
-            began = time.perf_counter()
-            (stages or {}).get(name, STAGES[name])(done, settings)
-            done.seconds[name] = time.perf_counter() - began
+    for name in names[names.index(first):names.index(last) + 1]:
+        began = time.perf_counter()
+        STAGES[name](done, settings)
+        done.seconds[name] = time.perf_counter() - began
     return done
-
-
-@contextmanager
-def swapped(module, name, stand_in):
-    """A function of the core replaced for a while: how the chain does without one of its steps."""
-    module = import_module(f"lanewright.core.{module}")
-    original = getattr(module, name)
-    setattr(module, name, stand_in)
-    try:
-        yield
-    finally:
-        setattr(module, name, original)
 
 
 def set_in(settings, stage, **values):

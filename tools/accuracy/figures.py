@@ -6,7 +6,6 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.io.geotiff import IntensityImage
 from lanewright.core.markings.paint.extract import extract_markings
 from lanewright.core.markings.paint.settings import MARKING_METHODS
@@ -16,9 +15,8 @@ from lanewright.core.survey.open_survey import open_survey
 from lanewright.core.survey.trajectory.reader import read_trajectory
 
 from . import judge
-from .ablations import ABLATIONS
 from .chain import Work, run, set_in
-from .evidence import confidence_figures, evidence_figures
+from .confidence import confidence_figures
 from .otherwise import street_figures
 from .poorer import poorer_figures
 from .surveys import read_case
@@ -48,7 +46,7 @@ def figures_of(folder, quick=False):
             figures = {**about, **_steps(case, work, reading, quick)} if case.steps else about
             if lanes:
                 track = np.column_stack([drive.x, drive.y])
-                figures.update(evidence=evidence_figures(case, track, work), confidence=confidence_figures(case, track, list(work.driving)))
+                figures.update(confidence=confidence_figures(case, track, list(work.driving)))
         finally:
             survey.store.close()
     return figures
@@ -59,7 +57,7 @@ def _steps(case, work, reading, quick):
     figures = dict(road_points=len(work.road), beams=work.beams, seconds={"survey": reading, **work.seconds}, whole=judged(case, work),
                    boundaries=boundary_methods(case, work), methods=marking_methods(case, work))
     if not quick:
-        figures.update(cells=resolutions(case, work), ablations=ablations(case, work))
+        figures.update(cells=resolutions(case, work))
     return figures
 
 
@@ -71,7 +69,7 @@ def len_of(cloud):
 
 
 def judged(case, work):
-    """What the ablation compares: boundaries, markings and driving lines of one run."""
+    """Boundaries, markings and driving lines of one run."""
     has = case.truth.has
     return dict(boundaries=judge.boundaries(case, work.edges, work.frame) if case.truth.curbs else None,
                 markings=judge.markings(case, work.markings) if "markings" in has else None,
@@ -113,19 +111,4 @@ def resolutions(case, work):
         one = run(work, "image", "clusters", set_in(DEFAULT, "image", cell_size=cell))
         found[f"{100 * cell:.0f}"] = dict(megabytes=one.image_path.stat().st_size / 1e6, **judge.markings(case, one.markings))
         one.image_path.unlink()
-    return found
-
-
-def ablations(case, work):
-    """What each ablation gives; None where it does not apply to the survey."""
-    found = []
-    for ablation in ABLATIONS:
-        if ablation.needs_beams and not work.beams:
-            found.append(None)
-            continue
-        try:
-            one = run(work, ablation.first, settings=ablation.settings, swaps=ablation.swaps, stages=ablation.stages)
-            found.append(judged(case, one))
-        except RoadExtractionError as problem:
-            found.append(dict(refused=str(problem)))
     return found

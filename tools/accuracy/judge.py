@@ -36,14 +36,27 @@ def _cm(metres):
     return f"{100 * metres:.0f}"
 
 
-def paint(case, polygons):
-    """Rates in cells of 4 cm, strict and with a cell of tolerance, and the share found of each class."""
-    found = assess_markings(polygons, case.truth.markings, reference_classes=case.truth.classes, area=case.truth.area, seen=case.seen)
+def paint(case, polygons, names=None):
+    """Rates in cells of 4 cm, strict and with a cell of tolerance, and the share found of each class.
+
+    With the `names` of the polygons' classes the counts say, too, of how many true cells with paint (`classed`) the class is right (`named`).
+    """
+    known = {_plain(name): name for name in case.truth.classes}
+    named = None if names is None else [known.get(_plain(name), _plain(name)) for name in names]
+    found = assess_markings(polygons, case.truth.markings, result_classes=named, reference_classes=case.truth.classes, area=case.truth.area,
+                            seen=case.seen)
     classes = {name: 100.0 * one.found_beside / one.reference for name, one in found.by_class.items() if one.reference}
     tolerant = found.tolerant
     counts = dict(right=tolerant.right, false=tolerant.false, missed=tolerant.missed,
                   found=tolerant.right if tolerant.found is None else tolerant.found)
+    if names is not None:
+        counts.update(named=sum(one.same for one in found.by_class.values()), classed=sum(one.found for one in found.by_class.values()))
     return dict(strict=rates(found.strict), tolerant=rates(tolerant), classes=classes, counts=counts)
+
+
+def _plain(name):
+    """Class names of other truths as ours: edge line is edge, hatching is hatch."""
+    return str(name).replace("_", " ").removesuffix(" line").removesuffix(" crossing").removesuffix("ing")
 
 
 def markings(case, features):

@@ -19,19 +19,12 @@ COLUMNS = ("time", "x", "y", "z", "roll", "pitch", "heading")
 
 def street_figures(case, variants=True):
     """{"as surveyed": figures, name of the variant: figures, ...}; {"refused": why} where no map could be made."""
-    drive = read_trajectory(case.trajectory)
-    rows = np.column_stack([getattr(drive, name) for name in COLUMNS])
-    centre = np.rint(rows[:, 1:3].mean(axis=0))
+    rows, centre = rows_of(case)
     found = {}
     for variant in (Variant(AS_SURVEYED), *(VARIANTS if variants else ())):
         with tempfile.TemporaryDirectory() as scratch:
             folder = Path(scratch)
-            cloud, trajectory = case.cloud, case.trajectory
-            if variant.name != AS_SURVEYED:
-                cloud, trajectory = folder / "cloud.laz", folder / "trajectory.csv"
-                variant.write_cloud(case.cloud, cloud, centre, (rows[0, 0], rows[-1, 0]))
-                np.savetxt(trajectory, variant.trajectory(rows, centre), ["%.6f"] + ["%.4f"] * 3 + ["%.5f"] * 3, ",",
-                           header=",".join(COLUMNS), comments="")
+            cloud, trajectory = surveyed(case, variant, rows, centre, folder)
             try:
                 found[variant.name] = _figures(case, rows[:, 1:3], variant, centre, cloud, trajectory, folder)
             except RoadExtractionError as problem:
@@ -39,10 +32,27 @@ def street_figures(case, variants=True):
     return found
 
 
+def rows_of(case):
+    """(N, 7) COLUMNS of the trajectory, and its middle, (2,) whole metres."""
+    drive = read_trajectory(case.trajectory)
+    rows = np.column_stack([getattr(drive, name) for name in COLUMNS])
+    return rows, np.rint(rows[:, 1:3].mean(axis=0))
+
+
+def surveyed(case, variant, rows, centre, folder):
+    """Paths of the cloud and the trajectory of a variant, which are written into a folder."""
+    if variant.name == AS_SURVEYED:
+        return case.cloud, case.trajectory
+    cloud, trajectory = folder / "cloud.laz", folder / "trajectory.csv"
+    variant.write_cloud(case.cloud, cloud, centre, (rows[0, 0], rows[-1, 0]))
+    np.savetxt(trajectory, variant.trajectory(rows, centre), ["%.6f"] + ["%.4f"] * 3 + ["%.5f"] * 3, ",", header=",".join(COLUMNS), comments="")
+    return cloud, trajectory
+
+
 def _figures(case, track, variant, centre, cloud, trajectory, folder):
     road_map = make_road_map([cloud], read_trajectory(trajectory), folder / "intensity.tif")
     try:
-        edges, markings, lanes = (_features(road_map.layer(name), variant, centre) for name in ("edges", "markings", "driving_lines"))
+        edges, markings, lanes = (on_the_street(road_map.layer(name), variant, centre) for name in ("edges", "markings", "driving_lines"))
         beside = roadside_figures(case, road_map.layer("edges")) if variant.name == AS_SURVEYED else {}
     finally:
         road_map.road_points.close()
@@ -50,5 +60,6 @@ def _figures(case, track, variant, centre, cloud, trajectory, folder):
     return {**judged(case, track, edges, paint, lanes), **beside}
 
 
-def _features(layer, variant, centre):
+def on_the_street(layer, variant, centre):
+    """[(geometry, row)] of a layer of a variant, where they lie on the street itself."""
     return [] if layer is None else [(variant.back(geometry, centre), row) for geometry, row in layer]

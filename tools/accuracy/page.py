@@ -69,12 +69,6 @@ def _lines(results):
         values = [value for name in results.names("streets") if (value := results.get(table, name, case, figure)) is not None]
         return " to ".join(dict.fromkeys(number(pick(values)) for pick in (min, max))) if values else ""
 
-    def worst(table, figure):
-        """The three cases without which a figure falls most."""
-        changes = {case: results.get(table, ALL, case, figure) for case in results.names(table, "case")[1:]}
-        falls = sorted((value, case) for case, value in changes.items() if value is not None and value < 0)
-        return "; ".join(f"“{case}” {value:+.1f}" for value, case in falls[:3])
-
     if street("driving lines within sigma"):
         yield (f"**Uncertainty**: {street('road edges within sigma') or '–'} % of the places of road edges and "
                f"{street('driving lines within sigma')} % of those of driving lines lie within one `sigma_m`; 68 % would be exact.")
@@ -96,7 +90,3 @@ def _lines(results):
         yield (f"**Three ways to find paint**, F1 as extracted: multi-threshold (ours) {found}, "
                f"point-segments (Yu) {spread('methods', 'point-segments', 'mask tolerant f1')}, "
                f"intensity-peaks (Chen) {spread('methods', 'intensity-peaks', 'mask tolerant f1')}.")
-    if found := worst("evidence", "driving lines 15 cm"):
-        yield f"**Evidence** that lanes need most, with the points of driving lines within 15 cm that are lost without it: {found}."
-    if found := worst("ablations", "markings F1"):
-        yield f"**Steps** that markings need most, with the points of F1 that are lost otherwise: {found}."

@@ -1,4 +1,4 @@
-"""The same street surveyed otherwise: mirrored, turned, driven the other way, thinned.
+"""The same street surveyed otherwise: mirrored, turned, driven the other way, thinned, with stations that begin elsewhere.
 
 A variant changes points and trajectory; its road map is changed back and judged by the truth of the street itself. None should make
 much of a difference: mirrored, a map of right-hand traffic becomes one of left-hand traffic.
@@ -11,6 +11,7 @@ import numpy as np
 import shapely
 
 ANGLE = 37.0     # degrees, counter-clockwise
+LED_BACK = 0.5   # m of the drive at least whose direction and speed lead back from its beginning
 
 
 @dataclass(frozen=True)
@@ -22,6 +23,7 @@ class Variant:
     turned : degrees, counter-clockwise
     reversed : the same track driven the other way
     every : of so many points one is kept
+    moved : m by which the drive, and so the stations, begin earlier
     """
 
     name: str
@@ -29,6 +31,7 @@ class Variant:
     turned: float = 0.0
     reversed: bool = False
     every: int = 1
+    moved: float = 0.0
 
     def _matrix(self):
         """(2, 2), by which rows of places about the centre are multiplied."""
@@ -48,6 +51,11 @@ class Variant:
     def trajectory(self, rows, centre):
         """(N, 7) time, x, y, z, roll, pitch, heading (degrees) of the variant."""
         rows = rows.copy()
+        if self.moved:
+            away = np.hypot(*(rows[:, 1:3] - rows[0, 1:3]).T)
+            k = int(np.argmax(away > max(self.moved, LED_BACK)))
+            before = rows[0] - (rows[k] - rows[0]) * self.moved / away[k]
+            rows = np.vstack([np.r_[before[:4], rows[0, 4:]], rows])
         rows[:, 1:3] = self.places(rows[:, 1:3], centre)
         if self.mirrored:
             rows[:, 4] *= -1

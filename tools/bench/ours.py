@@ -122,8 +122,7 @@ def scanlines(size):
 
 def image_ours(size):
     """Road points of 50 m in memory to the 4 cm intensity image by inverse distance alone, as gdal_grid does it."""
-    from lanewright.core.intensity.idw import ImageSettings
-    from lanewright.core.intensity.image import write_intensity_image
+    from lanewright.core.intensity.image import ImageSettings, write_intensity_image
     from lanewright.core.survey.las.writer import read_road_points
 
     points, target = read_road_points(prepared("strip.laz", size)), prepared("ours.tif", size)

@@ -8,7 +8,6 @@ import shapely
 from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
 from ..map_crs import metric_wkt
-from ..opendrive.geometry import Cubics
 from ..opendrive.model import DRIVEN_TYPES, MARK_TYPES, ROAD_LANE_TYPES, MapRoad, OpenDriveMap
 from ..opendrive.surface import RoadSurface
 from .findings import Findings, metres
@@ -110,7 +109,7 @@ class _RoadCheck:
 
     def profile(self, road: MapRoad) -> None:
         for cubics, fault, what in ((road.elevation, "height step", "height"), (road.superelevation, "crossfall step", "crossfall")):
-            for s, step in steps(cubics):
+            for s, step in zip(*cubics.steps()):
                 if step > MAX_HEIGHT_STEP:
                     self.add(fault, f"road {road.id}", f"The {what} jumps by {step:.3f} at s = {s:.2f}.", road, s)
         if road.rule not in ("RHT", "LHT"):
@@ -140,11 +139,11 @@ class _RoadCheck:
                 least, where = lane.width.least(length)
                 if least < -1e-6:
                     self.add("width below zero", name, f"{least:.3f} m at s = {section.s + where:.2f}.", road, section.s + where)
-                for s, step in steps(lane.width):
+                for s, step in zip(*lane.width.steps()):
                     if step > MAX_WIDTH_STEP:
                         self.add("width step", name, f"The width jumps by {metres(step)} at s = {section.s + s:.2f}.", road, section.s + s)
             outlines.append(self._borders(road, surface, number))
-        for s, step in steps(road.lane_offset):
+        for s, step in zip(*road.lane_offset.steps()):
             if step > MAX_WIDTH_STEP and s not in starts:
                 self.add("width step", f"road {road.id}", f"The lane offset jumps by {metres(step)} at s = {s:.2f}.", road, s)
         if road.junction == "-1":
@@ -205,16 +204,6 @@ class _RoadCheck:
     def _height(self, id):
         road = self.whole.road(id)
         return float(road.elevation.at(road.length / 2)) if road is not None else 0.0
-
-
-def steps(cubics: Cubics) -> list[tuple[float, float]]:
-    """(s, size) of the jumps between the pieces of a function."""
-    found = []
-    for (start, a, b, c, d), (end, value, *_) in zip(cubics.rows[:-1], cubics.rows[1:]):
-        ds = end - start
-        if ds >= 0:
-            found.append((float(end), abs(float(a + ds * (b + ds * (c + ds * d)) - value))))
-    return found
 
 
 def wrapped(angle: np.ndarray | float) -> np.ndarray:

@@ -16,6 +16,7 @@ from ...curves.clothoid import Clothoid
 
 STRAIGHT_BEND = 1e-5    # 1/m: a curvature that moves 200 m of road by 5 cm
 LEAST_ELEMENT = 1e-4   # m: shorter pieces of a reference line are none
+FOOT_ROUNDS, FOUND_FOOT = 8, 1e-9   # of looking for the foot of a place; m that its step must fall below
 TABLE_STEP = 0.25   # m between the places by which arc lengths on poly3 are found
 
 
@@ -52,6 +53,13 @@ class Cubics:
         rows = self.rows.copy()
         rows[:, 0] += ds
         return Cubics(rows)
+
+    def steps(self) -> tuple[np.ndarray, np.ndarray]:
+        """((K,) s, (K,) sizes) of the jumps between the pieces, which are 0 where there is none."""
+        start, a, b, c, d = self.rows.T
+        ds = np.diff(start)
+        met = a[:-1] + ds * (b[:-1] + ds * (c[:-1] + ds * d[:-1]))
+        return start[1:][ds >= 0], np.abs(met - a[1:])[ds >= 0]
 
     def least(self, length: float) -> tuple[float, float]:
         """(least value, where) over [0, length], from the ends and the turning points of every piece."""
@@ -151,6 +159,21 @@ class PlanView:
             rows = owner == k
             places[rows], heading[rows], bend[rows] = self.elements[k].at(s[rows] - starts[k])
         return places, heading, bend
+
+    def feet(self, places: np.ndarray, near: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """((N,) s, (N,) t) of (N, 2) places, found from s nearby; beyond the ends the first and last element go on."""
+        s = np.array(near, float)
+        for _ in range(FOOT_ROUNDS):
+            on, heading, bend = self.at(s)
+            dx, dy = places[:, 0] - on[:, 0], places[:, 1] - on[:, 1]
+            across = dy * np.cos(heading) - dx * np.sin(heading)
+            step = (dx * np.cos(heading) + dy * np.sin(heading)) / np.clip(1 - bend * across, 0.2, 5.0)
+            s = s + step
+            if np.abs(step).max(initial=0.0) < FOUND_FOOT:
+                break
+        on, heading, _ = self.at(s)
+        dx, dy = places[:, 0] - on[:, 0], places[:, 1] - on[:, 1]
+        return s, dy * np.cos(heading) - dx * np.sin(heading)
 
     def jumps(self, gap: float, kink: float) -> list[tuple[float, float, float]]:
         """(s, metres, radians) where an element begins elsewhere, or in another direction, than the one before ends.

@@ -9,8 +9,8 @@ import numpy as np
 from ..sources import LEAST_CURB
 from .geometry import Cubics
 from .model import MapRoad
-from .profiles import fit_cubics, simplified
-from .road_shape import RoadShape, risen
+from .profiles import fit_cubics, risen, simplified
+from .road_shape import RoadShape
 from .surface import shape_height
 
 FLAT = 0.001             # m of height that a cross-section may miss without a crossfall of its own

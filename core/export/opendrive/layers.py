@@ -96,8 +96,8 @@ class _Faults:
         rest = list(roads.values())[ROADS_NAMED:]
         if rest:
             named.append(f"{len(rest)} more roads, by at most {rest[0][0][2]:.3f} m")
-        return (f"Gaps or kinks of the reference line ({len(roads)} of the roads) make borders of lanes jump by more than {BORDER_JUMP:g} m: "
-                f"{'; '.join(named)}. Correct them where the map was made.")
+        return (f"Gaps or kinks of the reference line, or steps of heights and widths ({len(roads)} of the roads), make borders of lanes jump by "
+                f"more than {BORDER_JUMP:g} m: {'; '.join(named)}. Correct them where the map was made.")
 
 
 def _add_section(rows, lines, whole, network, surface, number, road_number, faults):

@@ -10,7 +10,6 @@ import shapely
 from ...common.features import Features
 from ..painted_objects import stop_lines, walked_crossings
 from .model import MapRoad, OpenDriveMap
-from .road_shape import feet
 
 SAMPLES = 1.0          # m between places of reference lines that objects are held against
 FARTHEST = 25.0        # m from a reference line
@@ -63,7 +62,7 @@ def _places(roads: list[MapRoad]) -> tuple[shapely.STRtree, np.ndarray, np.ndarr
 
 def _object(number: int, kind: str, name: str, corners: np.ndarray, road: MapRoad, near: float) -> dict[str, Any]:
     """The attributes of an object; its outline is told along the road, or beside its own place where it reaches beyond the road's end."""
-    s, t = feet(road.plan, corners[:, :2], np.full(len(corners), near))
+    s, t = road.plan.feet(corners[:, :2], np.full(len(corners), near))
     at, aside = float(np.clip(s.mean(), 0.0, road.length)), float(t.mean())
     local = bool(s.min() < 0.0 or s.max() > road.length)
     if local:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from .geometry import Cubics, PlanView
 from .model import LaneSection, MapLane, MapRoad
-from .profiles import broken_lines, difference, fit_cubics, simplified
+from .profiles import LEAST_STEP, STEP_RUN, difference, fit_cubics, risen, simplified
 from .reference_line import fit_reference, polynomial_reference
 from .strips import MOST_TURN, SLOPE_REACH, Slice
 
@@ -23,10 +23,7 @@ LOOSER = (1.0, 5.0, 25.0)   # times the tolerance that the reference line may li
 SMOOTHER = (1.0, 3.0)    # m, standard deviations of the means that take the corners from a border that no other line follows
 BEND_STEP = 0.25         # m between the places at which a border is held against the curvature
 LEAST_STRETCH = 0.1      # of a border against the reference line: less is beside the centre of the curve
-FOOT_ROUNDS = 8
-FOUND_FOOT = 1e-9        # m
 END_ROUNDS = 4
-LEAST_STEP = 0.001       # m along the road between places that count
 SAME_LINE = 0.02         # m by which lane 0 may jump from section to section and still go on
 MOST_LEAD = 0.5          # m aside to which lane 0 is led back along a section that lies beside it
 LEAST_CHORD = 1.0        # m of a border's end, along which it goes straight on
@@ -81,19 +78,49 @@ def shape_of(strip: list[Slice], centres: list[int], tolerance: float) -> RoadSh
     keep = np.append(True, np.diff(np.floor(along / GUIDE_STEP)) > 0)
     keep[np.flatnonzero(keep)[-1] if keep.sum() > 1 else -1] = False
     keep[-1] = True
-    ends, widest = _end_headings(strip, guide)
-    plan = _reference(guide[keep], tolerance, ends, SQUARE_END / max(widest, 1.0), _reach(strip, index, guide)[keep])
-    along *= plan.length / along[-1]
-    for _ in range(END_ROUNDS):   # seen from a longer line the corners lie a little elsewhere
-        s_all, t_all = _frame(plan, strip, [along[rows] for rows in index])
-        before, after = _beyond_ends(strip, s_all, plan.length)
-        if max(before, after) < LEAST_STEP:
-            break
-        plan, along = plan.lengthened(before, after), along + before
+    for square in (False, True):
+        ends, widest = _end_headings(strip, guide, square)
+        plan, follows = _reference(guide[keep], tolerance, ends, SQUARE_END / max(widest, 1.0), _reach(strip, index, guide)[keep])
+        shown, near = strip, [along[rows] * plan.length / along[-1] for rows in index]
+        if not follows:   # seen from a line that cuts a corner, a border is not straight from vertex to vertex
+            shown, near = (list(values) for values in zip(*(_finer(one, s) for one, s in zip(strip, near))))
+        for _ in range(END_ROUNDS):   # seen from a longer line the corners lie a little elsewhere
+            s_all, t_all = _frame(plan, shown, near)
+            before, after = _beyond_ends(strip, s_all, plan.length)
+            if max(before, after) < LEAST_STEP:
+                break
+            plan, near = plan.lengthened(before, after), [s + before for s in near]
+        else:   # a curve too tight to go on in: the ends become square
+            continue
+        break
+    strip = shown
+    for s in s_all:
+        _square_steps(s)
     z_all, lifts = (list(values) for values in zip(*(one.levels(centre) for one, centre in zip(strip, centres))))
     starts = np.array([0.0, *_cuts(strip, centres, s_all), plan.length])
     courses = [[_course(strip, k, j, (s_all, t_all, z_all), starts[k:k + 2]) for j in range(len(strip[k].cells) + 1)] for k in range(len(strip))]
     return RoadShape(plan, s_all, t_all, z_all, lifts, starts, courses)
+
+
+def _finer(one, s):
+    """A slice with vertices every BEND_STEP at least, and their s from (n,) metres of its own."""
+    gaps = max((np.hypot(*np.diff(border[:, :2], axis=0).T) for border in one.borders()), key=np.sum)
+    parts = np.maximum(np.ceil(gaps / BEND_STEP), 1).astype(int)
+    at = np.append(np.repeat(np.arange(len(gaps)), parts) + (np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)) / np.repeat(
+        parts, parts), len(gaps))
+
+    def line(places):
+        return np.stack([np.interp(at, np.arange(len(s)), values) for values in places.T], axis=1)
+
+    cells = [replace(cell, left=line(cell.left), right=line(cell.right), left_nodes=(cell.left_nodes[0], cell.left_nodes[-1]),
+                     right_nodes=(cell.right_nodes[0], cell.right_nodes[-1])) for cell in one.cells]
+    return replace(one, cells=cells), np.interp(at, np.arange(len(s)), s)
+
+
+def _square_steps(s):
+    """Two vertices of every border nearly at one place are a step across the road: give all borders the same (borders, n) s there."""
+    for k in np.flatnonzero((np.diff(s.mean(0)) < STEP_RUN) & (np.ptp(s[:, :-1], axis=0) < 2 * STEP_RUN)):
+        s[:, k:k + 2] = s[:, k:k + 2].mean() + LEAST_STEP * np.array([-1.0, 1.0])
 
 
 def _frame(plan, strip, near):
@@ -101,7 +128,7 @@ def _frame(plan, strip, near):
     found: tuple[list[np.ndarray], list[np.ndarray]] = ([], [])
     for one, along in zip(strip, near):
         places = np.stack(one.borders())[..., :2]
-        for values, new in zip(found, feet(plan, places.reshape(-1, 2), np.tile(along, len(places)))):
+        for values, new in zip(found, plan.feet(places.reshape(-1, 2), np.tile(along, len(places)))):
             values.append(new.reshape(places.shape[:2]))
     return found
 
@@ -185,7 +212,8 @@ def _reach(strip, index, guide):
 
 
 def _reference(points, tolerance, ends, turn_tolerance, reach):
-    """The reference line; a border with a corner is cut short by it, and the lane offset has the rest."""
+    """(the reference line, whether it follows the points within the tolerance); a border with a corner is cut short by it, and the lane offset
+    has the rest."""
     # to meet other roads squarely matters more than to lie on the border, and no border may fold back in a curve
     guides = [points, *(_smoothed(points, width) for width in SMOOTHER)]
     for headings in (ends, (None, None)):
@@ -193,8 +221,8 @@ def _reference(points, tolerance, ends, turn_tolerance, reach):
             for loose in LOOSER:
                 plan = fit_reference(guide, loose * tolerance, headings, turn_tolerance)
                 if plan is not None and not _folds(plan, points, reach):
-                    return plan
-    return polynomial_reference(points)
+                    return plan, guide is points and loose == LOOSER[0]
+    return polynomial_reference(points), True
 
 
 def _folds(plan, points, reach):
@@ -216,8 +244,9 @@ def _smoothed(points, width):
     return np.stack([np.convolve(column, weights / weights.sum(), mode="valid") for column in padded.T], axis=1)
 
 
-def _end_headings(strip, guide):
-    """((start, end) headings square to the ends at which the road meets another, None where they are cut askew; metres, its width)."""
+def _end_headings(strip, guide, square):
+    """((start, end) headings square to the ends at which the road meets another, or to all if `square`, None where they are cut askew;
+    metres, its width)."""
     found, widest = [], 0.0
     along = np.append(0.0, np.cumsum(np.hypot(*np.diff(guide, axis=0).T)))
     near, far = (int(np.clip(np.searchsorted(along, at), 1, len(guide) - 1)) for at in (END_CHORD, along[-1] - END_CHORD))
@@ -227,7 +256,7 @@ def _end_headings(strip, guide):
         widest = max(widest, float(np.hypot(*across)))
         heading, along = float(np.arctan2(-across[0], across[1])), float(np.arctan2(way[1], way[0]))
         askew = abs((heading - along + np.pi) % (2 * np.pi) - np.pi)
-        found.append(heading if meets and np.hypot(*across) > LEAST_END and askew < MOST_ASKEW else None)
+        found.append(heading if (meets or square) and np.hypot(*across) > LEAST_END and askew < MOST_ASKEW else None)
     return tuple(found), widest
 
 
@@ -239,22 +268,6 @@ def _beside(line, place, end):
     way = np.gradient(line, axis=0)
     normal = np.c_[-way[:, 1], way[:, 0]] / np.maximum(np.hypot(*way.T), 1e-9)[:, None]
     return line + normal * (away @ normal[end])
-
-
-def feet(plan: PlanView, places: np.ndarray, near: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """((N,) s, (N,) t) of (N, 2) places, found from s nearby; beyond the ends the first and last element go on."""
-    s = np.array(near, float)
-    for _ in range(FOOT_ROUNDS):
-        on, heading, bend = plan.at(s)
-        dx, dy = places[:, 0] - on[:, 0], places[:, 1] - on[:, 1]
-        across = dy * np.cos(heading) - dx * np.sin(heading)
-        step = (dx * np.cos(heading) + dy * np.sin(heading)) / np.clip(1 - bend * across, 0.2, 5.0)
-        s = s + step
-        if np.abs(step).max(initial=0.0) < FOUND_FOOT:
-            break
-    on, heading, _ = plan.at(s)
-    dx, dy = places[:, 0] - on[:, 0], places[:, 1] - on[:, 1]
-    return s, dy * np.cos(heading) - dx * np.sin(heading)
 
 
 def add_lanes(road: MapRoad, shape: RoadShape, strip: list[Slice], centres: list[int], tolerance: float,
@@ -277,7 +290,7 @@ def add_lanes(road: MapRoad, shape: RoadShape, strip: list[Slice], centres: list
             slopes = slopes[0], _slopes_where_met(shape, strip, directions, True)
         functions = fit_cubics(s, t, start, end, tolerance, list(zip(*slopes)))
         if _crossing(functions, end - start):
-            functions = broken_lines(s, _untangled(s, t, centre), start, end)
+            functions = fit_cubics([s[0]] * len(s), _untangled(s, t, centre), start, end, tolerance, broken=True)
         sections.append(functions)
     offsets, numbers = [], []
     lines = _lines_of_lane_0(sections, centres, np.diff(shape.starts), int(np.argmax([one.length for one in strip])))
@@ -361,20 +374,13 @@ def _within(start, end, s, values):
     return places, np.interp(places, s, values)
 
 
-def risen(s: np.ndarray) -> np.ndarray:
-    """(N,) bool: whether each of (N,) metres along the road lies ahead of all before it."""
-    return np.append(True, np.diff(np.maximum.accumulate(s)) > LEAST_STEP)
-
-
 def _crossing(functions, length):
     return any(difference(left, right).least(length)[0] < -1e-9 for left, right in zip(functions[:-1], functions[1:]))
 
 
 def _untangled(s, t, centre):
     """Offsets that never cross, from lane 0 outwards, at the places of the first border."""
-    levels = [np.interp(s[0], one, value) for one, value in zip(s, t)]
-    for k in range(centre - 1, -1, -1):
-        levels[k] = np.maximum(levels[k], levels[k + 1])
-    for k in range(centre + 1, len(levels)):
-        levels[k] = np.minimum(levels[k], levels[k - 1])
-    return [np.interp(one, s[0], level) for one, level in zip(s, levels)]
+    levels = np.array([np.interp(s[0], one, value) for one, value in zip(s, t)])
+    levels[centre::-1] = np.maximum.accumulate(levels[centre::-1])
+    levels[centre:] = np.minimum.accumulate(levels[centre:])
+    return list(levels)

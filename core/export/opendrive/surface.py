@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 import shapely
 
+from ..sources import LEAST_CURB
+from .geometry import Cubics
 from .model import MapRoad
+from .profiles import LEAST_STEP, STEP_RUN
 
 BORDER_STEP = 1.0   # m between the places at which borders are computed
 SAGITTA = 0.0005    # m by which the chord between two of them may miss a curve
 LEAST_BORDER_STEP = 0.05   # m
 BENDING_ROUNDS = 5   # of halving the steps where a border bends
 BEFORE_END = 1e-6    # m before the end of a section at which its functions still hold
-LEAST_STATION = 0.005   # m between two of them: nearer ones would be one vertex
 LONGEST_FOLD = 200      # places before and after a step back among which its crossing is looked for
 GAP, KINK = 1e-4, 1e-4  # m and rad between elements of the reference line from which a border jumps there: it is cut on both sides
 
@@ -39,11 +43,15 @@ class RoadSurface:
         heights = road.elevation.rows[:, 0], road.superelevation.rows[:, 0], road.shape[:, 0]
         knots = np.concatenate([even, [element.s for element in road.plan.elements], road.lane_offset.rows[:, 0], *heights, *own])
         knots = np.unique(knots[(knots >= first) & (knots <= last)])
-        keep = np.append(True, np.diff(knots) > LEAST_STATION) & (knots < last - LEAST_STATION)
+        keep = np.append(True, np.diff(knots) > STEP_RUN) & (knots < last - STEP_RUN)
         keep[0] = True
         knots = np.append(knots[keep], last) if last > first else knots[[0, -1]]
         if number + 1 < len(road.sections):   # the functions of the next section begin at its end
             knots[-1] = max(knots[-1] - BEFORE_END, knots[-2])
+        lanes = road.sections[number].lanes.values()
+        steps = [_steps(lane.width) for lane in lanes] + [_steps(lane.heights) for lane in lanes]
+        cuts = np.concatenate([self._cuts, *(s + first - 2 * LEAST_STEP for s in steps)])
+        knots = np.unique(np.append(knots, cuts[(cuts > knots[0] + STEP_RUN) & (cuts < knots[-1] - STEP_RUN)]))
         for _ in range(BENDING_ROUNDS):
             middles = (knots[:-1] + knots[1:]) / 2
             ends, inner = (np.stack(list(self.offsets(number, s).values())) for s in (knots, middles))
@@ -53,8 +61,13 @@ class RoadSurface:
             if not bent.any():
                 break
             knots = np.sort(np.append(knots, middles[bent]))
-        jumps = np.array([s for s, _, _ in road.plan.jumps(GAP, KINK) if knots[0] + LEAST_STATION < s < knots[-1] - LEAST_STATION])
-        return np.sort(np.append(knots, jumps - BEFORE_END))
+        return knots
+
+    @cached_property
+    def _cuts(self):
+        """(N,) metres of s before every gap or kink of the reference line, and before every step of a function of the whole road."""
+        steps = [_steps(cubics) for cubics in (self.road.elevation, self.road.superelevation, self.road.lane_offset)]
+        return np.append([s - BEFORE_END for s, _, _ in self.road.plan.jumps(GAP, KINK)], np.concatenate(steps) - 2 * LEAST_STEP)
 
     def offsets(self, number: int, s: np.ndarray) -> dict[int, np.ndarray]:
         """(N,) metres left of the reference line of every lane's outer border, and of lane 0, by lane number."""
@@ -88,14 +101,19 @@ class RoadSurface:
         return self.places(s, inner, lift[0]), self.places(s, offsets[id], lift[1])
 
     def jumps(self) -> list[tuple[float, float, int]]:
-        """(s, metres, lane) where the reference line has a gap or a kink, how far the farthest border jumps there, and whose it is."""
-        found = []
-        for s, gap, turn in self.road.plan.jumps(GAP, KINK):
-            number = max((k for k, section in enumerate(self.road.sections) if section.s <= s), default=-1)
+        """(s, metres, lane) of every gap or kink of the reference line, with the jump of the farthest border there and its lane, and of every step
+        of a width or height."""
+        road, found = self.road, []
+        for s, gap, turn in road.plan.jumps(GAP, KINK):
+            number = max((k for k, section in enumerate(road.sections) if section.s <= s), default=-1)
             if number >= 0:
                 farthest, lane = max((abs(float(t[0])), id) for id, t in self.offsets(number, np.array([s])).items())
                 found.append((s, gap + 2 * farthest * float(np.sin(turn / 2)), lane))
-        return found
+        starts = [section.s for section in road.sections]   # where lanes begin lane 0 may lie elsewhere
+        found += [(s, size, 0) for cubics in (road.elevation, road.lane_offset) for s, size in zip(*cubics.steps())
+                  if cubics is road.elevation or s not in starts]
+        return found + [(section.s + s, size, lane.id) for section in road.sections for lane in section.lanes.values()
+                        for s, size in zip(*lane.width.steps())]
 
     def inside(self, number: int, id: int) -> int:
         """The lane next to one on the side of lane 0, which is never missing."""
@@ -129,6 +147,12 @@ class RoadSurface:
                 first = place if first is None else first
                 points[before + 1:after + 1] = place
         return points, first
+
+
+def _steps(values):
+    """(N,) metres of s at which Cubics, or (M, 3) heights that hold from row to row, step by more than LEAST_CURB."""
+    s, sizes = values.steps() if isinstance(values, Cubics) else (values[1:, 0], np.abs(np.diff(values[:, 1:], axis=0)).max(1, initial=0.0))
+    return s[sizes > LEAST_CURB]
 
 
 def _crossing(points, a, b):

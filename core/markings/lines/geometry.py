@@ -13,8 +13,8 @@ from ...common.progress import Progress
 from ...common.setting import check_limits, setting
 from ...countries.catalogue import country
 from ...countries.neutral import NEUTRAL
+from ...curves.base import CurveFit
 from ...curves.bspline import fit_splines, smooth_profiles
-from ...curves.curve_fit import CurveFit
 from ...curves.model_selection import CURVES, fit_curve, fit_curves
 from ...curves.robust import median
 from ...survey.frame.placement import LINE_VERTEX_SPACING

@@ -34,21 +34,23 @@ def continued_corrections(frame: RoadFrame, moves: PassCorrections, compared: li
     known = {number for pair in compared for number in (pair.one, pair.other)}
     by_pass = dict(moves.by_pass)
     passes = sorted(frame.passes, key=lambda p: float(p.time[0]))
-    while True:
-        found = {}
-        for k, p in enumerate(passes):
-            if p.number in by_pass or p.number in known:
-                continue
-            before = _touching(passes[k - 1], p, by_pass) if k else None
-            after = _touching(p, passes[k + 1], by_pass) if k + 1 < len(passes) else None
-            if before or after:
-                found[p.number] = _led_on(PassCorrections(by_pass), p, before, after)
-        if not found:
-            return PassCorrections(by_pass)
+    while found := _beside_moved(passes, by_pass, known):
         by_pass.update(found)
         for number in found:
             across = _moved_across(frame, PassCorrections(by_pass), frame.passes[number])
             frame.pass_sigma.setdefault(frame.passes[number].road, SigmaAlong.everywhere(across))
+    return PassCorrections(by_pass)
+
+
+def _beside_moved(passes, by_pass, known):
+    """Corrections of the passes, in order of time, that touch one of those moved, and are neither moved nor known to lie right."""
+    found = {}
+    for before, p, after in zip([None, *passes[:-1]], passes, [*passes[1:], None]):
+        if p.number not in by_pass and p.number not in known:
+            ends = _touching(before, p, by_pass), _touching(p, after, by_pass)
+            if any(ends):
+                found[p.number] = _led_on(PassCorrections(by_pass), p, *ends)
+    return found
 
 
 def _moved_across(frame, moves, p):
@@ -59,9 +61,9 @@ def _moved_across(frame, moves, p):
     return float(np.sqrt(np.mean((north * np.cos(heading) - east * np.sin(heading)) ** 2)))
 
 
-def _touching(first: Pass, then: Pass, by_pass: dict) -> Pass | None:
+def _touching(first: Pass | None, then: Pass | None, by_pass: dict) -> Pass | None:
     """The one of two passes that was moved, if they touch in time."""
-    if not 0.0 <= then.time[0] - first.time[-1] <= MAX_SEAM:
+    if first is None or then is None or not 0.0 <= then.time[0] - first.time[-1] <= MAX_SEAM:
         return None
     return next((one for one in (first, then) if one.number in by_pass), None)
 

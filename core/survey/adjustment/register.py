@@ -189,32 +189,52 @@ def pass_offsets(survey: Any, road: int, progress: Progress = Progress()) -> lis
     -------
     list of PassOffsets, one per pair of passes
     """
-    start, end = survey.store.span(road)
-    windows = [number for number in range(int(np.floor(start / WINDOW_LENGTH)), int(np.ceil(end / WINDOW_LENGTH)))
-               if _several_passes(survey.frame.passes_of(road), number * WINDOW_LENGTH, (number + 1) * WINDOW_LENGTH)]
+    windows = _windows_of_several(survey, road)
     seen = _seen(survey, road, windows, {}, progress.part(0.0, 1.0 / 3.0))
-    found = [_combine_windows(pair, evidence) for pair, evidence in sorted(seen.items())]
+    found = _combined(seen)
     rough = {(pair.one, pair.other): places for pair in found if (places := _rough_offsets(survey, road, pair))}
     if rough:
         seen = _seen(survey, road, windows, rough, progress.part(1.0 / 3.0, 1.0 / 3.0))
-        found = [_combine_windows(pair, evidence) for pair, evidence in sorted(seen.items())]
+        found = _combined(seen)
     along, left = (_mean_size(found, axis) for axis in PLAN_AXES)
     order = PLAN_AXES if along > MUCH_LARGER * left else PLAN_AXES[::-1]
     for k, (taken, measured) in enumerate((order, order[::-1]), start=1):
-        moves = {}
-        for pair in found:
-            places = rough.get((pair.one, pair.other), {})
-            moves[pair.one, pair.other] = {
-                number: (along + metres, left) if taken == "along" else (along, left + metres)
-                for number, metres in zip((pair.stations // WINDOW_LENGTH).astype(int).tolist(), pair.everywhere(taken).tolist())
-                if abs(metres) > MIN_COUPLED_OFFSET for along, left in [places.get(number, (0.0, 0.0))]}
+        moves = {(pair.one, pair.other): _taken_out(pair, taken, rough.get((pair.one, pair.other), {})) for pair in found}
         if apart := sorted({number for places in moves.values() for number in places}):
             again = _seen(survey, road, apart, moves, progress.part(k / 3.0, (k + 1) / 3.0))
-            of_window = {pair: {row[0]: row for row in rows} for pair, rows in again.items()}
-            there = {pair: [of_window.get(pair, {}).get(row[0], row) for row in rows] for pair, rows in seen.items()}
-            found = [replace(before, **{measured: getattr(_combine_windows(pair, evidence), measured)})
-                     for before, (pair, evidence) in zip(found, sorted(there.items()))]
+            found = _measured_again(found, measured, seen, again)
     return [_with_rough(pair, rough.get((pair.one, pair.other), {})) for pair in found]
+
+
+def _windows_of_several(survey, road):
+    """Numbers of the windows of a road that at least two passes drove through."""
+    start, end = survey.store.span(road)
+    passes = survey.frame.passes_of(road)
+    windows = range(int(np.floor(start / WINDOW_LENGTH)), int(np.ceil(end / WINDOW_LENGTH)))
+    return [number for number in windows
+            if sum(p.span[0] < (number + 1) * WINDOW_LENGTH and p.span[1] > number * WINDOW_LENGTH for p in passes) > 1]
+
+
+def _combined(seen):
+    """PassOffsets of pairs of passes from what `_seen` gives."""
+    return [_combine_windows(pair, evidence) for pair, evidence in sorted(seen.items())]
+
+
+def _taken_out(pair, axis, rough):
+    """{window: (along, left) by which the second of two passes is to be moved} to take out the offsets along one axis; `rough` the same, before."""
+    moves = {}
+    for number, metres in zip((pair.stations // WINDOW_LENGTH).astype(int).tolist(), pair.everywhere(axis).tolist()):
+        if abs(metres) > MIN_COUPLED_OFFSET:
+            along, left = rough.get(number, (0.0, 0.0))
+            moves[number] = (along + metres, left) if axis == "along" else (along, left + metres)
+    return moves
+
+
+def _measured_again(found, axis, seen, again):
+    """The PassOffsets with offsets along an axis from evidence in which those along the other are taken out, where there is such evidence."""
+    of_window = {pair: {row[0]: row for row in rows} for pair, rows in again.items()}
+    there = {pair: [of_window.get(pair, {}).get(row[0], row) for row in rows] for pair, rows in seen.items()}
+    return [replace(before, **{axis: getattr(after, axis)}) for before, after in zip(found, _combined(there))]
 
 
 def _with_rough(pair, places):
@@ -238,26 +258,39 @@ def _rough_offsets(survey, road, pair):
     if not across and np.isfinite(pair.along).any():
         return {}
     numbers = (pair.stations // WINDOW_LENGTH).astype(int)
-    starts = np.unique(np.linspace(0, max(len(numbers) - ROUGH_GROUP, 0), ROUGH_GROUPS).astype(int)).tolist()
-    found = []
-    for start in starts:
-        group = numbers[start:start + ROUGH_GROUP].tolist()
-        evidence = [one[pair.one, pair.other] for one in ordered_map(lambda number: _window_evidence(survey, road, number, {}, ROUGH_LAGS), group)
-                    if (pair.one, pair.other) in one]
-        if evidence:
-            along, left = (best_offsets(np.sum([one[k] for one in evidence], axis=0), ROUGH_LAGS)[0] for k in (1, 0))
-            paint, steps = (CHANNELS.index(name) for name in ("paint", "steps"))
-            found.append((np.mean(group), *(column[paint] if np.isfinite(column[paint]) else column[steps] for column in (along, left))))
-    where, *columns = np.array(found).reshape(-1, 3).T
-    # one group alone may be wrong, the median of three neighbours is not
-    known = [(where[there], median_filter(column[there], 3, mode="nearest")) for column in columns for there in [np.isfinite(column)]]
-    shown = [len(values) > len(starts) / 3 for _, values in known]
-    if max((float(np.abs(values).max()) for (_, values), own in zip(known, shown) if own), default=0.0) <= MAX_OFFSET:
+    along, left = _of_groups(survey, road, pair, numbers)
+    if max(np.abs(along).max(), np.abs(left).max()) <= MAX_OFFSET:
         return {}
-    along, left = (np.interp(numbers, *column) if own else np.zeros(len(numbers)) for column, own in zip(known, shown))
     if not across:
         left = np.zeros(len(numbers))
     return {number: (a, b) for number, a, b in zip(numbers.tolist(), along.tolist(), left.tolist())}
+
+
+def _of_groups(survey, road, pair, numbers):
+    """(N,) m along and (N,) m left at N windows, up to MAX_ROUGH_OFFSET, as groups of them show; 0 along an axis that few groups show."""
+    starts = np.unique(np.linspace(0, max(len(numbers) - ROUGH_GROUP, 0), ROUGH_GROUPS).astype(int)).tolist()
+    found = []
+    for group in (numbers[start:start + ROUGH_GROUP] for start in starts):
+        evidence = [one[pair.one, pair.other]
+                    for one in ordered_map(lambda number: _window_evidence(survey, road, number, {}, ROUGH_LAGS), group.tolist())
+                    if (pair.one, pair.other) in one]
+        if evidence:
+            found.append((np.mean(group), *(_rough_offset(np.sum([one[k] for one in evidence], axis=0)) for k in (1, 0))))
+    where, *columns = np.array(found).reshape(-1, 3).T
+    metres = []
+    for column in columns:
+        there = np.isfinite(column)
+        # one group alone may be wrong, the median of three neighbours is not
+        metres.append(np.interp(numbers, where[there], median_filter(column[there], 3, mode="nearest"))
+                      if there.sum() > len(starts) / 3 else np.zeros(len(numbers)))
+    return metres
+
+
+def _rough_offset(likeness):
+    """m of best correlation up to MAX_ROUGH_OFFSET from (2, 4, L) sums, by paint where it shows one."""
+    offsets = best_offsets(likeness, ROUGH_LAGS)[0]
+    steps, paint = (offsets[CHANNELS.index(name)] for name in CHANNELS)
+    return paint if np.isfinite(paint) else steps
 
 
 def _mean_size(offsets, axis):
@@ -272,11 +305,6 @@ def _seen(survey, road, windows, moves, progress):
         for pair, evidence in found.items():
             seen.setdefault(pair, []).append((number, *evidence))
     return seen
-
-
-def _several_passes(passes, start, end):
-    """Whether at least two passes drove there."""
-    return sum(p.span[0] < end and p.span[1] > start for p in passes) > 1
 
 
 def _window_evidence(survey, road, number, moves, lags=LAGS):

@@ -31,10 +31,10 @@ MAX_UPRIGHT = 0.8        # weight: of the plane's normal; what lies flatter is t
 ONE_MOVE, MOST = 0.20, 0.9   # weight: m at this share of the windows, as navigation drifts; more is the error of a drive by itself
 CLEARLY_BETTER = 0.5     # weight: of what one move leaves, below which another is taken
 
-# What a survey says of itself where heights are in another unit or upside down. No measurement of such a survey says how far its edges are off:
-# curbs are looked for at heights that they do not have, so that other lines of the street are found in their place. The number stands for how
-# far these lie: on the surveys tried, of streets with curbs, 95 % of the edges lay within three times that of the true ones
-SIGMA_OF_OTHER_HEIGHTS = 0.12   # weight: m
+# Where heights are in another unit or upside down, curbs are looked for at heights that they do not have. Their edges are then drawn along
+# another line of the curb: its top, the back of its stone, the rim of its gutter. Nothing in such a survey says which, so that any place within
+# the stone (15 cm: DIN 483, HB 15 × 30) and its gutter (30 cm are usual) is as likely
+SIGMA_OF_OTHER_HEIGHTS = (0.15 + 0.30) / 12.0**0.5   # derived: m
 
 # Scanners against each other
 # cost: windows of the survey in which scanners are looked at, and measured, as an error of a mounting is the same in all

@@ -64,15 +64,25 @@ def fitted_trajectory(files: Sequence[CloudHeader], trajectory: Trajectory, scan
     if not trajectory.has_time or not all(file.has_time for file in files if file.count):
         return FittedTrajectory(given, shape.sigma, False)
     sample = read_places(files, scanner_field)
-    mountings = [one for one in scanner_mountings(sample, shape.trajectory) if np.hypot(*usual_lever([one])[:2]) < CORRIDOR]
+    mountings = _near(scanner_mountings(sample, shape.trajectory))
     if mountings and _other_heights(sample, shape.trajectory, mountings, progress):
         return FittedTrajectory(given, float(np.hypot(shape.sigma, SIGMA_OF_OTHER_HEIGHTS)), True)
     if not (mountings := _met(mountings)):
         return FittedTrajectory(given, shape.sigma, False)
-    level = _at_height(shape.trajectory, mountings, progress)
-    # a trajectory far above its scanners swings over them, as the vehicle rolls
-    moved = _on_way(level, mountings if level is shape.trajectory else _met(scanner_mountings(sample, level)), progress)
+    moved = _carried(sample, shape.trajectory, mountings, progress)
     return FittedTrajectory(given if moved is shape.trajectory else moved, shape.sigma, True)
+
+
+def _carried(sample, trajectory, mountings, progress):
+    """The trajectory moved to the height and the way of the scanners where it is not theirs; else the same."""
+    level = _at_height(trajectory, mountings, progress)
+    # a trajectory far above its scanners swings over them, as the vehicle rolls
+    return _on_way(level, mountings if level is trajectory else _met(scanner_mountings(sample, level)), progress)
+
+
+def _near(mountings):
+    """Those of the mountings that lie within reach of the trajectory."""
+    return [one for one in mountings if np.hypot(*usual_lever([one])[:2]) < CORRIDOR]
 
 
 def _met(mountings):

@@ -78,7 +78,8 @@ def coarse_coordinates(samples: Sequence[FileSample]) -> tuple[str, float]:
 
     Returns
     -------
-    The warning, "" where there are no such steps, and m across, one sigma: all points of a line may lie on one side of a step, so that of one point
+    The warning, "" where there are no such steps, and m across, one sigma. Edges lie between two points, each of which may be off by half of a step,
+    as may all others of its line: the sum of two uniform errors
     """
     for sample in samples:
         steps, scales = sample.steps, np.abs(sample.file.scales)
@@ -94,7 +95,7 @@ def coarse_coordinates(samples: Sequence[FileSample]) -> tuple[str, float]:
         cause = f"at {abs(float(ends[0, k])):,.0f} m that is the step of 32-bit numbers, in which some program kept them" if short[k] else \
             f"that is the scale in the header of the file ({scales[k]:g} m)"
         return (f"The coordinates of {sample.file.path} lie in steps of {listed}: {cause}. Edges and markings are no better than that. Export "
-                "the cloud again with coordinates of 64 bits and a scale of 0.001 m.", float(np.where(told, steps, 0.0)[:2].max() / np.sqrt(12.0)))
+                "the cloud again with coordinates of 64 bits and a scale of 0.001 m.", float(np.where(told, steps, 0.0)[:2].max() / np.sqrt(6.0)))
     return "", 0.0
 
 

@@ -73,17 +73,11 @@ def smoothed_track(trajectory: Trajectory) -> TrackShape:
     if not trajectory.has_time:
         return TrackShape(trajectory)
     pieces = [piece for piece in _pieces(trajectory) if _even(trajectory.time[piece])]
-    noise = np.array([_noise(trajectory, piece) for piece in pieces])
-    noisy = [(piece, one) for piece, one in zip(pieces, noise.tolist()) if one > MAX_NOISE]
+    noisy = [(piece, one) for piece in pieces if (one := _noise(trajectory, piece)) > MAX_NOISE]
     if not noisy:
         return TrackShape(trajectory)
     columns = {name: getattr(trajectory, name).copy() for name in "xyz"}
-    left = 0.0
-    for piece, one in noisy:
-        rows = min(_odd(SMOOTH_TIME / _step(trajectory.time[piece])), _odd(piece.stop - piece.start - 1))
-        for values in columns.values():
-            values[piece] = savgol_filter(values[piece], rows, 3)
-        left = max(left, one * np.sqrt(_cubic_leverage(rows)))
+    left = max(one * _smooth(columns, piece, _step(trajectory.time[piece])) for piece, one in noisy)
     rows = sum(piece.stop - piece.start for piece, _ in noisy)
     worst, share = max(one for _, one in noisy), 100.0 * rows / len(trajectory)
     first = trajectory.time[noisy[0][0].start]
@@ -92,6 +86,14 @@ def smoothed_track(trajectory: Trajectory) -> TrackShape:
         (f"The positions of the trajectory scatter by {100 * worst:.0f} cm from row to row, as those of an unfiltered receiver "
         f"({share:.0f} % of the rows, from {first:.1f} s on); no vehicle shakes so. They were smoothed over {SMOOTH_TIME:g} s, and the way driven "
         f"is known to about {100 * left:.1f} cm. Give the trajectory that was adjusted together with the inertial unit.",))
+
+
+def _smooth(columns, piece, step):
+    """Smooth a piece of columns in place, with rows so many seconds apart; the share of the noise that is left."""
+    rows = min(_odd(SMOOTH_TIME / step), _odd(piece.stop - piece.start - 1))
+    for values in columns.values():
+        values[piece] = savgol_filter(values[piece], rows, 3)
+    return float(np.sqrt(_cubic_leverage(rows)))
 
 
 def curved_track(trajectory: Trajectory) -> TrackShape:

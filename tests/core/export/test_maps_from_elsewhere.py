@@ -5,13 +5,15 @@ import time
 import numpy as np
 import pytest
 import shapely
-from lanewright.core.driving.lanes_layer import lanes_from_features
+from lanewright.core.driving.layers import lanes_from_features
 from lanewright.core.export.check.lanelets import check_lanelets
+from lanewright.core.export.fit_of_export import border_misses
 from lanewright.core.export.inferred_ways import with_inferred_ways
 from lanewright.core.export.lanelet.exporter import draft_lanelets
 from lanewright.core.export.lanelet.layers import layers_of_lanelets, node_places
 from lanewright.core.export.lanelet.reader import read_lanelet2
 from lanewright.core.export.lanelet.writer import lanelet2_text, to_degrees
+from lanewright.core.export.map_layers import LaneRows
 from lanewright.core.export.opendrive.exporter import draft_opendrive
 from lanewright.core.export.opendrive.layers import layers_of_opendrive
 from lanewright.core.export.opendrive.profiles import fit_cubics
@@ -66,6 +68,16 @@ MAPS = {
         right=lane(-1) + lane(-2, "shoulder", 1.0))) + road(geometry(0, -40, 0, 0, 40), 40, "2"),
     "roads at one place": road(LINE, 40) + road(geometry(0, 0, 0, 0, 40), 40, "2"),
     "a road without length beside another": road(geometry(0, 0, 0, 0, 0), 0, "7") + road(LINE, 40),
+    "a border with a corner between vertices far apart": road(LINE, 40, lanes=section(right=lane(-1) + lane(-2, "shoulder", widths=widths(
+        (0, 2, 0, 0, 0), (10.3, 2, 1.7, 0, 0), (12.3, 5.4, 0, 0, 0))))),
+    "a width that steps on a curve": road(geometry(0, 0, 0, 0, 40, '<arc curvature="0.01"/>'), 40, lanes=section(
+        left=lane(1, widths=widths((0, 3, 0, 0, 0), (25, 5, 0, 0, 0))), right=lane(-1))),
+    "heights that step on a curve": road(geometry(0, 0, 0, 0, 40, '<arc curvature="-0.03"/>'), 40, profile=(
+        '<elevation s="0" a="0" b="0" c="0" d="0"/><elevation s="13.5" a="0.25" b="0" c="0" d="0"/>')),
+    "a slope that begins at once": road(LINE, 40, profile=(
+        '<elevation s="0" a="0" b="0" c="0" d="0"/><elevation s="13.3" a="0" b="0.2" c="0" d="0"/>')),
+    "lane 0 that leads aside at once": road(LINE, 40, lanes='<laneOffset s="0" a="0" b="0" c="0" d="0"/><laneOffset s="10" a="0" b="0.3" c="0" '
+                                            'd="0"/><laneOffset s="20" a="3" b="0" c="0" d="0"/>' + section(right=lane(-1))),
     "gaps and kinks of a reference line": road(geometry(0, 0, 0, 0, 20) + geometry(20, 20.004, 0.004, 0.004, 20), 40),
 }
 
@@ -99,6 +111,41 @@ def test_borders_of_a_map_from_elsewhere_come_out_where_they_came_in(tmp_path, w
     np.testing.assert_array_equal(lanes.right, found.lanes.right)
     for others in given_out(tmp_path, lanes):
         assert apart(lanes, others) < TOLERANCE and apart(others, lanes) < TOLERANCE
+        assert border_misses(lanes, others)[1].largest < TOLERANCE
+
+
+@pytest.mark.parametrize("what, places", [("heights that step on a curve", ((13.4, 0.0), (13.6, 0.25))), ("a slope that begins at once", (
+    (13.2, 0.0), (13.4, 0.02)))])
+def test_heights_are_those_of_the_map_right_before_and_after_a_step(tmp_path, what, places):
+    _, lanes = taken_in(tmp_path, MAPS[what])
+    for others in (lanes, *given_out(tmp_path, lanes)):
+        middle = min((border for k in range(len(others)) for border in others.borders(k)), key=lambda border: np.hypot(*border[0, :2]))   # lane 0
+        along = np.append(0.0, np.cumsum(np.hypot(*np.diff(middle[:, :2], axis=0).T)))
+        for s, height in places:
+            assert np.interp(s, along, middle[:, 2]) == pytest.approx(height, abs=0.01)
+
+
+def test_steps_of_widths_and_heights_are_named(tmp_path):
+    for what, said in (("a width that steps on a curve", "road 1, lane 1, by 2.000 m at s 25.0 m"),
+                       ("heights that step on a curve", "road 1, lane 0, by 0.250 m at s 13.5 m")):
+        assert said in taken_in(tmp_path, MAPS[what])[0].notes[0]
+
+
+def test_roads_that_do_not_meet_in_height_are_named(tmp_path):
+    links = ("", '<predecessor id="-1"/><successor id="-1"/>')
+    first = road(LINE, 40, "1", lanes=street_section(0, links), link='<successor elementType="road" elementId="2" contactPoint="start"/>')
+    second = road(geometry(0, 40, 0, 0, 40), 40, "2", lanes=street_section(0, links), profile='<elevation s="0" a="0.2" b="0" c="0" d="0"/>',
+                  link='<predecessor elementType="road" elementId="1" contactPoint="end"/>')
+    _, lanes = taken_in(tmp_path, [first, second])
+    note, = with_shared_borders(checked(RoadMapSource(lanes))).notes
+    assert "moved by up to 0.10 m" in note and "near x 40.0, y 0.0" in note
+
+
+def test_a_miss_between_the_vertices_of_a_border_is_seen_and_what_lies_beyond_its_end_is_not():
+    ours, theirs = LaneRows(), LaneRows()
+    ours.add(np.array([[0.0, 0, 0], [10, 0, 0]]), np.array([[0.0, -3, 0], [10, -3, 0]]))
+    theirs.add(np.array([[-1.0, 0, 0], [5, 0.05, 0], [12, 0, 0]]), np.array([[-1.0, -3, 0], [5, -3, 0], [12, -3, 0]]))
+    assert border_misses(ours.lanes(), theirs.lanes())[0].largest == pytest.approx(0.05)
 
 
 def test_a_lane_that_begins_at_width_0_keeps_both_of_its_borders(tmp_path):

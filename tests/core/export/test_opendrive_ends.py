@@ -24,7 +24,7 @@ def askew(scene, line, left, right, first, last, shift, step=1.0, **values):
 def missed(folder, lanes):
     whole = read_opendrive(written(folder, opendrive_text(draft_opendrive(checked(RoadMapSource(lanes))).map)))
     across, rise = border_misses(lanes, layers_of_opendrive(whole, CRS).lanes)
-    assert across.places == 2 * len(lanes.left)
+    assert across.places > 2 * len(lanes.left)   # and those that were read back
     return whole, across.largest, rise.largest
 
 

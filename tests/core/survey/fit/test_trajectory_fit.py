@@ -134,4 +134,4 @@ def test_coordinates_of_32_bits_are_told_once_and_leave_the_street_as_uncertain_
     survey.store.close()
     assert [text for text in heard.warned if "steps of" in text] == [text for text in heard.warned if "32-bit numbers" in text] and \
         sum("steps of" in text for text in heard.warned) == 1
-    assert survey.frame.pass_sigma[0].metres == pytest.approx((0.5 / np.sqrt(12.0),))
+    assert survey.frame.pass_sigma[0].metres == pytest.approx((0.5 / np.sqrt(6.0),))

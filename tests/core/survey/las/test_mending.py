@@ -62,6 +62,14 @@ def test_a_header_that_states_other_points_than_there_are_is_told_and_all_are_re
     assert f"{stated:,} points" in note and f"{POINTS:,} are there" in note and path.name in note
 
 
+def test_points_of_a_second_drive_far_away_behind_those_stated_are_read_too(tmp_path):
+    las = street(1, "1.2")
+    x = np.array(las.x)
+    x[POINTS // 3:] += 30_000.0
+    las.x = x
+    check_all_read(written(las, tmp_path / "cloud.las", (COUNT, POINTS // 3)), las)
+
+
 def test_of_several_files_each_warning_names_its_own(tmp_path):
     paths = [written(street(1, "1.2", 5000), tmp_path / f"{name}.laz", (COUNT, 1000)) for name in "ab"]
     told = []
