@@ -17,7 +17,7 @@ from models import RECIPES
 
 ROOT = Path(__file__).resolve().parents[1]
 FOLDER = ROOT / "resources" / "i18n"
-SCHEMAS = ROOT / "core" / "common" / "schemas.py"
+SCHEMAS = ROOT / "core" / "common" / "features.py"
 CONTEXT = "Lanewright"
 FOLDERS = ("algorithms", "processing_provider", "desktop", "core", "library")
 FEWEST_LETTERS = 8  # of a sentence of the core: what is shorter would be found in anything
