@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import shapely
 
-from ...common.features import Features
-from ...common.rows import LayerRows, column
-from ...common.schemas import CURB_POINTS, NEAREST_PASS, PASS_SIGMA, SIGMA
+from ...common.features import CURB_POINTS, NEAREST_PASS, PASS_SIGMA, SIGMA, Features
+from ...common.layer_rows import LayerRows, column
 from ...survey.frame.placement import COORDINATE_DECIMALS, as_written
 
 if TYPE_CHECKING:

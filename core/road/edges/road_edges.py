@@ -9,12 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import shapely
 
-from ...common.features import Features
-from ...common.rows import LayerRows, column
-from ...common.schemas import NEAREST_PASS, ROAD_EDGES, SIGMA
-from ...survey.frame.frame_lines import FrameLines, line_parts, lines_in_frame
-from ...survey.frame.placement import COORDINATE_DECIMALS, as_written
-from ...survey.frame.sigma_along import cuts_where_it_changes
+from ...common.features import NEAREST_PASS, ROAD_EDGES, SIGMA, Features
+from ...common.layer_rows import LayerRows, column
+from ...survey.frame.placement import COORDINATE_DECIMALS, FrameLines, as_written, line_parts, lines_in_frame
+from ...survey.frame.row_table import cuts_where_it_changes
 from ..common.tracking import MAX_JOINED_GAP
 
 if TYPE_CHECKING:

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import shapely
 
-from ...common.rows import LayerRows, column
-from ...common.schemas import ROAD_SURFACE
+from ...common.features import ROAD_SURFACE
+from ...common.layer_rows import LayerRows, column
 from ...survey.frame.placement import COORDINATE_DECIMALS
 from .ground_grid import COLUMN_WIDTH, ROW_LENGTH
 

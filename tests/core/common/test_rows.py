@@ -4,8 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
+from lanewright.core.common.arrays import Rows
 from lanewright.core.common.features import Field
-from lanewright.core.common.rows import LayerRows, Rows, column
+from lanewright.core.common.layer_rows import LayerRows, column
 
 
 @dataclass

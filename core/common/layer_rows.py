@@ -1,52 +1,19 @@
-"""Things of one kind as columns: dataclasses of arrays that have one entry for each of them, and the layers that such arrays are written to."""
+"""Layers as columns: dataclasses of arrays that declare once which fields of a layer they are, and are written to it and read from it so."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import MISSING, dataclass, field, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cache
 from typing import Any, ClassVar, TypeVar
 
 import numpy as np
 
+from .arrays import Rows
 from .features import Features, Field
 
-AnyRows = TypeVar("AnyRows", bound="Rows")
 AnyLayerRows = TypeVar("AnyLayerRows", bound="LayerRows")
 _KEY = "column"
-
-
-@cache
-def _entries(kind: type) -> tuple[str, ...]:
-    """Names of the fields of a dataclass that have one entry for each of its things."""
-    return tuple(one.name for one in fields(kind) if one.default is MISSING)
-
-
-class Rows:
-    """Base of a dataclass of things of one kind: how many there are, some of them, and those of several joined.
-
-    Fields without a default are arrays of one length, or what is indexed as they are; a field with a default holds for all things.
-    """
-
-    @classmethod
-    def names(cls) -> tuple[str, ...]:
-        """Names of the fields that have one entry for each thing."""
-        return _entries(cls)
-
-    def columns(self) -> list[np.ndarray]:
-        """The arrays, in the order of the fields."""
-        return [getattr(self, name) for name in self.names()]
-
-    def __len__(self) -> int:
-        return len(self.columns()[0])
-
-    def __getitem__(self: AnyRows, which: Any) -> AnyRows:
-        return replace(self, **{name: getattr(self, name)[which] for name in self.names()})  # type: ignore[type-var]
-
-    @classmethod
-    def join(cls: type[AnyRows], parts: Sequence[AnyRows]) -> AnyRows:
-        """The entries of all parts, one after the other."""
-        return cls(*map(np.concatenate, zip(*(part.columns() for part in parts))))
 
 
 @dataclass(frozen=True)
