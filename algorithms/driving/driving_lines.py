@@ -1,6 +1,6 @@
 """Driving lines and their curve elements."""
 
-from ...core.common.schemas import CURVE_ELEMENTS, DRIVING_LINES, LANES, MARKING_LINES, MARKINGS, ROAD_EDGES
+from ...core.common.features import CURVE_ELEMENTS, DRIVING_LINES, LANES, MARKING_LINES, MARKINGS, ROAD_EDGES
 from ...core.countries.catalogue import COUNTRIES
 from ..algorithm import Algorithm
 from ..parameters import SettingSpec
@@ -72,9 +72,8 @@ class DrivingLines(Algorithm):
         self.add_sink("CURVE_ELEMENTS", tr("Curve elements"), fields=CURVE_ELEMENTS, geometry="None", optional=True)
 
     def work(self, call, progress):
-        from ...core.driving.driving_layers import curve_elements_to_features, driving_lines_to_features
         from ...core.driving.driving_lines import make_driving_lines
-        from ...core.driving.lanes_layer import lanes_to_features
+        from ...core.driving.layers import curve_elements_to_features, driving_lines_to_features, lanes_to_features
         from ...core.markings.lines.painted_lines import lines_from_features
         from ...core.markings.objects.marking_objects import markings_from_features
         from ...core.road.edges.road_edges import edges_from_features

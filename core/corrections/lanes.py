@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..curves.model_selection import fit_curve
-from ..driving.driving_layers import CurveElements, DrivingLines
 from ..driving.driving_lines import driving_lines_of
 from ..driving.lane_areas import NO_BORDER, follow, make_lanes
-from ..driving.lanes_layer import Lanes
+from ..driving.layers import CurveElements, DrivingLines, Lanes
 from ..survey.frame.placement import located
 from .apply import LineKind, apply_corrections
 from .corrections import DRAWN, Correction, Corrections

@@ -9,13 +9,10 @@ from __future__ import annotations
 from ..lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "base": ("Arc", "Curve"),
+    "base": ("Arc", "Curve", "CurveFit"),
     "bspline": ("Spline", "fit_spline", "fit_splines", "smooth_profiles"),
     "clothoid": ("Clothoid", "fit_clothoid", "fit_clothoids"),
-    "curve_fit": ("CurveFit",),
-    "ellipse": ("Ellipse", "fit_ellipse"),
-    "line_circle": ("fit_circle", "fit_circles", "fit_line", "fit_lines"),
     "model_selection": ("curve_from_params", "fit_curve", "fit_curves", "select_each"),
-    "polynomial": ("Polynomial", "fit_polynomial"),
     "segmentation": ("element_ranges", "segment_line"),
+    "simple_curves": ("Ellipse", "Polynomial", "fit_circle", "fit_circles", "fit_ellipse", "fit_line", "fit_lines", "fit_polynomial"),
 })

@@ -14,10 +14,8 @@ from scipy.linalg.lapack import dpbsv
 from scipy.sparse import csc_matrix, csr_matrix
 
 from ..common.parallel import check_cancelled
-from .base import TabulatedCurve
-from .batched_lsq import batches
-from .curve_fit import CurveFit, bic_lower_bound, checked_points
-from .robust import MAD_TO_SIGMA, SOFT_L1_SCALE, median, row_medians
+from .base import CurveFit, TabulatedCurve, bic_lower_bound, checked_points
+from .robust import MAD_TO_SIGMA, SOFT_L1_SCALE, batches, median, row_medians
 
 SPLINE_DEGREE = 3
 BANDWIDTHS = (1.0, 1.4, 2.0, 3.0, 4.5, 7.0, 10.0, 15.0, 25.0, 40.0, 60.0)  # m; waves shorter than six of them are smoothed away

@@ -7,10 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .base import Curve
-from .batched_lsq import PointGroups, fit_batch
-from .curve_fit import CurveFit, checked_points
-from .line_circle import chords
+from .base import Curve, CurveFit, checked_points
+from .robust import PointGroups, fit_batch
+from .simple_curves import chords
 
 
 def _gauss(count):

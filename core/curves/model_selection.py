@@ -9,14 +9,11 @@ import numpy as np
 
 from ..common.errors import RoadExtractionError
 from ..common.parallel import check_cancelled
-from .base import Arc, Curve
-from .batched_lsq import COARSE_POINTS, PointGroups
+from .base import Arc, Curve, CurveFit, bic_lower_bound
 from .bspline import Spline, fit_spline, fit_splines
 from .clothoid import Clothoid, fit_clothoid, fit_clothoids
-from .curve_fit import CurveFit, bic_lower_bound
-from .ellipse import MIN_ELLIPSE_TURN, Ellipse, fit_ellipse
-from .line_circle import fit_circle, fit_circles, fit_line, fit_lines
-from .polynomial import Polynomial, fit_polynomial
+from .robust import COARSE_POINTS, PointGroups
+from .simple_curves import MIN_ELLIPSE_TURN, Ellipse, Polynomial, fit_circle, fit_circles, fit_ellipse, fit_line, fit_lines, fit_polynomial
 
 CURVES = ("automatic", "line", "circle", "ellipse", "clothoid", "polynomial", "b-spline")
 MAX_RESIDUAL_P95 = 0.05  # m; a simpler curve is selected only if 95 % of the points are nearer

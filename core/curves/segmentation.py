@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..common.parallel import check_cancelled
+from .base import CurveFit, checked_points
 from .bspline import fit_splines
 from .clothoid import fit_clothoid
-from .curve_fit import CurveFit, checked_points
-from .line_circle import fit_circle, fit_line
 from .model_selection import select_simplest
 from .robust import MAD_TO_SIGMA, median
+from .simple_curves import fit_circle, fit_line
 
 ELEMENT_NODE_SPACING = 4.0   # m between the nodes at which elements may join
 MIN_ELEMENT_LENGTH = 8.0     # m

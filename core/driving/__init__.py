@@ -7,9 +7,10 @@ In: `PaintedLines`, with `MarkingObjects`, `RoadEdges` and road points where the
 from ..lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "curve_elements": ("circular_curve_elements", "design_check"),
-    "driving_layers": ("CurveElements", "DrivingLines", "curve_elements_to_features", "driving_lines_to_features"),
+    "alignment": ("circular_curve_elements", "design_check"),
     "driving_lines": ("make_driving_lines",),
-    "lanes_layer": ("LANE_TYPES", "Lanes", "lanes_from_features", "lanes_to_features"),
+    "layers": (
+        "CurveElements", "DrivingLines", "LANE_TYPES", "Lanes", "curve_elements_to_features", "driving_lines_to_features",
+        "lanes_from_features", "lanes_to_features"),
     "settings": ("DrivingSettings",),
 })

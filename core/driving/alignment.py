@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 from bisect import bisect_left
+from collections.abc import Sequence
 from dataclasses import dataclass
-from heapq import heappop, heappush
-from typing import TYPE_CHECKING
+from heapq import heapify, heappop, heappush
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..common.parallel import check_cancelled
+from ..countries.model import Country
+from ..countries.neutral import NEUTRAL
 from ..curves.base import Arc
 from ..curves.clothoid import fit_clothoids
-from ..curves.model_selection import MAX_MISFIT, select_each
+from ..curves.model_selection import MAX_MISFIT, fit_curves, select_each
 from ..curves.segmentation import element_ranges
+from ..io.crs import FOOT
 from ..markings.cross_section.sections import STATION_STEP
-from .lane_track import BRIDGED, spans_of
+from .lane_track import BRIDGED, LANE_STATUS, spans_of
 from .settings import MIN_PLACES_PER_FIT
 
 if TYPE_CHECKING:
@@ -257,3 +261,256 @@ def _of_lane(track, offset, divided, s, road):
 def _cut(arc, first, last):
     (x, y), = arc.at(np.array([first]))
     return Arc(float(x), float(y), float(arc.heading(first)), arc.bend, last - first)
+
+
+# The smooth course of a lane, its pieces by status, and the arcs in it.
+
+MIN_STATUS_LENGTH = 5.0     # m: a shorter change of status is not worth a piece
+MIN_ELEMENT_SHARE = 0.9     # share of a piece that one element must cover to give it its name
+ARC_BLEND_LENGTH = 5.0      # m at its ends over which an arc passes into what comes before and after
+MAX_SHARED_ARC_RMSE = 0.02  # m: RMSE below which a lane is taken to be the arc it shares with its neighbours
+
+
+@dataclass
+class Course:
+    """A lane's line.
+
+    x, y, s : (V,) vertices in local metres and their stations, s rising
+    curve : the fitted curve; rmse : of the lane's places to it, metres
+    """
+
+    x: np.ndarray
+    y: np.ndarray
+    s: np.ndarray
+    curve: object
+    rmse: float
+
+
+def lane_courses(tracks: list[LaneTrack], s: np.ndarray, road: Road, elements: list[list[Element]]) -> list[Course]:
+    """Fit the courses of the lanes of a road, together.
+
+    Parameters
+    ----------
+    tracks : list of LaneTrack
+    s : (K,) grid stations
+    road : Road
+    elements : Elements of each lane; on them the course is the arc or straight itself, so
+        that lanes of one bend are concentric
+
+    Returns
+    -------
+    list of Course
+    """
+    fits = fit_curves([_known_places(track, s, road) for track in tracks])
+    drawn = [fit.curve.sample(STATION_STEP) for fit in fits]
+    stations = road.locate(*np.concatenate(drawn).T)[0] if drawn else np.empty(0)
+    found, first = [], 0
+    for fit, places, of_lane in zip(fits, drawn, elements):
+        station = stations[first:first + len(places)]
+        first += len(places)
+        good = np.isfinite(station)
+        good[good] &= station[good] > np.r_[-np.inf, np.maximum.accumulate(station[good])[:-1]]
+        places, station = places[good], station[good]
+        for element in of_lane:
+            if element.rmse < MAX_SHARED_ARC_RMSE:
+                _draw_to(element, places, station)
+        check_cancelled()
+        found.append(Course(places[:, 0], places[:, 1], station, fit.curve, fit.rmse))
+    return found
+
+
+def _known_places(track, s, road):
+    """x, y of a lane where it is not bridged, of all of it where little is known."""
+    known = track.status != BRIDGED
+    if known.sum() < MIN_PLACES_PER_FIT:
+        known = np.ones(len(track), bool)
+    return road.to_map(s[track.first:track.last + 1][known], track.d[known])
+
+
+def _draw_to(element, places, station):
+    """Move places onto an element, less and less towards its ends unless the lane ends there."""
+    inside = slice(np.searchsorted(station, element.start), np.searchsorted(station, element.end, side="right"))
+    at = station[inside]
+    if not len(at):
+        return
+    share = np.ones(len(at))
+    if element.start - station[0] > STATION_STEP:
+        share = np.minimum(share, (at - element.start) / ARC_BLEND_LENGTH)
+    if station[-1] - element.end > STATION_STEP:
+        share = np.minimum(share, (element.end - at) / ARC_BLEND_LENGTH)
+    u, e = element.arc.project(places[inside, 0], places[inside, 1])
+    heading = element.arc.heading(u)
+    places[inside] -= (np.clip(share, 0.0, 1.0) * e)[:, None] * np.c_[-np.sin(heading), np.cos(heading)]
+
+
+def without_short_status(status: np.ndarray) -> np.ndarray:
+    """Status along a lane without changes shorter than 5 m: these take the worse of their neighbours."""
+    status = status.copy()
+    cuts = [0, *(np.flatnonzero(np.diff(status)) + 1).tolist(), len(status)]
+    ends = dict(zip(cuts[:-1], cuts[1:]))       # of the pieces, by where they begin,
+    begins = dict(zip(cuts[1:], cuts[:-1]))     # and the other way
+    # the shortest first; a piece that has grown since is there again
+    queue = [(end - begin, begin) for begin, end in ends.items()]
+    heapify(queue)
+    while len(ends) > 1:
+        length, begin = heappop(queue)
+        if ends.get(begin, -1) - begin != length:
+            continue
+        if length >= int(MIN_STATUS_LENGTH / STATION_STEP):
+            break
+        end = ends.pop(begin)
+        beside = [status[k] for k in (begin - 1, end) if 0 <= k < len(status)]
+        status[begin:end] = max(beside)
+        if begin and status[begin - 1] == status[begin]:
+            begin = begins[begin]
+        if end < len(status) and status[end] == status[begin]:
+            end = ends.pop(end)
+        ends[begin], begins[end] = end, begin
+        heappush(queue, (end - begin, begin))
+    return status
+
+
+def track_pieces(track: LaneTrack, s: np.ndarray) -> list[tuple[int, float, float]]:
+    """(status, start station, end station) of the pieces of a lane, cut where its status changes and where doubt begins or ends; ends touch."""
+    kinds = len(LANE_STATUS)
+    found = status_pieces(without_short_status(track.status + kinds * track.in_doubt()), track.first, s)
+    return [(code % kinds, start, end) for code, start, end in found]
+
+
+def status_pieces(status: np.ndarray, first: int, s: np.ndarray) -> list[tuple[int, float, float]]:
+    """(status, start station, end station) of the pieces of a lane; ends touch."""
+    cuts = np.r_[0, np.flatnonzero(np.diff(status)) + 1, len(status)]
+    bounds = s[first + cuts[:-1]]
+    ends = np.r_[bounds[1:], s[first + len(status) - 1]]
+    return [(int(status[a]), float(b), float(e)) for a, b, e in zip(cuts[:-1], bounds, ends)]
+
+
+def element_of(elements: list[Element], start: float, end: float) -> Element | None:
+    """The arc or straight that covers nine tenths of a piece between two stations, or None."""
+    for element in elements[bisect_left([one.end for one in elements], start):]:
+        if element.start > end:
+            break
+        if min(end, element.end) - max(start, element.start) >= MIN_ELEMENT_SHARE * (end - start):
+            return element
+    return None
+
+
+# Elements of the curves along driving lines, in metres and feet, and their check against the design code.
+
+MAX_CURVE_RADIUS = 5000.0    # m: flatter arcs are straights to any driver
+MIN_TURN = np.radians(1.0)
+MAX_TURN = np.pi * 0.95   # the tangents of a half circle do not meet
+
+
+def circular_curve_elements(radius: float, delta: float) -> dict[str, float]:
+    """The elements of a circular curve.
+
+    ::
+
+        L = R delta              T = R tan(delta/2)      LC = 2 R sin(delta/2)
+        M = R (1 - cos(delta/2)) E = R (sec(delta/2) - 1)
+        D = 5729.578 / R         (arc definition: degrees per 100 m or per 100 ft)
+
+    so that M = E cos(delta/2) < E.
+
+    Parameters
+    ----------
+    radius : metres, > 0
+    delta : deflection angle, radians, 0 < delta < pi
+
+    Returns
+    -------
+    dict of the fields of CURVE_ELEMENTS that follow from them
+    """
+    half = delta / 2
+    lengths = dict(radius=radius, length=radius * delta, tangent=radius * np.tan(half),
+                   middle=radius * (1 - np.cos(half)), chord=2 * radius * np.sin(half),
+                   ext=radius * (1 / np.cos(half) - 1))
+    found = {}
+    for name, metres in lengths.items():
+        found[f"{name}_m"], found[f"{name}_ft"] = float(metres), float(metres / FOOT)
+    found["delta_deg"] = float(np.degrees(delta))
+    found["degree_m"] = float(np.degrees(100.0 / radius))
+    found["degree_ft"] = float(np.degrees(100.0 / (radius / FOOT)))
+    return found
+
+
+def curve_points(start: Sequence[float], heading: float, radius: float, delta: float, left: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Points of curvature, of intersection and of tangency of a circular curve.
+
+    Parameters
+    ----------
+    start : (2,) metres, where the curve begins
+    heading : radians counter-clockwise from east, its direction there
+    radius : metres
+    delta : radians, its deflection angle
+    left : whether it turns left
+
+    Returns
+    -------
+    PC, PI, PT : (2,) metres each
+    """
+    turn = delta if left else -delta
+    tangent = radius * np.tan(delta / 2)
+    pc = np.asarray(start, float)
+    pi = pc + tangent * np.array([np.cos(heading), np.sin(heading)])
+    pt = pi + tangent * np.array([np.cos(heading + turn), np.sin(heading + turn)])
+    return pc, pi, pt
+
+
+def design_check(radius: float, length: float, complete: bool = True, code: Country = NEUTRAL) -> tuple[int | None, str]:
+    """Check a curve against the design code of a country.
+
+    Parameters
+    ----------
+    radius, length : metres
+    complete : False where the arc runs on beyond the line, so that its length is not known
+    code : Country, whose `design_speeds` are asked, slowest first
+
+    Returns
+    -------
+    speed : the highest design speed that the code allows, km/h; None where it allows none
+    text : a sentence that names the code
+    """
+    slowest = code.design_speeds[0]
+    by_radius = max((row.speed for row in code.design_speeds if radius >= row.radius), default=0)
+    by_length = max((row.speed for row in code.design_speeds if length >= row.length), default=0)
+    speed = min(by_radius, by_length) if complete else by_radius
+    if not by_radius:
+        return None, f"{code.design_code}: radius {radius:.0f} m is below {slowest.radius:.0f} m, the least for {slowest.speed} km/h"
+    text = f"{code.design_code}: radius allows {by_radius} km/h"
+    if not complete:
+        return speed, text + "; the curve goes on beyond the line"
+    if not any(row.length for row in code.design_speeds):
+        return speed, text
+    if not by_length:
+        return None, text + f", length {length:.0f} m is below {slowest.length:.0f} m, the least for {slowest.speed} km/h"
+    return speed, text + f", length {by_length} km/h"
+
+
+def is_curve(arc: Arc) -> bool:
+    """Whether an arc is a curve with elements: no straight, and no turn so small or so large that its elements mean nothing."""
+    return bool(arc.bend and arc.radius <= MAX_CURVE_RADIUS and MIN_TURN < abs(arc.bend) * arc.length < MAX_TURN)
+
+
+def element_row(arc: Arc, complete: bool, rmse: float, origin: np.ndarray, code: Country = NEUTRAL) -> dict[str, Any]:
+    """Fields of CURVE_ELEMENTS of an arc.
+
+    Parameters
+    ----------
+    arc : Arc for which `is_curve` holds, local metres, in the direction of travel
+    complete : False where the arc runs on beyond the line
+    rmse : metres, of the line from the arc
+    origin : (2,) or (3,) map coordinates of the local origin
+    code : Country, whose design code the curve is checked against
+
+    Returns
+    -------
+    dict of field name to value
+    """
+    delta, left = abs(arc.bend) * arc.length, arc.bend > 0
+    pc, pi, pt = curve_points((arc.x + origin[0], arc.y + origin[1]), arc.direction, arc.radius, delta, left)
+    speed, text = design_check(arc.radius, arc.length, complete, code)
+    return dict(circular_curve_elements(arc.radius, delta), turn="left" if left else "right", pc_x=float(pc[0]), pc_y=float(pc[1]),
+                pi_x=float(pi[0]), pi_y=float(pi[1]), pt_x=float(pt[0]), pt_y=float(pt[1]), rmse_m=float(rmse),
+                speed_kmh=speed, code=text)

@@ -9,7 +9,7 @@ import shapely
 from scipy.spatial import cKDTree
 
 from ..common.features import Features
-from ..driving.lanes_layer import Lanes
+from ..driving.layers import Lanes
 
 NEAR_MIDDLE = 1.0     # m from the middle of a lane within which a driving line is held against it
 LEFT_OUT_NEAR = 0.5   # m between a driving line and a place that is left out: lanes have vertices twice as near

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 import shapely
 
-from ..driving.lanes_layer import Lanes
+from ..driving.layers import Lanes
 from .sources import SAME_LEVEL, RoadMapSource, is_stated
 
 MOST_TURNED = 2.5        # rad: who turns more drives back on the arm that he came from

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..common.errors import RoadExtractionError
-from ..driving.lanes_layer import Lanes
+from ..driving.layers import Lanes
 
 if TYPE_CHECKING:
     from ..survey.store.road_points import RoadPoints

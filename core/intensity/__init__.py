@@ -8,9 +8,7 @@ from __future__ import annotations
 from ..lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "correction": ("IntensityReport", "IntensitySettings", "correct_intensity"),
-    "coverage": ("check_image_shows",),
-    "image": ("ImageSettings", "check_fits", "make_intensity_image", "write_intensity_image"),
-    "saturation": ("Saturation", "saturation_of"),
+    "correction": ("IntensityReport", "IntensitySettings", "Saturation", "correct_intensity", "saturation_of"),
+    "image": ("ImageSettings", "check_fits", "check_image_shows", "make_intensity_image", "write_intensity_image"),
     "tiled_image": ("IntensityRaster", "TiledImage"),
 })

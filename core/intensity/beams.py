@@ -21,8 +21,7 @@ from ..survey.frame.road_frame import RoadFrame
 from ..survey.store.columns import Columns
 from ..survey.store.records import Points
 from ..survey.store.road_points import RoadPoints
-from .asphalt_model import INTENSITY_LEVELS, MIN_ASPHALT_POINTS, asphalt_of_histograms, is_logarithmic, to_level, weighted_median
-from .vehicle_relative import PASS_MARGIN
+from .asphalt_model import INTENSITY_LEVELS, MIN_ASPHALT_POINTS, PASS_MARGIN, asphalt_of_histograms, is_logarithmic, to_level, weighted_median
 
 LOWEST_ELEVATION = -45.0        # degrees; elevations of road reach from here to 0
 ELEVATION_BIN = 0.05            # degrees

@@ -17,10 +17,96 @@ from ..survey.frame.road_frame import RoadFrame
 from ..survey.store.records import Points
 from ..survey.store.road_points import RoadPoints
 from ..survey.store.section_store import STRETCH_POINTS, Stretch
-from .asphalt_model import DISTANCE_BIN, MAX_DISTANCE, POINTS_AT_ONCE, AsphaltTable, BinCounts, IntensityHistograms, asphalt_of_histograms
+from .asphalt_model import (
+    ACROSS_TRACK,
+    DISTANCE_BIN,
+    INTENSITY_LEVELS,
+    LOWER_QUANTILE,
+    MAX_DISTANCE,
+    POINTS_AT_ONCE,
+    UNKNOWN_DISTANCE,
+    AsphaltTable,
+    BinCounts,
+    IntensityHistograms,
+    VehicleDistances,
+    asphalt_of_histograms,
+    to_intensity,
+    to_level,
+)
 from .beams import Beams
-from .saturation import SCANNER_NUMBERS, Saturation
-from .vehicle_relative import ACROSS_TRACK, UNKNOWN_DISTANCE, VehicleDistances
+
+# Saturated intensities: values that a scanner or an export cut off at an end of their range.
+
+MAX_SHARE_AT_HIGHEST = 0.05   # share of points at their scanner's highest intensity: more than paint covers of most roads
+MAX_SHARE_AT_LOWEST = LOWER_QUANTILE   # share at its lowest: the quantile from which asphalt's spread is taken
+REMEDY = "Export the cloud with the scanner's full intensities (16 bits, not stretched)."
+SCANNER_NUMBERS = 256   # numbers that a scanner may have
+
+
+@dataclass(frozen=True)
+class Saturation:
+    """The ends of the range of a road's intensities.
+
+    lowest, highest : intensities, raw counts
+    at_lowest, at_highest : shares of points within 1.1 % of their scanner's lowest and highest, 0 where they do not accumulate there
+    """
+
+    lowest: float = float("nan")
+    at_lowest: float = 0.0
+    highest: float = float("nan")
+    at_highest: float = 0.0
+
+    @classmethod
+    def from_levels(cls, levels: np.ndarray, highest: float | None = None) -> Saturation:
+        """Saturation of counts of points.
+
+        Parameters
+        ----------
+        levels : (scanners, INTENSITY_LEVELS) int, how many points have each level
+        highest : the highest intensity, where it is known exactly
+        """
+        levels = levels[levels.any(axis=1)]
+        if not len(levels):
+            return cls()
+        ends = [[_accumulated(row[way]) for row in levels] for way in (slice(None), slice(None, None, -1))]
+        total, used = levels.sum(), np.flatnonzero(levels.any(axis=0))
+        at_lowest, at_highest = (float(sum(side) / total) for side in ends)
+        low, high = np.rint(to_intensity(used[[0, -1]])).tolist()
+        return cls(low, at_lowest, high if highest is None else float(highest), at_highest)
+
+    @property
+    def warning(self) -> str:
+        """What the user should know of it, "" where nothing was cut off."""
+        texts = []
+        if self.at_highest >= MAX_SHARE_AT_HIGHEST:
+            texts.append(f"{100 * self.at_highest:.0f} % of the road's points have the highest intensity, {self.highest:.0f}: brighter values "
+                         "were cut off, so that paint there may be no brighter than asphalt and be missed.")
+        if self.at_lowest >= MAX_SHARE_AT_LOWEST:
+            texts.append(f"{100 * self.at_lowest:.0f} % of the road's points have the lowest intensity, {self.lowest:.0f}: darker values "
+                         "were cut off, so that asphalt seems to be of one tone and its bright spots may be taken for paint.")
+        return " ".join([*texts, REMEDY]) if texts else ""
+
+
+def _accumulated(counts):
+    """Points in the first level that has any, if they are more than those of the next two; else 0."""
+    used = np.flatnonzero(counts)[:3]
+    first, *following = counts[used].tolist()
+    return first if first > sum(following) and following else 0
+
+
+def saturation_of(road_points: RoadPoints) -> Saturation:
+    """Saturation of the raw intensities of road points."""
+    def count(key):
+        points, found = road_points.section(*key), np.zeros(SCANNER_NUMBERS * INTENSITY_LEVELS, np.int64)
+        intensity, scanner = points.intensity, points.scanner
+        for first in range(0, len(points), POINTS_AT_ONCE):
+            rows = slice(first, first + POINTS_AT_ONCE)
+            found += np.bincount(scanner[rows].astype(np.int32) * np.int32(INTENSITY_LEVELS) + to_level(intensity[rows]), minlength=len(found))
+        return found
+
+    counts = sum(ordered_map(count, road_points.all_sections()), np.zeros(SCANNER_NUMBERS * INTENSITY_LEVELS, np.int64))
+    return Saturation.from_levels(counts.reshape(SCANNER_NUMBERS, INTENSITY_LEVELS))
+
 
 ENOUGH_POINTS_PER_METRE = 6_000   # of road: more do not improve the estimate of asphalt
 SAMPLE_STRIPE_LENGTH = 100    # units of 0.1 mm along the road: of denser roads, stripes of this length are sampled

@@ -9,8 +9,8 @@ import numpy as np
 import shapely
 
 from ..countries.model import Country
-from ..driving.lanes_layer import lanes_from_features
-from ..survey.frame.frame_lines import FrameLines, line_parts, lines_in_frame
+from ..driving.layers import lanes_from_features
+from ..survey.frame.placement import FrameLines, line_parts, lines_in_frame
 
 if TYPE_CHECKING:
     from ..common.features import Features

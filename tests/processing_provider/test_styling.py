@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.common.schemas import (
+from lanewright.core.common.features import (
     CONTROL_POINTS,
     CROSS_SECTIONS,
     DRIVING_LINES,
@@ -15,7 +15,7 @@ from lanewright.core.common.schemas import (
     ROADSIDE,
     ROADSIDE_OBJECTS,
 )
-from lanewright.core.driving.lanes_layer import LANE_TYPES
+from lanewright.core.driving.layers import LANE_TYPES
 from lanewright.processing_provider.embedded_style import embed_style
 from lanewright.processing_provider.layers import qgis_fields
 from lanewright.processing_provider.results.runs import Run

@@ -3,8 +3,8 @@
 import time
 from dataclasses import replace
 
-from lanewright.core.driving.driving_layers import driving_lines_to_features
 from lanewright.core.driving.driving_lines import make_driving_lines
+from lanewright.core.driving.layers import driving_lines_to_features
 from lanewright.core.intensity.correction import correct_intensity
 from lanewright.core.intensity.image import write_intensity_image
 from lanewright.core.io.geotiff import IntensityImage

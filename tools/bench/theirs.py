@@ -41,7 +41,7 @@ def _unpack_pcl():
 
 def image_gdal(size):
     """gdal_grid's inverse distance in the cells of our image."""
-    from lanewright.core.intensity.idw import ImageSettings
+    from lanewright.core.intensity.image import ImageSettings
 
     radius = ImageSettings.radius_cells * ImageSettings.cell_size
     return gdal_grid.inverse_distance(prepared("strip.fgb", size), prepared("gdal.tif", size), prepared("strip.tif", size), radius,

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import shapely
 
-from ...driving.lanes_layer import Lanes
+from ...driving.layers import Lanes
 from ..sources import LEAST_CURB
 
 SAME_VERTEX = 0.001      # m in plan between vertices that are one

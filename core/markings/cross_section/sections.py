@@ -11,7 +11,7 @@ import numpy as np
 from ...common.parallel import check_cancelled
 from ...curves.robust import median
 from ...road.edges.road_edges import RoadEdges
-from ...survey.frame.frame_lines import FrameLines
+from ...survey.frame.placement import FrameLines
 from ...survey.frame.row_table import RowTable
 from .grid_lines import STATION_STEP, GridLines, PieceOfLine, even_doubles, joined, lead_over, lengthen_dashed, lines_on_grid
 

@@ -13,11 +13,11 @@ from ...common.progress import Progress
 from ...common.setting import check_limits, setting
 from ...countries.catalogue import country
 from ...countries.neutral import NEUTRAL
+from ...curves.base import CurveFit
 from ...curves.bspline import fit_splines, smooth_profiles
-from ...curves.curve_fit import CurveFit
 from ...curves.model_selection import CURVES, fit_curve, fit_curves
 from ...curves.robust import median
-from ...survey.frame.frame_lines import LINE_VERTEX_SPACING
+from ...survey.frame.placement import LINE_VERTEX_SPACING
 from .common_trend import weighted_medians
 from .edges_beside import LEVEL_REACH
 

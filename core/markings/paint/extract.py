@@ -9,9 +9,8 @@ from os import PathLike
 import numpy as np
 
 from ...common.progress import Progress
-from ...execution.phase import Executor, Phase
-from ...execution.threads import THREADS
-from ...intensity.saturation import saturation_of
+from ...execution.phase import THREADS, Executor, Phase
+from ...intensity.correction import saturation_of
 from ...intensity.tiled_image import IntensityRaster, TiledImage
 from ...survey.frame.road_frame import RoadFrame
 from ...survey.store.columns import Columns

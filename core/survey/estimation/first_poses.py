@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...curves.smoothing import robustly_smoothed
+from ...curves.robust import robustly_smoothed
 from .poses import KNOT_SPACING, POSE, YAW, DriveKnots, Poses
 from .resection import Fixes, fixes_of, rotation_rate_of
 from .rough.first_track import WINDOW, FirstTrack, headings_of

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...common.progress import Progress
-from ...curves.smoothing import robustly_smoothed
+from ...curves.robust import robustly_smoothed
 from .adjustment import FIRST_NOISE, Adjusted, Returns, adjust_poses
 from .crossfall import crossfall_of
 from .poses import POSE, Poses

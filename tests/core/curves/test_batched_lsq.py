@@ -5,10 +5,10 @@ import pytest
 from lanewright.core.curves.base import Arc
 from lanewright.core.curves.bspline import fit_splines, smooth_profiles
 from lanewright.core.curves.clothoid import Clothoid
-from lanewright.core.curves.line_circle import fit_circles
 from lanewright.core.curves.model_selection import fit_curves
 from lanewright.core.curves.robust import percentiles
 from lanewright.core.curves.segmentation import element_ranges, segment_line
+from lanewright.core.curves.simple_curves import fit_circles
 
 
 def painted(curve, step=0.25, seed=1):

@@ -8,11 +8,9 @@ from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.curves.base import Arc
 from lanewright.core.curves.bspline import fit_spline
 from lanewright.core.curves.clothoid import Clothoid, fit_clothoid
-from lanewright.core.curves.ellipse import Ellipse, fit_ellipse
-from lanewright.core.curves.line_circle import fit_circle, fit_line
 from lanewright.core.curves.model_selection import curve_from_params, fit_curve
-from lanewright.core.curves.polynomial import fit_polynomial
 from lanewright.core.curves.segmentation import segment_line
+from lanewright.core.curves.simple_curves import Ellipse, fit_circle, fit_ellipse, fit_line, fit_polynomial
 
 EVERY_CURVE = [
     Arc(12.0, -7.0, 0.7, 0.0, 60.0),

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from lanewright.core.countries.catalogue import country
-from lanewright.core.driving.curve_elements import FOOT, circular_curve_elements, curve_points, design_check
+from lanewright.core.driving.alignment import FOOT, circular_curve_elements, curve_points, design_check
 from lined_streets import EAST, NORTH, Street
 
 

@@ -3,12 +3,11 @@
 import numpy as np
 import pytest
 from counted_calls import calls
-from lanewright.core.driving.alignment import lane_elements
-from lanewright.core.driving.centreline import without_short_status
+from lanewright.core.driving.alignment import lane_elements, without_short_status
 from lanewright.core.driving.driving_lines import DrivingSettings, make_driving_lines
 from lanewright.core.driving.lane_areas import follow
 from lanewright.core.driving.lane_track import LaneTrack, connect
-from lanewright.core.driving.tapers import laid_out
+from lanewright.core.driving.lanes import laid_out
 from lanewright.core.markings.cross_section.candidates import boundary_candidates, gather_boundaries
 from lanewright.core.markings.cross_section.sections import sections_of_lines
 from lanewright.core.markings.cross_section.weights import EstimateWeights

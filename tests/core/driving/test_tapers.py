@@ -2,10 +2,9 @@
 
 import numpy as np
 import pytest
-from lanewright.core.common.features import Features
-from lanewright.core.common.schemas import ROAD_EDGES
+from lanewright.core.common.features import ROAD_EDGES, Features
 from lanewright.core.driving.lane_track import MEASURED, LaneTrack
-from lanewright.core.driving.tapers import laid_out
+from lanewright.core.driving.lanes import laid_out
 from lined_streets import EAST, HEIGHT, Street
 from shapely.geometry import LineString
 

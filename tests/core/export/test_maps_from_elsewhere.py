@@ -5,7 +5,7 @@ import time
 import numpy as np
 import pytest
 import shapely
-from lanewright.core.driving.lanes_layer import lanes_from_features
+from lanewright.core.driving.layers import lanes_from_features
 from lanewright.core.export.check.lanelets import check_lanelets
 from lanewright.core.export.fit_of_export import border_misses
 from lanewright.core.export.inferred_ways import with_inferred_ways

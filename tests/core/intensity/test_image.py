@@ -6,9 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.intensity.coverage import check_image_shows
-from lanewright.core.intensity.idw import ImageSettings, _kernels
-from lanewright.core.intensity.image import make_intensity_image, write_intensity_image
+from lanewright.core.intensity.image import ImageSettings, _kernels, check_image_shows, make_intensity_image, write_intensity_image
 from lanewright.core.io.geotiff import IntensityImage, write_display_image
 from lanewright.core.markings.paint.mask import marking_mask
 from lanewright.core.survey.store.records import COORDINATE_SCALE, ROAD_POINT, point_dtype, to_units

@@ -7,8 +7,7 @@ from lanewright.core.common.errors import Cancelled
 from lanewright.core.common.parallel import cancellation_scope
 from lanewright.core.common.progress import Progress
 from lanewright.core.pipeline import road_map as chain
-from lanewright.core.pipeline.road_map import RoadMapSettings, make_road_map
-from lanewright.core.pipeline.stages import STAGE_NAMES
+from lanewright.core.pipeline.road_map import STAGE_NAMES, RoadMapSettings, make_road_map
 from lanewright.core.survey.open_survey import SurveySettings
 
 pytestmark = pytest.mark.slow

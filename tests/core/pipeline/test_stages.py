@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from lanewright.core.common.progress import Progress
-from lanewright.core.pipeline.stages import INTENSITY_STAGES, STAGE_NAMES, Extent, Stages
+from lanewright.core.pipeline.road_map import INTENSITY_STAGES, STAGE_NAMES, Extent, Stages
 from lanewright.core.sample.survey import SampleSettings, make_sample_survey
 from lanewright.core.survey.trajectory.trajectory import Trajectory
 

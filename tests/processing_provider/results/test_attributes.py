@@ -1,7 +1,7 @@
 """What identify, attribute tables and map tips show of a result."""
 
 import pytest
-from lanewright.core.common.schemas import CURB_POINTS, DRIVING_LINES, LANES, MARKING_LINES, MARKINGS, ROAD_EDGES, ROAD_SURFACE
+from lanewright.core.common.features import CURB_POINTS, DRIVING_LINES, LANES, MARKING_LINES, MARKINGS, ROAD_EDGES, ROAD_SURFACE
 from lanewright.processing_provider.layers import qgis_fields
 from lanewright.processing_provider.results.attributes import TITLES, short_alias
 from lanewright.processing_provider.styling import LOOKS, STYLES, Styler
@@ -55,6 +55,12 @@ def test_a_feature_says_what_it_is(qgis_app, output, row, said):
     layer = loaded(output, **row)
     assert evaluated(layer, f"[% {layer.displayExpression()} %]") == said
     assert said in evaluated(layer, layer.mapTipTemplate())
+
+
+def test_patterns_are_shown_in_words_where_a_value_holds_one(qgis_app):
+    layer = loaded("MARKING_LINES", line=3, kind="centre", pattern="double-solid", length_m=9.0, status="measured")
+    assert evaluated(layer, f"[% {layer.displayExpression()} %]") == "Centre line 3, double, solid, 9 m, measured"
+    assert evaluated(loaded("DRIVING_LINES", pattern="solid|dashed"), "[% represent_value(\"pattern\") %]") == "solid|dashed"
 
 
 def test_the_second_reading_is_shown_in_words_in_tables_and_forms(qgis_app):

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ....curves.smoothing import robustly_smoothed
+from ....curves.robust import robustly_smoothed
 
 WINDOW = 0.1             # s: the vehicle gets a few metres, every mirror turns once at least
 MIN_WINDOW_SAMPLES = 30

@@ -6,7 +6,7 @@ import numpy as np
 from scipy import ndimage, sparse
 
 from ....common.errors import RoadExtractionError
-from ....curves.smoothing import robustly_smoothed
+from ....curves.robust import robustly_smoothed
 
 CELL = 0.5               # m
 LOW_CELL = 2.0           # m in which the low points are ground

@@ -1,0 +1,273 @@
+"""A raster of the ground in plan: cells of local map coordinates, with the points of the lowest layer in each.
+
+Profiles across the road show a curb that runs along it. A curb that turns into a side
+street, or goes around an island, may have any direction: it is looked for in plan, where level
+ground that is connected with the driven track ends at a rise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ...common.arrays import order_by
+from ...lazy import cv2
+from ..common.pseudo_scanlines import DEFAULT_SCANNER_NOISE, MIN_SCANNER_NOISE, lowest_layers
+
+PLAN_CELL = 0.10              # m
+PLAN_GROUND_DEPTH = 1.0       # m below, and
+PLAN_GROUND_HEIGHT = 1.0      # m above the expected road within which ground is looked for
+AVERAGING_CELL = 0.05         # m, cells whose points are averaged for a noisy scanner
+MIN_NOISE_POINTS = 4          # points of a cell, and
+MIN_NOISE_CELLS = 50          # such cells that an estimate of the scanner's noise needs
+NOISE_QUANTILE = 0.3          # quantile of the cells' spreads that is the estimate
+
+
+@dataclass
+class GroundRaster:
+    """Ground of a stretch of road on a grid of local map coordinates.
+
+    Attributes
+    ----------
+    x0, y0 : m, the grid's corner, a whole number of cells from 0
+    x, y, h : (N,) m, the points of the lowest layer; h above the expected road
+    place : (N,) the cell of each, row * columns + column
+    low : (rows, columns) m, mean height of the lowest layer, NaN where there is no point
+    noise : m, spread of heights within a cell of level ground
+    """
+
+    x0: float
+    y0: float
+    x: np.ndarray
+    y: np.ndarray
+    h: np.ndarray
+    place: np.ndarray
+    low: np.ndarray
+    noise: float
+
+    @property
+    def box(self) -> tuple[np.ndarray, np.ndarray]:
+        """(2,) m each, local corners of the grid and of a cell about it."""
+        corner = np.array([self.x0, self.y0])
+        return corner - PLAN_CELL, corner + PLAN_CELL * (np.array(self.low.shape[::-1]) + 1)
+
+    def inside(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """(row, column) of those local places, (N,) m, that lie on the grid."""
+        row, column = self.cells_at(x, y)
+        on = (row >= 0) & (column >= 0) & (row < self.low.shape[0]) & (column < self.low.shape[1])
+        return row[on], column[on]
+
+    def cells_at(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """(row, column) of local places, also of those beyond the grid."""
+        row, column = (np.floor(np.asarray(v) / PLAN_CELL - np.rint(v0 / PLAN_CELL)).astype(np.int64)
+                       for v, v0 in ((y, self.y0), (x, self.x0)))
+        return row, column
+
+    def nearest_cells(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """(row, column) of the cells of the grid that are nearest to local places."""
+        row, column = self.cells_at(x, y)
+        return np.clip(row, 0, self.low.shape[0] - 1), np.clip(column, 0, self.low.shape[1] - 1)
+
+    def middle(self, row: np.ndarray, column: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Local x, y of the middle of cells."""
+        return self.x0 + (column + 0.5) * PLAN_CELL, self.y0 + (row + 0.5) * PLAN_CELL
+
+    @cached_property
+    def by_cell(self) -> tuple[np.ndarray, ...]:
+        """The points sorted by cell.
+
+        Returns
+        -------
+        x, y, h : (N,) m, the points
+        starts : (rows * columns + 1,) index of the first point of every cell
+        """
+        order = order_by(self.place)
+        starts = np.zeros(self.low.size + 1, np.int64)
+        np.cumsum(np.bincount(self.place, minlength=self.low.size), out=starts[1:])
+        return self.x.take(order), self.y.take(order), self.h.take(order), starts
+
+
+def ground_raster(x: np.ndarray, y: np.ndarray, h: np.ndarray, layer_jump: float) -> GroundRaster | None:
+    """The ground of points, cell by cell; None where there are none.
+
+    Parameters
+    ----------
+    x, y : (N,) local m
+    h : (N,) m above the expected road
+    layer_jump : m of height between ground and what is above it
+    """
+    near = np.flatnonzero((h > -PLAN_GROUND_DEPTH) & (h < PLAN_GROUND_HEIGHT))
+    if not len(near):
+        return None
+    x, y, h = (v if len(near) == len(h) else v.take(near) for v in (x, y, h))
+    column, row = np.floor(x / PLAN_CELL).astype(np.int32), np.floor(y / PLAN_CELL).astype(np.int32)
+    first_column, first_row = int(column.min()), int(row.min())
+    columns, rows = int(column.max()) - first_column + 1, int(row.max()) - first_row + 1
+    row -= first_row
+    row *= columns
+    column -= first_column
+    place = row
+    place += column
+    n, total, squares = _sums(place, h, rows * columns)
+    parted, above = _above_ground(place, h, n, total, squares, layer_jump)
+    if above.any():
+        ground = np.flatnonzero(~above)
+        x, y, h, place = (v.take(ground) for v in (x, y, h, place))
+        # in the other cells all points are ground
+        again = np.flatnonzero(parted.take(place))
+        for old, new in zip((n, total, squares), _sums(place.take(again), h.take(again), rows * columns)):
+            np.copyto(old, new, where=parted)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        low = total / n
+        spread = np.sqrt(np.maximum(squares - total * low, 0.0) / (n - 1))
+    # curbs and grass are rough to any scanner, so the smoother cells give the estimate
+    spread = spread[n >= MIN_NOISE_POINTS]
+    noise = max(float(np.quantile(spread, NOISE_QUANTILE)), MIN_SCANNER_NOISE) if len(spread) >= MIN_NOISE_CELLS else DEFAULT_SCANNER_NOISE
+    return GroundRaster(first_column * PLAN_CELL, first_row * PLAN_CELL, x, y, h, place, low.reshape(rows, columns), noise)
+
+
+def _above_ground(place, h, n, total, squares, layer_jump):
+    """Which cells may have several layers, and (N,) bool: does a point lie in another layer than the lowest of its cell?"""
+    with np.errstate(invalid="ignore", divide="ignore"):
+        # heights on either side of a gap have at least this sum of squares about their mean
+        parted = squares - total * total / n > 0.99 * layer_jump**2 * (n - 1) / n
+    above = np.zeros(len(h), bool)
+    own = np.flatnonzero(parted.take(place))
+    if len(own):
+        order = own.take(order_by(np.rint((h.take(own) + PLAN_GROUND_DEPTH) * 1e4).astype(np.int32), place.take(own)))
+        ground, _, _ = lowest_layers(place.take(order), h.take(order), layer_jump)
+        above[order] = ~ground
+    return parted, above
+
+
+def _sums(place, h, cells):
+    """Of every cell the number of points, the sum of their heights, and of the squares of these."""
+    place = place.astype(np.intp)
+    return np.bincount(place, minlength=cells), np.bincount(place, h, cells), np.bincount(place, h * h, cells)
+
+
+def averaged(raster: GroundRaster | None, layer_jump: float) -> GroundRaster | None:
+    """A raster of the mean points of cells AVERAGING_CELL wide, which reduces the noise; `noise` is what remains of it.
+
+    None where there are no points.
+    """
+    if raster is None:
+        return None
+    column, row = np.floor(raster.x / AVERAGING_CELL).astype(np.int64), np.floor(raster.y / AVERAGING_CELL).astype(np.int64)
+    cell = (row - row.min()) * (column.max() - column.min() + 1) + column - column.min()
+    count = np.bincount(cell)
+    held = np.flatnonzero(count)
+    count = count[held]
+    x, y, h = (np.bincount(cell, v)[held] / count for v in (raster.x, raster.y, raster.h))
+    mean = ground_raster(x, y, h, layer_jump)
+    if mean is None:
+        raise ValueError("a raster with points has an average")
+    mean.noise = max(raster.noise / np.sqrt(np.median(count)), MIN_SCANNER_NOISE)
+    return mean
+
+
+# Level ground that is connected with the driven track, and where the ground is stepped.
+
+OUT_OF_RANGE_HEIGHT = 1e6     # m, farther up and down than any ground
+LEVEL_WINDOW_CELLS = 5        # cells, side of the square in which ground is tested for being level
+MAX_LEVEL_SHARE = 0.7         # share of the least step that level ground may differ within that square
+SLOPE_BLOCK_CELLS = 5         # cells, side of a block, and
+SLOPE_WINDOW_BLOCKS = 5       # blocks, side of the window from which the slope of the ground is estimated
+MAX_GROUND_SLOPE = 0.12       # rise over run of a road
+DRIVEN_HALF_WIDTH = 0.75      # m beside a driven track that is certainly road
+MAX_BRIDGED_CELLS = 3         # cells without points that count as drivable between others: scan lines lie apart
+
+
+def ground_slopes(low: np.ndarray) -> list[np.ndarray]:
+    """Slope of the ground about every cell.
+
+    It is the median over a few metres, so that steps do not contribute, and no more than a road's, so that banks are not level.
+
+    Parameters
+    ----------
+    low : (rows, columns) m
+
+    Returns
+    -------
+    two (rows, columns) arrays, m per m along columns and along rows
+    """
+    rows, columns = low.shape
+    padded = np.pad(low, ((0, -rows % SLOPE_BLOCK_CELLS), (0, -columns % SLOPE_BLOCK_CELLS)), constant_values=np.nan)
+    blocks = padded.reshape(padded.shape[0] // SLOPE_BLOCK_CELLS, SLOPE_BLOCK_CELLS, padded.shape[1] // SLOPE_BLOCK_CELLS, SLOPE_BLOCK_CELLS)
+    there = np.isfinite(blocks)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        mean = np.where(there, blocks, 0.0).sum((1, 3)) / there.sum((1, 3))
+    found = []
+    for axis in (1, 0):
+        slope = np.full(mean.shape, np.nan)
+        ahead, behind = (slice(None), slice(1, None)), (slice(None), slice(None, -1))
+        if axis == 0:
+            ahead, behind = ahead[::-1], behind[::-1]
+        slope[behind] = (mean[ahead] - mean[behind]) / (SLOPE_BLOCK_CELLS * PLAN_CELL)
+        slope = np.clip(_median_about(slope, SLOPE_WINDOW_BLOCKS), -MAX_GROUND_SLOPE, MAX_GROUND_SLOPE)
+        found.append(np.repeat(np.repeat(slope, SLOPE_BLOCK_CELLS, 0), SLOPE_BLOCK_CELLS, 1)[:rows, :columns])
+    return found
+
+
+def _median_about(values, size):
+    """Median of a square of cells about each one, without NaN; 0 where there is nothing else."""
+    around = np.lib.stride_tricks.sliding_window_view(np.pad(values, size // 2, constant_values=np.nan), (size, size))
+    count = cv2.boxFilter(np.isfinite(values).astype(np.uint8), cv2.CV_32S, (size, size), normalize=False, borderType=cv2.BORDER_CONSTANT)
+    middle = np.zeros(values.shape)
+    full, some = count == size * size, (count > 0) & (count < size * size)
+    middle[full] = np.partition(around[full].reshape(-1, size * size), size * size // 2, axis=1)[:, size * size // 2]
+    ordered = np.sort(around[some].reshape(-1, size * size), axis=1)
+    middle[some] = ordered[np.arange(len(ordered)), (count[some] - 1) // 2]
+    return middle
+
+
+def driven_ground(raster: GroundRaster, slopes: Sequence[np.ndarray], track_x: np.ndarray, track_y: np.ndarray,
+                  inner: Sequence[np.ndarray], barrier_x: np.ndarray, barrier_y: np.ndarray,
+                  min_height: float) -> tuple[np.ndarray, np.ndarray]:
+    """Level ground connected with the driven track, and where the ground is stepped.
+
+    Parameters
+    ----------
+    raster : GroundRaster
+    slopes : result of `ground_slopes`
+    track_x, track_y : (N,) local m, places along the driven tracks, less than PLAN_CELL apart
+    inner : (x, y), each (K,) local m, places between the road's own curbs
+    barrier_x, barrier_y : (L,) local m, places along lines that are known to bound the road
+    min_height : m, the least step
+
+    Returns
+    -------
+    driven : (rows, columns) bool
+    stepped : (rows, columns) bool, occupied cells about which the ground rises more than its slope explains
+    """
+    there = np.isfinite(raster.low)
+    window = np.ones((LEVEL_WINDOW_CELLS, LEVEL_WINDOW_CELLS), np.uint8)
+    span = cv2.dilate(np.where(there, raster.low, -OUT_OF_RANGE_HEIGHT), window) - cv2.erode(np.where(there, raster.low, OUT_OF_RANGE_HEIGHT), window)
+    level = span <= MAX_LEVEL_SHARE * min_height + (np.abs(slopes[0]) + np.abs(slopes[1])) * (LEVEL_WINDOW_CELLS - 1) * PLAN_CELL
+    passable = level & grown(there, diamond(MAX_BRIDGED_CELLS))
+    barrier = np.zeros(there.shape, bool)
+    barrier[raster.inside(barrier_x, barrier_y)] = True
+    passable &= ~grown(barrier, np.ones((3, 3), np.uint8))
+    count, label = cv2.connectedComponents(passable.view(np.uint8), connectivity=4)
+    track = np.zeros(there.shape, bool)
+    track[raster.inside(track_x, track_y)] = True
+    track = grown(track, diamond(int(round(DRIVEN_HALF_WIDTH / PLAN_CELL))))
+    track[raster.inside(*inner)] = True
+    wanted = np.zeros(count, bool)
+    wanted[label[track & passable]] = True
+    wanted[0] = False
+    return wanted[label], there & ~level
+
+
+def grown(mask: np.ndarray, about: np.ndarray) -> np.ndarray:
+    """(rows, columns) bool: is a cell of the mask, (rows, columns) bool, among those about each one, (K, K) uint8 with K odd?"""
+    return cv2.dilate(mask.view(np.uint8), about).view(bool)
+
+
+def diamond(reach: int) -> np.ndarray:
+    """(2 reach + 1, 2 reach + 1) uint8: 1 in cells up to `reach` away, counted along rows and columns."""
+    away = np.abs(np.arange(-reach, reach + 1))
+    return (away[:, None] + away <= reach).astype(np.uint8)

@@ -1,0 +1,335 @@
+"""Edges of corners, side streets and islands: smooth lines along the curb's own course, from the end of the main edge."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import Akima1DInterpolator
+from scipy.spatial import cKDTree
+
+from ...common.parallel import check_cancelled
+from ...survey.frame.placement import COORDINATE_DECIMALS
+from ...survey.frame.road_frame import RoadFrame
+from ..common.curb_points import CurbPoints
+from ..common.pseudo_scanlines import expand_ranges
+from ..common.tracking import MAX_JOINED_GAP
+from .road_edges import CURB_RETURN, EdgePiece, edge_sigma
+
+RETURN_VERTEX_SPACING = 0.25  # m between vertices: the nose of an island has a radius below a metre
+MIN_CORNER_TURN = np.radians(50.0)  # from the chord before to the chord after a sharp corner
+MAX_CORNER_RADIUS = 0.45      # m, radius that such a turn would have
+SMOOTHING_HALF_LENGTH = 0.5   # m along a curb within which its points give its course
+SAME_PLACE_DISTANCE = 0.02    # m within which two places are one
+
+
+def curb_return_lines(curb_points: CurbPoints, frame: RoadFrame) -> dict[int, list[tuple[CurbPoints, np.ndarray]]]:
+    """The measured curb points that are not of a main curb, by road and chain, in order along each chain.
+
+    Parameters
+    ----------
+    curb_points : CurbPoints
+    frame : RoadFrame
+
+    Returns
+    -------
+    dict road -> list of (points, (N, 3) map coordinates), chains ascending
+    """
+    points = curb_points[~curb_points.of_main_curb & (curb_points.status == "measured") & (curb_points.part == "bottom")]
+    points = points[np.lexsort((points.along, points.chain, points.road))]
+    cuts = np.flatnonzero((np.diff(points.road) != 0) | (np.diff(points.chain) != 0)) + 1
+    found: dict[int, list[tuple[CurbPoints, np.ndarray]]] = {}
+    for rows in np.split(np.arange(len(points)), cuts):
+        if len(rows) > 1:
+            found.setdefault(int(points.road[rows[0]]), []).append((points[rows], points[rows].map_places(frame)))
+    return found
+
+
+def draw_curb_returns(edges: list[EdgePiece], road: int, lines: list[tuple[CurbPoints, np.ndarray]], number: int,
+                      frame: RoadFrame | None = None) -> int:
+    """Add the edges of corners, side streets and islands of one road.
+
+    A corner begins with the vertex at which the main edge ends, so that the two touch.
+
+    Parameters
+    ----------
+    edges : pieces of the main edges, to which these are added
+    road : number of the road
+    lines : of this road, from `curb_return_lines`
+    number : of the first line
+    frame : RoadFrame, which says how far the middle of the passes may be off; None if nothing does
+
+    Returns
+    -------
+    The next free line number
+    """
+    ends = _main_ends(edges, road)
+    tree = cKDTree(ends[:, :2])
+    for points, places in lines:
+        kind = points.kind[0]
+        closed = kind == "island" and np.hypot(*(places[0, :2] - places[-1, :2])) <= SAME_PLACE_DISTANCE
+        first, last = (None, None) if kind == "island" else (_nearest(ends, tree, places[k]) for k in (0, -1))
+        if first is not None and last is not None and np.array_equal(first, last):
+            near = np.hypot(*(first[:2] - places[0, :2])) <= np.hypot(*(first[:2] - places[-1, :2]))
+            first, last = (first, None) if near else (None, last)
+        # the main edge's own end is a place of the curve, so that an arc stays one where the curb was not seen for a metre
+        places = np.concatenate([*(v[None] for v in (first,) if v is not None), places, *(v[None] for v in (last,) if v is not None)])
+        vertices, residual = _drawn(places)
+        along, shared = _chord_length(*places.T[:2]), np.nan_to_num(points.sigma)
+        shared = np.concatenate([*(shared[:1] for v in (first,) if v is not None), shared, *(shared[-1:] for v in (last,) if v is not None)])
+        vertices = np.round(vertices, COORDINATE_DECIMALS)
+        if closed:
+            vertices[-1] = vertices[0]
+        vertices[0], vertices[-1] = vertices[0] if first is None else first, vertices[-1] if last is None else last
+        vertices = vertices[np.r_[True, np.hypot(*np.diff(vertices[:, :2], axis=0).T) > 0]]
+        passes = 0.0 if frame is None else float(np.sqrt(np.mean(frame.passes_sigma(road, points.station) ** 2)))
+        sigma = edge_sigma(along, along, residual, shares=CURB_RETURN, passes=passes, shared=shared)
+        # where the returns thin out a line is cut; elsewhere one number speaks for all of it
+        at = _chord_length(*vertices.T[:2])
+        sigma = np.interp(at * along[-1] / at[-1], along, sigma) if shared.any() else np.full(len(at), sigma.mean())
+        edges.append(EdgePiece(vertices, road, points.side[0], "measured", number, float(points.station.min()), float(points.station.max()),
+                               float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum()), float(np.median(points.height)),
+                               float(np.sqrt(np.mean(residual**2))), kind=kind,
+                               sigma=sigma))
+        number += 1
+    return number
+
+
+def _drawn(places):
+    """Vertices of the smooth line through places, with its sharp corners, and the distance of each place from it."""
+    smooth = _smoothed(places)
+    bounds = np.r_[0, _sharp_chords(places) + 1, len(places)]
+    vertices, residuals = [], []
+    for k, (first, last) in enumerate(zip(bounds[:-1], bounds[1:])):
+        if k:
+            vertices.append(_corner(places[bounds[k - 1]:first], places[first:last])[None])
+        # a piece between two sharp corners is smoothed alone, so that the corners stay sharp
+        part = _smoothed(places[first:last]) if len(bounds) > 2 else smooth
+        vertices.append(_through(part))
+        residuals.append(np.hypot(*(part - places[first:last])[:, :2].T))
+    return np.concatenate(vertices), np.concatenate(residuals)
+
+
+def _sharp_chords(places):
+    """Chords that cut a sharp corner of the curb: index of the first place of each."""
+    x, y = places[:, 0], places[:, 1]
+    heading, length = np.arctan2(np.diff(y), np.diff(x)), np.hypot(np.diff(x), np.diff(y))
+    turn = np.zeros(len(length))
+    turn[1:-1] = np.abs((heading[2:] - heading[:-2] + np.pi) % (2 * np.pi) - np.pi)
+    around = length.copy()
+    around[1:-1] += 0.5 * (length[2:] + length[:-2])
+    turn[(turn < MIN_CORNER_TURN) | (turn < around / MAX_CORNER_RADIUS)] = 0.0
+    beside = np.maximum(np.r_[0.0, turn[:-1]], np.r_[turn[1:], 0.0])
+    return np.flatnonzero((turn > beside) | (turn == beside) & (turn > 0) & (np.r_[0.0, turn[:-1]] < turn))
+
+
+def _corner(before, after):
+    """Where two pieces of curb meet if continued straight; the middle between their ends where that place is not between them."""
+    a, b = before[-1], after[0]
+    p, q = a - before[max(len(before) - 4, 0)], b - after[min(3, len(after) - 1)]
+    cross = p[0] * q[1] - p[1] * q[0]
+    f = ((b[0] - a[0]) * q[1] - (b[1] - a[1]) * q[0]) / cross if abs(cross) > 1e-6 else np.inf
+    meet = a[:2] + f * p[:2] if np.isfinite(f) else a[:2] + np.inf
+    gap = np.hypot(*(b - a)[:2])
+    if not max(np.hypot(*(meet - a[:2])), np.hypot(*(meet - b[:2]))) <= gap:
+        meet = 0.5 * (a + b)[:2]
+    return np.r_[meet, 0.5 * (a[2] + b[2])]
+
+
+def _smoothed(places):
+    """Places moved onto the parabolas fitted to their neighbours within SMOOTHING_HALF_LENGTH, which keeps arcs (local regression)."""
+    t = _chord_length(places[:, 0], places[:, 1])
+    owner, index = expand_ranges(np.searchsorted(t, t - SMOOTHING_HALF_LENGTH), np.searchsorted(t, t + SMOOTHING_HALF_LENGTH, side="right"))
+    u = t[index] - t[owner]
+    weight = 1.0 - (u / (SMOOTHING_HALF_LENGTH * 1.1)) ** 2
+    count = np.bincount(owner, minlength=len(t))
+    powers = [np.bincount(owner, weight * u**k, len(t)) for k in range(5)]
+    # the small term keeps the equations of few neighbours solvable
+    normal = np.array([[powers[i + j] for j in range(3)] for i in range(3)]).transpose(2, 0, 1) + 1e-9 * np.eye(3)
+    right = np.array([[np.bincount(owner, weight * u**k * (places[index, c] - places[owner, c]), len(t)) for c in range(3)]
+                      for k in range(3)]).transpose(2, 0, 1)
+    moved = places + np.linalg.solve(normal, right)[:, 0]
+    # the ends keep their places, since other lines begin there
+    moved[[0, -1]] = places[[0, -1]]
+    return np.where((count >= 4)[:, None], moved, places)
+
+
+def _through(places):
+    """(M, 3) vertices of an Akima curve through places, RETURN_VERTEX_SPACING apart."""
+    if len(places) < 3:
+        return places
+    t = _chord_length(places[:, 0], places[:, 1])
+    return Akima1DInterpolator(t, places)(np.linspace(0.0, t[-1], int(np.ceil(t[-1] / RETURN_VERTEX_SPACING)) + 1))
+
+
+def _chord_length(x, y):
+    """(N,) metres along a polyline at its vertices; no two are the same."""
+    return np.r_[0.0, np.cumsum(np.maximum(np.hypot(np.diff(x), np.diff(y)), 1e-3))]
+
+
+def _main_ends(edges, road):
+    """(K, 3) end vertices of the main edges of a road, except those where two pieces touch."""
+    ends = [np.round(piece.vertices[k], COORDINATE_DECIMALS) for piece in edges if piece.road == road and piece.kind == "main" for k in (0, -1)]
+    if not ends:
+        return np.empty((0, 3))
+    ends = np.array(ends)
+    return ends[cKDTree(ends[:, :2]).query_ball_point(ends[:, :2], SAME_PLACE_DISTANCE, return_length=True) == 1]
+
+
+def _nearest(ends, tree, place):
+    """The end within MAX_JOINED_GAP of a place, None where there is none; `tree` : cKDTree of the ends in plan."""
+    distance, k = tree.query(place[:2])
+    return ends[k] if distance <= MAX_JOINED_GAP else None
+
+
+# Corners where the curb is dropped for a crossing: arcs between the ends of edges that bend towards each other.
+#
+# At a crossing the curb is lowered to a centimetre or two, which no scan shows as a step. The edge of the road goes on there all the same: around a
+# corner it leaves the one curb along its tangent, bends evenly, and meets the other along its tangent. Where it has to go farther on the one
+# tangent than on the other it goes straight there first: a corner is an arc that two lines touch. A gap between two ends that point straight at
+# each other may as well be the mouth of a street, and stays open.
+
+MAX_DROPPED_GAP = 8.0         # m of dropped curb around a corner
+MIN_DROPPED_GAP = 0.3         # m
+MIN_ARC_TURN, MAX_ARC_TURN = np.radians(12.0), np.radians(100.0)   # from end to end
+BEND_LENGTH = 3.0             # m at the end of an edge that tell how it bends
+MIN_BEND_TURN = np.radians(8.0)   # within this length: the end belongs to a corner
+MAX_RADIUS_RATIO = 2.5        # of the arc in the gap over the bend at its end, and the other way
+DIRECTION_LENGTH = 1.0        # m at the end of an edge that give its direction
+MAX_END_STEP, MAX_END_GRADE = 0.03, 0.08   # m, and m per m, that both ends may differ in height
+MEETING_DISTANCE = 0.05             # m within which two ends meet
+ARC_VERTEX_SPACING = 0.25     # m
+
+
+@dataclass
+class _End:
+    """The end of a piece of edge: place (3,), unit vector out of the piece, radians turned to the left over its last metres, their length."""
+
+    piece: EdgePiece
+    place: np.ndarray
+    out: np.ndarray
+    turn: float
+    length: float
+
+
+def dropped_corners(pieces: Sequence[EdgePiece], frame: RoadFrame, number: int) -> list[EdgePiece]:
+    """Arcs across dropped corners, as pieces of status bridged and kind corner.
+
+    Parameters
+    ----------
+    pieces : measured and bridged edges of all roads
+    frame : RoadFrame
+    number : of the first new line
+    """
+    lines = [(piece, _uphill_right(piece)) for piece in pieces if piece.kind != "island" and piece.status != "inferred" and piece.part == "bottom"]
+    tails, heads = ([_end(piece, line[::step]) for piece, line in lines] for step in (1, -1))
+    places = np.array([end.place[:2] for end in tails + heads]).reshape(-1, 2)
+    free = cKDTree(places).query_ball_point(places, MEETING_DISTANCE, return_length=True) == 1
+    begin, end = np.flatnonzero(free[:len(tails)]), np.flatnonzero(free[len(tails):])
+    near = cKDTree(places[begin]).query_ball_tree(cKDTree(places[len(tails) + end]), MAX_DROPPED_GAP + MEETING_DISTANCE)
+    found = []
+    for i, ahead in zip(begin.tolist(), near):
+        check_cancelled()
+        for j in end[ahead].tolist():
+            if i != j and _is_corner(tails[i], heads[j]):
+                found.append((float(np.hypot(*(heads[j].place - tails[i].place)[:2])), i, j))
+    arcs: list[EdgePiece] = []
+    used: set[tuple[str, int]] = set()
+    for _, i, j in sorted(found):
+        if not used & {("tail", i), ("head", j)}:
+            used |= {("tail", i), ("head", j)}
+            arcs.append(_arc(tails[i], heads[j], frame, number + len(arcs)))
+    return arcs
+
+
+def _uphill_right(piece):
+    """(V, 3) the vertices of a piece, in the direction that has the sidewalk on its right."""
+    # main edges run along the road, all others have it there already
+    return piece.vertices[::-1] if piece.kind == "main" and piece.side == "left" else piece.vertices
+
+
+def _end(piece, line):
+    """The last vertex of a line as _End."""
+    away = np.hypot(*(line[:, :2] - line[-1, :2]).T)
+
+    def back(length):
+        far = np.flatnonzero(away >= length)
+        return int(far[-1]) if len(far) else 0
+
+    near, first = back(DIRECTION_LENGTH), back(BEND_LENGTH)
+    out = line[-1, :2] - line[near, :2]
+    middle = line[(first + len(line) - 1) // 2, :2]
+    before, after = middle - line[first, :2], line[-1, :2] - middle
+    # the turn between the chords of both halves is half of that from end to end
+    turn = 2.0 * _angle(before, after) if min(np.hypot(*before), np.hypot(*after)) > 0.2 else 0.0
+    # on an arc the chord to the end lags behind the tangent by half of its turn
+    length = max(float(np.hypot(*before) + np.hypot(*after)), 1e-9)
+    lag = 0.5 * turn * min(float(np.hypot(*out)) / length, 1.0)
+    unit = out / max(np.hypot(*out), 1e-9)
+    unit = np.array([unit[0] * np.cos(lag) - unit[1] * np.sin(lag), unit[0] * np.sin(lag) + unit[1] * np.cos(lag)])
+    return _End(piece, line[-1], unit, turn, length)
+
+
+def _angle(a, b):
+    """Radians from one vector to another, to the left positive."""
+    return float(np.arctan2(a[0] * b[1] - a[1] * b[0], a @ b))
+
+
+def _is_corner(tail, head):
+    """Do two ends bend towards each other about the sidewalk, which lies right of the way from tail to head?"""
+    chord = head.place - tail.place
+    gap = float(np.hypot(*chord[:2]))
+    if not MIN_DROPPED_GAP <= gap <= MAX_DROPPED_GAP or abs(chord[2]) > MAX_END_STEP + MAX_END_GRADE * gap:
+        return False
+    first, last = _turns(tail, head)
+    if min(first, last) <= 0.0 or not MIN_ARC_TURN <= first + last <= MAX_ARC_TURN:
+        return False
+    radius = _radius(gap, first, last)
+    # seen from its own piece a head bends the other way
+    for bend, length in ((-tail.turn, tail.length), (head.turn, head.length)):
+        if bend >= MIN_BEND_TURN and 1 / MAX_RADIUS_RATIO <= radius * bend / length <= MAX_RADIUS_RATIO:
+            return True
+    return False
+
+
+def _turns(tail, head):
+    """Radians to the right, from the direction of a tail to the chord of the gap, and from the chord to the direction of the head."""
+    chord = (head.place - tail.place)[:2]
+    return -_angle(tail.out, chord), -_angle(chord, -head.out)
+
+
+def _tangents(gap, first, last):
+    """m from both ends of a gap to the place where their directions meet, which are off its chord by these angles, radians."""
+    turn = np.sin(first + last)
+    return gap * np.sin(last) / turn, gap * np.sin(first) / turn
+
+
+def _radius(gap, first, last):
+    """m, of the largest arc in a gap that touches the directions of both ends, which are off its chord by these angles, radians."""
+    return min(_tangents(gap, first, last)) / np.tan(0.5 * (first + last))
+
+
+def _arc(tail, head, frame, number):
+    """The piece of edge from a tail to a head: straight on as far as the one tangent is longer than the other, and the arc that both touch."""
+    chord = head.place - tail.place
+    gap = float(np.hypot(*chord[:2]))
+    first, last = _turns(tail, head)
+    before, behind = _tangents(gap, first, last)
+    radius, turn = _radius(gap, first, last), first + last
+    straight, bend = max(before - behind, 0.0), radius * turn
+    length = straight + bend + max(behind - before, 0.0)
+    along = np.linspace(0.0, length, int(np.ceil(length / ARC_VERTEX_SPACING)) + 1)
+    angle = np.clip(along - straight, 0.0, bend) / radius
+    ahead = np.minimum(along, straight) + radius * np.sin(angle)
+    aside = radius * (1.0 - np.cos(angle))
+    rest = np.maximum(along - straight - bend, 0.0)
+    ahead, aside = ahead + rest * np.cos(turn), aside + rest * np.sin(turn)
+    plan = tail.place[:2] + ahead[:, None] * tail.out + aside[:, None] * np.array([tail.out[1], -tail.out[0]])
+    vertices = np.round(np.c_[plan, tail.place[2] + along / length * chord[2]], COORDINATE_DECIMALS)
+    vertices[0], vertices[-1] = tail.place, head.place
+    piece = tail.piece
+    s, _ = frame.road(piece.road).locate(*(vertices[:, :2] - frame.origin[:2]).T)
+    s = s[np.isfinite(s)] if np.isfinite(s).any() else np.array([piece.end])
+    return EdgePiece(vertices, piece.road, piece.side, "bridged", number, float(s.min()), float(s.max()),
+                     float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum()), kind="corner")
