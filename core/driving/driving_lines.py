@@ -19,7 +19,7 @@ from ..markings.cross_section.weights import HATCHING, OUTSIDE
 from ..markings.lines.painted_lines import PaintedLines
 from ..markings.objects.marking_objects import MarkingObjects
 from ..road.edges.road_edges import RoadEdges
-from ..survey.frame.sigma_along import cuts_where_it_changes
+from ..survey.frame.row_table import cuts_where_it_changes
 from .alignment import Course, Element, element_of, is_curve, lane_courses, lane_elements, track_pieces
 from .heights import lane_heights
 from .lane_areas import RoadLanes, connectors_between_roads, lane_areas, make_lanes

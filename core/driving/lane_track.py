@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..common.arrays import mask_runs
 from ..common.parallel import check_cancelled
-from ..common.runs import mask_runs
 from ..markings.cross_section.confidence import SAME_LANE, Reading, confidence_of
 from ..markings.cross_section.sections import STATION_STEP
 from ..markings.cross_section.weights import EstimateWeights

@@ -13,8 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import shapely
 
-from ..io.crs import horizontal_part, parse_crs
-from ..io.units import FOOT, SAME_UNIT, US_SURVEY_FOOT, FileUnits, as_in_file
+from ..io.crs import FOOT, SAME_UNIT, US_SURVEY_FOOT, FileUnits, as_in_file, horizontal_part, parse_crs
 from .opendrive.exporter import OpenDriveSettings, draft_opendrive
 from .opendrive.geometry import PlanElement, PlanView
 from .opendrive.reference_line import fit_reference

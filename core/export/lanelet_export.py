@@ -11,8 +11,7 @@ import shapely
 
 from ..common.errors import RoadExtractionError
 from ..common.setting import check_limits, setting
-from ..io.crs import horizontal_part, parse_crs
-from ..io.units import as_in_file
+from ..io.crs import as_in_file, horizontal_part, parse_crs
 from .map_layers import LOCAL_CRS
 from .sources import LEAST_CURB, NearestValues, RoadMapSource, is_stated, sigma_of_lanes, stop_lines, walked_crossings
 

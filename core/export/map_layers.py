@@ -10,11 +10,9 @@ import shapely
 from scipy.spatial import cKDTree
 
 from ..common.errors import RoadExtractionError
-from ..common.features import Features
-from ..common.schemas import DRIVING_LINES, MARKING_LINES, ROAD_EDGES
+from ..common.features import DRIVING_LINES, MARKING_LINES, ROAD_EDGES, Features
 from ..driving.layers import Lanes, lanes_to_features
-from ..io.crs import check_metric, horizontal_part, parse_crs, same_crs
-from ..io.units import plane_wkt
+from ..io.crs import check_metric, horizontal_part, parse_crs, plane_wkt, same_crs
 
 STATUS_OF_MAPS = "measured"
 

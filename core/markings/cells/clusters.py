@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ...common.groups import linked_groups
+from ...common.arrays import linked_groups
 from ...common.parallel import check_cancelled
 from ...common.progress import Progress
-from ...execution.phase import Executor, NoSource, Phase
-from ...execution.threads import THREADS
+from ...execution.phase import THREADS, Executor, NoSource, Phase
 from ...survey.store.records import COORDINATE_SCALE
 from ...survey.store.road_points import columns_of_roads
 from .components import components, occupied

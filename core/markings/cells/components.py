@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...common.groups import linked_groups
-from ...common.order_statistics import order_by
+from ...common.arrays import linked_groups, order_by
 from ...lazy import cv2
 
 

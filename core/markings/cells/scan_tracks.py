@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...common.runs import stretch_of
+from ...common.arrays import stretch_of
 from ...lazy import cv2
 from .road_grid import CELL_SIZE
 

@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ...common.groups import linked_groups
-from ...common.order_statistics import order_by
+from ...common.arrays import linked_groups, order_by
 from ...lazy import cv2
 from ...survey.store.records import COORDINATE_SCALE, join_columns, to_units
 from .clusters import components_of_points

@@ -11,7 +11,7 @@ import numpy as np
 from ...common.parallel import check_cancelled
 from ...curves.robust import median
 from ...road.edges.road_edges import RoadEdges
-from ...survey.frame.frame_lines import FrameLines
+from ...survey.frame.placement import FrameLines
 from ...survey.frame.row_table import RowTable
 from .grid_lines import STATION_STEP, GridLines, PieceOfLine, even_doubles, joined, lead_over, lengthen_dashed, lines_on_grid
 
@@ -99,7 +99,7 @@ def sections_of_pavement(edges: RoadEdges) -> dict[int, CrossSections]:
 
 def _named_by_chain(edges, rows):
     """CrossSections of some edges; the layer names a line by its chain, -1 stays -1."""
-    course, of = _sides_of_islands(edges.course.take(rows), edges.kind[rows] == "island")
+    course, of = _sides_of_islands(edges.course[rows], edges.kind[rows] == "island")
     rows = rows[of]
     # a number of its own for every side
     count = int(edges.edge.max(initial=-1)) + 1

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...common.groups import linked_groups
+from ...common.arrays import linked_groups
 
 if TYPE_CHECKING:
     from ..objects.marking_objects import MarkingObjects

@@ -17,7 +17,7 @@ from ...curves.base import CurveFit
 from ...curves.bspline import fit_splines, smooth_profiles
 from ...curves.model_selection import CURVES, fit_curve, fit_curves
 from ...curves.robust import median
-from ...survey.frame.frame_lines import LINE_VERTEX_SPACING
+from ...survey.frame.placement import LINE_VERTEX_SPACING
 from .common_trend import weighted_medians
 from .edges_beside import LEVEL_REACH
 

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from ...common.groups import linked_groups
+from ...common.arrays import linked_groups
 from ...common.parallel import check_cancelled
 from ...curves.robust import median
 from .common_trend import MAX_LINE_SLOPE, CommonTrend, weighted_medians

@@ -13,10 +13,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import shapely
 
-from ...common.features import Features
-from ...common.schemas import MARKING_LINES
+from ...common.features import MARKING_LINES, Features
 from ...curves.base import Curve
-from ...survey.frame.frame_lines import FrameLines, line_parts, lines_in_frame
+from ...survey.frame.placement import FrameLines, line_parts, lines_in_frame
 
 if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...common.groups import linked_groups
-from ...common.order_statistics import order_by
+from ...common.arrays import linked_groups, order_by
 from ...common.parallel import check_cancelled
 from ...curves.robust import median, percentiles
 from ...survey.store.records import COORDINATE_SCALE

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...common.runs import stretch_of
+from ...common.arrays import stretch_of
 from ..cells.road_grid import CELL_SIZE
 from ..cells.scan_tracks import fill_gaps
 from .classify import MIN_STOP_LINE_FILL

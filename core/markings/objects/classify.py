@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...common.arrays import overlapping_pairs
 from ...common.errors import RoadExtractionError
-from ...common.near_pairs import overlapping_pairs
 from ...curves.robust import percentiles
 from ...survey.store.records import COORDINATE_SCALE
 from ..cells.clusters import ROAD_EDGE_CLEARANCE

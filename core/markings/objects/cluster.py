@@ -15,13 +15,12 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import shapely
 
-from ...common.groups import members_of
-from ...common.order_statistics import order_by
+from ...common.arrays import members_of, order_by
 from ...common.parallel import check_cancelled
 from ...common.progress import Progress
 from ...common.setting import check_limits, setting
 from ...curves.robust import median
-from ...execution.threads import THREADS
+from ...execution.phase import THREADS
 from ...survey.store.records import COORDINATE_SCALE, Points
 from ..cells.clusters import connected_points
 from ..cells.components import occupied

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ...common.groups import linked_groups, members_of
+from ...common.arrays import linked_groups, members_of
 from ..cells.road_grid import CELL_SIZE
 
 if TYPE_CHECKING:

@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import shapely
 
-from ...common.features import Features
-from ...common.schemas import MARKINGS
+from ...common.features import MARKINGS, Features
 from ...survey.frame.placement import located
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...common.order_statistics import order_by
+from ...common.arrays import order_by
 from ...curves.robust import median, percentiles
 from ...lazy import cv2
 from ...survey.store.records import COORDINATE_SCALE

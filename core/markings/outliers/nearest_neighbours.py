@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ...common.order_statistics import order_by
+from ...common.arrays import order_by
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ...lazy import cv2

@@ -16,8 +16,7 @@ import numpy as np
 from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
 from ...common.setting import check_limits, setting
-from ...execution.phase import NoSource, Phase
-from ...execution.threads import THREADS
+from ...execution.phase import THREADS, NoSource, Phase
 from ...lazy import cv2
 from ...survey.store.columns import Columns
 from ...survey.store.records import COORDINATE_SCALE, take_rows

@@ -9,8 +9,7 @@ from os import PathLike
 import numpy as np
 
 from ...common.progress import Progress
-from ...execution.phase import Executor, Phase
-from ...execution.threads import THREADS
+from ...execution.phase import THREADS, Executor, Phase
 from ...intensity.correction import saturation_of
 from ...intensity.tiled_image import IntensityRaster, TiledImage
 from ...survey.frame.road_frame import RoadFrame

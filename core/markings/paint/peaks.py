@@ -15,8 +15,8 @@ import numpy as np
 from scipy import ndimage
 from scipy.spatial import cKDTree
 
+from ...common.arrays import linked_groups
 from ...common.errors import RoadExtractionError
-from ...common.groups import linked_groups
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ...common.setting import check_limits, setting

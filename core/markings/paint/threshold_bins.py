@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...common.order_statistics import quantiles
+from ...common.arrays import quantiles
 from ...intensity.asphalt_model import asphalt_statistics
 from ...survey.store.records import COORDINATE_SCALE
 

@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.common.features import Features
-from lanewright.core.common.schemas import MARKINGS
+from lanewright.core.common.features import MARKINGS, Features
 from lanewright.core.markings.cross_section.evidence import BINS
 from lanewright.core.markings.cross_section.hatching import places_of_bays
 from lanewright.core.markings.figures.parking_bays import rows_of_bays
