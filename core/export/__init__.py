@@ -7,9 +7,7 @@ ours; findings on a map.
 from ..lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "dxf": ("dxf_lines", "write_dxf"),
     "inferred_ways": ("with_inferred_ways",),
-    "landxml": ("Alignment", "alignments_of", "landxml_text"),
     "lanelet_export": ("Degrees", "LaneletDraft", "LaneletSettings", "draft_lanelets", "lanelet2_text", "to_degrees"),
     "lanelet_map": ("Lanelet", "LaneletMap", "LaneletNetwork", "Way", "layers_of_lanelets", "read_lanelet2"),
     "map_layers": ("MapLayers", "MapLine", "Misses", "border_misses", "driving_line_misses"),
