@@ -62,7 +62,7 @@ class ExportCad(Algorithm):
 def _dxf(call, source, progress):
     from collections import Counter
 
-    from ...core.export.dxf import dxf_lines, write_dxf
+    from ...core.export.cad.dxf import dxf_lines, write_dxf
 
     lines = dxf_lines(source)
     write_dxf(lines, call.new_file("OUTPUT"), source.lanes.crs)

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 import shapely
 
-from ..common.errors import RoadExtractionError
-from ..common.features import Features
-from ..io.crs import as_in_file
-from ..io.local_files import gdal_exceptions
-from .sources import RoadMapSource
+from ...common.errors import RoadExtractionError
+from ...common.features import Features
+from ...io.crs import as_in_file
+from ...io.local_files import gdal_exceptions
+from ..sources import RoadMapSource
 
 COLOURS = {"LANE_BORDER": "#808080", "DRIVING_LINE": "#00a0ff", "MARKING_EDGE": "#ffffff", "MARKING_LANE": "#e0e0e0", "MARKING_CENTRE": "#ffd040",
            "ROAD_EDGE": "#ff8000", "MARKING_AREA": "#ffff00"}
