@@ -13,12 +13,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 import shapely
 
-from ..io.crs import FOOT, SAME_UNIT, US_SURVEY_FOOT, FileUnits, as_in_file, horizontal_part, parse_crs
-from .opendrive.exporter import OpenDriveSettings, draft_opendrive
-from .opendrive.geometry import PlanElement, PlanView
-from .opendrive.reference_line import fit_reference
-from .sources import RoadMapSource
-from .xml_tree import XmlElement, xml_text
+from ...io.crs import FOOT, SAME_UNIT, US_SURVEY_FOOT, FileUnits, as_in_file, horizontal_part, parse_crs
+from ..opendrive.exporter import OpenDriveSettings, draft_opendrive
+from ..opendrive.geometry import PlanElement, PlanView
+from ..opendrive.reference_line import fit_reference
+from ..sources import RoadMapSource
+from ..xml_tree import XmlElement, xml_text
 
 FEET_IN_LANDXML = {"USSurveyFoot": US_SURVEY_FOOT, "foot": FOOT}
 NAMESPACE = "http://www.landxml.org/schema/LandXML-1.2"
