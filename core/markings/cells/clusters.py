@@ -15,9 +15,7 @@ from ...execution.phase import Executor, NoSource, Phase
 from ...execution.threads import THREADS
 from ...survey.store.records import COORDINATE_SCALE
 from ...survey.store.road_points import columns_of_roads
-from .components import components, occupied
-from .road_grid import CELL_UNITS
-from .scan_tracks import track_reach
+from ..road_grid import CELL_UNITS, components, occupied, track_reach
 
 if TYPE_CHECKING:
     from ...survey.store.columns import Columns

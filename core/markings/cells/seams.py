@@ -17,8 +17,8 @@ from ...common.groups import linked_groups
 from ...common.order_statistics import order_by
 from ...lazy import cv2
 from ...survey.store.records import COORDINATE_SCALE, join_columns, to_units
+from ..road_grid import occupied
 from .clusters import components_of_points
-from .components import occupied
 
 if TYPE_CHECKING:
     from ...survey.frame.road import Road

@@ -10,8 +10,8 @@ from scipy.ndimage import grey_closing
 
 from ...survey.frame.placement import located
 from ...survey.frame.row_table import RowTable
-from ..cells.road_grid import CELL_SIZE
 from ..objects.classify import LINE_KINDS
+from ..road_grid import CELL_SIZE
 from .candidates import FAR
 from .evidence import BIN, BINS
 from .sections import STATION_STEP

@@ -15,10 +15,10 @@ import shapely
 
 from ...common.parallel import check_cancelled
 from ...curves.robust import median
-from ..cells.scan_tracks import MIN_TRACK_GAP
 from ..objects.classify import LINE_KINDS
 from ..objects.marking_objects import MarkingObjects, Outlines
 from ..paint.morphology import MAX_TRACK_GAP
+from ..road_grid import MIN_TRACK_GAP
 from .lines_beside import StretchLookup
 
 if TYPE_CHECKING:

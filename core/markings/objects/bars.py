@@ -11,8 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...common.runs import stretch_of
-from ..cells.road_grid import CELL_SIZE
-from ..cells.scan_tracks import fill_gaps
+from ..road_grid import CELL_SIZE, fill_gaps
 from .classify import MIN_STOP_LINE_FILL
 
 WIDTH_STEP, WIDTH_TOLERANCE = 12, 2     # cells along a line whose width is taken together, and across by which it may be uneven

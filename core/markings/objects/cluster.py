@@ -24,10 +24,8 @@ from ...curves.robust import median
 from ...execution.threads import THREADS
 from ...survey.store.records import COORDINATE_SCALE, Points
 from ..cells.clusters import connected_points
-from ..cells.components import occupied
-from ..cells.road_grid import CELL_UNITS
-from ..cells.scan_tracks import track_reach
 from ..cells.seams import told_by_one_road
+from ..road_grid import CELL_UNITS, occupied, track_reach
 from .classify import (
     LINE_KINDS,
     MIN_COVERED_SHARE,

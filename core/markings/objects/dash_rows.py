@@ -13,7 +13,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ...common.groups import linked_groups, members_of
-from ..cells.road_grid import CELL_SIZE
+from ..road_grid import CELL_SIZE
 
 if TYPE_CHECKING:
     from .shape import Shape

@@ -17,9 +17,8 @@ from ...common.near_pairs import overlapping_pairs
 from ...common.parallel import check_cancelled
 from ...countries.painted_symbols import SYMBOLS
 from ...lazy import cv2
-from ..cells.road_grid import CELL_SIZE
-from ..cells.scan_tracks import fill_gaps, filled_between_tracks
 from ..figures.match import PaintImage, agreement
+from ..road_grid import CELL_SIZE, fill_gaps, filled_between_tracks
 from .classify import NOT_PAINT
 
 if TYPE_CHECKING:

@@ -17,8 +17,7 @@ from scipy.spatial import cKDTree
 
 from ...curves.robust import row_medians
 from ...survey.store.records import COORDINATE_SCALE
-from ..cells.road_grid import CELL_SIZE
-from ..cells.scan_tracks import fill_gaps, filled_between_tracks, track_reach
+from ..road_grid import CELL_SIZE, fill_gaps, filled_between_tracks, track_reach
 from .shape import middle_line
 
 if TYPE_CHECKING:

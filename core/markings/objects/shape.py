@@ -10,9 +10,7 @@ from ...common.order_statistics import order_by
 from ...curves.robust import median, percentiles
 from ...lazy import cv2
 from ...survey.store.records import COORDINATE_SCALE
-from ..cells.components import occupied
-from ..cells.road_grid import CELL_SIZE, CELL_UNITS
-from ..cells.scan_tracks import fill_gaps, filled_between_tracks, track_reach
+from ..road_grid import CELL_SIZE, CELL_UNITS, fill_gaps, filled_between_tracks, occupied, track_reach
 from .zigzag import zigzag_legs
 
 MIDDLE_LINE_STEP_UNITS = 5000                         # units: 0.5 m of station that the run of a line is followed in

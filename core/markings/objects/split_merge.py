@@ -25,9 +25,7 @@ from ...common.parallel import check_cancelled
 from ...common.runs import stretch_of
 from ...lazy import cv2
 from ...survey.store.records import COORDINATE_SCALE
-from ..cells.components import occupied
-from ..cells.road_grid import CELL_UNITS
-from ..cells.scan_tracks import filled_between_tracks, track_reach
+from ..road_grid import CELL_UNITS, filled_between_tracks, occupied, track_reach
 from .bars import (
     MAX_PAINT_GAP,
     MAX_SCAN_GAP,

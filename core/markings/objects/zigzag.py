@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..cells.road_grid import CELL_SIZE
+from ..road_grid import CELL_SIZE
 
 STEP_CELLS = 3              # cells along the road whose middle is one place: 12 cm
 ZIGZAG_LENGTH = 2.0, 45.0     # m along the road: three legs of the shortest, and "school keep clear"

@@ -14,7 +14,7 @@ from scipy import ndimage
 
 from ...intensity.asphalt_model import asphalt_statistics
 from ...lazy import cv2
-from ..cells.road_grid import RoadGrid
+from ..road_grid import RoadGrid
 from .gutters import COARSE_CELLS, RimBands, gutter_cells
 from .threshold_bins import HISTOGRAM_LIMITS, MAX_BIN_WIDTH, AsphaltBin, OtsuSplit, otsu
 

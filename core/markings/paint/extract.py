@@ -18,7 +18,7 @@ from ...survey.store.columns import Columns
 from ...survey.store.records import COORDINATE_SCALE, join_columns
 from ...survey.store.road_points import RoadPoints
 from ...survey.store.section_store import SectionStore
-from ..cells.road_grid import CELL_UNITS
+from ..road_grid import CELL_UNITS
 from .mask import Burn, burn_points, marking_mask
 from .peaks import points_on_peaks
 from .point_segments import points_in_segments

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...lazy import cv2
-from ..cells.road_grid import CELL_SIZE
+from ..road_grid import CELL_SIZE
 from .gutters import PAINT_TO_GUTTER
 
 FADING_BESIDE = 2, 4   # cells from a run of paint across the road: where its fading is measured

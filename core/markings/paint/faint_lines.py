@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...lazy import cv2
-from ..cells.scan_tracks import fill_gaps
+from ..road_grid import fill_gaps
 from .noisy import local_scatter
 
 STROKE_CELLS = 3          # across the road: 12 cm, of which the line is the mean

@@ -14,8 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...lazy import cv2
-from ..cells.road_grid import CELL_SIZE
-from ..cells.scan_tracks import fill_gaps
+from ..road_grid import CELL_SIZE, fill_gaps
 from .morphology import MAX_TRACK_GAP
 
 BAND_CELLS = 2       # bands of 8 cm inwards from the rim

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...lazy import cv2
-from ..cells.road_grid import CELL_SIZE
-from ..cells.scan_tracks import MAX_GAP_ON_TRACK, fill_gaps
+from ..road_grid import CELL_SIZE, MAX_GAP_ON_TRACK, fill_gaps
 
 if TYPE_CHECKING:
     from .settings import MarkingSettings

@@ -20,7 +20,7 @@ from ...intensity.asphalt_model import asphalt_statistics
 from ...survey.store.columns import Columns
 from ...survey.store.records import COORDINATE_SCALE, Points, take_rows
 from ...survey.store.road_points import RoadPoints
-from ..cells.components import occupied
+from ..road_grid import occupied
 from .threshold_bins import otsu
 
 MIN_SEGMENT_POINTS = 200    # of a segment, below which it has no threshold and no paint

@@ -13,7 +13,7 @@ import numpy as np
 from ...curves.robust import median
 from ...lazy import cv2
 from ...survey.store.records import COORDINATE_SCALE
-from ..cells.road_grid import CELL_SIZE
+from ..road_grid import CELL_SIZE
 
 SQUARE_CELLS = 5            # squares of 20 cm
 PLANE_SQUARES = 9           # squares, either way, that a plane is fitted to: 1.8 m

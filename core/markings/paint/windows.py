@@ -17,7 +17,7 @@ import numpy as np
 from ...curves.robust import median
 from ...execution.phase import Recipe
 from ...survey.store.records import COORDINATE_SCALE, Points, join_columns, take_rows
-from ..cells.road_grid import CELL_UNITS, PieceOfRoad, RoadCells, RoadGrid, cell_numbers, cells_of_road
+from ..road_grid import CELL_UNITS, PieceOfRoad, RoadCells, RoadGrid, cell_numbers, cells_of_road
 from .asphalt_level import AsphaltLevels, asphalt_profile, dark_cells, flatten
 from .fading import without_fading_areas, without_fading_rims
 from .faint_lines import faint_lines
