@@ -36,7 +36,7 @@ from ..markings.lines.naming import named_by_estimate, named_by_lines
 from ..markings.lines.painted_lines import lines_to_features
 from ..markings.objects.cluster import ClusterSettings, cluster_markings
 from ..markings.objects.marking_objects import markings_to_features
-from ..markings.outliers.remove import OutlierSettings, remove_outliers
+from ..markings.outliers import OutlierSettings, remove_outliers
 from ..markings.paint.extract import extract_markings
 from ..markings.paint.settings import MarkingSettings
 from ..road.common.curb_limits import CurbSettings

@@ -134,7 +134,7 @@ def image_ours(size):
 
 def sor_ours(size):
     """Outliers of a million points by one limit for all, 20 neighbours."""
-    from lanewright.core.markings.outliers.remove import OutlierSettings, remove_outliers
+    from lanewright.core.markings.outliers import OutlierSettings, remove_outliers
 
     points = _paint(size)
     kept, seconds = timed(lambda: remove_outliers(points, OutlierSettings(scope="all")))

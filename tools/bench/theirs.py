@@ -49,13 +49,13 @@ def image_gdal(size):
 
 
 def sor_pcl(size):
-    from lanewright.core.markings.outliers.remove import OutlierSettings
+    from lanewright.core.markings.outliers import OutlierSettings
 
     return _outliers("pcl", size, *pcl.outliers(_places(size), OutlierSettings.neighbours, OutlierSettings.std_ratio))
 
 
 def sor_open3d(size):
-    from lanewright.core.markings.outliers.remove import OutlierSettings
+    from lanewright.core.markings.outliers import OutlierSettings
 
     return _outliers("open3d", size, *open3d_peer.outliers(_places(size), OutlierSettings.neighbours, OutlierSettings.std_ratio))
 

@@ -6,5 +6,5 @@ In: paint points. Out: the same points without those that lie far from their nei
 from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "remove": ("OutlierSettings", "remove_outliers"),
+    "": ("OutlierSettings", "remove_outliers"),
 })
