@@ -6,6 +6,5 @@ In: painted cells and a figure of the country catalogue, or markings. Out: how w
 from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "match": ("Agreement", "PaintImage", "agreement"),
     "parking_bays": ("rows_of_bays",),
 })
