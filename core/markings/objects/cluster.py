@@ -40,9 +40,8 @@ from .classify import (
 from .dash_rows import BLOCK_SIZE, blocks_of_strip, give_way_blocks
 from .figures import painted_figures
 from .marking_objects import make_marking_objects
-from .outline import lifted
 from .phases import ApartWork
-from .shape import SMALL_MARKING_SIZE, measure, smallest_rectangle
+from .shape import SMALL_MARKING_SIZE, lifted, measure, smallest_rectangle
 from .split_merge import join_fragments, split_compounds
 from .zebra import zebra_stripes
 

@@ -13,8 +13,7 @@ from ...common.parallel import check_cancelled
 from ...common.progress import Progress
 from ...execution.phase import Executor, NoSource, Phase
 from .figures import Candidate, figures_of_group
-from .outline import drawn_outline
-from .shape import Shape, measure
+from .shape import Shape, drawn_outline, measure
 from .split_merge import parts_of_compound
 from .zebra import Comb, Crossing, Stripe, comb_of_window, stripes_of_crossing
 

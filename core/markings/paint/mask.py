@@ -14,7 +14,7 @@ from ...survey.frame.road import Road
 from ...survey.frame.road_frame import RoadFrame
 from ...survey.store.records import COORDINATE_SCALE
 from ...survey.store.road_points import RoadPoints
-from ..objects.outline import CLOSE_ALONG, painted_cells
+from ..objects.shape import CLOSE_ALONG, painted_cells
 from ..road_grid import CELL_SIZE
 
 BURN_BLOCK = 2048   # px: pixels are burnt in blocks of the image, so that a window in a bend reads only the blocks it touches
