@@ -13,7 +13,7 @@ from ...common.near_pairs import overlapping_pairs
 from ...curves.robust import percentiles
 from ...survey.store.records import COORDINATE_SCALE
 from ..cells.clusters import ROAD_EDGE_CLEARANCE
-from .dash_rows import rows_of_dashes
+from .repeating import rows_of_dashes
 
 if TYPE_CHECKING:
     from .shape import Shape

@@ -29,12 +29,11 @@ from ..cells.clusters import connected_points
 from ..cells.seams import told_by_one_road
 from ..road_grid import CELL_UNITS, occupied, track_reach
 from .classify import LINE_KINDS, MIN_COVERED_SHARE, NOT_PAINT, RIM_CLEARANCE, ClassSettings, classify_markings, filled, relative_contrast, too_pale
-from .dash_rows import BLOCK_SIZE, blocks_of_strip, give_way_blocks
 from .figures import Candidate, figures_of_group, painted_figures
 from .marking_objects import make_marking_objects
+from .repeating import BLOCK_SIZE, Comb, Crossing, Stripe, blocks_of_strip, comb_of_window, give_way_blocks, stripes_of_crossing, zebra_stripes
 from .shape import SMALL_MARKING_SIZE, Shape, drawn_outline, lifted, measure, smallest_rectangle
 from .split_merge import join_fragments, parts_of_compound, split_compounds
-from .zebra import Comb, Crossing, Stripe, comb_of_window, stripes_of_crossing, zebra_stripes
 
 if TYPE_CHECKING:
     from ...survey.frame.road import Road

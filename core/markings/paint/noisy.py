@@ -16,7 +16,7 @@ from scipy import ndimage
 
 from ...survey.frame.road_frame import RoadFrame
 from ...survey.store.records import COORDINATE_SCALE, Points
-from ..objects.dash_rows import MIN_DASHES_IN_ROW, dashes_beyond, rows_of_dashes
+from ..objects.repeating import MIN_DASHES_IN_ROW, dashes_beyond, rows_of_dashes
 from ..objects.shape import Shape, measure
 from ..road_grid import CELL_SIZE, CELL_UNITS
 
