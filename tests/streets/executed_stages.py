@@ -13,10 +13,10 @@ from lanewright.core.intensity import image as imaging
 from lanewright.core.intensity.correction import correct_intensity
 from lanewright.core.intensity.image import make_intensity_image
 from lanewright.core.markings import outliers as remove
-from lanewright.core.markings.cells import clusters as linking
 from lanewright.core.markings.cross_section import evidence
 from lanewright.core.markings.lines.fit import fit_marking_lines
 from lanewright.core.markings.objects import cluster as phases
+from lanewright.core.markings.objects import grouping as linking
 from lanewright.core.markings.objects.cluster import cluster_markings
 from lanewright.core.markings.objects.marking_objects import markings_to_features
 from lanewright.core.markings.outliers import remove_outliers

@@ -146,8 +146,8 @@ def sor_ours(size):
 
 def clusters_ours(size):
     """Which of a million points on paint belong together."""
-    from lanewright.core.markings.cells.clusters import connected_points
     from lanewright.core.markings.objects.cluster import ClusterSettings
+    from lanewright.core.markings.objects.grouping import connected_points
     from lanewright.core.survey.store.road_points import columns_of_roads
 
     points = _paint(size)

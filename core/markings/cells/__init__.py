@@ -6,6 +6,4 @@ In: points of paint by road. Out: their clusters.
 from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "clusters": ("connected_points",),
-    "seams": ("told_by_one_road",),
 })

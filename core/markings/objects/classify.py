@@ -12,7 +12,7 @@ from ...common.errors import RoadExtractionError
 from ...common.near_pairs import overlapping_pairs
 from ...curves.robust import percentiles
 from ...survey.store.records import COORDINATE_SCALE
-from ..cells.clusters import ROAD_EDGE_CLEARANCE
+from .grouping import ROAD_EDGE_CLEARANCE
 from .repeating import rows_of_dashes
 
 if TYPE_CHECKING:

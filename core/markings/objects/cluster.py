@@ -25,11 +25,10 @@ from ...curves.robust import median
 from ...execution.phase import Executor, NoSource, Phase
 from ...execution.threads import THREADS
 from ...survey.store.records import COORDINATE_SCALE, Points
-from ..cells.clusters import connected_points
-from ..cells.seams import told_by_one_road
 from ..road_grid import CELL_UNITS, occupied, track_reach
 from .classify import LINE_KINDS, MIN_COVERED_SHARE, NOT_PAINT, RIM_CLEARANCE, ClassSettings, classify_markings, filled, relative_contrast, too_pale
 from .figures import Candidate, figures_of_group, painted_figures
+from .grouping import connected_points, told_by_one_road
 from .marking_objects import make_marking_objects
 from .repeating import BLOCK_SIZE, Comb, Crossing, Stripe, blocks_of_strip, comb_of_window, give_way_blocks, stripes_of_crossing, zebra_stripes
 from .shape import SMALL_MARKING_SIZE, Shape, drawn_outline, lifted, measure, smallest_rectangle
@@ -40,7 +39,7 @@ if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame
     from ...survey.store.columns import Columns
     from ...survey.store.road_points import RoadPoints
-    from ..cells.seams import RoadPaint
+    from .grouping import RoadPaint
     from .marking_objects import MarkingObjects
 
 MIN_FRAGMENT_POINTS = 1                       # points: the smallest worn rest that a line may be joined from
