@@ -11,14 +11,23 @@ import numpy as np
 from ...common.parallel import check_cancelled, ordered_map
 from ...common.progress import Progress
 from ...survey.frame.row_table import stacked
-from ..figures.parking_bays import rows_of_bays
 from .arrows import arrows_of, driven_against
 from .candidates import Boundaries, Candidates, boundary_candidates, gather_boundaries
 from .confidence import TakenReading
 from .dashes import dash_lengths
 from .estimate import RoadEstimate, estimate_road, lane_spans
-from .evidence import Evidence, between_ends, driven_offsets, evidence_of, other_carriageway, surface_coverage
-from .hatching import borders_of_hatching, hatched_places, places_of_bays
+from .evidence import (
+    Evidence,
+    between_ends,
+    borders_of_hatching,
+    driven_offsets,
+    evidence_of,
+    hatched_places,
+    other_carriageway,
+    places_of_bays,
+    rows_of_bays,
+    surface_coverage,
+)
 from .sections import STATION_STEP, CrossSections
 from .weights import PAVEMENT, EstimateWeights
 

@@ -6,5 +6,4 @@ In: painted cells and a figure of the country catalogue, or markings. Out: how w
 from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "parking_bays": ("rows_of_bays",),
 })
