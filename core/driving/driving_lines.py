@@ -11,11 +11,10 @@ from scipy.ndimage import distance_transform_edt, gaussian_filter1d, uniform_fil
 
 from ..common.progress import Progress
 from ..countries.catalogue import country
-from ..markings.cross_section.confidence import share_within
 from ..markings.cross_section.evidence import point_spacing
 from ..markings.cross_section.roads import EstimatedRoad, estimate_roads
 from ..markings.cross_section.sections import STATION_STEP, CrossSections, sections_of_edges, sections_of_lines, sections_of_pavement
-from ..markings.cross_section.weights import HATCHING, OUTSIDE
+from ..markings.cross_section.weights import HATCHING, OUTSIDE, share_within
 from ..markings.lines.painted_lines import PaintedLines
 from ..markings.objects.marking_objects import MarkingObjects
 from ..road.edges.road_edges import RoadEdges
@@ -29,7 +28,7 @@ from .layers import CurveElements, DrivingLines, Lanes
 from .settings import DrivingSettings
 
 if TYPE_CHECKING:
-    from ..markings.cross_section.confidence import TakenReading
+    from ..markings.cross_section.weights import TakenReading
     from ..survey.frame.road_frame import Road, RoadFrame
     from ..survey.store.road_points import RoadPoints
 

@@ -11,9 +11,8 @@ import numpy as np
 
 from ..common.parallel import check_cancelled
 from ..common.runs import mask_runs
-from ..markings.cross_section.confidence import SAME_LANE, Reading, confidence_of
 from ..markings.cross_section.sections import STATION_STEP
-from ..markings.cross_section.weights import EstimateWeights
+from ..markings.cross_section.weights import SAME_LANE, EstimateWeights, Reading, confidence_of
 from ..survey.frame.row_table import RowSpans
 
 if TYPE_CHECKING:

@@ -10,11 +10,10 @@ from ...common.parallel import check_cancelled
 from .across import Sections, best_sections, lane_strips, misnamed_costs, separated_kinds
 from .along import INTERVALS_AT_ONCE, behind_best, best_sequence, best_through, probabilities, transitions
 from .candidates import Candidates
-from .confidence import SAME_LANE, Reading
 from .evidence import Evidence
 from .lane_width import UNPAINTED, beside_surface_end, lane_places
 from .strips import FIRST, SECOND, strip_costs, width_cost
-from .weights import CENTRE_LINE, DASHED, LANE_LINE, EstimateWeights
+from .weights import CENTRE_LINE, DASHED, LANE_LINE, SAME_LANE, EstimateWeights, Reading
 
 FARTHEST_BEHIND = 30.0   # nats at most by which one direction is less probable than the other
 INTERVALS_OF_STRETCH = 256      # intervals that are looked at together, 1 to 2 km of road: what they are chosen from takes 0.2 MB for each

@@ -16,7 +16,6 @@ from ...survey.frame.placement import located
 from ...survey.frame.row_table import RowTable, stacked
 from ..objects.classify import LINE_KINDS
 from .candidates import Boundaries, Candidates, boundary_candidates, gather_boundaries
-from .confidence import TakenReading
 from .estimate import RoadEstimate, estimate_road, lane_spans
 from .evidence import (
     Evidence,
@@ -31,7 +30,7 @@ from .evidence import (
     surface_coverage,
 )
 from .sections import STATION_STEP, CrossSections
-from .weights import PAVEMENT, EstimateWeights
+from .weights import PAVEMENT, EstimateWeights, TakenReading
 
 if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame

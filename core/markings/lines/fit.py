@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from ...road.edges.road_edges import RoadEdges
     from ...survey.frame.road_frame import RoadFrame
     from ...survey.store.road_points import RoadPoints
-    from ..cross_section.confidence import TakenReading
+    from ..cross_section.weights import TakenReading
     from .strands import Strand
 
 LINES_SHARE = 0.65         # of the work; the rest is the estimate that names the lines

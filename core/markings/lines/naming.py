@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from ...road.edges.road_edges import RoadEdges
     from ...survey.frame.road_frame import RoadFrame
     from ...survey.store.road_points import RoadPoints
-    from ..cross_section.confidence import TakenReading
+    from ..cross_section.weights import TakenReading
 
 KINDS = {EDGE_LINE: "edge", LANE_LINE: "lane", CENTRE_LINE: "centre"}
 CONFIRMED = "accepted"        # status of a line that an analyst looked at
