@@ -10,8 +10,8 @@ from scipy.ndimage import binary_dilation
 from ..common.parallel import check_cancelled
 from ..markings.cross_section.candidates import STATIONS_OF_CELL, Boundaries
 from ..markings.cross_section.estimate import LaneSpan, RoadEstimate, lane_spans
-from ..markings.cross_section.lane_width import beside_island, beside_surface_end, lane_places
 from ..markings.cross_section.sections import STATION_STEP
+from ..markings.cross_section.sequence import beside_island, beside_surface_end, lane_places
 from .lane_track import BRIDGED, END_WIDTH_LENGTH, INFERRED, MAX_LANE_JUMP_SHARE, MEASURED, LaneTrack, spans_of
 
 BESIDE_ONE, BETWEEN_WORN, DIVIDED, BETWEEN_LINES = 1, 2, 3, 4   # ranks of lanes by how sure their place is; those between two lines are not moved

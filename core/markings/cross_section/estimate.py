@@ -7,12 +7,28 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...common.parallel import check_cancelled
-from .across import Sections, best_sections, lane_strips, misnamed_costs, separated_kinds
-from .along import INTERVALS_AT_ONCE, behind_best, best_sequence, best_through, probabilities, transitions
 from .candidates import Candidates
 from .evidence import Evidence
-from .lane_width import UNPAINTED, beside_surface_end, lane_places
-from .strips import FIRST, SECOND, strip_costs, width_cost
+from .sequence import (
+    FIRST,
+    INTERVALS_AT_ONCE,
+    SECOND,
+    UNPAINTED,
+    Sections,
+    behind_best,
+    beside_surface_end,
+    best_sections,
+    best_sequence,
+    best_through,
+    lane_places,
+    lane_strips,
+    misnamed_costs,
+    probabilities,
+    separated_kinds,
+    strip_costs,
+    transitions,
+    width_cost,
+)
 from .weights import CENTRE_LINE, DASHED, LANE_LINE, SAME_LANE, EstimateWeights, Reading
 
 FARTHEST_BEHIND = 30.0   # nats at most by which one direction is less probable than the other

@@ -11,10 +11,10 @@ import numpy as np
 import shapely
 
 from ...common.progress import Progress
-from ..cross_section.across import separated_kinds
 from ..cross_section.estimate import boundary_uses
 from ..cross_section.roads import estimate_roads
 from ..cross_section.sections import sections_of_edges, sections_of_lines, sections_of_pavement
+from ..cross_section.sequence import separated_kinds
 from ..cross_section.weights import CENTRE_LINE, EDGE_LINE, LANE_LINE, EstimateWeights
 from ..objects.classify import LINE_KINDS
 from ..objects.marking_objects import MarkingObjects
