@@ -18,13 +18,13 @@ from ...curves.bspline import fit_splines, smooth_profiles
 from ...curves.model_selection import CURVES, fit_curve, fit_curves
 from ...curves.robust import median
 from ...survey.frame.frame_lines import LINE_VERTEX_SPACING
-from .common_trend import weighted_medians
 from .edges_beside import LEVEL_REACH
+from .linking import weighted_medians
 
 if TYPE_CHECKING:
     from ...survey.frame.road import Road
-    from .common_trend import CommonTrend
     from .edges_beside import EdgesBeside
+    from .linking import CommonTrend
     from .strands import LinkedLine
 
 MIN_POINTS_PER_PLACE = 3     # points that a place must have to count, where there are enough such places

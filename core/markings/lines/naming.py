@@ -18,7 +18,7 @@ from ..cross_section.sequence import separated_kinds
 from ..cross_section.weights import CENTRE_LINE, EDGE_LINE, LANE_LINE, EstimateWeights
 from ..objects.classify import LINE_KINDS
 from ..objects.marking_objects import MarkingObjects
-from .between_tracks import with_paint_between_tracks
+from .linking import with_paint_between_tracks
 from .painted_lines import PaintedLines
 
 if TYPE_CHECKING:

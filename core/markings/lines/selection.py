@@ -15,13 +15,12 @@ from ...countries.neutral import NEUTRAL
 from ...curves.robust import median
 from ..objects.classify import LANE_CLEARANCE
 from .dash_pattern import LinePiece, line_pieces, merged_pieces, stretches
-from .lines_beside import StretchLookup, lines_beside
-from .linking import DOUBLE_LINE_SPACING, MAX_STRAY_OFFSET
+from .linking import DOUBLE_LINE_SPACING, MAX_STRAY_OFFSET, StretchLookup, lines_beside
 from .strands import LinkedLine
 
 if TYPE_CHECKING:
     from ..objects.marking_objects import MarkingObjects
-    from .common_trend import CommonTrend
+    from .linking import CommonTrend
     from .strands import Strand
 
 SAME_COURSE_OFFSET = 0.25     # m: a single dash this near the course of a dashed line is one of its dashes

@@ -5,7 +5,7 @@ import pytest
 import shapely
 from lanewright.core.common.features import Features
 from lanewright.core.common.schemas import MARKING_LINES, MARKINGS
-from lanewright.core.markings.lines.between_tracks import with_paint_between_tracks, with_unseen_paint
+from lanewright.core.markings.lines.linking import with_paint_between_tracks, with_unseen_paint
 from lanewright.core.markings.lines.painted_lines import lines_from_features
 from lanewright.core.markings.objects.marking_objects import markings_from_features, markings_to_features, with_kinds_of
 from lanewright.core.survey.frame.build import build_frame
