@@ -10,7 +10,7 @@ from functools import partial
 
 import numpy as np
 from lanewright.core.markings.cross_section.weights import EstimateWeights
-from lanewright.core.markings.lines.dash_pattern import merged_pieces
+from lanewright.core.markings.lines.selection import merged_pieces
 from lanewright.core.markings.lines.strands import trace_strands
 from lanewright.core.pipeline.road_map import RoadMapSettings
 from lanewright.core.road.common.corners import CurbSteps

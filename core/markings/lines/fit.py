@@ -13,14 +13,13 @@ from ...common.progress import Progress
 from ...countries.catalogue import country
 from ...survey.store.road_points import columns_of_roads
 from ..objects.marking_objects import MarkingObjects
-from .dash_pattern import same_dash_pattern
 from .edges_beside import edges_beside
 from .few_tracks import painted_strands
 from .geometry import LineShape, MarkingLineSettings, fit_line_shapes
 from .linking import CommonTrend, link_lines, link_over_long_gaps, with_unseen_paint, without_strays
 from .naming import named_by_estimate
 from .painted_lines import PaintedLines, painted_lines_of
-from .selection import SelectedLine, crossings, hatching_bars, hatching_borders, select_lines
+from .selection import SelectedLine, crossings, hatching_bars, hatching_borders, same_dash_pattern, select_lines
 from .strands import LinkedLine, line_paint
 
 if TYPE_CHECKING:
