@@ -30,9 +30,7 @@ from ..intensity.correction import IntensitySettings, correct_intensity
 from ..intensity.image import ImageSettings, check_fits, make_intensity_image
 from ..io.cloud_crs import check_projected
 from ..io.geotiff import IntensityImage
-from ..markings.lines.fit import fit_marking_lines
-from ..markings.lines.geometry import MarkingLineSettings
-from ..markings.lines.naming import named_by_estimate, named_by_lines
+from ..markings.lines.fit import MarkingLineSettings, fit_marking_lines, named_by_estimate, named_by_lines
 from ..markings.lines.painted_lines import lines_to_features
 from ..markings.objects.cluster import ClusterSettings, cluster_markings
 from ..markings.objects.marking_objects import markings_to_features

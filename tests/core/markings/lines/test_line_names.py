@@ -4,7 +4,7 @@ import numpy as np
 import shapely
 from lanewright.core.common.features import Features
 from lanewright.core.common.schemas import MARKING_LINES, MARKINGS
-from lanewright.core.markings.lines.naming import named_by_lines
+from lanewright.core.markings.lines.fit import named_by_lines
 from lanewright.core.markings.lines.painted_lines import lines_from_features
 from lanewright.core.markings.objects.marking_objects import markings_from_features
 from lanewright.core.survey.frame.build import build_frame
