@@ -21,7 +21,7 @@ from lanewright.core.markings.objects.cluster import cluster_markings
 from lanewright.core.markings.objects.marking_objects import markings_to_features
 from lanewright.core.markings.outliers import remove_outliers
 from lanewright.core.markings.paint import extract as extraction
-from lanewright.core.markings.paint import scatter
+from lanewright.core.markings.paint import extract as scatter
 from lanewright.core.markings.paint.extract import extract_markings
 from lanewright.core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
 from lanewright.core.road.surface import extract, measured_ground
