@@ -21,7 +21,7 @@ from ...survey.store.columns import Columns
 from ...survey.store.records import COORDINATE_SCALE, Points, take_rows
 from ...survey.store.road_points import RoadPoints
 from ..road_grid import occupied
-from .threshold_bins import otsu
+from .asphalt_level import otsu
 
 MIN_SEGMENT_POINTS = 200    # of a segment, below which it has no threshold and no paint
 RIM_NEIGHBOUR_SHARE = 0.5    # of the neighbours usual inside of paint: a point on its rim has half of them

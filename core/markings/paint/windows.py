@@ -18,7 +18,18 @@ from ...curves.robust import median
 from ...execution.phase import Recipe
 from ...survey.store.records import COORDINATE_SCALE, Points, join_columns, take_rows
 from ..road_grid import CELL_UNITS, PieceOfRoad, RoadCells, RoadGrid, cell_numbers, cells_of_road
-from .asphalt_level import AsphaltLevels, asphalt_profile, dark_cells, flatten
+from .asphalt_level import (
+    MIN_BIN_CELLS,
+    AsphaltBin,
+    AsphaltLevels,
+    OtsuSplit,
+    asphalt_bins,
+    asphalt_profile,
+    bin_edges,
+    dark_cells,
+    flatten,
+    split_bins,
+)
 from .fading import without_fading_areas, without_fading_rims
 from .faint_lines import faint_lines
 from .gutters import RimBands, edge_distance, rim_distance
@@ -26,7 +37,6 @@ from .mask import painted_pixels
 from .morphology import morphology, track_spacing
 from .noisy import CellAverages, ViewSamples, noisy_paint_cells, views
 from .raised import raised_cells
-from .threshold_bins import MIN_BIN_CELLS, AsphaltBin, OtsuSplit, asphalt_bins, bin_edges, split_bins
 
 if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame
