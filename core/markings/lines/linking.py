@@ -22,7 +22,7 @@ from ...curves.robust import median
 from ...survey.frame.row_table import RowSpans
 from ..objects.classify import LINE_KINDS
 from ..objects.marking_objects import MarkingObjects, Outlines
-from ..paint.morphology import MAX_TRACK_GAP
+from ..paint.not_paint import MAX_TRACK_GAP
 from ..road_grid import MIN_TRACK_GAP
 from .strands import LinkedLine
 

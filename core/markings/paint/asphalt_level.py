@@ -18,7 +18,7 @@ from ...intensity.asphalt_model import asphalt_statistics
 from ...lazy import cv2
 from ...survey.store.records import COORDINATE_SCALE
 from ..road_grid import RoadGrid
-from .gutters import COARSE_CELLS, RimBands, gutter_cells
+from .not_paint import COARSE_CELLS, RimBands, gutter_cells
 
 if TYPE_CHECKING:
     from .settings import MarkingSettings

@@ -30,13 +30,10 @@ from .asphalt_level import (
     flatten,
     split_bins,
 )
-from .fading import without_fading_areas, without_fading_rims
 from .faint_lines import faint_lines
-from .gutters import RimBands, edge_distance, rim_distance
 from .mask import painted_pixels
-from .morphology import morphology, track_spacing
 from .noisy import CellAverages, ViewSamples, noisy_paint_cells, views
-from .raised import raised_cells
+from .not_paint import RimBands, edge_distance, morphology, raised_cells, rim_distance, track_spacing, without_fading_areas, without_fading_rims
 
 if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame
