@@ -22,17 +22,19 @@ from ...survey.store.records import COORDINATE_SCALE, Points, join_columns
 from ...survey.store.road_points import RoadPoints
 from ...survey.store.section_store import SectionStore
 from ..road_grid import CELL_UNITS
-from .mask import Burn, burn_points, marking_mask
 from .peaks import points_on_peaks
 from .point_segments import points_in_segments
 from .settings import MarkingSettings
 from .windows import (
     THRESHOLD_WINDOW,
     Bins,
+    Burn,
     PaintSource,
     WindowExtractor,
     bins_about,
+    burn_points,
     levels_of_windows,
+    marking_mask,
     paint_of_windows,
     place_of,
     points_of_rows,
