@@ -29,12 +29,10 @@ from ..cross_section.sequence import separated_kinds
 from ..cross_section.weights import CENTRE_LINE, EDGE_LINE, LANE_LINE, EstimateWeights
 from ..objects.classify import LINE_KINDS
 from ..objects.marking_objects import MarkingObjects
-from .edges_beside import LEVEL_REACH, edges_beside
-from .few_tracks import painted_strands
 from .linking import CommonTrend, link_lines, link_over_long_gaps, weighted_medians, with_paint_between_tracks, with_unseen_paint, without_strays
 from .painted_lines import PaintedLines, painted_lines_of
 from .selection import SelectedLine, crossings, hatching_bars, hatching_borders, same_dash_pattern, select_lines
-from .strands import LinkedLine, line_paint
+from .strands import LEVEL_REACH, LinkedLine, edges_beside, line_paint, painted_strands
 
 if TYPE_CHECKING:
     from ...road.edges.road_edges import RoadEdges
@@ -42,8 +40,7 @@ if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame
     from ...survey.store.road_points import RoadPoints
     from ..cross_section.weights import TakenReading
-    from .edges_beside import EdgesBeside
-    from .strands import Strand
+    from .strands import EdgesBeside, Strand
 
 
 # The course of one marking line in plan and height: places from its paint, a curve through them.

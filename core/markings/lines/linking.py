@@ -28,9 +28,8 @@ from .strands import LinkedLine
 
 if TYPE_CHECKING:
     from ...survey.store.road_points import RoadPoints
-    from .edges_beside import EdgesBeside
     from .painted_lines import PaintedLines
-    from .strands import Strand
+    from .strands import EdgesBeside, Strand
 
 END_WINDOW = 6.0                           # m of a strand's end that say where it goes
 MIN_PAINT_BESIDE_GAP = 3.0                 # m that either side of a long gap must have
