@@ -38,8 +38,7 @@ from .asphalt_level import (
     flatten,
     split_bins,
 )
-from .faint_lines import faint_lines
-from .noisy import CellAverages, ViewSamples, noisy_paint_cells, views
+from .noisy import CellAverages, ViewSamples, faint_lines, noisy_paint_cells, views
 from .not_paint import RimBands, edge_distance, morphology, raised_cells, rim_distance, track_spacing, without_fading_areas, without_fading_rims
 
 if TYPE_CHECKING:
