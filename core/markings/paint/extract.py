@@ -22,8 +22,7 @@ from ...survey.store.records import COORDINATE_SCALE, Points, join_columns
 from ...survey.store.road_points import RoadPoints
 from ...survey.store.section_store import SectionStore
 from ..road_grid import CELL_UNITS
-from .peaks import points_on_peaks
-from .point_segments import points_in_segments
+from .published import points_in_segments, points_on_peaks
 from .settings import MarkingSettings
 from .windows import (
     THRESHOLD_WINDOW,

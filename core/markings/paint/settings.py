@@ -6,8 +6,7 @@ from dataclasses import dataclass, field
 
 from ...common.errors import RoadExtractionError
 from ...common.setting import check_limits, setting
-from .peaks import PeakSettings
-from .point_segments import SegmentSettings
+from .published import PeakSettings, SegmentSettings
 
 MARKING_METHODS = ("multi-threshold", "intensity-peaks", "point-segments")
 
