@@ -1,4 +1,4 @@
-"""Paint as peaks of intensity in profiles across the road, in_chains along it: linear markings only.
+"""Paint as peaks of intensity in profiles across the road, linked along it: linear markings only.
 
 The road is cut into profiles across the trajectory. In every profile a painted line is a
 narrow peak of I(d), which continues in the profiles before and after. Markings across the
@@ -60,7 +60,7 @@ class PeakSettings:
         if not self.narrowest < self.widest:
             raise RoadExtractionError(f"Peaks are {self.narrowest} to {self.widest} m wide; the first must be below the second.")
         if self.gap < self.profile_length:
-            raise RoadExtractionError(f"Peaks are in_chains over {self.gap} m along the road; it must be at least the length of a "
+            raise RoadExtractionError(f"Peaks are linked over {self.gap} m along the road; it must be at least the length of a "
                                       f"profile ({self.profile_length} m).")
 
 
@@ -78,7 +78,7 @@ def points_on_peaks(road_points: RoadPoints, road: int, settings: PeakSettings, 
     -----
     Profile-based after Chen et al. (2009) as summarised in the driving-line thesis:
     I(d) of each profile is smoothed by a running median of 5; peaks of a minimum prominence
-    and of the width of a line are in_chains along the road. The numbers, and the rule that
+    and of the width of a line are linked along the road. The numbers, and the rule that
     a chain needs a peak in three of five of its profiles, are our own: they leave a road without paint empty.
     """
     profile = int(round(settings.profile_length / COORDINATE_SCALE))
