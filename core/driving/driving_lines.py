@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from scipy.ndimage import distance_transform_edt, gaussian_filter1d, uniform_filter1d
@@ -14,11 +14,13 @@ from ..countries.catalogue import country
 from ..markings.cross_section.evidence import point_spacing
 from ..markings.cross_section.roads import EstimatedRoad, estimate_roads
 from ..markings.cross_section.sections import STATION_STEP, CrossSections, sections_of_edges, sections_of_lines, sections_of_pavement
-from ..markings.cross_section.weights import HATCHING, OUTSIDE, share_within
+from ..markings.cross_section.weights import HATCHING, OUTSIDE, TakenReading, share_within
 from ..markings.lines.painted_lines import PaintedLines
 from ..markings.objects.marking_objects import MarkingObjects
 from ..road.edges.road_edges import RoadEdges
+from ..survey.frame.road_frame import Road, RoadFrame
 from ..survey.frame.sigma_along import cuts_where_it_changes
+from ..survey.store.road_points import RoadPoints
 from .alignment import Course, Element, element_of, is_curve, lane_courses, lane_elements, track_pieces
 from .heights import lane_heights
 from .lane_areas import RoadLanes, connectors_between_roads, lane_areas, make_lanes
@@ -26,11 +28,6 @@ from .lane_track import LANE_STATUS, MEASURED, LaneTrack, connect
 from .lanes import estimated_lanes, laid_out
 from .layers import CurveElements, DrivingLines, Lanes
 from .settings import DrivingSettings
-
-if TYPE_CHECKING:
-    from ..markings.cross_section.weights import TakenReading
-    from ..survey.frame.road_frame import Road, RoadFrame
-    from ..survey.store.road_points import RoadPoints
 
 __all__ = ["DrivingSettings", "make_driving_lines"]
 

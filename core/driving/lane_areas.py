@@ -3,23 +3,21 @@
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..common.parallel import check_cancelled
 from ..common.runs import mask_runs
 from ..markings.cross_section.evidence import driven_offsets
+from ..markings.cross_section.roads import EstimatedRoad
 from ..markings.cross_section.sections import STATION_STEP, CrossSections
 from ..markings.cross_section.weights import CENTRE_LINE, CURB, EDGE_LINE, HATCHING, ISLAND, LANE_LINE, OTHER_LINE, SURFACE
+from ..survey.frame.passes import Pass
+from ..survey.frame.road_frame import RoadFrame
 from .alignment import track_pieces
 from .lane_track import LANE_STATUS, LaneTrack, spans_of
 from .layers import Lanes
-
-if TYPE_CHECKING:
-    from ..markings.cross_section.roads import EstimatedRoad
-    from ..survey.frame.passes import Pass
-    from ..survey.frame.road_frame import RoadFrame
 
 KIND_OF_BORDER = {LANE_LINE: "lane", CENTRE_LINE: "centre", EDGE_LINE: "edge", OTHER_LINE: "edge"}
 

@@ -5,18 +5,15 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from ..common.parallel import check_cancelled
 from ..common.runs import mask_runs
-from ..markings.cross_section.sections import STATION_STEP
+from ..markings.cross_section.sections import STATION_STEP, CrossSections
 from ..markings.cross_section.weights import SAME_LANE, EstimateWeights, Reading, confidence_of
 from ..survey.frame.row_table import RowSpans
-
-if TYPE_CHECKING:
-    from ..markings.cross_section.sections import CrossSections
 
 MEASURED, INFERRED, BRIDGED = 0, 1, 2
 LANE_STATUS = ("measured", "inferred", "bridged")

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import shapely
@@ -18,10 +18,8 @@ from ..common.schemas import CURVE_ELEMENTS, DRIVING_LINES, LANES
 from ..countries.catalogue import country
 from ..countries.neutral import NEUTRAL
 from ..curves.base import Arc, Curve
+from ..survey.frame.road_frame import RoadFrame
 from .alignment import element_row
-
-if TYPE_CHECKING:
-    from ..survey.frame.road_frame import RoadFrame
 
 LANE_TYPES = ("driving", "shoulder", "parking", "bicycle", "hatched", "median", "connector")
 LEVEL_ORIGIN = (0.0, 0.0, 0.0)

@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -19,15 +18,12 @@ from ..common.order_statistics import order_by
 from ..common.parallel import ordered_map
 from ..common.progress import Progress
 from ..common.setting import check_limits, setting
-from ..execution.phase import NoSource, Phase
+from ..execution.phase import Executor, NoSource, Phase
 from ..execution.threads import THREADS
 from ..lazy import cv2
 from ..survey.store.columns import Columns
 from ..survey.store.records import COORDINATE_SCALE, take_rows
 from ..survey.store.road_points import RoadPoints
-
-if TYPE_CHECKING:
-    from ..execution.phase import Executor
 
 OUTLIER_SCOPES = ("all", "windows")
 OUTLIER_WINDOW = 20.0     # m of station that one limit is taken from

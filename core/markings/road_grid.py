@@ -7,22 +7,18 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..common.groups import linked_groups
 from ..common.order_statistics import order_by
 from ..common.runs import stretch_of
+from ..io.geotiff import IntensityImage
 from ..lazy import cv2
-from ..survey.store.records import COORDINATE_SCALE
-
-if TYPE_CHECKING:
-    from ..io.geotiff import IntensityImage
-    from ..survey.frame.road_frame import RoadFrame
-    from ..survey.store.columns import Columns
-    from ..survey.store.records import Points
-    from ..survey.store.road_points import RoadPoints
+from ..survey.frame.road_frame import RoadFrame
+from ..survey.store.columns import Columns
+from ..survey.store.records import COORDINATE_SCALE, Points
+from ..survey.store.road_points import RoadPoints
 
 CELL_SIZE = 0.04  # m, along and across the road: the cells in which points and paint are put
 CELL_UNITS = 400  # the same in units of 0.1 mm

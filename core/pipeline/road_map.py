@@ -10,7 +10,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -47,16 +47,14 @@ from ..road.scanlines.section_planes import ScanlineSettings
 from ..road.surface.extract import SurfaceSettings, extract_road_surface
 from ..road.surface.road_surface import SurfaceOutlines, surface_to_features
 from ..survey.frame.road import CORRIDOR
+from ..survey.frame.road_frame import RoadFrame
 from ..survey.las.reader import read_headers
 from ..survey.open_survey import SurveySettings, open_survey
 from ..survey.point_density import CubeDensity, cube_densities
 from ..survey.store.records import Points
 from ..survey.store.road_points import columns_of_roads
 from ..survey.trajectory.reprojection import reproject_trajectory
-
-if TYPE_CHECKING:
-    from ..survey.frame.road_frame import RoadFrame
-    from ..survey.trajectory.trajectory import Trajectory
+from ..survey.trajectory.trajectory import Trajectory
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -13,19 +13,16 @@ from scipy.ndimage import binary_closing, grey_closing, median_filter
 from ...common.groups import linked_groups
 from ...execution.phase import Phase
 from ...survey.frame.placement import located
+from ...survey.frame.road_frame import RoadFrame
 from ...survey.frame.row_table import RowTable
 from ...survey.store.records import COORDINATE_SCALE
-from ...survey.store.section_store import STRETCH_POINTS
+from ...survey.store.road_points import RoadPoints
+from ...survey.store.section_store import STRETCH_POINTS, Stretch
 from ..objects.classify import LINE_KINDS
+from ..objects.marking_objects import MarkingObjects
 from ..road_grid import CELL_SIZE
 from .candidates import FAR, Candidates
 from .sections import STATION_STEP
-
-if TYPE_CHECKING:
-    from ...survey.frame.road_frame import RoadFrame
-    from ...survey.store.road_points import RoadPoints
-    from ...survey.store.section_store import Stretch
-    from ..objects.marking_objects import MarkingObjects
 
 BIN = 0.2              # m across, of what is seen of the surface and of hatching
 BINS = int(round(2 * FAR / BIN))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
@@ -13,8 +12,11 @@ from ...common.parallel import check_cancelled, ordered_map
 from ...common.progress import Progress
 from ...countries.neutral import NEUTRAL
 from ...survey.frame.placement import located
+from ...survey.frame.road_frame import RoadFrame
 from ...survey.frame.row_table import RowTable, stacked
+from ...survey.store.road_points import RoadPoints
 from ..objects.classify import LINE_KINDS
+from ..objects.marking_objects import MarkingObjects
 from .candidates import Boundaries, Candidates, boundary_candidates, gather_boundaries
 from .estimate import RoadEstimate, estimate_road, lane_spans
 from .evidence import (
@@ -31,11 +33,6 @@ from .evidence import (
 )
 from .sections import STATION_STEP, CrossSections
 from .weights import PAVEMENT, EstimateWeights, TakenReading
-
-if TYPE_CHECKING:
-    from ...survey.frame.road_frame import RoadFrame
-    from ...survey.store.road_points import RoadPoints
-    from ..objects.marking_objects import MarkingObjects
 
 LENGTH_OF_USUAL = 50.0    # m of lanes that weigh as much as what is usual in the country
 WIDENED_RADIUS = 60.0     # m: lanes are widened in tighter bends (most codes widen below 100 to 200 m; less than 0.3 m there)

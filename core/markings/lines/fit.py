@@ -6,7 +6,7 @@ import json
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import shapely
@@ -20,28 +20,22 @@ from ...curves.base import CurveFit
 from ...curves.bspline import fit_splines, smooth_profiles
 from ...curves.model_selection import CURVES, fit_curve, fit_curves
 from ...curves.robust import median
+from ...road.edges.road_edges import RoadEdges
 from ...survey.frame.frame_lines import LINE_VERTEX_SPACING
-from ...survey.store.road_points import columns_of_roads
+from ...survey.frame.road import Road
+from ...survey.frame.road_frame import RoadFrame
+from ...survey.store.road_points import RoadPoints, columns_of_roads
 from ..cross_section.estimate import boundary_uses
 from ..cross_section.roads import estimate_roads
 from ..cross_section.sections import sections_of_edges, sections_of_lines, sections_of_pavement
 from ..cross_section.sequence import separated_kinds
-from ..cross_section.weights import CENTRE_LINE, EDGE_LINE, LANE_LINE, EstimateWeights
+from ..cross_section.weights import CENTRE_LINE, EDGE_LINE, LANE_LINE, EstimateWeights, TakenReading
 from ..objects.classify import LINE_KINDS
 from ..objects.marking_objects import MarkingObjects
 from .linking import CommonTrend, link_lines, link_over_long_gaps, weighted_medians, with_paint_between_tracks, with_unseen_paint, without_strays
 from .painted_lines import PaintedLines, painted_lines_of
 from .selection import SelectedLine, crossings, hatching_bars, hatching_borders, same_dash_pattern, select_lines
-from .strands import LEVEL_REACH, LinkedLine, edges_beside, line_paint, painted_strands
-
-if TYPE_CHECKING:
-    from ...road.edges.road_edges import RoadEdges
-    from ...survey.frame.road import Road
-    from ...survey.frame.road_frame import RoadFrame
-    from ...survey.store.road_points import RoadPoints
-    from ..cross_section.weights import TakenReading
-    from .strands import EdgesBeside, Strand
-
+from .strands import LEVEL_REACH, EdgesBeside, LinkedLine, Strand, edges_beside, line_paint, painted_strands
 
 # The course of one marking line in plan and height: places from its paint, a curve through them.
 

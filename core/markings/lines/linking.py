@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import shapely
@@ -20,16 +20,13 @@ from ...common.groups import linked_groups
 from ...common.parallel import check_cancelled
 from ...curves.robust import median
 from ...survey.frame.row_table import RowSpans
+from ...survey.store.road_points import RoadPoints
 from ..objects.classify import LINE_KINDS
 from ..objects.marking_objects import MarkingObjects, Outlines
 from ..paint.not_paint import MAX_TRACK_GAP
 from ..road_grid import MIN_TRACK_GAP
-from .strands import LinkedLine
-
-if TYPE_CHECKING:
-    from ...survey.store.road_points import RoadPoints
-    from .painted_lines import PaintedLines
-    from .strands import EdgesBeside, Strand
+from .painted_lines import PaintedLines
+from .strands import EdgesBeside, LinkedLine, Strand
 
 END_WINDOW = 6.0                           # m of a strand's end that say where it goes
 MIN_PAINT_BESIDE_GAP = 3.0                 # m that either side of a long gap must have

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import shapely
@@ -17,9 +17,7 @@ from ...common.features import Features
 from ...common.schemas import MARKING_LINES
 from ...curves.base import Curve
 from ...survey.frame.frame_lines import FrameLines, line_parts, lines_in_frame
-
-if TYPE_CHECKING:
-    from ...survey.frame.road_frame import RoadFrame
+from ...survey.frame.road_frame import RoadFrame
 
 LONG_LISTS = ("knots", "control_x", "control_y")  # parameters of splines
 

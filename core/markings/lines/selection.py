@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,13 +13,9 @@ from ...common.parallel import check_cancelled
 from ...countries.neutral import NEUTRAL
 from ...curves.robust import median
 from ..objects.classify import LANE_CLEARANCE
-from .linking import DOUBLE_LINE_SPACING, MAX_STRAY_OFFSET, StretchLookup, lines_beside
-from .strands import LinkedLine
-
-if TYPE_CHECKING:
-    from ..objects.marking_objects import MarkingObjects
-    from .linking import CommonTrend
-    from .strands import Strand
+from ..objects.marking_objects import MarkingObjects
+from .linking import DOUBLE_LINE_SPACING, MAX_STRAY_OFFSET, CommonTrend, StretchLookup, lines_beside
+from .strands import LinkedLine, Strand
 
 SAME_COURSE_OFFSET = 0.25     # m: a single dash this near the course of a dashed line is one of its dashes
 MIN_SHARED_PAINT = 0.6      # of a line's paint that must have its twin beside it in a double line

@@ -6,7 +6,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, partial
 from itertools import chain
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,16 +13,13 @@ from ...common.groups import linked_groups
 from ...common.order_statistics import order_by
 from ...common.parallel import check_cancelled
 from ...curves.robust import median, percentiles
+from ...road.edges.road_edges import RoadEdges
+from ...survey.store.columns import Columns
 from ...survey.store.records import COORDINATE_SCALE
-from ..cross_section.sections import sections_of_edges, sections_of_pavement
+from ..cross_section.sections import CrossSections, sections_of_edges, sections_of_pavement
 from ..objects.classify import LINE_KINDS
+from ..objects.marking_objects import MarkingObjects
 from ..objects.shape import middle_line
-
-if TYPE_CHECKING:
-    from ...road.edges.road_edges import RoadEdges
-    from ...survey.store.columns import Columns
-    from ..cross_section.sections import CrossSections
-    from ..objects.marking_objects import MarkingObjects
 
 RUN_BIN_UNITS = 5000  # units of 0.1 mm: 0.5 m of station in which runs of paint are separated
 PLACE_STEP_UNITS = 2500  # 0.25 m: one place of the line each, so that neighbouring places are nearly independent

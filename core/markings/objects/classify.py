@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,9 +13,7 @@ from ...curves.robust import percentiles
 from ...survey.store.records import COORDINATE_SCALE
 from .grouping import ROAD_EDGE_CLEARANCE
 from .repeating import rows_of_dashes
-
-if TYPE_CHECKING:
-    from .shape import Shape
+from .shape import Shape
 
 NOT_PAINT = ""
 LINE_KINDS = ("edge", "lane", "centre")

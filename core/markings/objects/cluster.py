@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
@@ -24,23 +24,19 @@ from ...common.setting import check_limits, setting
 from ...curves.robust import median
 from ...execution.phase import Executor, NoSource, Phase
 from ...execution.threads import THREADS
+from ...survey.frame.road import Road
+from ...survey.frame.road_frame import RoadFrame
+from ...survey.store.columns import Columns
 from ...survey.store.records import COORDINATE_SCALE, Points
+from ...survey.store.road_points import RoadPoints
 from ..road_grid import CELL_UNITS, occupied, track_reach
 from .classify import LINE_KINDS, MIN_COVERED_SHARE, NOT_PAINT, RIM_CLEARANCE, ClassSettings, classify_markings, filled, relative_contrast, too_pale
 from .figures import Candidate, figures_of_group, painted_figures
-from .grouping import connected_points, told_by_one_road
-from .marking_objects import make_marking_objects
+from .grouping import RoadPaint, connected_points, told_by_one_road
+from .marking_objects import MarkingObjects, make_marking_objects
 from .repeating import BLOCK_SIZE, Comb, Crossing, Stripe, blocks_of_strip, comb_of_window, give_way_blocks, stripes_of_crossing, zebra_stripes
 from .shape import SMALL_MARKING_SIZE, Shape, drawn_outline, lifted, measure, smallest_rectangle
 from .split_merge import join_fragments, parts_of_compound, split_compounds
-
-if TYPE_CHECKING:
-    from ...survey.frame.road import Road
-    from ...survey.frame.road_frame import RoadFrame
-    from ...survey.store.columns import Columns
-    from ...survey.store.road_points import RoadPoints
-    from .grouping import RoadPaint
-    from .marking_objects import MarkingObjects
 
 MIN_FRAGMENT_POINTS = 1                       # points: the smallest worn rest that a line may be joined from
 ROW_OF_BLOCKS = 0.8, 20.0   # m along the road, where the inside of a bend is shorter than the line itself

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cache
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,13 +17,11 @@ from ...common.groups import linked_groups, members_of
 from ...common.near_pairs import overlapping_pairs
 from ...common.parallel import check_cancelled
 from ...countries.painted_symbols import SYMBOLS, PaintedSymbol
+from ...execution.phase import NoSource
 from ...lazy import cv2
 from ..road_grid import CELL_SIZE, fill_gaps, filled_between_tracks
 from .classify import NOT_PAINT
-
-if TYPE_CHECKING:
-    from ...execution.phase import NoSource
-    from .shape import Shape
+from .shape import Shape
 
 FIGURE_PARTS = NOT_PAINT, "symbol", "arrow", "hatch"   # classes that pieces of a figure may have; a small wheel looks like a cover
 FIGURE_SIZE = 0.6, 5.0      # m along and across of a figure

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -15,14 +15,11 @@ from ...common.progress import Progress
 from ...execution.phase import Executor, NoSource, Phase
 from ...execution.threads import THREADS
 from ...lazy import cv2
+from ...survey.frame.road import Road
+from ...survey.store.columns import Columns
 from ...survey.store.records import COORDINATE_SCALE, join_columns, to_units
-from ...survey.store.road_points import columns_of_roads
+from ...survey.store.road_points import RoadPoints, columns_of_roads
 from ..road_grid import CELL_UNITS, components, occupied, track_reach
-
-if TYPE_CHECKING:
-    from ...survey.frame.road import Road
-    from ...survey.store.columns import Columns
-    from ...survey.store.road_points import RoadPoints
 
 LINKING_WINDOW_CELLS = 1250                   # cells of 4 cm: 50 m of station are linked at a time
 LINKING_COLUMNS = ("s", "d", "spacing", "half_width")   # of a point, that linking looks at

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import shapely
@@ -16,9 +16,7 @@ import shapely
 from ...common.features import Features
 from ...common.schemas import MARKINGS
 from ...survey.frame.placement import located
-
-if TYPE_CHECKING:
-    from ...survey.frame.road_frame import RoadFrame
+from ...survey.frame.road_frame import RoadFrame
 
 
 @dataclass(frozen=True)

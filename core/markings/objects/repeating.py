@@ -9,7 +9,7 @@ Bars of hatching are parallel, too, but they lie askew to their row; stripes alo
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -20,9 +20,7 @@ from ...curves.robust import percentiles
 from ...lazy import cv2
 from ...survey.frame.place_index import PlaceIndex
 from ..road_grid import CELL_SIZE
-
-if TYPE_CHECKING:
-    from .shape import Shape
+from .shape import Shape
 
 STRIPE_WIDTH = (0.25, 0.80)  # m
 STRIPE_LENGTH = (1.5, 10.0)  # m

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
@@ -14,11 +13,9 @@ from scipy.spatial import cKDTree
 from ...common.order_statistics import order_by
 from ...curves.robust import median, percentiles, row_medians
 from ...lazy import cv2
+from ...survey.frame.road import Road
 from ...survey.store.records import COORDINATE_SCALE
 from ..road_grid import CELL_SIZE, CELL_UNITS, fill_gaps, filled_between_tracks, occupied, track_reach
-
-if TYPE_CHECKING:
-    from ...survey.frame.road import Road
 
 MIDDLE_LINE_STEP_UNITS = 5000                         # units: 0.5 m of station that the run of a line is followed in
 TRACKS_PER_STEP = 10.0                                # times the distance between the tracks of the scan that the step is at least

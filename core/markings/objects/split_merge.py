@@ -13,7 +13,6 @@ lines across it.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -24,13 +23,11 @@ from ...common.order_statistics import order_by
 from ...common.parallel import check_cancelled
 from ...common.runs import stretch_of
 from ...lazy import cv2
+from ...survey.store.columns import Columns
 from ...survey.store.records import COORDINATE_SCALE
 from ..road_grid import CELL_SIZE, CELL_UNITS, fill_gaps, filled_between_tracks, occupied, track_reach
 from .classify import MIN_STOP_LINE_FILL, columns_of
-
-if TYPE_CHECKING:
-    from ...survey.store.columns import Columns
-    from .shape import Shape
+from .shape import Shape
 
 STRIP_WINDOWS = (8.0, 8.0), (4.0, 5.0)        # m that a line is looked for in, and its least length
 LINE_SHARE = 0.85                             # of the window that is painted, gaps between scan lines closed

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy import ndimage
@@ -19,9 +18,7 @@ from ...lazy import cv2
 from ...survey.store.records import COORDINATE_SCALE
 from ..road_grid import RoadGrid
 from .not_paint import COARSE_CELLS, RimBands, gutter_cells
-
-if TYPE_CHECKING:
-    from .settings import MarkingSettings
+from .settings import MarkingSettings
 
 BACKGROUND_LIMIT = 2.5      # spreads: brighter cells, and those darker by twice as much, are no background
 BACKGROUND_SQUARES = 11     # squares of 20 cm: the background is the mean of 2.2 m around each

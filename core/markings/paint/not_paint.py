@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,9 +11,7 @@ from ...curves.robust import median
 from ...lazy import cv2
 from ...survey.store.records import COORDINATE_SCALE
 from ..road_grid import CELL_SIZE, MAX_GAP_ON_TRACK, fill_gaps
-
-if TYPE_CHECKING:
-    from .settings import MarkingSettings
+from .settings import MarkingSettings
 
 WORN_GAP = 0.80  # m along the road: no painted gap is shorter, so bright specks in it belong to one worn line
 ALONG_REACH = 6       # cells of 4 cm along the road, either way: points so near are on the same track

@@ -9,23 +9,21 @@ are not found: the method is made for lines.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 from scipy import ndimage
 from scipy.spatial import cKDTree
 
-from ...common.errors import RoadExtractionError
 from ...common.groups import linked_groups
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
-from ...common.setting import check_limits, setting
 from ...intensity.asphalt_model import asphalt_statistics
 from ...survey.store.columns import Columns
 from ...survey.store.records import COORDINATE_SCALE, Points, take_rows
 from ...survey.store.road_points import RoadPoints
 from ..road_grid import occupied
 from .asphalt_level import otsu
+from .settings import PeakSettings, SegmentSettings
 
 PEAK_WINDOW = 20.0     # m of station processed together
 PROFILE_CELL = 200        # units of 0.1 mm: a profile has one value every 2 cm
@@ -33,35 +31,6 @@ MEDIAN_CELLS = 5        # cells of the running median
 MAX_EMPTY_PROFILE_CELLS = 5   # without points that are interpolated; beyond them the profile is taken for asphalt
 MIN_DEVIATION = 0.005   # of the profile's level: the deviation of integer intensities can be 0
 MIN_CHAIN_SHARE = 0.6   # of the profiles along a chain: must have the peak
-
-
-@dataclass(frozen=True)
-class PeakSettings:
-    """When a peak of intensity across the road is a painted line.
-
-    profile_length : m of road that one profile is averaged over
-    prominence : deviations (MAD of the profile) that a peak must rise above both its feet
-    narrowest, widest : m, width of a peak at half its height
-    jump : m across that the peak may move from profile to profile
-    gap : m along the road without a peak that a chain continues over
-    shortest : m, least length of a chain
-    """
-
-    profile_length: float = setting(0.20, 0.02, 2.0, "The length of a profile", "m")
-    prominence: float = setting(7.0, 0.5, 100.0, "The prominence of a peak")
-    narrowest: float = setting(0.08, 0.0, 1.95, "The narrowest line", "m")
-    widest: float = setting(0.35, 0.02, 2.0, "The widest line", "m")
-    jump: float = setting(0.15, 0.01, 1.0, "The shift between profiles", "m")
-    gap: float = setting(0.60, 0.02, 10.0, "The gap along a line", "m")
-    shortest: float = setting(1.0, 0.0, 50.0, "The shortest line", "m")
-
-    def __post_init__(self) -> None:
-        check_limits(self)
-        if not self.narrowest < self.widest:
-            raise RoadExtractionError(f"Peaks are {self.narrowest} to {self.widest} m wide; the first must be below the second.")
-        if self.gap < self.profile_length:
-            raise RoadExtractionError(f"Peaks are linked over {self.gap} m along the road; it must be at least the length of a "
-                                      f"profile ({self.profile_length} m).")
 
 
 def points_on_peaks(road_points: RoadPoints, road: int, settings: PeakSettings, progress: Progress) -> Iterator[Columns]:
@@ -212,24 +181,6 @@ def _between(records, row, peak_row, left, right):
 MIN_SEGMENT_POINTS = 200    # of a segment, below which it has no threshold and no paint
 RIM_NEIGHBOUR_SHARE = 0.5    # of the neighbours usual inside of paint: a point on its rim has half of them
 HISTOGRAM_RANGE = 6.0, 60.0     # spreads below and above the median of asphalt: the range of Otsu's histogram
-
-
-@dataclass(frozen=True)
-class SegmentSettings:
-    """How road points are split, and when a bright one is paint.
-
-    length, width : m, of a segment along and across the road
-    separation : spreads of asphalt between the means of the two classes, below which a segment has no paint
-    radius : m around a bright point in which its bright neighbours are counted
-    """
-
-    length: float = setting(10.0, 0.5, 200.0, "The length of a segment", "m")
-    width: float = setting(1.0, 0.1, 50.0, "The width of a segment", "m")
-    separation: float = setting(3.0, 0.0, 50.0, "The distance of paint from asphalt", "spreads")
-    radius: float = setting(0.12, 0.01, 1.0, "The radius in which neighbours are counted", "m")
-
-    def __post_init__(self) -> None:
-        check_limits(self)
 
 
 def points_in_segments(road_points: RoadPoints, road: int, settings: SegmentSettings, progress: Progress) -> Iterator[Columns]:

@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from ...intensity.tiled_image import IntensityRaster
 from ...io.geotiff import new_geotiff
 from ...survey.frame.road import Road
 from ...survey.frame.road_frame import RoadFrame
+from ...survey.store.columns import Columns
 from ...survey.store.records import COORDINATE_SCALE, Points, join_columns, take_rows
 from ...survey.store.road_points import RoadPoints
 from ..objects.shape import CLOSE_ALONG, painted_cells
@@ -40,10 +41,7 @@ from .asphalt_level import (
 )
 from .noisy import CellAverages, ViewSamples, faint_lines, noisy_paint_cells, views
 from .not_paint import RimBands, edge_distance, morphology, raised_cells, rim_distance, track_spacing, without_fading_areas, without_fading_rims
-
-if TYPE_CHECKING:
-    from ...survey.store.columns import Columns
-    from .settings import MarkingSettings
+from .settings import MarkingSettings
 
 RIM_WIDTH = 0.60         # m from the rim of the road: gutters; asphalt is taken from the cells inside
 THRESHOLD_WINDOW = 500   # cells: thresholds are taken from 20 m of road
