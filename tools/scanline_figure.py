@@ -50,9 +50,8 @@ def measure(survey, sample, interval):
     """F1 and the errors of scanline boundaries against the sample's truth."""
     from lanewright.core.assess.boundaries import assess_boundaries
     from lanewright.core.road.edges.fit import fit_road_edges
-    from lanewright.core.road.scanlines.detect import curbs_from_scanlines
+    from lanewright.core.road.scanlines.detect import SurveyScanlines, curbs_from_scanlines
     from lanewright.core.road.scanlines.section_planes import ScanlineSettings
-    from lanewright.core.road.scanlines.source import SurveyScanlines
 
     edges = fit_road_edges(curbs_from_scanlines(SurveyScanlines(survey, ScanlineSettings(interval=interval))), survey.frame)
     truth, dropped = [], []

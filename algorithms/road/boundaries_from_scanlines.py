@@ -94,9 +94,8 @@ class BoundariesFromScanlines(Algorithm):
     def work(self, call, progress):
         from ...core.road.common.curb_points import curb_points_to_features
         from ...core.road.edges.road_edges import edges_to_features
-        from ...core.road.scanlines.detect import CORNER_BLOCK, boundary_lines, curbs_from_scanlines
+        from ...core.road.scanlines.detect import CORNER_BLOCK, LayerScanlines, boundary_lines, curbs_from_scanlines
         from ...core.road.scanlines.layer import scanlines_from_features
-        from ...core.road.scanlines.source import LayerScanlines
         from ...core.survey.adjustment.pass_sigma import of_layer
 
         settings = call.settings(BOUNDARY_SETTINGS)

@@ -72,7 +72,7 @@ class DetectCurbs(Algorithm):
         survey = open_survey_of(call, progress.part(0.0, 0.5))
         settings = call.settings(CURB_SETTINGS)
         if call.wants("PRINCIPAL_POINTS"):
-            from ...core.road.profiles.principal_points import find_principal_points
+            from ...core.road.profiles.detect import find_principal_points
 
             call.layer("PRINCIPAL_POINTS", find_principal_points(survey, settings, progress.part(0.5, 0.6)))
         points = detect_curbs(survey, settings, progress.part(0.6, 1.0))

@@ -62,8 +62,7 @@ class NormalizedScanlines(Algorithm):
                      "offset: a cloud of even density."), optional=True, by_default=False)
 
     def work(self, call, progress):
-        from ...core.road.scanlines.layer import write_scanlines
-        from ...core.road.scanlines.resampling import ResampledPoints
+        from ...core.road.scanlines.layer import ResampledPoints, write_scanlines
 
         survey = open_survey_of(call, progress.part(0.0, 0.5))
         points = nullcontext()

@@ -15,6 +15,7 @@ from .section import HALF_WIDTH, Crossing
 
 LEFT, RIGHT, TOP, BOTTOM = 46, 10, 16, 18  # pixels about the picture, without its caption
 LEAST_HEIGHT = 0.6       # m that the picture shows at least
+MOST_TITLES = 0.7         # of the height of the picture that titles take
 HEIGHT_ABOVE, HEIGHT_BELOW = 0.8, 0.5  # m shown above and below the lines on the road
 ZOOM = 1.25              # of a turn of the wheel
 NEAREST = 1.0            # m of width that zooming ends at
@@ -74,9 +75,13 @@ class SectionView(QWidget):
     def _fit_heights(self):
         """The heights of the road: of the lines on it where there are any, else of the lowest points."""
         inside = np.abs(self.points[:, 0] - self.centre) <= self.half if len(self.points) else np.empty(0, bool)
-        known = [crossing.z for crossing in self.crossings if math.isfinite(crossing.z) and abs(crossing.offset - self.centre) <= self.half]
+        known = [crossing.z for crossing in self._shown() if math.isfinite(crossing.z)]
         if known:
             self.low, self.high = min(known) - HEIGHT_BELOW, max(known) + HEIGHT_ABOVE
+            boxes = self._label_boxes(self._shown(), self._frame(), QFontMetricsF(self._small(), self))
+            # titles of many lines take more rows: they stay above the road
+            share = min(max(box.bottom() - TOP for box in boxes) / self._frame().height(), MOST_TITLES)
+            self.high = max(self.high, (max(known) - share * self.low) / (1.0 - share))
         elif inside.any():
             low = float(np.percentile(self.points[inside, 1], 2))
             self.low, self.high = low - HEIGHT_BELOW, low + HEIGHT_ABOVE + LEAST_HEIGHT
@@ -141,9 +146,13 @@ class SectionView(QWidget):
         for line in self.scanline:
             painter.drawPolyline(QPolygonF([QPointF(*self._at(offset, z)) for offset, z in line]))
 
+    def _shown(self):
+        """The crossings within what is shown across."""
+        return [crossing for crossing in self.crossings if abs(crossing.offset - self.centre) <= self.half]
+
     def _draw_crossings(self, painter, frame):
         painter.setFont(self._small())
-        shown = [crossing for crossing in self.crossings if abs(crossing.offset - self.centre) <= self.half]
+        shown = self._shown()
         for crossing in shown:
             x, y = self._at(crossing.offset, crossing.z if math.isfinite(crossing.z) else self.low)
             colour = QColor(crossing.colour)

@@ -26,6 +26,8 @@ WORDS = {
             "accepted": tr("accepted"), "drawn": tr("drawn")},
     "side": {"left": tr("left"), "right": tr("right")},
     "part": {"bottom": tr("bottom"), "top": tr("top")},
+    "pattern": {"solid": tr("solid"), "dashed": tr("dashed"), "double-solid": tr("double, solid"), "double-dashed": tr("double, dashed"),
+                "solid-dashed": tr("solid and dashed"), "dashed-solid": tr("dashed and solid")},
     "use": {"keep": tr("marking"), "other": tr("other paint")},
     "source": {"pair": tr("between two lines"), "offset": tr("beside one line"), "drawn": tr("drawn by hand")},
     "turn": {"left": tr("left"), "right": tr("right")},
@@ -69,7 +71,7 @@ def _parts():
         "sigma": _part("'± ' || format_number(\"sigma_m\" * 1000, 0) || ' mm'", "sigma_m"),
         "line": _part(f"CASE WHEN \"kind\" = 'edge' THEN '{tr('Edge line')}' WHEN \"kind\" = 'centre' THEN '{tr('Centre line')}' "
                       f"ELSE '{tr('Lane line')}' END || ' ' || \"line\"", "kind", "line"),
-        "pattern": _part('"pattern"', "pattern"),
+        "pattern": _part(value("pattern"), "pattern"),
         "lane": _part(f"'{tr('Lane')} ' || \"lane\"", "lane"),
         "direction": _part(value("direction"), "direction"),
         "class": _part(f"coalesce(\"class\", '{tr('Paint')}')", "class"),
@@ -144,7 +146,7 @@ def widget_of(column: Any) -> QgsEditorWidgetSetup | None:
         decimals = DECIMALS_OF.get(column.name, DECIMALS.get(column.name.rsplit("_", 1)[-1], MOST_DECIMALS))
         return QgsEditorWidgetSetup("Range", {"Precision": decimals, "AllowNull": True, "Style": "SpinBox"})
     words = DIRECTIONS if column.name == "direction" else WORDS.get(column.name)
-    if words is None:
+    if words is None or "|" in column.alias:   # two in one value
         return None
     return QgsEditorWidgetSetup("ValueMap", {"map": [{label: str(value)} for value, label in words.items()]})
 

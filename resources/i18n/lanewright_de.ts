@@ -3341,7 +3341,7 @@
         <message>
             <location filename="../../algorithms/overlay/propose_control_points.py" />
             <source>A pair is accepted by default where its cut-outs look alike, nothing beside it looks the same, and the other pairs place it where it is. Where the paint repeats so that the whole image fits elsewhere as well, no pair is accepted and a warning says so. Look through the pairs with Control points from paint in the Lanewright menu, in the report, or in the table: points whose field accepted is 1 are used by Georeference image, others are not.</source>
-            <translation>Ein Paar ist zunächst angenommen, wo seine Ausschnitte sich gleichen, nichts daneben genauso aussieht und die anderen Paare es an dieselbe Stelle legen. Wo sich die Farbe so wiederholt, dass das ganze Bild auch anderswo passt, wird kein Paar angenommen, und eine Warnung sagt es. Die Paare mit „Passpunkte aus Farbe“ im Menü Lanewright durchsehen, im Bericht oder in der Tabelle: Punkte, deren Feld accepted 1 ist, verwendet „Bild georeferenzieren“, andere nicht.</translation>
+            <translation>Ein Paar ist zunächst angenommen, wo seine Ausschnitte sich gleichen, nichts daneben genauso aussieht und die anderen Paare es an dieselbe Stelle legen. Wo sich die Farbe so wiederholt, dass das ganze Bild auch anderswo passt, wird kein Paar angenommen, und eine Warnung sagt es. Die Paare mit „Passpunkte aus Markierungen“ im Menü Lanewright durchsehen, im Bericht oder in der Tabelle: Punkte, deren Feld accepted 1 ist, verwendet „Bild georeferenzieren“, andere nicht.</translation>
         </message>
         <message>
             <location filename="../../algorithms/overlay/propose_control_points.py" />
@@ -3796,7 +3796,7 @@
         <message>
             <location filename="../../algorithms/road/detect_curbs.py" />
             <source>Minimum curb height, 0 = as the data allow (m)</source>
-            <translation>Kleinste Bordhöhe, 0 = wie es die Daten erlauben (m)</translation>
+            <translation>Kleinste Bordsteinhöhe, 0 = wie es die Daten erlauben (m)</translation>
         </message>
         <message>
             <location filename="../../algorithms/road/detect_curbs.py" />
@@ -6565,8 +6565,8 @@
         </message>
         <message>
             <location filename="../../core/report/road_map.py" />
-            <source>{count} corrections match nothing in this run; they were left out. Look at these places and delete or renew the rows.</source>
-            <translation>{count} Korrekturen passen in diesem Lauf zu nichts; sie wurden weggelassen. Diese Stellen ansehen und die Zeilen löschen oder erneuern.</translation>
+            <source>Corrections that match nothing in this run and were left out: {count}. Look at these places and delete or renew the rows.</source>
+            <translation>Korrekturen, die in diesem Lauf zu nichts passen und weggelassen wurden: {count}. Diese Stellen ansehen und die Zeilen löschen oder erneuern.</translation>
         </message>
         <message>
             <location filename="../../core/report/road_map.py" />
@@ -7096,7 +7096,7 @@
         <message>
             <location filename="../../desktop/menu.py" />
             <source>Control points from paint</source>
-            <translation>Passpunkte aus Farbe</translation>
+            <translation>Passpunkte aus Markierungen</translation>
         </message>
         <message>
             <location filename="../../desktop/menu.py" />
@@ -7530,8 +7530,8 @@
         </message>
         <message>
             <location filename="../../desktop/review/doubt_dock.py" />
-            <source>{count} corrections in {file}. They come into the map when it is made again.</source>
-            <translation>{count} Korrekturen in {file}. Sie kommen in die Karte, wenn sie neu erstellt wird.</translation>
+            <source>Corrections in {file}: {count}. They come into the map when it is made again.</source>
+            <translation>Korrekturen in {file}: {count}. Sie kommen in die Karte, wenn sie neu erstellt wird.</translation>
         </message>
         <message>
             <location filename="../../desktop/review/doubtful.py" />

@@ -7,7 +7,7 @@ import pytest
 from lanewright.core.common.messages import RoadPlace, places_in
 from lanewright.core.common.schemas import DRIVING_LINES, LANES, PASSES, ROAD_EDGES, ROAD_SURFACE
 from lanewright.core.corrections.corrections import Correction
-from lanewright.core.road.surface.point_spacing import ThinMargin, said_of_thin
+from lanewright.core.road.surface.extract import ThinMargin, said_of_thin
 from lanewright.desktop.review.doubtful import doubts_of
 from lanewright.processing_provider.results.attributes import second_reading
 from lanewright.processing_provider.results.road_maps import road_maps

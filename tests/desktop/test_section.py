@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from lanewright.core.common.schemas import CURB_POINTS, DRIVING_LINES, ROAD_EDGES
-from lanewright.core.road.scanlines.from_points import slice_lines
+from lanewright.core.road.scanlines.section_planes import slice_lines
 from lanewright.desktop.review import section_view
 from lanewright.desktop.review.doubtful import doubts_of, reason
 from lanewright.desktop.review.section import Crossing, Section, corners, crossings, middle_of, section_at
@@ -94,6 +94,15 @@ def test_the_scanline_follows_road_face_and_sidewalk_and_is_cut_behind_a_car():
     np.testing.assert_allclose(height[across < 2.9], 100.0, atol=0.01)
     np.testing.assert_allclose(height[across > 3.1], 100.12, atol=0.01)
     assert slice_lines(np.empty(0), np.empty(0), 20.0) == []
+
+
+def test_titles_of_many_lines_stay_above_the_road(qgis_app):
+    view = SectionView()
+    view.resize(620, 250)
+    shown = [Crossing(offset, 100.0, "Fahrstreifen 2, gegen die Straße, 88 m, gemessen, ± 13 mm", "#e31a1c") for offset in np.linspace(2.2, -7.8, 9)]
+    view.show_section(np.empty((0, 3)), shown)
+    boxes = view._label_boxes(shown, view._frame(), QFontMetricsF(view._small(), view))
+    assert max(box.bottom() for box in boxes) <= view._at(0.0, 100.0)[1] + 1.0
 
 
 def test_titles_of_lines_cover_neither_each_other_nor_the_rim(qgis_app):

@@ -24,7 +24,7 @@ from lanewright.core.markings.paint import extract as extraction
 from lanewright.core.markings.paint import extract as scatter
 from lanewright.core.markings.paint.extract import extract_markings
 from lanewright.core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
-from lanewright.core.road.surface import extract, measured_ground
+from lanewright.core.road.surface import extract, ground_grid
 from lanewright.core.road.surface.extract import extract_road_surface
 from lanewright.core.survey import open_survey as opening
 from lanewright.core.survey import point_density
@@ -41,7 +41,7 @@ def found_by(sample, executor=None, work=None, progress=Progress()):
     with pytest.MonkeyPatch.context() as patch:
         for module in (extract, correction, point_density, evidence):
             patch.setattr(module, "STRETCH_POINTS", 40_000)
-        patch.setattr(measured_ground, "MEASURED_WINDOWS", 2)
+        patch.setattr(ground_grid, "MEASURED_WINDOWS", 2)
         patch.setattr(imaging, "LOOKED_WINDOWS", 1)
         patch.setattr(imaging, "PIECES_PER_TASK", 3)
         patch.setattr(extraction, "WINDOWS_PER_TASK", 1)

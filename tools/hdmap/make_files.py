@@ -78,8 +78,7 @@ def borders(path):
 def driven_lanes(path):
     """Every driven lane of a section as our own reader has it: its road and number, stations along the road, way it is driven (1 along), middle
     [[x, y, z], ...] in the file's coordinates, and the (road, number) of the lanes that follow it."""
-    from lanewright.core.export.opendrive.model import DRIVEN_TYPES
-    from lanewright.core.export.opendrive.network import LaneNetwork, travel
+    from lanewright.core.export.opendrive.model import DRIVEN_TYPES, LaneNetwork, travel
     from lanewright.core.export.opendrive.reader import read_opendrive
     from lanewright.core.export.opendrive.surface import RoadSurface
 

@@ -8,8 +8,7 @@ import numpy as np
 import shapely
 
 from ...common.progress import Progress
-from ..lanelet.model import Lanelet, LaneletMap, Way
-from ..lanelet.routing import LaneletNetwork, same_way
+from ..lanelet.model import Lanelet, LaneletMap, LaneletNetwork, Way, same_way
 from ..sources import LEAST_CURB
 from .findings import Findings, metres
 from .rules import NO_BORDERS, YES_OR_NO, add_rule_findings, participant_tags, way_tags

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..opendrive.model import DRIVEN_TYPES, OPEN_END, MapRoad, OpenDriveMap
-from ..opendrive.network import LaneKey, LaneNetwork, travel
+from ..opendrive.model import DRIVEN_TYPES, OPEN_END, LaneKey, LaneNetwork, MapRoad, OpenDriveMap, travel
 from ..opendrive.surface import RoadSurface
 from .findings import Findings, metres
 

@@ -8,8 +8,7 @@ from ...lazy import public
 __getattr__, __all__ = public(__name__, {
     "exporter": ("LaneletDraft", "LaneletSettings", "draft_lanelets"),
     "layers": ("layers_of_lanelets",),
-    "model": ("Lanelet", "LaneletMap", "Way"),
+    "model": ("Lanelet", "LaneletMap", "LaneletNetwork", "Way"),
     "reader": ("read_lanelet2",),
-    "routing": ("LaneletNetwork",),
     "writer": ("Degrees", "lanelet2_text", "to_degrees"),
 })

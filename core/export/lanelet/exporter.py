@@ -9,9 +9,8 @@ import numpy as np
 import shapely
 
 from ...common.setting import check_limits, setting
-from ..lane_uncertainty import sigma_of_lanes
 from ..painted_objects import stop_lines, walked_crossings
-from ..sources import LEAST_CURB, NearestValues, RoadMapSource, is_stated
+from ..sources import LEAST_CURB, NearestValues, RoadMapSource, is_stated, sigma_of_lanes
 
 SAME_PLACE = 0.001      # m: vertices nearer than this are one node
 SAME_RISE = 0.1         # m in height

@@ -9,8 +9,7 @@ from ...common.progress import Progress
 from ...io.crs import parse_crs
 from ..map_crs import LOCAL_CRS, metric_wkt, utm_of
 from ..map_layers import LaneRows, MapLayers, MapLine, without_repeats
-from .model import LaneletMap
-from .routing import LaneletNetwork
+from .model import LaneletMap, LaneletNetwork
 
 PATTERN_OF_WAY = {"solid": "solid", "dashed": "dashed", "solid_solid": "double-solid",
                   "dashed_dashed": "double-dashed", "solid_dashed": "solid-dashed", "dashed_solid": "dashed-solid"}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -60,3 +61,97 @@ class LaneletMap:
     def rows(self, way: Way) -> np.ndarray:
         """Rows of a way's nodes; nodes that are missing are left out."""
         return np.array([self.row_of[id] for id in way.nodes if id in self.row_of], int)
+
+
+# The lanelets of a map as places and as a network: which follows which, which lies beside which.
+
+NEVER_DRIVEN = ("crosswalk", "walkway", "stairs")
+
+
+class LaneletNetwork:
+    """Lanelets with borders in the direction of travel.
+
+    Parameters
+    ----------
+    whole : LaneletMap
+    places : (N, 3) metres of its nodes
+
+    Attributes
+    ----------
+    left, right : id -> rows of nodes, in the direction of travel
+    reversed_left, reversed_right : id -> whether the way runs against the direction of travel
+    """
+
+    def __init__(self, whole: LaneletMap, places: np.ndarray) -> None:
+        self.whole, self.places = whole, places
+        self.left: dict[int, np.ndarray] = {}
+        self.right: dict[int, np.ndarray] = {}
+        self.reversed_left: dict[int, bool] = {}
+        self.reversed_right: dict[int, bool] = {}
+        for lanelet in whole.lanelets.values():
+            self._place(lanelet)
+        starts, by_border = defaultdict(list), defaultdict(list)
+        for id in self.left:
+            starts[self.ends(id)[0]].append(id)
+            for role in ("left", "right"):
+                by_border[whole.lanelets[id].way(role)].append((id, role))
+        self._starts, self._by_border = starts, by_border
+
+    def _place(self, lanelet: Lanelet) -> None:
+        ids = lanelet.way("left"), lanelet.way("right")
+        ways = [self.whole.ways.get(id) if id is not None else None for id in ids]
+        if ways[0] is None or ways[1] is None:
+            return
+        left, right = (self.whole.rows(way) for way in ways if way is not None)
+        if len(left) < 2 or len(right) < 2:
+            return
+        turned_right = not same_way(self.places[left], self.places[right])
+        area = signed_area(self.places[left], self.places[right[::-1] if turned_right else right])
+        turned = area > 0   # left then lies to the right: the lanelet is driven the other way
+        self.left[lanelet.id] = left[::-1] if turned else left
+        self.right[lanelet.id] = right[::-1] if turned_right != turned else right
+        self.reversed_left[lanelet.id], self.reversed_right[lanelet.id] = turned, turned_right != turned
+
+    def ends(self, id: int) -> tuple[tuple[int, int], tuple[int, int]]:
+        """((left, right) row of the first nodes, of the last nodes)."""
+        left, right = self.left[id], self.right[id]
+        return (int(left[0]), int(right[0])), (int(left[-1]), int(right[-1]))
+
+    def following(self, id: int) -> list[int]:
+        """Lanelets that begin with the two nodes at which this one ends."""
+        return [other for other in self._starts.get(self.ends(id)[1], ()) if other != id]
+
+    def head_on(self) -> list[tuple[int, int]]:
+        """Pairs of lanelets that end, or begin, on the same two nodes from either side: no traffic flows so."""
+        found = []
+        for end in (0, 1):
+            at = defaultdict(list)
+            for id in self.left:
+                at[self.ends(id)[end]].append(id)
+            for (left, right), ids in at.items():
+                if left < right:
+                    found += [(id, other) for id in ids for other in at.get((right, left), ())]
+        return found
+
+    def beside(self, id: int) -> list[int]:
+        """Lanelets that share a border with this one."""
+        lanelet = self.whole.lanelets[id]
+        return [other for role in ("left", "right") for other, _ in self._by_border[lanelet.way(role)] if other != id]
+
+    def driven(self, id: int) -> bool:
+        """Whether vehicles use it."""
+        return self.whole.lanelets[id].tags.get("subtype", "road") not in NEVER_DRIVEN
+
+
+def same_way(first: np.ndarray, second: np.ndarray) -> bool:
+    """Whether two lines beside each other, (N, 2+) and (M, 2+), are drawn the same way."""
+    along = np.hypot(*(first[0, :2] - second[0, :2])) + np.hypot(*(first[-1, :2] - second[-1, :2]))
+    against = np.hypot(*(first[0, :2] - second[-1, :2])) + np.hypot(*(first[-1, :2] - second[0, :2]))
+    return bool(along <= against)
+
+
+def signed_area(left: np.ndarray, right: np.ndarray) -> float:
+    """Square metres between two borders drawn the same way; negative where the first lies to the left."""
+    x, y = np.concatenate([left, right[::-1]])[:, :2].T
+    x, y = x - x[0], y - y[0]
+    return float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y) / 2)

@@ -9,13 +9,11 @@ import numpy as np
 
 from ...common.progress import Progress
 from ...common.setting import check_limits, setting
-from ..driven_middles import with_driven_middles
-from ..lane_uncertainty import sigma_of_lanes
-from ..sources import NearestValues, RoadMapSource
+from ..shared_borders import with_driven_middles
+from ..sources import NearestValues, RoadMapSource, sigma_of_lanes
 from .heights import add_heights, heights_above_road
 from .junctions import DraftRoad, link_roads
-from .model import OPEN_END, MapLane, MapRoad, OpenDriveMap, RoadMark
-from .network import LaneNetwork
+from .model import OPEN_END, LaneNetwork, MapLane, MapRoad, OpenDriveMap, RoadMark
 from .road_objects import add_objects
 from .road_shape import add_lanes, centre_of, shape_of
 from .strips import (

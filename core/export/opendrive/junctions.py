@@ -6,8 +6,7 @@ from collections import defaultdict
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from .model import Connection, Junction, MapRoad, OpenDriveMap, RoadLink
-from .network import travel
+from .model import Connection, Junction, MapRoad, OpenDriveMap, RoadLink, travel
 from .strips import Slice
 
 

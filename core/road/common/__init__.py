@@ -9,8 +9,7 @@ from ...lazy import public
 __getattr__, __all__ = public(__name__, {
     "corners": ("CurbSteps", "measure_corners"),
     "curb_points": ("CurbPoints", "curb_points_at", "curb_points_from_features", "curb_points_to_features"),
-    "decimation": ("LevelGround", "PointDecimation"),
-    "level_strip": ("LevelStrip",),
+    "decimation": ("LevelGround", "LevelStrip", "PointDecimation"),
     "occlusion": ("OcclusionGrid",),
     "pseudo_scanlines": ("PseudoScanLines", "pseudo_scan_lines"),
     "sides": ("OutermostTrack", "SIDE_SIGNS", "expected_height", "side_profiles"),

@@ -19,23 +19,16 @@ from ...survey.frame.place_index import PlaceIndex
 from ...survey.frame.road import CORRIDOR
 from ..common.curb_points import CurbPoints, curb_points_at
 from ..common.decimation import POINTS_PER_LEVEL_CELL_IN_PLAN, PointDecimation
-from ..common.hidden_curb import hidden_beside
 from ..common.occlusion import OcclusionGrid
-from ..common.sides import MAX_LOOK_ALONG, SECTIONS_TOGETHER, SIDE_SIGNS, ahead_of_vehicle, expected_height, work_sections
+from ..common.sides import MAX_LOOK_ALONG, SECTIONS_TOGETHER, SIDE_SIGNS, ahead_of_vehicle, expected_height, hidden_beside, work_sections
 from ..common.tracking import MAX_JOINED_GAP
-from .beyond_corridor import with_curbs_beyond
 from .classify import CurbReturn, classify_curbs, is_curb_like
-from .far_sides import MIN_ISLAND_WIDTH, far_sides
-from .following import FollowedEnds, followed_steps
-from .ground.behind import ground_behind
-from .ground.level_ground import driven_ground, ground_slopes
-from .ground.raster import PLAN_CELL, averaged, ground_raster
-from .ground.steps_up import step_places
-from .island_tops import on_island_tops
-from .leading import with_led_on
+from .extended_curbs import FollowedEnds, followed_steps, with_led_on
+from .ground_raster import PLAN_CELL, averaged, driven_ground, ground_raster, ground_slopes
+from .islands import MIN_ISLAND_WIDTH, are_replaced, far_sides, ground_behind, on_island_tops, on_main_islands
 from .main_curbs import MIN_OPENING_LENGTH, SEARCH_BEHIND_CURB, KnownPlaces, SearchLimit, main_curbs_of, main_runs, places_along
-from .main_islands import are_replaced, on_main_islands
-from .steps import PlanSteps, measure_plan_steps
+from .side_streets import with_curbs_beyond
+from .steps import PlanSteps, measure_plan_steps, step_places
 from .tracking import join_chains, link_plan_steps
 
 if TYPE_CHECKING:

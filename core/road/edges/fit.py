@@ -15,13 +15,10 @@ from ...common.setting import check_limits, setting
 from ...curves.robust import MAD_TO_SIGMA
 from ...survey.frame.road_frame import RoadFrame
 from ..common.curb_points import CurbPoints
-from ..common.in_line import IN_LINE_ACROSS, LINE_FIT_LENGTH, MIN_BEND_LENGTH, GapLine
 from ..common.occlusion import HIDDEN_POINT_SPACING
-from ..common.tracking import MAX_JOINED_GAP
-from .curb_returns import curb_return_lines, draw_curb_returns
-from .dropped_corners import dropped_corners
-from .road_edges import EdgePiece, RoadEdges, joined_pieces
-from .uncertainty import edge_sigma
+from ..common.tracking import IN_LINE_ACROSS, LINE_FIT_LENGTH, MAX_JOINED_GAP, MIN_BEND_LENGTH, GapLine
+from .corner_edges import curb_return_lines, draw_curb_returns, dropped_corners
+from .road_edges import EdgePiece, RoadEdges, edge_sigma, joined_pieces
 
 MEDIAN_WINDOW = 5.0           # m of running median
 OUTLIER_MADS = 3.0            # median absolute deviations, as sigmas, and

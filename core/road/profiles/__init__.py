@@ -6,8 +6,6 @@ In: a `Survey`. Out: curb points found as steps on profiles across the road, and
 from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "averaged_steps": ("find_averaged_steps",),
-    "detect": ("detect_curbs",),
-    "principal_points": ("find_principal_points",),
-    "steps": ("find_steps",),
+    "detect": ("detect_curbs", "find_principal_points"),
+    "steps": ("find_averaged_steps", "find_steps"),
 })

@@ -5,8 +5,26 @@ from __future__ import annotations
 import numpy as np
 
 from ...common.runs import best_within
-from ..common.corners import BEHIND_LENGTH, FACE_MARGIN, MAX_ROAD_SLOPE, MIN_STEP_SIGMAS, ROAD_SIDE_LENGTH, CurbSteps, measure_corners
-from ..common.pseudo_scanlines import TOP_QUANTILE_SIGMAS, PseudoScanLines
+from ..common.corners import (
+    BEHIND_FIT_LENGTH,
+    BEHIND_LENGTH,
+    BLURRED_FACE_HALF_WIDTH,
+    FACE_MARGIN,
+    MAX_AVERAGED_SCATTER,
+    MAX_BED_SLOPE,
+    MAX_ROAD_SLOPE,
+    MIN_BED_SLOPE,
+    MIN_FILLED_SHARE,
+    MIN_STEEP_SHARE,
+    MIN_STEP_SIGMAS,
+    ROAD_FIT_LENGTH,
+    ROAD_SIDE_LENGTH,
+    STEEP_HALF_WIDTH,
+    CurbSteps,
+    RunningSums,
+    measure_corners,
+)
+from ..common.pseudo_scanlines import TOP_QUANTILE_SIGMAS, PseudoScanLines, seen_from
 
 MAX_RISE_WIDTH = 0.15             # m across within which the whole rise must lie
 MIN_RAISED_CELLS = 3              # cells of raised ground behind a rise that a statement about its height needs
@@ -112,4 +130,205 @@ def _max_ahead(values, span):
         wider = best.copy()
         np.maximum(best[:, :values.shape[1] - by], best[:, by:], out=wider[:, :values.shape[1] - by])
         best, width = wider, width + by
+    return best
+
+
+# Steps where the scanner's noise hides a curb in a single profile: measured in the average of several profiles.
+#
+# The heights of a spinning multi-beam scanner scatter by centimetres, and positions that drift between one view and the next blur a face sideways.
+# A curb of 5 cm is then no higher than the scatter of one profile, but it continues along the road and noise does not. So profiles are averaged
+# over AVERAGING_LENGTH metres in every direction that a curb may have. The level of the road and of the ground behind are fitted separately. The
+# step between the two must be higher than the uncertainty of both levels, and must rise within the width of a blurred face, so that ramps and banks
+# are not taken for curbs.
+#
+# Where plants or a wall stand right behind a curb there is no level ground. What rises behind is then no part of the step: the step is as high as
+# its line is at the face.
+
+AVERAGING_LENGTH = 1.25       # m of road that are averaged
+SKEW_STEP = 0.125             # m outward per m along between the directions tried: 4 cm at the ends of the average
+SKEW_STEPS = 8                # such steps on either side of the road's direction
+OBLIQUE_FACTOR = 1.15         # how much higher a rise must be in a direction farther from the road's own
+MIN_PROFILE_SHARE = 0.5       # share of the averaged profiles that must have ground in a cell
+STAYS_UP_SIGMAS = 2.0         # of the heights behind such a curb: that far below their mean they are still above half of its height
+MIN_STEP_SPACING = 0.12       # m across within which one step is reported
+ALL_VIEWS_SIGMAS = 2.0        # sigmas of single heights that a step must rise in all views together, and
+SINGLE_VIEW_SIGMAS = 2.5      # in a single view
+SAME_STEP_DISTANCE = 0.25     # m across within which a step seen from one side only is the one already found
+MAX_NETWORK_ROWS = 9          # profiles that are sorted element by element; for more, numpy's sort is faster
+
+
+def find_averaged_steps(lines: PseudoScanLines, min_height: float, max_height: float, layer_jump: float, overgrown: bool) -> CurbSteps:
+    """Steps on the averaged profiles of one side.
+
+    They are looked for in all points together, and where those show none, in the points seen
+    ahead of the vehicle and behind it separately: positions that drifted between the two views
+    blur a face that each of them shows.
+
+    Parameters
+    ----------
+    lines : PseudoScanLines; the first and last AVERAGING_LENGTH / 2 metres serve the averages of the others
+    min_height, max_height : m, of a step
+    layer_jump : m of height between two layers
+    overgrown : whether steps before plants or a wall are looked for, too
+
+    Returns
+    -------
+    CurbSteps, sorted by profile, then outward. The offset is that of half the height, since a
+    blurred face does not separate its bottom from its top.
+    """
+    least = np.maximum(min_height, ALL_VIEWS_SIGMAS * lines.spread)[:, None]
+    found, *before_plants = _steps_in(lines, least, max_height, (True, False) if overgrown else (True,))
+    for nearest, farthest in ((0.0, np.inf), (-np.inf, 0.0)):
+        # a single view averages few rings of a multi-beam scanner, each with an error of its own
+        single, = _steps_in(seen_from(lines, nearest, farthest, layer_jump),
+                            np.maximum(min_height, SINGLE_VIEW_SIGMAS * lines.spread)[:, None], max_height)
+        found = CurbSteps.join([found, single[~_beside(single, found)]])
+    for steps in before_plants:
+        # level ground behind is the surer sign
+        found = CurbSteps.join([found, steps[~_beside(steps, found)]])
+    return found[np.lexsort((found.u, found.profile))]
+
+
+def _beside(steps, others):
+    """(M,) bool: does one of the others lie within SAME_STEP_DISTANCE metres across in the same profile?"""
+    if not len(others):
+        return np.zeros(len(steps), bool)
+    order = np.lexsort((others.u, others.profile))
+    key = others.profile[order] * 1000.0 + others.u[order]
+    wanted = steps.profile * 1000.0 + steps.u
+    right = np.searchsorted(key, wanted)
+    return np.minimum(np.abs(key[np.clip(right, 0, len(key) - 1)] - wanted),
+                      np.abs(key[np.clip(right - 1, 0, len(key) - 1)] - wanted)) < SAME_STEP_DISTANCE
+
+
+def _steps_in(lines, min_height, max_height, behind=(True,)):
+    """Steps of averaged profiles, a CurbSteps for each of `behind`: before level ground (True), before plants or a wall; `min_height` is (P, 1)."""
+    names = "height", "doubt", "scatter", "before", "behind", "shift", "bottom", "skew"
+    kinds = [{name: np.zeros(lines.shape) for name in names} | {"rise": np.full(lines.shape, -np.inf)} for _ in behind]
+    sums = RunningSums(lines.shape, lines.spacing)
+    for skew in sorted(np.arange(-SKEW_STEPS, SKEW_STEPS + 1) * SKEW_STEP, key=abs):
+        sums.add(_averaged(lines, skew))
+        for best, is_level in zip(kinds, behind):
+            cells, seen = _rises(sums, OBLIQUE_FACTOR * best["rise"], is_level)
+            for name, values in seen.items():
+                best[name].flat[cells] = values
+            best["skew"].flat[cells] = skew
+    return [_steps_of(lines, best, min_height, max_height) for best in kinds]
+
+
+def _steps_of(lines, best, min_height, max_height):
+    """The steps among the largest rises of cells, which rise more than those next to them."""
+    good = ((best["height"] >= min_height) & (best["height"] <= max_height) & (best["height"] >= MIN_STEP_SIGMAS * best["doubt"])
+            & (best["rise"] >= MIN_STEEP_SHARE * best["height"]) & (best["scatter"] <= MAX_AVERAGED_SCATTER)
+            & (np.abs(best["before"]) <= MAX_ROAD_SLOPE) & (np.abs(best["behind"]) <= MAX_ROAD_SLOPE))
+    score = np.where(good, best["rise"], -np.inf)
+    rows, cells = np.nonzero(good & (score >= _largest_near(score, int(round(MIN_STEP_SPACING / lines.spacing)))))
+    pick = {name: values[rows, cells] for name, values in best.items()}
+    count = np.diff(lines.starts).reshape(lines.shape)
+    reach = int(round((BLURRED_FACE_HALF_WIDTH + ROAD_FIT_LENGTH) / lines.spacing))
+    total = np.concatenate([np.zeros((len(count), 1), np.int64), np.cumsum(count, axis=1)], axis=1)
+    first, last = np.maximum(cells - reach, 0), np.minimum(cells + reach + 1, lines.shape[1])
+    return CurbSteps(profile=lines.first + rows, s=(lines.first + rows + 0.5) * lines.width,
+                 u=lines.offset(cells) + pick["shift"], h=pick["bottom"], skew=pick["skew"], height=pick["height"],
+                 run=np.zeros(len(rows)), noise=pick["scatter"], scanner_noise=lines.spread[rows],
+                 support=total[rows, cells] - total[rows, first], behind=total[rows, last] - total[rows, cells])
+
+
+def _averaged(lines, skew):
+    """(P, C) median heights of AVERAGING_LENGTH metres of road about every profile, along one direction."""
+    half = max(int(round(0.5 * AVERAGING_LENGTH / lines.width)), 1)
+    low = np.where(np.isnan(lines.low), np.inf, lines.low)
+    stack = [_shifted(low, k, int(round(skew * k * lines.width / lines.spacing))) for k in range(-half, half + 1)]
+    count = np.zeros(low.shape, np.int8)
+    for row in stack:
+        count += row < np.inf
+    return _median(stack, count, max(MIN_PROFILE_SHARE * len(stack), 2))
+
+
+def _rises(sums, min_rise, is_level):
+    """(M,) indices of cells at which the ground rises by more than `min_rise`, (P, C) m, and a dict of (M,) measures of each rise.
+
+    is_level : is the ground behind level, or do plants or a wall rise there?
+    """
+    spacing = sums.spacing
+    gap, fit, short = (int(round(v / spacing)) for v in (BLURRED_FACE_HALF_WIDTH, ROAD_FIT_LENGTH, BEHIND_FIT_LENGTH))
+    near = int(round(STEEP_HALF_WIDTH / spacing))
+    before, behind = sums.line(-gap - fit, -gap), sums.line(gap, gap + short)
+    smooth = sums.mean(-1, 1)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        slope = behind.slope if is_level else before.slope
+        height = behind.level - before.level
+        rise = _moved(smooth, near) - _moved(smooth, -near) - near * spacing * (before.slope + slope)
+        cells = np.flatnonzero((rise > min_rise) & (before.n >= MIN_FILLED_SHARE * (fit + 1)) & (behind.n >= MIN_FILLED_SHARE * (short + 1))
+                               & (sums.mean(gap, gap + fit) - before.level > 0.5 * height) & np.isfinite(rise))
+        if not is_level:
+            lowest = behind.mz.take(cells) - STAYS_UP_SIGMAS * behind.deviation(cells)
+            bed = behind.slope.take(cells)
+            cells = cells[(lowest > before.level.take(cells) + 0.5 * height.take(cells)) & (bed > MIN_BED_SLOPE) & (bed <= MAX_BED_SLOPE)]
+        height = height.take(cells)
+        rough = before.scatter(cells)
+        uneven = behind.scatter(cells) if is_level else rough
+        doubt = 2.0 * np.sqrt(rough**2 / before.n.take(cells) + uneven**2 / behind.n.take(cells))
+        bottom = before.level.take(cells)
+        # where the profile crosses half the height: the mean height of the face gives the distance from this cell
+        shift = (0.5 - (sums.mean(-gap, gap).take(cells) - bottom) / height) * (2 * gap + 1) * spacing
+        shift = np.nan_to_num(np.clip(shift, -BLURRED_FACE_HALF_WIDTH, BLURRED_FACE_HALF_WIDTH))
+    return cells, dict(rise=rise.take(cells), height=height, doubt=doubt, scatter=np.maximum(rough, uneven), shift=shift, bottom=bottom,
+                       before=before.slope.take(cells), behind=slope.take(cells))
+
+
+def _median(rows, count, min_count):
+    """Median of heights at every cell, (P, C), where there are `min_count` or more; NaN elsewhere.
+
+    rows : list of (P, C), infinite where there is none; they are overwritten
+    count : (P, C) of those that are not
+    """
+    if len(rows) > MAX_NETWORK_ROWS:
+        rows = np.sort(rows, axis=0)
+    else:
+        # odd-even transposition sort of the layers
+        spare = np.empty_like(rows[0])
+        for turn in range(len(rows)):
+            for k in range(turn % 2, len(rows) - 1, 2):
+                np.minimum(rows[k], rows[k + 1], out=spare)
+                np.maximum(rows[k], rows[k + 1], out=rows[k + 1])
+                rows[k], spare = spare, rows[k]
+    middle = np.full(count.shape, np.nan)
+    for n in range(int(np.ceil(min_count)), len(rows) + 1):
+        np.copyto(middle, 0.5 * (rows[(n - 1) // 2] + rows[n // 2]), where=count == n)
+    return middle
+
+
+def _moved(values, k, empty=np.nan):
+    """values[:, c + k] at every cell c."""
+    out = np.full(values.shape, empty, values.dtype)
+    if abs(k) >= values.shape[1]:
+        return out
+    if k >= 0:
+        out[:, :values.shape[1] - k] = values[:, k:]
+    else:
+        out[:, -k:] = values[:, :k]
+    return out
+
+
+def _shifted(values, rows, cells):
+    """values[p + rows, c + cells] at every profile and cell, infinite where there is none."""
+    out = np.full(values.shape, np.inf)
+    to, of = zip(*(_overlap(size, by) for size, by in zip(values.shape, (rows, cells))))
+    out[to] = values[of]
+    return out
+
+
+def _overlap(size, by):
+    """Slices of what is moved `by` places: where it comes to lie, and where it lay."""
+    by = max(-size, min(by, size))
+    return slice(max(-by, 0), size - max(by, 0)), slice(max(by, 0), size - max(-by, 0))
+
+
+def _largest_near(values, span):
+    """Largest value within `span` cells either side."""
+    best = values.copy()
+    for k in range(1, span + 1):
+        np.maximum(best, _moved(values, k, -np.inf), out=best)
+        np.maximum(best, _moved(values, -k, -np.inf), out=best)
     return best

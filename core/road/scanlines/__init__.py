@@ -6,10 +6,8 @@ In: a `Survey` or a layer of scanlines. Out: normalized scanlines, corners of cu
 from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "detect": ("ScanlineBoundarySettings", "boundary_lines", "curbs_from_scanlines"),
-    "layer": ("ScanlineLayerSettings", "scanlines_from_features", "write_scanlines"),
-    "resampling": ("ResampledPoints", "ResamplingSettings"),
-    "scanlines": ("Scanlines",),
+    "detect": ("LayerScanlines", "ScanlineBoundarySettings", "SurveyScanlines", "boundary_lines", "curbs_from_scanlines"),
+    "grid": ("Scanlines",),
+    "layer": ("ResampledPoints", "ResamplingSettings", "ScanlineLayerSettings", "scanlines_from_features", "write_scanlines"),
     "section_planes": ("ScanlineSettings", "all_scanlines", "scanlines_of"),
-    "source": ("LayerScanlines", "SurveyScanlines"),
 })

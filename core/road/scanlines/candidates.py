@@ -22,8 +22,7 @@ from ...common.setting import check_limits, setting
 from ...lazy import cv2
 from ..common.corners import FACE_MARGIN, MAX_ROAD_SLOPE, ROAD_SIDE_LENGTH
 from ..common.curb_limits import CurbLimits
-from .grid import LINE_SEPARATION, MAX_GROUND_DEPTH, SCANLINE_RESOLUTION, HeightGrid, row_of_lines
-from .scanlines import Scanlines
+from .grid import LINE_SEPARATION, MAX_GROUND_DEPTH, SCANLINE_RESOLUTION, HeightGrid, Scanlines, row_of_lines
 
 USUAL_STEP_HEIGHT, USUAL_ANGLE = 0.03, 60.0  # m and degrees of table 1 of the paper: such a step is a curb wherever it is seen
 MIN_RISE_SHARE = 0.7      # of min_height: the planes measure the height of the curb more exactly later

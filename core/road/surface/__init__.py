@@ -7,6 +7,6 @@ from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
     "extract": ("SurfaceSettings", "extract_road_surface"),
-    "limits": ("edge_offsets",),
+    "pavement_edge": ("edge_offsets",),
     "road_surface": ("SurfaceOutlines", "surface_to_features"),
 })

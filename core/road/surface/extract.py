@@ -6,10 +6,12 @@ and between the limits of the road belong to its surface.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from scipy.ndimage import median_filter
 
 from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
@@ -17,18 +19,14 @@ from ...common.setting import check_limits, setting
 from ...execution.phase import Phase
 from ...survey.store.road_points import RoadPoints
 from ...survey.store.section_store import STRETCH_POINTS
-from .ground_grid import ROW_LENGTH
-from .limits import Carriageway, edge_offsets, rows_with_edge
-from .measured_ground import WINDOW_ROWS, MeasuredGround
-from .openings import cells_driven, opened_limits, street_ground
-from .outline import outlines
-from .pavement_edge import grown_limit
-from .point_spacing import Margins, said_of_thin
-from .region_growing import follow_road, smooth_road
+from .ground_change import ROUGHNESS_FACTOR, ROUGHNESS_FLOOR, follow_road, smooth_road
+from .ground_grid import COLUMN_WIDTH, ROW_LENGTH, WINDOW_ROWS, GroundCells, MeasuredGround
+from .pavement_edge import Carriageway, edge_offsets, grown_limit, rows_with_edge
 from .road_points import surface_about, surface_points
-from .road_surface import SurfaceOutlines
+from .road_surface import SurfaceOutlines, outlines
 
 if TYPE_CHECKING:
+    from ...survey.frame.road_frame import RoadFrame
     from ...survey.open_survey import Survey
     from ..edges.road_edges import RoadEdges
 
@@ -191,3 +189,259 @@ def _take_points(survey, road, carriageway, road_points, progress):
             first = found.first_row - carriageway.cells.first_row
             per_row[first:first + len(found.per_row)] += found.per_row
     return per_row
+
+
+# Side streets: where an edge is open, the road goes on through the opening as far as its ground was scanned.
+#
+# An opening between two edges is closed by a straight line at first. Behind the mouth of a street lies road with its zebra crossing and its lines:
+# ground as level and as smooth as the road, wide and deep enough for a street, and lower than the sidewalks on its sides. Behind a dropped curb
+# lies a sidewalk that goes on to both sides at one height. The rules are our own.
+
+MIN_MOUTH_WIDTH = 7.0          # m along the road: a lane of 3 m with corners of 2 m radius; driveways and dropped curbs are narrower
+MIN_STREET_WIDTH = 2.5         # m: a lane
+MIN_MOUTH_DEPTH = 5.0          # m beyond the line that closes the opening in which the street is still as wide: one car's length
+FLANK_DEPTH = 2.0              # m beyond that line from which the sides of the street are looked at: nearer, its corners are dropped
+FLANK_ROWS = 2                 # 1 m along the road from the outermost cell of the street to the ground beside it
+MIN_FLANK_STEP = 0.03          # m between them: the lowest curbs
+MAX_LEVEL_FLANKS = 1 / 3       # of the places along its sides that may lie level with the street: driveways and crossings of its own
+MAX_UNSEEN_COLUMNS = 5         # 1.25 m across the road between two tracks of the scan, far from the vehicle
+STEP_COLUMNS = 2               # 0.5 m of other ground end the street; one cell alone is a thing on it
+SMOOTHED_ROWS = 5              # 2.5 m along the road: the far end of the scan frays
+
+
+def street_ground(cells: GroundCells, ground: np.ndarray, right: np.ndarray, left: np.ndarray) -> np.ndarray:
+    """Cells of ground that are no rougher than the road.
+
+    Parameters
+    ----------
+    cells : GroundCells, R rows and C columns
+    ground : (R, C) bool, cells at the height of the road
+    right, left : (R,) m, limits of the road; NaN where unknown
+
+    Returns
+    -------
+    (R, C) bool
+    """
+    offsets = cells.offsets
+    with np.errstate(invalid="ignore"):
+        inside = (offsets > right[:, None]) & (offsets < left[:, None]) & np.isfinite(cells.rough)
+        usual = np.median(cells.rough[inside]) if inside.any() else 0.0
+        return ground & ~(cells.rough > ROUGHNESS_FACTOR * usual + ROUGHNESS_FLOOR)
+
+
+def cells_driven(frame: RoadFrame, road: int, cells: GroundCells) -> np.ndarray:
+    """Cells of one road that the reference lines of the other roads run through.
+
+    Parameters
+    ----------
+    frame : RoadFrame
+    road : number of the road
+    cells : GroundCells of it, R rows and C columns
+
+    Returns
+    -------
+    (R, C) bool
+    """
+    driven = np.zeros(cells.height.shape, bool)
+    for other in frame.roads:
+        if other.number == road:
+            continue
+        s, d = frame.road(road).locate(*other.to_map(np.arange(0.0, other.length, cells.column_size), 0.0))
+        found = np.isfinite(s)
+        row = np.floor(s[found] / cells.row_size).astype(np.int64) - cells.first_row
+        column = np.floor(d[found] / cells.column_size).astype(np.int64) - cells.first_column
+        inside = (row >= 0) & (row < driven.shape[0]) & (column >= 0) & (column < driven.shape[1])
+        driven[row[inside], column[inside]] = True
+    return driven
+
+
+def opened_limits(limit: np.ndarray, closed: np.ndarray, height: np.ndarray, ground: np.ndarray, offsets: np.ndarray,
+                  farthest: np.ndarray, driven: np.ndarray) -> np.ndarray:
+    """Limits of one side that follow the ground through the mouths of side streets.
+
+    A street that was driven itself is another road of the survey, and is left to it.
+
+    Parameters
+    ----------
+    limit : (R,) m outward from the reference line, of every row
+    closed : (R,) bool, rows in which the limit only closes an opening
+    height : (R, C) m, of the ground in cells; NaN where none was measured
+    ground : (R, C) bool, cells of `street_ground`
+    offsets : (C,) m outward, ascending
+    farthest : (R,) m outward, beyond which nothing belongs to the road
+    driven : (R, C) bool, cells of `cells_driven`
+
+    Returns
+    -------
+    (R,) m, `limit` or farther
+    """
+    result = limit.copy()
+    starts = np.flatnonzero(closed & ~np.r_[False, closed[:-1]])
+    ends = np.flatnonzero(closed & ~np.r_[closed[1:], False]) + 1
+    for first, end in zip(starts, ends):
+        rows = slice(first, end)
+        if (end - first) * ROW_LENGTH < MIN_MOUTH_WIDTH and not _goes_on_wider(limit, first, end):
+            continue
+        beyond = (offsets > limit[rows, None]) & (offsets < farthest[rows, None])
+        street = _street(beyond, np.isfinite(height[rows]), ground[rows])
+        # between the two sides of the street an island may stand in it
+        between = np.logical_or.accumulate(street, axis=0) & np.logical_or.accumulate(street[::-1], axis=0)[::-1]
+        if (between & driven[rows]).any():
+            continue
+        deep = between & (offsets > limit[rows, None] + MIN_MOUTH_DEPTH)
+        if deep.sum(axis=0).max() * ROW_LENGTH < MIN_STREET_WIDTH or _level_share(between, first, height, limit, offsets) > MAX_LEVEL_FLANKS:
+            continue
+        reach = median_filter(_outermost(between & ground[rows], offsets), SMOOTHED_ROWS, mode="nearest")
+        result[rows] = np.fmax(limit[rows], np.minimum(reach, farthest[rows]))
+    return result
+
+
+def _goes_on_wider(limit, first, end):
+    """Whether the road before or after some rows is known to be as much wider as a mouth is deep."""
+    beside = limit[[k for k in (first - 1, end) if 0 <= k < len(limit)]]
+    return bool((beside > limit[first:end].max() + MIN_MOUTH_DEPTH).any())
+
+
+def _street(beyond, seen, ground):
+    """(N, C) bool, ground that goes on from the limit of each row without a step and without a long gap."""
+    street = np.zeros(beyond.shape, bool)
+    unseen, other = np.zeros((2, len(beyond)), np.int64)
+    going = np.ones(len(beyond), bool)
+    for column in np.flatnonzero(beyond.any(axis=0)):
+        here = beyond[:, column] & going
+        unseen = np.where(here, np.where(seen[:, column], 0, unseen + 1), unseen)
+        other = np.where(here & seen[:, column], np.where(ground[:, column], 0, other + 1), other)
+        going &= (unseen <= MAX_UNSEEN_COLUMNS) & (other < STEP_COLUMNS)
+        street[:, column] = here & going & ground[:, column]
+    return street
+
+
+def _level_share(street, first, height, limit, offsets):
+    """Share of the places along both sides of a street, (N, C) cells from row `first` on, where the ground beside it is level with it."""
+    level = []
+    for column in np.flatnonzero(street.any(axis=0)):
+        rows = first + np.flatnonzero(street[:, column])[[0, -1]]
+        beside = rows + [-FLANK_ROWS, FLANK_ROWS]
+        known = (beside >= 0) & (beside < len(height))
+        known[known] = (offsets[column] > limit[beside[known]]) & (offsets[column] > limit[rows[known]] + FLANK_DEPTH)
+        level.append(height[rows[known], column] - height[beside[known], column])
+    apart = np.abs(np.concatenate(level)) if level else np.empty(0)
+    apart = apart[np.isfinite(apart)]
+    return float((apart < MIN_FLANK_STEP).mean()) if len(apart) else 0.0
+
+
+def _outermost(cells, offsets):
+    """(N,) m, the outer end of the outermost cell of each row that is on; minus infinity where none is."""
+    return np.where(cells, offsets + COLUMN_WIDTH / 2, -np.inf).max(axis=1)
+
+
+# Where no curb was found and the points lie too far apart to say that there is none.
+
+# points per m² of ground. A face of 10 cm of curb is 2 to 4 cm broad in plan and has some ten points per metre then. On simulated surveys of which
+# a quarter and a tenth of the points was kept nearly all curbs were found where more lay at their foot, and few where fewer did.
+MIN_CURB_DENSITY = 80.0
+MARGIN = 1.0              # m inside the limits of the carriageway in which points are counted
+STRETCH_ROWS = 20         # rows of ground cells that are looked at together
+SEEN_SHARE = 0.3          # of the cells of a stretch that must hold ground: where something hides it, nothing is said
+SHORTEST_TOLD = 20.0      # m of all thin margins together from which they are told
+TOLD_STRETCHES = 4        # that are named, the longest first
+SHORTEST_SEEN = 50.0      # m of margins without a curb that hold points enough, from which a survey shows whether its roads have curbs
+FEW_CURBS = 0.05          # share of the margins that have a curb on roads without curbs: one at a bridge or a bus stop
+
+
+class ThinMargin(NamedTuple):
+    """A stretch of one side of a road without a curb.
+
+    road, side : number of the road; left or right
+    start, end : stations, m
+    density : points per m² there
+    pavement : whether an edge of the pavement was drawn there
+    """
+
+    road: int
+    side: str
+    start: float
+    end: float
+    density: float
+    pavement: bool = False
+
+
+@dataclass
+class Margins:
+    """What the margins of the roads of a survey show of curbs.
+
+    thin : stretches that no curb bounds and that hold fewer points than curbs need
+    curb, bare : m of margins along a curb, and without one though the points are enough
+    """
+
+    thin: list[ThinMargin] = field(default_factory=list)
+    curb: float = 0.0
+    bare: float = 0.0
+
+    def add(self, road: int, carriageway: Carriageway, curbs: dict[str, np.ndarray], pavement: dict[str, np.ndarray]) -> None:
+        """Add those of a road.
+
+        Parameters
+        ----------
+        road : number
+        carriageway : Carriageway, its limits are taken as they are
+        curbs, pavement : side to (R,) bool, the rows beside which a curb, or an edge of the pavement, was drawn
+        """
+        cells = carriageway.cells
+        length = STRETCH_ROWS * cells.row_size
+        for side, sign, limit in (("left", 1.0, carriageway.left), ("right", -1.0, carriageway.right)):
+            density = _densities(cells, carriageway.ground, sign, np.where(curbs[side], np.nan, limit))
+            self.curb += float(curbs[side].sum()) * cells.row_size
+            self.bare += float((density >= MIN_CURB_DENSITY).sum()) * length
+            paved = _mostly(pavement[side])
+            # 0 where it is not thin, 1 where it is, 2 where it is and the pavement was seen to end
+            state = np.r_[0, np.where(density < MIN_CURB_DENSITY, 1 + paved, 0), 0]
+            turns = np.flatnonzero(np.diff(state))
+            for first, after in zip(turns[:-1], turns[1:]):
+                if state[first + 1]:
+                    begin, end = (cells.first_row * cells.row_size + k * length for k in (first, after))
+                    self.thin.append(ThinMargin(road, side, begin, end, float(np.median(density[first:after])), bool(state[first + 1] == 2)))
+
+    @property
+    def unknown(self) -> list[ThinMargin]:
+        """Those thin stretches where there may be a curb.
+
+        On a survey that has hardly a curb where one could be seen, as on a motorway, what ends the pavement elsewhere is none either.
+        """
+        none = self.bare >= SHORTEST_SEEN and self.curb <= FEW_CURBS * (self.curb + self.bare)
+        return [margin for margin in self.thin if not (none and margin.pavement)]
+
+
+def _mostly(rows):
+    """(K,) bool, whether most rows of stretches of STRETCH_ROWS are true."""
+    first = np.arange(0, len(rows), STRETCH_ROWS)
+    return 2 * np.add.reduceat(rows.astype(int), first) >= np.diff(np.r_[first, len(rows)]) if len(rows) else np.zeros(0, bool)
+
+
+def _densities(cells: GroundCells, ground: np.ndarray, sign: float, limit: np.ndarray) -> np.ndarray:
+    """(K,) points per m² along one margin, of stretches of STRETCH_ROWS; NaN where it was hardly seen."""
+    found = []
+    for first in range(0, len(limit), STRETCH_ROWS):
+        rows = slice(first, first + STRETCH_ROWS)
+        inside = sign * (limit[rows, None] - cells.offsets)   # NaN is not inside
+        margin = (inside > 0) & (inside < MARGIN)
+        count = cells.count[rows]
+        count = count[margin & ground[rows] & (count > 0)]
+        enough = 2 * np.isfinite(limit[rows]).sum() >= STRETCH_ROWS and len(count) >= max(SEEN_SHARE * margin.sum(), 1)
+        found.append(float(np.median(count)) / (cells.row_size * cells.column_size) if enough else np.nan)
+    return np.array(found)
+
+
+def said_of_thin(margins: Sequence[ThinMargin]) -> str:
+    """What a user is told of them, one sentence after the other; "" where there is little to tell."""
+    total = sum(margin.end - margin.start for margin in margins)
+    if total < SHORTEST_TOLD:
+        return ""
+    longest = sorted(margins, key=lambda margin: margin.start - margin.end)[:TOLD_STRETCHES]
+    density = float(np.average([margin.density for margin in margins], weights=[margin.end - margin.start for margin in margins]))
+    where = "; ".join(f"road {m.road}, {m.side} side, station {m.start:.0f} to {m.end:.0f} m" for m in longest)
+    where += "; …" if len(margins) > len(longest) else ""
+    return (f"The points are too few to find curbs along {total:.0f} m, where none was drawn ({where}): {density:.0f} per m² beside "
+            f"the limit of the road surface, some {100 / np.sqrt(density):.0f} cm apart. A curb of 10 cm needs about "
+            f"{MIN_CURB_DENSITY:.0f}, a lower one more; whether there is one is not known. Give the whole cloud if this one was thinned, or "
+            "drive slower or nearer to that side.")

@@ -17,17 +17,17 @@ from scipy.ndimage import uniform_filter1d
 from ...common.parallel import check_cancelled
 from ...common.progress import Progress
 from ...common.runs import stretch_of
-from ..common.in_line import GapLine
+from ..common.tracking import GapLine
 from ..edges.fit import EDGE_VERTEX_SPACING, IN_LINE_GAP_FACTOR, MAX_EDGE_JUMP, MIN_HIDDEN_SHARE, EdgeSettings
 from ..edges.road_edges import EdgePiece, RoadEdges
 from .extract import SurfaceSettings, find_carriageway
 from .ground_grid import COLUMN_WIDTH, ROW_LENGTH
-from .limits import MAX_BRIDGED_SKEW, Carriageway, edge_offsets
+from .pavement_edge import MAX_BRIDGED_SKEW, Carriageway, edge_offsets
 
 if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame
     from ...survey.open_survey import Survey
-    from .measured_ground import MeasuredGround
+    from .ground_grid import MeasuredGround
 
 AGREEING_LENGTH = 7.0       # m of road of which most must show the edge
 MIN_PAVEMENT_LENGTH = 10.0  # m of a line and of the curb beside it: rows are averages of 7 m, so what is shorter is a single observation

@@ -15,7 +15,7 @@ from .ground_grid import COLUMN_WIDTH, GROUND_POINTS_PER_BATCH, ROW_LENGTH
 
 if TYPE_CHECKING:
     from ...survey.open_survey import Survey
-    from .limits import Carriageway
+    from .pavement_edge import Carriageway
 
 MIN_OBSTACLE_HEIGHT, MAX_OBSTACLE_HEIGHT = 0.25, 2.0  # m above the road: curbs and stray points are lower, signs and branches higher
 OBSTACLE_SQUARE = 0.20       # m, side of the squares in which obstacles are counted

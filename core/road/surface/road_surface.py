@@ -12,9 +12,11 @@ import shapely
 from ...common.features import Features
 from ...common.schemas import ROAD_SURFACE
 from ...survey.frame.placement import COORDINATE_DECIMALS
+from .ground_grid import COLUMN_WIDTH, ROW_LENGTH
 
 if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame
+    from .pavement_edge import Carriageway
 
 
 @dataclass(frozen=True)
@@ -73,3 +75,84 @@ def surface_to_features(surface: SurfaceOutlines, frame: RoadFrame) -> Features:
                    points=surface.points)
     rows = [dict(zip(columns, row)) for row in zip(*(values.tolist() for values in columns.values()))]
     return Features("PolygonZ", list(ROAD_SURFACE), list(surface.map_outlines(frame)), rows, surface.crs)
+
+
+# Outlines of the road surface: one polygon for each stretch of one status.
+
+MIN_SURFACE_STATUS_LENGTH = 5.0  # m: shorter changes of status are not drawn
+
+
+def outlines(frame: RoadFrame, road: int, carriageway: Carriageway, points_per_row: np.ndarray) -> list[tuple]:
+    """The stretches of one road; consecutive ones share two vertices.
+
+    Parameters
+    ----------
+    frame : RoadFrame
+    road : number of the road
+    carriageway : Carriageway with R rows
+    points_per_row : (R,) int, points of the surface in each row
+
+    Returns
+    -------
+    list of rows of a SurfaceOutlines: road, status, station, end, area, points and outline
+    """
+    found = []
+    cells = carriageway.cells
+    there = _as_far_as_measured(np.isfinite(carriageway.left) & np.isfinite(carriageway.right), points_per_row)
+    measured = _without_short_runs(carriageway.left_bounded & carriageway.right_bounded, int(MIN_SURFACE_STATUS_LENGTH / ROW_LENGTH))
+    kind = np.where(there, np.where(measured, 2, 1), 0)
+    cuts = np.r_[0, np.flatnonzero(np.diff(kind)) + 1, len(kind)]
+    for a, b in zip(cuts[:-1], cuts[1:]):
+        if not kind[a]:
+            continue
+        # the next stretch begins with the last vertices of this one
+        last = min(b, len(kind) - 1) if b < len(kind) and kind[b] else b - 1
+        rows = np.arange(a, last + 1)
+        if len(rows) < 2:
+            continue
+        stations = cells.stations[rows]
+        sides = []
+        for offset in (carriageway.left[rows], carriageway.right[rows]):
+            column = np.clip(np.floor(offset / COLUMN_WIDTH).astype(int) - cells.first_column, 0, cells.height.shape[1] - 1)
+            x, y, z = frame.to_map(road, stations, offset, carriageway.height[rows, column].astype(float))
+            sides.append(np.c_[x, y, z])
+        ring = np.round(np.concatenate([sides[0], sides[1][::-1]]), COORDINATE_DECIMALS)
+        polygon = shapely.Polygon(ring)
+        if not polygon.is_valid:
+            polygon = _largest(shapely.make_valid(polygon))
+        if polygon is None or polygon.is_empty:
+            continue
+        local = shapely.transform(polygon, lambda places: places - frame.origin, include_z=True)
+        found.append((road, "measured" if kind[a] == 2 else "grown", round(float(stations[0]), 3), round(float(stations[-1]), 3),
+                      round(float(polygon.area), 3), int(points_per_row[a:b].sum()), local))
+    return found
+
+
+def _as_far_as_measured(there, points):
+    """The rows of road from the first to the last one with points: the limits of a few rows before and behind them are known as well."""
+    seen = there.copy()
+    cuts = np.r_[0, np.flatnonzero(np.diff(there.astype(int))) + 1, len(there)]
+    for a, b in zip(cuts[:-1], cuts[1:]):
+        held = np.flatnonzero(points[a:b])
+        if there[a]:
+            seen[a:b] = False
+            if len(held):
+                seen[a + held[0]:a + held[-1] + 1] = True
+    return seen
+
+
+def _without_short_runs(mask, shortest):
+    """The mask with runs of fewer than `shortest` rows changed to the value around them, True runs first."""
+    mask = mask.copy()
+    for value in (True, False):
+        cuts = np.r_[0, np.flatnonzero(np.diff(mask.astype(int))) + 1, len(mask)]
+        for a, b in zip(cuts[:-1], cuts[1:]):
+            if mask[a] == value and b - a < shortest and (a > 0 or b < len(mask)):
+                mask[a:b] = not value
+    return mask
+
+
+def _largest(geometry):
+    """The largest polygon of a geometry, or None."""
+    parts = [part for part in getattr(geometry, "geoms", [geometry]) if part.geom_type == "Polygon"]
+    return max(parts, key=lambda part: part.area) if parts else None

@@ -9,7 +9,7 @@ import shapely
 from lanewright.core.assess.boundaries import assess_boundaries
 from lanewright.core.common.progress import Progress
 from lanewright.core.road.detect_boundaries import BoundarySettings
-from lanewright.core.road.scanlines.source import SurveyScanlines
+from lanewright.core.road.scanlines.detect import SurveyScanlines
 from lanewright.core.survey.open_survey import open_survey
 from road_layers import drawn_boundaries
 

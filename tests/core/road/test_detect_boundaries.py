@@ -8,13 +8,19 @@ from curbed_streets import LENGTH, driven, parked_car, street, survey_of
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.execution.threads import Threads
 from lanewright.core.road import detect_boundaries
-from lanewright.core.road.agreement import CurbEvidence, measure_agreement, select_curb_points
 from lanewright.core.road.common.corners import CurbSteps
 from lanewright.core.road.common.curb_limits import CurbSettings
 from lanewright.core.road.common.curb_points import curb_points_at
 from lanewright.core.road.common.occlusion import OcclusionGrid
-from lanewright.core.road.common.side_chains import SideChains
-from lanewright.core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
+from lanewright.core.road.common.tracking import SideChains
+from lanewright.core.road.detect_boundaries import (
+    BoundarySettings,
+    CurbEvidence,
+    draw_boundaries,
+    find_curb_points,
+    measure_agreement,
+    select_curb_points,
+)
 from lanewright.core.road.edges.fit import fit_road_edges
 
 

@@ -5,10 +5,9 @@ import pytest
 from curbed_streets import driven, parked_car, street, survey_of
 from lanewright.core.road.common.corners import CurbSteps
 from lanewright.core.road.common.curb_points import curb_points_at
-from lanewright.core.road.common.side_chains import SideChains
 from lanewright.core.road.common.sides import expected_height
-from lanewright.core.road.common.tracking import StepChain
-from lanewright.core.road.in_line_of_both import with_pieces_of_both
+from lanewright.core.road.common.tracking import SideChains, StepChain
+from lanewright.core.road.detect_boundaries import with_pieces_of_both
 from lanewright.core.road.profiles.detect import detect_curbs
 
 FOOT = -0.02   # m, height of the curb's foot above the expected road

@@ -5,15 +5,15 @@ import numpy as np
 import pytest
 import shapely
 from curbed_streets import EAST, NORTH
-from lanewright.core.road import agreement
-from lanewright.core.road.common import in_line, tracking
+from lanewright.core.road import detect_boundaries
+from lanewright.core.road.common import tracking
 from lanewright.core.road.common.corners import CurbSteps
 from lanewright.core.road.common.tracking import StepChain
 from lanewright.core.road.curb_returns.main_curbs import KnownPlaces, SearchLimit
-from lanewright.core.road.edges import curb_returns, dropped_corners, uncertainty
+from lanewright.core.road.edges import corner_edges, road_edges
 from lanewright.core.road.edges.road_edges import EdgePiece, joined_pieces
-from lanewright.core.road.surface import limits, measured_ground, pavement_lines
-from lanewright.core.road.surface.measured_ground import WINDOW_ROWS, MeasuredGround
+from lanewright.core.road.surface import ground_grid, pavement_edge, pavement_lines
+from lanewright.core.road.surface.ground_grid import WINDOW_ROWS, MeasuredGround
 from lanewright.core.survey.frame.build import build_frame
 from lanewright.core.survey.trajectory.trajectory import Trajectory
 
@@ -68,33 +68,33 @@ def test_the_offsets_of_edges_are_asked_for_where_the_edges_are(interpolated):
         edges = joined_pieces(edge_pieces(pieces), frame)
         stations = np.arange(0.0, 25.0 * pieces, 0.5)
         interpolated[0] = 0
-        found = limits.edge_offsets(edges, 0, stations)
+        found = pavement_edge.edge_offsets(edges, 0, stations)
         assert np.isfinite(found["left"][0]).mean() > 0.95
-        agreement.sample_edges(edges, frame, 0, "left")
+        detect_boundaries.sample_edges(edges, frame, 0, "left")
 
     short, long = work_of(interpolated, offsets)
     assert long <= MOST * short
 
 
 def test_ends_of_edges_are_compared_with_those_near_them_alone(monkeypatch):
-    count, plain = [0], dropped_corners._is_corner
+    count, plain = [0], corner_edges._is_corner
 
     def counted(tail, head):
         count[0] += 1
         return plain(tail, head)
 
-    monkeypatch.setattr(dropped_corners, "_is_corner", counted)
-    short, long = work_of(count, lambda pieces: dropped_corners.dropped_corners(edge_pieces(pieces), straight_road(pieces), 0))
+    monkeypatch.setattr(corner_edges, "_is_corner", counted)
+    short, long = work_of(count, lambda pieces: corner_edges.dropped_corners(edge_pieces(pieces), straight_road(pieces), 0))
     assert long <= MOST * short
 
 
 def test_a_corner_finds_the_end_of_the_edge_that_it_begins_at():
     pieces = edge_pieces(SHORT)
-    ends = curb_returns._main_ends(pieces, 0)
+    ends = corner_edges._main_ends(pieces, 0)
     assert len(ends) == 4 * SHORT
-    near = curb_returns._nearest(ends, curb_returns.cKDTree(ends[:, :2]), ends[7] + [0.6, 0.5, 0.0])
+    near = corner_edges._nearest(ends, corner_edges.cKDTree(ends[:, :2]), ends[7] + [0.6, 0.5, 0.0])
     np.testing.assert_array_equal(near, ends[7])
-    assert curb_returns._nearest(ends, curb_returns.cKDTree(ends[:, :2]), ends[7] + [0.0, 40.0, 0.0]) is None
+    assert corner_edges._nearest(ends, corner_edges.cKDTree(ends[:, :2]), ends[7] + [0.0, 40.0, 0.0]) is None
 
 
 def test_the_uncertainty_of_a_piece_follows_from_the_curb_points_about_it(monkeypatch):
@@ -102,10 +102,10 @@ def test_the_uncertainty_of_a_piece_follows_from_the_curb_points_about_it(monkey
     places, residual, support = np.arange(0.0, 4000.0, 0.5), random.normal(0.0, 0.01, 8000), random.integers(0, 60, 8000)
     at = np.linspace(1200.0, 1230.0, 61)
     near = slice(2000, 2900)
-    inner = uncertainty.edge_sigma(at, places[near], residual[near], support[near])
+    inner = road_edges.edge_sigma(at, places[near], residual[near], support[near])
     summed, plain = [], np.cumsum
     monkeypatch.setattr(np, "cumsum", lambda values: summed.append(len(values)) or plain(values))
-    assert uncertainty.edge_sigma(at, places, residual, support) == pytest.approx(inner, rel=1e-9)
+    assert road_edges.edge_sigma(at, places, residual, support) == pytest.approx(inner, rel=1e-9)
     # 30 m of the piece and 10 m before and behind it, two points a metre
     assert summed == [101, 101]
 
@@ -125,17 +125,17 @@ def chains_along(pieces):
 
 
 def test_between_two_pieces_of_curb_those_steps_are_looked_at_that_lie_there(monkeypatch):
-    count, plain = [0], in_line.GapLine.off
+    count, plain = [0], tracking.GapLine.off
 
     def counted(line, x, y):
         count[0] += len(x)
         return plain(line, x, y)
 
-    monkeypatch.setattr(in_line.GapLine, "off", counted)
+    monkeypatch.setattr(tracking.GapLine, "off", counted)
 
     def pieces_in_line(pieces):
         steps, chains, kept = chains_along(pieces)
-        assert len(in_line.with_pieces_in_line(kept, chains, steps, lambda s, u: (s, u))) == 4 * pieces - 1
+        assert len(tracking.with_pieces_in_line(kept, chains, steps, lambda s, u: (s, u))) == 4 * pieces - 1
 
     short, long = work_of(count, pieces_in_line)
     assert long <= MOST * short
@@ -211,13 +211,13 @@ def test_where_a_pavement_edge_crosses_curbs_is_what_all_curbs_together_tell():
 
 def test_the_ground_is_measured_once_for_edges_and_surface(monkeypatch):
     survey = streets.survey_of(streets.street())
-    count, plain = [0], measured_ground.ground_of_windows
+    count, plain = [0], ground_grid.ground_of_windows
 
     def counted(source, windows, road):
         count[0] += len(windows)
         return plain(source, windows, road)
 
-    monkeypatch.setattr(measured_ground, "ground_of_windows", counted)
+    monkeypatch.setattr(ground_grid, "ground_of_windows", counted)
     ground, rows = MeasuredGround(survey), [WINDOW_ROWS * k for k in range(5)]
     cells, none = ground.windows(0, rows, [False] * 5)
     assert none is None and count[0] == 5 and np.isfinite(cells.height).any()

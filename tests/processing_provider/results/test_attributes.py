@@ -57,6 +57,12 @@ def test_a_feature_says_what_it_is(qgis_app, output, row, said):
     assert said in evaluated(layer, layer.mapTipTemplate())
 
 
+def test_patterns_are_shown_in_words_where_a_value_holds_one(qgis_app):
+    layer = loaded("MARKING_LINES", line=3, kind="centre", pattern="double-solid", length_m=9.0, status="measured")
+    assert evaluated(layer, f"[% {layer.displayExpression()} %]") == "Centre line 3, double, solid, 9 m, measured"
+    assert evaluated(loaded("DRIVING_LINES", pattern="solid|dashed"), "[% represent_value(\"pattern\") %]") == "solid|dashed"
+
+
 def test_the_second_reading_is_shown_in_words_in_tables_and_forms(qgis_app):
     reading = '{"nats": 0.4, "lanes": [{"offset_m": 1.9, "width_m": 3.24, "direction": -1}]}'
     layer = loaded("DRIVING_LINES", lane=2, other=reading)

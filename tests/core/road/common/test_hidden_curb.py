@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 from lanewright.core.road.common.curb_points import curb_points_at
-from lanewright.core.road.common.hidden_curb import hidden_beside, hidden_points
 from lanewright.core.road.common.occlusion import OcclusionGrid
-from lanewright.core.road.common.sides import expected_height
+from lanewright.core.road.common.sides import expected_height, hidden_beside, hidden_points
 from street_plans import scan, sidewalks, survey_along
 
 OUT = 7.0                                      # m from the reference line to the curb

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 from lanewright.core.road.common.corners import CurbSteps
-from lanewright.core.road.common.in_line import with_pieces_in_line
-from lanewright.core.road.common.tracking import StepChain
+from lanewright.core.road.common.tracking import StepChain, with_pieces_in_line
 
 RADIUS = 120.0   # m, of the bend of the street
 

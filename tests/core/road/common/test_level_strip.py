@@ -4,11 +4,10 @@ import numpy as np
 import pytest
 from curbed_streets import driven, survey_of
 from lanewright.core.road.common.curb_points import curb_points_to_features
-from lanewright.core.road.common.decimation import PointDecimation
-from lanewright.core.road.common.level_strip import LevelStrip
+from lanewright.core.road.common.decimation import LevelStrip, PointDecimation
 from lanewright.core.road.common.occlusion import OcclusionGrid
 from lanewright.core.road.detect_boundaries import BoundarySettings, find_curb_points
-from lanewright.core.road.scanlines.source import SurveyScanlines
+from lanewright.core.road.scanlines.detect import SurveyScanlines
 from lanewright.core.survey.store.records import COORDINATE_SCALE
 from road_layers import curbs_from_scanlines
 from scanned_streets import scanned

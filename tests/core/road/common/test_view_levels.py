@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.road.common.view_levels import at_one_level
+from lanewright.core.road.surface.ground_grid import at_one_level
 
 SHAPE, COLUMN = (5, 80), 0.1   # cells of 5 m of road, 8 m across
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from lanewright.core.road.curb_returns.behind_curbs import lies_behind
-from lanewright.core.road.curb_returns.curb_lines import CurbLines
+from lanewright.core.road.curb_returns.classify import lies_behind
+from lanewright.core.road.curb_returns.main_curbs import CurbLines
 from lanewright.core.road.curb_returns.steps import PlanSteps
 
 X = np.arange(0.0, 5.0, 0.25)

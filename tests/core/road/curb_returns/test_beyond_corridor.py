@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.road.curb_returns.beyond_corridor import CurbEnd, led_beyond
+from lanewright.core.road.curb_returns.side_streets import CurbEnd, led_beyond
 
 HEIGHT = 0.13
 

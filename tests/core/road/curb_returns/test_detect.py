@@ -12,7 +12,7 @@ from curbed_streets import EAST, NORTH, parked_car
 from lanewright.core.road.curb_returns import detect as curbs
 from lanewright.core.road.curb_returns.steps import measure_plan_steps
 from lanewright.core.road.edges.road_edges import edges_from_features
-from lanewright.core.road.surface.limits import edge_offsets
+from lanewright.core.road.surface.pavement_edge import edge_offsets
 from road_layers import detect_curbs, fit_road_edges
 from street_plans import LENGTH, scan, side_street, sidewalks, survey_along, with_points
 

@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 import shapely
 from curbed_streets import EAST, NORTH, driven, street, survey_of
-from lanewright.core.road.curb_returns.faint import led_on
-from lanewright.core.road.curb_returns.following import FollowedEnds
-from lanewright.core.road.curb_returns.ground.raster import averaged, ground_raster
+from lanewright.core.road.curb_returns.extended_curbs import FollowedEnds, led_on
+from lanewright.core.road.curb_returns.ground_raster import averaged, ground_raster
 from road_layers import detect_curbs, fit_road_edges
 from street_plans import scan, side_street
 

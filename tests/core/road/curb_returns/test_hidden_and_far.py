@@ -4,8 +4,8 @@ import numpy as np
 import shapely
 import shapely.affinity
 from curbed_streets import EAST, NORTH
-from lanewright.core.road.curb_returns.following import FollowedEnds, followed_steps
-from lanewright.core.road.curb_returns.ground.raster import ground_raster
+from lanewright.core.road.curb_returns.extended_curbs import FollowedEnds, followed_steps
+from lanewright.core.road.curb_returns.ground_raster import ground_raster
 from road_layers import detect_curbs, fit_road_edges
 from street_plans import scan, side_street, sidewalks, survey_along
 

@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.road.curb_returns.ground.behind import GroundBehind
-from lanewright.core.road.curb_returns.island_tops import on_island_tops
+from lanewright.core.road.curb_returns.islands import GroundBehind, on_island_tops
 from lanewright.core.road.curb_returns.steps import PlanSteps
 
 NEAR = np.arange(0.0, 4.0, 0.4)   # x of the curb that is seen, at y = 0, of an island 3 m wide

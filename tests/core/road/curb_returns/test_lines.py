@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 from lanewright.core.road.common.curb_limits import CurbSettings
-from lanewright.core.road.curb_returns.classify import CurbReturn, is_curb_like, island_outlines
-from lanewright.core.road.curb_returns.curb_lines import CurbLines
-from lanewright.core.road.curb_returns.free_corners import is_free_corner
+from lanewright.core.road.curb_returns.classify import CurbReturn, is_curb_like, is_free_corner, island_outlines
+from lanewright.core.road.curb_returns.main_curbs import CurbLines
 from lanewright.core.road.curb_returns.steps import PlanSteps
 from lanewright.core.road.curb_returns.tracking import PlanStepChain, group_lines
 

@@ -11,7 +11,7 @@ from lanewright.core.road.common.decimation import PointDecimation
 from lanewright.core.road.common.occlusion import OCCLUSION_CELL, OcclusionGrid
 from lanewright.core.road.common.sides import expected_height
 from lanewright.core.road.curb_returns.detect import with_curb_returns
-from lanewright.core.road.curb_returns.main_islands import island_stretches
+from lanewright.core.road.curb_returns.islands import island_stretches
 from lanewright.core.road.profiles.detect import detect_curbs
 from street_plans import LENGTH, scan, sidewalks, survey_along
 

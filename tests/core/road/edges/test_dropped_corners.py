@@ -4,7 +4,7 @@ import curbed_streets as streets
 import numpy as np
 import pytest
 from curbed_streets import EAST, NORTH
-from lanewright.core.road.edges.dropped_corners import dropped_corners
+from lanewright.core.road.edges.corner_edges import dropped_corners
 from lanewright.core.road.edges.road_edges import EdgePiece
 from lanewright.core.survey.frame.build import build_frame
 from lanewright.core.survey.trajectory.trajectory import Trajectory

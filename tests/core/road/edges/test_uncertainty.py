@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.road.edges.road_edges import EdgePiece
-from lanewright.core.road.edges.uncertainty import CURB_RETURN, MAIN_EDGE, edge_sigma
+from lanewright.core.road.edges.road_edges import CURB_RETURN, MAIN_EDGE, EdgePiece, edge_sigma
 
 PLACES = np.arange(0.0, 100.5, 0.5)
 MIDDLE = np.arange(40.0, 60.0, 0.5)

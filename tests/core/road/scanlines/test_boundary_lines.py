@@ -8,9 +8,9 @@ from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.features import Features
 from lanewright.core.common.schemas import CURB_POINTS
 from lanewright.core.road.scanlines.candidates import ScanlineBoundarySettings
-from lanewright.core.road.scanlines.scanlines import Scanlines
+from lanewright.core.road.scanlines.detect import LayerScanlines, SurveyScanlines
+from lanewright.core.road.scanlines.grid import Scanlines
 from lanewright.core.road.scanlines.section_planes import ScanlineSettings, scanlines_of
-from lanewright.core.road.scanlines.source import LayerScanlines, SurveyScanlines
 from road_layers import boundary_lines, curbs_from_scanlines
 
 

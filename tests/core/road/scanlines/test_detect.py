@@ -6,8 +6,8 @@ import pytest
 from curbed_streets import GROUND, NORTH, driven, parked_car, street, survey_of
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.road.scanlines.candidates import ScanlineBoundarySettings
+from lanewright.core.road.scanlines.detect import SurveyScanlines
 from lanewright.core.road.scanlines.section_planes import ScanlineSettings
-from lanewright.core.road.scanlines.source import SurveyScanlines
 from road_layers import curbs_from_scanlines, fit_road_edges
 
 

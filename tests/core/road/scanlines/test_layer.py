@@ -5,17 +5,19 @@ import numpy as np
 import pytest
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.features import Features
+from lanewright.core.road.scanlines.grid import Scanlines
 from lanewright.core.road.scanlines.layer import (
     LineSpool,
+    ResampledPoints,
+    ResamplingSettings,
     ScanlineLayerSettings,
     coordinates_of,
     line_lengths,
+    resample_scanlines,
     scanlines_from_features,
     simplified_lines,
     write_scanlines,
 )
-from lanewright.core.road.scanlines.resampling import ResampledPoints, ResamplingSettings, resample_scanlines
-from lanewright.core.road.scanlines.scanlines import Scanlines
 from lanewright.core.road.scanlines.section_planes import ScanlineSettings, all_scanlines
 from scanned_streets import CURB, scanned, survey_of
 

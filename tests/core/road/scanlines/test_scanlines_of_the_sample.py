@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.road.scanlines.scanlines import Scanlines
+from lanewright.core.road.scanlines.grid import Scanlines
 from lanewright.core.road.scanlines.section_planes import ScanlineSettings, all_scanlines
 from lanewright.core.survey.open_survey import open_survey
 

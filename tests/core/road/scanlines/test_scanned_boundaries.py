@@ -4,8 +4,8 @@ import os
 
 import numpy as np
 import pytest
+from lanewright.core.road.scanlines.detect import SurveyScanlines
 from lanewright.core.road.scanlines.section_planes import ScanlineSettings
-from lanewright.core.road.scanlines.source import SurveyScanlines
 from lanewright.core.survey.lattice.scan_lattice import find_lattice
 from road_layers import curbs_from_scanlines, fit_road_edges
 from scanned_streets import CURB, driven, scanned, survey_of

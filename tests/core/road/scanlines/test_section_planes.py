@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.road.scanlines.from_points import point_scanlines
-from lanewright.core.road.scanlines.scanlines import Scanlines
-from lanewright.core.road.scanlines.section_planes import ScanlineSettings, all_scanlines, scanlines_of
+from lanewright.core.road.scanlines.grid import Scanlines
+from lanewright.core.road.scanlines.section_planes import ScanlineSettings, all_scanlines, point_scanlines, scanlines_of
 from lanewright.core.survey.lattice.scan_lattice import find_lattice
 from scanned_streets import CURB, driven, scanned, survey_of
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
+from lanewright.core.road.surface.extract import opened_limits
 from lanewright.core.road.surface.ground_grid import COLUMN_WIDTH, ROW_LENGTH
-from lanewright.core.road.surface.openings import opened_limits
 
 ROWS, OFFSETS = 80, (np.arange(80) + 0.5) * COLUMN_WIDTH   # 40 m of road, 20 m outward
 STATIONS = (np.arange(ROWS) + 0.5) * ROW_LENGTH

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+from lanewright.core.road.surface.extract import Margins, ThinMargin, said_of_thin
 from lanewright.core.road.surface.ground_grid import GroundCells
-from lanewright.core.road.surface.limits import Carriageway
-from lanewright.core.road.surface.point_spacing import Margins, ThinMargin, said_of_thin
+from lanewright.core.road.surface.pavement_edge import Carriageway
 
 ROWS, COLUMNS = 200, 80    # 100 m of road, 10 m to either side
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from lanewright.core.road.surface.ground_grid import COLUMN_WIDTH, ROW_LENGTH, GroundCells
-from lanewright.core.road.surface.limits import Carriageway
+from lanewright.core.road.surface.pavement_edge import Carriageway
 from lanewright.core.road.surface.road_points import points_on_road
 from lanewright.core.survey.store.columns import Columns
 from lanewright.core.survey.store.records import SURVEY_POINT, Points, to_units
