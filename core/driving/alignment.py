@@ -57,7 +57,6 @@ def lane_elements(tracks: list[LaneTrack], s: np.ndarray, road: Road) -> list[li
     ----------
     tracks : list of LaneTrack
     s : (K,) grid stations
-    road : Road
 
     Returns
     -------
@@ -290,7 +289,6 @@ def lane_courses(tracks: list[LaneTrack], s: np.ndarray, road: Road, elements: l
     ----------
     tracks : list of LaneTrack
     s : (K,) grid stations
-    road : Road
     elements : Elements of each lane; on them the course is the arc or straight itself, so
         that lanes of one bend are concentric
 

@@ -42,10 +42,6 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
 
     Parameters
     ----------
-    marking_lines : PaintedLines
-    frame : RoadFrame
-    settings : DrivingSettings
-    progress : Progress
     markings : MarkingObjects or None: no lane leads along a hatched area
     edges : RoadEdges or None: no lane leads over a curb
     road_points : RoadPoints or None: the heights of the road
@@ -108,8 +104,6 @@ def road_lanes(road: EstimatedRoad, settings: DrivingSettings, lane_width: float
 
     Parameters
     ----------
-    road : EstimatedRoad
-    settings : DrivingSettings
     lane_width : metres, of lanes beside which only one line is painted
     """
     tracks = estimated_lanes(road.boundaries, road.estimate, lane_width, settings.line_distance)
@@ -265,7 +259,6 @@ def lane_sigma(track: LaneTrack, course: Course, road: Road, known: EstimatedRoa
     ----------
     track : LaneTrack of N places
     course : Course of the lane
-    road : Road
     known : EstimatedRoad of the road's lines, on whose stations the track runs, and of its boundaries, between which it lies
     paint : {number of a line: m, RMS distance of its paint from its curve}
     passes : m, one sigma of the middle of the passes, see `RoadFrame.pass_sigma`: one for all, or (N,)

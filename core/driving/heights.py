@@ -35,7 +35,6 @@ def road_heights(road_points: RoadPoints, road: int, s: np.ndarray, tracks: list
     road : number
     s : (K,) grid stations
     tracks : list of LaneTrack
-    progress : Progress
 
     Returns
     -------
@@ -68,7 +67,6 @@ def heights_of_windows(road_points: RoadPoints, item: list[tuple[Any, ...]], roa
 
     Parameters
     ----------
-    road_points : RoadPoints
     item : of each window the first and the last section that it lies in, (K,) m its stations, and of each lane (M,) int those that it has, and
         (M,) m its offsets there
     road : number

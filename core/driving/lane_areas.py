@@ -28,11 +28,9 @@ def lane_areas(road: EstimatedRoad, curbs: CrossSections | None, tracks: list[La
 
     Parameters
     ----------
-    road : EstimatedRoad
     curbs : CrossSections of the road edges that were given to the estimate, or None
     tracks : list of LaneTrack; lanes are numbered from 1 in their order
     heights : local z along each track
-    frame : RoadFrame
     number : of the road
     pavement : CrossSections of the edges of the pavement without a curb, or None
     """
@@ -158,11 +156,9 @@ def shoulders(road: EstimatedRoad, tracks: list[LaneTrack], borders: list[list[n
 
     Parameters
     ----------
-    road : EstimatedRoad
     tracks : list of LaneTrack
     borders : the left and the right border of each track along the road, (N, 3) local metres each
     pavement : CrossSections of the edges of the pavement without a curb
-    frame : RoadFrame
     number : of the road
 
     Returns
@@ -331,7 +327,6 @@ def connectors_between_roads(lanes: dict[int, RoadLanes], frame: RoadFrame, rows
     Parameters
     ----------
     lanes : {number of the road: RoadLanes}
-    frame : RoadFrame
     rows : rows of Lanes of all roads; `successors` of the lanes that are left name the connectors afterwards
 
     Returns

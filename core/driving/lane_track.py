@@ -216,7 +216,6 @@ def connect(tracks: list[LaneTrack], lines: CrossSections, most_bridged: float, 
     Parameters
     ----------
     tracks : list of LaneTrack
-    lines : CrossSections
     most_bridged, most_inferred : metres, the longest gap without and with such a guide
     shown : (K,) bool, whether any line is seen at a grid station
     """

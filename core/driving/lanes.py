@@ -25,7 +25,6 @@ def estimated_lanes(boundaries: Boundaries, estimate: RoadEstimate, lane_width: 
 
     Parameters
     ----------
-    boundaries : Boundaries
     estimate : RoadEstimate over them
     lane_width : metres, of a lane beside which only one line is painted; line_distance : metres from that line to its middle, 0 for half of its width
     """

@@ -99,7 +99,6 @@ def lanes_to_features(lanes: Lanes, origin: Any = LEVEL_ORIGIN) -> Features:
 
     Parameters
     ----------
-    lanes : Lanes
     origin : (3,) metres added to local coordinates, as RoadFrame.origin
 
     Returns
@@ -285,7 +284,6 @@ def driving_lines_to_features(lines: DrivingLines, frame: RoadFrame) -> Features
 
     Parameters
     ----------
-    lines : DrivingLines
     frame : RoadFrame, whose origin is added to local coordinates
 
     Returns
@@ -322,7 +320,6 @@ def curve_elements_to_features(elements: CurveElements, frame: RoadFrame) -> Fea
 
     Parameters
     ----------
-    elements : CurveElements
     frame : RoadFrame, whose origin is added to local coordinates
 
     Returns

@@ -76,9 +76,6 @@ def remove_outliers(points: RoadPoints, settings: OutlierSettings = OutlierSetti
 
     Parameters
     ----------
-    points : RoadPoints
-    settings : OutlierSettings
-    progress : Progress
     executor : who looks at windows
 
     Returns
@@ -139,9 +136,7 @@ def kept_of_windows(source: NoSource, windows: Sequence[tuple[int, Sequence[np.n
 
     Parameters
     ----------
-    source : NoSource
     windows : number of each and the columns s, d, x, y, z (0.1 mm) of its points and those about it
-    settings : OutlierSettings
 
     Returns
     -------
@@ -418,7 +413,6 @@ def mean_distances(units: np.ndarray, k: int, progress: Progress = Progress()) -
     ----------
     units : (N, 3) int32 of 0.1 mm
     k : neighbours, at least 1
-    progress : Progress
 
     Returns
     -------

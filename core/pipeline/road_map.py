@@ -151,15 +151,9 @@ def make_road_map(paths: Sequence[str | Path], trajectory: Trajectory, image_pat
     Parameters
     ----------
     paths : point cloud files
-    trajectory : Trajectory
     image_path : where the intensity image is written (.tif)
     settings : RoadMapSettings, those of every stage
-    progress : Progress
     corrections : the layer CORRECTIONS of an analyst, or None; each is made where its kind of line was found, so that what follows builds on it
-
-    Returns
-    -------
-    RoadMap
 
     Raises
     ------
@@ -312,7 +306,6 @@ class Extent:
         Parameters
         ----------
         paths : point cloud files
-        trajectory : Trajectory
         crs : WKT for clouds that carry none
 
         Raises

@@ -85,11 +85,9 @@ def estimate_road(candidates: Candidates, evidence: Evidence, first_direction: i
 
     Parameters
     ----------
-    candidates : Candidates
     evidence : Evidence of their intervals
     first_direction : 1 or -1, of the lanes that are met first from the left: -1 with traffic on the right
     lane_width : metres, the usual width of a lane
-    weights : EstimateWeights
     """
     sections = _best_sections(candidates, evidence, weights, lane_width, first_direction)
     # where no line is seen, as on a crossing, much may change; where no line is known nothing can be said

@@ -70,7 +70,6 @@ def driven_offsets(frame: RoadFrame, road: int, s: np.ndarray) -> tuple[np.ndarr
 
     Parameters
     ----------
-    frame : RoadFrame
     road : number of the road
     s : (K,) metres, stations
 
@@ -93,7 +92,6 @@ def other_carriageway(frame: RoadFrame, road: int, s: np.ndarray) -> np.ndarray:
 
     Parameters
     ----------
-    frame : RoadFrame
     road : number of the road
     s : (K,) metres, stations
     """
@@ -125,7 +123,6 @@ def surface_coverage(points: RoadPoints, road: int, s: np.ndarray) -> tuple[np.n
 
     Parameters
     ----------
-    points : RoadPoints
     road : number of the road
     s : (K,) metres, stations of a grid with steps of STATION_STEP
 
@@ -166,7 +163,6 @@ def point_spacing(road_points: RoadPoints, road: int, s: np.ndarray) -> np.ndarr
 
     Parameters
     ----------
-    road_points : RoadPoints
     road : number
     s : (K,) m, the grid stations of the road's lines
 
@@ -191,7 +187,6 @@ def seen_in_stretch(points: RoadPoints, stretch: Stretch, first: int, count: int
 
     Parameters
     ----------
-    points : RoadPoints
     stretch : Stretch of a road
     first, count : stations first to first + count of the grid are looked at
 
@@ -253,7 +248,6 @@ def evidence_of(candidates: Candidates, s: np.ndarray, driven: np.ndarray, direc
 
     Parameters
     ----------
-    candidates : Candidates
     s : (K,) metres
     driven, directions : as `driven_offsets` gives them
     covered, hatched : (K, BINS) bool, or None
@@ -340,8 +334,6 @@ def borders_of_hatching(markings: MarkingObjects, frame: RoadFrame, road: int, s
 
     Parameters
     ----------
-    markings : MarkingObjects
-    frame : RoadFrame
     road : number of the road
     s : (K,) metres, stations
 
@@ -492,7 +484,6 @@ def rows_of_bays(markings: MarkingObjects, road: int, s: np.ndarray, driven: np.
 
     Parameters
     ----------
-    markings : MarkingObjects
     road : number of the road
     s : (K,) metres, stations, increasing
     driven : (P, K) metres, offset of every pass at these, NaN where it did not drive

@@ -75,15 +75,11 @@ def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_widt
     Parameters
     ----------
     lines : {number of the road: CrossSections}
-    frame : RoadFrame
     usual_width : metres, of lanes where the lines do not tell
     side : "right", "left" or "automatic"
     curbs, pavement : {number: CrossSections of road edges} with and without a curb, or None
-    markings : MarkingObjects or None
     road_points : RoadPoints or None; paint : points of markings, which serve where there are no road points, or None
     width_asked : whether `usual_width` is the user's own
-    weights : EstimateWeights
-    progress : Progress
     taken : second readings that an analyst took
     """
     known: dict[int, tuple[Boundaries, Candidates, Evidence]] = {}
@@ -228,8 +224,6 @@ def arrows_of(markings: MarkingObjects, frame: RoadFrame, road: int) -> np.ndarr
 
     Parameters
     ----------
-    markings : MarkingObjects
-    frame : RoadFrame
     road : number of the road
 
     Returns
@@ -306,7 +300,6 @@ def dash_lengths(lines: CrossSections, markings: MarkingObjects | None, road: in
     Parameters
     ----------
     lines : CrossSections of L lines at K stations
-    markings : MarkingObjects or None
     road : number of the road
 
     Returns

@@ -442,7 +442,6 @@ def transitions(candidates: Candidates, sections: Sections, known: np.ndarray, l
     known : (N,) int, intervals, ascending
     lane_width : metres, usual
     left : of what was known of lanes, and of directions, what is left after the way to the next one, (N - 1,) 0 to 1 each
-    weights : EstimateWeights
 
     Returns
     -------

@@ -190,7 +190,6 @@ def confidence_of(there: np.ndarray, directed: np.ndarray, weights: EstimateWeig
     Parameters
     ----------
     there, directed : (N,) 0 to 1, confidence and directed of LaneSpan
-    weights : EstimateWeights
 
     Returns
     -------
@@ -209,7 +208,6 @@ def calibrated(probability: np.ndarray, weights: EstimateWeights = EstimateWeigh
     Parameters
     ----------
     probability : (N,) 0 to 1, of all cross-sections in which the lane lies there
-    weights : EstimateWeights
 
     Returns
     -------

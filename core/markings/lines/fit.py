@@ -113,13 +113,10 @@ def fit_line_shapes(lines: list[LinkedLine], spans: list[tuple[float, float]], r
     ----------
     lines : list of LinkedLine
     spans : (first, last) stations of each to be drawn, which may reach beyond the paint
-    road : Road
     trend : CommonTrend, how the painted lines of the road run together
     edges : EdgesBeside of the road
     track_height : function of stations (N,), height of the trajectory; the line's height is
         smoothed as the difference to it, so that it goes on along the road's slope
-    settings : MarkingLineSettings
-    progress : Progress
 
     Returns
     -------
@@ -262,12 +259,9 @@ def named_by_estimate(lines: PaintedLines, frame: RoadFrame, usual_width: float,
 
     Parameters
     ----------
-    lines : PaintedLines
-    frame : RoadFrame
     usual_width : metres, of lanes where the lines do not tell
     markings, edges, road_points : what else the estimate is made from, or None
     paint : points of markings, which serve where there are no road points, or None
-    progress : Progress
     taken : second readings that an analyst took
 
     Returns
@@ -295,7 +289,6 @@ def named_by_lines(markings: MarkingObjects, lines: PaintedLines) -> MarkingObje
 
     Parameters
     ----------
-    markings : MarkingObjects
     lines : PaintedLines fitted to them
 
     Returns
@@ -366,9 +359,6 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
     ----------
     clustered_points : RoadPoints with `cluster`
     markings : MarkingObjects of the same clusters
-    frame : RoadFrame
-    settings : MarkingLineSettings
-    progress : Progress
     edges, road_points : RoadEdges and RoadPoints, or None: what the lines separate is told better with them
     taken : second readings that an analyst took
 

@@ -124,7 +124,6 @@ def link_lines(lines: list[LinkedLine], trend: CommonTrend, edges: EdgesBeside, 
     Parameters
     ----------
     lines : list of LinkedLine
-    trend : CommonTrend
     edges : EdgesBeside of the road
     max_gap : metres
     allowed : metres across at the longest gap; half of it where lines touch
@@ -466,10 +465,8 @@ def with_unseen_paint(lines: PaintedLines, markings: MarkingObjects, paint: Road
 
     Parameters
     ----------
-    lines : PaintedLines
     markings : MarkingObjects they were made of
     paint : RoadPoints of the markings, with `spacing`
-    road_points : RoadPoints
 
     Returns
     -------
@@ -605,7 +602,6 @@ def with_paint_between_tracks(markings: MarkingObjects, lines: PaintedLines) -> 
 
     Parameters
     ----------
-    markings : MarkingObjects
     lines : PaintedLines of `with_unseen_paint`
 
     Returns

@@ -153,7 +153,6 @@ def lines_from_features(features: Features, frame: RoadFrame) -> PaintedLines:
     ----------
     features : Features with lines in map coordinates; `road`, `line`, `kind`, `pattern`, `status` and `width_m` are used where they are, so
         that lines drawn by hand serve as well
-    frame : RoadFrame
 
     Returns
     -------
@@ -179,7 +178,6 @@ def painted_lines_of(rows: list[dict[str, Any]], frame: RoadFrame, crs: str) -> 
     ----------
     rows : dicts of road, line, kind, pattern, status, and of what FittedPieces holds: curve, arc, places (V, 3), station, end, offset, width, rmse;
         and of `unseen`, where it is known
-    frame : RoadFrame
     crs : WKT, "" where unknown
     """
     def column(name: str, kind: Any) -> np.ndarray:

@@ -82,7 +82,6 @@ def select_lines(lines: list[LinkedLine], trend: CommonTrend, crossed: np.ndarra
     Parameters
     ----------
     lines : list of LinkedLine
-    trend : CommonTrend
     crossed : (K, 4) as `crossings` gives it
     min_paint : metres
     hatched : (K, 4) as `hatching_bars` gives it

@@ -142,7 +142,6 @@ def line_paint(records: Columns, markings: MarkingObjects, road: int) -> tuple[C
     Parameters
     ----------
     records : N points of one road with `cluster`
-    markings : MarkingObjects
     road : number
 
     Returns

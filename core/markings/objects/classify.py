@@ -125,7 +125,6 @@ def classify_markings(shapes: list[Shape], half_widths: Sequence[float], setting
     ----------
     shapes : list of Shape
     half_widths : (N,) m from the reference line to the road edge on each cluster's side
-    settings : ClassSettings
     covered : (N,) share of each cluster's points that lie beneath or right beside something standing on the road
     blocks : (N,) bool of `give_way_blocks`, which looks at all roads at once
 

@@ -68,9 +68,6 @@ def cluster_markings(marking_points: RoadPoints, frame: RoadFrame, settings: Clu
     Parameters
     ----------
     marking_points : RoadPoints on paint
-    frame : RoadFrame
-    settings : ClusterSettings
-    progress : Progress
     executor : who links points, looks for crossings, divides compound clusters and measures clusters
 
     Returns
@@ -375,7 +372,6 @@ def stripes_of_crossings(source: NoSource, item: tuple[np.ndarray, np.ndarray, n
 
     Parameters
     ----------
-    source : NoSource
     item : (N, 2) m spots about crossings one after the other, (N,) radians of the road there, the bounds of the crossings, and the Comb of each
     """
     places, way, bounds, combs = item
@@ -401,9 +397,7 @@ def outlines_of_markings(source: NoSource, item: tuple[Any, ...], road: Road) ->
 
     Parameters
     ----------
-    source : NoSource
     item : s, d, x, y, z (0.1 mm), spacing (mm) of the points, the bounds of the markings, and the Shape and whether it is a strip of each
-    road : Road
 
     Returns
     -------

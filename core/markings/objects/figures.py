@@ -243,13 +243,7 @@ def _normed(image):
 
 
 def agreement(cells: PaintImage, symbol: PaintedSymbol) -> Agreement | None:
-    """The best agreement of paint with a figure; None where it has not the figure's size in any direction, or is nothing like it.
-
-    Parameters
-    ----------
-    cells : PaintImage
-    symbol : PaintedSymbol
-    """
+    """The best agreement of paint with a figure; None where it has not the figure's size in any direction, or is nothing like it."""
     best = None
     for figure in figures_of(symbol):
         poses = _allowed(_poses(cells, figure), figure, symbol)

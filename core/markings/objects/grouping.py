@@ -41,7 +41,6 @@ def connected_points(marking_points: RoadPoints, road: int, distance: float, pro
     marking_points : RoadPoints on paint
     road : number of the road
     distance : m, by which points of one marking are joined
-    progress : Progress
     executor : who links the points of windows
 
     Returns
@@ -107,7 +106,6 @@ def links_of_windows(source: NoSource, item: list[tuple[Any, ...]], distance: fl
 
     Parameters
     ----------
-    source : NoSource
     item : of each window LINKING_COLUMNS of its N points, one after the other, and the cell along the road at which it ends
     distance : m, by which points of one marking are joined
 

@@ -126,7 +126,6 @@ def make_marking_objects(rows: Sequence[dict[str, Any]], polygons: Sequence[Any]
     ----------
     rows : M dicts of field name to value; `road` -1, `cluster` -1, `class` "" and NaN stand for what is missing
     polygons : M shapely polygons or multipolygons in local coordinates, None where there is none
-    frame : RoadFrame
     crs : WKT
     """
     def column(name: str, missing: Any, kind: Any) -> np.ndarray:
@@ -156,7 +155,6 @@ def markings_to_features(markings: MarkingObjects, frame: RoadFrame) -> Features
 
     Parameters
     ----------
-    markings : MarkingObjects
     frame : RoadFrame, whose origin is added to local coordinates
 
     Returns
@@ -185,7 +183,6 @@ def markings_from_features(features: Features, frame: RoadFrame) -> MarkingObjec
     Parameters
     ----------
     features : Features with polygons in map coordinates; fields may be missing
-    frame : RoadFrame
 
     Returns
     -------

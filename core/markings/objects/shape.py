@@ -431,9 +431,7 @@ def drawn_outline(columns: Sequence[np.ndarray], shape: Shape, strip: bool, road
     Parameters
     ----------
     columns : s, d, x, y, z, units of 0.1 mm, and spacing, mm between the tracks of the scan: (N,) int each of its points
-    shape : Shape
     strip : whether it is drawn as an even strip, else cell by cell
-    road : Road
     """
     s, d, x, y, z, spacing = columns
     drawn = band(s, d, shape) if strip else cell_outline(*painted_cells(s * COORDINATE_SCALE, d * COORDINATE_SCALE, spacing))
@@ -447,7 +445,6 @@ def to_local(shape: shapely.Polygon, road: Road, places: np.ndarray) -> shapely.
     Parameters
     ----------
     shape : polygon in (s, d)
-    road : Road
     places : (N, 3) local x, y, z of the cluster's points
 
     Returns

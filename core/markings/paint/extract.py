@@ -51,14 +51,7 @@ def extract_markings(road_points: RoadPoints, image: IntensityRaster, frame: Roa
     ----------
     road_points : RoadPoints, corrected or not
     image : IntensityRaster of the same points, in memory or on disk; the methods on points need it for the mask alone
-    frame : RoadFrame
-    settings : MarkingSettings
-    progress : Progress
     mask_path : where to write the mask of markings as GeoTIFF in the image's own pixels, or None
-
-    Returns
-    -------
-    RoadPoints
 
     Raises
     ------
@@ -191,10 +184,8 @@ class ScannerScatter:
 
         Parameters
         ----------
-        road_points : RoadPoints
         windows : (road, window) of all roads
         executor : Executor that looks at the windows
-        progress : Progress
         """
         sampled = {key for key in windows if key[1] % SAMPLED_WINDOW_STEP == 0}
         roads = {road for road, _ in sampled}
@@ -248,7 +239,6 @@ def scatter_of_windows(road_points: RoadPoints,
 
     Parameters
     ----------
-    road_points : RoadPoints
     windows : road, window, and whether the scatter in it is asked for
 
     Returns

@@ -220,7 +220,6 @@ def views(points: Points, frame: RoadFrame) -> np.ndarray | None:
     Parameters
     ----------
     points : (N) road points
-    frame : RoadFrame
 
     Returns
     -------

@@ -244,7 +244,6 @@ def gutter_cells(z: np.ndarray, rim: RimBands) -> np.ndarray:
     Parameters
     ----------
     z : (rows, columns) brightness in spreads above asphalt, NaN where nothing was scanned
-    rim : RimBands
 
     Returns
     -------

@@ -40,8 +40,6 @@ def points_on_peaks(road_points: RoadPoints, road: int, settings: PeakSettings, 
     ----------
     road_points : RoadPoints, corrected or not
     road : its number
-    settings : PeakSettings
-    progress : Progress
 
     Notes
     -----
@@ -88,7 +86,6 @@ def profile_peaks(records: Columns, row: np.ndarray, settings: PeakSettings) -> 
     ----------
     records : (N,) columns of road points
     row : (N,) int, the profile that each lies in
-    settings : PeakSettings
 
     Returns
     -------
@@ -143,7 +140,6 @@ def in_chains(row: np.ndarray, middle: np.ndarray, settings: PeakSettings) -> np
     ----------
     row : (P,) int, profile of each peak
     middle : (P,) its offset, units of 0.1 mm
-    settings : PeakSettings
     """
     if not len(row):
         return np.zeros(0, bool)
@@ -190,8 +186,6 @@ def points_in_segments(road_points: RoadPoints, road: int, settings: SegmentSett
     ----------
     road_points : RoadPoints, corrected or not
     road : its number
-    settings : SegmentSettings
-    progress : Progress
 
     Notes
     -----
@@ -238,7 +232,6 @@ def segment_thresholds(records: Columns, settings: SegmentSettings) -> dict[int,
     Parameters
     ----------
     records : (N,) columns of road points
-    settings : SegmentSettings
 
     Returns
     -------
@@ -284,7 +277,6 @@ def dense_enough(records: Columns, own: np.ndarray, settings: SegmentSettings) -
     ----------
     records : (N,) columns of bright road points
     own : (N,) bool, the points to decide on; the others only count as neighbours
-    settings : SegmentSettings
 
     Returns
     -------

@@ -100,9 +100,7 @@ def levels_of_windows(source: PaintSource, windows: Windows, settings: MarkingSe
 
     Parameters
     ----------
-    source : PaintSource
     windows : Windows of a road
-    settings : MarkingSettings
     noisy : {road: windows with noisy points}, which have no level
 
     Returns
@@ -119,9 +117,7 @@ def paint_of_windows(source: PaintSource, item: tuple[Windows, dict[int, Bins]],
 
     Parameters
     ----------
-    source : PaintSource
     item : Windows of a road, and the bins that are known, by window
-    settings : MarkingSettings
     noisy : {road: windows with noisy points}
     masked : whether the mask's pixels are asked for
     """
@@ -388,7 +384,6 @@ def pixel_centres(image: IntensityRaster, x: np.ndarray, y: np.ndarray, origin: 
 
     Parameters
     ----------
-    image : IntensityRaster
     x, y : (N,) local coordinates, m
     origin : map coordinates that local ones leave out, m
 
@@ -411,9 +406,7 @@ def painted_pixels(cells: np.ndarray, first: tuple[int, int], image: IntensityRa
     ----------
     cells : (A, B) bool in (s, d), 4 cm each
     first : cell numbers of cells[0, 0]: it begins at first * 4 cm
-    image : IntensityRaster
     origin : map coordinates that local ones leave out, m
-    road : Road
 
     Returns
     -------
@@ -442,8 +435,6 @@ def burn_points(burn: Burn, points: RoadPoints, image: IntensityRaster, frame: R
     ----------
     burn : function given by `marking_mask`
     points : RoadPoints on paint
-    image : IntensityRaster
-    frame : RoadFrame
     """
     halo = int(np.ceil(CLOSE_ALONG / CELL_SIZE)) + 1
     for road in points.roads():
