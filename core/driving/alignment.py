@@ -1,4 +1,4 @@
-"""The alignment that the lanes of a road have in common: its straights, arcs and clothoids."""
+"""The alignment that the lanes of a road have in common, the smooth courses of lanes through it, and the elements of their curves."""
 
 from __future__ import annotations
 

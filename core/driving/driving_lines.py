@@ -1,4 +1,4 @@
-"""Driving lines: the middle of every lane, in the direction of travel, and the curves along them."""
+"""Driving lines: the middle of every lane, in the direction of travel, the curves along them, and one sigma of their place."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The areas of lanes between their borders, and what follows each lane."""
+"""The areas of lanes between their borders, the shoulders beside them, and what follows each lane."""
 
 from __future__ import annotations
 

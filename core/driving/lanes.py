@@ -1,4 +1,4 @@
-"""Lanes followed along the road: from the cross-sections that were estimated to tracks with offsets at every station."""
+"""Lanes followed along the road, from the estimated cross-sections to tracks with offsets at every station, and their tapers."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""Lanes as areas between two borders, with what follows each, and their layer LANES in map coordinates.
-
-Stages hand each other `Lanes`. Map coordinates are made in one place, `lanes_to_features`, and read in one place, `lanes_from_features`.
-"""
+"""Lanes, driving lines and curve elements as arrays, and their layers in map coordinates."""
 
 from __future__ import annotations
 

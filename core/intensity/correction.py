@@ -1,4 +1,4 @@
-"""Intensity without the effect of range and incidence, scanner by scanner, from the road's own asphalt."""
+"""Intensity without the effect of range and incidence, scanner by scanner, from the road's own asphalt; what is saturated."""
 
 from __future__ import annotations
 

@@ -261,11 +261,8 @@ def _patches(at, shape):
     return number[labels]
 
 
-# Paint that was scanned sparsely: what lies between two tracks of the scan is as they are.
-#
-# A scanner leaves tracks that lie 2 cm apart beside the vehicle and three decimetres apart on the far side of a motorway. Where both of two
-# neighbouring tracks show paint, no gap was seen between them, so the cells between them belong to the marking; where the tracks lie closer than
-# cells, nothing is added.
+# Between two tracks of the scan, which may lie three decimetres apart, no gap was seen where both show paint: the cells between them belong to the
+# marking.
 
 TRACK_WIDTH = 0.03       # m that points may lie farther apart than the middles of their tracks
 MIN_TRACK_GAP = 0.10     # m: points so near across the road are of one marking in any case

@@ -1,4 +1,4 @@
-"""What speaks for or against lanes beside lines and curbs: the drive, the road surface, hatching, arrows and stop lines."""
+"""What speaks for or against lanes beside lines and curbs: the drive, the road surface, hatched areas, parking bays, arrows and stop lines."""
 
 from __future__ import annotations
 
@@ -461,11 +461,8 @@ def _follow(borders, middle):
         border[near] = middle[near]
 
 
-# Rows of parking bays: narrow lines across the road, one beside the other at an even pace.
-#
-# The lines between bays are as narrow as other lines and run across or askew, from the lane to the edge of the road (RMS part 1, parking bays of
-# 2.3 to 2.7 m, parallel ones of 5 to 7 m; MUTCD 3B.19). Joints of a road of concrete and bars that shake a driver lie across the lanes that are
-# driven, too. Rows are found by our own rule.
+# Rows of parking bays: the lines between bays are as narrow as other lines and run across or askew, from the lane to the edge of the road (RMS
+# part 1, bays of 2.3 to 2.7 m, parallel ones of 5 to 7 m; MUTCD 3B.19). Joints of a concrete road and rumble bars lie across driven lanes, too.
 
 WIDEST_BAY_LINE = 0.20   # m, of lines of usual breadth in all countries of the catalogue
 LEAST_REACH = 1.2        # m across the road that is seen of a line: a parked car hides the rest

@@ -164,7 +164,7 @@ def _sections(lines: GridLines) -> CrossSections:
                          tables["drawn"], lines.names, tables["number"], tables["width"])
 
 
-# Lines put on a common grid of stations, and led over short gaps: what goes on as another line is one.
+# Lines resampled to common stations: short gaps are bridged, and lines that continue each other are merged.
 
 STATION_STEP = 0.5                             # m of station between places where lanes are looked for
 MIN_BOUNDARY_SPACING = 0.8                     # m: lines nearer than this are one boundary, a lane ends at the nearer one

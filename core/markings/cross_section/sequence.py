@@ -1,4 +1,8 @@
-"""The best cross-sections of each interval, by dynamic programming from left to right."""
+"""The most probable sequence of cross-sections along a road, by dynamic programming.
+
+First what it costs to take a strip between two boundaries for lanes, then the best cross-sections of one interval, from left to right, then
+the best sequence of them along the road.
+"""
 
 from __future__ import annotations
 

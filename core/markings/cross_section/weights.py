@@ -1,4 +1,4 @@
-"""The weights of the evidence from which the cross-section of a road is estimated."""
+"""The weights of the evidence from which the cross-section of a road is estimated, and the calibration of its probabilities."""
 
 from __future__ import annotations
 
@@ -150,7 +150,7 @@ class EstimateWeights:
         return np.array([self.wide_solid, self.wide_dashed])
 
 
-# How often a lane is right that the estimate holds for so probable, and what else may be there.
+# Calibration of the probabilities of lanes, and what else may be there.
 
 SAME_LANE = 0.15   # m across within which lanes of two cross-sections are the same: as near as a driving line is right
 SUREST = 1e-4    # what is left to say against the surest

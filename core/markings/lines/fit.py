@@ -1,4 +1,4 @@
-"""Marking lines: the painted lines of a road traced, linked over gaps and fitted with curves."""
+"""Marking lines: the painted lines of a road traced, linked over gaps, fitted with curves and named."""
 
 from __future__ import annotations
 

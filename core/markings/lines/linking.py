@@ -1,9 +1,7 @@
 """Strands of paint linked along the road to whole lines: dashes over their gaps, worn lines over their holes.
 
-Linking looks along the road, never across it. What helps most is that painted lines
-run parallel: the vehicle's weaving shows in all of them alike, and once it is
-taken out (`CommonTrend`) a line is nearly a constant offset, so that the next dash is
-searched where the line is, not where its last metre happened to point.
+Painted lines run parallel: the vehicle's weaving shows in all of them alike. Once it is taken out (`CommonTrend`) a line is nearly a constant
+offset, so the next dash is searched where the line is, not where its last metre happened to point.
 """
 
 from __future__ import annotations
@@ -401,7 +399,7 @@ def weighted_medians(values: np.ndarray, weight: np.ndarray, starts: np.ndarray)
     return values[starts + (share < share[:, -1:] / 2).sum(axis=1)]
 
 
-# Which lines, strands or crossings are at a place along a road: things are compared with those beside them, not with all of the road.
+# What lies beside a line, strand or crossing along the road.
 
 LOOKUP_CELL = 1.0   # m of station by which they are looked up
 
@@ -434,11 +432,8 @@ def lines_beside(lines: Sequence[LinkedLine]) -> StretchLookup:
     return StretchLookup(np.array([line.first for line in lines]), np.array([line.last for line in lines]))
 
 
-# Paint between two tracks of the scan: a line goes on there, and no track was on it.
-#
-# Far from the vehicle the tracks of the scan lie farther apart than a line is broad. They cross it askew, so that it shows for some metres on one
-# track, then on none, then on the next. Where it does on none, the tracks on both sides of it are asphalt: no gap was seen between them. Where a
-# track on its course is asphalt, the line was seen to be worn or to end.
+# Paint between two tracks of the scan. Far from the vehicle the tracks lie farther apart than a line is broad and cross it askew, so that it shows
+# on one track, on none, on the next. Where it shows on none, no gap was seen; where a track on its course is asphalt, the line is worn or ends.
 
 STEP = 0.25                # m along a line, over which it is asked what lies on its course and beside it
 STEP_REACH = 0.12          # m before and after a step whose points count for it: those of a track lie so near

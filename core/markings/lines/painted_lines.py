@@ -1,8 +1,4 @@
-"""Marking lines as arrays, and their conversion from and to the layer MARKING_LINES.
-
-Stages hand each other `PaintedLines`. Map coordinates are made in one place,
-`lines_to_features`, and read in one place, `lines_from_features`.
-"""
+"""Marking lines as arrays, and their conversion from and to the layer MARKING_LINES."""
 
 from __future__ import annotations
 

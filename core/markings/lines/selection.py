@@ -1,4 +1,4 @@
-"""Which linked paint is a line, and how far it reaches."""
+"""Which linked paint is a line, how far it reaches, and with what dashes."""
 
 from __future__ import annotations
 

@@ -407,7 +407,7 @@ def edges_beside(edges: RoadEdges | None, roads: list[int]) -> dict[int, EdgesBe
     return {road: EdgesBeside([found[road] for found in kinds if road in found]) for road in roads}
 
 
-# Strands of lines that few tracks of the scan met: each track shows such a line at one place of its width.
+# Lines that few tracks of the scan met: each track shows such a line at one place of its width.
 
 FEW_TRACKS = 0.20           # m across the road between tracks of the scan: of a line, which is 0.10 to 0.30 m broad, one or two meet it
 LONGEST_HOLE_UNITS = MAX_BIN_STEP * RUN_BIN_UNITS   # of wear in one strand

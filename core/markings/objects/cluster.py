@@ -1,10 +1,4 @@
-"""Paint points to markings: which points belong together, and what they are.
-
-Conditional Euclidean clustering: two points belong together if they are near
-each other, and the condition is that near is measured in the road's own way:
-farther along the road, where scan lines lie apart and paint wears through, than
-across it, where a decimetre may separate the two lines of a double line.
-"""
+"""Paint points to markings: which points belong together, and what they are (conditional Euclidean clustering in the road frame)."""
 
 from __future__ import annotations
 
@@ -350,7 +344,7 @@ def _scanning_distance(records, line, frame):
     return median(away)
 
 
-# What of clustering is computed of some clusters or windows apart from all others: phases, whose items hold the columns that they need.
+# The phases: what is computed of some clusters or windows apart from all others; their items hold the columns that they need.
 
 TASK_POINTS = 20_000   # of paint, that a worker process is given together at least: about a tenth of a second of its time
 PHASE_POINTS = 500_000   # of paint, whose columns are held for tasks at a time

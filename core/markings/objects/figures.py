@@ -123,11 +123,8 @@ def _figure(cells, reach):
     return kind
 
 
-# How well painted cells agree with a drawn figure, in whatever direction it lies and however it is stretched.
-#
-# The figure and the paint are two images. The paint is turned, moved and scaled so that it covers the figure, and the two are compared by their
-# correlation: 1 for the same image, about 0 for images that have nothing to do with each other. Bare road within the figure counts as much as paint
-# does. Each third of the figure is compared by itself, too, so that a figure with another letter, or with one wheel, is told.
+# How well painted cells agree with a drawn figure: two images, of which the paint is turned, moved and scaled to cover the figure. They are
+# compared by their correlation, bare road within the figure included, and each third by itself, so that another letter or one wheel is noticed.
 
 PAINT_BLUR = 0.8           # cells
 RIM = 4                    # cells about the paint

@@ -178,11 +178,8 @@ def _shared_labels(cells, labels, others, other_labels):
     return np.c_[labels[a], other_labels[b]]
 
 
-# Figures of which two roads have points: where roads meet or overlap, each pass gives its points to its own road.
-#
-# A block of a give-way line or an arrow is one figure, whichever road its points were given to. All of them are told in the frame of the road that
-# has most of them. Lines along a road stay with each of the roads, which links and fits them in its own frame. Stripes of crossings were found
-# before, by road.
+# Figures on two roads: a block of a give-way line or an arrow is one figure, whichever road its points were given to, and is described in the frame
+# of the road that has most of them. Lines along a road stay with each of the roads, which fits them in its own frame.
 
 LARGEST_FIGURE = 8.0                # m, of an arrow: what is longer runs on along a road
 LINE_WIDTH, LINE_ELONGATION = 0.35, 4.0   # m, and length by width: a line or one of its dashes

@@ -1,8 +1,4 @@
-"""Markings as arrays, and their conversion from and to the layer MARKINGS.
-
-Stages hand each other `MarkingObjects`. Map coordinates are made in one place,
-`markings_to_features`, and read in one place, `markings_from_features`.
-"""
+"""Markings as arrays, and their conversion from and to the layer MARKINGS."""
 
 from __future__ import annotations
 

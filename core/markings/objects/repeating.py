@@ -1,9 +1,7 @@
-"""The stripes of zebra crossings: told by their pitch, all stripes together.
+"""What repeats at an even pace: the stripes of zebra crossings and rows of dashes.
 
-A stripe may be a handful of spots on tracks of the scan some decimetres apart, wear takes half of them, and spots of
-neighbouring stripes on one track look like a dashed line. All stripes together have one direction and one pitch, and lie
-on every track at the same places: across the stripes the spots repeat, which is told by the length of their mean phase.
-Bars of hatching are parallel, too, but they lie askew to their row; stripes along the road may do so where people cross it askew.
+All stripes of a crossing have one direction and one pitch: across them the spots repeat, whichever track of the scan they lie on and however
+much is worn off. That is measured by the length of their mean phase. Bars of hatching are parallel, too, but lie askew to their row.
 """
 
 from __future__ import annotations
@@ -399,10 +397,8 @@ def _line_of_ends(number, end, outward):
     return np.where(outward * (line - end) <= MAX_STRAY_END, line, line - outward * MAX_STRAY_END), slope
 
 
-# Rows of dashes: short pieces that follow on each other at an even pace, each along the row.
-#
-# One bright spot of half a metre may be anything. Four of them in a line, evenly spaced and all pointing along it, were painted, or are the stones
-# of one curb.
+# Rows of dashes: one bright spot of half a metre may be anything; four in a line, evenly spaced and pointing along it, were painted (or are stones
+# of one curb).
 
 MAX_DASH_SPACING = 3.0                      # m between the middles of neighbours in a row
 MIN_DASH_SPACING = 0.25                     # m between them at least

@@ -1,4 +1,4 @@
-"""Length, width and direction of a cluster, measured in the road frame from its points."""
+"""Length, width, direction and outline of a cluster, measured in the road frame from its points."""
 
 from __future__ import annotations
 
@@ -224,14 +224,9 @@ def _smooth(nodes, values, weight, step):
     return np.where(steady, (sxx * sy - sx * sxy) / np.where(steady, spread_x, 1.0), sy / sw)
 
 
-# Zigzag lines: no stopping before a pedestrian crossing or at a bus stop.
-#
-# A zigzag line runs along the road and turns back again and again: straight legs of one length and one slope, to the left and to the right in
-# turns. Nothing else on a road does so three times. Dimensions:
-#
-# - Germany, Zeichen 299: narrow lines at 50 gon (45 degrees) to the road, 1 to 2 m from side to side (RMS part 2, chapter 4.2.1). - United Kingdom,
-# diagram 1001.3: marks of 2 m, at least 1 m, gaps of 150 mm, 1.979 m along the road and so 0.29 m across it, up to 18 of them (Traffic Signs
-# Manual, chapter 5, 15.17, 2003).
+# Zigzag lines, no stopping before a pedestrian crossing or at a bus stop: straight legs of one length and slope, to the left and to the right in
+# turns. Germany, Zeichen 299: at 50 gon (45 degrees) to the road, 1 to 2 m from side to side (RMS part 2, chapter 4.2.1). United Kingdom, diagram
+# 1001.3: marks of 2 m, at least 1 m, gaps of 150 mm, 1.979 m along the road and 0.29 m across it, up to 18 (Traffic Signs Manual, chapter 5, 15.17).
 
 STEP_CELLS = 3              # cells along the road whose middle is one place: 12 cm
 ZIGZAG_LENGTH = 2.0, 45.0     # m along the road: three legs of the shortest, and "school keep clear"
@@ -324,10 +319,8 @@ def _turns(across):
     return [*found, best]
 
 
-# Outlines of markings: the cells that a cluster's points lie in, closed along the road.
-#
-# Points lie in scan lines a decimetre or more apart along the road and close together across it, and paint is worn through in places. So gaps are
-# closed along the road, and much less across it, where the next stripe may begin.
+# Outlines: the cells that a cluster's points lie in, closed along the road, where scan lines lie apart, and much less across it, where the next
+# stripe may begin.
 
 CLOSE_ALONG = 0.40            # m of station over which a gap is closed
 CLOSE_ACROSS = 0.04           # m of offset likewise

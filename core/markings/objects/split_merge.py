@@ -1,13 +1,7 @@
 """Markings that touch are separated, and pieces of one marking are joined.
 
-A stop line that runs into an edge line is two markings.
-
-A cluster joins whatever touches. Where it holds a strip that runs on along the
-road, or a bar that runs on across it, and something else beside it, the two are cut
-free, so that the line keeps its width and the rest its shape.
-
-Pieces of one marking that wear has separated are joined: lines along the road and stop
-lines across it.
+Where a cluster holds a strip along the road, or a bar across it, and something else beside it, the two are cut free. Pieces that wear has
+separated are joined: lines along the road and stop lines across it.
 """
 
 from __future__ import annotations
@@ -345,11 +339,8 @@ def _bars(column):
     return np.column_stack([a, b])[(gap <= MAX_STOP_LINE_GAP) & (np.maximum(broad[a], broad[b]) >= MIN_STOP_LINE_PIECE)]
 
 
-# Bars across the road, as stop lines are, and the lines that end at them.
-#
-# A stop line between two lanes touches the end of the line that divides them. Their cluster is shorter and narrower than markings that are cut
-# along whole strips, most of all where one of the two is worn, so the bar is known by its own form: it is as thick as stop lines are, full, and the
-# line leaves its front or its rear.
+# Bars across the road, as stop lines are, and the lines that end at them. Such a cluster is short, so the bar is known by its own form: as thick as
+# stop lines are, full, and the line leaves its front or its rear.
 
 WIDTH_STEP, WIDTH_TOLERANCE = 12, 2     # cells along a line whose width is taken together, and across by which it may be uneven
 MAX_WIDTH_ALONE = 0.34                  # m of an even strip with nothing beside it; a double line is broader

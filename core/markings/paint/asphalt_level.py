@@ -1,7 +1,7 @@
 """The level of asphalt, and the threshold of paint above it, at any place of a road.
 
-Asphalt is interpolated between bins across the road and windows along it. Gutters, the local
-background (wheel tracks, seams) and bright patches are removed before a threshold is applied.
+Asphalt is interpolated between bins across the road and windows along it. Gutters, the local background (wheel tracks, seams) and bright
+patches are removed before a threshold is applied.
 """
 
 from __future__ import annotations
@@ -218,10 +218,8 @@ def _morphed(operation, mask, side):
     return operation(mask.astype(np.uint8), square, borderType=cv2.BORDER_CONSTANT, borderValue=0).astype(bool)
 
 
-# Bins across the road and Otsu's threshold in each of them.
-#
-# Bins are as wide as the spread of point density, so that the points of one bin were measured from nearly one distance. Every brightness is stated
-# in robust z: above the median of asphalt, in units of its spread below the median, which paint does not increase.
+# Bins across the road and Otsu's threshold in each. A bin is as wide as the spread of point density, so its points were measured from nearly one
+# distance. Brightness is in robust z: above the median of asphalt, in units of its spread below the median, which paint does not increase.
 
 MIN_BIN_WIDTH, MAX_BIN_WIDTH = 0.75, 3.0  # m
 MIN_BIN_CELLS = 500     # below which a bin joins its neighbour

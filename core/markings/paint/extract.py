@@ -1,4 +1,4 @@
-"""Which road points are paint: thresholds on the intensity image, and back to the points."""
+"""Which road points are paint: thresholds on the intensity image, and back to the points; averages where a scanner is noisy."""
 
 from __future__ import annotations
 
@@ -150,10 +150,8 @@ class _SectionWriter:
         self.parts = []
 
 
-# The scatter of single points of each scanner on asphalt, which decides whether the scanner is noisy.
-#
-# Points of multi-beam scanners scatter by half of asphalt's intensity, those of mirror scanners by a sixth. A scanner is judged by all roads of a
-# survey; the method used along a stretch of road depends on the scanners whose points lie there.
+# The scatter of single points of each scanner on asphalt decides whether the scanner is noisy: half of asphalt's intensity under multi-beam
+# scanners, a sixth under mirror scanners. A scanner is judged by all roads of a survey.
 
 NOISY_SCATTER = 0.40      # of asphalt's level: single points that scatter more are averaged (multi-beam scanners)
 SCATTER_SQUARE = 1.0      # m

@@ -1,10 +1,8 @@
-"""Paint among noisy points: bright pieces in averages that are elongated, flat and bright from every viewpoint.
+"""Paint in averages of noisy points, and faint lines: bright pieces that are elongated, flat and bright from every viewpoint.
 
-Single points are too noisy to be classified, so paint is searched for in averages over a decimetre. Other bright
-things on a road differ from paint: the face of a curb is steep, a surface beneath a parked car is covered by
-it, the arc of one beam is bright from one place only, a patch fades out where paint has a sharp rim, and spots
-are not elongated. A short dash is recognised by the row of dashes it belongs to, a worn one by the row that leads to it.
-All rules are our own.
+Single points are too noisy to be classified, so averages over a decimetre are searched. The face of a curb is steep, a surface beneath a parked
+car is covered by it, the arc of one beam is bright from one place only, a patch fades out, and spots are not elongated. A short or worn dash is
+recognised by its row. All rules are our own.
 """
 
 from __future__ import annotations
@@ -383,10 +381,8 @@ def _bright_in_all_views(number, samples, count):
         return (views >= MIN_VIEWS) & (mean > MIN_VIEW_SIGMAS * error)
 
 
-# Lines that are brighter than what lies on both sides of them, however bright that is.
-#
-# A threshold above the usual asphalt misses a line where the ground is darker than usual or the strip beside it brighter, as at the inside of a
-# hairpin. What is painted there still stands out against both its sides, over metres along the road.
+# Faint lines: where the ground is darker than usual or the strip beside it brighter, a threshold misses a line that still stands out against both
+# its sides, over metres along the road.
 
 STROKE_CELLS = 3          # across the road: 12 cm, of which the line is the mean
 FLANK_CELLS = 4, 5        # from the middle of the stroke: what lies beside it, on either side

@@ -1,4 +1,4 @@
-"""Bright cells in runs as long as paint, along the road or across it."""
+"""What is bright on a road and is no paint: runs that are too short, gutters, rims that fade out, things that stand above the asphalt."""
 
 from __future__ import annotations
 
@@ -125,11 +125,8 @@ def long_runs(mask: np.ndarray, length: int, axis: int) -> np.ndarray:
     return cv2.dilate(begun, along, anchor=behind, borderType=cv2.BORDER_CONSTANT, borderValue=0).astype(bool)
 
 
-# Concrete gutters along the road's rim: as bright as paint, and not paint.
-#
-# A gutter begins at the very rim of the road (a curb, an island, a wall) and is two decimetres wide or more over metres of rim. An edge line stands
-# off the rim or is narrower, and a stop line or zebra stripe that reaches the rim takes up little of its length. Where an edge line is painted
-# right beside the gutter, it is the brighter of the two.
+# Concrete gutters begin at the very rim of the road and are two decimetres wide or more over metres of rim. An edge line stands off the rim, is
+# narrower, or is the brighter of the two; a stop line or zebra stripe at the rim takes up little of its length.
 
 BAND_CELLS = 2       # bands of 8 cm inwards from the rim
 GUTTER_BANDS = 9     # 0.72 m: no gutter is wider
@@ -273,11 +270,8 @@ def gutter_cells(z: np.ndarray, rim: RimBands) -> np.ndarray:
     return found
 
 
-# Rims of granite and concrete that lie flush with the road: bright like paint, but they fade out on one side.
-#
-# Paint ends sharply: a decimetre beside it nothing of its contrast is left. The stones at the rim of a road are bright at the joint with the
-# asphalt and fade into the ground behind them. So does the sidewalk, where it was scanned between two parked cars, at a driveway or where it lies
-# as high as the road.
+# Rims that fade: paint ends sharply, but the stones at the rim of a road are bright at the joint with the asphalt and fade into the ground behind
+# them, and so does a sidewalk that was scanned between two parked cars.
 
 FADING_BESIDE = 2, 4   # cells from a run of paint across the road: where its fading is measured
 TOP_REACH = 6          # cells in which the brightest of a run stands for it
@@ -390,10 +384,8 @@ def without_fading_areas(z: np.ndarray, mask: np.ndarray, seen: np.ndarray, gutt
     return mask & ~refused[label] if refused.any() else mask
 
 
-# Bright things that stand above the asphalt about them: the ends of traffic islands, the tops of dropped curbs, feet of vehicles.
-#
-# Paint lies on the road: at most it is some millimetres thick. The asphalt about a place is a plane through the squares of road that are not
-# bright, which follows crossfall, crowns and ramps; a bright square is compared with it. By our own rule.
+# Raised things, such as the ends of traffic islands and the feet of vehicles: a bright square is compared with the plane through the squares of
+# road about it that are not bright, which follows crossfall, crowns and ramps. By our own rule.
 
 SQUARE_CELLS = 5            # squares of 20 cm
 PLANE_SQUARES = 9           # squares, either way, that a plane is fitted to: 1.8 m

@@ -1,9 +1,7 @@
-"""Paint as peaks of intensity in profiles across the road, linked along it: linear markings only.
+"""Two published methods to compare with: intensity peaks in profiles across the road, and thresholds on the points of segments.
 
-The road is cut into profiles across the trajectory. In every profile a painted line is a
-narrow peak of I(d), which continues in the profiles before and after. Markings across the
-road and broad ones (stop lines, zebra crossings, most of an arrow) are no narrow peaks and
-are not found: the method is made for lines.
+A painted line is a narrow peak of I(d) in a profile across the road, which continues in the profiles before and after. Markings across the road
+and broad ones are no narrow peaks and are not found.
 """
 
 from __future__ import annotations
@@ -169,10 +167,8 @@ def _between(records, row, peak_row, left, right):
     return take_rows(records, (at >= 0) & (peak_row[peak] == row) & (records["d"] <= right[peak]))
 
 
-# Paint by thresholds on the points of segments across the road, and by density.
-#
-# No image is used: road points are split across the direction of travel, so that a segment has one point density and one range; Otsu's threshold is
-# taken for each, and bright points with few bright neighbours are noise.
+# Thresholds on the points of segments across the road, each of one point density and one range (Otsu); bright points with few bright neighbours
+# are noise.
 
 MIN_SEGMENT_POINTS = 200    # of a segment, below which it has no threshold and no paint
 RIM_NEIGHBOUR_SHARE = 0.5    # of the neighbours usual inside of paint: a point on its rim has half of them

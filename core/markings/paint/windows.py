@@ -1,7 +1,6 @@
-"""Paint in windows of 20 m along a road: the level of asphalt of each, then the cells that are brighter, and the points on these.
+"""Paint in windows of 20 m along a road: the level of asphalt of each, the cells that are brighter, the points on these, and the mask.
 
-Windows are worked on by phases: levels first, as a window needs those of its neighbours, then paint. The image is resampled in the
-road frame, station along and offset across, so that "along the road" is an axis of the array and a bend is straight.
+Levels come first, as a window needs those of its neighbours, then paint. The image is resampled in the road frame, so that a bend is straight.
 """
 
 from __future__ import annotations
