@@ -155,7 +155,7 @@ def frame_of(call, crs, progress, road_points=None, layers=None):
     """
     from ..core.survey.adjustment.pass_sigma import of_layer
     from ..core.survey.consistency import check_road_points_on_roads
-    from ..core.survey.frame.build import build_frame
+    from ..core.survey.frame.road_frame import build_frame
     from ..core.survey.trajectory.reprojection import reproject_trajectory
 
     trajectory = reproject_trajectory(call.trajectory(), crs)
@@ -194,7 +194,7 @@ def _on_clock_of(road_points, trajectory, progress):
 
 def road_points_of(call, name, progress):
     """A LAZ file made by Extract road surface or Correct intensity, as RoadPoints."""
-    from ..core.survey.road_points_las import read_road_points
+    from ..core.survey.las.writer import read_road_points
 
     return read_road_points(call.cloud(name), progress)
 

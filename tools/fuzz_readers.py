@@ -152,8 +152,7 @@ def _maps():
 def _layers(folder):
     import shapely
     from lanewright.algorithms.vector_source import read_features
-    from lanewright.core.common.features import Features
-    from lanewright.core.common.schemas import ROAD_EDGES
+    from lanewright.core.common.features import ROAD_EDGES, Features
     from lanewright.library.layer_files import LayerFile, write_layer
 
     def layer(path):

@@ -1,6 +1,6 @@
 """Driving lines and their curve elements."""
 
-from ...core.common.schemas import CURVE_ELEMENTS, DRIVING_LINES, LANES, MARKING_LINES, MARKINGS, ROAD_EDGES
+from ...core.common.features import CURVE_ELEMENTS, DRIVING_LINES, LANES, MARKING_LINES, MARKINGS, ROAD_EDGES
 from ...core.countries.catalogue import COUNTRIES
 from ..algorithm import Algorithm
 from ..parameters import SettingSpec

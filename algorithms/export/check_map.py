@@ -1,7 +1,7 @@
 """The check of an HD map."""
 
 from ...core.common.errors import RoadExtractionError
-from ...core.common.schemas import MAP_FINDINGS
+from ...core.common.features import MAP_FINDINGS
 from ..algorithm import Algorithm
 from ..parameters import CrsSpec
 from ..texts import told, tr

@@ -91,7 +91,7 @@ class ExportOpenDrive(Algorithm):
 def _report(call, whole, found, shown, misses, notes):
     from collections import defaultdict
 
-    from ...core.common.words import word
+    from ...core.common.texts import word
     from ...core.report.map_export import map_export_report
 
     lengths = defaultdict(float)

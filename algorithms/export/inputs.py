@@ -1,6 +1,6 @@
 """What the algorithms on map files share."""
 
-from ...core.common.schemas import DRIVING_LINES, LANES, MARKING_LINES, MARKINGS, ROAD_EDGES
+from ...core.common.features import DRIVING_LINES, LANES, MARKING_LINES, MARKINGS, ROAD_EDGES
 from ..call import existing_file
 from ..parameters import CrsSpec, FileSpec
 from ..survey_input import road_points_of

@@ -1,6 +1,6 @@
 """Markings as curves."""
 
-from ...core.common.schemas import MARKING_LINES, MARKINGS, ROAD_EDGES
+from ...core.common.features import MARKING_LINES, MARKINGS, ROAD_EDGES
 from ...core.countries.catalogue import COUNTRIES
 from ..algorithm import Algorithm
 from ..parameters import SettingSpec

@@ -1,6 +1,6 @@
 """Corners and boundary lines from normalized scanlines."""
 
-from ...core.common.schemas import CURB_POINTS, ROAD_EDGES, SCANLINES
+from ...core.common.features import CURB_POINTS, ROAD_EDGES, SCANLINES
 from ..algorithm import Algorithm
 from ..parameters import SettingSpec
 from ..survey_input import frame_of

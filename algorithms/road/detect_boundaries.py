@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from ...core.common.schemas import ROAD_EDGES
+from ...core.common.features import ROAD_EDGES
 from ..algorithm import Algorithm
 from ..parameters import SettingSpec
 from ..survey_input import SURVEY_SETTINGS, add_execution, open_survey_of

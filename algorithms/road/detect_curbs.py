@@ -1,6 +1,6 @@
 """Curb points on profiles across the driven road."""
 
-from ...core.common.schemas import CURB_POINTS
+from ...core.common.features import CURB_POINTS
 from ..algorithm import Algorithm
 from ..parameters import SettingSpec
 from ..survey_input import SURVEY_SETTINGS, open_survey_of

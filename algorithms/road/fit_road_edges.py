@@ -1,6 +1,6 @@
 """Road edges as smooth lines through curb points."""
 
-from ...core.common.schemas import CURB_POINTS, ROAD_EDGES
+from ...core.common.features import CURB_POINTS, ROAD_EDGES
 from ..algorithm import Algorithm
 from ..parameters import SettingSpec
 from ..survey_input import frame_of

@@ -2,7 +2,7 @@
 
 from contextlib import nullcontext
 
-from ...core.common.schemas import SCANLINES
+from ...core.common.features import SCANLINES
 from ..algorithm import Algorithm
 from ..parameters import SettingSpec
 from ..survey_input import SURVEY_SETTINGS, add_execution, open_survey_of

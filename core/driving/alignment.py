@@ -17,7 +17,7 @@ from ..curves.base import Arc
 from ..curves.clothoid import fit_clothoids
 from ..curves.model_selection import MAX_MISFIT, fit_curves, select_each
 from ..curves.segmentation import element_ranges
-from ..io.units import FOOT
+from ..io.crs import FOOT
 from ..markings.cross_section.sections import STATION_STEP
 from ..survey.frame.road import Road
 from .lane_track import BRIDGED, LANE_STATUS, LaneTrack, spans_of

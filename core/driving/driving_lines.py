@@ -19,7 +19,7 @@ from ..markings.lines.painted_lines import PaintedLines
 from ..markings.objects.marking_objects import MarkingObjects
 from ..road.edges.road_edges import RoadEdges
 from ..survey.frame.road_frame import Road, RoadFrame
-from ..survey.frame.sigma_along import cuts_where_it_changes
+from ..survey.frame.row_table import cuts_where_it_changes
 from ..survey.store.road_points import RoadPoints
 from .alignment import Course, Element, element_of, is_curve, lane_courses, lane_elements, track_pieces
 from .heights import lane_heights

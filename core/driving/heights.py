@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from scipy.ndimage import gaussian_filter1d, median_filter
 
-from ..common.order_statistics import order_by
+from ..common.arrays import order_by
 from ..common.parallel import check_cancelled
 from ..common.progress import Progress
 from ..execution.phase import Phase

@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..common.arrays import mask_runs
 from ..common.parallel import check_cancelled
-from ..common.runs import mask_runs
 from ..markings.cross_section.evidence import driven_offsets
 from ..markings.cross_section.roads import EstimatedRoad
 from ..markings.cross_section.sections import STATION_STEP, CrossSections

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from ..common.arrays import mask_runs
 from ..common.parallel import check_cancelled
-from ..common.runs import mask_runs
 from ..markings.cross_section.sections import STATION_STEP, CrossSections
 from ..markings.cross_section.weights import SAME_LANE, EstimateWeights, Reading, confidence_of
 from ..survey.frame.row_table import RowSpans

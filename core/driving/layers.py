@@ -10,8 +10,7 @@ import numpy as np
 import shapely
 
 from ..common.errors import RoadExtractionError
-from ..common.features import Features
-from ..common.schemas import CURVE_ELEMENTS, DRIVING_LINES, LANES
+from ..common.features import CURVE_ELEMENTS, DRIVING_LINES, LANES, Features
 from ..countries.catalogue import country
 from ..countries.neutral import NEUTRAL
 from ..curves.base import Arc, Curve

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..common.errors import RoadExtractionError
-from ..io.crs import check_metric, horizontal_part, parse_crs, same_crs
-from ..io.units import plane_wkt
+from ..io.crs import check_metric, horizontal_part, parse_crs, plane_wkt, same_crs
 
 LOCAL_CRS = "+proj=tmerc +lat_0=0 +lon_0=0 +k=1 +x_0=0 +y_0=0 +datum=WGS84 +units=m +no_defs"   # of maps that lie nowhere
 

@@ -7,8 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import shapely
 
-from ..common.features import Features
-from ..common.schemas import DRIVING_LINES, MARKING_LINES, ROAD_EDGES
+from ..common.features import DRIVING_LINES, MARKING_LINES, ROAD_EDGES, Features
 from ..driving.layers import Lanes, lanes_to_features
 
 STATUS_OF_MAPS = "measured"

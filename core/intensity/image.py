@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 from scipy import sparse
 
+from ..common.arrays import order_by, quantiles
 from ..common.errors import RoadExtractionError
-from ..common.memory import ScratchBuffers
-from ..common.order_statistics import order_by, quantiles
+from ..common.parallel import ScratchBuffers
 from ..common.progress import Progress
 from ..common.setting import check_limits, setting
 from ..execution.phase import Phase

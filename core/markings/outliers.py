@@ -13,13 +13,12 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
+from ..common.arrays import order_by
 from ..common.errors import RoadExtractionError
-from ..common.order_statistics import order_by
 from ..common.parallel import ordered_map
 from ..common.progress import Progress
 from ..common.setting import check_limits, setting
-from ..execution.phase import Executor, NoSource, Phase
-from ..execution.threads import THREADS
+from ..execution.phase import THREADS, Executor, NoSource, Phase
 from ..lazy import cv2
 from ..survey.store.columns import Columns
 from ..survey.store.records import COORDINATE_SCALE, take_rows

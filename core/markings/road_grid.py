@@ -10,9 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..common.groups import linked_groups
-from ..common.order_statistics import order_by
-from ..common.runs import stretch_of
+from ..common.arrays import linked_groups, order_by, stretch_of
 from ..io.geotiff import IntensityImage
 from ..lazy import cv2
 from ..survey.frame.road_frame import RoadFrame

@@ -16,7 +16,7 @@ import numpy as np
 
 from ..assess.curvature import marking_curvature
 from ..common.features import Features
-from ..common.memory import trim_heap
+from ..common.parallel import trim_heap
 from ..common.progress import Progress
 from ..corrections.corrections import Corrections, corrections_from_features
 from ..corrections.edges import correct_edges
@@ -28,7 +28,7 @@ from ..driving.layers import curve_elements_to_features, driving_lines_to_featur
 from ..execution.choice import ExecutionSettings
 from ..intensity.correction import IntensitySettings, correct_intensity
 from ..intensity.image import ImageSettings, check_fits, make_intensity_image
-from ..io.cloud_crs import check_projected
+from ..io.crs import check_projected
 from ..io.geotiff import IntensityImage
 from ..markings.lines.fit import MarkingLineSettings, fit_marking_lines, named_by_estimate, named_by_lines
 from ..markings.lines.painted_lines import lines_to_features

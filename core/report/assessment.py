@@ -10,8 +10,7 @@ from ..assess.boundaries import BoundaryAccuracy
 from ..assess.driving_lines import MAX_MATCH_DISTANCE, MIN_REFERENCE_GAP, LineAccuracy, LineAccuracySettings, LineMatch
 from ..assess.markings import MarkingAccuracy
 from ..common.features import Features
-from ..common.texts import told, tr
-from ..common.words import word
+from ..common.texts import told, tr, word
 from .assessment_figures import OUTCOME_COLOURS, error_along_road, error_histogram, errors_row, outcome_map, outcomes_along_road, percent, plain
 from .map_figure import grey_background
 from .page import Page

@@ -10,8 +10,7 @@ import shapely
 
 from ..assess.metrics import Errors
 from ..common.features import Features
-from ..common.texts import tr
-from ..common.words import word
+from ..common.texts import tr, word
 from ..lazy import cv2
 from .figures import Chart
 from .map_figure import MAP_MARGIN, draw_map, png

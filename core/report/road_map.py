@@ -10,8 +10,7 @@ import shapely
 
 from ..assess.curvature import CURVATURE_BASE, curvature_along
 from ..common.progress import Progress
-from ..common.texts import told, tr
-from ..common.words import word
+from ..common.texts import told, tr, word
 from ..countries.catalogue import country
 from .figures import Chart
 from .map_figure import draw_map, grey_background, png

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..common.texts import language, told, tr
-from ..common.words import word
+from ..common.texts import language, told, tr, word
 from .figures import Chart
 from .page import Page
 

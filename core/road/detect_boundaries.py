@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..common.arrays import mask_runs, stretch_of
 from ..common.errors import RoadExtractionError
 from ..common.parallel import InBackground
 from ..common.progress import Progress
-from ..common.runs import mask_runs, stretch_of
 from ..survey.frame.road_frame import RoadFrame
 from ..survey.lattice.scan_lattice import find_lattice
 from .common.corners import CANDIDATE_HEIGHT_SHARE

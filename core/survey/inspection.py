@@ -12,13 +12,11 @@ from scipy.spatial import cKDTree
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from ..common.setting import check_limits, setting
-from ..io.cloud_crs import check_projected, crs_note
-from .frame.build import build_frame
-from .las.copies import PER_METRE, distinct_rows, may_overlap, without_copies
-from .las.intensity_source import INTENSITY_SOURCES, intensity_source_of, without_intensity
+from ..io.crs import check_projected, crs_note
+from .frame.road_frame import build_frame
+from .las.point_fields import INTENSITY_SOURCES, ScannerCensus, intensity_source_of, without_intensity
 from .las.reader import POINTS_PER_BLOCK, read_blocks, read_headers
-from .las.samples import coarse_coordinates, sample_files
-from .las.scanners import ScannerCensus
+from .las.samples import PER_METRE, coarse_coordinates, distinct_rows, may_overlap, sample_files, without_copies
 from .read_survey import match_clocks
 from .reading.sensor_height import HEIGHT_PEAK_REACH, OWN_TRACK_HALF_WIDTH, sensor_height_of
 from .survey import SurveySettings

@@ -11,12 +11,10 @@ from typing import TYPE_CHECKING
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from ..execution.choice import ExecutionSettings, cluster_for, executor_for
-from ..execution.phase import Executor
-from ..execution.plain import digest
-from ..execution.threads import THREADS
+from ..execution.phase import THREADS, Executor, digest
 from ..execution.work_folder import Heard, KeptResults, WorkFolder, code_digest
-from .las.copies import without_copies
 from .las.reader import read_headers
+from .las.samples import without_copies
 from .read_survey import SharedReading, read_survey
 from .store.spill_file import parts_are_whole
 from .survey import SURVEY_FOLDER, Survey, SurveySettings, survey_in_folder

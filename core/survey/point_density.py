@@ -12,8 +12,8 @@ import numpy as np
 from ..common.parallel import ordered_map
 from ..common.progress import Progress
 from ..execution.phase import Phase
-from ..io.gdal_errors import gdal_exceptions
-from ..io.units import place_raster
+from ..io.crs import place_raster
+from ..io.local_files import gdal_exceptions
 from .store.section_store import STRETCH_POINTS, Stretch
 
 if TYPE_CHECKING:

@@ -11,23 +11,20 @@ import numpy as np
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from ..execution.phase import Executor
-from ..io.cloud_crs import check_projected, crs_note, unit_note
-from ..io.crs import crs_name, parse_crs
-from ..io.units import FOOT, US_SURVEY_FOOT, as_in_file
+from ..io.crs import FOOT, US_SURVEY_FOOT, as_in_file, check_projected, crs_name, crs_note, parse_crs, unit_note
 from .adjustment.adjust import adjust_passes
 from .adjustment.beside import compare_carriageways, said_of_levels
 from .clock_check import check_clock
 from .fit.limits import LOWEST_SENSOR
 from .fit.scanners import lay_scanners
 from .fit.trajectory_fit import fitted_trajectory
-from .frame.build import build_frame
 from .frame.road import CORRIDOR
-from .frame.sigma_along import SigmaAlong
-from .las.copies import distinct_rows, may_overlap
-from .las.intensity_source import check_coloured, intensity_source_of, without_intensity
+from .frame.road_frame import build_frame
+from .frame.row_table import SigmaAlong
 from .las.parallel_reader import ParallelCloudReader
+from .las.point_fields import check_coloured, intensity_source_of, without_intensity
 from .las.reader import CloudHeader
-from .las.samples import coarse_coordinates, sample_files
+from .las.samples import coarse_coordinates, distinct_rows, may_overlap, sample_files
 from .reading.blocks import PointChoice, unwrap_week
 from .reading.survey_reader import SurveyReader
 from .store.records import COORDINATE_SCALE, SURVEY_POINT, point_dtype

@@ -1,14 +1,13 @@
 """Painted streets of known shape, and the drive through them."""
 
 import numpy as np
-from lanewright.core.common.features import Features
-from lanewright.core.common.schemas import MARKING_LINES
+from lanewright.core.common.features import MARKING_LINES, Features
 from lanewright.core.driving.driving_lines import DrivingSettings, make_driving_lines
 from lanewright.core.driving.layers import curve_elements_to_features, driving_lines_to_features
 from lanewright.core.markings.lines.painted_lines import lines_from_features
 from lanewright.core.markings.objects.marking_objects import markings_from_features
 from lanewright.core.road.edges.road_edges import edges_from_features
-from lanewright.core.survey.frame.build import build_frame
+from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.trajectory.trajectory import Trajectory
 from shapely.geometry import LineString
 

@@ -147,7 +147,8 @@ def measure(folder, variant, switches, groups, into, code):
     All other switches are watched too: `idle` names those that need not be tried, and why.
     """
     known = json.loads(into.read_text()) if into.exists() else {}
-    known = known if known.get("code") == code else dict(code=code, off={})
+    whose = dict(code=code, survey=str(folder))
+    known = known if known.items() >= whose.items() else dict(whose, off={})
     wanted = {**{name: [name] for name in switches}, **groups}
     missing = [name for name, members in wanted.items() if known["off"].get(name, {}).get("of") != sorted(members)]
     if not missing and "figures" in known or "refused" in known:

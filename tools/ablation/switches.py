@@ -138,9 +138,9 @@ def _without_curbs(original):
 
 NO_ROWS, NO_NUMBERS = np.empty((0, 2), np.int64), np.empty(0, np.int64)
 ROWS = (
-    _set("curbs", "profiles method", "curbs", "road.profiles road.agreement road.in_line_of_both road.common.side_chains",
+    _set("curbs", "profiles method", "curbs", "road.profiles road:select_curb_points road:with_pieces_of_both road:SideChains",
          boundary_method="scanlines"),
-    _set("curbs", "scanlines method", "curbs", "road.scanlines road.agreement road.in_line_of_both road.common.side_chains",
+    _set("curbs", "scanlines method", "curbs", "road.scanlines road:select_curb_points road:with_pieces_of_both road:SideChains",
          boundary_method="profiles"),
     Switch("chains along the road (else the nearest step)", "curbs", (
         ("road.common.tracking:curb_chains", nearest_steps), ("road.common.tracking:select_along_road", _whole),
@@ -326,7 +326,7 @@ ROWS = (
         ("doubtful ends", "lane_track:LaneTrack.without_doubtful_ends", nth(0), "turns from road to road"),
         ("common alignment", "alignment:lane_elements", lambda tracks, *_: [[] for _ in tracks], ""),
         ("staircases of arcs", "alignment:_without_steps", nth(1))),
-    _set("intensity", "correction of intensity", "intensity", "intensity.correction intensity.asphalt_model",
+    _set("intensity", "correction of intensity", "intensity", "intensity:correct_intensity intensity:AsphaltTable intensity:IntensityHistograms",
          correct=False),
     _set("paint", "outliers by window (else the whole survey)", "outliers", outliers=dict(scope="all")),
     _set("intensity", "bright points count more", "image", image=dict(beta=0.0)),

@@ -52,9 +52,9 @@ def read(size, survey="dense"):
 def placing(size):
     """Station and offset of points that are decoded already, from their raw coordinates and times."""
     from lanewright.core.common.parallel import ordered_map
-    from lanewright.core.survey.frame.build import build_frame
     from lanewright.core.survey.frame.projection import RoadProjection
     from lanewright.core.survey.frame.road import CORRIDOR
+    from lanewright.core.survey.frame.road_frame import build_frame
     from lanewright.core.survey.las.reader import POINTS_PER_BLOCK, read_blocks
     from lanewright.core.survey.reading.blocks import DECODED_LAYERS
     from lanewright.core.survey.trajectory.reader import read_trajectory
@@ -123,7 +123,7 @@ def scanlines(size):
 def image_ours(size):
     """Road points of 50 m in memory to the 4 cm intensity image by inverse distance alone, as gdal_grid does it."""
     from lanewright.core.intensity.image import ImageSettings, write_intensity_image
-    from lanewright.core.survey.road_points_las import read_road_points
+    from lanewright.core.survey.las.writer import read_road_points
 
     points, target = read_road_points(prepared("strip.laz", size)), prepared("ours.tif", size)
     for key in points.all_sections():
@@ -161,7 +161,7 @@ def clusters_ours(size):
 
 def _paint(size):
     """The prepared million, in memory and in order."""
-    from lanewright.core.survey.road_points_las import read_road_points
+    from lanewright.core.survey.las.writer import read_road_points
 
     points = read_road_points(prepared("paint.laz", size))
     for key in points.all_sections():

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import shapely
 
-from ...io.units import FileUnits
+from ...io.crs import FileUnits
 from ..opendrive.exporter import OpenDriveSettings, draft_opendrive
 from ..opendrive.geometry import PlanElement, PlanView
 from ..opendrive.reference_line import fit_reference

@@ -11,8 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...io.crs import horizontal_part, parse_crs
-from ...io.units import FOOT, SAME_UNIT, US_SURVEY_FOOT, as_in_file
+from ...io.crs import FOOT, SAME_UNIT, US_SURVEY_FOOT, as_in_file, horizontal_part, parse_crs
 from ..opendrive.geometry import PlanElement
 from ..xml_tree import XmlElement, xml_text
 from .alignments import Alignment, elements_without_reversal

@@ -8,8 +8,7 @@ from html import escape
 import numpy as np
 
 from ...common.errors import RoadExtractionError
-from ...io.crs import horizontal_part, parse_crs
-from ...io.units import as_in_file
+from ...io.crs import as_in_file, horizontal_part, parse_crs
 from ..map_crs import LOCAL_CRS
 from .exporter import LaneletDraft
 

@@ -10,7 +10,7 @@ import numpy as np
 import shapely
 from scipy.ndimage import binary_closing, grey_closing, median_filter
 
-from ...common.groups import linked_groups
+from ...common.arrays import linked_groups
 from ...execution.phase import Phase
 from ...survey.frame.placement import located
 from ...survey.frame.road_frame import RoadFrame

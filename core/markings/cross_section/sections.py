@@ -12,7 +12,7 @@ import numpy as np
 from ...common.parallel import check_cancelled
 from ...curves.robust import median
 from ...road.edges.road_edges import RoadEdges
-from ...survey.frame.frame_lines import FrameLines
+from ...survey.frame.placement import FrameLines
 from ...survey.frame.row_table import BLOCK, RowSpans, RowTable
 
 if TYPE_CHECKING:

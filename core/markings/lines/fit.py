@@ -21,7 +21,7 @@ from ...curves.bspline import fit_splines, smooth_profiles
 from ...curves.model_selection import CURVES, fit_curve, fit_curves
 from ...curves.robust import median
 from ...road.edges.road_edges import RoadEdges
-from ...survey.frame.frame_lines import LINE_VERTEX_SPACING
+from ...survey.frame.placement import LINE_VERTEX_SPACING
 from ...survey.frame.road import Road
 from ...survey.frame.road_frame import RoadFrame
 from ...survey.store.road_points import RoadPoints, columns_of_roads

@@ -14,7 +14,7 @@ import numpy as np
 import shapely
 from scipy.optimize import linear_sum_assignment
 
-from ...common.groups import linked_groups
+from ...common.arrays import linked_groups
 from ...common.parallel import check_cancelled
 from ...curves.robust import median
 from ...survey.frame.row_table import RowSpans

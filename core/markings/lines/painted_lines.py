@@ -9,10 +9,9 @@ from typing import Any
 import numpy as np
 import shapely
 
-from ...common.features import Features
-from ...common.schemas import MARKING_LINES
+from ...common.features import MARKING_LINES, Features
 from ...curves.base import Curve
-from ...survey.frame.frame_lines import FrameLines, line_parts, lines_in_frame
+from ...survey.frame.placement import FrameLines, line_parts, lines_in_frame
 from ...survey.frame.road_frame import RoadFrame
 
 LONG_LISTS = ("knots", "control_x", "control_y")  # parameters of splines

@@ -7,8 +7,7 @@ from functools import partial
 
 import numpy as np
 
-from ...common.groups import linked_groups, members_of
-from ...common.near_pairs import overlapping_pairs
+from ...common.arrays import linked_groups, members_of, overlapping_pairs
 from ...common.parallel import check_cancelled
 from ...countries.neutral import NEUTRAL
 from ...curves.robust import median

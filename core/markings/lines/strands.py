@@ -9,8 +9,7 @@ from itertools import chain
 
 import numpy as np
 
-from ...common.groups import linked_groups
-from ...common.order_statistics import order_by
+from ...common.arrays import linked_groups, order_by
 from ...common.parallel import check_cancelled
 from ...curves.robust import median, percentiles
 from ...road.edges.road_edges import RoadEdges

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...common.arrays import overlapping_pairs
 from ...common.errors import RoadExtractionError
-from ...common.near_pairs import overlapping_pairs
 from ...curves.robust import percentiles
 from ...survey.store.records import COORDINATE_SCALE
 from .grouping import ROAD_EDGE_CLEARANCE

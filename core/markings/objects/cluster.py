@@ -10,14 +10,12 @@ from typing import Any, NamedTuple
 import numpy as np
 import shapely
 
-from ...common.groups import members_of
-from ...common.order_statistics import order_by
+from ...common.arrays import members_of, order_by
 from ...common.parallel import check_cancelled
 from ...common.progress import Progress
 from ...common.setting import check_limits, setting
 from ...curves.robust import median
-from ...execution.phase import Executor, NoSource, Phase
-from ...execution.threads import THREADS
+from ...execution.phase import THREADS, Executor, NoSource, Phase
 from ...survey.frame.road import Road
 from ...survey.frame.road_frame import RoadFrame
 from ...survey.store.columns import Columns

@@ -13,8 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...common.groups import linked_groups, members_of
-from ...common.near_pairs import overlapping_pairs
+from ...common.arrays import linked_groups, members_of, overlapping_pairs
 from ...common.parallel import check_cancelled
 from ...countries.painted_symbols import SYMBOLS, PaintedSymbol
 from ...execution.phase import NoSource

@@ -8,12 +8,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ...common.groups import linked_groups
-from ...common.order_statistics import order_by
+from ...common.arrays import linked_groups, order_by
 from ...common.parallel import check_cancelled
 from ...common.progress import Progress
-from ...execution.phase import Executor, NoSource, Phase
-from ...execution.threads import THREADS
+from ...execution.phase import THREADS, Executor, NoSource, Phase
 from ...lazy import cv2
 from ...survey.frame.road import Road
 from ...survey.store.columns import Columns

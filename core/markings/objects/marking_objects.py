@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 import shapely
 
-from ...common.features import Features
-from ...common.schemas import MARKINGS
+from ...common.features import MARKINGS, Features
 from ...survey.frame.placement import located
 from ...survey.frame.road_frame import RoadFrame
 

@@ -12,11 +12,11 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ...common.groups import linked_groups, members_of
+from ...common.arrays import linked_groups, members_of
 from ...common.parallel import check_cancelled
 from ...curves.robust import percentiles
 from ...lazy import cv2
-from ...survey.frame.place_index import PlaceIndex
+from ...survey.frame.placement import PlaceIndex
 from ..road_grid import CELL_SIZE
 from .shape import Shape
 

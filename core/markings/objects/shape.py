@@ -10,7 +10,7 @@ import shapely
 from scipy import ndimage
 from scipy.spatial import cKDTree
 
-from ...common.order_statistics import order_by
+from ...common.arrays import order_by
 from ...curves.robust import median, percentiles, row_medians
 from ...lazy import cv2
 from ...survey.frame.road import Road

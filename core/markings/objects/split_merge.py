@@ -11,11 +11,8 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ...common.groups import linked_groups, members_of
-from ...common.near_pairs import overlapping_pairs
-from ...common.order_statistics import order_by
+from ...common.arrays import linked_groups, members_of, order_by, overlapping_pairs, stretch_of
 from ...common.parallel import check_cancelled
-from ...common.runs import stretch_of
 from ...lazy import cv2
 from ...survey.store.columns import Columns
 from ...survey.store.records import COORDINATE_SCALE

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage
 
-from ...common.order_statistics import quantiles
+from ...common.arrays import quantiles
 from ...intensity.asphalt_model import asphalt_statistics
 from ...lazy import cv2
 from ...survey.store.records import COORDINATE_SCALE

@@ -9,10 +9,9 @@ from os import PathLike
 
 import numpy as np
 
-from ...common.order_statistics import order_by
+from ...common.arrays import order_by
 from ...common.progress import Progress
-from ...execution.phase import Executor, Phase
-from ...execution.threads import THREADS
+from ...execution.phase import THREADS, Executor, Phase
 from ...intensity.asphalt_model import LOWER_QUANTILE
 from ...intensity.correction import saturation_of
 from ...intensity.tiled_image import IntensityRaster, TiledImage

@@ -12,7 +12,7 @@ import numpy as np
 from scipy import ndimage
 from scipy.spatial import cKDTree
 
-from ...common.groups import linked_groups
+from ...common.arrays import linked_groups
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ...intensity.asphalt_model import asphalt_statistics

@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import shapely
 
-from ...common.features import Features
-from ...common.schemas import CURB_POINTS, NEAREST_PASS, PASS_SIGMA, SIGMA
+from ...common.features import CURB_POINTS, NEAREST_PASS, PASS_SIGMA, SIGMA, Features
 from ...survey.frame.placement import COORDINATE_DECIMALS, as_written, known
 
 if TYPE_CHECKING:

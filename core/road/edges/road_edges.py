@@ -13,11 +13,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import shapely
 
-from ...common.features import Features
-from ...common.schemas import NEAREST_PASS, ROAD_EDGES
-from ...survey.frame.frame_lines import FrameLines, line_parts, lines_in_frame
-from ...survey.frame.placement import COORDINATE_DECIMALS, as_written, known
-from ...survey.frame.sigma_along import cuts_where_it_changes
+from ...common.features import NEAREST_PASS, ROAD_EDGES, Features
+from ...survey.frame.placement import COORDINATE_DECIMALS, FrameLines, as_written, known, line_parts, lines_in_frame
+from ...survey.frame.row_table import cuts_where_it_changes
 from ..common.tracking import MAX_JOINED_GAP
 
 if TYPE_CHECKING:

@@ -14,9 +14,9 @@ import shapely
 from scipy.interpolate import splev, splrep
 from scipy.ndimage import uniform_filter1d
 
+from ...common.arrays import stretch_of
 from ...common.parallel import check_cancelled
 from ...common.progress import Progress
-from ...common.runs import stretch_of
 from ..common.tracking import GapLine
 from ..edges.fit import EDGE_VERTEX_SPACING, IN_LINE_GAP_FACTOR, MAX_EDGE_JUMP, MIN_HIDDEN_SHARE, EdgeSettings
 from ..edges.road_edges import EdgePiece, RoadEdges

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import shapely
 
-from ...common.features import Features
-from ...common.schemas import ROAD_SURFACE
+from ...common.features import ROAD_SURFACE, Features
 from ...survey.frame.placement import COORDINATE_DECIMALS
 from .ground_grid import COLUMN_WIDTH, ROW_LENGTH
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..frame.sigma_along import SigmaAlong
+from ..frame.row_table import SigmaAlong
 from ..store.records import to_units
 from .corrections import CORRECTION_STEP, PassCorrections
 

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...common.schemas import PASS_SIGMA
+from ...common.features import PASS_SIGMA
 from ...curves.robust import MAD_TO_SIGMA
-from ..frame.sigma_along import SigmaAlong
+from ..frame.row_table import SigmaAlong
 from .register import MAX_OFFSET
 
 if TYPE_CHECKING:

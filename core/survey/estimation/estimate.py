@@ -10,9 +10,9 @@ import numpy as np
 
 from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
-from ...io.cloud_crs import check_projected, crs_note, unit_note
-from ..las.copies import without_copies
+from ...io.crs import check_projected, crs_note, unit_note
 from ..las.reader import read_headers
+from ..las.samples import without_copies
 from ..trajectory.trajectory import Trajectory
 from .adjustment import PER_INTERVAL, Adjusted, Returns
 from .first_poses import Spinning, first_poses, known_intervals, spinning_scanners

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..lattice.rotation_rate import MIN_ROTATION_PEAK, ROTATION_WINDOW, rotation_spectrum, strongest_rotation
+from ..lattice.scan_lattice import MIN_ROTATION_PEAK, ROTATION_WINDOW, rotation_spectrum, strongest_rotation
 from .rough.first_track import MIN_WINDOW_SAMPLES, WINDOW, FirstTrack
 
 EXPECTED_HEIGHT = 2.3        # m of the scanner above the ground, to tell in which direction and how fast its mirror turns

@@ -20,10 +20,9 @@ from ..estimation.resection import EXPECTED_HEIGHT, MIN_SHARE_IN_FRONT, RESECTIO
 from ..estimation.rough.first_track import DENSITY_ROUNDS, DENSITY_WIDTH, GROUND_WEIGHT_DEPTH, LOWEST_SHARE
 from ..estimation.rough.samples import SAMPLED_LAYERS
 from ..las.parallel_reader import ParallelCloudReader
+from ..las.point_fields import ScannerCensus, numbers_by_value, times_by_value, valid_points
 from ..las.reader import CloudHeader
-from ..las.scanners import ScannerCensus, numbers_by_value, times_by_value
-from ..las.validity import valid_points
-from ..lattice.rotation_rate import MIN_ROTATION_PEAK, ROTATION_WINDOW, rotation_spectrum, strongest_rotation
+from ..lattice.scan_lattice import MIN_ROTATION_PEAK, ROTATION_WINDOW, rotation_spectrum, strongest_rotation
 from ..trajectory.trajectory import Trajectory
 from .limits import (
     ATTITUDE_NOISE,

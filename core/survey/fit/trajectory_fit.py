@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...common.progress import Progress
-from ...io.units import FOOT
+from ...io.crs import FOOT
 from ..estimation.growth import MAX_UNEXPLAINED
 from ..frame.road import CORRIDOR
 from ..las.reader import CloudHeader

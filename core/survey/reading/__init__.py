@@ -6,8 +6,6 @@ In: point cloud files and a road frame. Out: a section store. Threads of this pr
 from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "finishing": ("Finishing",),
-    "ordering": ("UnorderedPoints",),
     "sensor_height": ("sensor_height_of",),
-    "survey_reader": ("SurveyReader",),
+    "survey_reader": ("Finishing", "SurveyReader", "UnorderedPoints"),
 })

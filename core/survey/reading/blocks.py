@@ -8,13 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...common.memory import ScratchBuffers
+from ...common.parallel import ScratchBuffers
 from ..frame.projection import POINTS_PER_PROJECTION, RoadProjection
-from ..las.intensity_source import IntensitySource
-from ..las.scale import LasAxis
-from ..las.scanners import EVER, times_by_value
-from ..las.time_slots import TimeSlots
-from ..las.validity import flagged, valid_points
+from ..las.point_fields import EVER, IntensitySource, LasAxis, flagged, times_by_value, valid_points
+from ..las.samples import TimeSlots
 from ..store.columns import Columns
 from ..store.records import COORDINATE_SCALE, SURVEY_POINT, beside_road, fill_units, point_dtype, road_of, to_units
 from ..trajectory.time_systems import SECONDS_PER_WEEK

@@ -8,8 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...common.errors import RoadExtractionError
-from ...io.crs import check_metric, horizontal_part, parse_crs, same_crs
-from ...io.units import FOOT, in_metres, plane_wkt
+from ...io.crs import FOOT, check_metric, horizontal_part, in_metres, parse_crs, plane_wkt, same_crs
 from .trajectory import Trajectory
 
 HEADING_STEP = 10.0  # m ahead of a position, reprojected with it for the heading

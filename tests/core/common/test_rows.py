@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from lanewright.core.common.rows import Rows
+from lanewright.core.common.arrays import Rows
 
 
 @dataclass

@@ -5,8 +5,7 @@ import pytest
 import shapely
 from clustered_streets import ClusteredStreet
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.common.features import Features
-from lanewright.core.common.schemas import CORRECTIONS, ROAD_EDGES
+from lanewright.core.common.features import CORRECTIONS, ROAD_EDGES, Features
 from lanewright.core.corrections import (
     correct_edges,
     correct_lanes,

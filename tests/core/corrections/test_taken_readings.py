@@ -5,8 +5,7 @@ import json
 import numpy as np
 import pytest
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.common.features import Features
-from lanewright.core.common.schemas import CORRECTIONS
+from lanewright.core.common.features import CORRECTIONS, Features
 from lanewright.core.corrections import correct_lanes, correct_marking_lines, corrections_from_features, taken_reading
 from lanewright.core.curves.model_selection import fit_curve
 from lanewright.core.driving.driving_lines import make_driving_lines

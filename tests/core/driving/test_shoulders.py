@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.common.features import Features
-from lanewright.core.common.schemas import ROAD_EDGES
+from lanewright.core.common.features import ROAD_EDGES, Features
 from lanewright.core.driving.driving_lines import make_driving_lines
 from lanewright.core.markings.lines.painted_lines import lines_from_features
 from lanewright.core.road.edges.road_edges import edges_from_features

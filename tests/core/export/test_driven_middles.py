@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 import shapely
-from lanewright.core.common.features import Features
-from lanewright.core.common.schemas import DRIVING_LINES
+from lanewright.core.common.features import DRIVING_LINES, Features
 from lanewright.core.export.fit_of_export import border_misses, driving_line_misses
 from lanewright.core.export.opendrive.exporter import OpenDriveSettings, draft_opendrive
 from lanewright.core.export.opendrive.layers import layers_of_opendrive

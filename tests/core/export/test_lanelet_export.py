@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 import shapely
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.common.features import Features
-from lanewright.core.common.schemas import MARKING_LINES, MARKINGS, ROAD_EDGES
+from lanewright.core.common.features import MARKING_LINES, MARKINGS, ROAD_EDGES, Features
 from lanewright.core.export.check.lanelets import check_lanelets
 from lanewright.core.export.lanelet.exporter import LaneletSettings, draft_lanelets
 from lanewright.core.export.lanelet.layers import layers_of_lanelets, node_places

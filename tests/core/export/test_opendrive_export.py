@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import shapely
-from lanewright.core.common.features import Features
-from lanewright.core.common.schemas import DRIVING_LINES, MARKING_LINES, MARKINGS, ROAD_EDGES
+from lanewright.core.common.features import DRIVING_LINES, MARKING_LINES, MARKINGS, ROAD_EDGES, Features
 from lanewright.core.export.check.roads import check_opendrive
 from lanewright.core.export.fit_of_export import border_misses, driving_line_misses
 from lanewright.core.export.map_crs import crs_of_reference, reference_of_crs

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 import shapely
-from lanewright.core.common.features import Features
-from lanewright.core.common.schemas import ROAD_EDGES
+from lanewright.core.common.features import ROAD_EDGES, Features
 from lanewright.core.export.cad.dxf import dxf_lines
 from lanewright.core.export.lanelet.exporter import draft_lanelets
 from lanewright.core.export.lanelet.layers import layers_of_lanelets

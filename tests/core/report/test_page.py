@@ -1,8 +1,7 @@
 """Reports: what a page says and how numbers read."""
 
 import numpy as np
-from lanewright.core.common.features import Features
-from lanewright.core.common.schemas import ROAD_EDGES
+from lanewright.core.common.features import ROAD_EDGES, Features
 from lanewright.core.report.map_figure import draw_map, png
 from lanewright.core.report.page import Page, number
 from shapely.geometry import LineString

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from curbed_streets import LENGTH, driven, parked_car, street, survey_of
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.execution.threads import Threads
+from lanewright.core.execution.phase import Threads
 from lanewright.core.road import detect_boundaries
 from lanewright.core.road.common.corners import CurbSteps
 from lanewright.core.road.common.curb_limits import CurbSettings

@@ -11,10 +11,9 @@ from ....common.errors import RoadExtractionError
 from ....common.parallel import ordered_map
 from ....common.progress import Progress
 from ...las.parallel_reader import ParallelCloudReader
+from ...las.point_fields import ScannerCensus, numbers_by_value, times_by_value, valid_points
 from ...las.reader import POINTS_PER_BLOCK, CloudHeader
-from ...las.scanners import ScannerCensus, numbers_by_value, times_by_value
-from ...las.time_slots import TimeSlots
-from ...las.validity import valid_points
+from ...las.samples import TimeSlots
 from ...trajectory.time_systems import SECONDS_PER_WEEK, wrapped_week
 
 SAMPLED_LAYERS = ("z", "point_source_id", "gps_time", "flags", "classification")  # LAZ layers that are decoded

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from lanewright.core.common.progress import Progress
 from lanewright.core.countries.painted_symbols import SYMBOLS
-from lanewright.core.execution.interpreter import find_interpreter
+from lanewright.core.execution.phase import Threads
 from lanewright.core.execution.processes import WorkerProcesses
-from lanewright.core.execution.threads import Threads
+from lanewright.core.execution.tasks import find_interpreter
 from lanewright.core.markings.objects import cluster as phases
 from lanewright.core.markings.objects.cluster import ApartWork
 from lanewright.core.markings.objects.figures import figures_of

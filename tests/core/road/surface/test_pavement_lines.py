@@ -3,14 +3,13 @@
 import numpy as np
 import pytest
 import shapely
-from lanewright.core.common.features import Features
-from lanewright.core.common.schemas import ROAD_EDGES
+from lanewright.core.common.features import ROAD_EDGES, Features
 from lanewright.core.road.edges.fit import EdgeSettings
 from lanewright.core.road.edges.road_edges import EdgePiece, edges_from_features, edges_to_features, joined_pieces
 from lanewright.core.road.surface import pavement_lines
 from lanewright.core.road.surface.extract import extract_road_surface
 from lanewright.core.road.surface.pavement_lines import AGREEING_LENGTH, with_pavement_edges
-from lanewright.core.survey.frame.build import build_frame
+from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.open_survey import Survey
 from lanewright.core.survey.store.records import SURVEY_POINT, to_units
 from lanewright.core.survey.store.section_store import SectionStore

@@ -5,8 +5,8 @@ import sys
 from pathlib import Path
 
 import pytest
-from lanewright.core.execution import address_space
-from lanewright.core.execution.address_space import is_lack_of_memory, lack_of_memory, least_room, limited_memory
+from lanewright.core.common import parallel as address_space
+from lanewright.core.common.parallel import is_lack_of_memory, lack_of_memory, least_room, limited_memory
 
 resource = pytest.importorskip("resource")
 
@@ -16,7 +16,7 @@ import resource, sys
 sys.path.insert(0, {tools!r})
 from plugin_package import load
 load()
-from lanewright.core.execution.address_space import MEGABYTE, claim_memory, least_room, limited_memory
+from lanewright.core.common.parallel import MEGABYTE, claim_memory, least_room, limited_memory
 resource.setrlimit(resource.RLIMIT_AS, (2**40, 2**40))
 limit = limited_memory()[1] + (least_room() + {more}) * MEGABYTE
 resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
