@@ -16,6 +16,7 @@ import numpy as np
 
 from ..assess.curvature import marking_curvature
 from ..common.features import Features
+from ..common.layer_rows import LayerRows
 from ..common.parallel import trim_heap
 from ..common.progress import Progress
 from ..corrections.corrections import Corrections, corrections_from_features
@@ -38,14 +39,14 @@ from ..markings.outliers import OutlierSettings, remove_outliers
 from ..markings.paint.extract import extract_markings
 from ..markings.paint.settings import MarkingSettings
 from ..road.common.curb_limits import CurbSettings
-from ..road.common.curb_points import CurbPoints, curb_points_to_features
+from ..road.common.curb_points import CurbPoints
 from ..road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
 from ..road.edges.fit import EdgeSettings
-from ..road.edges.road_edges import RoadEdges, edges_to_features
+from ..road.edges.road_edges import RoadEdges
 from ..road.scanlines.candidates import ScanlineBoundarySettings
 from ..road.scanlines.section_planes import ScanlineSettings
 from ..road.surface.extract import SurfaceSettings, extract_road_surface
-from ..road.surface.road_surface import SurfaceOutlines, surface_to_features
+from ..road.surface.road_surface import SurfaceOutlines
 from ..survey.frame.road import CORRIDOR
 from ..survey.frame.road_frame import RoadFrame
 from ..survey.las.reader import read_headers
@@ -135,13 +136,8 @@ class RoadMap:
 
     def layer(self, name: str) -> Features | None:
         """The result of a name, such as "edges", as a layer in map coordinates; None where it was not made."""
-        result, convert = getattr(self, name), CONVERTERS.get(name)
-        return result if result is None or convert is None else convert(result, self.frame)
-
-
-# RoadMap's attributes that are arrays in the road frame -> what makes layers of them
-CONVERTERS: dict[str, Callable[[Any, RoadFrame], Features]] = dict(
-    curb_points=curb_points_to_features, edges=edges_to_features, boundary_differences=edges_to_features, surface=surface_to_features)
+        result = getattr(self, name)
+        return result.to_features(self.frame) if isinstance(result, LayerRows) else result
 
 
 def make_road_map(paths: Sequence[str | Path], trajectory: Trajectory, image_path: str | Path,

@@ -167,7 +167,7 @@ ROWS = (
         ("methods compared by scatter", "agreement:_second_is_better", lambda first, second: second.measured & ~first.measured),
         ("hidden curb", "common.hidden_curb:hidden_points", gives([]), "parked cars",
          "common.hidden_curb:hidden_points common.hidden_curb:hidden_beside"),
-        ("hidden curb beside later pieces", "common.hidden_curb:hidden_beside", lambda pieces, *_: CurbPoints.none(pieces.crs),
+        ("hidden curb beside later pieces", "common.hidden_curb:hidden_beside", lambda pieces, *_: CurbPoints.filled(0, pieces.crs),
          "parked cars, curb found in plan"),
         ("curb hidden in water", "common.occlusion:OcclusionGrid._in_water", none_of(1), "street with puddles along both curbs")),
     *_room("curb returns", "road.curb_returns",

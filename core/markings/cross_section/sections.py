@@ -99,7 +99,7 @@ def sections_of_pavement(edges: RoadEdges) -> dict[int, CrossSections]:
 
 def _named_by_chain(edges, rows):
     """CrossSections of some edges; the layer names a line by its chain, -1 stays -1."""
-    course, of = _sides_of_islands(edges.course.take(rows), edges.kind[rows] == "island")
+    course, of = _sides_of_islands(edges.course[rows], edges.kind[rows] == "island")
     rows = rows[of]
     # a number of its own for every side
     count = int(edges.edge.max(initial=-1)) + 1
