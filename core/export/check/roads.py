@@ -8,7 +8,19 @@ import shapely
 from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
 from ..map_layers import metric_wkt
-from ..opendrive.model import DRIVEN_TYPES, MARK_TYPES, OPEN_END, ROAD_LANE_TYPES, LaneKey, LaneNetwork, MapRoad, OpenDriveMap, RoadSurface, travel
+from ..opendrive.model import (
+    DRIVEN_TYPES,
+    MARK_TYPES,
+    OPEN_END,
+    ROAD_LANE_TYPES,
+    LaneKey,
+    LaneNetwork,
+    MapRoad,
+    OpenDriveMap,
+    RoadLink,
+    RoadSurface,
+    travel,
+)
 from .findings import Findings, metres
 from .statements import statements
 
@@ -80,12 +92,14 @@ class _RoadCheck:
             except RoadExtractionError as problem:
                 self.add("reference", "header", str(problem), None, 0.0)
         if self.whole.bounds is not None and self.whole.roads:
-            west, south, east, north = self.whole.bounds
-            places = np.concatenate([road.plan.at(np.array([0.0, road.plan.length]))[0] for road in self.whole.roads])
-            outside = (places < np.array([west, south]) - FARTHEST_BOUND) | (places > np.array([east, north]) + FARTHEST_BOUND)
-            if (east > west or north > south) and outside.any():
-                x, y = places[np.flatnonzero(outside.any(1))[0]]
-                self.add("bounds", "header", f"A road begins or ends at x {x:.1f}, y {y:.1f}, outside of them.", None, 0.0)
+            self._bounds(*self.whole.bounds)
+
+    def _bounds(self, west, south, east, north):
+        places = np.concatenate([road.plan.at(np.array([0.0, road.plan.length]))[0] for road in self.whole.roads])
+        outside = (places < np.array([west, south]) - FARTHEST_BOUND) | (places > np.array([east, north]) + FARTHEST_BOUND)
+        if (east > west or north > south) and outside.any():
+            x, y = places[np.flatnonzero(outside.any(1))[0]]
+            self.add("bounds", "header", f"A road begins or ends at x {x:.1f}, y {y:.1f}, outside of them.", None, 0.0)
 
     def plan(self, road: MapRoad) -> None:
         name, along, last = f"road {road.id}", 0.0, None
@@ -124,28 +138,32 @@ class _RoadCheck:
         outlines = []
         for number, section in enumerate(road.sections):
             self._numbering(road, section)
-            length = road.section_end(number) - section.s
             for lane in section.lanes.values():
-                name = f"road {road.id}, section {number}, lane {lane.id}"
-                if lane.type not in ROAD_LANE_TYPES:
-                    self.add("lane type", name, f"The type is {lane.type!r}.", road, section.s)
-                for mark in lane.marks:
-                    if mark.type not in MARK_TYPES:
-                        self.add("road mark type", name, f"The type is {mark.type!r}.", road, section.s + mark.s)
-                if lane.id == 0 or lane.border:
-                    continue
-                least, where = lane.width.least(length)
-                if least < -1e-6:
-                    self.add("width below zero", name, f"{least:.3f} m at s = {section.s + where:.2f}.", road, section.s + where)
-                for s, step in zip(*lane.width.steps()):
-                    if step > MAX_WIDTH_STEP:
-                        self.add("width step", name, f"The width jumps by {metres(step)} at s = {section.s + s:.2f}.", road, section.s + s)
+                self._lane(road, section.s, lane, f"road {road.id}, section {number}, lane {lane.id}", road.section_end(number) - section.s)
             outlines.append(self._borders(road, surface, number))
+        self._offset_steps(road, starts)
+        if road.junction == "-1":
+            self.areas[road.id] = shapely.union_all(outlines)
+
+    def _offset_steps(self, road, starts):
         for s, step in zip(*road.lane_offset.steps()):
             if step > MAX_WIDTH_STEP and s not in starts:
                 self.add("width step", f"road {road.id}", f"The lane offset jumps by {metres(step)} at s = {s:.2f}.", road, s)
-        if road.junction == "-1":
-            self.areas[road.id] = shapely.union_all([outline for outline in outlines if outline is not None])
+
+    def _lane(self, road, start, lane, name, length):
+        if lane.type not in ROAD_LANE_TYPES:
+            self.add("lane type", name, f"The type is {lane.type!r}.", road, start)
+        for mark in lane.marks:
+            if mark.type not in MARK_TYPES:
+                self.add("road mark type", name, f"The type is {mark.type!r}.", road, start + mark.s)
+        if lane.id == 0 or lane.border:
+            return
+        least, where = lane.width.least(length)
+        if least < -1e-6:
+            self.add("width below zero", name, f"{least:.3f} m at s = {start + where:.2f}.", road, start + where)
+        for s, step in zip(*lane.width.steps()):
+            if step > MAX_WIDTH_STEP:
+                self.add("width step", name, f"The width jumps by {metres(step)} at s = {start + s:.2f}.", road, start + s)
 
     def _numbering(self, road, section):
         name = f"road {road.id}, section at {section.s:g}"
@@ -155,7 +173,7 @@ class _RoadCheck:
         ids = [id for id in section.order if id]
         expected = sorted((id for id in ids if id > 0), reverse=True) + sorted((id for id in ids if id < 0), reverse=True)
         left, right = max(ids, default=0), min(ids, default=0)
-        if ids != expected or set(ids) != set(range(right, left + 1)) - {0} and ids:
+        if ids != expected or set(ids) != set(range(right, left + 1)) - {0}:
             self.add("lane order", name, f"The lanes are {', '.join(map(str, section.order))}.", road, section.s)
         if len(set(section.order)) != len(section.order):
             self.add("id twice", name, f"The lanes are {', '.join(map(str, section.order))}.", road, section.s)
@@ -248,24 +266,29 @@ class _Links:
     def road(self, road: MapRoad) -> None:
         for end in ("start", "end"):
             link = road.link(end)
-            if link is None:
-                continue
-            name, place = f"road {road.id}, {end}", self.place(road, end)
-            if link.element == "junction":
-                if link.id not in self.known:
-                    self.findings.add("road link", name, f"There is no junction {link.id}.", place)
-                elif road.junction == "-1" and not self.network.connections.get((link.id, road.id)) and not self._is_left_by(link.id, road.id):
-                    self.findings.add("one-sided link", name, f"Junction {link.id} has no connection with it.", place)
-                continue
-            other = self.network.roads.get(link.id)
-            if link.element != "road" or other is None:
-                self.findings.add("road link", name, f"There is no {link.element or 'element'} {link.id}.", place)
-            elif link.contact not in ("start", "end"):
-                self.findings.add("road link", name, f"It touches the {link.contact or 'unnamed'} end of road {link.id}.", place)
-            elif road.junction == "-1" and other.junction == "-1":
-                back = other.link(link.contact)
-                if back is None or back.element != "road" or back.id != road.id or back.contact != end:
-                    self.findings.add("one-sided link", name, f"Road {link.id} is not linked back.", place)
+            if link is not None:
+                fault, text = self._to_junction(road, link) if link.element == "junction" else self._to_road(road, end, link)
+                if fault:
+                    self.findings.add(fault, f"road {road.id}, {end}", text, self.place(road, end))
+
+    def _to_junction(self, road, link):
+        """(fault, what was seen) of a road's link to a junction, ("", "") where it is right."""
+        if link.id not in self.known:
+            return "road link", f"There is no junction {link.id}."
+        if road.junction == "-1" and not self.network.connections.get((link.id, road.id)) and not self._is_left_by(link.id, road.id):
+            return "one-sided link", f"Junction {link.id} has no connection with it."
+        return "", ""
+
+    def _to_road(self, road, end, link):
+        """The same of its link to another road."""
+        other = self.network.roads.get(link.id)
+        if link.element != "road" or other is None:
+            return "road link", f"There is no {link.element or 'element'} {link.id}."
+        if link.contact not in ("start", "end"):
+            return "road link", f"It touches the {link.contact or 'unnamed'} end of road {link.id}."
+        if road.junction == other.junction == "-1" and other.link(link.contact) != RoadLink("road", road.id, end):
+            return "one-sided link", f"Road {link.id} is not linked back."
+        return "", ""
 
     def _is_left_by(self, junction: str, road: str) -> bool:
         """Whether a connecting road of a junction leads to a road."""
@@ -278,12 +301,7 @@ class _Links:
     def junctions(self) -> None:
         reached = {(junction.id, connection.connecting) for junction in self.whole.junctions for connection in junction.connections}
         for road in self.whole.roads:
-            for end in ("start", "end") if road.junction in self.known else ():
-                if road.link(end) is None:
-                    self.findings.add("road link", f"road {road.id}, {end}", "It lies in a junction and leads nowhere.", self.place(road, end))
-            if road.junction != "-1" and (road.junction, road.id) not in reached:
-                self.findings.add("unused junction road", f"road {road.id}", f"Junction {road.junction} has no connection to it.",
-                                  self.place(road, "start"))
+            self._inside(road, reached)
         seen = set()
         for junction in self.whole.junctions:
             if junction.id in seen:
@@ -292,31 +310,25 @@ class _Links:
             for connection in junction.connections:
                 self._connection(junction.id, connection)
 
+    def _inside(self, road, reached):
+        """A road of a junction leads somewhere at both ends, and is one of (junction, road) that connections name."""
+        for end in ("start", "end") if road.junction in self.known else ():
+            if road.link(end) is None:
+                self.findings.add("road link", f"road {road.id}, {end}", "It lies in a junction and leads nowhere.", self.place(road, end))
+        if road.junction != "-1" and (road.junction, road.id) not in reached:
+            self.findings.add("unused junction road", f"road {road.id}", f"Junction {road.junction} has no connection to it.",
+                              self.place(road, "start"))
+
     def _connection(self, junction, connection):
-        name = f"junction {junction}, connection {connection.id}"
-        roads = [self.network.roads.get(id) for id in (connection.incoming, connection.connecting)]
-        if roads[0] is None or roads[1] is None:
-            missing = connection.incoming if roads[0] is None else connection.connecting
-            self.findings.add("connection", name, f"There is no road {missing}.", np.zeros(3))
+        name, missing = f"junction {junction}, connection {connection.id}", [
+            id for id in (connection.incoming, connection.connecting) if id not in self.network.roads]
+        if missing:
+            self.findings.add("connection", name, f"There is no road {missing[0]}.", np.zeros(3))
             return
-        incoming, connecting = roads
+        incoming, connecting = self.network.roads[connection.incoming], self.network.roads[connection.connecting]
         place = self.place(connecting, "end" if connection.contact == "end" else "start")
-        if connecting.junction != junction:
-            self.findings.add("connection", name, f"Road {connecting.id} belongs to junction {connecting.junction}.", place)
-        if connection.contact not in ("start", "end"):
-            self.findings.add("connection", name, f"It touches the {connection.contact or 'unnamed'} end of road {connecting.id}.", place)
-            return
-        ends = [end for end in ("start", "end") if (link := incoming.link(end)) is not None and link.element == "junction" and link.id == junction]
-        if not ends:
-            self.findings.add("connection", name, f"Road {incoming.id} does not lead into this junction.", place)
-            return
-        if not connection.lanes:
-            self.findings.add("connection", name, "It links no lanes.", place)
-        here = [incoming.sections[0 if end == "start" else -1].lanes for end in ends if incoming.sections]
-        there = connecting.sections[0 if connection.contact == "start" else -1].lanes if connecting.sections else {}
-        for start, to in connection.lanes:
-            if not any(start in lanes for lanes in here) or to not in there:
-                self.findings.add("connection", name, f"There is no lane {start} or no lane {to} where it links them.", place)
+        for text in _connection_faults(junction, connection, incoming, connecting):
+            self.findings.add("connection", name, text, place)
 
     def lane(self, key: LaneKey) -> None:
         road, lane = self.network.roads[key[0]], self.network.lane(key)
@@ -339,7 +351,6 @@ class _Links:
                 self.findings.add("dead end" if leaves else "no way in", name, f"At its {end} it is linked to no driven lane.", own[0])
 
     def _joined(self, name, key, end, own, other, there, target, driven):
-        road, to = self.network.roads[key[0]], self.network.roads[other[0]]
         theirs = self._end(other, there)
         # seen along the road, an end that touches another end has left and right swapped
         turned = end == there
@@ -347,19 +358,23 @@ class _Links:
         apart = [pair[0] - pair[1] for pair in pairs]
         gap, rise = max(float(np.hypot(*d[:2])) for d in apart), max(abs(float(d[2])) for d in apart)
         kink = abs(float(np.arctan2(*(_cross_dot(own[2], theirs[2] if end != there else -theirs[2])))))
-        if gap > MAX_GAP_AT_LINK:
-            self.findings.add("gap at a link", name, f"{metres(gap)} from lane {other[2]} of road {other[0]} at its {end}.", own[0])
-        if rise > MAX_HEIGHT_AT_LINK:
-            self.findings.add("height step at a link", name, f"{metres(rise)} to lane {other[2]} of road {other[0]} at its {end}.", own[0])
-        if kink > MAX_KINK_AT_LINK and driven:
-            self.findings.add("kink at a link", name, f"{kink:.3f} rad to lane {other[2]} of road {other[0]} at its {end}.", own[0])
+        for fault, size, most, text in (("gap at a link", gap, MAX_GAP_AT_LINK, f"{metres(gap)} from"),
+                                        ("height step at a link", rise, MAX_HEIGHT_AT_LINK, f"{metres(rise)} to"),
+                                        ("kink at a link", kink * driven, MAX_KINK_AT_LINK, f"{kink:.3f} rad to")):
+            if size > most:
+                self.findings.add(fault, name, f"{text} lane {other[2]} of road {other[0]} at its {end}.", own[0])
+        self._driven_on(name, key, end, own[0], other, there, target, driven)
+
+    def _driven_on(self, name, key, end, place, other, there, target, driven):
+        """Linked lanes are driven the same way, and linked back but for lanes of a junction."""
+        road, to = self.network.roads[key[0]], self.network.roads[other[0]]
         if driven and target.type in DRIVEN_TYPES:
             leaves, enters = (end == "end") == (travel(road, key[2]) > 0), (there == "start") == (travel(to, other[2]) > 0)
             if leaves != enters:
-                self.findings.add("direction at a link", name, f"Lane {other[2]} of road {other[0]} is driven against it.", own[0])
+                self.findings.add("direction at a link", name, f"Lane {other[2]} of road {other[0]} is driven against it.", place)
         if key[0] == other[0] or road.junction == "-1" and to.junction == "-1":
             if not any(back == key for back, _ in self.network.touching(other, there)):
-                self.findings.add("one-sided link", name, f"Lane {other[2]} of road {other[0]} is not linked back.", own[0])
+                self.findings.add("one-sided link", name, f"Lane {other[2]} of road {other[0]} is not linked back.", place)
 
     def _end(self, key, end):
         """(left, right) end of a lane's borders along the road, (3,) each, and (2,) the direction there."""
@@ -380,6 +395,35 @@ class _Links:
 
     def _width(self, end):
         return float(np.hypot(*(end[0] - end[1])[:2]))
+
+
+def _connection_faults(junction, connection, incoming, connecting):
+    """What is wrong with a connection between two roads."""
+    if connecting.junction != junction:
+        yield f"Road {connecting.id} belongs to junction {connecting.junction}."
+    if connection.contact not in ("start", "end"):
+        yield f"It touches the {connection.contact or 'unnamed'} end of road {connecting.id}."
+        return
+    here = [_lanes_at(incoming, end) for end in ("start", "end") if _leads_into(incoming, end, junction)]
+    if not here:
+        yield f"Road {incoming.id} does not lead into this junction."
+        return
+    if not connection.lanes:
+        yield "It links no lanes."
+    there = _lanes_at(connecting, connection.contact)
+    for start, to in connection.lanes:
+        if to not in there or start not in set().union(*here):
+            yield f"There is no lane {start} or no lane {to} where it links them."
+
+
+def _leads_into(road, end, junction):
+    link = road.link(end)
+    return link is not None and (link.element, link.id) == ("junction", junction)
+
+
+def _lanes_at(road, end):
+    """The lanes of a road by number at one of its ends."""
+    return road.sections[0 if end == "start" else -1].lanes if road.sections else {}
 
 
 def _cross_dot(a, b):

@@ -18,8 +18,26 @@ from ..xml_tree import XmlElement
 MINORS = range(9)                # of version 1
 STATED_NEAR = 0.01               # m by which a record may lie beyond its end
 FARTHEST_OBJECT = 100.0          # m beside the reference line
-PI_HALF = np.pi / 2
-POSITIVE, NOT_NEGATIVE = (0.0, np.inf, False), (0.0, np.inf, True)   # least, most, whether least itself may be
+
+
+class Allowed(NamedTuple):
+    """What an attribute may be: words, or numbers from `least` to `most`, `least` itself or not; numbers count since version 1.since."""
+
+    words: tuple[str, ...] = ()
+    least: float = np.inf
+    most: float = np.inf
+    itself: bool = True
+    since: int = 0
+
+    def holds(self, element: XmlElement, name: str, minor: float) -> bool:
+        """Whether the attribute of this name is allowed in a file of version 1.minor."""
+        if element.get(name) in self.words or minor < self.since:
+            return True
+        value = _number(element, name, np.nan)
+        return bool(self.least < value <= self.most or self.itself and value == self.least)
+
+
+POSITIVE, NOT_NEGATIVE = Allowed(least=0.0, itself=False), Allowed(least=0.0)
 MARK_COLOURS = ("standard", "blue", "green", "red", "white", "yellow", "orange", "violet", "black")
 ROAD_TYPES = ("unknown", "rural", "motorway", "town", "lowSpeed", "pedestrian", "bicycle", "townExpressway", "townCollector", "townArterial",
               "townPrivate", "townLocal", "townPlayStreet")
@@ -28,22 +46,26 @@ OBJECT_TYPES = ("", "-1", "none", "obstacle", "car", "pole", "tree", "vegetation
                 "pedestrian", "wind", "roadMark", "roadSurface")
 ORIENTATIONS = ("+", "-", "none")
 PLAN_SHAPES = ("line", "spiral", "arc", "poly3", "paramPoly3")
-# (tag, attribute) -> the words allowed; what is not stated has a default
-WORDS = {
-    ("type", "type"): ROAD_TYPES, ("speed", "unit"): ("m/s", "mph", "km/h"), ("paramPoly3", "pRange"): ("arcLength", "normalized"),
-    ("roadMark", "color"): MARK_COLOURS, ("roadMark", "weight"): ("standard", "bold"),
-    ("roadMark", "laneChange"): ("increase", "decrease", "both", "none"), ("object", "type"): OBJECT_TYPES,
-    ("object", "orientation"): ORIENTATIONS, ("signal", "orientation"): ORIENTATIONS, ("signal", "dynamic"): ("yes", "no"),
+# tag -> attribute -> what it may be; what is not stated has a default
+ATTRIBUTES = {
+    "type": {"type": Allowed(ROAD_TYPES)},
+    "speed": {"unit": Allowed(("m/s", "mph", "km/h")), "max": Allowed(("no limit", "undefined"), 0.0)},
+    "paramPoly3": {"pRange": Allowed(("arcLength", "normalized"))},
+    "roadMark": {"color": Allowed(MARK_COLOURS), "weight": Allowed(("standard", "bold")),
+                 "laneChange": Allowed(("increase", "decrease", "both", "none")), "width": NOT_NEGATIVE},
+    "line": {"length": POSITIVE, "space": NOT_NEGATIVE, "width": NOT_NEGATIVE},
+    # before 1.7 the sizes of objects are any numbers
+    "object": {"type": Allowed(OBJECT_TYPES), "orientation": Allowed(ORIENTATIONS), "length": POSITIVE._replace(since=7),
+               "width": POSITIVE._replace(since=7), "height": NOT_NEGATIVE._replace(since=7), "radius": NOT_NEGATIVE._replace(since=7)},
+    "signal": {"orientation": Allowed(ORIENTATIONS), "dynamic": Allowed(("yes", "no")), "s": NOT_NEGATIVE},
+    "superelevation": {"a": Allowed(least=-np.pi / 2, most=np.pi / 2)},
+    "width": {"a": Allowed(least=-1.0, most=50.0)},
 }
-# (tag, attribute) -> (least, most, whether the least itself is allowed)
-RANGES = {
-    ("roadMark", "width"): NOT_NEGATIVE, ("line", "length"): POSITIVE, ("line", "space"): NOT_NEGATIVE, ("line", "width"): NOT_NEGATIVE,
-    ("object", "length"): POSITIVE, ("object", "width"): POSITIVE, ("object", "height"): NOT_NEGATIVE, ("object", "radius"): NOT_NEGATIVE,
-    ("signal", "s"): NOT_NEGATIVE, ("superelevation", "a"): (-PI_HALF, PI_HALF, True), ("width", "a"): (-1.0, 50.0, True),
-}
-# (tag, attribute) -> the minor version from which the range holds; earlier ones have any number there
-RANGE_SINCE = {("object", "length"): 7, ("object", "width"): 7, ("object", "height"): 7, ("object", "radius"): 7}
 NEEDED_ATTRIBUTES = {"object": ("id", "s", "t"), "signal": ("id", "s", "t"), "lane": ("id", "type"), "connection": ("id",)}
+# (tag, where it is in a road or lane, whether the first must be at 0) of records that go on from s to s
+ROAD_RECORDS = (("type", (), False), ("geometry", ("planView",), True), ("elevation", ("elevationProfile",), True),
+                ("superelevation", ("lateralProfile",), True), ("laneOffset", ("lanes",), True))
+LANE_RECORDS = (("width", True), ("border", True), ("roadMark", False), ("height", False), ("speed", False))
 
 
 class Statement(NamedTuple):
@@ -89,37 +111,49 @@ def _header(header):
 
 def _road(road, seen, minor):
     id, length = road.get("id"), _number(road, "length", 0.0)
-    name = f"road {id}"
+    lanes = list(_lanes(road, length))
+    for found in (_records(road, length), _plan(road.find("planView")), _of_lanes(lanes), _of_objects(road, length, lanes, seen),
+                  (("value", "", text, 0.0) for one in _within(road) for text in _values(one, minor))):
+        for fault, what, text, s in found:
+            yield Statement(fault, f"road {id}, {what}" if what else f"road {id}", text, id, s)
 
-    def found(fault, what, text, s=0.0):
-        return Statement(fault, f"{name}, {what}" if what else name, text, id, s)
 
-    for tag, parent, zero in (("type", road, False), ("geometry", road.find("planView"), True), ("elevation", road.find("elevationProfile"), True),
-                              ("superelevation", road.find("lateralProfile"), True), ("laneOffset", road.find("lanes"), True)):
-        for text in _order(parent, tag, "s", length, zero) if parent is not None else ():
-            yield found("record order", tag, text)
-    yield from (found(*one) for one in _plan(road.find("planView")))
+# The statements of a road, each (fault, what, text, s).
+
+def _records(road, length):
+    for tag, path, zero in ROAD_RECORDS:
+        for text in _order(road.find(*path), tag, "s", length, zero):
+            yield "record order", tag, text, 0.0
     shapes = [(_number(one, "s", 0.0), _number(one, "t", 0.0)) for one in _all(road.find("lateralProfile"), "shape")]
     if shapes != sorted(shapes):
-        yield found("record order", "shape", "The shapes do not go on from s to s and from t to t.")
+        yield "record order", "shape", "The shapes do not go on from s to s and from t to t.", 0.0
+
+
+def _lanes(road, length):
+    """(start of the section, its length, lane) of every lane."""
     sections = list(_all(road.find("lanes"), "laneSection"))
     starts = [*(_number(section, "s", 0.0) for section in sections), length]
-    numbers: set[int] = set()
     for section, start, end in zip(sections, starts[:-1], starts[1:]):
         for side in ("left", "center", "right"):
             for lane in _all(section.find(side), "lane"):
-                numbers.add(int(_number(lane, "id", 0.0)))
-                what = f"section at {start:g}, lane {lane.get('id')}"
-                yield from (found(fault, what, text, start) for fault, text in _lane(lane, end - start))
-    for kind, group in (("object", road.find("objects")), ("signal", road.find("signals"))):
-        for one in _all(group, kind):
-            yield from (found(fault, f"{kind} {one.get('id')}", text, s) for fault, text, s in _beside(one, kind, length, numbers, seen[kind]))
-    for one in _within(road):
-        yield from (found("value", "", text) for text in _values(one, minor))
+                yield start, end - start, lane
+
+
+def _of_lanes(lanes):
+    for start, length, lane in lanes:
+        for fault, text in _lane(lane, length):
+            yield fault, f"section at {start:g}, lane {lane.get('id')}", text, start
+
+
+def _of_objects(road, length, lanes, seen):
+    numbers = {int(_number(lane, "id", 0.0)) for _, _, lane in lanes}
+    for kind in seen:
+        for one in _all(road.find(f"{kind}s"), kind):
+            for fault, text, s in _beside(one, kind, length, numbers, seen[kind]):
+                yield fault, f"{kind} {one.get('id')}", text, s
 
 
 def _plan(plan):
-    """(fault, what, text, s) of the geometries."""
     for one in _all(plan, "geometry"):
         shapes = [child for child in one.children if child.tag in PLAN_SHAPES]
         s = _number(one, "s", 0.0)
@@ -132,7 +166,7 @@ def _plan(plan):
 
 def _lane(lane, length):
     """(fault, text) of a lane of a section of some length."""
-    for tag, zero in (("width", True), ("border", True), ("roadMark", False), ("height", False), ("speed", False)):
+    for tag, zero in LANE_RECORDS:
         for text in _order(lane, tag, "sOffset", length, zero):
             yield "record order", f"{tag}: {text}"
     if lane.find("width") is not None and lane.find("border") is not None:
@@ -153,12 +187,18 @@ def _beside(one, kind, length, numbers, seen):
         yield "object off the road", f"It is at s = {s:.2f} of {length:.2f} m.", s
     for validity in one.all("validity"):
         first, last = _number(validity, "fromLane", 0.0), _number(validity, "toLane", 0.0)
-        if first > last or first not in numbers or last not in numbers:
+        if first > last or not numbers.issuperset((first, last)):
             yield "lane link", f"It is valid from lane {first:g} to lane {last:g}, which the road does not have.", s
-    for outline in [*_all(one.find("outlines"), "outline"), *one.all("outline")]:
-        corners = sum(child.tag in ("cornerRoad", "cornerLocal") for child in outline.children)
-        if 0 < corners < 3 and outline.get("closed", "true") != "false":
+    for corners in _corners(one):
+        if 0 < corners < 3:
             yield "value", f"Its outline has {corners} corners.", s
+
+
+def _corners(one):
+    """How many corners each closed outline of an object has."""
+    for outline in [*_all(one.find("outlines"), "outline"), *one.all("outline")]:
+        if outline.get("closed", "true") != "false":
+            yield sum(child.tag in ("cornerRoad", "cornerLocal") for child in outline.children)
 
 
 def _junction(junction):
@@ -175,12 +215,12 @@ def _junction(junction):
 
 def _order(parent, tag, key, length, zero):
     """Sentences on records that begin late, go back, or lie beyond the end."""
-    at = [_number(one, key, 0.0) for one in parent.all(tag)]
+    at = [_number(one, key, 0.0) for one in _all(parent, tag)]
     if not at:
         return
     if zero and at[0] > STATED_NEAR:
         yield f"The first begins at {at[0]:g} m."
-    if any(later < earlier for earlier, later in zip(at[:-1], at[1:])):
+    if (np.diff(at) < 0).any():
         yield f"They begin at {', '.join(f'{one:g}' for one in at[:8])} m."
     if min(at) < -STATED_NEAR or max(at) > length + STATED_NEAR:
         yield f"One begins at {max(at) if max(at) > length else min(at):g} m of {length:g} m."
@@ -188,19 +228,13 @@ def _order(parent, tag, key, length, zero):
 
 def _values(one, minor):
     """Sentences on words and numbers of an element of a file of version 1.minor."""
-    for (tag, name), words in WORDS.items():
-        if one.tag == tag and name in one.attributes and one.get(name) not in words and not (tag == "type" and "s" not in one.attributes):
-            yield f"Line {one.line}: {name} of <{tag}> is {one.get(name)[:40]!r}."
-    for (tag, name), (least, most, itself) in RANGES.items():
-        if one.tag == tag and name in one.attributes and not minor < RANGE_SINCE.get((tag, name), 0):
-            value = _number(one, name, np.nan)
-            if not (least <= value <= most) or not itself and value == least:
-                yield f"Line {one.line}: {name} of <{tag}> is {one.get(name)[:40]!r}."
+    if one.tag != "type" or "s" in one.attributes:   # a road mark has a type too
+        for name, allowed in ATTRIBUTES.get(one.tag, {}).items():
+            if name in one.attributes and not allowed.holds(one, name, minor):
+                yield f"Line {one.line}: {name} of <{one.tag}> is {one.get(name)[:40]!r}."
     for name in NEEDED_ATTRIBUTES.get(one.tag, ()):
         if name not in one.attributes:
             yield f"Line {one.line}: <{one.tag}> has no {name}."
-    if one.tag == "speed" and one.get("max") not in ("no limit", "undefined") and not _number(one, "max", 0.0) >= 0:
-        yield f"Line {one.line}: max of <speed> is {one.get('max')[:40]!r}."
 
 
 def _within(element):
