@@ -404,13 +404,13 @@ def _connection_faults(junction, connection, incoming, connecting):
     if connection.contact not in ("start", "end"):
         yield f"It touches the {connection.contact or 'unnamed'} end of road {connecting.id}."
         return
-    here = [_lanes_at(incoming, end) for end in ("start", "end") if _leads_into(incoming, end, junction)]
+    here = [incoming.lanes_at(end) for end in ("start", "end") if _leads_into(incoming, end, junction)]
     if not here:
         yield f"Road {incoming.id} does not lead into this junction."
         return
     if not connection.lanes:
         yield "It links no lanes."
-    there = _lanes_at(connecting, connection.contact)
+    there = connecting.lanes_at(connection.contact)
     for start, to in connection.lanes:
         if to not in there or start not in set().union(*here):
             yield f"There is no lane {start} or no lane {to} where it links them."
@@ -419,11 +419,6 @@ def _connection_faults(junction, connection, incoming, connecting):
 def _leads_into(road, end, junction):
     link = road.link(end)
     return link is not None and (link.element, link.id) == ("junction", junction)
-
-
-def _lanes_at(road, end):
-    """The lanes of a road by number at one of its ends."""
-    return road.sections[0 if end == "start" else -1].lanes if road.sections else {}
 
 
 def _cross_dot(a, b):

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...common.errors import RoadExtractionError
+from ..opendrive.xodr import GEOMETRIES
 from ..xml_tree import XmlElement
 
 MINORS = range(9)                # of version 1
@@ -45,7 +46,6 @@ OBJECT_TYPES = ("", "-1", "none", "obstacle", "car", "pole", "tree", "vegetation
                 "trafficIsland", "crosswalk", "streetLamp", "gantry", "soundBarrier", "van", "bus", "trailer", "bike", "motorbike", "tram", "train",
                 "pedestrian", "wind", "roadMark", "roadSurface")
 ORIENTATIONS = ("+", "-", "none")
-PLAN_SHAPES = ("line", "spiral", "arc", "poly3", "paramPoly3")
 # tag -> attribute -> what it may be; what is not stated has a default
 ATTRIBUTES = {
     "type": {"type": Allowed(ROAD_TYPES)},
@@ -62,9 +62,9 @@ ATTRIBUTES = {
     "width": {"a": Allowed(least=-1.0, most=50.0)},
 }
 NEEDED_ATTRIBUTES = {"object": ("id", "s", "t"), "signal": ("id", "s", "t"), "lane": ("id", "type"), "connection": ("id",)}
-# (tag, where it is in a road or lane, whether the first must be at 0) of records that go on from s to s
-ROAD_RECORDS = (("type", (), False), ("geometry", ("planView",), True), ("elevation", ("elevationProfile",), True),
-                ("superelevation", ("lateralProfile",), True), ("laneOffset", ("lanes",), True))
+# (where they are in a road or lane, whether the first must be at 0) of records that go on from s to s
+ROAD_RECORDS = ((("type",), False), (("planView", "geometry"), True), (("elevationProfile", "elevation"), True),
+                (("lateralProfile", "superelevation"), True), (("lanes", "laneOffset"), True))
 LANE_RECORDS = (("width", True), ("border", True), ("roadMark", False), ("height", False), ("speed", False))
 
 
@@ -112,7 +112,7 @@ def _header(header):
 def _road(road, seen, minor):
     id, length = road.get("id"), _number(road, "length", 0.0)
     lanes = list(_lanes(road, length))
-    for found in (_records(road, length), _plan(road.find("planView")), _of_lanes(lanes), _of_objects(road, length, lanes, seen),
+    for found in (_records(road, length), _plan(road), _of_lanes(lanes), _of_objects(road, length, lanes, seen),
                   (("value", "", text, 0.0) for one in _within(road) for text in _values(one, minor))):
         for fault, what, text, s in found:
             yield Statement(fault, f"road {id}, {what}" if what else f"road {id}", text, id, s)
@@ -121,21 +121,21 @@ def _road(road, seen, minor):
 # The statements of a road, each (fault, what, text, s).
 
 def _records(road, length):
-    for tag, path, zero in ROAD_RECORDS:
-        for text in _order(road.find(*path), tag, "s", length, zero):
-            yield "record order", tag, text, 0.0
-    shapes = [(_number(one, "s", 0.0), _number(one, "t", 0.0)) for one in _all(road.find("lateralProfile"), "shape")]
+    for path, zero in ROAD_RECORDS:
+        for text in _order(road, path, "s", length, zero):
+            yield "record order", path[-1], text, 0.0
+    shapes = [(_number(one, "s", 0.0), _number(one, "t", 0.0)) for one in road.all("lateralProfile", "shape")]
     if shapes != sorted(shapes):
         yield "record order", "shape", "The shapes do not go on from s to s and from t to t.", 0.0
 
 
 def _lanes(road, length):
     """(start of the section, its length, lane) of every lane."""
-    sections = list(_all(road.find("lanes"), "laneSection"))
+    sections = list(road.all("lanes", "laneSection"))
     starts = [*(_number(section, "s", 0.0) for section in sections), length]
     for section, start, end in zip(sections, starts[:-1], starts[1:]):
         for side in ("left", "center", "right"):
-            for lane in _all(section.find(side), "lane"):
+            for lane in section.all(side, "lane"):
                 yield start, end - start, lane
 
 
@@ -148,14 +148,14 @@ def _of_lanes(lanes):
 def _of_objects(road, length, lanes, seen):
     numbers = {int(_number(lane, "id", 0.0)) for _, _, lane in lanes}
     for kind in seen:
-        for one in _all(road.find(f"{kind}s"), kind):
+        for one in road.all(f"{kind}s", kind):
             for fault, text, s in _beside(one, kind, length, numbers, seen[kind]):
                 yield fault, f"{kind} {one.get('id')}", text, s
 
 
-def _plan(plan):
-    for one in _all(plan, "geometry"):
-        shapes = [child for child in one.children if child.tag in PLAN_SHAPES]
+def _plan(road):
+    for one in road.all("planView", "geometry"):
+        shapes = [child for child in one.children if child.tag in GEOMETRIES]
         s = _number(one, "s", 0.0)
         if len(shapes) > 1:
             yield "two at once", "geometry", f"The geometry at s = {s:g} is {' and '.join(child.tag for child in shapes)}.", s
@@ -167,7 +167,7 @@ def _plan(plan):
 def _lane(lane, length):
     """(fault, text) of a lane of a section of some length."""
     for tag, zero in LANE_RECORDS:
-        for text in _order(lane, tag, "sOffset", length, zero):
+        for text in _order(lane, (tag,), "sOffset", length, zero):
             yield "record order", f"{tag}: {text}"
     if lane.find("width") is not None and lane.find("border") is not None:
         yield "two at once", "It has widths and borders; only the widths are read."
@@ -196,7 +196,7 @@ def _beside(one, kind, length, numbers, seen):
 
 def _corners(one):
     """How many corners each closed outline of an object has."""
-    for outline in [*_all(one.find("outlines"), "outline"), *one.all("outline")]:
+    for outline in [*one.all("outlines", "outline"), *one.all("outline")]:
         if outline.get("closed", "true") != "false":
             yield sum(child.tag in ("cornerRoad", "cornerLocal") for child in outline.children)
 
@@ -213,9 +213,9 @@ def _junction(junction):
             yield Statement("connection", what, "It links the same lanes twice.", one.get("connectingRoad"), 0.0)
 
 
-def _order(parent, tag, key, length, zero):
+def _order(parent, path, key, length, zero):
     """Sentences on records that begin late, go back, or lie beyond the end."""
-    at = [_number(one, key, 0.0) for one in _all(parent, tag)]
+    at = [_number(one, key, 0.0) for one in parent.all(*path)]
     if not at:
         return
     if zero and at[0] > STATED_NEAR:
@@ -245,10 +245,6 @@ def _within(element):
         if one.tag != "userData":
             yield one
             stack += one.children
-
-
-def _all(parent, tag):
-    return parent.all(tag) if parent is not None else ()
 
 
 def _number(element, name, missing):
