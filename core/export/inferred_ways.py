@@ -60,21 +60,29 @@ def with_inferred_ways(source: RoadMapSource) -> RoadMapSource:
 
 def _junctions(lanes):
     """Lists of _Way whose areas touch."""
+    ways = _ways(lanes)
+    areas = [_area(*lanes.borders(way.row)) for way in ways]
+    group = list(range(len(ways)))
+    for a in range(len(ways)):
+        for b in range(a):
+            if group[a] != group[b] and abs(areas[a][1] - areas[b][1]) < SAME_LEVEL and areas[a][0].intersects(areas[b][0]):
+                group = [group[b] if one == group[a] else one for one in group]
+    found = [[ways[k] for k in np.flatnonzero(np.array(group) == number)] for number in sorted(set(group))]
+    return [one for one in found if len(one) > 1]
+
+
+def _ways(lanes):
+    """Every connector between two lanes that are driven."""
     row_of = {name: k for k, name in enumerate(lanes.lane_id)}
     before = {name: k for k, names in enumerate(lanes.successors) if lanes.type[k] == "driving" for name in names}
     ways = [_Way(k, before[lanes.lane_id[k]], row_of[lanes.successors[k][0]]) for k in range(len(lanes))
             if lanes.type[k] == "connector" and lanes.lane_id[k] in before and len(lanes.successors[k]) == 1]
-    ways = [way for way in ways if lanes.type[way.exit] == "driving"]
-    borders = [lanes.borders(way.row) for way in ways]
-    areas = [shapely.make_valid(shapely.Polygon(np.concatenate([left, right[::-1]])[:, :2])) for left, right in borders]
-    height = [float(left[:, 2].mean()) for left, _ in borders]
-    group = list(range(len(ways)))
-    for a in range(len(ways)):
-        for b in range(a):
-            if group[a] != group[b] and abs(height[a] - height[b]) < SAME_LEVEL and areas[a].intersects(areas[b]):
-                group = [group[b] if one == group[a] else one for one in group]
-    found = [[way for way, own in zip(ways, group) if own == number] for number in sorted(set(group))]
-    return [one for one in found if len(one) > 1]
+    return [way for way in ways if lanes.type[way.exit] == "driving"]
+
+
+def _area(left, right):
+    """(polygon between two borders, metres of height)."""
+    return shapely.make_valid(shapely.Polygon(np.concatenate([left, right[::-1]])[:, :2])), float(left[:, 2].mean())
 
 
 def _missing_way(lanes, group, entry, exit):

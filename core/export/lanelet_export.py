@@ -282,8 +282,7 @@ def lanelet2_text(draft: LaneletDraft, degrees: Degrees, local: bool = False) ->
     local : also write the tags local_x and local_y, metres within a square of 100 km, as Autoware reads them
     """
     lines = ['<?xml version="1.0" encoding="UTF-8"?>', '<osm version="0.6" generator="Lanewright" upload="false">']
-    local = local or degrees.local
-    if local:
+    if local := local or degrees.local:
         lines.append('  <MetaInfo format_version="1" map_version="1"/>')
     used = sorted({node for way in draft.ways for node in way.nodes})
     ids = {node: k for k, node in enumerate(used, start=1)}
@@ -297,15 +296,19 @@ def lanelet2_text(draft: LaneletDraft, degrees: Degrees, local: bool = False) ->
         lines.append(f'  <node id="{ids[node]}" visible="true" version="1" lat="{lat:.11f}" lon="{lon:.11f}">{_tags(tags)}</node>')
     first_way = len(used) + 1
     for number, way in enumerate(draft.ways):
-        places = "".join(f'<nd ref="{ids[node]}"/>' for node in way.nodes)
+        places = "".join(map('<nd ref="{}"/>'.format, map(ids.__getitem__, way.nodes)))
         lines.append(f'  <way id="{first_way + number}" visible="true" version="1">{places}{_tags(way.tags)}</way>')
     first_lanelet = first_way + len(draft.ways)
     for number, lanelet in enumerate(draft.lanelets):
-        members = "".join(f'<member type="way" ref="{first_way + member}" role="{role}"/>' for role, member in (
-            ("left", lanelet.left), ("right", lanelet.right), ("centerline", lanelet.centre)) if member >= 0)
+        members = _member_elements(lanelet, first_way)
         tags = lanelet.tags | ({"lanewright:lane_id": lanelet.name} if lanelet.name else {})
         lines.append(f'  <relation id="{first_lanelet + number}" visible="true" version="1">{members}{_tags(tags)}</relation>')
     return "\n".join([*lines, "</osm>", ""])
+
+
+def _member_elements(lanelet, first_way):
+    members = {"left": lanelet.left, "right": lanelet.right, "centerline": lanelet.centre}
+    return "".join(f'<member type="way" ref="{first_way + member}" role="{role}"/>' for role, member in members.items() if member >= 0)
 
 
 def _tags(tags):

@@ -62,17 +62,17 @@ def meet_lanes(lanes: Lanes) -> Lanes:
     row_of = {name: k for k, name in enumerate(lanes.lane_id)}
     left, right = lanes.left.copy(), lanes.right.copy()
     most = MOST_MET if is_stated(lanes) else WIDEST_DOUBLE
-    for k, names in enumerate(lanes.successors):
-        for j in (row_of[name] for name in names if name in row_of):
-            for one, other, at_end in ((k, j, True), (j, k, False)):
-                if lanes.type[one] != "connector" or lanes.type[other] == "connector":
-                    continue
-                rows = np.arange(lanes.start[one], lanes.start[one + 1])
-                here, there = (rows[-1], lanes.start[other]) if at_end else (rows[0], lanes.start[other + 1] - 1)
-                for side in (left, right):
-                    away = side[there] - side[here]
-                    if SAME_VERTEX < np.hypot(*away[:2]) < most or SAME_VERTEX > np.hypot(*away[:2]) and away[2]:
-                        side[rows] += _fading(side[rows], at_end)[:, None] * away
+    joints = [(k, row_of[name]) for k, names in enumerate(lanes.successors) for name in names if name in row_of]
+    for one, other, at_end in (joint for k, j in joints for joint in ((k, j, True), (j, k, False))):
+        if lanes.type[one] != "connector" or lanes.type[other] == "connector":
+            continue
+        rows = np.arange(lanes.start[one], lanes.start[one + 1])
+        here, there = (rows[-1], lanes.start[other]) if at_end else (rows[0], lanes.start[other + 1] - 1)
+        for side in (left, right):
+            away = side[there] - side[here]
+            beside = np.hypot(*away[:2])
+            if SAME_VERTEX < beside < most or beside < SAME_VERTEX and away[2]:
+                side[rows] += _fading(side[rows], at_end)[:, None] * away
     return replace(lanes, left=left, right=right)
 
 

@@ -91,6 +91,12 @@ def checked(source: RoadMapSource) -> RoadMapSource:
     if not is_stated(lanes):   # where a map from elsewhere has two roads at one place, it means both
         _check_places(lanes)
     _check_layers(source)
+    return _linked(source)
+
+
+def _linked(source):
+    """The source without successors that are not there, with a note for each kind of them."""
+    lanes = source.lanes
     known = set(lanes.lane_id)
     lost = sum(name not in known for names in lanes.successors for name in names)
     notes = list(source.notes)
@@ -131,9 +137,9 @@ def _check_places(lanes):
     rows = np.flatnonzero(lanes.type == "driving")
     if not len(rows):
         return
-    rings = [np.concatenate([left, right[::-1]])[:, :2] for left, right in (lanes.borders(k) for k in rows)]
-    shapes = shapely.make_valid(np.array([shapely.Polygon(ring) for ring in rings], object))
-    height = np.array([lanes.borders(k)[0][:, 2].mean() for k in rows])
+    borders = [lanes.borders(k) for k in rows]
+    shapes = shapely.make_valid(np.array([shapely.Polygon(np.concatenate([left, right[::-1]])[:, :2]) for left, right in borders], object))
+    height = np.array([left[:, 2].mean() for left, _ in borders])
     for first, second in shapely.STRtree(shapes).query(shapes, predicate="intersects").T:
         a, b = rows[first], rows[second]
         if first >= second or lanes.road[a] == lanes.road[b] or abs(height[first] - height[second]) > SAME_LEVEL:

@@ -30,6 +30,7 @@ from .strips import (
     strips_of,
 )
 
+LINK_AT = {"start": "predecessor", "end": "successor"}   # an end of a road -> its link there
 ROUND_ORIGIN = 100.0      # m: the false origin is a multiple of it
 MIDDLES_SHARE = 0.5       # of the tolerance by which borders are moved to their driving lines
 CURVES_SHARE = 0.4        # of it by which widths may miss the moved borders: what is left is for corners, where two roads meet
@@ -215,8 +216,8 @@ class _Drafting:
 
     def _mark_between(self, one: Slice, number: int, lane: int) -> RoadMark:
         """The mark of a border of a slice, which is the outer one of `lane`: of two stripes where each of the lanes beside it has its own."""
-        left = self._mark(one.cells[number - 1], False) if number else None
-        right = self._mark(one.cells[number], True) if number < len(one.cells) else None
+        left, right = (self._mark(cells[0], is_left) if cells else None
+                       for cells, is_left in ((one.cells[:number][-1:], False), (one.cells[number:], True)))
         own, other = (right, left) if lane >= 0 else (left, right)
         painted = [mark for mark in filter(None, (own, other)) if mark.type != "none"]
         if not painted:
@@ -273,13 +274,17 @@ def _between_junctions(slices, inside):
     """(slices, those of them that are too short for a road and lie between ways through junctions)."""
     found = []
     while True:
-        more = [one for one in slices if one.length < SHORTEST_WAY and all(
-            others and inside.issuperset(map(id, others)) for others in (one.beyond(False), one.beyond(True)))]
+        more = [one for one in slices if one.length < SHORTEST_WAY and _lies_within(one, inside)]
         if not more:
             return slices, found
         found += more
         inside = inside | {id(cell) for one in more for cell in one.cells}
         slices = [one for one in slices if not any(one is other for other in more)]
+
+
+def _lies_within(one, inside):
+    """Whether a slice touches cells at both ends, and only those of these ids."""
+    return all(others and inside.issuperset(map(id, others)) for others in (one.beyond(False), one.beyond(True)))
 
 
 def _ordinary_roads(slices):
@@ -309,8 +314,9 @@ def _make_double(mark, left, right, lane):
     """Name a mark by the stripes left and right of a border, the outer one of `lane`, where neither is a curb."""
     if "curb" not in (left.type, right.type):
         # named from the middle of the road outwards, at lane 0 from left to right
-        mark.type, (mark.dash, mark.gap) = f"{right.type} {left.type}" if lane > 0 else f"{left.type} {right.type}", next(
-            ((one.dash, one.gap) for one in ((right, left) if lane >= 0 else (left, right)) if one.dash), (0.0, 0.0))
+        mark.type = f"{right.type} {left.type}" if lane > 0 else f"{left.type} {right.type}"
+        dashed = next((one for one in ((right, left) if lane >= 0 else (left, right)) if one.dash), RoadMark(0.0, "none"))
+        mark.dash, mark.gap = dashed.dash, dashed.gap
 
 
 def _shares(status):
@@ -460,17 +466,23 @@ def _connections(whole, drafts, touches, junction):
         road = drafts[k].road
         if k in junction:
             continue
-        lanes = defaultdict(list)
-        for touch in touched:
-            # only what drives out of the road at this end is incoming traffic of the junction
-            if touch.other in junction and (travel(road, touch.lane) > 0) == (end == "end"):
-                lanes[touch.other, touch.other_end].append((touch.lane, touch.other_lane))
+        lanes = _incoming(road, end, touched, junction)
         for (other, other_end), links in sorted(lanes.items()):
             connections = found[junction[other]].connections
             connections.append(Connection(str(len(connections)), road.id, drafts[other].road.id, other_end, links))
     whole.junctions = [one for one in found.values() if one.connections]
+    known = {one.id for one in whole.junctions}
     for draft in drafts:
-        _forget_junctions(draft.road, {one.id for one in whole.junctions})
+        _forget_junctions(draft.road, known)
+
+
+def _incoming(road, end, touched, junction):
+    """{(way through a junction, its end): (lane, lane) pairs} of what drives out of a road at its end, which is incoming traffic of the junction."""
+    lanes = defaultdict(list)
+    for touch in touched:
+        if touch.other in junction and (travel(road, touch.lane) > 0) == (end == "end"):
+            lanes[touch.other, touch.other_end].append((touch.lane, touch.other_lane))
+    return lanes
 
 
 def _forget_junctions(road, known):
@@ -490,7 +502,6 @@ FARTHEST = 25.0        # m from a reference line
 SIMPLER = 0.02         # m by which an outline may be straightened
 STOP_LINE_HALF = 0.15  # m, half of the breadth of a stop line whose outline is not known
 THINNEST = 0.01        # m of an object's length and width at the least: the format has none of 0
-LINK_AT = {"start": "predecessor", "end": "successor"}
 NAME_OF_CLASS = {"hatch": "hatched area", "arrow": "arrow", "bicycle": "bicycle symbol", "bus": "word BUS"}
 
 

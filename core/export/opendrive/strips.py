@@ -142,10 +142,10 @@ def cut_into_cells(lanes: Lanes) -> list[Cell]:
         for first, last in zip(at[:-1], at[1:]):
             rows = slice(first, last + 1)
             sides = [(lanes.left[rows], tuple(left[rows])), (lanes.right[rows], tuple(right[rows]))]
-            against = lanes.direction[k] < 0 and ordinary[a]
-            if against:
+            direction = int(lanes.direction[k]) if ordinary[a] else 1
+            if direction < 0:
                 sides = [(line[::-1], nodes[::-1]) for line, nodes in sides[::-1]]
-            made.append(Cell(k, sides[0][0], sides[1][0], sides[0][1], sides[1][1], int(lanes.direction[k]) if ordinary[a] else 1))
+            made.append(Cell(k, sides[0][0], sides[1][0], sides[0][1], sides[1][1], direction))
         for one, following in zip(made[:-1], made[1:]):
             _link(one, following)
         first_of[lanes.lane_id[k]], last_of[lanes.lane_id[k]] = made[0], made[-1]
@@ -235,7 +235,7 @@ def connector_slices(cells: list[Cell], slices: list[Slice], lanes: Lanes) -> tu
     undriven = [one for one in slices if not one.driven]
     by_left = {one.cells[0].left_nodes: one for one in undriven}
     by_right = {one.cells[-1].right_nodes: one for one in undriven}
-    found, used = [], set()
+    used = set()
 
     def beside(same, turned, nodes):
         for one, against in ((same.get(nodes), False), (turned.get(nodes[::-1]), True)):
@@ -244,9 +244,8 @@ def connector_slices(cells: list[Cell], slices: list[Slice], lanes: Lanes) -> tu
                 return (one.turned() if against else one).cells
         return []
 
-    for cell in cells:
-        if is_connector(cell, lanes):
-            found.append(Slice([*beside(by_right, by_left, cell.left_nodes), cell, *beside(by_left, by_right, cell.right_nodes)]))
+    found = [Slice([*beside(by_right, by_left, cell.left_nodes), cell, *beside(by_left, by_right, cell.right_nodes)])
+             for cell in cells if is_connector(cell, lanes)]
     return found, [one for one in slices if id(one) not in used]
 
 
@@ -285,11 +284,7 @@ def mark_junctions(slices: list[Slice], lanes: Lanes) -> None:
 
     Where lanes beside each other go on in lanes that are no longer beside each other, there is a junction too: a road has one successor.
     """
-    for one in slices:
-        for at_end in (False, True):
-            ends = _ends_beyond(one, at_end, _owners(slices))
-            for number, at_start in ends if len(ends) > 1 else ():
-                slices[number].mark(at_start)
+    _mark_partings(slices)
     for one in slices:
         for at_end in (False, True):
             # a connector that this slice touches lies beyond its end: beside the slices beyond
@@ -298,6 +293,15 @@ def mark_junctions(slices: list[Slice], lanes: Lanes) -> None:
                 for beyond in slices:
                     if not touching.isdisjoint(map(id, beyond.cells)):
                         beyond.mark(at_end)
+
+
+def _mark_partings(slices):
+    owner = _owners(slices)
+    for one in slices:
+        for at_end in (False, True):
+            ends = _ends_beyond(one, at_end, owner)
+            for number, at_start in ends if len(ends) > 1 else ():
+                slices[number].mark(at_start)
 
 
 def _owners(slices):
@@ -349,17 +353,15 @@ def _chained(slices, follows):
 
 def end_to_end(cells: list[Cell]) -> list[list[Cell]]:
     """Single lanes, all in the direction of travel, that follow each other without a fork."""
-    known = {id(cell) for cell in cells}
-
-    found, used = [], set()
+    found, free = [], {id(cell) for cell in cells}
     for cell in cells:
-        if id(cell) in used:
+        if id(cell) not in free:
             continue
         row = [cell]
-        used.add(id(cell))
+        free.remove(id(cell))
         for ahead in (True, False):
-            while (other := _only_one(row[-1] if ahead else row[0], ahead)) is not None and id(other) in known - used:
-                used.add(id(other))
+            while (other := _only_one(row[-1] if ahead else row[0], ahead)) is not None and id(other) in free:
+                free.remove(id(other))
                 row.insert(len(row) if ahead else 0, other)
         found.append(row)
     return found
