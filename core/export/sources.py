@@ -52,6 +52,12 @@ class RoadMapSource:
         moved = ((self.lanes.left + self.lanes.right) / 2 - self.middles)[:, :2]
         return self.middles[np.hypot(*moved.T) > LEAST_LED, :2]
 
+    def paint_width(self, line: str) -> float:
+        """Metres of the paint of a border, by the name of its line in Lanes; NaN where unknown."""
+        rows = self.marking_lines.rows if self.marking_lines is not None and line.startswith("line ") else ()
+        widths = [float(row["width_m"]) for row in rows if str(row.get("line")) == line[5:] and row.get("width_m") is not None]
+        return float(np.median(widths)) if widths else np.nan
+
     def others(self) -> Iterator[tuple[str, Features]]:
         """(what messages call it, layer) of the layers beside the lanes that there are."""
         for label, layer in (("Driving lines", self.driving_lines), ("Marking lines", self.marking_lines), ("Road edges", self.road_edges),
@@ -158,6 +164,11 @@ def _check_layers(source):
         if west > high[0] or east < low[0] or south > high[1] or north < low[1]:
             raise RoadExtractionError(f"{label} do not lie where the lanes are: they begin at x {west:.0f}, y {south:.0f}, the lanes at "
                                       f"x {low[0] + FARTHEST_LAYER:.0f}, y {low[1] + FARTHEST_LAYER:.0f}. Choose the layers of one survey.")
+
+
+def wrapped(angle: np.ndarray | float) -> np.ndarray | float:
+    """Radians in [-pi, pi)."""
+    return (angle + np.pi) % (2 * np.pi) - np.pi
 
 
 class NearestValues:

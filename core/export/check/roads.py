@@ -21,6 +21,7 @@ from ..opendrive.model import (
     RoadSurface,
     travel,
 )
+from ..sources import wrapped
 from .findings import Findings, metres
 from .statements import statements
 
@@ -220,11 +221,6 @@ class _RoadCheck:
     def _height(self, id):
         road = self.whole.road(id)
         return float(road.elevation.at(road.length / 2)) if road is not None else 0.0
-
-
-def wrapped(angle: np.ndarray | float) -> np.ndarray:
-    """An angle in (-pi, pi]."""
-    return (np.asarray(angle) + np.pi) % (2 * np.pi) - np.pi
 
 
 # Links of an OpenDRIVE map: they lead somewhere, both ways, and what they join touches.

@@ -209,7 +209,8 @@ class _Drafting:
         if kind == "curb":
             return RoadMark(0.0, "curb" if not pattern else MARK_OF_PATTERN.get(pattern, "none"))
         name = MARK_OF_PATTERN.get(pattern, "edge" if kind == "pavement" else "none")
-        mark = RoadMark(0.0, name, "white" if name not in ("none", "edge") else "standard", self._paint_width(line))
+        width = self.source.paint_width(line)
+        mark = RoadMark(0.0, name, "white" if name not in ("none", "edge") else "standard", RoadMark.width if np.isnan(width) else round(width, 3))
         if "broken" in name:
             mark.dash, mark.gap = self.settings.dash
         return mark
@@ -225,9 +226,9 @@ class _Drafting:
         mark = next((mark for mark in painted if " " in mark.type), painted[0])
         if len(painted) == 2 and (gap := self._gap(one.cells[number - 1], False)):
             lines = self._about(one.cells[number - 1], False)[2], self._about(one.cells[number], True)[2]
-            if " " not in mark.type and lines[0] != lines[1]:
+            if lines[0] != lines[1]:
                 _make_double(mark, left, right, lane)
-            mark.apart = round(gap, 3) if " " in mark.type else 0.0
+            mark.apart = round(gap, 3) * (" " in mark.type)
         return mark
 
     def _gap(self, cell: Cell, left: bool) -> float:
@@ -235,12 +236,6 @@ class _Drafting:
         if self.source.gaps is None:
             return 0.0
         return float(self.source.gaps[cell.piece, 0 if left == (cell.direction >= 0) else 1])
-
-    def _paint_width(self, line: str) -> float:
-        layer = self.source.marking_lines
-        rows = layer.rows if layer is not None and line.startswith("line ") else ()
-        widths = [float(row["width_m"]) for row in rows if str(row.get("line")) == line[5:] and row.get("width_m") is not None]
-        return round(float(np.median(widths)), 3) if widths else RoadMark(0.0, "none").width
 
     def _add_curbs(self, lanes: dict[int, MapLane], one: Slice, ids: list[int]) -> None:
         for cell, id, border, left in ((one.cells[0], ids[0], one.cells[0].left, True), (one.cells[-1], ids[-1], one.cells[-1].right, False)):
@@ -311,8 +306,8 @@ def _along_traffic(strip):
 
 
 def _make_double(mark, left, right, lane):
-    """Name a mark by the stripes left and right of a border, the outer one of `lane`, where neither is a curb."""
-    if "curb" not in (left.type, right.type):
+    """Name a mark by the stripes left and right of a border, the outer one of `lane`, where it is not double and neither is a curb."""
+    if " " not in mark.type and "curb" not in (left.type, right.type):
         # named from the middle of the road outwards, at lane 0 from left to right
         mark.type = f"{right.type} {left.type}" if lane > 0 else f"{left.type} {right.type}"
         dashed = next((one for one in ((right, left) if lane >= 0 else (left, right)) if one.dash), RoadMark(0.0, "none"))

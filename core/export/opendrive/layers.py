@@ -136,7 +136,7 @@ def _lane(network, surface, number, id, s, inner, outer):
     left, right = sides[::-1] if id > 0 else sides
     if driven and way < 0:
         left, right = ((border[::-1], kind, pattern) for border, kind, pattern in (right, left))
-    return {"left": left[0], "right": right[0], "lane": id, "lane_id": lane_name(road.id, id, number), "direction": way if driven else 0,
+    return {"left": left[0], "right": right[0], "lane": id, "lane_id": lane_name(road.id, id, number), "direction": way * driven,
             "type": ("connector" if road.junction != "-1" else "driving") if driven else LANE_TYPE_OF.get(lanes[id].type, "shoulder"),
             "left_kind": left[1], "right_kind": right[1], "left_pattern": left[2], "right_pattern": right[2],
             "successors": [lane_name(key[0], key[2], key[1]) for key in _following(network, (road.id, number, id))] if driven else [],

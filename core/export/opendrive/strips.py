@@ -6,13 +6,11 @@ from collections import Counter, defaultdict
 from dataclasses import dataclass, field
 
 import numpy as np
-import shapely
 
 from ...driving.layers import Lanes
+from ..shared_borders import SAME_VERTEX, cuts_beside, numbered
 from ..sources import LEAST_CURB
 
-SAME_VERTEX = 0.001      # m in plan between vertices that are one
-SAME_VERTEX_RISE = 0.3   # m in height: a border between road and curb has two
 SLOPE_REACH = 1.5        # m along a border before and after a place from which its direction there is taken
 MOST_TURN = 0.3          # rad from before to after it: more is a corner, which is kept
 
@@ -130,10 +128,10 @@ def cut_into_cells(lanes: Lanes) -> list[Cell]:
     -------
     list of Cell, linked along the road. Lanes driven against the road are turned round; connectors run with their traffic
     """
-    numbers = _numbered(np.concatenate([lanes.left, lanes.right]))
+    numbers, _ = numbered(np.concatenate([lanes.left, lanes.right]))
     left, right = numbers[:len(lanes.left)], numbers[len(lanes.left):]
     ordinary = np.repeat(lanes.type != "connector", np.diff(lanes.start))
-    cuts = _cuts(lanes, left, right, ordinary)
+    cuts = cuts_beside(lanes, left, right, ordinary)
     cells, first_of, last_of = [], {}, {}
     for k in range(len(lanes)):
         a, b = lanes.start[k], lanes.start[k + 1] - 1
@@ -187,30 +185,6 @@ def _link_undriven(cells):
         if other is not None and other is not cell and not cell.after:
             cell.after.append(other)
             other.before.append(cell)
-
-
-def _cuts(lanes, left, right, ordinary):
-    """Nodes at which every lane beside them is cut."""
-    rows = np.concatenate([lanes.start[:-1], lanes.start[1:] - 1]).astype(int)
-    rows = rows[ordinary[rows]]
-    cuts = set(left[rows].tolist()) | set(right[rows].tolist())
-    while True:
-        known = np.array(sorted(cuts))
-        one_sided = np.flatnonzero((np.isin(left, known) ^ np.isin(right, known)) & ordinary)
-        more = (set(left[one_sided].tolist()) | set(right[one_sided].tolist())) - cuts
-        if not more:
-            return cuts
-        cuts |= more
-
-
-def _numbered(places: np.ndarray) -> np.ndarray:
-    """(V,) a number for each of V vertices, the same where they are at one place."""
-    points = shapely.points(places[:, :2])
-    near = shapely.STRtree(points).query(points, predicate="dwithin", distance=SAME_VERTEX)
-    near = near[:, np.abs(places[near[0], 2] - places[near[1], 2]) < SAME_VERTEX_RISE]
-    first = np.arange(len(places))
-    np.minimum.at(first, near[0], near[1])
-    return np.unique(first, return_inverse=True)[1]
 
 
 def slices_of(cells: list[Cell], lanes: Lanes) -> list[Slice]:
