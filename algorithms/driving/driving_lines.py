@@ -73,7 +73,6 @@ class DrivingLines(Algorithm):
 
     def work(self, call, progress):
         from ...core.driving.driving_lines import make_driving_lines
-        from ...core.driving.layers import curve_elements_to_features, driving_lines_to_features, lanes_to_features
         from ...core.markings.lines.painted_lines import lines_from_features
         from ...core.markings.objects.marking_objects import markings_from_features
         from ...core.road.edges.road_edges import RoadEdges
@@ -89,6 +88,6 @@ class DrivingLines(Algorithm):
             markings=None if markings is None else markings_from_features(markings, frame),
             edges=None if edges is None else RoadEdges.from_features(edges, frame).densified(frame), road_points=road_points,
         )
-        call.layer("DRIVING_LINES", driving_lines_to_features(lines, frame))
-        call.layer("LANES", lanes_to_features(lanes, frame.origin))
-        call.layer("CURVE_ELEMENTS", curve_elements_to_features(elements, frame))
+        call.layer("DRIVING_LINES", lines.to_features(frame))
+        call.layer("LANES", lanes.to_features(frame))
+        call.layer("CURVE_ELEMENTS", elements.to_features(frame))

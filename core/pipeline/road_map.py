@@ -25,7 +25,6 @@ from ..corrections.lanes import correct_lanes
 from ..corrections.markings import correct_marking_lines, correct_markings
 from ..countries.catalogue import country
 from ..driving.driving_lines import DrivingSettings, make_driving_lines
-from ..driving.layers import curve_elements_to_features, driving_lines_to_features, lanes_to_features
 from ..execution.choice import ExecutionSettings
 from ..intensity.correction import IntensitySettings, correct_intensity
 from ..intensity.image import ImageSettings, check_fits, make_intensity_image
@@ -276,8 +275,8 @@ def _paint(result, image_path, settings, stages, executor):
     executor.release()
     driving, elements, lanes = correct_lanes(driving, elements, lanes, frame, result.corrections,
                                              settings.driving.lane_width or country(settings.driving.country).usual_lane, known)
-    result.driving_lines, result.curve_elements = driving_lines_to_features(driving, frame), curve_elements_to_features(elements, frame)
-    result.lanes = lanes_to_features(lanes, frame.origin)
+    result.driving_lines, result.curve_elements = driving.to_features(frame), elements.to_features(frame)
+    result.lanes = lanes.to_features(frame)
     if not len(result.markings):
         result.without_paint = "No paint was found on this road, so there are no marking lines and no driving lines."
         stages.progress.warn(result.without_paint)

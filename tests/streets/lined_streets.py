@@ -3,7 +3,6 @@
 import numpy as np
 from lanewright.core.common.features import MARKING_LINES, Features
 from lanewright.core.driving.driving_lines import DrivingSettings, make_driving_lines
-from lanewright.core.driving.layers import curve_elements_to_features, driving_lines_to_features
 from lanewright.core.markings.lines.painted_lines import lines_from_features
 from lanewright.core.markings.objects.marking_objects import markings_from_features
 from lanewright.core.road.edges.road_edges import RoadEdges
@@ -70,7 +69,7 @@ def driving_layers(lines, frame, settings=DrivingSettings(), markings=None, edge
     found, elements, _ = make_driving_lines(
         lines_from_features(lines, frame), frame, settings, markings=None if markings is None else markings_from_features(markings, frame),
         edges=None if edges is None else RoadEdges.from_features(edges, frame), road_points=road_points)
-    return driving_lines_to_features(found, frame), curve_elements_to_features(elements, frame)
+    return found.to_features(frame), elements.to_features(frame)
 
 
 def middle(street, found):

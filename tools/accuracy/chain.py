@@ -4,7 +4,6 @@ import time
 from dataclasses import replace
 
 from lanewright.core.driving.driving_lines import make_driving_lines
-from lanewright.core.driving.layers import driving_lines_to_features
 from lanewright.core.intensity.correction import correct_intensity
 from lanewright.core.intensity.image import write_intensity_image
 from lanewright.core.io.geotiff import IntensityImage
@@ -79,7 +78,7 @@ def _lines(w, settings):
 def _driving(w, settings):
     lines, *_ = make_driving_lines(w.lines, w.frame, settings.driving, markings=w.marking_objects,
                                   edges=w.edges.densified(w.frame), road_points=w.bright)
-    w.driving = driving_lines_to_features(lines, w.frame)
+    w.driving = lines.to_features(w.frame)
 
 
 STAGES = dict(curbs=_curbs, edges=_edges, surface=_surface, intensity=_intensity, image=_image, markings=_markings,

@@ -9,7 +9,6 @@ from lanewright.core.common.features import CORRECTIONS, Features
 from lanewright.core.corrections import correct_lanes, correct_marking_lines, corrections_from_features, taken_reading
 from lanewright.core.curves.model_selection import fit_curve
 from lanewright.core.driving.driving_lines import make_driving_lines
-from lanewright.core.driving.layers import driving_lines_to_features, lanes_to_features
 from lanewright.core.markings.lines.naming import named_by_estimate
 from lanewright.core.markings.lines.painted_lines import lines_from_features, lines_to_features, painted_lines_of
 from lined_streets import Street
@@ -22,7 +21,7 @@ def run(street, corrections=None):
     wanted = corrections_from_features(Features("any", CORRECTIONS) if corrections is None else corrections, street.frame)
     lines, elements, lanes = make_driving_lines(lines_from_features(street.lines, street.frame), street.frame, taken=wanted.taken(street.frame))
     lines, _, lanes = correct_lanes(lines, elements, lanes, street.frame, wanted, 3.5, NOTHING)
-    return driving_lines_to_features(lines, street.frame), lanes_to_features(lanes, street.frame.origin), wanted
+    return lines.to_features(street.frame), lanes.to_features(street.frame), wanted
 
 
 def take(lines, which):
