@@ -33,9 +33,7 @@ from ..io.geotiff import IntensityImage
 from ..markings.lines.fit import fit_marking_lines
 from ..markings.lines.geometry import MarkingLineSettings
 from ..markings.lines.naming import named_by_estimate, named_by_lines
-from ..markings.lines.painted_lines import lines_to_features
 from ..markings.objects.cluster import ClusterSettings, cluster_markings
-from ..markings.objects.marking_objects import markings_to_features
 from ..markings.outliers.remove import OutlierSettings, remove_outliers
 from ..markings.paint.extract import extract_markings
 from ..markings.paint.settings import MarkingSettings
@@ -266,7 +264,7 @@ def _paint(result, image_path, settings, stages, executor):
         lines = named_by_estimate(corrected, frame, country(settings.lines.country).usual_lane, markings, edges, result.road_points, clustered,
                                   taken=taken)
     markings = named_by_lines(markings, lines)
-    result.markings, result.marking_lines = markings_to_features(markings, frame), lines_to_features(lines, frame)
+    result.markings, result.marking_lines = markings.to_features(frame), lines.to_features(frame)
     paint = Points(columns_of_roads(clustered.store, clustered.roads()))
     result.marking_curvature = marking_curvature(paint, result.marking_lines.geometries, frame.origin)
     driving, elements, lanes = stages.run(

@@ -10,7 +10,6 @@ from lanewright.core.io.geotiff import IntensityImage
 from lanewright.core.markings.lines.fit import fit_marking_lines
 from lanewright.core.markings.lines.naming import named_by_lines
 from lanewright.core.markings.objects.cluster import cluster_markings
-from lanewright.core.markings.objects.marking_objects import markings_to_features
 from lanewright.core.markings.outliers.remove import remove_outliers
 from lanewright.core.markings.paint.extract import extract_markings
 from lanewright.core.pipeline.road_map import RoadMapSettings
@@ -65,14 +64,14 @@ def _outliers(w, settings):
 
 def _clusters(w, settings):
     w.marking_objects, w.clustered = cluster_markings(w.kept, w.frame, settings.clusters)
-    w.markings = markings_to_features(w.marking_objects, w.frame)
+    w.markings = w.marking_objects.to_features(w.frame)
 
 
 def _lines(w, settings):
     w.lines = fit_marking_lines(w.clustered, w.marking_objects, w.frame, settings.lines, edges=w.edges.densified(w.frame),
                                 road_points=w.bright)
     w.marking_objects = named_by_lines(w.marking_objects, w.lines)
-    w.markings = markings_to_features(w.marking_objects, w.frame)
+    w.markings = w.marking_objects.to_features(w.frame)
 
 
 def _driving(w, settings):
