@@ -14,9 +14,8 @@ from ...io.crs import check_projected, crs_note, unit_note
 from ..las.reader import read_headers
 from ..las.samples import without_copies
 from ..trajectory.trajectory import Trajectory
-from .adjustment import PER_INTERVAL, Adjusted, Returns
+from .adjustment import MAX_UNEXPLAINED, PER_INTERVAL, Adjusted, Returns, grown_poses
 from .first_poses import Spinning, first_poses, known_intervals, spinning_scanners
-from .growth import MAX_UNEXPLAINED, grown_poses
 from .head_height import head_heights
 from .interleaved import ScannerSplitter, lines_of_each, scan_line_directions, steps_of, told_apart
 from .kinds import (

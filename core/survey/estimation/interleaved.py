@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .adjustment import MIN_RANGE, misfits
 from .poses import Poses
-from .rays import MIN_RANGE, misfits
 from .rough.first_track import FirstTrack
 
 FOLLOWERS = 8            # points after a point, to which its line may lead: beside a scanner of many pulses those of another come seldom

@@ -12,7 +12,7 @@ import numpy as np
 
 from ...common.progress import Progress
 from ...io.crs import FOOT
-from ..estimation.growth import MAX_UNEXPLAINED
+from ..estimation.adjustment import MAX_UNEXPLAINED
 from ..frame.road import CORRIDOR
 from ..las.reader import CloudHeader
 from ..trajectory.shape import shaped_trajectory
