@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..common.errors import RoadExtractionError
-from .estimation.resection import HEIGHT_RANGE_ABOVE
+from .estimation.poses import HEIGHT_RANGE_ABOVE
 from .fit.limits import LOWEST_SENSOR
 
 if TYPE_CHECKING:

@@ -15,7 +15,6 @@ from ..las.reader import read_headers
 from ..las.samples import without_copies
 from ..trajectory.trajectory import Trajectory
 from .adjustment import MAX_UNEXPLAINED, PER_INTERVAL, Adjusted, Returns, grown_poses
-from .first_poses import Spinning, first_poses, known_intervals, spinning_scanners
 from .head_height import head_heights
 from .interleaved import ScannerSplitter, lines_of_each, scan_line_directions, steps_of, told_apart
 from .kinds import (
@@ -27,7 +26,7 @@ from .kinds import (
     refuse_without_road,
     usual_acceleration,
 )
-from .poses import KNOT_SPACING, YAW, Poses
+from .poses import KNOT_SPACING, YAW, Poses, Spinning, first_poses, known_intervals, spinning_scanners
 from .rough.first_track import FirstTrack, first_track
 from .rough.ridge import FIRST_HEIGHT, ridge_of
 from .rough.samples import MAX_GAP_IN_DRIVE, UNKNOWN_SCANNER, Samples, read_samples, rounding_of

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.ndimage import median_filter
 
 from ...common.errors import RoadExtractionError
-from .first_poses import Spinning
+from .poses import Spinning
 from .rough.first_track import MIN_WINDOW_SAMPLES, WINDOW, FirstTrack
 from .rough.samples import Samples
 

@@ -15,8 +15,7 @@ import numpy as np
 
 from ...curves.robust import MAD_TO_SIGMA
 from ..estimation.adjustment import MAX_RAY_MISFIT
-from ..estimation.poses import vehicle_axes
-from ..estimation.resection import EXPECTED_HEIGHT, MIN_SHARE_IN_FRONT, RESECTION_ROUNDS, resected
+from ..estimation.poses import EXPECTED_HEIGHT, MIN_SHARE_IN_FRONT, RESECTION_ROUNDS, resected, vehicle_axes
 from ..estimation.rough.first_track import DENSITY_ROUNDS, DENSITY_WIDTH, GROUND_WEIGHT_DEPTH, LOWEST_SHARE
 from ..estimation.rough.samples import SAMPLED_LAYERS
 from ..las.parallel_reader import ParallelCloudReader
