@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...curves.robust import MAD_TO_SIGMA
-from .rough.first_track import FirstTrack, headings_of
+from .first_track import FirstTrack, headings_of
 from .rough.samples import Samples
 
 TURNING_RATES = 4.0, 25.0          # turns per second that heads make

@@ -6,7 +6,5 @@ In: point cloud files. Out: `Samples`, and a `FirstTrack` of every drive.
 from ....lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "first_track": ("FirstTrack",),
-    "ridge": ("ridge_of",),
     "samples": ("Samples", "read_samples", "samples_of"),
 })
