@@ -223,7 +223,7 @@ def _tell_scanners_apart(survey, time, place, stride, progress):
     """Where the points of one scanner, as it seems, are those of several by their scan lines, let the survey tell them apart."""
     from .estimation.estimate import splitter_of
     from .estimation.interleaved import told_apart
-    from .estimation.rough.samples import samples_of
+    from .estimation.samples import samples_of
 
     if not len(time) or time.min() == time.max():
         return

@@ -13,7 +13,7 @@ import numpy as np
 
 from ...curves.robust import MAD_TO_SIGMA
 from .first_track import FirstTrack, headings_of
-from .rough.samples import Samples
+from .samples import Samples
 
 TURNING_RATES = 4.0, 25.0          # turns per second that heads make
 RATE_STEP = 0.05           # 1/s

@@ -17,7 +17,7 @@ from ...curves.robust import MAD_TO_SIGMA
 from ..estimation.adjustment import MAX_RAY_MISFIT
 from ..estimation.first_track import DENSITY_ROUNDS, DENSITY_WIDTH, GROUND_WEIGHT_DEPTH, LOWEST_SHARE
 from ..estimation.poses import EXPECTED_HEIGHT, MIN_SHARE_IN_FRONT, RESECTION_ROUNDS, resected, vehicle_axes
-from ..estimation.rough.samples import SAMPLED_LAYERS
+from ..estimation.samples import SAMPLED_LAYERS
 from ..las.parallel_reader import ParallelCloudReader
 from ..las.point_fields import ScannerCensus, numbers_by_value, times_by_value, valid_points
 from ..las.reader import CloudHeader

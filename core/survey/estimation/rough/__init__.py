@@ -6,5 +6,4 @@ In: point cloud files. Out: `Samples`, and a `FirstTrack` of every drive.
 from ....lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "samples": ("Samples", "read_samples", "samples_of"),
 })

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ....common.errors import RoadExtractionError
-from ....common.parallel import ordered_map
-from ....common.progress import Progress
-from ...las.parallel_reader import ParallelCloudReader
-from ...las.point_fields import ScannerCensus, numbers_by_value, times_by_value, valid_points
-from ...las.reader import POINTS_PER_BLOCK, CloudHeader
-from ...las.samples import TimeSlots
-from ...trajectory.time_systems import SECONDS_PER_WEEK, wrapped_week
+from ...common.errors import RoadExtractionError
+from ...common.parallel import ordered_map
+from ...common.progress import Progress
+from ..las.parallel_reader import ParallelCloudReader
+from ..las.point_fields import ScannerCensus, numbers_by_value, times_by_value, valid_points
+from ..las.reader import POINTS_PER_BLOCK, CloudHeader
+from ..las.samples import TimeSlots
+from ..trajectory.time_systems import SECONDS_PER_WEEK, wrapped_week
 
 SAMPLED_LAYERS = ("z", "point_source_id", "gps_time", "flags", "classification")  # LAZ layers that are decoded
 MAX_SAMPLES = 6_000_000   # points held in memory: 250 MB while they are sorted
