@@ -231,7 +231,7 @@ def paint_of(call, name, progress):
 def imported_trajectory(call, progress):
     """INPUT in TARGET_CRS (or the clouds' CRS) and, with POINT_CLOUDS given, on the clouds' clock."""
     from ..core.survey.las.reader import read_headers
-    from ..core.survey.read_survey import match_clocks
+    from ..core.survey.open_survey import match_clocks
     from ..core.survey.trajectory.reprojection import reproject_trajectory, taken_to_be_in
 
     trajectory = call.trajectory("INPUT", call.crs("INPUT_CRS"), columns=call.string("COLUMNS"))

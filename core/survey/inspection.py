@@ -17,7 +17,7 @@ from .frame.road_frame import build_frame
 from .las.point_fields import INTENSITY_SOURCES, ScannerCensus, intensity_source_of, without_intensity
 from .las.reader import POINTS_PER_BLOCK, read_blocks, read_headers
 from .las.samples import PER_METRE, coarse_coordinates, distinct_rows, may_overlap, sample_files, without_copies
-from .read_survey import match_clocks
+from .open_survey import match_clocks
 from .reading.sensor_height import HEIGHT_PEAK_REACH, OWN_TRACK_HALF_WIDTH, sensor_height_of
 from .survey import SurveySettings
 from .trajectory.reprojection import reproject_trajectory

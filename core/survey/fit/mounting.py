@@ -1,7 +1,7 @@
 """Where the scanners rode, seen from the trajectory: by the rays of their mirrors, whatever the trajectory says.
 
 In the frame of the vehicle all points of one mirror lie in one plane, all along the survey. In this plane two directions are as far apart as
-the mirror turned between their times, so that the points of some turns fix the place of the scanner (see estimation/resection.py). It is the
+the mirror turned between their times, so that the points of some turns fix the place of the scanner (see estimation/poses.py). It is the
 lever arm from the trajectory to the scanner, as it is in the files. A trajectory of another lane, of another datum, or with heights of another
 kind shows as a lever arm that no vehicle has; coordinates that are stretched, as heights in feet, as rays that do not meet.
 """
