@@ -153,7 +153,7 @@ def frame_of(call, crs, progress, road_points=None, layers=None):
 
     `layers` (parameter name to Features) and the road points must have been made with this trajectory.
     """
-    from ..core.survey.adjustment.pass_sigma import of_layer
+    from ..core.survey.adjustment.register import of_layer
     from ..core.survey.consistency import check_road_points_on_roads
     from ..core.survey.frame.road_frame import build_frame
     from ..core.survey.trajectory.reprojection import reproject_trajectory

@@ -96,7 +96,7 @@ class BoundariesFromScanlines(Algorithm):
         from ...core.road.edges.road_edges import edges_to_features
         from ...core.road.scanlines.detect import CORNER_BLOCK, LayerScanlines, boundary_lines, curbs_from_scanlines
         from ...core.road.scanlines.layer import scanlines_from_features
-        from ...core.survey.adjustment.pass_sigma import of_layer
+        from ...core.survey.adjustment.register import of_layer
 
         settings = call.settings(BOUNDARY_SETTINGS)
         layer = call.features("SCANLINES", SCANLINES, "LineStringZM")

@@ -21,7 +21,7 @@ from .store.records import Points, road_of
 from .store.section_store import MEMORY_LIMIT, SectionStore
 
 if TYPE_CHECKING:
-    from .adjustment.corrections import PassCorrections
+    from .adjustment.register import PassCorrections
     from .estimation.interleaved import ScannerSplitter
     from .frame.road_frame import RoadFrame
 

@@ -21,9 +21,7 @@ from ...common.progress import Progress
 from ..store.records import COORDINATE_SCALE, to_units
 from ..store.section_store import SectionStore
 from .carrying import continued_corrections
-from .corrections import CORRECTION_STEP, PassCorrections
-from .pass_sigma import sigma_of_passes
-from .register import AXES, MAX_OFFSET, PassOffsets, pass_offsets
+from .register import AXES, CORRECTION_STEP, MAX_OFFSET, PassCorrections, PassOffsets, pass_offsets, sigma_of_passes
 from .remaining import places_of_one_drive, remaining_places, said_of_one_drive, said_of_places
 
 if TYPE_CHECKING:

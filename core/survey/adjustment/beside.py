@@ -15,7 +15,7 @@ import shapely
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ..frame.passes import LEVEL_SEPARATION
-from .corrections import CORRECTION_STEP
+from .register import CORRECTION_STEP
 from .remaining import named_places, stretches_of
 
 FARTHEST_BESIDE = 30.0                    # m between the tracks of two carriageways

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..frame.row_table import SigmaAlong
 from ..store.records import to_units
-from .corrections import CORRECTION_STEP, PassCorrections
+from .register import CORRECTION_STEP, PassCorrections
 
 if TYPE_CHECKING:
     from ..frame.passes import Pass

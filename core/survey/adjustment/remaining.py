@@ -10,7 +10,7 @@ from .register import MAX_OFFSET, PLAN_AXES, POOLING_SIGMA, WINDOW_LENGTH, PassO
 
 if TYPE_CHECKING:
     from ..frame.passes import Pass
-    from .corrections import PassCorrections
+    from .register import PassCorrections
 
 MAX_REMAINING = 0.02   # m in plan that two passes may still differ by: less than a marking's edge is blurred by
 MAX_CHANGE = 0.04      # m to the next window that a correction changes by: navigation drifts more slowly, so a pass jumped somewhere between

@@ -14,8 +14,8 @@ from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
 from ...io.crs import as_in_file, parse_crs
 from ...io.local_files import unfinished_path
-from ..adjustment import pass_sigma
-from ..adjustment.corrections import PassCorrections
+from ..adjustment import register as pass_sigma
+from ..adjustment.register import PassCorrections
 from ..store.records import COORDINATE_SCALE, ROAD_POINT, point_dtype
 from ..store.road_points import RoadPoints
 from ..store.section_store import SectionStore

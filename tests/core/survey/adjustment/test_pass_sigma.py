@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from lanewright.core.common.features import CURB_POINTS, MARKING_LINES
 from lanewright.core.road.common.curb_points import curb_points_at, curb_points_to_features
-from lanewright.core.survey.adjustment.pass_sigma import of_layer, of_records, sigma_of_passes, to_record
-from lanewright.core.survey.adjustment.register import PassOffsets
+from lanewright.core.survey.adjustment.register import PassOffsets, of_layer, of_records, sigma_of_passes, to_record
 from lanewright.core.survey.frame.row_table import SigmaAlong
 from lined_streets import Street
 
