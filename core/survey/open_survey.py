@@ -18,8 +18,7 @@ from ..execution.choice import ExecutionSettings, cluster_for, executor_for
 from ..execution.phase import THREADS, Executor, digest
 from ..execution.work_folder import Heard, KeptResults, WorkFolder, code_digest
 from ..io.crs import FOOT, US_SURVEY_FOOT, as_in_file, check_projected, crs_name, crs_note, parse_crs, unit_note
-from .adjustment.adjust import adjust_passes
-from .adjustment.beside import compare_carriageways, said_of_levels
+from .adjustment.adjust import adjust_passes, compare_carriageways, said_of_levels
 from .fit.limits import LOWEST_SENSOR
 from .fit.scanners import lay_scanners
 from .fit.trajectory_fit import fitted_trajectory
