@@ -19,8 +19,8 @@ from ..execution.phase import THREADS, Executor, digest
 from ..execution.work_folder import Heard, KeptResults, WorkFolder, code_digest
 from ..io.crs import FOOT, US_SURVEY_FOOT, as_in_file, check_projected, crs_name, crs_note, parse_crs, unit_note
 from .adjustment.adjust import adjust_passes, compare_carriageways, said_of_levels
+from .adjustment.scanner_fit import lay_scanners
 from .fit.limits import LOWEST_SENSOR
-from .fit.scanners import lay_scanners
 from .fit.trajectory_fit import fitted_trajectory
 from .frame.road import CORRIDOR
 from .frame.road_frame import build_frame
