@@ -20,8 +20,7 @@ from ..execution.work_folder import Heard, KeptResults, WorkFolder, code_digest
 from ..io.crs import FOOT, US_SURVEY_FOOT, as_in_file, check_projected, crs_name, crs_note, parse_crs, unit_note
 from .adjustment.adjust import adjust_passes, compare_carriageways, said_of_levels
 from .adjustment.scanner_fit import lay_scanners
-from .fit.limits import LOWEST_SENSOR
-from .fit.trajectory_fit import fitted_trajectory
+from .adjustment.trajectory_fit import LOWEST_SENSOR, fitted_trajectory
 from .frame.road import CORRIDOR
 from .frame.road_frame import build_frame
 from .frame.row_table import SigmaAlong

@@ -17,7 +17,6 @@ import numpy as np
 
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
-from ..fit.limits import LOOK_WINDOWS, MAX_SCANNER_OFFSETS, SCANNER_WINDOWS, SIGNIFICANT
 from ..store.records import COORDINATE_SCALE, to_units
 from .adjust import AGREEMENT_HEIGHT, AGREEMENT_PLAN, MOVED_COLUMNS, replace_points
 from .register import (
@@ -36,6 +35,7 @@ from .register import (
     correlation_sums,
     height_offset,
 )
+from .trajectory_fit import LOOK_WINDOWS, MAX_SCANNER_OFFSETS, SCANNER_WINDOWS, SIGNIFICANT
 
 SIDES = "right", "left"
 SAID_AS = ("ahead", "behind"), ("left", "right"), ("above", "below")

@@ -6,6 +6,4 @@ In: a Trajectory on the clock of the clouds, or a `Survey`. Out: the same, mende
 from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "mounting": ("scanner_mountings",),
-    "trajectory_fit": ("fitted_trajectory",),
 })
