@@ -153,7 +153,7 @@ def frame_of(call, crs, progress, road_points=None, layers=None):
 
     `layers` (parameter name to Features) and the road points must have been made with this trajectory.
     """
-    from ..core.survey.adjustment.register import of_layer
+    from ..core.survey.adjustment.register import sigma_of_layer
     from ..core.survey.consistency import check_road_points_on_roads
     from ..core.survey.frame.road_frame import build_frame
     from ..core.survey.trajectory.reprojection import reproject_trajectory
@@ -166,7 +166,7 @@ def frame_of(call, crs, progress, road_points=None, layers=None):
     frame.crs, frame.has_time = crs or trajectory.crs, has_time
     # what passes differ by is seen where the points are read; here it comes with what was made of them
     frame.pass_sigma = {road: sigma for found in ([road_points.pass_sigma] if road_points is not None else [])
-                        + [of_layer(layer) for layer in (layers or {}).values() if layer is not None] for road, sigma in found.items()}
+                        + [sigma_of_layer(layer) for layer in (layers or {}).values() if layer is not None] for road, sigma in found.items()}
     check_layers_on_roads(call, layers or {}, frame, progress)
     if road_points is not None:
         check_road_points_on_roads(road_points, frame, tr("The points"))

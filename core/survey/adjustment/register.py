@@ -506,7 +506,7 @@ def _apart(pair):
     return np.where(anywhere > MAX_OFFSET, anywhere, pair.left)
 
 
-def to_record(sigma: dict[int, SigmaAlong]) -> list[laspy.VLR]:
+def sigma_to_record(sigma: dict[int, SigmaAlong]) -> list[laspy.VLR]:
     """{road number: SigmaAlong} as LAS variable length records; none where nothing is known."""
     import laspy
 
@@ -515,8 +515,8 @@ def to_record(sigma: dict[int, SigmaAlong]) -> list[laspy.VLR]:
             for k, first in enumerate(range(0, len(rows), NODES_PER_RECORD))]
 
 
-def of_records(records: Iterable[laspy.VLR]) -> dict[int, SigmaAlong]:
-    """{road number: SigmaAlong} as `to_record` wrote it, from the records of a file."""
+def sigma_of_records(records: Iterable[laspy.VLR]) -> dict[int, SigmaAlong]:
+    """{road number: SigmaAlong} as `sigma_to_record` wrote it, from the records of a file."""
     own = {record.record_id: bytes(record.record_data_bytes()) for record in records if record.user_id.rstrip("\0") == SIGMA_USER_ID}
     if ROAD_RECORD in own:
         return {road: SigmaAlong.everywhere(metres) for road, metres in np.frombuffer(own[ROAD_RECORD], _ROAD).tolist()}
@@ -525,7 +525,7 @@ def of_records(records: Iterable[laspy.VLR]) -> dict[int, SigmaAlong]:
             for road in np.unique(rows["road"]).tolist()}
 
 
-def of_layer(features: Features) -> dict[int, SigmaAlong]:
+def sigma_of_layer(features: Features) -> dict[int, SigmaAlong]:
     """{road number: SigmaAlong} that the rows of a layer hold, such as CURB_POINTS and MARKING_LINES."""
     found: dict[int, list[tuple[float, float]]] = {}
     for row in features.rows:
