@@ -54,7 +54,7 @@ from ..survey.las.reader import read_headers
 from ..survey.open_survey import SurveySettings, open_survey
 from ..survey.store.records import Points
 from ..survey.store.road_points import columns_of_roads
-from ..survey.trajectory.reprojection import reproject_trajectory
+from ..survey.trajectory.trajectory import reproject_trajectory
 
 if TYPE_CHECKING:
     from ..survey.frame.road_frame import RoadFrame

@@ -25,8 +25,7 @@ from .open_survey import match_clocks
 from .reading.sensor_height import HEIGHT_PEAK_REACH, OWN_TRACK_HALF_WIDTH, sensor_height_of
 from .store.section_store import STRETCH_POINTS, Stretch
 from .survey import SurveySettings
-from .trajectory.reprojection import reproject_trajectory
-from .trajectory.trajectory import Trajectory, clean_trajectory
+from .trajectory.trajectory import Trajectory, clean_trajectory, reproject_trajectory
 
 if TYPE_CHECKING:
     from .store.records import Points

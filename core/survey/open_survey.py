@@ -35,9 +35,8 @@ from .store.section_store import SECTION_LENGTH, SectionStore
 from .store.spill_file import parts_are_whole
 from .survey import SURVEY_FOLDER, Survey, SurveySettings, survey_in_folder
 from .trajectory.meaning import EARTH_RADIUS
-from .trajectory.reprojection import reproject_trajectory
 from .trajectory.time_systems import align_time, wrapped_week
-from .trajectory.trajectory import refuse_standstill
+from .trajectory.trajectory import refuse_standstill, reproject_trajectory
 
 if TYPE_CHECKING:
     from .frame.road_frame import RoadFrame

@@ -20,9 +20,8 @@ from .columns import listed, stated_angle_unit
 from .drive_checks import HEADING_TOLERANCE, angle_between, driven_course, geographic_unit, rough_metres
 from .meaning import meaning_of, values_by_role
 from .receiver_logs import columns_of_record, is_record
-from .reprojection import lengths_in_metres, reproject_trajectory
 from .table_columns import columns_of_rows, titled_columns
-from .trajectory import MAX_VEHICLE_SPEED, Trajectory
+from .trajectory import MAX_VEHICLE_SPEED, Trajectory, lengths_in_metres, reproject_trajectory
 
 SBET_DOUBLES = 17  # time, lat, lon, height, 3 velocities, roll, pitch, heading, wander angle, 6 more
 WGS84 = "EPSG:4326"
