@@ -16,10 +16,9 @@ from .drive_checks import rough_metres
 from .meaning import TOLD_CLOCKS, Meaning, meaning_of
 from .receiver_logs import is_record
 from .table_columns import CHECKED_ROWS, TableColumn, first_row, titled_columns
-from .time_systems import ADJUSTED_OFFSET, SECONDS_PER_DAY, SECONDS_PER_WEEK
+from .time_systems import ADJUSTED_OFFSET, SECONDS_PER_DAY, SECONDS_PER_WEEK, hold_times
 from .trajectory import Trajectory
 from .unnamed_columns import MIN_MAP_COORDINATE, columns_from_numbers
-from .written_values import hold_times
 
 ASSIGNABLE = (*ROLES, "lon", "lat", *TOLD_CLOCKS, "week", "date")
 LEFT_OUT = ("-", "", "skip")

@@ -11,8 +11,7 @@ import numpy as np
 from ...common.errors import RoadExtractionError
 from .columns import LONGEST_NAME, Unit, candidates_by_role, listed
 from .table_columns import CHECKED_ROWS, TableColumn, first_row, with_week
-from .time_systems import is_to_come, unix_time_found
-from .written_values import (
+from .time_systems import (
     UNIX_EPOCH,
     angles_of,
     clock_times,
@@ -20,7 +19,9 @@ from .written_values import (
     hemisphere_signs,
     hold_angles,
     hold_times,
+    is_to_come,
     leap_seconds,
+    unix_time_found,
     whole_minutes,
     whole_seconds,
 )

@@ -14,7 +14,7 @@ from ...common.errors import RoadExtractionError
 from ...io.text_table import as_number
 from .columns import Unit
 from .table_columns import TableColumn, with_week
-from .written_values import hemisphere_signs, whole_minutes
+from .time_systems import hemisphere_signs, whole_minutes
 
 HEAD_BYTES = 20_000
 KINDS_OF_POSITIONS = ("trkpt", "coord", "rtept", "coordinates", "wpt", "point")   # in GPX and KML, the likeliest drive first

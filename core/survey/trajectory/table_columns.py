@@ -9,8 +9,7 @@ import numpy as np
 
 from ...io.text_table import NumberTable, as_number, finite_or_nan
 from .columns import MAX_HEADER_LINES, Unit, candidates_by_role, listed, split_header, unit_named, unit_of_name, units_above
-from .time_systems import SECONDS_PER_WEEK
-from .written_values import degrees_of, hold_times
+from .time_systems import SECONDS_PER_WEEK, degrees_of, hold_times
 
 FIRST_WHOLE_WEEK, LAST_WEEK = 1024.0, 4096.0  # weeks since 1980; smaller ones are those of old receivers, which begin anew after 1024
 LEAST_NAMED = 2         # roles in the line of names
