@@ -11,14 +11,12 @@ import numpy as np
 
 from ...common.errors import RoadExtractionError
 from ...io.text_table import read_number_table
-from .columns import ROLES, listed
-from .drive_checks import rough_metres
+from .columns import MIN_MAP_COORDINATE, ROLES, columns_from_numbers, listed, rough_metres
 from .meaning import TOLD_CLOCKS, Meaning, meaning_of
 from .receiver_logs import is_record
 from .table_columns import CHECKED_ROWS, TableColumn, first_row, titled_columns
 from .time_systems import ADJUSTED_OFFSET, SECONDS_PER_DAY, SECONDS_PER_WEEK, hold_times
 from .trajectory import Trajectory
-from .unnamed_columns import MIN_MAP_COORDINATE, columns_from_numbers
 
 ASSIGNABLE = (*ROLES, "lon", "lat", *TOLD_CLOCKS, "week", "date")
 LEFT_OUT = ("-", "", "skip")

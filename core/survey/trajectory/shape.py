@@ -18,7 +18,7 @@ from scipy.interpolate import CubicHermiteSpline, CubicSpline
 from scipy.signal import savgol_filter
 
 from ...curves.robust import MAD_TO_SIGMA
-from .drive_checks import HEADING_TOLERANCE, angle_between
+from .columns import HEADING_TOLERANCE, angle_between
 from .trajectory import Trajectory
 
 GAP_FACTOR, SHORTEST_PAUSE = 3.0, 1.0     # weight: times the usual step of time, and s, beyond which the vehicle is not interpolated
