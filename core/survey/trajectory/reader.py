@@ -15,9 +15,8 @@ from ...common.errors import RoadExtractionError
 from ...io.crs import horizontal_part, parse_crs
 from ...io.text_table import SAMPLE_BYTES, finite_or_nan, read_number_table
 from .accuracy_file import accuracy_across
-from .assigned_columns import meaning_of_table
 from .columns import HEADING_TOLERANCE, angle_between, driven_course, geographic_unit, listed, rough_metres, stated_angle_unit
-from .meaning import meaning_of, values_by_role
+from .meaning import meaning_of, meaning_of_table, values_by_role
 from .receiver_logs import columns_of_record, is_record
 from .table_columns import columns_of_rows, titled_columns
 from .trajectory import MAX_VEHICLE_SPEED, Trajectory, lengths_in_metres, reproject_trajectory
