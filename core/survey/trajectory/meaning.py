@@ -13,8 +13,7 @@ import numpy as np
 from ...common.errors import RoadExtractionError
 from ...io.text_table import read_number_table
 from .columns import LONGEST_NAME, MIN_MAP_COORDINATE, ROLES, Unit, candidates_by_role, columns_from_numbers, listed, rough_metres
-from .receiver_logs import is_record
-from .table_columns import CHECKED_ROWS, TableColumn, first_row, titled_columns, with_week
+from .table_columns import CHECKED_ROWS, TableColumn, first_row, is_record, titled_columns, with_week
 from .time_systems import (
     ADJUSTED_OFFSET,
     SECONDS_PER_DAY,

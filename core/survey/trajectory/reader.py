@@ -17,8 +17,7 @@ from ...io.text_table import SAMPLE_BYTES, finite_or_nan, read_number_table
 from .accuracy_file import accuracy_across
 from .columns import HEADING_TOLERANCE, angle_between, driven_course, geographic_unit, listed, rough_metres, stated_angle_unit
 from .meaning import meaning_of, meaning_of_table, values_by_role
-from .receiver_logs import columns_of_record, is_record
-from .table_columns import columns_of_rows, titled_columns
+from .table_columns import columns_of_record, columns_of_rows, is_record, titled_columns
 from .trajectory import MAX_VEHICLE_SPEED, Trajectory, lengths_in_metres, reproject_trajectory
 
 SBET_DOUBLES = 17  # time, lat, lon, height, 3 velocities, roll, pitch, heading, wander angle, 6 more
