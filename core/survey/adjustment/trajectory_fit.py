@@ -333,7 +333,8 @@ def _mounting_of(number, time, place):
     if rate is None:
         return None
     middles = np.bincount(window, time, size) / np.bincount(window, minlength=size)
-    found = max((_resected_places(a, b, time - middles[window], window, middles, sign * rate) for sign in (1, -1)), key=lambda one: (one[2].sum(), -one[3]))
+    found = max((_resected_places(a, b, time - middles[window], window, middles, sign * rate) for sign in (1, -1)),
+                key=lambda one: (one[2].sum(), -one[3]))
     u, v, good, misfit = found
     if good.sum() < max(MIN_WINDOWS, size / 2):
         return None
