@@ -17,12 +17,12 @@ from ..common.setting import check_limits, setting
 from ..execution.phase import Phase
 from ..io.crs import check_projected, crs_note, place_raster
 from ..io.local_files import gdal_exceptions
+from .blocks import HEIGHT_PEAK_REACH, OWN_TRACK_HALF_WIDTH, sensor_height_of
 from .frame.road_frame import build_frame
 from .las.point_fields import INTENSITY_SOURCES, ScannerCensus, intensity_source_of, without_intensity
 from .las.reader import POINTS_PER_BLOCK, read_blocks, read_headers
 from .las.samples import PER_METRE, coarse_coordinates, distinct_rows, may_overlap, sample_files, without_copies
 from .open_survey import match_clocks
-from .reading.sensor_height import HEIGHT_PEAK_REACH, OWN_TRACK_HALF_WIDTH, sensor_height_of
 from .store.section_store import STRETCH_POINTS, Stretch
 from .survey import SurveySettings
 from .trajectory.trajectory import Trajectory, clean_trajectory, reproject_trajectory

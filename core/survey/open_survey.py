@@ -21,6 +21,7 @@ from ..io.crs import FOOT, US_SURVEY_FOOT, as_in_file, check_projected, crs_name
 from .adjustment.adjust import adjust_passes, compare_carriageways, said_of_levels
 from .adjustment.scanner_fit import lay_scanners
 from .adjustment.trajectory_fit import LOWEST_SENSOR, fitted_trajectory
+from .blocks import PointChoice, unwrap_week
 from .frame.road import CORRIDOR
 from .frame.road_frame import build_frame
 from .frame.row_table import SigmaAlong
@@ -28,7 +29,6 @@ from .las.parallel_reader import ParallelCloudReader
 from .las.point_fields import check_coloured, intensity_source_of, without_intensity
 from .las.reader import CloudHeader, read_headers
 from .las.samples import coarse_coordinates, distinct_rows, may_overlap, sample_files, without_copies
-from .reading.blocks import PointChoice, unwrap_week
 from .reading.survey_reader import SurveyReader
 from .store.records import COORDINATE_SCALE, SURVEY_POINT, point_dtype
 from .store.section_store import SECTION_LENGTH, SectionStore

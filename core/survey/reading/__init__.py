@@ -6,6 +6,5 @@ In: point cloud files and a road frame. Out: a section store. Threads of this pr
 from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "sensor_height": ("sensor_height_of",),
     "survey_reader": ("Finishing", "SurveyReader", "UnorderedPoints"),
 })

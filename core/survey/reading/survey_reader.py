@@ -18,6 +18,17 @@ import numpy as np
 from ...common.parallel import POLL_INTERVAL, check_cancelled
 from ...common.progress import Progress
 from ...execution.phase import Executor, Phase, Recipe
+from ..blocks import (
+    DEFAULT_SENSOR_HEIGHT,
+    KEPT_BELOW_ROAD,
+    LEVEL_HEIGHT,
+    BlockReader,
+    BlockSummary,
+    ChosenPoints,
+    HeightFilter,
+    PointChoice,
+    estimate_sensor_height,
+)
 from ..frame.road_frame import RoadFrame
 from ..las.parallel_reader import ParallelCloudReader
 from ..las.point_fields import ScannerCensus, numbers_by_value
@@ -27,8 +38,6 @@ from ..store.columns import Columns
 from ..store.records import COORDINATE_SCALE, road_of
 from ..store.section_store import STRETCH_POINTS, SectionStore, Stretch
 from ..store.spill_file import StoreIndex, close_parts
-from .blocks import KEPT_BELOW_ROAD, LEVEL_HEIGHT, BlockReader, BlockSummary, ChosenPoints, HeightFilter, PointChoice
-from .sensor_height import DEFAULT_SENSOR_HEIGHT, estimate_sensor_height
 
 if TYPE_CHECKING:
     from ..estimation.interleaved import ScannerSplitter
