@@ -16,9 +16,9 @@ from .blocks import KEPT_ABOVE_ROAD
 from .frame.road import CORRIDOR
 from .las.point_fields import INTENSITY_SOURCES
 from .las.reader import POINTS_PER_BLOCK, CloudHeader
-from .reading.survey_reader import Finishing, UnorderedPoints
 from .store.records import Points, road_of
 from .store.section_store import MEMORY_LIMIT, SectionStore
+from .survey_reader import Finishing, UnorderedPoints
 
 if TYPE_CHECKING:
     from .adjustment.register import PassCorrections

@@ -75,10 +75,10 @@ def placing(size):
 
 def storing(size):
     """Points that are decoded already into the sections of the road frame, ready for the next stage."""
+    from lanewright.core.survey import survey_reader as reading
     from lanewright.core.survey.blocks import DECODED_LAYERS
     from lanewright.core.survey.las.reader import POINTS_PER_BLOCK, read_blocks
     from lanewright.core.survey.open_survey import open_survey
-    from lanewright.core.survey.reading import survey_reader as reading
     from lanewright.core.survey.trajectory.reader import read_trajectory
 
     clouds, trajectory = clouds_of("dense", size), read_trajectory(trajectory_of("dense", size))

@@ -6,5 +6,4 @@ In: point cloud files and a road frame. Out: a section store. Threads of this pr
 from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "survey_reader": ("Finishing", "SurveyReader", "UnorderedPoints"),
 })

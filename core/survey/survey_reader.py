@@ -15,10 +15,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...common.parallel import POLL_INTERVAL, check_cancelled
-from ...common.progress import Progress
-from ...execution.phase import Executor, Phase, Recipe
-from ..blocks import (
+from ..common.parallel import POLL_INTERVAL, check_cancelled
+from ..common.progress import Progress
+from ..execution.phase import Executor, Phase, Recipe
+from .blocks import (
     DEFAULT_SENSOR_HEIGHT,
     KEPT_BELOW_ROAD,
     LEVEL_HEIGHT,
@@ -29,18 +29,18 @@ from ..blocks import (
     PointChoice,
     estimate_sensor_height,
 )
-from ..frame.road_frame import RoadFrame
-from ..las.parallel_reader import ParallelCloudReader
-from ..las.point_fields import ScannerCensus, numbers_by_value
-from ..las.reader import CloudHeader
-from ..las.samples import TimeSlots
-from ..store.columns import Columns
-from ..store.records import COORDINATE_SCALE, road_of
-from ..store.section_store import STRETCH_POINTS, SectionStore, Stretch
-from ..store.spill_file import StoreIndex, close_parts
+from .frame.road_frame import RoadFrame
+from .las.parallel_reader import ParallelCloudReader
+from .las.point_fields import ScannerCensus, numbers_by_value
+from .las.reader import CloudHeader
+from .las.samples import TimeSlots
+from .store.columns import Columns
+from .store.records import COORDINATE_SCALE, road_of
+from .store.section_store import STRETCH_POINTS, SectionStore, Stretch
+from .store.spill_file import StoreIndex, close_parts
 
 if TYPE_CHECKING:
-    from ..estimation.interleaved import ScannerSplitter
+    from .estimation.interleaved import ScannerSplitter
 
 MAX_WAITING_POINTS = 4_000_000  # points held back at most until the height of the road is known
 HEIGHT_SAMPLES = 5_000     # points on the own track from which the rough height is estimated
