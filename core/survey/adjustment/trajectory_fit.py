@@ -14,9 +14,8 @@ from ...common.progress import Progress
 from ...curves.robust import MAD_TO_SIGMA
 from ...io.crs import FOOT
 from ..estimation.adjustment import MAX_RAY_MISFIT, MAX_UNEXPLAINED
-from ..estimation.first_track import DENSITY_ROUNDS, DENSITY_WIDTH, GROUND_WEIGHT_DEPTH, LOWEST_SHARE
 from ..estimation.poses import EXPECTED_HEIGHT, MIN_SHARE_IN_FRONT, RESECTION_ROUNDS, resected, vehicle_axes
-from ..estimation.samples import SAMPLED_LAYERS
+from ..estimation.samples import DENSITY_ROUNDS, DENSITY_WIDTH, GROUND_WEIGHT_DEPTH, LOWEST_SHARE, SAMPLED_LAYERS
 from ..frame.road import CORRIDOR
 from ..las.parallel_reader import ParallelCloudReader
 from ..las.point_fields import ScannerCensus, numbers_by_value, times_by_value, valid_points

@@ -17,10 +17,21 @@ from ..las.reader import read_headers
 from ..las.samples import without_copies
 from ..trajectory.trajectory import Trajectory
 from .adjustment import MAX_UNEXPLAINED, PER_INTERVAL, Adjusted, Returns, grown_poses
-from .first_track import FIRST_HEIGHT, MIN_WINDOW_SAMPLES, WINDOW, FirstTrack, first_track, ridge_of
 from .interleaved import ScannerSplitter, lines_of_each, scan_line_directions, steps_of, told_apart
 from .poses import KNOT_SPACING, YAW, Poses, Spinning, first_poses, known_intervals, spinning_scanners
-from .samples import MAX_GAP_IN_DRIVE, UNKNOWN_SCANNER, Samples, read_samples, rounding_of
+from .samples import (
+    FIRST_HEIGHT,
+    MAX_GAP_IN_DRIVE,
+    MIN_WINDOW_SAMPLES,
+    UNKNOWN_SCANNER,
+    WINDOW,
+    FirstTrack,
+    Samples,
+    first_track,
+    read_samples,
+    ridge_of,
+    rounding_of,
+)
 from .turning_head import HEAD_HEIGHT, HEAD_HEIGHT_SIGMA, head_heights, turning_heads
 
 if TYPE_CHECKING:

@@ -8,8 +8,7 @@ import numpy as np
 
 from ...curves.robust import robustly_smoothed
 from ..lattice.scan_lattice import MIN_ROTATION_PEAK, ROTATION_WINDOW, rotation_spectrum, strongest_rotation
-from .first_track import MIN_WINDOW_SAMPLES, WINDOW, FirstTrack, headings_of
-from .samples import Samples
+from .samples import MIN_WINDOW_SAMPLES, WINDOW, FirstTrack, Samples, headings_of
 
 KNOT_SPACING = 0.1   # s between the knots of the splines: suspensions swing at 1 to 3 Hz
 X, Y, Z, ROLL, PITCH, YAW = range(6)   # columns of the control values; the phases of the scanners follow

@@ -12,8 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...curves.robust import MAD_TO_SIGMA
-from .first_track import FirstTrack, headings_of
-from .samples import Samples
+from .samples import FirstTrack, Samples, headings_of
 
 TURNING_RATES = 4.0, 25.0          # turns per second that heads make
 RATE_STEP = 0.05           # 1/s
