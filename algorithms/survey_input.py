@@ -194,7 +194,7 @@ def _on_clock_of(road_points, trajectory, progress):
 
 def road_points_of(call, name, progress):
     """A LAZ file made by Extract road surface or Correct intensity, as RoadPoints."""
-    from ..core.survey.las.writer import read_road_points
+    from ..core.survey.road_points_las import read_road_points
 
     return read_road_points(call.cloud(name), progress)
 

@@ -46,7 +46,7 @@ class ExtractRoadSurface(Algorithm):
         from ...core.road.edges.road_edges import edges_from_features
         from ...core.road.surface.extract import extract_road_surface
         from ...core.road.surface.road_surface import surface_to_features
-        from ...core.survey.las.writer import write_road_points
+        from ...core.survey.road_points_las import write_road_points
 
         layer = call.features("ROAD_EDGES", ROAD_EDGES, "LineStringZ")
         survey = open_survey_of(call, progress.part(0.0, 0.5))

@@ -123,7 +123,7 @@ def scanlines(size):
 def image_ours(size):
     """Road points of 50 m in memory to the 4 cm intensity image by inverse distance alone, as gdal_grid does it."""
     from lanewright.core.intensity.image import ImageSettings, write_intensity_image
-    from lanewright.core.survey.las.writer import read_road_points
+    from lanewright.core.survey.road_points_las import read_road_points
 
     points, target = read_road_points(prepared("strip.laz", size)), prepared("ours.tif", size)
     for key in points.all_sections():
@@ -161,7 +161,7 @@ def clusters_ours(size):
 
 def _paint(size):
     """The prepared million, in memory and in order."""
-    from lanewright.core.survey.las.writer import read_road_points
+    from lanewright.core.survey.road_points_las import read_road_points
 
     points = read_road_points(prepared("paint.laz", size))
     for key in points.all_sections():

@@ -10,15 +10,15 @@ from typing import Any
 
 import numpy as np
 
-from ...common.errors import RoadExtractionError
-from ...common.progress import Progress
-from ...io.crs import as_in_file, parse_crs
-from ...io.local_files import unfinished_path
-from ..adjustment.register import PassCorrections, sigma_of_records, sigma_to_record
-from ..store.records import COORDINATE_SCALE, ROAD_POINT, point_dtype
-from ..store.road_points import RoadPoints
-from ..store.section_store import SectionStore
-from .reader import POINTS_PER_BLOCK, cloud_crs, open_cloud, read_blocks
+from ..common.errors import RoadExtractionError
+from ..common.progress import Progress
+from ..io.crs import as_in_file, parse_crs
+from ..io.local_files import unfinished_path
+from .adjustment.register import PassCorrections, sigma_of_records, sigma_to_record
+from .las.reader import POINTS_PER_BLOCK, cloud_crs, open_cloud, read_blocks
+from .store.records import COORDINATE_SCALE, ROAD_POINT, point_dtype
+from .store.road_points import RoadPoints
+from .store.section_store import SectionStore
 
 MAX_LAS_INTEGER = 2**31 - 2    # largest coordinate, as an integer about the offset, in a LAS file
 
