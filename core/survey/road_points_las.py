@@ -1,4 +1,4 @@
-"""Writing a LAS or LAZ file whole or not at all."""
+"""LAS and LAZ files that are written whole or not at all, above all road points, whose extra fields hold the road frame for later stages."""
 
 from __future__ import annotations
 
