@@ -11,6 +11,7 @@ __getattr__, __all__ = public(__name__, {
         "quantiles", "ranked"),
     "errors": ("Cancelled", "RoadExtractionError"),
     "features": ("Features", "Field"),
+    "layer_rows": ("LayerRows", "column"),
     "parallel": ("ScratchBuffers", "cancellation_scope", "check_cancelled", "ordered_map", "trim_heap"),
     "progress": ("Progress", "RemainingTime"),
     "setting": ("Limits", "check_limits", "limits_of"),

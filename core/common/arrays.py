@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import fields
+from dataclasses import MISSING, fields, replace
+from functools import cache
 from typing import Any, TypeVar
 
 import numpy as np
@@ -280,19 +281,32 @@ AnyRows = TypeVar("AnyRows", bound="Rows")
 
 
 class Rows:
-    """Base of a dataclass whose fields are arrays of one length: how many entries there are, some of them, and those of several joined."""
+    """Base of a dataclass of things of one kind: how many there are, some of them, and those of several joined.
+
+    Fields without a default are arrays of one length, or what is indexed as they are; a field with a default holds for all things.
+    """
+
+    @classmethod
+    def names(cls) -> tuple[str, ...]:
+        """Names of the fields that have one entry for each thing."""
+        return _names_of(cls)
 
     def columns(self) -> list[np.ndarray]:
         """The arrays, in the order of the fields."""
-        return [getattr(self, entry.name) for entry in fields(self)]  # type: ignore[arg-type]
+        return [getattr(self, name) for name in self.names()]
 
     def __len__(self) -> int:
         return len(self.columns()[0])
 
     def __getitem__(self: AnyRows, which: Any) -> AnyRows:
-        return type(self)(*(values[which] for values in self.columns()))
+        return replace(self, **{name: getattr(self, name)[which] for name in self.names()})  # type: ignore[type-var]
 
     @classmethod
     def join(cls: type[AnyRows], parts: Sequence[AnyRows]) -> AnyRows:
         """The entries of all parts, one after the other."""
         return cls(*map(np.concatenate, zip(*(part.columns() for part in parts))))
+
+
+@cache
+def _names_of(kind: type) -> tuple[str, ...]:
+    return tuple(one.name for one in fields(kind) if one.default is MISSING)

@@ -444,7 +444,7 @@ def with_pieces_of_both(points: CurbPoints, chains: Sequence[Mapping[tuple[int, 
     found = [points]
     for road in survey.store.roads():
         main, number = main_curbs_of(points, survey, road)
-        pieces = CurbPoints.none(points.crs)
+        pieces = CurbPoints.filled(0, points.crs)
         for side in SIDE_SIGNS:
             of_side = [known[road, side] for known in chains if (road, side) in known]
             pieces = CurbPoints.join([pieces, _pieces_of_side(points, of_side, survey, road, side, number + len(pieces))], points.crs)

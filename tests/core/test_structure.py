@@ -23,7 +23,7 @@ NUMBERS = {
     "io": 23,
     "curves": 42,
     "survey": 430,
-    "road": 523,
+    "road": 522,
     "intensity": 49,
     "markings": 448,
     "driving": 63,

@@ -134,7 +134,7 @@ def image_ours(size):
 
 def sor_ours(size):
     """Outliers of a million points by one limit for all, 20 neighbours."""
-    from lanewright.core.markings.outliers.remove import OutlierSettings, remove_outliers
+    from lanewright.core.markings.outliers import OutlierSettings, remove_outliers
 
     points = _paint(size)
     kept, seconds = timed(lambda: remove_outliers(points, OutlierSettings(scope="all")))
@@ -146,8 +146,8 @@ def sor_ours(size):
 
 def clusters_ours(size):
     """Which of a million points on paint belong together."""
-    from lanewright.core.markings.cells.clusters import connected_points
     from lanewright.core.markings.objects.cluster import ClusterSettings
+    from lanewright.core.markings.objects.grouping import connected_points
     from lanewright.core.survey.store.road_points import columns_of_roads
 
     points = _paint(size)

@@ -87,7 +87,7 @@ def pavement_pieces(frame: RoadFrame, road: int, carriageway: Carriageway, edges
     stations = carriageway.cells.stations
     there = np.isfinite(carriageway.left) & np.isfinite(carriageway.right)
     curbs = edge_offsets(edges, road, stations)
-    curb_lines = shapely.STRtree(shapely.force_2d(edges.map_lines(frame)[edges.of_curb & (edges.status == "measured")]))
+    curb_lines = shapely.STRtree(shapely.force_2d(edges.on_map(frame)[edges.of_curb & (edges.status == "measured")]))
     for side, grown in carriageway.grown.items():
         curb = curbs[side][0]
         free = there & np.isnan(curb)

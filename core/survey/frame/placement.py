@@ -49,10 +49,6 @@ def as_written(frame: RoadFrame, x: np.ndarray, y: np.ndarray, z: np.ndarray) ->
     return frame.to_local(*(np.round(values, COORDINATE_DECIMALS) for values in (x, y, z)))
 
 
-def known(value: Any) -> Any:
-    """A value for the field of a layer: None (NULL) for what arrays hold as unknown, which is NaN, "" and whole numbers below 0."""
-    return None if value == "" or value != value or isinstance(value, int) and value < 0 else value
-
 
 # Lines of a map in the road frame: the one conversion from map coordinates to station and offset that lines go through.
 
@@ -84,12 +80,18 @@ class FrameLines:
         """The vertices of line k."""
         return slice(int(self.start[k]), int(self.start[k + 1]))
 
-    def take(self, rows: np.ndarray) -> FrameLines:
-        """Some of the lines, by their numbers."""
-        count = np.diff(self.start)[rows]
+    def __getitem__(self, rows: np.ndarray) -> FrameLines:
+        """Some of the lines, by a mask or their numbers."""
+        count, first = np.diff(self.start)[rows], self.start[:-1][rows]
         start = np.append(0, np.cumsum(count))
-        at = np.repeat(self.start[rows] - start[:-1], count) + np.arange(start[-1])
+        at = np.repeat(first - start[:-1], count) + np.arange(start[-1])
         return FrameLines(self.road[rows], start, *(values[at] for values in (self.x, self.y, self.z, self.s, self.d)))
+
+    def and_lines(self, more: FrameLines) -> FrameLines:
+        """These lines and others behind them."""
+        start = np.append(self.start, self.start[-1] + more.start[1:])
+        return FrameLines(np.append(self.road, more.road), start,
+                          *(np.append(getattr(self, name), getattr(more, name)) for name in ("x", "y", "z", "s", "d")))
 
     @property
     def owner(self) -> np.ndarray:

@@ -46,7 +46,7 @@ def frame():
 def test_every_method_draws_both_edges_of_a_street(method):
     found = boundaries(street(), method)
     for side, offset in (("left", 3.5), ("right", -3.5)):
-        lines = found.edges.take(np.flatnonzero(found.edges.side == side))
+        lines = found.edges[found.edges.side == side]
         assert sum(np.ptp(lines.course.s[lines.course.line(k)]) for k in range(len(lines))) > LENGTH - 2
         np.testing.assert_allclose(lines.course.d, offset, atol=0.01)
     assert (found.differences is not None) == (method == "both")

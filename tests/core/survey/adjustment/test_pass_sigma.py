@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from lanewright.core.common.features import CURB_POINTS, MARKING_LINES
-from lanewright.core.road.common.curb_points import curb_points_at, curb_points_to_features
+from lanewright.core.road.common.curb_points import curb_points_at
 from lanewright.core.survey.adjustment.register import PassOffsets, sigma_of_layer, sigma_of_passes, sigma_of_records, sigma_to_record
 from lanewright.core.survey.frame.row_table import SigmaAlong
 from lined_streets import Street
@@ -15,7 +15,7 @@ def curb_layer(sigma):
     s = np.arange(10.0, 60.0)
     points = curb_points_at(street.frame, 0, np.array([s, 3.5 + 0 * s, 0 * s]) + street.frame.origin[:, None], station=s, offset=3.5 + 0 * s,
                             status="measured", part="bottom", side="left", kind="main")
-    return curb_points_to_features(points, street.frame)
+    return points.to_features(street.frame)
 
 
 @pytest.mark.parametrize("sigma", [{}, {0: SigmaAlong.everywhere(0.012)}])

@@ -1,28 +1,27 @@
-"""Paint as peaks of intensity in profiles across the road, in_chains along it: linear markings only.
+"""Two published methods to compare with: intensity peaks in profiles across the road, and thresholds on the points of segments.
 
-The road is cut into profiles across the trajectory. In every profile a painted line is a
-narrow peak of I(d), which continues in the profiles before and after. Markings across the
-road and broad ones (stop lines, zebra crossings, most of an arrow) are no narrow peaks and
-are not found: the method is made for lines.
+A painted line is a narrow peak of I(d) in a profile across the road, which continues in the profiles before and after. Markings across the road
+and broad ones are no narrow peaks and are not found.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 from scipy import ndimage
 from scipy.spatial import cKDTree
 
 from ...common.arrays import linked_groups
-from ...common.errors import RoadExtractionError
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
-from ...common.setting import check_limits, setting
+from ...intensity.asphalt_model import asphalt_statistics
 from ...survey.store.columns import Columns
 from ...survey.store.records import COORDINATE_SCALE, Points, take_rows
 from ...survey.store.road_points import RoadPoints
+from ..road_grid import occupied
+from .asphalt_level import otsu
+from .settings import PeakSettings, SegmentSettings
 
 PEAK_WINDOW = 20.0     # m of station processed together
 PROFILE_CELL = 200        # units of 0.1 mm: a profile has one value every 2 cm
@@ -32,35 +31,6 @@ MIN_DEVIATION = 0.005   # of the profile's level: the deviation of integer inten
 MIN_CHAIN_SHARE = 0.6   # of the profiles along a chain: must have the peak
 
 
-@dataclass(frozen=True)
-class PeakSettings:
-    """When a peak of intensity across the road is a painted line.
-
-    profile_length : m of road that one profile is averaged over
-    prominence : deviations (MAD of the profile) that a peak must rise above both its feet
-    narrowest, widest : m, width of a peak at half its height
-    jump : m across that the peak may move from profile to profile
-    gap : m along the road without a peak that a chain continues over
-    shortest : m, least length of a chain
-    """
-
-    profile_length: float = setting(0.20, 0.02, 2.0, "The length of a profile", "m")
-    prominence: float = setting(7.0, 0.5, 100.0, "The prominence of a peak")
-    narrowest: float = setting(0.08, 0.0, 1.95, "The narrowest line", "m")
-    widest: float = setting(0.35, 0.02, 2.0, "The widest line", "m")
-    jump: float = setting(0.15, 0.01, 1.0, "The shift between profiles", "m")
-    gap: float = setting(0.60, 0.02, 10.0, "The gap along a line", "m")
-    shortest: float = setting(1.0, 0.0, 50.0, "The shortest line", "m")
-
-    def __post_init__(self) -> None:
-        check_limits(self)
-        if not self.narrowest < self.widest:
-            raise RoadExtractionError(f"Peaks are {self.narrowest} to {self.widest} m wide; the first must be below the second.")
-        if self.gap < self.profile_length:
-            raise RoadExtractionError(f"Peaks are in_chains over {self.gap} m along the road; it must be at least the length of a "
-                                      f"profile ({self.profile_length} m).")
-
-
 def points_on_peaks(road_points: RoadPoints, road: int, settings: PeakSettings, progress: Progress) -> Iterator[Columns]:
     """Yield the records of one road's points that lie on painted lines, window by window.
 
@@ -68,14 +38,12 @@ def points_on_peaks(road_points: RoadPoints, road: int, settings: PeakSettings, 
     ----------
     road_points : RoadPoints, corrected or not
     road : its number
-    settings : PeakSettings
-    progress : Progress
 
     Notes
     -----
     Profile-based after Chen et al. (2009) as summarised in the driving-line thesis:
     I(d) of each profile is smoothed by a running median of 5; peaks of a minimum prominence
-    and of the width of a line are in_chains along the road. The numbers, and the rule that
+    and of the width of a line are linked along the road. The numbers, and the rule that
     a chain needs a peak in three of five of its profiles, are our own: they leave a road without paint empty.
     """
     profile = int(round(settings.profile_length / COORDINATE_SCALE))
@@ -116,7 +84,6 @@ def profile_peaks(records: Columns, row: np.ndarray, settings: PeakSettings) -> 
     ----------
     records : (N,) columns of road points
     row : (N,) int, the profile that each lies in
-    settings : PeakSettings
 
     Returns
     -------
@@ -171,7 +138,6 @@ def in_chains(row: np.ndarray, middle: np.ndarray, settings: PeakSettings) -> np
     ----------
     row : (P,) int, profile of each peak
     middle : (P,) its offset, units of 0.1 mm
-    settings : PeakSettings
     """
     if not len(row):
         return np.zeros(0, bool)
@@ -199,3 +165,132 @@ def _between(records, row, peak_row, left, right):
     at = np.searchsorted(keys, row * width + records["d"], side="right") - 1
     peak = order[np.maximum(at, 0)]
     return take_rows(records, (at >= 0) & (peak_row[peak] == row) & (records["d"] <= right[peak]))
+
+
+# Thresholds on the points of segments across the road, each of one point density and one range (Otsu); bright points with few bright neighbours
+# are noise.
+
+MIN_SEGMENT_POINTS = 200    # of a segment, below which it has no threshold and no paint
+RIM_NEIGHBOUR_SHARE = 0.5    # of the neighbours usual inside of paint: a point on its rim has half of them
+HISTOGRAM_RANGE = 6.0, 60.0     # spreads below and above the median of asphalt: the range of Otsu's histogram
+
+
+def points_in_segments(road_points: RoadPoints, road: int, settings: SegmentSettings, progress: Progress) -> Iterator[Columns]:
+    """Yield the records of one road's points that are paint, segment row by segment row.
+
+    Parameters
+    ----------
+    road_points : RoadPoints, corrected or not
+    road : its number
+
+    Notes
+    -----
+    Point-based after Yu et al. (2015) without its learned part (small
+    markings), as summarised in the driving-line thesis: Otsu's threshold per segment
+    across the road, then a threshold after Otsu on the counts of neighbours. Our own
+    are the sizes, the rule that leaves a segment without paint empty, and the rule
+    that half of the neighbours usual inside of paint are enough, as its rim has no more.
+    """
+    length = int(round(settings.length / COORDINATE_SCALE))
+    start, end = road_points.store.span(road)
+    windows = list(range(int(np.floor(start / COORDINATE_SCALE / length)), int(np.floor(end / COORDINATE_SCALE / length)) + 1))
+
+    def limits_of(window):
+        records = _records_between(road_points, road, window * length, (window + 1) * length)
+        return segment_thresholds(records, settings)
+
+    limits = dict(zip(windows, ordered_map(limits_of, windows, progress.part(0.0, 0.5))))
+    reach = int(np.ceil(settings.radius / COORDINATE_SCALE)) + 1
+
+    def paint_of(window):
+        first, last = window * length, (window + 1) * length
+        records = _bright(_records_between(road_points, road, first - reach, last + reach), length, limits, settings)
+        own = (records["s"] >= first) & (records["s"] < last)
+        return take_rows(records, own & dense_enough(records, own, settings))
+
+    yield from ordered_map(paint_of, windows, progress.part(0.5, 1.0))
+
+
+def _records_between(road_points, road, first, last):
+    """Records with first <= s < last, units of 0.1 mm."""
+    records = road_points.window(road, (first - 1) * COORDINATE_SCALE, (last + 1) * COORDINATE_SCALE).records
+    return take_rows(records, (records["s"] >= first) & (records["s"] < last))
+
+
+def _segments(records, settings):
+    """(N,) int, the segment across the road that each record lies in."""
+    return (records["d"] // int(round(settings.width / COORDINATE_SCALE))).astype(np.int64)
+
+
+def segment_thresholds(records: Columns, settings: SegmentSettings) -> dict[int, float]:
+    """The least intensity of paint in the segments of one row across the road.
+
+    Parameters
+    ----------
+    records : (N,) columns of road points
+
+    Returns
+    -------
+    threshold by number of the segment, infinite where there is no paint
+    """
+    value, segment = Points(records).value, _segments(records, settings)
+    order = np.argsort(segment, kind="stable")
+    numbers, starts = np.unique(segment[order], return_index=True)
+    return {int(number): _threshold(np.sort(value[rows]), settings.separation)
+            for number, rows in zip(numbers, np.split(order, starts[1:]))}
+
+
+def _threshold(values, separation):
+    if len(values) < MIN_SEGMENT_POINTS:
+        return np.inf
+    median, spread = asphalt_statistics(values)
+    # a few specular reflections must not stretch the histogram
+    below, above = HISTOGRAM_RANGE
+    limited = np.clip(values, median - below * spread, median + above * spread)
+    threshold, below, above, share = otsu(limited)
+    # the larger class is asphalt: on a road without paint Otsu may split off its dark end
+    return threshold if above - below > separation * spread and share <= 0.5 else np.inf
+
+
+def _bright(records, length, limits, settings):
+    """Records above the threshold of the segment they lie in."""
+    window, segment = records["s"] // length, _segments(records, settings)
+    if not len(records):
+        return records
+    first = int(window.min()), int(segment.min())
+    table = np.full((int(window.max()) - first[0] + 1, int(segment.max()) - first[1] + 1), np.inf)
+    for number in np.unique(window).tolist():
+        for place, value in limits.get(number, {}).items():
+            if 0 <= place - first[1] < table.shape[1]:
+                table[number - first[0], place - first[1]] = value
+    return take_rows(records, Points(records).value > table[window - first[0], segment - first[1]])
+
+
+def dense_enough(records: Columns, own: np.ndarray, settings: SegmentSettings) -> np.ndarray:
+    """Points with as many bright neighbours as paint has.
+
+    Parameters
+    ----------
+    records : (N,) columns of bright road points
+    own : (N,) bool, the points to decide on; the others only count as neighbours
+
+    Returns
+    -------
+    (N,) bool, a subset of `own`
+    """
+    keep = np.zeros(len(records), bool)
+    if not own.any():
+        return keep
+    places = np.c_[records["s"], records["d"]] * COORDINATE_SCALE
+    rows = np.flatnonzero(own)
+    # points at one place have the same neighbours: where a cloud holds points several times, each place is searched once
+    asked, member = occupied(records["s"].take(rows), records["d"].take(rows))
+    count = cKDTree(places).query_ball_point(asked * COORDINATE_SCALE, settings.radius, return_length=True).take(member) - 1
+    segment = _segments(records, settings)[rows]
+    for number in np.unique(segment):
+        here = np.flatnonzero(segment == number)
+        # sorted, so that sums do not depend on the order of the points
+        counts = np.sort(count[here]).astype(float)
+        threshold, _, above, share = otsu(counts)
+        keep[rows[here]] = count[here] >= (min(threshold, RIM_NEIGHBOUR_SHARE * above) if share > 0 else 0.0)
+    return keep

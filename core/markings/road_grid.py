@@ -7,19 +7,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...survey.store.records import COORDINATE_SCALE
-
-if TYPE_CHECKING:
-    from ...io.geotiff import IntensityImage
-    from ...survey.frame.road_frame import RoadFrame
-    from ...survey.store.columns import Columns
-    from ...survey.store.records import Points
-    from ...survey.store.road_points import RoadPoints
-
+from ..common.arrays import linked_groups, order_by, stretch_of
+from ..io.geotiff import IntensityImage
+from ..lazy import cv2
+from ..survey.frame.road_frame import RoadFrame
+from ..survey.store.columns import Columns
+from ..survey.store.records import COORDINATE_SCALE, Points
+from ..survey.store.road_points import RoadPoints
 
 CELL_SIZE = 0.04  # m, along and across the road: the cells in which points and paint are put
 CELL_UNITS = 400  # the same in units of 0.1 mm
@@ -176,3 +173,178 @@ def _half_widths(records, first, last):
         for row, beside in zip(found, (records["d"] > 0, records["d"] < 0)):
             row[filled] = np.maximum.reduceat(records["half_width"] * beside, starts[filled])
     return found
+
+
+# Which occupied cells of a grid belong together: those that touch, and those whose points lie near enough.
+
+def occupied(row: np.ndarray, column: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The cells that points lie in.
+
+    Parameters
+    ----------
+    row, column : (N,) int32
+
+    Returns
+    -------
+    cells : (K, 2) int64, different ones, sorted
+    member : (N,) int, the cell of each point
+    """
+    if not len(row):
+        return np.empty((0, 2), np.int64), np.empty(0, np.int64)
+    order = order_by(column, row)
+    row, column = row.take(order), column.take(order)
+    new = np.r_[True, (row[1:] != row[:-1]) | (column[1:] != column[:-1])]
+    member = np.empty(len(row), np.int64)
+    member[order] = np.cumsum(new) - 1
+    return np.stack([row[new], column[new]], axis=1).astype(np.int64), member
+
+
+def components(cells: np.ndarray, places: np.ndarray, size: tuple[float, float], distance: float) -> np.ndarray:
+    """Connected components of cells whose places lie within a distance.
+
+    Parameters
+    ----------
+    cells : (K, 2) int, row and column, different ones, sorted
+    places : (K, 2) m, a place in each cell
+    size : (2,) m, of a cell in the units of the places
+    distance : m between places that belong together
+
+    Returns
+    -------
+    (K,) int32 component of each cell, numbered in the order of the cells
+
+    Notes
+    -----
+    Exact, and without measuring every pair: where places of cells that touch are
+    near enough wherever they lie, an image of the cells gives the patches that
+    are connected, and pairs are measured between patches only.
+    """
+    if not len(cells):
+        return np.empty(0, np.int32)
+    rows, columns = (int(distance / length) + 1 for length in size)
+    low = cells.min(axis=0)
+    height, width = (cells.max(axis=0) - low + 1 + [rows, 2 * columns]).tolist()
+    at = (cells[:, 0] - low[0]) * width + cells[:, 1] - low[1] + columns
+    touching = 2 * np.hypot(*size) <= distance
+    patch = _patches(at, (height, width)) if touching else np.arange(len(at), dtype=np.int32)
+    image = np.full(height * width + width, -1, np.int32)
+    image[at] = patch
+    count = int(patch.max()) + 1
+    linked = [np.empty(0, np.int64)]
+    for row in range(rows + 1):
+        for column in range(-columns if row else 1, columns + 1):
+            step = row * width + column
+            if touching and row <= 1 and abs(column) <= 1:
+                continue
+            other = image.take(at + step)
+            apart = np.flatnonzero((other >= 0) & (other != patch))
+            if len(apart):
+                beside = np.searchsorted(at, at[apart] + step)
+                apart = apart[((places[apart] - places[beside]) ** 2).sum(axis=1) <= distance**2]
+                linked.append(patch[apart].astype(np.int64) * count + image[at[apart] + step])
+    first, second = np.divmod(np.unique(np.concatenate(linked)), count)
+    return linked_groups(first, second, count)[patch]
+
+
+def _patches(at, shape):
+    """(K,) int32, the patch of touching cells that each of some cells of an image belongs to, numbered in their order."""
+    image = np.zeros(shape, np.uint8)
+    image.ravel()[at] = 1
+    count, labels = cv2.connectedComponents(image, connectivity=8, ltype=cv2.CV_32S)
+    labels = labels.ravel()[at]
+    first = np.full(count, len(at))
+    first[labels[::-1]] = np.arange(len(at))[::-1]
+    number = np.empty(count, np.int32)
+    number[np.argsort(first, kind="stable")] = np.arange(count)
+    return number[labels]
+
+
+# Between two tracks of the scan, which may lie three decimetres apart, no gap was seen where both show paint: the cells between them belong to the
+# marking.
+
+TRACK_WIDTH = 0.03       # m that points may lie farther apart than the middles of their tracks
+MIN_TRACK_GAP = 0.10     # m: points so near across the road are of one marking in any case
+MAX_GAP_ON_TRACK = 0.40  # m along the road between points on one track
+ROWS_AT_ONCE = 2500      # of cells, along the road, that are filled together: 100 m
+
+
+def fill_gaps(mask: np.ndarray, limit: int, axis: int = 0) -> np.ndarray:
+    """Close runs of at most `limit` cells that are off between two that are on, along one axis."""
+    if limit < 1:
+        return mask.copy()
+    length = limit + 1
+    size, behind = ((1, length), (0, length - 1)) if axis == 0 else ((length, 1), (length - 1, 0))
+    along = np.ones(size[::-1], np.uint8)
+    margin = [length, length, 0, 0] if axis == 0 else [0, 0, length, length]
+    # off beyond the rim, so that nothing is closed towards it
+    grown = cv2.dilate(cv2.copyMakeBorder(mask.astype(np.uint8), *margin, cv2.BORDER_CONSTANT, value=0), along, anchor=(0, 0))
+    closed = cv2.erode(grown, along, anchor=behind)
+    return closed[margin[0]:margin[0] + mask.shape[0], margin[2]:margin[2] + mask.shape[1]].astype(bool)
+
+
+def track_reach(spacing: np.ndarray) -> np.ndarray:
+    """How far apart across the road points of one marking may lie for the spacing of the scan alone, m.
+
+    Parameters
+    ----------
+    spacing : (N,) int, mm across the road between the tracks of the scan
+
+    Returns
+    -------
+    (N,) float, 0 where points lie close together
+    """
+    reach = spacing * 1e-3 + TRACK_WIDTH
+    return np.where(reach > MIN_TRACK_GAP, reach, 0.0)
+
+
+def filled_between_tracks(cells: np.ndarray, reach: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Cells of a marking with those between neighbouring tracks of the scan.
+
+    Parameters
+    ----------
+    cells : (K, 2) int, along the road and across it, different ones
+    reach : (K,) m of `track_reach`
+
+    Returns
+    -------
+    mask : (A, B) bool, first axis along the road, with a rim of cells that are off
+    first : (2,) int, the cell of mask[0, 0]
+    """
+    first = cells.min(axis=0) - 1
+    shape = cells.max(axis=0) - first + 2
+    mask = np.zeros(shape, bool)
+    mask[tuple((cells - first).T)] = True
+    gaps = np.rint(reach / CELL_SIZE).astype(int)
+    wide = gaps > 0
+    if not wide.any():
+        return mask, first
+    (row, column), gaps = (cells[wide] - first).T, gaps[wide]
+    order = np.argsort(row, kind="stable")
+    row, column, gaps = np.ascontiguousarray(row[order]), column[order], gaps[order]
+    longest = int(round(MAX_GAP_ON_TRACK / CELL_SIZE))
+    # a marking may be as long as the road
+    for begin in range(0, len(mask), ROWS_AT_ONCE):
+        near = stretch_of(row, begin - longest, begin + ROWS_AT_ONCE + longest - 1)
+        if near.stop > near.start:
+            _fill(mask[begin:begin + ROWS_AT_ONCE], row[near] - begin, column[near], gaps[near], longest)
+    return mask, first
+
+
+def _fill(mask, row, column, gaps, longest):
+    """Turn on, in some rows of a mask, the cells between those at (N,) places with gaps, of these rows and `longest` rows before and behind them."""
+    # along each track first: two tracks rarely show points at the same station
+    sparse = np.zeros((len(mask) + 2 * longest, mask.shape[1]), np.int16)
+    here = row < len(mask) + longest
+    sparse[row[here] + longest, column[here]] = gaps[here]
+    on_track = fill_gaps(sparse > 0, longest, 0)
+    own = slice(longest, longest + len(mask))
+    widest = np.where(on_track & (sparse == 0), _carried(sparse), sparse)[own]
+    mask |= on_track[own]
+    for gap in np.unique(gaps).tolist():
+        mask |= fill_gaps(widest >= gap, gap, 1)
+
+
+def _carried(values):
+    """(A, B) the value last met along the first axis."""
+    row = np.maximum.accumulate(np.where(values > 0, np.arange(len(values))[:, None], 0), axis=0)
+    return np.take_along_axis(values, row, axis=0)
