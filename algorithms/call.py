@@ -11,8 +11,7 @@ from contextlib import ExitStack
 from pathlib import Path
 
 from ..core.common.errors import RoadExtractionError
-from ..core.common.parallel import cancellation_scope
-from ..core.execution.address_space import claim_memory, is_lack_of_memory, out_of_memory
+from ..core.common.parallel import cancellation_scope, claim_memory, is_lack_of_memory, out_of_memory
 from .algorithm import WARNINGS
 from .cloud_files import cloud_files, survey_name
 from .destinations import UnfinishedFiles, UnfinishedLayers, bring_back, check_suffix, check_writable, destination_path
@@ -175,10 +174,8 @@ class Call:
             return None
         from osgeo import gdal
 
-        from ..core.io.crs import parse_crs, same_crs
-        from ..core.io.gdal_errors import gdal_exceptions
-        from ..core.io.local_files import open_raster
-        from ..core.io.units import place_of_raster
+        from ..core.io.crs import parse_crs, place_of_raster, same_crs
+        from ..core.io.local_files import gdal_exceptions, open_raster
 
         path = self.raster(name)
         with gdal_exceptions():

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from ..core.common.errors import RoadExtractionError
-from ..core.common.features import Features
-from ..core.common.schemas import CORRECTIONS
+from ..core.common.features import CORRECTIONS, Features
 from .texts import tr
 
 NEEDED = ("action", "target")

@@ -13,7 +13,7 @@ from contextlib import closing, contextmanager
 from pathlib import Path
 
 from ..core.common.errors import RoadExtractionError
-from ..core.io.unfinished import finish_file, unfinished_path
+from ..core.io.local_files import finish_file, unfinished_path
 from .parameters import FileOutput, LayerOutput, RasterOutput, ReportOutput
 from .texts import tr
 

@@ -112,8 +112,7 @@ def signed_by(path: str | os.PathLike[str]) -> Provenance | None:
     if Path(path).suffix.lower() not in (".tif", ".tiff") or not Path(path).is_file():
         return None
     from ..core.common.errors import RoadExtractionError
-    from ..core.io.gdal_errors import gdal_exceptions
-    from ..core.io.local_files import open_raster
+    from ..core.io.local_files import gdal_exceptions, open_raster
 
     try:
         with gdal_exceptions():
@@ -150,7 +149,7 @@ def sign_file(path: str | os.PathLike[str], provenance: Provenance) -> None:
 def _sign_raster(path, provenance):
     from osgeo import gdal
 
-    from ..core.io.gdal_errors import gdal_exceptions
+    from ..core.io.local_files import gdal_exceptions
 
     with gdal_exceptions():
         raster = gdal.Open(str(path), gdal.GA_Update)

@@ -26,7 +26,7 @@ def read_trajectory_source(source, crs="", heights_needed=True):
     """
     import numpy as np
 
-    from ..core.common.schemas import ESTIMATED_TRAJECTORY
+    from ..core.common.features import ESTIMATED_TRAJECTORY
     from ..core.survey.trajectory.reader import trajectory_from_columns, trajectory_from_rows
 
     if source.kind == LINE:
@@ -78,8 +78,7 @@ def trajectory_features(trajectory, **further):
     import numpy as np
     import shapely
 
-    from ..core.common.features import Features
-    from ..core.common.schemas import ESTIMATED_TRAJECTORY, TRAJECTORY
+    from ..core.common.features import ESTIMATED_TRAJECTORY, TRAJECTORY, Features
     from ..core.io.crs import parse_crs
 
     placed = [(None, None, None)] * len(trajectory)
@@ -102,7 +101,7 @@ def _road_pass_station(trajectory):
     """(road, pass, station) of every row; None in stretches too short to be a pass."""
     import numpy as np
 
-    from ..core.survey.frame.build import build_frame
+    from ..core.survey.frame.road_frame import build_frame
 
     found = [(None, None, None)] * len(trajectory)
     for driven in build_frame(trajectory).passes:

@@ -41,13 +41,13 @@ class VectorSource:
     @property
     def crs(self):
         """WKT, metric, of the CRS of `rows`; "" where unknown."""
-        from ..core.io.units import in_metres
+        from ..core.io.crs import in_metres
 
         return in_metres(self.stored_crs)[0]
 
     def rows(self, measures=False, check_validity=True):
         """The rows as `stored_rows` gives them, coordinates in metres; RoadExtractionError where a geometry cannot be that of a place."""
-        from ..core.io.units import in_metres
+        from ..core.io.crs import in_metres
 
         units, rows = in_metres(self.stored_crs)[1], _checked(self, self.stored_rows(measures, check_validity))
         return rows if units.metric else ((wkb and scaled_wkb(wkb, units.across, units.up), values) for wkb, values in rows)
@@ -245,7 +245,7 @@ def _scale(data, at, across, up):
 
 def in_file_units(features):
     """A layer that is to be written, in the units of the survey's own CRS."""
-    from ..core.io.units import as_in_file
+    from ..core.io.crs import as_in_file
 
     wkt, units = as_in_file(features.crs)
     if units.metric:

@@ -10,8 +10,7 @@ from ..algorithms.call import Call
 from ..algorithms.destinations import destination_path
 from ..algorithms.provenance import provenance_now
 from ..core.common.errors import RoadExtractionError
-from ..core.io.gdal_errors import gdal_exceptions
-from ..core.io.local_files import open_raster
+from ..core.io.local_files import gdal_exceptions, open_raster
 from .gdal_module import check_gdal
 from .layer_files import DRIVERS, LayerFile, file_and_table, first_table, write_layer
 from .measured_lines import check_format
@@ -53,8 +52,7 @@ class FileCall(Call):
         return self._value(name) or ""
 
     def crs(self, name="CRS"):
-        from ..core.io.crs import parse_crs
-        from ..core.io.units import in_metres
+        from ..core.io.crs import in_metres, parse_crs
 
         given = self._value(name)
         try:

@@ -7,7 +7,7 @@ from pyexpat import ParserCreate
 
 from ..algorithms.texts import set_translation
 from ..core.common.errors import RoadExtractionError
-from ..core.common.messages import CoreMessages
+from ..core.common.texts import CoreMessages
 
 TRANSLATIONS = Path(__file__).resolve().parents[1] / "resources" / "i18n"
 

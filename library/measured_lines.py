@@ -59,7 +59,7 @@ def write(path, table, features, check_cancelled):
     """A layer of lines with Z and M into a new file, or as a table of a GeoPackage."""
     from osgeo import gdal, ogr, osr
 
-    from ..core.io.gdal_errors import gdal_exceptions
+    from ..core.io.local_files import gdal_exceptions
 
     suffix = Path(path).suffix.lower()
     types = {int: ogr.OFTInteger64, float: ogr.OFTReal, str: ogr.OFTString}

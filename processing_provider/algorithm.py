@@ -19,7 +19,7 @@ from ..algorithms.call import run
 from ..algorithms.catalogue import toolbox_number
 from ..algorithms.parameters import TrajectorySpec, choice_refused, number_refused
 from ..core.common.errors import Cancelled, RoadExtractionError
-from ..core.execution.address_space import lack_of_memory
+from ..core.common.parallel import lack_of_memory
 from ..core.io.local_files import offline
 from .call import QgisCall
 from .dependencies import missing_packages

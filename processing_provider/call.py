@@ -74,7 +74,7 @@ class QgisCall(Call):
 
     def crs(self, name="CRS"):
         """WKT, or "" where none was chosen; refuses a CRS that QGIS does not know, which it would pass over."""
-        from ..core.io.units import in_metres
+        from ..core.io.crs import in_metres
 
         crs = self.processing.parameterAsCrs(self.parameters, name, self.context)
         given = self.parameters.get(name)

@@ -1,7 +1,7 @@
 """Tables of one GeoPackage put into another that stays where it is, since programs have it open."""
 
 from ..core.common.errors import RoadExtractionError
-from ..core.io.gdal_errors import gdal_exceptions
+from ..core.io.local_files import gdal_exceptions
 from .texts import tr
 
 

@@ -6,7 +6,7 @@ from qgis.core import QgsApplication
 from qgis.PyQt.QtCore import QCoreApplication, QTranslator
 
 from ..algorithms.texts import set_translation, tr
-from ..core.common.messages import CoreMessages
+from ..core.common.texts import CoreMessages
 
 __all__ = ["install_translator", "remove_translator", "told", "tr"]
 

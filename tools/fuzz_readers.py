@@ -138,8 +138,8 @@ def _images(folder):
 
 
 def _maps():
-    from lanewright.core.export.lanelet.reader import read_lanelet2
-    from lanewright.core.export.opendrive.reader import read_opendrive
+    from lanewright.core.export.lanelet_map import read_lanelet2
+    from lanewright.core.export.opendrive.xodr import read_opendrive
     from map_files import geometry, lanelet_street, opendrive, road
 
     shapes = ["<line/>", '<arc curvature="0.01"/>', '<spiral curvStart="0" curvEnd="0.02"/>',
@@ -152,8 +152,7 @@ def _maps():
 def _layers(folder):
     import shapely
     from lanewright.algorithms.vector_source import read_features
-    from lanewright.core.common.features import Features
-    from lanewright.core.common.schemas import ROAD_EDGES
+    from lanewright.core.common.features import ROAD_EDGES, Features
     from lanewright.library.layer_files import LayerFile, write_layer
 
     def layer(path):

@@ -23,8 +23,7 @@ from plugin_package import load
 
 load()
 
-from lanewright.core.execution.phase import name_of  # noqa: E402
-from lanewright.core.execution.plain import write_plain  # noqa: E402
+from lanewright.core.execution.phase import name_of, write_plain  # noqa: E402
 from lanewright.core.execution.tasks import ShippedPhase  # noqa: E402
 from lanewright.core.pipeline import road_map as pipeline  # noqa: E402
 from lanewright.core.pipeline.road_map import Stages  # noqa: E402

@@ -58,7 +58,7 @@ def measure(survey, sample, interval):
     for geometry, row in sample.truth_boundaries:
         if row.get("part") != "top":
             (dropped if row["edge"] == "dropped" else truth).append(geometry)
-    found = assess_boundaries(list(edges.map_lines(survey.frame)), truth, frame=survey.frame, excluded=dropped, reasons=["dropped"] * len(dropped))
+    found = assess_boundaries(list(edges.on_map(survey.frame)), truth, frame=survey.frame, excluded=dropped, reasons=["dropped"] * len(dropped))
     accuracy = found.total[TOLERANCE]
     return dict(f1=100 * accuracy.rates.f1, lateral=1000 * accuracy.lateral.rmse, height=1000 * accuracy.height.rmse)
 

@@ -19,7 +19,7 @@ from models import RECIPES
 ROOT = Path(__file__).resolve().parents[1]
 FOLDER = ROOT / "resources" / "i18n"
 TEMPLATES = ROOT / "core" / "report" / "templates"
-SCHEMAS = ROOT / "core" / "common" / "schemas.py"
+SCHEMAS = ROOT / "core" / "common" / "features.py"
 CONTEXT = "Lanewright"
 FOLDERS = ("algorithms", "processing_provider", "desktop", "core", "library")
 FEWEST_LETTERS = 8  # of a sentence of the core: what is shorter would be found in anything
@@ -27,7 +27,7 @@ FEWEST_WORDS = 3  # of a phrase of the core that is put into a sentence elsewher
 # Errors that tell a programmer, not a user
 OF_PROGRAMMERS = {"ValueError", "TypeError", "KeyError", "IndexError", "AttributeError", "AssertionError", "RuntimeError", "OSError"}
 # The texts of the first are translated as those of a dialog, the last holds names of columns in many languages
-NO_SENTENCES = ("core/report", "core/common/schemas.py", "core/common/words.py", "core/survey/trajectory/columns.py")
+NO_SENTENCES = ("core/report", "core/common/features.py", "core/common/texts.py", "core/survey/trajectory/columns.py")
 # Patterns, XML, CRSs, names of columns, commands
 NO_PROSE = re.compile(r"[\\]|<[?x!]|^ *<[A-Za-z]|^[+]proj=|^[A-Z_]+\[|"
                       r"^(pixel|line|mapx|mapy|mapz|name|enable|check) \w+ \w+|^pip |^1 hit|^SELECT |lanewright [A-Z{l]")

@@ -1,6 +1,6 @@
 """Road boundaries against a reference."""
 
-from ...core.common.schemas import ASSESSED_BOUNDARIES
+from ...core.common.features import ASSESSED_BOUNDARIES
 from ..algorithm import Algorithm
 from ..parameters import ChoiceSpec, SettingSpec, settings_class
 from ..texts import tr

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from ...core.common.schemas import ASSESSED_DRIVING_LINES
+from ...core.common.features import ASSESSED_DRIVING_LINES
 from ..algorithm import Algorithm
 from ..parameters import ChoiceSpec, SettingSpec, settings_class
 from ..texts import tr

@@ -1,6 +1,6 @@
 """Markings against a reference."""
 
-from ...core.common.schemas import ASSESSED_MARKINGS
+from ...core.common.features import ASSESSED_MARKINGS
 from ..algorithm import Algorithm
 from ..parameters import PaintedSpec, SettingSpec, TextSpec, settings_class
 from ..texts import tr

@@ -90,7 +90,7 @@ def painted_of(call, name, progress):
 
     from ...core.assess.inputs import AssessedLayer
     from ...core.assess.raster_polygons import polygons_of_raster
-    from ...core.io.units import in_metres
+    from ...core.io.crs import in_metres
 
     source, path, crs = call.painted(name)
     if source is not None:
@@ -105,8 +105,8 @@ def painted_of(call, name, progress):
 
 def frame_of_drive(call, crs):
     """The road frame of TRAJECTORY in the CRS; None where it was not given. Heights are not needed."""
-    from ...core.survey.frame.build import build_frame
-    from ...core.survey.trajectory.reprojection import reproject_trajectory
+    from ...core.survey.frame.road_frame import build_frame
+    from ...core.survey.trajectory.trajectory import reproject_trajectory
 
     trajectory = call.trajectory(heights_needed=False)
     if trajectory is None:

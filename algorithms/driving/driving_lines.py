@@ -1,6 +1,6 @@
 """Driving lines and their curve elements."""
 
-from ...core.common.schemas import CURVE_ELEMENTS, DRIVING_LINES, LANES, MARKING_LINES, MARKINGS, ROAD_EDGES
+from ...core.common.features import CURVE_ELEMENTS, DRIVING_LINES, LANES, MARKING_LINES, MARKINGS, ROAD_EDGES
 from ...core.countries.catalogue import COUNTRIES
 from ..algorithm import Algorithm
 from ..parameters import SettingSpec
@@ -76,7 +76,7 @@ class DrivingLines(Algorithm):
         from ...core.driving.layers import curve_elements_to_features, driving_lines_to_features, lanes_to_features
         from ...core.markings.lines.painted_lines import lines_from_features
         from ...core.markings.objects.marking_objects import markings_from_features
-        from ...core.road.edges.road_edges import edges_from_features
+        from ...core.road.edges.road_edges import RoadEdges
 
         marking_lines = call.features("MARKING_LINES", MARKING_LINES, "LineStringZ")
         markings = call.features("MARKINGS", MARKINGS, "PolygonZ")
@@ -87,7 +87,7 @@ class DrivingLines(Algorithm):
         lines, elements, lanes = make_driving_lines(
             lines_from_features(marking_lines, frame), frame, call.settings(DRIVING_SETTINGS), progress.part(0.3, 1.0),
             markings=None if markings is None else markings_from_features(markings, frame),
-            edges=None if edges is None else edges_from_features(edges, frame).densified(frame), road_points=road_points,
+            edges=None if edges is None else RoadEdges.from_features(edges, frame).densified(frame), road_points=road_points,
         )
         call.layer("DRIVING_LINES", driving_lines_to_features(lines, frame))
         call.layer("LANES", lanes_to_features(lanes, frame.origin))

@@ -1,8 +1,18 @@
 """The whole chain in one call."""
 
 from ...core.common.errors import RoadExtractionError
-from ...core.common.features import Features
-from ...core.common.schemas import CURB_POINTS, CURVE_ELEMENTS, DRIVING_LINES, LANES, MARKING_LINES, MARKINGS, PASSES, ROAD_EDGES, ROAD_SURFACE
+from ...core.common.features import (
+    CURB_POINTS,
+    CURVE_ELEMENTS,
+    DRIVING_LINES,
+    LANES,
+    MARKING_LINES,
+    MARKINGS,
+    PASSES,
+    ROAD_EDGES,
+    ROAD_SURFACE,
+    Features,
+)
 from ..algorithm import Algorithm
 from ..corrections import add_corrections, corrections_of
 from ..markings.cluster_markings import CLUSTER_SETTINGS
@@ -128,7 +138,7 @@ class RoadMap(Algorithm):
             layer = made[attribute] = road_map.layer(attribute)
             call.layer(name, layer if layer is not None else Features(geometry, fields, crs=road_map.crs))
         if call.wants("PASSES"):
-            from ...core.survey.frame.pass_lines import passes_to_features
+            from ...core.survey.frame.placement import passes_to_features
 
             call.layer("PASSES", passes_to_features(road_map.frame, road_map.crs))
         call.layer("CURB_POINTS", road_map.layer("curb_points"))

@@ -1,6 +1,6 @@
 """What the algorithms on map files share."""
 
-from ...core.common.schemas import DRIVING_LINES, LANES, MARKING_LINES, MARKINGS, ROAD_EDGES
+from ...core.common.features import DRIVING_LINES, LANES, MARKING_LINES, MARKINGS, ROAD_EDGES
 from ..call import existing_file
 from ..parameters import CrsSpec, FileSpec
 from ..survey_input import road_points_of
@@ -82,7 +82,7 @@ def road_map_source(call, progress):
         call.features("MARKINGS", MARKING_FIELDS, "PolygonZ"))
     source = checked(source)
     if call.cloud("ROAD_POINTS"):
-        from ...core.export.surface_heights import with_surface_heights
+        from ...core.export.sources import with_surface_heights
 
         road_points = road_points_of(call, "ROAD_POINTS", progress)
         lanes, share = with_surface_heights(source.lanes, road_points)

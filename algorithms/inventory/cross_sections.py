@@ -1,6 +1,6 @@
 """Cross-sections of the road."""
 
-from ...core.common.schemas import CROSS_SECTIONS
+from ...core.common.features import CROSS_SECTIONS
 from ...core.countries.catalogue import COUNTRIES
 from ..algorithm import Algorithm
 from ..parameters import SettingSpec

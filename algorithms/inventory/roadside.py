@@ -1,6 +1,6 @@
 """What stands beside the road."""
 
-from ...core.common.schemas import ROADSIDE, ROADSIDE_OBJECTS
+from ...core.common.features import ROADSIDE, ROADSIDE_OBJECTS
 from ...core.countries.catalogue import COUNTRIES
 from ..algorithm import Algorithm
 from ..parameters import SettingSpec

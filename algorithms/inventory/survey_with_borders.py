@@ -1,6 +1,6 @@
 """What every inventory is made of: a survey, and the layers of its road map that say where carriageway and lanes end."""
 
-from ...core.common.schemas import DRIVING_LINES, LANES, MARKING_LINES, ROAD_EDGES
+from ...core.common.features import DRIVING_LINES, LANES, MARKING_LINES, ROAD_EDGES
 from ..survey_input import check_layers_on_roads, open_survey_of
 from ..texts import tr
 

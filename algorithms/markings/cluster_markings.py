@@ -1,6 +1,6 @@
 """Paint gathered into markings."""
 
-from ...core.common.schemas import MARKINGS
+from ...core.common.features import MARKINGS
 from ..algorithm import Algorithm
 from ..parameters import SettingSpec
 from ..survey_input import frame_of, paint_of

@@ -5,9 +5,9 @@ from ..parameters import SettingSpec
 from ..survey_input import bright_road_points_of, frame_of
 from ..texts import tr
 
-EXTRACTION = "markings.paint.extract:MarkingSettings"
-PEAKS = "markings.paint.peaks:PeakSettings"
-SEGMENTS = "markings.paint.point_segments:SegmentSettings"
+EXTRACTION = "markings.paint.settings:MarkingSettings"
+PEAKS = "markings.paint.settings:PeakSettings"
+SEGMENTS = "markings.paint.settings:SegmentSettings"
 
 MARKING_SETTINGS = (
     SettingSpec(

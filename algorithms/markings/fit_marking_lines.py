@@ -1,6 +1,6 @@
 """Markings as curves."""
 
-from ...core.common.schemas import MARKING_LINES, MARKINGS, ROAD_EDGES
+from ...core.common.features import MARKING_LINES, MARKINGS, ROAD_EDGES
 from ...core.countries.catalogue import COUNTRIES
 from ..algorithm import Algorithm
 from ..parameters import SettingSpec
@@ -61,11 +61,10 @@ class FitMarkingLines(Algorithm):
                               "centre line looks like any other."))
 
     def work(self, call, progress):
-        from ...core.markings.lines.fit import fit_marking_lines
-        from ...core.markings.lines.naming import named_by_lines
+        from ...core.markings.lines.fit import fit_marking_lines, named_by_lines
         from ...core.markings.lines.painted_lines import lines_to_features
         from ...core.markings.objects.marking_objects import markings_from_features, with_kinds_of
-        from ...core.road.edges.road_edges import edges_from_features
+        from ...core.road.edges.road_edges import RoadEdges
 
         layer = call.features("MARKINGS", MARKINGS, "PolygonZ")
         points = paint_of(call, "CLUSTERED_POINTS", progress.part(0.0, 0.2))
@@ -75,7 +74,7 @@ class FitMarkingLines(Algorithm):
         check_layers_on_roads(call, {"ROAD_EDGES": edges}, frame, progress)
         road_points = road_points_of(call, "ROAD_POINTS", progress.part(0.2, 0.3)) if call.cloud("ROAD_POINTS") else None
         lines = fit_marking_lines(points, markings, frame, call.settings(LINE_SETTINGS), progress.part(0.3, 1.0),
-                                  edges=None if edges is None else edges_from_features(edges, frame).densified(frame), road_points=road_points)
+                                  edges=None if edges is None else RoadEdges.from_features(edges, frame).densified(frame), road_points=road_points)
         call.layer("MARKING_LINES", lines_to_features(lines, frame))
         if call.wants("NAMED_MARKINGS"):
             call.layer("NAMED_MARKINGS", with_kinds_of(layer, named_by_lines(markings, lines)))

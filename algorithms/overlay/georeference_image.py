@@ -1,7 +1,7 @@
 """A UAV image placed on the map by ground control points."""
 
 from ...core.common.errors import RoadExtractionError
-from ...core.common.schemas import RESIDUALS
+from ...core.common.features import RESIDUALS
 from ..algorithm import Algorithm
 from ..parameters import CrsSpec, FileSpec, SettingSpec
 from ..texts import tr

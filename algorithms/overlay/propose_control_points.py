@@ -1,6 +1,6 @@
 """Control points of a UAV image, proposed from paint that the intensity image shows too."""
 
-from ...core.common.schemas import PROPOSED_POINTS
+from ...core.common.features import PROPOSED_POINTS
 from ..algorithm import Algorithm
 from ..parameters import SettingSpec
 from ..texts import tr

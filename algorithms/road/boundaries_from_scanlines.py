@@ -1,6 +1,6 @@
 """Corners and boundary lines from normalized scanlines."""
 
-from ...core.common.schemas import CURB_POINTS, ROAD_EDGES, SCANLINES
+from ...core.common.features import CURB_POINTS, ROAD_EDGES, SCANLINES
 from ..algorithm import Algorithm
 from ..parameters import SettingSpec
 from ..survey_input import frame_of
@@ -92,19 +92,17 @@ class BoundariesFromScanlines(Algorithm):
                       geometry="LineStringZ", optional=True)
 
     def work(self, call, progress):
-        from ...core.road.common.curb_points import curb_points_to_features
-        from ...core.road.edges.road_edges import edges_to_features
         from ...core.road.scanlines.detect import CORNER_BLOCK, LayerScanlines, boundary_lines, curbs_from_scanlines
         from ...core.road.scanlines.layer import scanlines_from_features
-        from ...core.survey.adjustment.pass_sigma import of_layer
+        from ...core.survey.adjustment.register import sigma_of_layer
 
         settings = call.settings(BOUNDARY_SETTINGS)
         layer = call.features("SCANLINES", SCANLINES, "LineStringZM")
         frame = frame_of(call, layer.crs, progress)
-        frame.pass_sigma = of_layer(layer)
+        frame.pass_sigma = sigma_of_layer(layer)
         lines, interval = scanlines_from_features(layer, frame)
         source = LayerScanlines(lines, frame, interval, layer.crs, settings.sensor_height)
         corners = curbs_from_scanlines(source, settings, CORNER_BLOCK, progress.part(0.3, 0.95))
         lines = boundary_lines(corners, frame, settings.max_gap, progress.part(0.95, 1.0))
-        call.layer("CORNERS", curb_points_to_features(corners, frame))
-        call.layer("BOUNDARIES", edges_to_features(lines, frame))
+        call.layer("CORNERS", corners.to_features(frame))
+        call.layer("BOUNDARIES", lines.to_features(frame))

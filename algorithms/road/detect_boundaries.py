@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from ...core.common.schemas import ROAD_EDGES
+from ...core.common.features import ROAD_EDGES
 from ..algorithm import Algorithm
 from ..parameters import SettingSpec
 from ..survey_input import SURVEY_SETTINGS, add_execution, open_survey_of
@@ -44,11 +44,10 @@ class DetectBoundaries(Algorithm):
 
     def work(self, call, progress):
         from ...core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
-        from ...core.road.edges.road_edges import edges_to_features
 
         settings = BoundarySettings(call.setting(METHOD_SETTING), call.settings(CURB_SETTINGS), call.settings(SCANLINE_METHOD_SETTINGS),
                                     call.settings(PLANE_SETTINGS))
         survey = open_survey_of(call, progress.part(0.0, 0.5))
         found = find_curb_points(survey, settings, progress.part(0.5, 0.95))
         boundaries = draw_boundaries(found, survey.frame, call.settings(EDGE_SETTINGS), progress.part(0.95, 1.0), survey)
-        call.layer("ROAD_EDGES", edges_to_features(boundaries.edges, survey.frame))
+        call.layer("ROAD_EDGES", boundaries.edges.to_features(survey.frame))

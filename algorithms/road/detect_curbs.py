@@ -1,6 +1,6 @@
 """Curb points on profiles across the driven road."""
 
-from ...core.common.schemas import CURB_POINTS
+from ...core.common.features import CURB_POINTS
 from ..algorithm import Algorithm
 from ..parameters import SettingSpec
 from ..survey_input import SURVEY_SETTINGS, open_survey_of
@@ -66,7 +66,6 @@ class DetectCurbs(Algorithm):
         )
 
     def work(self, call, progress):
-        from ...core.road.common.curb_points import curb_points_to_features
         from ...core.road.profiles.detect import detect_curbs
 
         survey = open_survey_of(call, progress.part(0.0, 0.5))
@@ -76,4 +75,4 @@ class DetectCurbs(Algorithm):
 
             call.layer("PRINCIPAL_POINTS", find_principal_points(survey, settings, progress.part(0.5, 0.6)))
         points = detect_curbs(survey, settings, progress.part(0.6, 1.0))
-        call.layer("CURB_POINTS", curb_points_to_features(points, survey.frame))
+        call.layer("CURB_POINTS", points.to_features(survey.frame))

@@ -1,6 +1,6 @@
 """The points and the outline of the road surface."""
 
-from ...core.common.schemas import ROAD_EDGES, ROAD_SURFACE
+from ...core.common.features import ROAD_EDGES, ROAD_SURFACE
 from ..algorithm import Algorithm
 from ..parameters import SettingSpec
 from ..survey_input import SURVEY_SETTINGS, check_layers_on_roads, open_survey_of
@@ -43,9 +43,8 @@ class ExtractRoadSurface(Algorithm):
         self.add_sink("ROAD_SURFACE", tr("Road surface"), fields=ROAD_SURFACE, geometry="PolygonZ", optional=True)
 
     def work(self, call, progress):
-        from ...core.road.edges.road_edges import edges_from_features
+        from ...core.road.edges.road_edges import RoadEdges
         from ...core.road.surface.extract import extract_road_surface
-        from ...core.road.surface.road_surface import surface_to_features
         from ...core.survey.road_points_las import write_road_points
 
         layer = call.features("ROAD_EDGES", ROAD_EDGES, "LineStringZ")
@@ -53,8 +52,8 @@ class ExtractRoadSurface(Algorithm):
         edges = None
         if layer is not None:
             check_layers_on_roads(call, {"ROAD_EDGES": layer}, survey.frame, progress)
-            edges = edges_from_features(layer, survey.frame)
+            edges = RoadEdges.from_features(layer, survey.frame)
         road_points, surface = extract_road_surface(survey, edges, call.settings(SURFACE_SETTINGS), progress.part(0.5, 0.9))
         write_road_points(road_points, call.new_file("ROAD_POINTS"), progress.part(0.9, 1.0))
         road_points.close()
-        call.layer("ROAD_SURFACE", surface_to_features(surface, survey.frame))
+        call.layer("ROAD_SURFACE", surface.to_features(survey.frame))

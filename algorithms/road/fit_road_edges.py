@@ -1,6 +1,6 @@
 """Road edges as smooth lines through curb points."""
 
-from ...core.common.schemas import CURB_POINTS, ROAD_EDGES
+from ...core.common.features import CURB_POINTS, ROAD_EDGES
 from ..algorithm import Algorithm
 from ..parameters import SettingSpec
 from ..survey_input import frame_of
@@ -35,11 +35,10 @@ class FitRoadEdges(Algorithm):
         self.add_sink("ROAD_EDGES", tr("Road edges"), fields=ROAD_EDGES, geometry="LineStringZ")
 
     def work(self, call, progress):
-        from ...core.road.common.curb_points import curb_points_from_features
+        from ...core.road.common.curb_points import CurbPoints
         from ...core.road.edges.fit import fit_road_edges
-        from ...core.road.edges.road_edges import edges_to_features
 
         layer = call.features("CURB_POINTS", CURB_POINTS, "PointZ")
         frame = frame_of(call, layer.crs, progress, layers={"CURB_POINTS": layer})
-        edges = fit_road_edges(curb_points_from_features(layer, frame), frame, call.settings(EDGE_SETTINGS), progress)
-        call.layer("ROAD_EDGES", edges_to_features(edges, frame))
+        edges = fit_road_edges(CurbPoints.from_features(layer, frame), frame, call.settings(EDGE_SETTINGS), progress)
+        call.layer("ROAD_EDGES", edges.to_features(frame))

@@ -2,7 +2,7 @@
 
 from contextlib import nullcontext
 
-from ...core.common.schemas import SCANLINES
+from ...core.common.features import SCANLINES
 from ..algorithm import Algorithm
 from ..parameters import SettingSpec
 from ..survey_input import SURVEY_SETTINGS, add_execution, open_survey_of
@@ -34,7 +34,7 @@ LAYER_SETTINGS = (
 )
 POINT_SETTINGS = (
     SettingSpec(
-        "RESAMPLED_SPACING", "road.scanlines.resampling:ResamplingSettings", "spacing", tr("Spacing of resampled points along a scanline (m)"),
+        "RESAMPLED_SPACING", "road.scanlines.layer:ResamplingSettings", "spacing", tr("Spacing of resampled points along a scanline (m)"),
         tr("Smaller gives more points, without more being known of the surface."),
         advanced=True,
     ),

@@ -1,6 +1,6 @@
 """The trajectory of a survey that comes without one."""
 
-from ...core.common.schemas import ESTIMATED_TRAJECTORY
+from ...core.common.features import ESTIMATED_TRAJECTORY
 from ..algorithm import Algorithm
 from ..survey_input import SURVEY_SETTINGS
 from ..texts import tr

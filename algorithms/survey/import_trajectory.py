@@ -1,6 +1,6 @@
 """A trajectory from any of the files and layers it comes in."""
 
-from ...core.common.schemas import TRAJECTORY
+from ...core.common.features import TRAJECTORY
 from ..algorithm import Algorithm
 from ..parameters import ColumnsSpec, CrsSpec, PointCloudsSpec, TrajectorySpec
 from ..survey_input import SURVEY_SETTINGS, imported_trajectory

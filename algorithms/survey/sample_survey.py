@@ -1,6 +1,6 @@
 """A made survey with known truth."""
 
-from ...core.common.schemas import CONTROL_POINTS, TRAJECTORY
+from ...core.common.features import CONTROL_POINTS, TRAJECTORY
 from ..algorithm import Algorithm
 from ..parameters import CrsSpec, SettingSpec
 from ..texts import tr

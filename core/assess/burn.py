@@ -8,9 +8,8 @@ from typing import Any
 import numpy as np
 import shapely
 
-from ..io.gdal_errors import gdal_exceptions
-from ..io.local_files import open_raster
-from ..io.units import NO_PLACE, place_of_raster, place_raster
+from ..io.crs import NO_PLACE, place_of_raster, place_raster
+from ..io.local_files import gdal_exceptions, open_raster
 
 BURN_TILE = 2048  # cells, side of a tile
 

@@ -10,8 +10,7 @@ import numpy as np
 import shapely
 
 from ..common.errors import RoadExtractionError
-from ..io.crs import check_metric, horizontal_part, parse_crs, same_crs
-from ..io.crs_place import check_extent
+from ..io.crs import check_extent, check_metric, horizontal_part, parse_crs, same_crs
 from ..survey.trajectory.trajectory import LONGEST_STEP
 from .matching import MAX_ROAD_DISTANCE, TrajectoryStationing, sample_lines, single_lines
 

@@ -8,9 +8,8 @@ from typing import Any
 import numpy as np
 import shapely
 
-from ..common.features import Features
+from ..common.features import ASSESSED_BOUNDARIES, ASSESSED_DRIVING_LINES, ASSESSED_MARKINGS, Features
 from ..common.progress import Progress
-from ..common.schemas import ASSESSED_BOUNDARIES, ASSESSED_DRIVING_LINES, ASSESSED_MARKINGS
 from .boundaries import SIDE_NAMES, BoundaryAccuracy, interval_lines
 from .driving_lines import MAX_MATCH_DISTANCE, LineAccuracySettings, LineMatch
 from .markings import MarkingAccuracy

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import shapely
 
+from ..common.arrays import Rows
 from ..common.parallel import check_cancelled
 from ..common.progress import Progress
-from ..common.rows import Rows
 
 LINE_SAMPLE_STEP = 0.1     # m between the compared points along a line
 HEADING_BASE = 0.5         # m to either side over which the direction of a line is measured: vertices a decimetre apart are noisy

@@ -6,8 +6,7 @@ import numpy as np
 import shapely
 
 from ..common.progress import Progress
-from ..io.gdal_errors import gdal_exceptions
-from ..io.local_files import open_raster, reading
+from ..io.local_files import gdal_exceptions, open_raster, reading
 
 RASTER_READ_SIZE = 2048  # pixels, side of the pieces in which a raster is read
 

@@ -2,7 +2,13 @@
 
 from __future__ import annotations
 
+import json
+import re
 from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
 
 _translate: Callable[[str], str] | None = None
 _tell: Callable[[str], str] | None = None
@@ -35,3 +41,164 @@ def told(sentence: str) -> str:
 def language() -> str:
     """Two letters: that of the texts."""
     return _language
+
+
+# The values of fields in the user's words. In English they are shown as they stand in the layers.
+
+def word(value: Any, field: str = "") -> str:
+    """A value of a field in the user's words; a dash for none.
+
+    Parameters
+    ----------
+    value : of any type; a word of the vocabulary below, or a name or number, which stay as they are
+    field : which one, where a word means different things in different fields
+    """
+    if value is None or value == "":
+        return "–"
+    if language() == "en":
+        return str(value)
+    words = _words()
+    return words.get(f"{field}.{value}") or words.get(str(value)) or str(value)
+
+
+def _words():
+    return {
+        # of any field
+        "left": tr("left"), "right": tr("right"), "measured": tr("measured"), "bridged": tr("bridged"), "inferred": tr("inferred"),
+        "occluded": tr("hidden"), "grown": tr("grown"), "accepted": tr("accepted"), "drawn": tr("drawn"), "unknown": tr("unknown"),
+        "together": tr("together"), "carriageway": tr("carriageway"), "lane": tr("lane"),
+        # road edges
+        "curb": tr("curb"), "dropped": tr("dropped curb"), "pavement": tr("edge of the pavement"), "main": tr("main carriageway"),
+        "corner": tr("corner of a curb"), "side_street": tr("side street"), "island": tr("island"),
+        "profiles": tr("profiles"), "scanlines": tr("scanlines"),
+        # markings and lines
+        **{f"{field}.{value}": text for field in ("class", "kind") for value, text in (
+            ("edge", tr("Edge line")), ("lane", tr("Lane line")), ("centre", tr("Centre line")))}, "zebra": tr("Zebra crossing"),
+        "stop": tr("Stop line"), "give_way": tr("Give-way line"), "zigzag": tr("Zigzag line"),
+        "arrow": tr("Arrow"), "symbol": tr("Symbol"), "hatch": tr("Hatching"), "class.bicycle": tr("Bicycle symbol"), "bus": tr("Word BUS"),
+        "use.keep": tr("marking"), "use.other": tr("other paint"),
+        "solid": tr("solid"), "dashed": tr("dashed"), "double-solid": tr("double, solid"), "double-dashed": tr("double, dashed"),
+        "solid-dashed": tr("solid and dashed"), "dashed-solid": tr("dashed and solid"),
+        # lanes
+        "pair": tr("between two lines"), "offset": tr("beside one line"), "driving": tr("Driving lane"), "shoulder": tr("Shoulder"),
+        "parking": tr("Parking"), "bicycle": tr("Bicycle lane"), "hatched": tr("Hatched area"), "median": tr("Median"),
+        "connector": tr("Connector over a junction"),
+        # corrections
+        "accept": tr("accept"), "delete": tr("delete"), "move": tr("move"), "draw": tr("draw"), "target.edge": tr("road edge"),
+        "marking": tr("marking"),
+        # where scanners lie
+        "ahead": tr("ahead"), "behind": tr("behind"), "above": tr("above"), "below": tr("below"),
+        # the roadside
+        "guard_rail": tr("guard rail"), "barrier": tr("barrier"), "wall": tr("Wall"), "fence": tr("fence"), "hedge": tr("hedge"),
+        "gutter": tr("Gutter"), "pole": tr("pole"), "sign": tr("sign"), "trunk": tr("Tree trunk"),
+        # cross-sections
+        "rut": tr("rut depth"), "crossfall": tr("crossfall"), "grade": tr("grade"), "width": tr("width"), "clearance": tr("clearance"),
+        # assessment
+        "correct": tr("correct"), "missed": tr("missed"), "false": tr("false"), "excluded": tr("excluded"),
+        # control points
+        "control": tr("Control point"), "check": tr("Check point"), "disabled": tr("Disabled point"),
+        # ends of a road, elements of its reference line
+        "start": tr("start"), "end": tr("end"),
+        "element.line": tr("line"), "arc": tr("arc"), "spiral": tr("clothoid"), "paramPoly3": tr("parametric cubic"),
+    }
+
+
+# What the core says, in the user's language.
+#
+# The core knows no QGIS and writes its sentences in English, with numbers and names in them. Here they are recognised by what stands between these,
+# and written anew.
+
+BRACES = "{}"
+AMOUNT = re.compile(r"([\d.,]+ \S+ )([a-z]+)")  # 12 m measured
+PHRASE = 2  # blanks in what is put in: with as many it is a phrase, with fewer a number with its unit or a name
+BETWEEN_SENTENCES = re.compile(r"(?<=[.?…]) (?=[A-Z])")
+_METRES = r"(-?\d+(?:\.\d+)?)"
+_PLACE = re.compile(rf"road (\d+)(?:, (left|right) side)?, station {_METRES}(?: to {_METRES})? m")
+
+
+@dataclass(frozen=True)
+class RoadPlace:
+    """A stretch of a road, m along it; both ends are the same where it is one place. `side` is left, right or ""."""
+
+    road: int
+    start: float
+    end: float
+    side: str = ""
+
+
+def places_in(text: str) -> list[RoadPlace]:
+    """The places that a sentence names, such as "road 0, left side, station 90 to 120 m" or "road 0, station 12.3 m"."""
+    return [RoadPlace(int(road), float(start), float(end or start), side or "") for road, side, start, end in _PLACE.findall(text)]
+
+
+class CoreMessages:
+    """Sentences of the core and their translations; `{}` stands for a number, a name or a phrase that is a text of the core itself.
+
+    translations : {English: translation}, with as many places in the same order; an empty one is none
+    word : from a single word that is put in, such as a side, to that of the language
+    """
+
+    def __init__(self, translations: dict[str, str], word: Callable[[str], str] = str):
+        self.word = word
+        self._known = {source.strip(): target.strip() for source, target in translations.items() if target}
+
+    @classmethod
+    def load(cls, path: Path, word: Callable[[str], str] = str) -> CoreMessages:
+        """Those of a file; none where there is no file."""
+        return cls(json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}, word)
+
+    def told(self, text: str) -> str:
+        """A message in the user's language, sentence by sentence where it is not known as a whole; as it is where none of it is known."""
+        found = self._recognised(text.strip())
+        if found is None:
+            sentences = BETWEEN_SENTENCES.split(text.strip())
+            if len(sentences) < 2:
+                return text
+            found = " ".join(self._recognised(sentence) or sentence for sentence in sentences)
+        before, after = text[:len(text) - len(text.lstrip())], text[len(text.rstrip()):]
+        return before + found + after
+
+    def _recognised(self, text):
+        """The translation of what is known as a whole, None of what is not."""
+        if text in self._known and BRACES not in text:
+            return self._known[text]
+        first = None
+        for pattern, target in self._sentences:
+            found = pattern.fullmatch(text)
+            if found:
+                values = [self._value(value) for value in found.groups()]
+                told = _filled(target, values)
+                # a sentence of which a phrase stays unknown may be another one, whose phrases are all known
+                if not any(value == before and before.count(" ") >= PHRASE for value, before in zip(values, found.groups())):
+                    return told
+                first = first or told
+        return first
+
+    def _value(self, value):
+        """What stands in a place: a word, a phrase, or several with commas between them."""
+        if value.isalpha():
+            return self.word(value)
+        if " " not in value.strip():
+            return value
+        found = self.told(value)
+        return found if found != value else ", ".join(map(self._part, value.split(", ")))
+
+    def _part(self, part):
+        amount = AMOUNT.fullmatch(part)
+        return amount.group(1) + self.word(amount.group(2)) if amount else self.told(part)
+
+    @cached_property
+    def _sentences(self):
+        """(pattern, translation) of what has places; made when something is said first, since starting QGIS need not wait for it."""
+        with_places = [source for source in self._known if BRACES in source]
+        # the most words first: a short sentence may begin as a long one does
+        return [(_pattern(source), self._known[source]) for source in sorted(with_places, key=lambda source: -len(source.replace(BRACES, "")))]
+
+
+def _filled(target, values):
+    parts = target.split(BRACES)
+    return "".join(text for pair in zip(parts, [*values, ""]) for text in pair)
+
+
+def _pattern(source):
+    return re.compile("(.*?)".join(re.escape(part) for part in source.split(BRACES)), re.DOTALL)

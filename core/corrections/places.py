@@ -8,7 +8,7 @@ import numpy as np
 import shapely
 from scipy.spatial import cKDTree
 
-from ..common.runs import mask_runs
+from ..common.arrays import mask_runs
 from .corrections import Correction
 
 STEP = 0.25            # m between the places at which a line is compared with a correction

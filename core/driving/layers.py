@@ -1,27 +1,21 @@
-"""Lanes as areas between two borders, with what follows each, and their layer LANES in map coordinates.
-
-Stages hand each other `Lanes`. Map coordinates are made in one place, `lanes_to_features`, and read in one place, `lanes_from_features`.
-"""
+"""Lanes, driving lines and curve elements as arrays, and their layers in map coordinates."""
 
 from __future__ import annotations
 
 import json
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import shapely
 
 from ..common.errors import RoadExtractionError
-from ..common.features import Features
-from ..common.schemas import CURVE_ELEMENTS, DRIVING_LINES, LANES
+from ..common.features import CURVE_ELEMENTS, DRIVING_LINES, LANES, Features
 from ..countries.catalogue import country
 from ..countries.neutral import NEUTRAL
 from ..curves.base import Arc, Curve
+from ..survey.frame.road_frame import RoadFrame
 from .alignment import element_row
-
-if TYPE_CHECKING:
-    from ..survey.frame.road_frame import RoadFrame
 
 LANE_TYPES = ("driving", "shoulder", "parking", "bicycle", "hatched", "median", "connector")
 LEVEL_ORIGIN = (0.0, 0.0, 0.0)
@@ -101,7 +95,6 @@ def lanes_to_features(lanes: Lanes, origin: Any = LEVEL_ORIGIN) -> Features:
 
     Parameters
     ----------
-    lanes : Lanes
     origin : (3,) metres added to local coordinates, as RoadFrame.origin
 
     Returns
@@ -287,7 +280,6 @@ def driving_lines_to_features(lines: DrivingLines, frame: RoadFrame) -> Features
 
     Parameters
     ----------
-    lines : DrivingLines
     frame : RoadFrame, whose origin is added to local coordinates
 
     Returns
@@ -324,7 +316,6 @@ def curve_elements_to_features(elements: CurveElements, frame: RoadFrame) -> Fea
 
     Parameters
     ----------
-    elements : CurveElements
     frame : RoadFrame, whose origin is added to local coordinates
 
     Returns

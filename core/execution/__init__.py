@@ -7,12 +7,9 @@ the order of the sections, the same from every `Executor`.
 from ..lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "address_space": ("claim_memory", "is_lack_of_memory", "lack_of_memory", "out_of_memory"),
     "choice": ("ExecutionSettings", "cluster_for", "executor_for"),
     "cluster": ("Cluster", "cluster_of"),
-    "phase": ("Executor", "Phase", "Recipe"),
-    "plain": ("digest", "is_whole", "read_plain", "write_plain"),
+    "phase": ("Executor", "Phase", "Recipe", "THREADS", "Threads", "digest", "is_whole", "read_plain", "write_plain"),
     "processes": ("WorkerProcesses",),
-    "threads": ("THREADS", "Threads"),
     "work_folder": ("KeptResults", "WorkFolder"),
 })

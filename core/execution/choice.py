@@ -7,12 +7,10 @@ from dataclasses import dataclass
 
 from ..common.progress import Progress
 from ..common.setting import check_limits, setting
-from .cluster import Cluster, cluster_of
-from .cluster_connection import check_address
-from .interpreter import find_interpreter
-from .phase import Executor
+from .cluster import Cluster, check_address, cluster_of
+from .phase import Executor, Threads
 from .processes import WorkerProcesses
-from .threads import Threads
+from .tasks import find_interpreter
 from .work_folder import KeptResults, WorkFolder
 
 WORKER_POINTS = 8_000_000   # points of the files for each worker: starting takes it a second, about as long as decoding so many

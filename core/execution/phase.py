@@ -2,13 +2,22 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
+import os
+import struct
+import zlib
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields, is_dataclass
 from importlib import import_module
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, BinaryIO, Protocol
+from uuid import uuid4
+
+import numpy as np
 
 from ..common.errors import RoadExtractionError
+from ..common.parallel import ordered_map
 from ..common.progress import Progress
 
 CORE = __name__.rpartition(".execution.")[0]   # name of the package `core`
@@ -156,3 +165,233 @@ def named(name: str) -> Any:
     """The function or class that `name_of` named."""
     module, _, attribute = name.partition(":")
     return getattr(import_module(f"{CORE}.{module}"), attribute)
+
+
+# Plain values in a file: numbers, texts, arrays, their lists and dictionaries, and objects of core that consist of these.
+#
+# Reading such a file runs nothing that it holds: it names classes of core and the values of their attributes.
+
+# A file: FORMAT, the CRC-32 of all that follows, the length of a JSON text, that text (how the arrays belong together; kind, shape and order
+# of each), the bytes of the arrays. An .npz, whose arrays have headers and checksums of their own, takes nine times as long to write
+# and read
+FORMAT = b"LWplain2"
+CHECKSUM, TEXT_LENGTH = struct.Struct("<I"), struct.Struct("<q")
+CHECKED_AT_ONCE = 1 << 20   # bytes, which fit the processor's cache
+
+
+def write_plain(path: Path, value: Any, unfinished_in: Path | None = None) -> None:
+    """Write a value to a file, which appears whole or not at all.
+
+    Parameters
+    ----------
+    path : of the file
+    value : None, bool, int, float, str, numpy arrays and numbers, lists, tuples and dicts of these, and objects of classes of
+        core whose attributes are such values. A class may leave attributes out by `__getstate__`
+    unfinished_in : folder on the same disk that has the unfinished file; by default that of the file
+
+    Raises
+    ------
+    TypeError
+        If it holds anything else.
+    OSError
+        With a file name, if it cannot be written.
+    """
+    arrays: list[np.ndarray] = []
+    tree = _tree(value, arrays)
+    # as they lie in memory, so that whoever reads them computes with the same order of numbers
+    turned = [array.ndim > 1 and array.flags.f_contiguous and not array.flags.c_contiguous for array in arrays]
+    text = json.dumps([tree, [[np.lib.format.dtype_to_descr(array.dtype), array.shape, last] for array, last in zip(arrays, turned)]]).encode()
+    rows = [_bytes_of(np.ascontiguousarray(array.T if last else array)) for array, last in zip(arrays, turned)]
+    head = TEXT_LENGTH.pack(len(text)) + text
+    check = zlib.crc32(head)
+    for row in rows:
+        check = zlib.crc32(row, check)
+    # processes of several machines may write the same file
+    unfinished = (unfinished_in or path.parent) / f"{path.stem}.{uuid4().hex}.part{path.suffix}"
+    try:
+        with open(unfinished, "wb") as file:
+            file.write(FORMAT + CHECKSUM.pack(check) + head)
+            for row in rows:
+                file.write(row)
+        os.replace(unfinished, path)
+    except OSError as error:
+        if error.filename is None:   # of a full disk
+            raise OSError(error.errno, error.strerror, str(path)) from error
+        raise
+    finally:
+        unfinished.unlink(missing_ok=True)
+
+
+def read_plain(path: Path) -> Any:
+    """The value that `write_plain` wrote.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be read, is none of these, or ends early.
+    """
+    with open(path, "rb") as file:
+        if file.read(len(FORMAT)) != FORMAT:
+            raise OSError(f"{path} is no file of ours")
+        _read_bytes(file, CHECKSUM.size)
+        (length,) = TEXT_LENGTH.unpack(_read_bytes(file, TEXT_LENGTH.size))
+        tree, layouts = json.loads(_read_bytes(file, length))
+        arrays = {f"a{k}": _read_array(file, *layout) for k, layout in enumerate(layouts)}
+    return _value(tree, arrays)
+
+
+def is_whole(path: Path) -> bool:
+    """Whether a file is there as `write_plain` wrote it, which it may not be after the power failed."""
+    try:
+        with open(path, "rb") as file:
+            if file.read(len(FORMAT)) != FORMAT:
+                return False
+            (check,) = CHECKSUM.unpack(_read_bytes(file, CHECKSUM.size))
+            return checksum(file) == check
+    except OSError:
+        return False
+
+
+def checksum(file: BinaryIO, count: int = -1) -> int:
+    """CRC-32 of the next `count` bytes of an open file, by default of all that follow."""
+    check = 0
+    while data := file.read(min(CHECKED_AT_ONCE, count) if count >= 0 else CHECKED_AT_ONCE):
+        check, count = zlib.crc32(data, check), count - len(data) if count >= 0 else count
+    return check
+
+
+def _read_bytes(file, count):
+    found = file.read(count) if 0 <= count <= os.fstat(file.fileno()).st_size else b""
+    if len(found) != count:
+        raise OSError(f"{file.name} ends early")
+    return found
+
+
+def _bytes_of(array):
+    """(B,) uint8, a view of a contiguous array."""
+    return array.reshape(-1).view(np.uint8)
+
+
+def _dtype(kind: Any) -> Any:
+    return np.lib.format.descr_to_dtype(kind if isinstance(kind, str) else [tuple(column) for column in kind])
+
+
+def _read_array(file: BinaryIO, kind: Any, shape: list[int], last: bool) -> np.ndarray:
+    """The next array; `last` tells that its last index runs slowest."""
+    dtype = _dtype(kind)
+    if dtype.hasobject:
+        raise TypeError("An array of objects is no plain value.")
+    array = np.empty(shape[::-1] if last else shape, dtype)
+    if array.nbytes and file.readinto(_bytes_of(array)) != array.nbytes:   # type: ignore[attr-defined]
+        raise OSError(f"{file.name} ends early")
+    return array.T if last else array
+
+
+def digest(value: Any, without: str = "") -> str:
+    """32 hexadecimal digits that two values share only if they are equal.
+
+    Parameters
+    ----------
+    value : as in `write_plain`
+    without : a text that does not count, such as the path of a folder that may be moved
+    """
+    arrays: list[np.ndarray] = []
+    text = json.dumps(_tree(value, arrays))
+    found = hashlib.sha256((text.replace(json.dumps(without)[1:-1], "") if without else text).encode())
+    for array in arrays:
+        found.update(f"{array.dtype.str}{array.shape}".encode())
+        found.update(np.ascontiguousarray(array).tobytes())
+    return found.hexdigest()[:32]
+
+
+def _tree(value, arrays):
+    """The value as JSON, in which numbers of arrays stand for these."""
+    if value is None or isinstance(value, (bool, str)) or type(value) in (int, float):
+        return value
+    if isinstance(value, np.generic) and value.dtype.kind in "biuf" and value.dtype.itemsize <= 8:
+        return {"number": [value.dtype.str, value.item()]}
+    if isinstance(value, (np.ndarray, np.generic)):
+        if value.dtype.hasobject:
+            raise TypeError("An array of objects is no plain value.")
+        arrays.append(np.asarray(value))
+        return {"array" if isinstance(value, np.ndarray) else "scalar": f"a{len(arrays) - 1}"}
+    if isinstance(value, dict):
+        return {"dict": [[_tree(key, arrays), _tree(one, arrays)] for key, one in value.items()]}
+    if type(value) in (list, tuple):
+        return {type(value).__name__: [_tree(one, arrays) for one in value]}
+    return {"object": name_of(type(value)), "state": [[name, _tree(one, arrays)] for name, one in _state(value).items()]}
+
+
+def _state(value):
+    """The attributes of an object by name."""
+    own = type(value).__dict__.get("__getstate__")
+    if own is not None:
+        return own(value)
+    return {one.name: getattr(value, one.name) for one in fields(value)} if is_dataclass(value) else vars(value)
+
+
+def _value(tree, arrays):
+    if not isinstance(tree, dict):
+        return tree
+    kind = next(iter(tree))
+    if kind == "number":
+        name, number = tree[kind]
+        return np.dtype(name).type(number)
+    if kind in ("array", "scalar"):
+        return arrays[tree[kind]] if kind == "array" else arrays[tree[kind]][()]
+    if kind == "dict":
+        return {_value(key, arrays): _value(one, arrays) for key, one in tree[kind]}
+    if kind in ("list", "tuple"):
+        return (list if kind == "list" else tuple)(_value(one, arrays) for one in tree[kind])
+    made = object.__new__(named(tree["object"]))
+    state = {name: _value(one, arrays) for name, one in tree["state"]}
+    restore = type(made).__dict__.get("__setstate__")
+    if restore is not None:
+        restore(made, state)
+    else:
+        for name, one in state.items():
+            object.__setattr__(made, name, one)   # of frozen classes, too
+    return made
+
+
+# Phases run by threads of this process: for small surveys, and wherever nothing else works.
+
+class Threads:
+    """Executor that uses threads.
+
+    Parameters
+    ----------
+    count : number of threads; None for one per processor core, at most four
+    """
+
+    def __init__(self, count: int | None = None):
+        self.count = count
+        self.folder: Path | None = None
+
+    def run(self, phase: Phase, items: Sequence[Any], progress: Progress = Progress(), keep: Sequence[Path] = ()) -> Iterator[Any]:
+        """Yield the results of all items in their order; see `Executor`. Nothing is kept by it."""
+        return ordered_map(phase.result, items, progress, self.count)
+
+    def passing(self) -> Threads:
+        """Itself: it keeps nothing."""
+        return self
+
+    def disk_error(self, error: OSError) -> RoadExtractionError:
+        """One sentence about a folder that cannot be used."""
+        return RoadExtractionError(f"A file cannot be written: {error}.")
+
+    def sees(self, paths: Sequence[Path]) -> bool:
+        """What this process sees."""
+        return True
+
+    def forget(self) -> None:
+        """Nothing is kept between phases."""
+
+    def release(self) -> None:
+        """Nothing is kept between phases."""
+
+    def close(self) -> None:
+        """Nothing is left to end."""
+
+
+THREADS = Threads()

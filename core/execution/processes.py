@@ -17,10 +17,8 @@ from typing import Any
 from ..common.errors import RoadExtractionError
 from ..common.parallel import POLL_INTERVAL, check_cancelled, ordered_map
 from ..common.progress import Progress
-from .interpreter import command_of, environment, import_folders, no_window
-from .phase import Phase, name_of
-from .plain import read_plain, write_plain
-from .tasks import ShippedPhase, items_together, raise_answer
+from .phase import Phase, name_of, read_plain, write_plain
+from .tasks import ShippedPhase, command_of, environment, import_folders, items_together, no_window, raise_answer
 
 TRIALS = 2          # of an item whose worker ended; what kills two workers kills a third
 END_TIME = 5.0      # s that a worker may take to end by itself

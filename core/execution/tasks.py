@@ -2,18 +2,29 @@
 
 from __future__ import annotations
 
+import json
+import os
+import shutil
+import subprocess  # nosec B404
+import sys
 import threading
+import time
 import traceback
 from collections import OrderedDict
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
+from importlib.metadata import PackageNotFoundError, version
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
+from uuid import uuid4
 
 from ..common.errors import Cancelled, RoadExtractionError
-from ..common.memory import free_memory
-from .address_space import is_lack_of_memory
-from .phase import Phase, Recipe, named
-from .plain import read_plain, write_plain
+from ..common.parallel import cancellation_scope, free_memory, is_lack_of_memory, reuse_freed_memory, trim_heap
+from ..common.progress import Progress
+from .phase import Phase, Recipe, named, read_plain, write_plain
+from .work_folder import code_digest
 
 OPEN_PHASES = 2   # phases kept open in a worker: the current one and the one before
 WORK_ROUNDS = 8   # of work that a worker has in a phase at least, where its items come several together, so that all end at about the same time
@@ -123,3 +134,210 @@ def raise_answer(answer: dict[str, str], phase: Phase, item: Any, worker: str) -
         raise OSError(answer["disk"])
     if answer:
         raise RuntimeError(f"{worker} failed at {phase.place(item)}:\n{answer.get('bug', answer)}")
+
+
+# What runs on the workers of a Dask cluster: the look around before the work, and items of phases.
+#
+# The caller keeps a folder that all of them see. A phase is wanted as long as its file is there; the caller itself is alive as long as it touches
+# the file BEAT, and where it does no longer, the workers remove the folder.
+
+BEAT = "beat"          # file that the caller touches; it holds the seconds after which a caller is taken for dead that did not
+LOOK_TIME = 0.5        # s between two looks whether a phase is still wanted
+WATCH_TIME = 2.0       # s between two looks at BEAT
+
+_tasks = Tasks()
+_watched: set[str] = set()
+_lock = threading.Lock()
+
+
+def look_around(folder: str, word: str, dask_worker: Any = None) -> dict[str, Any]:
+    """What the caller must know of a worker.
+
+    Parameters
+    ----------
+    folder : of the caller
+    word : file in it that the worker must see
+    dask_worker : the worker itself, given by Dask
+
+    Returns
+    -------
+    code : digest of the worker's Lanewright
+    problem : why the folder is of no use, "" where it can be read and written
+    memory : bytes that the worker may take, 0 where nothing limits it
+    """
+    problem = ""
+    _watch(folder)
+    try:
+        if not (Path(folder) / word).exists():
+            problem = "it is not there"
+        trial = Path(folder) / uuid4().hex
+        trial.touch()
+        trial.unlink()
+    except OSError as error:
+        problem = problem or error.strerror or str(error)
+    return dict(code=code_digest(), problem=problem, memory=int(dask_worker.memory_manager.memory_limit or 0))
+
+
+def sees_files(sizes: dict[str, int]) -> bool:
+    """Whether this worker finds files of these sizes (bytes by path) and can decode point clouds."""
+    return all(find_spec(name) is not None for name in IMPORTED) and all(
+        os.path.exists(path) and os.path.getsize(path) == size for path, size in sizes.items())
+
+
+def items_done(phase: str, items: Sequence[str], results: Sequence[str], code: str) -> dict[str, str]:
+    """Compute some items of a phase, one after the other, but for those whose results are there.
+
+    Parameters
+    ----------
+    phase : file as in `Tasks.answer`
+    items, results : as many files, likewise
+    code : digest of the caller's Lanewright
+
+    Returns
+    -------
+    as `Tasks.answer`, with the number of the item that it is about as "at"; those before it are computed, those after it not. Also {"code": ...}
+    where the worker's Lanewright is another
+    """
+    left = [k for k, result in enumerate(results) if not Path(result).exists()]
+    if not left:
+        return {}
+    if code_digest() != code:
+        return {"code": code_digest()}
+    _watch(str(Path(phase).parent))
+    reuse_freed_memory()
+    answer: dict[str, str] = {}
+    with cancellation_scope(_WhileWanted(Path(phase))):
+        for k in left:
+            answer = _tasks.answer(Path(phase), Path(items[k]), Path(results[k]))
+            if answer:
+                answer["at"] = str(k)
+                break
+    # a worker whose memory seems full pauses
+    trim_heap()
+    return answer
+
+
+class _WhileWanted(Progress):
+    """Cancels what is done for a phase that the caller has ended."""
+
+    def __init__(self, phase):
+        self.phase, self.looked = phase, time.monotonic()
+
+    def check_cancelled(self):
+        if time.monotonic() - self.looked > LOOK_TIME:
+            self.looked = time.monotonic()
+            if not self.phase.exists():
+                raise Cancelled
+
+
+def _watch(folder):
+    """See to it that the folder goes when the caller is gone; one thread for each folder."""
+    with _lock:
+        if folder in _watched:
+            return
+        _watched.add(folder)
+    threading.Thread(target=_remove_after, args=(Path(folder),), daemon=True).start()
+
+
+def _remove_after(folder):
+    beat, last, since = folder / BEAT, 0, time.monotonic()
+    try:
+        patience = float(beat.read_text(encoding="utf-8"))
+        while time.monotonic() - since < patience:
+            # clocks of two machines differ, so the time of the file is only compared with itself
+            now = beat.stat().st_mtime_ns
+            if now != last:
+                last, since = now, time.monotonic()
+            time.sleep(WATCH_TIME)
+        shutil.rmtree(folder, ignore_errors=True)
+    except (OSError, ValueError):
+        pass   # the caller removed the folder
+    with _lock:
+        _watched.discard(str(folder))
+
+
+# A Python interpreter that worker processes can be started with: looked for, and tried before it is used.
+#
+# Inside QGIS on Windows and macOS `sys.executable` is QGIS itself, and starting it would open another QGIS. Nothing but Python interpreters is
+# started, by their full path and without a shell.
+
+WORKER = Path(__file__).with_name("worker.py")
+NEEDED = ("numpy", "scipy", "shapely")   # packages whose versions must be equal, or results could differ
+IMPORTED = ("laspy", "lazrs", "cv2")     # packages whose results are the same in all versions
+TRIAL_TIME = 30.0   # s that a trial may take on a busy computer
+THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "RAYON_NUM_THREADS")   # the last is lazrs's
+
+
+def versions() -> dict[str, str]:
+    """The versions of Python and of the packages NEEDED in this process; "" for a missing one."""
+    found = {"python": ".".join(map(str, sys.version_info[:2]))}
+    for name in NEEDED:
+        try:
+            found[name] = version(name)
+        except PackageNotFoundError:
+            found[name] = ""
+    return found
+
+
+def command_of(interpreter: str, *arguments: str) -> list[str]:
+    """The command that starts a worker: isolated, so that no variable and no folder of the user's changes what it imports."""
+    cache = ["-X", f"pycache_prefix={sys.pycache_prefix}"] if sys.pycache_prefix else []
+    return [interpreter, "-I", *cache, str(WORKER), *arguments]
+
+
+def environment() -> dict[str, str]:
+    """The environment of a worker: without what QGIS set for its own Python, and with one thread for numpy and for decoding."""
+    return {**{name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}, **dict.fromkeys(THREAD_VARIABLES, "1")}
+
+
+def no_window() -> int:
+    """Flags by which Windows opens no console window."""
+    return getattr(subprocess, "CREATE_NO_WINDOW", 0)
+
+
+def candidates() -> Iterator[str]:
+    """Interpreters that may belong to this Python, the likeliest first."""
+    name = f"python{sys.version_info.major}.{sys.version_info.minor}"
+    folders = [Path(folder) for folder in dict.fromkeys((sys.prefix, sys.exec_prefix, sys.base_prefix, sys.base_exec_prefix))]
+    places = [Path(path) for path in (sys.executable, getattr(sys, "_base_executable", "")) if path]
+    for folder in folders:
+        places += [folder / "python.exe", folder / "bin" / name, folder / "bin" / "python3"]
+    if sys.executable:   # QGIS.app/Contents/MacOS/bin
+        places.append(Path(sys.executable).parent / "bin" / "python3")
+    for path in dict.fromkeys(places):
+        if path.name.lower().startswith("python") and path.is_file():
+            yield str(path)
+
+
+@lru_cache(maxsize=1)
+def find_interpreter() -> str:
+    """The first candidate that can do the work of this process; "" where there is none.
+
+    It must import the packages NEEDED from the folders that this process imports from, in the same versions, and IMPORTED; these,
+    half a second's work, are tried where it is another program than the one that runs.
+    """
+    return next((path for path in candidates() if _can_work(path)), "")
+
+
+def _runs_this(path: str) -> bool:
+    """Whether this process runs that very program, as far as the system tells: what is imported here, it can import, too."""
+    try:
+        return os.path.samefile("/proc/self/exe", path)
+    except OSError:
+        return False
+
+
+def _can_work(path: str) -> bool:
+    imported = () if _runs_this(path) else IMPORTED
+    try:
+        done = subprocess.run(  # nosec B603
+            command_of(path, "--try", *imported), input=json.dumps(import_folders()), env=environment(), capture_output=True, text=True,
+            timeout=TRIAL_TIME, creationflags=no_window(), check=False)
+        return done.returncode == 0 and json.loads(done.stdout) == versions()
+    except (OSError, ValueError, subprocess.SubprocessError):
+        return False
+
+
+def import_folders() -> Sequence[str]:
+    """The folders that this process imports from, in order."""
+    return [os.path.abspath(folder) for folder in sys.path if folder and os.path.exists(folder)]

@@ -18,8 +18,7 @@ from uuid import uuid4
 
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
-from .phase import Executor, Phase, name_of
-from .plain import checksum, digest, is_whole, read_plain, write_plain
+from .phase import Executor, Phase, checksum, digest, is_whole, name_of, read_plain, write_plain
 
 LONGEST_NOTE = 1 << 24   # bytes; what a run says in a thousand lines is a hundredth of it
 

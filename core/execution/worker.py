@@ -40,7 +40,7 @@ def main() -> None:
     os.dup2(2, 1)
     import_package(json.loads(sys.stdin.readline()))
     if sys.argv[1] == "--try":
-        from lanewright.core.execution.interpreter import NEEDED, versions
+        from lanewright.core.execution.tasks import NEEDED, versions
 
         for name in (*NEEDED, *sys.argv[2:]):
             importlib.import_module(name)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..common.order_statistics import ascending, quantile_in_order
+from ..common.arrays import ascending, quantile_in_order
 from ..survey.frame.passes import Pass
 from ..survey.store.records import COORDINATE_SCALE, Points
 

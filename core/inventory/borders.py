@@ -10,7 +10,7 @@ import shapely
 
 from ..countries.model import Country
 from ..driving.layers import lanes_from_features
-from ..survey.frame.frame_lines import FrameLines, line_parts, lines_in_frame
+from ..survey.frame.placement import FrameLines, line_parts, lines_in_frame
 
 if TYPE_CHECKING:
     from ..common.features import Features

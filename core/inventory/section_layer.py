@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import shapely
 
-from ..common.features import Features
-from ..common.schemas import CROSS_SECTIONS
+from ..common.features import CROSS_SECTIONS, Features
 from ..countries.model import SectionLimits
 from .cross_sections import RoadSection, StripMeasures
 

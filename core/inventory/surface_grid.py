@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..common.order_statistics import order_by
+from ..common.arrays import order_by
 from ..road.common.pseudo_scanlines import lowest_layers
 
 if TYPE_CHECKING:

@@ -6,13 +6,11 @@ In: text tables, tiled GeoTIFFs, CRS definitions. Out: arrays with their metadat
 from ..lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "cloud_crs": ("check_projected", "crs_note", "unit_note"),
-    "crs": ("check_metric", "check_same_crs", "crs_name", "horizontal_part", "moved_by", "parse_crs", "same_crs"),
-    "crs_place": ("check_place", "place_on_ground"),
-    "gdal_errors": ("gdal_exceptions",),
+    "crs": (
+        "FileUnits", "as_in_file", "check_metric", "check_place", "check_projected", "check_same_crs", "crs_name", "crs_note",
+        "horizontal_part", "in_metres", "moved_by", "parse_crs", "place_of_raster", "place_on_ground", "place_raster", "plane_wkt",
+        "same_crs", "unit_names", "unit_note"),
     "geotiff": ("IntensityImage", "filled_tiles", "new_geotiff", "write_display_image"),
+    "local_files": ("check_local", "finish_file", "gdal_exceptions", "offline", "open_raster", "open_vector", "unfinished_path"),
     "text_table": ("NumberTable", "read_number_table"),
-    "local_files": ("check_local", "offline", "open_raster", "open_vector"),
-    "unfinished": ("finish_file", "unfinished_path"),
-    "units": ("FileUnits", "as_in_file", "in_metres", "place_of_raster", "place_raster", "plane_wkt", "unit_names"),
 })

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,6 +14,7 @@ from ..common.errors import RoadExtractionError
 
 if TYPE_CHECKING:
     from pyproj import CRS
+
 
 # what a GeoPackage calls the CRS of a layer that carries none; without it GDAL writes an undefined geographic one
 UNDEFINED_CARTESIAN = 'LOCAL_CS["Undefined Cartesian SRS",UNIT["metre",1]]'
@@ -141,3 +146,461 @@ def _projection(crs):
     """The projection and its parameters by name, without what is only said about them; empty where PROJ has no words for it."""
     words = crs.to_dict()
     return {key: value for key, value in words.items() if key not in ("title", "type", "no_defs")}
+
+
+# The CRS of a survey: projected, true to scale, and the same for all its files.
+
+SUSPICIOUS_SENSOR_HEIGHT = 5.0, 15.0  # m: higher than any survey vehicle; 1.5 to 4.5 m expressed in feet
+
+
+def check_projected(files: Sequence[Any], given: str = "", trajectory_crs: str = "") -> str:
+    """The CRS in which a survey is processed: that of its clouds, else the given one, else that of the trajectory.
+
+    Parameters
+    ----------
+    files : CloudHeader of each point cloud
+    given : WKT or "EPSG:n", for clouds without a CRS; "" where none was given
+    trajectory_crs : WKT or "EPSG:n"; "" where unknown
+
+    Returns
+    -------
+    WKT, metric; "" where no CRS is known
+
+    Raises
+    ------
+    RoadExtractionError
+        If clouds contradict themselves or each other, the CRS is geographic or none but the coordinates look so, the CRS is of another kind
+        that has no metres, lengths in it are not those on the ground, or x and y are exchanged.
+    """
+    contradictory = next((file for file in files if file.crs_problem), None)
+    if contradictory is not None and not given:
+        raise RoadExtractionError(f"What {contradictory.path} says about its coordinates cannot be used: {contradictory.crs_problem}. Give the CRS "
+                                  "that they are in by the parameter CRS, or export the file again.")
+    known: dict[str, str] = {}
+    for file in files:
+        if file.crs:
+            known.setdefault(file.crs, file.path)
+    parsed = [(parse_crs(wkt), path) for wkt, path in known.items()]
+    if not known and not given and trajectory_crs and horizontal_part(parse_crs(trajectory_crs)).is_geographic and not _in_degrees(files):
+        raise RoadExtractionError(
+            f"The point cloud carries no CRS, and the trajectory is in {horizontal_part(parse_crs(trajectory_crs)).name} (degrees), so "
+            "the position of one relative to the other is unknown. Give the CRS of the point cloud by the parameter CRS.")
+    for crs, path in parsed[1:]:
+        if not horizontal_part(crs).equals(horizontal_part(parsed[0][0]), ignore_axis_order=True):
+            raise RoadExtractionError(
+                f"The point clouds use different CRSs: {parsed[0][1]} is in {horizontal_part(parsed[0][0]).name}, "
+                f"{path} in {horizontal_part(crs).name}. Reproject them to one CRS first.")
+    wkt = next(iter(known), "") or given or trajectory_crs
+    crs = parse_crs(wkt)
+    if crs is None:
+        if _in_degrees(files):
+            raise RoadExtractionError(
+                "The point cloud carries no CRS, and its coordinates look like longitude and latitude in degrees: it is less than 1 m wide if they "
+                "are metres. Reproject it to a projected CRS, such as the UTM zone of the survey, and run again.")
+        return ""
+    wkt = in_metres(wkt if wkt in known or len(wkt) > 20 else crs.to_wkt())[0]
+    check_metric(parse_crs(wkt), "The point cloud")
+    check_extent(wkt, _bounds(files), "The point cloud")
+    return wkt
+
+
+def _bounds(files):
+    """(3,) least and (3,) greatest coordinates of the clouds."""
+    held = [file for file in files if file.count]
+    return np.min([file.minimum for file in held], axis=0), np.max([file.maximum for file in held], axis=0)
+
+
+def _in_degrees(files):
+    """Whether the clouds' coordinates can only be longitude and latitude: valid degrees, and a survey less than a degree wide."""
+    low, high = _bounds(files)
+    return bool((np.abs([low[0], high[0]]) <= 180).all() and (np.abs([low[1], high[1]]) <= 90).all() and (high - low)[:2].max() < 1.0)
+
+
+def crs_note(files: Sequence[Any], given: str, crs: str) -> str:
+    """A note for the user about the CRS in which a survey is processed.
+
+    Parameters
+    ----------
+    files : CloudHeader of each point cloud
+    given : the CRS that the user gave, "" for none
+    crs : WKT of the CRS of the survey, "" where unknown
+
+    Returns
+    -------
+    Sentences; "" where there is nothing to note
+    """
+    if not crs:
+        return ("The point cloud carries no CRS, and neither do the results: they lie in its own coordinates. Where these are "
+                "map coordinates, give their CRS by the parameter CRS (such as EPSG:25832) and run again.")
+    notes = [check_extent(crs, _bounds(files), "The point cloud")]
+    own = next((file.crs for file in files if file.crs), "")
+    if given and own and not same_crs(parse_crs(given), parse_crs(own)):
+        notes.append(f"The point cloud says that it is in {horizontal_part(parse_crs(own)).name}; the parameter CRS "
+                     f"({horizontal_part(parse_crs(given)).name}) is for clouds that carry none and was not used.")
+    notes += [f"What {file.path} says about its coordinates was not used, but the parameter CRS: {file.crs_problem}."
+              for file in files if file.crs_problem][:1]
+    if (units := as_in_file(crs)[1]).across != units.up:
+        across, *_, up = unit_names(as_in_file(crs)[0])
+        notes.append(f"The point cloud says that the unit of its heights is the {up}, and that of its x and y the {across}: what is not in "
+                     "metres was converted.")
+    return " ".join(note for note in notes if note)
+
+
+def unit_note(height: float, crs: str) -> str:
+    """A note for the user where a cloud without CRS is in feet, as it seems; "" where there is nothing to note.
+
+    Parameters
+    ----------
+    height : m, of the sensor above the road; NaN where unknown
+    crs : WKT of the CRS of the survey, "" where unknown
+    """
+    if crs or not SUSPICIOUS_SENSOR_HEIGHT[0] < height < SUSPICIOUS_SENSOR_HEIGHT[1]:
+        return ""
+    return (f"The sensor seems to ride {height:.1f} m above the road, as if cloud and trajectory were in feet, and no CRS tells their "
+            "unit: everything is measured in metres, so curbs and markings would be missed. Set the parameter CRS to the CRS that they are "
+            "in, such as a zone of State Plane in feet.")
+
+
+# Whether a survey lies where its CRS holds, and lengths on the map there are lengths on the ground.
+
+# Official grids for measuring keep within it where they are used: UTM zone 33, used in all of Norway, and Lambert-93 come to 4 per mille
+MAX_SCALE_ERROR = 0.005
+SCALE_STEP = 50.0                     # m on the map over which the scale is measured
+MAX_OUTSIDE_AREA = 8.0                # degrees: official surveys lie outside the area of their CRS too, of UTM zone 33 in Norway by 7.5
+MIN_EXCHANGED = 1.0             # degrees outside, from which on x and y may be exchanged; a survey beyond a border lies nearer
+MAX_LOCAL = 1e5                 # m: local coordinates, and those without their leading digits, are smaller
+
+
+@dataclass(frozen=True)
+class MapPlace:
+    """A place of the map on the ground.
+
+    longitude, latitude : degrees from Greenwich, of the CRS's own datum
+    scale : length on the map per length on the ground, in the direction where it is farthest from 1; NaN where the projection is not defined
+    """
+
+    longitude: float
+    latitude: float
+    scale: float
+
+    @property
+    def true_to_scale(self) -> bool:
+        """Whether lengths on the map are lengths on the ground, as far as roads are concerned."""
+        return abs(self.scale - 1.0) <= MAX_SCALE_ERROR
+
+
+def place_on_ground(crs: Any, x: float, y: float) -> MapPlace:
+    """Where a place of the map lies, and the scale there.
+
+    The metric of the ground is measured along x, y and their diagonal with geodesics; its eigenvalues are the squared lengths of the axes of
+    Tissot's indicatrix [1]_. Heights, which shorten lengths on the map by 0.16 per mille a kilometre, are not counted.
+
+    Parameters
+    ----------
+    crs : pyproj.CRS, projected in metres
+    x, y : m
+
+    References
+    ----------
+    .. [1] Snyder (1987), Map Projections: A Working Manual, USGS Professional Paper 1395, p. 20-26.
+    """
+    from pyproj import Transformer
+
+    datum = crs.geodetic_crs
+    to_radians = datum.axis_info[0].unit_conversion_factor
+    steps = SCALE_STEP * np.array([(0, 0), (1, 0), (0, 1), (1, 1)])
+    u, v = (np.asarray(found) * to_radians for found in Transformer.from_crs(crs, datum, always_xy=True).transform(*(steps + (x, y)).T))
+    if not np.isfinite([u, v]).all():
+        return MapPlace(np.nan, np.nan, np.nan)
+    along_x, along_y, diagonal = np.array(crs.get_geod().inv(*([end[0]] * 3 for end in (u, v)), u[1:], v[1:], radians=True)[2]) / SCALE_STEP
+    mixed = (diagonal**2 - along_x**2 - along_y**2) / 2
+    ground = np.sqrt(np.linalg.eigvalsh([[along_x**2, mixed], [mixed, along_y**2]]).clip(1e-12))
+    scale = max(1 / ground, key=lambda one: abs(np.log(one)))
+    meridian = datum.prime_meridian
+    longitude = np.degrees(u[0]) + meridian.longitude * np.degrees(meridian.unit_conversion_factor)
+    return MapPlace(float((longitude + 180) % 360 - 180), float(np.degrees(v[0])), float(scale))
+
+
+@lru_cache(maxsize=16)
+def check_place(wkt: str, place: tuple[float, float], what: str) -> str:
+    """Refuse a CRS in which lengths at the survey are not those on the ground, and coordinates that are exchanged.
+
+    Parameters
+    ----------
+    wkt : metric CRS
+    place : (x, y) of the survey, metres
+    what : the subject of the message, such as "The point cloud"
+
+    Returns
+    -------
+    A sentence on a survey that lies far outside the area of its CRS; "" where there is nothing to note
+
+    Raises
+    ------
+    RoadExtractionError
+        If lengths differ by more than 5 per mille, or the survey lies in the area only with x and y exchanged.
+    """
+    crs = horizontal_part(parse_crs(wkt))
+    if not crs.is_projected:
+        return ""
+    x, y = place
+    there = place_on_ground(crs, x, y)
+    area = _area_of_use(wkt, there.true_to_scale)
+    beside = _beside(there, area)
+    if beside > MIN_EXCHANGED:
+        turned = place_on_ground(crs, y, x)
+        if turned.true_to_scale and _beside(turned, area) == 0:
+            raise RoadExtractionError(
+                f"{what} has x and y exchanged: x is about {x:.0f} and y about {y:.0f}, and in its CRS {crs.name} only the place with y as the "
+                f"easting lies in the area of this CRS ({_named(area)}). Export it with the easting as x and the northing as y, and run again.")
+    outside = beside > MIN_EXCHANGED and area
+    if beside > MAX_OUTSIDE_AREA and max(abs(x), abs(y)) < MAX_LOCAL:
+        return (f"{what} says that it is in {crs.name}, but its coordinates (about {x:.0f}, {y:.0f}) are those of a local system, or lack their "
+                "leading digits. They are taken as metres as they are; the results lie elsewhere on a map until the coordinates are complete.")
+    if not there.true_to_scale:
+        known = there.scale == there.scale
+        named = f"{crs.name}, at {_degrees(there)}, outside the area of this CRS ({_named(area)})" if outside else crs.name
+        lengths = (f"It has no place with x about {x:.0f} and y about {y:.0f}" if not known
+                   else f"Lengths in it are {there.scale:.3f} times those on the ground" if outside
+                   else f"Lengths in it are {there.scale:.3f} times those on the ground at {_degrees(there)}")
+        zone = f", such as UTM zone {_utm_zone(there)}," if known and not outside else ""
+        raise RoadExtractionError(
+            f"{what} is in {named}. {lengths}, and roads are measured in metres on the ground. Reproject the data to a CRS that is made for this "
+            f"place{zone} or correct the CRS.")
+    if beside > MAX_OUTSIDE_AREA:
+        return (f"{what} lies at {_degrees(there)}, outside the area of its CRS {crs.name} ({_named(area)}): if the survey was not made there, its "
+                "CRS is wrong, and so is that of the results. Correct it in the data.")
+    return ""
+
+
+def check_extent(wkt: str, bounds: Sequence[Sequence[float]], what: str) -> str:
+    """As `check_place`, of what lies between two corners.
+
+    Single points astray move one corner, and the middle with it: what is right at the middle or at either corner is not refused.
+
+    Parameters
+    ----------
+    wkt : metric CRS
+    bounds : (2,) or (3,) least coordinates and greatest coordinates, metres
+    what : the subject of the message, such as "The point cloud"
+
+    Returns
+    -------
+    As `check_place`
+
+    Raises
+    ------
+    RoadExtractionError
+        If `check_place` refuses the middle and both corners.
+    """
+    corners = np.array(bounds)[:, :2]
+    notes, refusals = [], []
+    for place in (corners.mean(axis=0), *corners):
+        try:
+            note = check_place(wkt, tuple(place.tolist()), what)
+        except RoadExtractionError as problem:
+            refusals.append(problem)
+            continue
+        if not note:
+            return ""
+        notes.append(note)
+    if notes:
+        return notes[0]
+    raise refusals[0]
+
+
+def _area_of_use(wkt, by_code):
+    """The pyproj AreaOfUse of the horizontal part of a file's CRS, None where it is not known.
+
+    To find a CRS that states no code by its parameters takes half a second; with `by_code` it is not done.
+    """
+    from pyproj import CRS
+
+    crs = horizontal_part(parse_crs(as_in_file(wkt)[0]))
+    crs = crs.source_crs if crs.is_bound else crs
+    if crs.area_of_use is not None:
+        return crs.area_of_use
+    stated = crs.to_json_dict().get("id", {})
+    code = stated["code"] if stated.get("authority") == "EPSG" else None if by_code else crs.to_epsg()
+    return None if code is None else CRS.from_epsg(code).area_of_use
+
+
+def _beside(place, area):
+    """Degrees from a place to an area; 0 within it and where it is not known, infinite from where the projection is not defined."""
+    if area is None:
+        return 0.0
+    if place.scale != place.scale:
+        return np.inf
+    width = (area.east - area.west) % 360 or 360.0
+    east = (place.longitude - area.west) % 360
+    across = 0.0 if east <= width else min(east - width, 360 - east)
+    return max(across, area.south - place.latitude, place.latitude - area.north, 0.0)
+
+
+def _named(area):
+    """The first words of what an area is called."""
+    return re.split(r"[:;.](?: |$)", area.name)[0]
+
+
+def _degrees(place):
+    return (f"{abs(place.latitude):.2f}° {'N' if place.latitude >= 0 else 'S'} "
+            f"{abs(place.longitude):.2f}° {'E' if place.longitude >= 0 else 'W'}")
+
+
+def _utm_zone(place):
+    return f"{int(min((place.longitude + 180) // 6 + 1, 60))}{'N' if place.latitude >= 0 else 'S'}"
+
+
+# Files in feet: inside all is metres, in a CRS that differs from the file's in its units alone; the doors of files convert.
+#
+# Such a *metric* CRS carries the WKT of the file's CRS in its remark, so that whatever is made from a survey is written in the survey's own CRS
+# again, by whatever process and stage.
+
+MARK = "Metric form of "        # begins the remark, before the WKT of the file's CRS
+FOOT, US_SURVEY_FOOT = 0.3048, 1200 / 3937   # m, both exact (NIST Special Publication 811, appendix B.6)
+NO_PLACE = (0.0, 1.0, 0.0, 0.0, 0.0, 1.0)   # of a raster without georeferencing, as GDAL gives it
+SAME_UNIT = 1e-9                # relative, between units that are written with other digits; two definitions of the foot differ by 2e-6
+
+
+@dataclass(frozen=True)
+class FileUnits:
+    """The units of coordinates in a file.
+
+    across : metres per unit of x and y (1 for degrees)
+    up : metres per unit of z
+    """
+
+    across: float = 1.0
+    up: float = 1.0
+
+    @property
+    def metric(self) -> bool:
+        """Whether the numbers of the file are those that are worked with."""
+        return self == METRES
+
+    def in_metres(self, places: Any) -> np.ndarray:
+        """(..., 2) or (..., 3) coordinates of a file in metres."""
+        return np.asarray(places) * np.array([self.across, self.across, self.up])[:np.shape(places)[-1]]
+
+    def in_file(self, places: Any) -> np.ndarray:
+        """(..., 2) or (..., 3) metres as coordinates of a file."""
+        return np.asarray(places) / np.array([self.across, self.across, self.up])[:np.shape(places)[-1]]
+
+    def geotransform(self, numbers: Any, to_file: bool = False) -> tuple[float, ...]:
+        """Places and lengths on the map, such as the six numbers of GDAL, from the units of a file to metres, or the other way round."""
+        return tuple(numbers) if self.metric else tuple(float(number / self.across if to_file else number * self.across) for number in numbers)
+
+
+METRES = FileUnits()
+
+
+@lru_cache(maxsize=64)
+def in_metres(wkt: str) -> tuple[str, FileUnits]:
+    """The CRS to work in with coordinates of a file, and the units of the file.
+
+    Parameters
+    ----------
+    wkt : WKT or "EPSG:n" of the file's CRS, or what this function made of it; "" where unknown
+
+    Returns
+    -------
+    wkt : as it was where the file is in metres (or degrees); otherwise a CRS with the same projection in metres
+    units : FileUnits. Heights without a vertical CRS have the unit of x and y, and beside degrees metres
+
+    Raises
+    ------
+    RoadExtractionError
+        If the text is not understood.
+    """
+    file_wkt = _file_wkt(wkt)
+    crs = parse_crs(file_wkt or wkt)
+    if crs is None:
+        return "", METRES
+    units = _units_of(crs)
+    return (wkt if units.metric or file_wkt else _metric_form(crs).to_wkt()), units
+
+
+@lru_cache(maxsize=64)
+def as_in_file(wkt: str) -> tuple[str, FileUnits]:
+    """The CRS of a file that is to be written, and its units.
+
+    Parameters
+    ----------
+    wkt : of the CRS that was worked in, "" where unknown
+
+    Returns
+    -------
+    wkt : of the survey's own CRS
+    units : FileUnits
+    """
+    file_wkt = _file_wkt(wkt)
+    return (file_wkt, _units_of(parse_crs(file_wkt))) if file_wkt else (wkt, METRES)
+
+
+def place_of_raster(dataset: Any) -> tuple[tuple[float, ...] | None, str]:
+    """The six numbers of an open GDAL raster in metres, None where it has none, and the WKT, metric, of its CRS."""
+    transform, text = dataset.GetGeoTransform(can_return_null=True), dataset.GetProjection() or ""
+    try:
+        crs, units = in_metres(text)
+    except RoadExtractionError:   # whoever needs the CRS says so
+        crs, units = text, METRES
+    return None if transform is None else units.geotransform(transform), crs
+
+
+def place_raster(dataset: Any, geotransform: Any, crs: str) -> None:
+    """Give a new GDAL raster its place, six numbers in metres and WKT, in the units of the survey's own CRS."""
+    wkt, units = as_in_file(crs)
+    dataset.SetGeoTransform(units.geotransform(geotransform, to_file=True))
+    if wkt:
+        dataset.SetProjection(wkt)
+
+
+def unit_names(wkt: str) -> list[str]:
+    """The names of the units of x, y and, where a CRS says it, z."""
+    crs = parse_crs(wkt)
+    return [] if crs is None else [axis.unit_name for axis in crs.axis_info]
+
+
+def plane_wkt(wkt: str) -> str:
+    """WKT of the horizontal part of a CRS that is worked in."""
+    return in_metres(horizontal_part(parse_crs(as_in_file(wkt)[0])).to_wkt())[0]
+
+
+def _file_wkt(wkt):
+    """The WKT that the remark of a metric form holds, "" for every other CRS."""
+    return parse_crs(wkt).remarks[len(MARK):] if f'REMARK["{MARK}' in wkt else ""
+
+
+def _units_of(crs):
+    flat = horizontal_part(crs)
+    axes = [axis for axis in flat.axis_info if axis.direction.lower() not in ("up", "down")]
+    across = axes[0].unit_conversion_factor if axes and not flat.is_geographic else 1.0
+    heights = [axis for axis in (crs.sub_crs_list[-1] if crs.is_compound else flat).axis_info if axis.direction.lower() in ("up", "down")]
+    up = heights[0].unit_conversion_factor if heights else across
+    return FileUnits(*(1.0 if abs(factor - 1.0) < SAME_UNIT else float(factor) for factor in (across, up)))
+
+
+def _metric_form(crs):
+    """A pyproj.CRS with its lengths in metres and the same name, without the code, which is that of the original."""
+    from pyproj import CRS
+
+    content = _with_metres(crs.to_json_dict())
+    content["remarks"] = MARK + crs.to_wkt()
+    return CRS.from_json_dict(content)
+
+
+def _with_metres(content):
+    """PROJJSON with every length of the projection and every axis in metres."""
+    if isinstance(content, list):
+        return [_with_metres(one) for one in content]
+    if not isinstance(content, dict):
+        return content
+    made = {key: _with_metres(value) for key, value in content.items()}
+    unit = content.get("unit")
+    if isinstance(unit, dict) and unit.get("type") == "LinearUnit":
+        made["unit"] = "metre"
+        if "value" in content:
+            made["value"] = content["value"] * unit["conversion_factor"]
+    if "coordinate_system" in content or content.get("type") == "CompoundCRS":
+        made.pop("id", None)
+    return made

@@ -13,10 +13,8 @@ import numpy as np
 
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
-from .gdal_errors import gdal_exceptions
-from .local_files import open_raster, reading
-from .unfinished import unfinished_path
-from .units import place_of_raster, place_raster
+from .crs import place_of_raster, place_raster
+from .local_files import gdal_exceptions, open_raster, reading, unfinished_path
 
 GEOTIFF_TILE = 512          # px, side of a tile of the file, and of the parts that are processed at a time
 NODATA = -9999.0            # value of pixels without data

@@ -7,10 +7,16 @@ formats that hold their data themselves are read, and while a file is read GDAL 
 from __future__ import annotations
 
 import json
+import os
+import shutil
+import threading
+import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager, suppress
+from glob import escape
 from pathlib import Path
 from typing import Any
+from uuid import uuid4
 
 from ..common.errors import RoadExtractionError
 
@@ -102,3 +108,88 @@ def open_vector(path: str | Path) -> Any:
 
     with offline():
         return gdal.OpenEx(str(path), gdal.OF_VECTOR, allowed_drivers=list(VECTOR_DRIVERS))
+
+
+# GDAL's errors as Python exceptions, and no network, for Lanewright's own calls alone.
+
+_lock = threading.Lock()
+_active = 0       # blocks of all threads that run at present, before GDAL 3.7
+_enabled: list[Any] = []    # GDAL's modules whose exceptions the first of them enabled
+
+
+@contextmanager
+def gdal_exceptions() -> Iterator[None]:
+    """A context, or a decorator of a function, in which GDAL raises RuntimeError and asks no server; afterwards it is as it was before.
+
+    Whether GDAL raises is a state of the whole process, which all plugins of QGIS share. Since GDAL 3.7 a
+    thread may have a state of its own, and only that is changed; with older versions, the state is restored
+    when the last thread leaves.
+    """
+    from osgeo import gdal, ogr
+
+    modules = (gdal, ogr)
+    with ExitStack() as stack:
+        stack.enter_context(offline())
+        if hasattr(gdal, "ExceptionMgr"):
+            for module in modules:
+                stack.enter_context(module.ExceptionMgr(useExceptions=True))
+            # otherwise GDAL raises an earlier error once more when the state is restored
+            stack.callback(gdal.ErrorReset)
+        else:
+            stack.enter_context(_for_all_threads(modules))
+        yield
+
+
+@contextmanager
+def _for_all_threads(modules):
+    global _active
+    with _lock:
+        if not _active:
+            _enabled[:] = [module for module in modules if not module.GetUseExceptions()]
+            for module in _enabled:
+                module.UseExceptions()
+        _active += 1
+    try:
+        yield
+    finally:
+        with _lock:
+            _active -= 1
+            if not _active:
+                # each module keeps the error handler that was there before it: the last is removed first
+                with suppress(RuntimeError):  # another plugin enabled a further module meanwhile, which must stay so
+                    for module in reversed(_enabled):
+                        module.DontUseExceptions()
+                _enabled.clear()
+
+
+# Files that appear whole or not at all: until a file is finished it has a hidden name of its own beside its place.
+
+ABANDONED_TIME = 24 * 3600.0   # s since the last write to an unfinished file after which its run is taken for dead; a computer may be suspended
+
+
+def unfinished_path(path: str | os.PathLike[str], suffix: str) -> Path:
+    """Where a file is written until it is finished, and then moved to its place by `finish_file`; or where a folder for its parts is made.
+
+    The name is used once, so that of several runs that write the same file each ends well, and the last to end is kept. What killed
+    runs left of the file is removed.
+
+    Parameters
+    ----------
+    path : of the finished file
+    suffix : of the unfinished one, such as ".tif"
+    """
+    target = Path(path)
+    for left in target.parent.glob(f".{escape(target.name)}.*.unfinished*"):
+        try:
+            if time.time() - max(file.stat().st_mtime for file in (left, *left.glob("*"))) > ABANDONED_TIME:
+                shutil.rmtree(left) if left.is_dir() else left.unlink()
+        except OSError:
+            pass   # another run was quicker, or it is held open
+    return target.with_name(f".{target.name}.{uuid4().hex}.unfinished{suffix}")
+
+
+def finish_file(unfinished: str | os.PathLike[str], path: str | os.PathLike[str]) -> None:
+    """Give an unfinished file its name, once all of it is on the disk: a power failure leaves the previous file or this one."""
+    with open(unfinished, "r+b") as file:
+        os.fsync(file.fileno())
+    os.replace(unfinished, path)

@@ -18,8 +18,8 @@ from typing import Any
 import numpy as np
 
 from ..common.errors import RoadExtractionError
+from ..io.crs import in_metres
 from ..io.text_table import as_number
-from ..io.units import in_metres
 from .source_image import SourceImage
 
 MAX_DEPARTURE = 0.1  # of the image's size: what a tilted camera over hilly ground differs from an image that is turned and scaled

@@ -9,8 +9,7 @@ import numpy as np
 import shapely
 
 from ..common.errors import RoadExtractionError
-from ..common.features import Features
-from ..common.schemas import RESIDUALS
+from ..common.features import RESIDUALS, Features
 from ..common.setting import check_limits, setting
 from .control_points import CONTROL, REQUIRED_COLUMNS, ControlPoints
 from .polynomial import (

@@ -6,9 +6,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..io.gdal_errors import gdal_exceptions
 from ..io.geotiff import IntensityImage
-from ..io.local_files import open_raster
+from ..io.local_files import gdal_exceptions, open_raster
 from ..lazy import cv2
 from .rough_place import similarity
 from .source_image import SourceImage

@@ -8,8 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..io.gdal_errors import gdal_exceptions
-from ..io.local_files import open_raster
+from ..io.local_files import gdal_exceptions, open_raster
 from .source_image import SourceImage
 
 FULL_FRAME_DIAGONAL = 43.27  # mm, of the 24 x 36 mm that a focal length "in 35 mm film" refers to

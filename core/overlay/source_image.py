@@ -8,9 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from ..common.errors import RoadExtractionError
-from ..io.gdal_errors import gdal_exceptions
-from ..io.local_files import open_raster
-from ..io.units import NO_PLACE, place_of_raster
+from ..io.crs import NO_PLACE, place_of_raster
+from ..io.local_files import gdal_exceptions, open_raster
 
 
 @dataclass(frozen=True)

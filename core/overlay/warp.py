@@ -10,11 +10,9 @@ import shapely
 
 from ..common.errors import Cancelled, RoadExtractionError
 from ..common.progress import Progress
-from ..io.gdal_errors import gdal_exceptions
+from ..io.crs import as_in_file
 from ..io.geotiff import GEOTIFF_TILE
-from ..io.local_files import open_raster
-from ..io.unfinished import unfinished_path
-from ..io.units import as_in_file
+from ..io.local_files import gdal_exceptions, open_raster, unfinished_path
 from .georeference import Georeferencing, node_grid, own_pixel_size
 
 GDAL_CACHE = 128_000_000  # bytes: a larger cache delays the writing of blocks to the end of the work

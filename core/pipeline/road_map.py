@@ -10,13 +10,14 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from ..assess.curvature import marking_curvature
 from ..common.features import Features
-from ..common.memory import trim_heap
+from ..common.layer_rows import LayerRows
+from ..common.parallel import trim_heap
 from ..common.progress import Progress
 from ..corrections.corrections import Corrections, corrections_from_features
 from ..corrections.edges import correct_edges
@@ -28,37 +29,32 @@ from ..driving.layers import curve_elements_to_features, driving_lines_to_featur
 from ..execution.choice import ExecutionSettings
 from ..intensity.correction import IntensitySettings, correct_intensity
 from ..intensity.image import ImageSettings, check_fits, make_intensity_image
-from ..io.cloud_crs import check_projected
+from ..io.crs import check_projected
 from ..io.geotiff import IntensityImage
-from ..markings.lines.fit import fit_marking_lines
-from ..markings.lines.geometry import MarkingLineSettings
-from ..markings.lines.naming import named_by_estimate, named_by_lines
+from ..markings.lines.fit import MarkingLineSettings, fit_marking_lines, named_by_estimate, named_by_lines
 from ..markings.lines.painted_lines import lines_to_features
 from ..markings.objects.cluster import ClusterSettings, cluster_markings
 from ..markings.objects.marking_objects import markings_to_features
-from ..markings.outliers.remove import OutlierSettings, remove_outliers
+from ..markings.outliers import OutlierSettings, remove_outliers
 from ..markings.paint.extract import extract_markings
 from ..markings.paint.settings import MarkingSettings
 from ..road.common.curb_limits import CurbSettings
-from ..road.common.curb_points import CurbPoints, curb_points_to_features
+from ..road.common.curb_points import CurbPoints
 from ..road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
 from ..road.edges.fit import EdgeSettings
-from ..road.edges.road_edges import RoadEdges, edges_to_features
+from ..road.edges.road_edges import RoadEdges
 from ..road.scanlines.candidates import ScanlineBoundarySettings
 from ..road.scanlines.section_planes import ScanlineSettings
 from ..road.surface.extract import SurfaceSettings, extract_road_surface
-from ..road.surface.road_surface import SurfaceOutlines, surface_to_features
+from ..road.surface.road_surface import SurfaceOutlines
 from ..survey.frame.road import CORRIDOR
+from ..survey.frame.road_frame import RoadFrame
+from ..survey.inspection import CubeDensity, cube_densities
 from ..survey.las.reader import read_headers
 from ..survey.open_survey import SurveySettings, open_survey
-from ..survey.point_density import CubeDensity, cube_densities
 from ..survey.store.records import Points
 from ..survey.store.road_points import columns_of_roads
-from ..survey.trajectory.reprojection import reproject_trajectory
-
-if TYPE_CHECKING:
-    from ..survey.frame.road_frame import RoadFrame
-    from ..survey.trajectory.trajectory import Trajectory
+from ..survey.trajectory.trajectory import Trajectory, reproject_trajectory
 
 
 @dataclass(frozen=True)
@@ -139,13 +135,8 @@ class RoadMap:
 
     def layer(self, name: str) -> Features | None:
         """The result of a name, such as "edges", as a layer in map coordinates; None where it was not made."""
-        result, convert = getattr(self, name), CONVERTERS.get(name)
-        return result if result is None or convert is None else convert(result, self.frame)
-
-
-# RoadMap's attributes that are arrays in the road frame -> what makes layers of them
-CONVERTERS: dict[str, Callable[[Any, RoadFrame], Features]] = dict(
-    curb_points=curb_points_to_features, edges=edges_to_features, boundary_differences=edges_to_features, surface=surface_to_features)
+        result = getattr(self, name)
+        return result.to_features(self.frame) if isinstance(result, LayerRows) else result
 
 
 def make_road_map(paths: Sequence[str | Path], trajectory: Trajectory, image_path: str | Path,
@@ -155,15 +146,9 @@ def make_road_map(paths: Sequence[str | Path], trajectory: Trajectory, image_pat
     Parameters
     ----------
     paths : point cloud files
-    trajectory : Trajectory
     image_path : where the intensity image is written (.tif)
     settings : RoadMapSettings, those of every stage
-    progress : Progress
     corrections : the layer CORRECTIONS of an analyst, or None; each is made where its kind of line was found, so that what follows builds on it
-
-    Returns
-    -------
-    RoadMap
 
     Raises
     ------
@@ -316,7 +301,6 @@ class Extent:
         Parameters
         ----------
         paths : point cloud files
-        trajectory : Trajectory
         crs : WKT for clouds that carry none
 
         Raises

@@ -13,8 +13,7 @@ from ..assess.driving_lines import MAX_MATCH_DISTANCE, MIN_REFERENCE_GAP, LineAc
 from ..assess.markings import MarkingAccuracy
 from ..assess.metrics import Errors
 from ..common.features import Features
-from ..common.texts import told, tr
-from ..common.words import word
+from ..common.texts import told, tr, word
 from ..lazy import cv2
 from .figures import Chart
 from .map_figure import MAP_MARGIN, draw_map, grey_background

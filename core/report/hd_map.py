@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..common.texts import told, tr
-from ..common.words import word
+from ..common.texts import told, tr, word
 from ..export.check.findings import FAULTS, Findings, SameFindings
 from ..export.map_layers import MapLayers
 from .page import html_page

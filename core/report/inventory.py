@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..common.texts import language, tr
-from ..common.words import word
+from ..common.texts import language, tr, word
 from .figures import Chart
 from .page import html_page
 

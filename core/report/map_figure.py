@@ -12,10 +12,9 @@ from typing import Any
 import numpy as np
 import shapely
 
-from ..io.gdal_errors import gdal_exceptions
+from ..io.crs import NO_PLACE, place_of_raster
 from ..io.geotiff import GEOTIFF_TILE, filled_tiles
-from ..io.local_files import open_raster
-from ..io.units import NO_PLACE, place_of_raster
+from ..io.local_files import gdal_exceptions, open_raster
 from ..lazy import cv2
 
 MAP_LONGEST_SIDE = 1800      # px

@@ -6,11 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..common.words import word
-from ..io.crs import horizontal_part, parse_crs
-from ..io.gdal_errors import gdal_exceptions
-from ..io.local_files import open_raster
-from ..io.units import NO_PLACE, place_of_raster
+from ..common.texts import word
+from ..io.crs import NO_PLACE, horizontal_part, parse_crs, place_of_raster
+from ..io.local_files import gdal_exceptions, open_raster
 from ..lazy import cv2
 from ..overlay.control_points import CHECK, CONTROL, DISABLED
 from ..overlay.pair_cutouts import pair_cutouts

@@ -10,8 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..common.texts import language, told, tr
-from ..common.words import word
+from ..common.texts import language, told, tr, word
 from ..lazy import cv2
 
 TEMPLATES = Path(__file__).parent / "templates"

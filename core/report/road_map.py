@@ -9,8 +9,7 @@ import numpy as np
 import shapely
 
 from ..assess.curvature import CURVATURE_BASE, curvature_along
-from ..common.texts import tr
-from ..common.words import word
+from ..common.texts import tr, word
 from ..countries.catalogue import country
 from .figures import Chart
 from .map_figure import draw_map, grey_background

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..common.arrays import mask_runs, stretch_of
 from ..common.errors import RoadExtractionError
 from ..common.parallel import InBackground
 from ..common.progress import Progress
-from ..common.runs import mask_runs, stretch_of
 from ..survey.frame.road_frame import RoadFrame
 from ..survey.lattice.scan_lattice import find_lattice
 from .common.corners import CANDIDATE_HEIGHT_SHARE
@@ -444,7 +444,7 @@ def with_pieces_of_both(points: CurbPoints, chains: Sequence[Mapping[tuple[int, 
     found = [points]
     for road in survey.store.roads():
         main, number = main_curbs_of(points, survey, road)
-        pieces = CurbPoints.none(points.crs)
+        pieces = CurbPoints.filled(0, points.crs)
         for side in SIDE_SIGNS:
             of_side = [known[road, side] for known in chains if (road, side) in known]
             pieces = CurbPoints.join([pieces, _pieces_of_side(points, of_side, survey, road, side, number + len(pieces))], points.crs)

@@ -14,11 +14,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..common.errors import RoadExtractionError
-from ..common.features import Features
+from ..common.features import CONTROL_POINTS, Features
 from ..common.progress import Progress
-from ..common.schemas import CONTROL_POINTS
-from ..io.gdal_errors import gdal_exceptions
-from ..io.unfinished import unfinished_path
+from ..io.local_files import gdal_exceptions, unfinished_path
 from ..lazy import cv2
 from .camera import GROUND_PIXEL, Camera
 from .camera_tags import camera_tags

@@ -101,8 +101,7 @@ def make_sample_survey(settings: SampleSettings | None = None, progress: Progres
     RoadExtractionError
         If the CRS is not recognised, is geographic or not in metres.
     """
-    from ..io.crs import check_metric, parse_crs
-    from ..io.units import as_in_file
+    from ..io.crs import as_in_file, check_metric, parse_crs
 
     settings = settings or SampleSettings()
     crs = parse_crs(as_in_file(settings.crs)[0])   # a survey is made in metres

@@ -1,21 +1,105 @@
-"""Road points as a LAZ file, with the road frame in extra fields for the later stages."""
+"""LAS and LAZ files that are written whole or not at all, above all road points, whose extra fields hold the road frame for later stages."""
 
 from __future__ import annotations
 
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
-from ..io.units import as_in_file
-from .adjustment import pass_sigma
-from .adjustment.corrections import PassCorrections
+from ..io.crs import as_in_file, parse_crs
+from ..io.local_files import unfinished_path
+from .adjustment.register import PassCorrections, sigma_of_records, sigma_to_record
 from .las.reader import POINTS_PER_BLOCK, cloud_crs, open_cloud, read_blocks
-from .las.writer import metres_of_file, new_laz, place_in_file
 from .store.records import COORDINATE_SCALE, ROAD_POINT, point_dtype
 from .store.road_points import RoadPoints
 from .store.section_store import SectionStore
+
+MAX_LAS_INTEGER = 2**31 - 2    # largest coordinate, as an integer about the offset, in a LAS file
+
+
+def scale_for(farthest: float) -> float:
+    """The coordinate scale of a LAS file: 0.1 mm, or the least power of ten times it with which all points fit.
+
+    Parameters
+    ----------
+    farthest : metres, the largest coordinate counted from the offset of the file
+
+    Returns
+    -------
+    Metres per integer
+
+    Raises
+    ------
+    RoadExtractionError
+        If even 0.1 m is too fine.
+    """
+    for per_metre in (10_000, 1_000, 100, 10):
+        if farthest * per_metre <= MAX_LAS_INTEGER:
+            return COORDINATE_SCALE if per_metre == 10_000 else 1 / per_metre
+    raise RoadExtractionError(f"The points lie up to {farthest / 1000:,.0f} km from the start of the survey, farther than a LAS file can hold. "
+                              "Check the coordinates of the trajectory, or process the files of each region separately.")
+
+
+def place_in_file(header: Any, origin: np.ndarray, crs: str, farthest: float) -> None:
+    """Set the scales, offsets and CRS of a new file, in the units of the survey's own CRS.
+
+    Parameters
+    ----------
+    header : laspy.LasHeader
+    origin : (3,) metres, map coordinates of the local origin
+    crs : WKT, metric, "" where unknown
+    farthest : metres, the largest local coordinate
+    """
+    file_wkt, units = as_in_file(crs)
+    header.scales = np.full(3, scale_for(farthest / min(units.across, units.up)))
+    header.offsets = np.asarray(origin, float) if units.metric else units.in_file(origin)
+    if file_wkt:
+        header.add_crs(parse_crs(file_wkt))
+
+
+def metres_of_file(header: Any, crs: str) -> list[float]:
+    """Metres per integer of x, y and z in a new file of a survey."""
+    units = as_in_file(crs)[1]
+    return (header.scales if units.metric else units.in_metres(header.scales)).tolist()
+
+
+@contextmanager
+def new_laz(path: str | os.PathLike[str], header: Any) -> Iterator[Any]:
+    """A laspy writer of a new file, which appears at its path only when all is written.
+
+    Parameters
+    ----------
+    path : of the file; compressed unless it ends in .las
+    header : laspy.LasHeader
+
+    Raises
+    ------
+    RoadExtractionError
+        If the file cannot be written.
+    """
+    import laspy
+
+    suffix = ".las" if str(path).lower().endswith(".las") else ".laz"
+    unfinished = unfinished_path(path, suffix)
+    try:
+        # A file that laspy opened itself would stay open when its last points cannot be written.
+        with open(unfinished, "wb") as stream, laspy.open(
+                stream, mode="w", header=header, do_compress=suffix == ".laz", closefd=False) as writer:
+            yield writer
+        os.replace(unfinished, path)
+    except (OSError, RuntimeError) as problem:  # lazrs raises RuntimeErrors
+        raise RoadExtractionError(f"{path} cannot be written ({problem}). Choose another folder or free some disk space.") from problem
+    finally:
+        unfinished.unlink(missing_ok=True)
+
+
+# Road points as a LAZ file, with the road frame in extra fields for the later stages.
 
 ROAD_CLASS = 11  # ASPRS: road surface
 MAX_CORRECTION = 10.0  # m: larger than any correction of a pass
@@ -70,7 +154,7 @@ def _header(road_points):
         for name, kind, text, scale in extra])
     if road_points.moves is not None:
         header.vlrs.extend(road_points.moves.to_records())
-    header.vlrs.extend(pass_sigma.to_record(road_points.pass_sigma))
+    header.vlrs.extend(sigma_to_record(road_points.pass_sigma))
     place_in_file(header, road_points.origin, road_points.crs, _farthest(road_points))
     return header
 
@@ -144,7 +228,7 @@ def read_road_points(path: str | Path, progress: Progress = Progress()) -> RoadP
         # where the file says its points lie; 32 bits of x and y reach beyond where they change to 64
         farthest = max((np.abs(np.r_[header.mins, header.maxs][[0, 1, 3, 4]] - origin[[0, 1, 0, 1]])).max(), 0.0) if total else 0.0
         dtype = point_dtype(ROAD_POINT, farthest)
-        crs, moves, sigma = cloud_crs(header), PassCorrections.of_records(header.vlrs), pass_sigma.of_records(header.vlrs)
+        crs, moves, sigma = cloud_crs(header), PassCorrections.of_records(header.vlrs), sigma_of_records(header.vlrs)
     has_corrected, has_cluster, has_spacing = (name in names for name in ("intensity_corrected", "cluster", "spacing"))
     store = SectionStore(dtype)
     done = 0

@@ -11,20 +11,17 @@ import numpy as np
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from ..common.setting import check_limits, setting
-from ..execution.phase import Executor, Recipe
-from ..execution.plain import read_plain, write_plain
-from ..execution.threads import THREADS
+from ..execution.phase import THREADS, Executor, Recipe, read_plain, write_plain
+from .blocks import KEPT_ABOVE_ROAD
 from .frame.road import CORRIDOR
-from .las.intensity_source import INTENSITY_SOURCES
+from .las.point_fields import INTENSITY_SOURCES
 from .las.reader import POINTS_PER_BLOCK, CloudHeader
-from .reading.blocks import KEPT_ABOVE_ROAD
-from .reading.finishing import Finishing
-from .reading.ordering import UnorderedPoints
 from .store.records import Points, road_of
 from .store.section_store import MEMORY_LIMIT, SectionStore
+from .survey_reader import Finishing, UnorderedPoints
 
 if TYPE_CHECKING:
-    from .adjustment.corrections import PassCorrections
+    from .adjustment.register import PassCorrections
     from .estimation.interleaved import ScannerSplitter
     from .frame.road_frame import RoadFrame
 

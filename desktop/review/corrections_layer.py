@@ -19,7 +19,7 @@ from qgis.core import (
 )
 
 from ...core.common.errors import RoadExtractionError
-from ...core.common.schemas import CORRECTIONS, OTHER
+from ...core.common.features import CORRECTIONS, OTHER
 from ...processing_provider.layers import qgis_fields
 from ...processing_provider.results.attributes import explain_readings
 from ...processing_provider.results.origin import OUTPUT

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from qgis.core import NULL, QgsFeature, QgsGeometry, QgsMapLayer
 
-from ...core.common.messages import places_in
+from ...core.common.texts import places_in
 from ...processing_provider.results.attributes import WORDS
 from ...processing_provider.results.road_maps import RoadMap
 from ...processing_provider.texts import told, tr

@@ -24,7 +24,7 @@ from ...core.common.errors import Cancelled, RoadExtractionError
 from ...core.common.parallel import cancellation_scope
 from ...core.common.progress import Progress
 from ...core.road.scanlines.section_planes import slice_lines
-from ...core.survey.las.near import points_near
+from ...core.survey.las.samples import points_near
 from ...processing_provider.results.road_maps import RoadMap, clouds_lie_in, clouds_of, road_maps
 from ...processing_provider.texts import told, tr
 from .section import HALF_WIDTH, Section, corners, crossings, middle_of, section_at

@@ -9,7 +9,7 @@ from typing import Any
 
 from qgis.core import QgsEditorWidgetSetup, QgsVectorLayer
 
-from ...core.common.schemas import OTHER
+from ...core.common.features import OTHER
 from ..texts import tr
 from .tip_picture import tip_picture
 

@@ -22,18 +22,16 @@ from executed_stages import found_by
 from lanewright.core.common.errors import Cancelled, RoadExtractionError
 from lanewright.core.common.progress import Progress
 from lanewright.core.execution import cluster as executing
-from lanewright.core.execution import cluster_connection as connecting
 from lanewright.core.execution.choice import ExecutionSettings
-from lanewright.core.execution.cluster import cluster_of
-from lanewright.core.execution.phase import Phase
-from lanewright.core.execution.threads import Threads
+from lanewright.core.execution.cluster import client_of, cluster_of, own_versions
+from lanewright.core.execution.phase import Phase, Threads
 from lanewright.core.execution.work_folder import KeptResults, WorkFolder
 from lanewright.core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
 from lanewright.core.road.scanlines.section_planes import all_scanlines
 from lanewright.core.sample import SampleSettings, make_sample_survey
+from lanewright.core.survey import survey_reader
+from lanewright.core.survey.blocks import sensor_height_of
 from lanewright.core.survey.open_survey import open_survey
-from lanewright.core.survey.reading import survey_reader
-from lanewright.core.survey.reading.sensor_height import sensor_height_of
 from lanewright.core.survey.survey import SurveySettings
 from lanewright.library import run
 
@@ -116,7 +114,7 @@ def ends_soon_when_cancelled(cluster, phase, work):
 @pytest.mark.parametrize("phase", PHASES)
 def test_cancel_ends_within_two_seconds_and_leaves_the_workers_idle(cluster, sections_together, phase):
     ends_soon_when_cancelled(cluster, phase, boundaries)
-    with contextlib.closing(connecting.client_of(cluster.address)) as client:
+    with contextlib.closing(client_of(cluster.address)) as client:
         until = time.monotonic() + 10.0
         while any(client.processing().values()) and time.monotonic() < until:
             time.sleep(0.1)
@@ -212,13 +210,13 @@ def test_two_runs_at_once_in_one_work_folder_find_the_same(cluster, tmp_path):
 
 
 def test_other_packages_and_other_code_are_refused_by_name(cluster, monkeypatch):
-    own = connecting.own_versions()
+    own = own_versions()
     for name, version in dict(python="3.8.1", numpy="0.9", distributed="1.0").items():
         with monkeypatch.context() as patch:
-            patch.setattr(connecting, "own_versions", lambda: {**own, name: version})
+            patch.setattr(executing, "own_versions", lambda: {**own, name: version})
             with pytest.raises(RoadExtractionError, match=f"(?i)worker tcp.* has {name} .*{version}"):
                 cluster_of(cluster.address, False, None)
-    monkeypatch.setattr(connecting, "code_digest", lambda: "another")
+    monkeypatch.setattr(executing, "code_digest", lambda: "another")
     with pytest.raises(RoadExtractionError, match="another lanewright"):
         cluster_of(cluster.address, False, None)
 
@@ -232,8 +230,8 @@ def test_threads_and_allowed_failures_that_do_not_suit_are_said(new_cluster):
 
 
 def test_a_scheduler_without_workers_and_none_at_all_are_named(new_cluster, monkeypatch):
-    monkeypatch.setattr(connecting, "WORKERS_TIME", 0.5)
-    monkeypatch.setattr(connecting, "CONNECT_TIME", 1.0)
+    monkeypatch.setattr(executing, "WORKERS_TIME", 0.5)
+    monkeypatch.setattr(executing, "CONNECT_TIME", 1.0)
     with pytest.raises(RoadExtractionError, match="has no workers.*dask worker tcp"):
         cluster_of(new_cluster(workers=0).address, False, None)
     with pytest.raises(RoadExtractionError, match="No Dask scheduler answers at tcp://127.0.0.1:1"):

@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 from lanewright.algorithms.corrections import read_corrections
-from lanewright.core.common.schemas import DRIVING_LINES, LANES, ROAD_EDGES
+from lanewright.core.common.features import DRIVING_LINES, LANES, ROAD_EDGES
 from lanewright.desktop.review.corrections_layer import corrections_layers
 from lanewright.desktop.review.doubt_dock import DoubtDock
 from lanewright.processing_provider.layers import QgisSource

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from lanewright.core.common.messages import RoadPlace, places_in
-from lanewright.core.common.schemas import DRIVING_LINES, LANES, PASSES, ROAD_EDGES, ROAD_SURFACE
+from lanewright.core.common.features import DRIVING_LINES, LANES, PASSES, ROAD_EDGES, ROAD_SURFACE
+from lanewright.core.common.texts import RoadPlace, places_in
 from lanewright.core.corrections.corrections import Correction
 from lanewright.core.road.surface.extract import ThinMargin, said_of_thin
 from lanewright.desktop.review.doubtful import doubts_of

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from lanewright.core.common.schemas import DRIVING_LINES, ROAD_EDGES
+from lanewright.core.common.features import DRIVING_LINES, ROAD_EDGES
 from lanewright.desktop.layout.layout_dialog import LayoutDialog, credit_of, shown_layers
 from lanewright.desktop.layout.map_layout import MARGIN, SCALES, road_map_layout
 from lanewright.desktop.menu import unused_name

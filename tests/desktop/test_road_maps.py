@@ -2,7 +2,7 @@
 
 import pytest
 from lanewright.algorithms.provenance import Provenance, provenance_now
-from lanewright.core.common.schemas import DRIVING_LINES, MARKING_LINES, ROAD_EDGES
+from lanewright.core.common.features import DRIVING_LINES, MARKING_LINES, ROAD_EDGES
 from lanewright.desktop.review.doubtful import doubts_of
 from lanewright.desktop.review.section import section_at
 from lanewright.processing_provider.embedded_style import embed_style

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.common.schemas import CURB_POINTS, DRIVING_LINES, ROAD_EDGES
+from lanewright.core.common.features import CURB_POINTS, DRIVING_LINES, ROAD_EDGES
 from lanewright.core.road.scanlines.section_planes import slice_lines
 from lanewright.desktop.review import section_view
 from lanewright.desktop.review.doubtful import doubts_of, reason

@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from lanewright.core.common.schemas import DRIVING_LINES
+from lanewright.core.common.features import DRIVING_LINES
 from lanewright.desktop.review import section_dock
 from qgis.core import QgsPointXY, QgsProject
 from qgis.gui import QgsMapCanvas

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import pytest
-from lanewright.core.common.schemas import CORRECTIONS, DRIVING_LINES, MARKING_LINES, MARKINGS, ROAD_EDGES
+from lanewright.core.common.features import CORRECTIONS, DRIVING_LINES, MARKING_LINES, MARKINGS, ROAD_EDGES
 from lanewright.desktop.dialogs.stage_inputs import layer_lists, stage_again
 from lanewright.desktop.review.corrections_layer import new_corrections_layer
 from lanewright.processing_provider.algorithm import group_of_layers

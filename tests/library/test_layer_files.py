@@ -9,10 +9,8 @@ import shapely
 from lanewright.algorithms.destinations import table_of
 from lanewright.algorithms.vector_source import in_file_units, read_features, scaled_wkb, vertices_of
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.common.features import Features
-from lanewright.core.common.schemas import CURVE_ELEMENTS, MARKINGS, ROAD_EDGES, SCANLINES, TRAJECTORY
-from lanewright.core.io.crs import parse_crs, same_crs
-from lanewright.core.io.units import in_metres
+from lanewright.core.common.features import CURVE_ELEMENTS, MARKINGS, ROAD_EDGES, SCANLINES, TRAJECTORY, Features
+from lanewright.core.io.crs import in_metres, parse_crs, same_crs
 from lanewright.core.road.scanlines.layer import LineSpool
 from lanewright.library import gdal_module, measured_lines
 from lanewright.library.layer_files import LayerFile, file_and_table, write_layer

@@ -130,8 +130,7 @@ def test_a_name_that_belongs_to_another_format_is_refused(tmp_path):
 
 def spoilt_layer(folder, what):
     """A layer of lanes that is none, and other layers."""
-    from lanewright.core.common.features import Features
-    from lanewright.core.common.schemas import LANES, ROAD_EDGES
+    from lanewright.core.common.features import LANES, ROAD_EDGES, Features
     from lanewright.core.driving.layers import lanes_to_features
     from lanewright.library.layer_files import write_layer
 

@@ -4,8 +4,7 @@ from contextlib import suppress
 
 import pytest
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.io.gdal_errors import gdal_exceptions
-from lanewright.core.io.local_files import open_raster
+from lanewright.core.io.local_files import gdal_exceptions, open_raster
 from lanewright.library import run
 from lanewright.library.layer_files import LayerFile, first_table
 from listening_server import RASTERS, VECTORS, listening, written

@@ -2,8 +2,7 @@
 
 import pytest
 from lanewright.algorithms.driving.road_map_numbers import NUMBERS, road_map_numbers
-from lanewright.core.common.features import Features
-from lanewright.core.common.schemas import DRIVING_LINES, MARKING_LINES, MARKINGS, ROAD_EDGES
+from lanewright.core.common.features import DRIVING_LINES, MARKING_LINES, MARKINGS, ROAD_EDGES, Features
 from lanewright.core.corrections.corrections import Correction, Corrections
 
 shapely = pytest.importorskip("shapely")

@@ -8,7 +8,7 @@ import laspy
 import numpy as np
 import pytest
 import shapely
-from lanewright.core.io.units import MARK, in_metres
+from lanewright.core.io.crs import MARK, in_metres
 from lanewright.library import run
 from pyproj import CRS
 from shapely.geometry import shape

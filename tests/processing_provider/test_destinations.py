@@ -13,7 +13,7 @@ from lanewright.algorithms import destinations
 from lanewright.algorithms.destinations import UnfinishedFiles, UnfinishedLayers, bring_back, check_suffix, check_writable, destination_path, table_of
 from lanewright.algorithms.driving.road_map import RoadMap
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.io.unfinished import ABANDONED_TIME
+from lanewright.core.io.local_files import ABANDONED_TIME
 from lanewright.processing_provider.call import QgisCall
 from qgis.core import QgsProcessingContext, QgsProcessingFeedback, QgsProcessingOutputLayerDefinition, QgsProject, QgsVectorLayer
 

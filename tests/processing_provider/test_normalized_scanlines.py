@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 from lanewright.algorithms.trajectory_source import read_trajectory_source
 from lanewright.algorithms.vector_source import read_features
-from lanewright.core.common.schemas import SCANLINES
+from lanewright.core.common.features import SCANLINES
 from lanewright.core.road.scanlines.layer import scanlines_from_features
-from lanewright.core.survey.frame.build import build_frame
+from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.processing_provider.layers import QgisSource
 from osgeo import ogr
 from qgis.core import QgsProcessingContext, QgsProcessingFeatureSource, QgsVectorLayer

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.common.schemas import (
+from lanewright.core.common.features import (
     CONTROL_POINTS,
     CROSS_SECTIONS,
     DRIVING_LINES,

@@ -2,15 +2,13 @@
 
 import numpy as np
 import shapely
-from lanewright.core.common.features import Features
+from lanewright.core.common.features import MARKINGS, ROAD_EDGES, Features
 from lanewright.core.common.progress import Progress
-from lanewright.core.common.schemas import MARKINGS, ROAD_EDGES
-from lanewright.core.markings.lines.fit import fit_marking_lines
-from lanewright.core.markings.lines.geometry import MarkingLineSettings
+from lanewright.core.markings.lines.fit import MarkingLineSettings, fit_marking_lines
 from lanewright.core.markings.lines.painted_lines import lines_to_features
 from lanewright.core.markings.objects.marking_objects import markings_from_features
-from lanewright.core.road.edges.road_edges import edges_from_features
-from lanewright.core.survey.frame.build import build_frame
+from lanewright.core.road.edges.road_edges import RoadEdges
+from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.store.records import ROAD_POINT, to_units
 from lanewright.core.survey.store.road_points import RoadPoints
 from lanewright.core.survey.trajectory.trajectory import Trajectory
@@ -76,7 +74,7 @@ class ClusteredStreet:
         edges = Features("LineStringZ", list(ROAD_EDGES))
         edges.add(shapely.linestrings(np.c_[self.place(station, offset(station)), np.full(len(station), UP)]), road=0, kind="main",
                   edge="pavement", status="measured", part="bottom", chain=1, side="left")
-        return edges_from_features(edges, self.frame)
+        return RoadEdges.from_features(edges, self.frame)
 
     def lines(self, settings=MarkingLineSettings(), progress=Progress(), edges=None):
         """The layer of the marking lines found."""

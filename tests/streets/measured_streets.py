@@ -4,9 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
-from lanewright.core.common.features import Features
-from lanewright.core.common.schemas import LANES, MARKING_LINES, ROAD_EDGES
-from lanewright.core.survey.frame.build import build_frame
+from lanewright.core.common.features import LANES, MARKING_LINES, ROAD_EDGES, Features
+from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.open_survey import Survey
 from lanewright.core.survey.store.records import SURVEY_POINT, to_units
 from lanewright.core.survey.store.section_store import SectionStore

@@ -1,6 +1,7 @@
 """`make ablation`: rules switched off in turn, and what each brings."""
 
 import json
+from contextlib import closing
 from dataclasses import replace
 
 import numpy as np
@@ -9,7 +10,7 @@ import pytest
 pytest.importorskip("osgeo.gdal")
 
 from ablation.__main__ import _code  # noqa: E402
-from ablation.measure import ALL_VARIANTS, STAGES, measure  # noqa: E402
+from ablation.measure import ALL_VARIANTS, STAGES, Survey, measure  # noqa: E402
 from ablation.page import page, write_csv  # noqa: E402
 from ablation.swap import Watch, original_of, replaced, same  # noqa: E402
 from ablation.switches import DEFAULT, SWITCHES, Switch, gives, nearest_steps, nth  # noqa: E402
@@ -111,6 +112,15 @@ def test_only_rules_that_a_street_calls_are_run_without(short):
     off = json.loads(short[2].read_text())["off"]
     assert off["zigzag lines"]["outcome"] in ("not called", "no effect") and off["beams made alike"]["outcome"] == "no effect"
     assert off["correction of intensity"]["outcome"] == "another map" and off["both"]["outcome"] == off["common trend"]["outcome"]
+
+
+@pytest.mark.slow
+def test_rules_without_effect_can_all_be_off_at_once(short, tmp_path, monkeypatch):
+    with closing(Survey(short[0] / "short", ALL_VARIANTS["as surveyed"], tmp_path, [*SWITCHES.values()])) as survey:
+        idle = [switch for switch in SWITCHES.values() if survey.idle([switch])]
+        assert len(idle) > 50
+        monkeypatch.setattr(survey, "_stages", lambda switches: set(STAGES))
+        assert survey.without(idle)["outcome"] == "same map"
 
 
 @pytest.mark.slow

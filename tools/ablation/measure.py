@@ -18,7 +18,6 @@ from accuracy.surveys import read_case
 from accuracy.variants import VARIANTS, Variant
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.road.detect_boundaries import draw_boundaries
-from lanewright.core.road.edges.road_edges import edges_to_features
 from lanewright.core.road.surface.extract import extract_road_surface
 from lanewright.core.survey.open_survey import open_survey
 from lanewright.core.survey.store.road_points import columns_of_roads
@@ -63,7 +62,7 @@ def _columns(points, *names):
 
 def _map(work):
     return [[(geometry.wkb, sorted(map(str, row.items()))) for geometry, row in layer]
-            for layer in (edges_to_features(work.edges, work.frame), work.markings, work.driving)]
+            for layer in (work.edges.to_features(work.frame), work.markings, work.driving)]
 
 
 class Survey:
@@ -97,7 +96,7 @@ class Survey:
     def judged(self, work):
         """{name: (right, of how much)}."""
         edges, markings, lanes = (on_the_street(layer, self.variant, self.centre)
-                                  for layer in (edges_to_features(work.edges, work.frame), work.markings, work.driving))
+                                  for layer in (work.edges.to_features(work.frame), work.markings, work.driving))
         paint = None
         if "markings" in self.case.truth.has:
             paint = judge.paint(self.case, [geometry for geometry, _ in markings], [row["class"] for _, row in markings])["counts"]
@@ -147,7 +146,8 @@ def measure(folder, variant, switches, groups, into, code):
     All other switches are watched too: `idle` names those that need not be tried, and why.
     """
     known = json.loads(into.read_text()) if into.exists() else {}
-    known = known if known.get("code") == code else dict(code=code, off={})
+    whose = dict(code=code, survey=str(folder))
+    known = known if known.items() >= whose.items() else dict(whose, off={})
     wanted = {**{name: [name] for name in switches}, **groups}
     missing = [name for name, members in wanted.items() if known["off"].get(name, {}).get("of") != sorted(members)]
     if not missing and "figures" in known or "refused" in known:

@@ -22,7 +22,7 @@ def _percent(share):
 
 def boundaries(case, edges, frame):
     """By side and in total: tolerance in cm to rates; RMSE in cm at 10 cm."""
-    bottoms = list(edges.map_lines(frame)[edges.part == "bottom"])
+    bottoms = list(edges.on_map(frame)[edges.part == "bottom"])
     found = assess_boundaries(bottoms, case.truth.curbs, SETTINGS, frame, case.truth.aside, area=case.truth.area)
     by = {**found.by_side, "total": found.total}
     result = {side: {_cm(t): rates(a.rates) for t, a in row.items()} for side, row in by.items()}

@@ -11,8 +11,8 @@ import shapely
 
 from ...common.errors import RoadExtractionError
 from ...common.features import Features
-from ...io.gdal_errors import gdal_exceptions
-from ...io.units import as_in_file
+from ...io.crs import as_in_file
+from ...io.local_files import gdal_exceptions
 from ..sources import RoadMapSource
 
 COLOURS = {"LANE_BORDER": "#808080", "DRIVING_LINE": "#00a0ff", "MARKING_EDGE": "#ffffff", "MARKING_LANE": "#e0e0e0", "MARKING_CENTRE": "#ffd040",

@@ -9,8 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import shapely
 
-from ...common.features import Features
-from ...common.schemas import MAP_FINDINGS
+from ...common.features import MAP_FINDINGS, Features
 
 # what may be found -> what it means
 FAULTS = {

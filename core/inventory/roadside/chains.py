@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.ndimage import median_filter
 
-from ...common.groups import linked_groups, members_of
+from ...common.arrays import linked_groups, members_of
 from .gaps import END_UPRIGHTS, TOLD_GAP, Gaps, gaps_between
 from .uprights import UPRIGHT_SLICE, Uprights
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...common.rows import Rows
+from ...common.arrays import Rows
 from .uprights import BEHIND, FIRST_BIN, HEIGHT_BIN, SIGHT_MARGIN, UPRIGHT_SLICE, Uprights
 
 TOLD_GAP = 3             # slices (1.5 m) without an upright of a gap that is told; shorter ones belong to the line

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import grey_opening, median_filter, minimum_filter1d
 
-from ...common.order_statistics import order_by
+from ...common.arrays import order_by
 from ...road.common.pseudo_scanlines import lowest_layers
 
 GROUND_SLICE, GROUND_CELL = 1.0, 0.20   # m along and across

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 
-from ...common.features import Features
-from ...common.schemas import ROADSIDE, ROADSIDE_OBJECTS
+from ...common.features import ROADSIDE, ROADSIDE_OBJECTS, Features
 from .uprights import FIRST_BIN, HEIGHT_BIN
 
 if TYPE_CHECKING:

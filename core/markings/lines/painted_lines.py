@@ -1,25 +1,18 @@
-"""Marking lines as arrays, and their conversion from and to the layer MARKING_LINES.
-
-Stages hand each other `PaintedLines`. Map coordinates are made in one place,
-`lines_to_features`, and read in one place, `lines_from_features`.
-"""
+"""Marking lines as arrays, and their conversion from and to the layer MARKING_LINES."""
 
 from __future__ import annotations
 
 import json
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import shapely
 
-from ...common.features import Features
-from ...common.schemas import MARKING_LINES
+from ...common.features import MARKING_LINES, Features
 from ...curves.base import Curve
-from ...survey.frame.frame_lines import FrameLines, line_parts, lines_in_frame
-
-if TYPE_CHECKING:
-    from ...survey.frame.road_frame import RoadFrame
+from ...survey.frame.placement import FrameLines, line_parts, lines_in_frame
+from ...survey.frame.road_frame import RoadFrame
 
 LONG_LISTS = ("knots", "control_x", "control_y")  # parameters of splines
 
@@ -155,7 +148,6 @@ def lines_from_features(features: Features, frame: RoadFrame) -> PaintedLines:
     ----------
     features : Features with lines in map coordinates; `road`, `line`, `kind`, `pattern`, `status` and `width_m` are used where they are, so
         that lines drawn by hand serve as well
-    frame : RoadFrame
 
     Returns
     -------
@@ -181,7 +173,6 @@ def painted_lines_of(rows: list[dict[str, Any]], frame: RoadFrame, crs: str) -> 
     ----------
     rows : dicts of road, line, kind, pattern, status, and of what FittedPieces holds: curve, arc, places (V, 3), station, end, offset, width, rmse;
         and of `unseen`, where it is known
-    frame : RoadFrame
     crs : WKT, "" where unknown
     """
     def column(name: str, kind: Any) -> np.ndarray:

@@ -1,24 +1,17 @@
-"""Markings as arrays, and their conversion from and to the layer MARKINGS.
-
-Stages hand each other `MarkingObjects`. Map coordinates are made in one place,
-`markings_to_features`, and read in one place, `markings_from_features`.
-"""
+"""Markings as arrays, and their conversion from and to the layer MARKINGS."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import shapely
 
-from ...common.features import Features
-from ...common.schemas import MARKINGS
+from ...common.features import MARKINGS, Features
 from ...survey.frame.placement import located
-
-if TYPE_CHECKING:
-    from ...survey.frame.road_frame import RoadFrame
+from ...survey.frame.road_frame import RoadFrame
 
 
 @dataclass(frozen=True)
@@ -128,7 +121,6 @@ def make_marking_objects(rows: Sequence[dict[str, Any]], polygons: Sequence[Any]
     ----------
     rows : M dicts of field name to value; `road` -1, `cluster` -1, `class` "" and NaN stand for what is missing
     polygons : M shapely polygons or multipolygons in local coordinates, None where there is none
-    frame : RoadFrame
     crs : WKT
     """
     def column(name: str, missing: Any, kind: Any) -> np.ndarray:
@@ -158,7 +150,6 @@ def markings_to_features(markings: MarkingObjects, frame: RoadFrame) -> Features
 
     Parameters
     ----------
-    markings : MarkingObjects
     frame : RoadFrame, whose origin is added to local coordinates
 
     Returns
@@ -187,7 +178,6 @@ def markings_from_features(features: Features, frame: RoadFrame) -> MarkingObjec
     Parameters
     ----------
     features : Features with polygons in map coordinates; fields may be missing
-    frame : RoadFrame
 
     Returns
     -------

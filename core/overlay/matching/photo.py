@@ -7,9 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...common.errors import RoadExtractionError
-from ...io.gdal_errors import gdal_exceptions
 from ...io.geotiff import GEOTIFF_TILE, IntensityImage
-from ...io.local_files import open_raster
+from ...io.local_files import gdal_exceptions, open_raster
 from ..source_image import SourceImage
 from .contrast import paint_contrast
 

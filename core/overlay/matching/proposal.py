@@ -6,8 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ...common.features import Features
-from ...common.schemas import PROPOSED_POINTS
+from ...common.features import PROPOSED_POINTS, Features
 from ...common.setting import check_limits, setting
 from ...io.geotiff import IntensityImage
 from ..rough_place import RoughPlace

@@ -8,7 +8,7 @@ from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
     "corners": ("CurbSteps", "measure_corners"),
-    "curb_points": ("CurbPoints", "curb_points_at", "curb_points_from_features", "curb_points_to_features"),
+    "curb_points": ("CurbPoints", "curb_points_at"),
     "decimation": ("LevelGround", "LevelStrip", "PointDecimation"),
     "occlusion": ("OcclusionGrid",),
     "pseudo_scanlines": ("PseudoScanLines", "pseudo_scan_lines"),

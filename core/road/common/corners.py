@@ -12,7 +12,7 @@ from functools import partial
 
 import numpy as np
 
-from ...common.rows import Rows
+from ...common.arrays import Rows
 from .curb_limits import LEAST_SLOPE
 from .pseudo_scanlines import TOP_QUANTILE_SIGMAS, PseudoScanLines, expand_ranges
 

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...common.order_statistics import decimate_cells
+from ...common.arrays import decimate_cells
 from ...execution.phase import Executor, Recipe
 from ...survey.store.records import COORDINATE_SCALE, Points, join_columns
 from ...survey.store.spill_file import SpillFile

@@ -21,7 +21,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...common.order_statistics import order_by
+from ...common.arrays import order_by
 
 MIN_GROUND_LAYER_SHARE = 0.15   # share of the points of its cell below which the lowest layer is multipath and not ground
 TOP_QUANTILE = 0.9              # quantile of the lowest layer that stands for its highest point

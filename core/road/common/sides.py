@@ -238,7 +238,7 @@ def hidden_beside(pieces: CurbPoints, main: Mapping[str, np.ndarray], beside: Ma
     -------
     CurbPoints of status occluded; none where a place is known to be hidden already
     """
-    found = [CurbPoints.none(pieces.crs)]
+    found = [CurbPoints.filled(0, pieces.crs)]
     for side, sign in SIDE_SIGNS.items():
         own = pieces[pieces.side == side]
         if not len(own) or side not in beside:

@@ -15,10 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from ...common.groups import linked_groups
-from ...common.near_pairs import ROUNDING_TOLERANCE
+from ...common.arrays import ROUNDING_TOLERANCE, linked_groups, stretch_of
 from ...common.parallel import check_cancelled
-from ...common.runs import stretch_of
 from .corners import CurbSteps
 from .curb_limits import MIN_FAINT_LENGTH, CurbLimits
 from .pseudo_scanlines import expand_ranges

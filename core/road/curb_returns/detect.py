@@ -15,7 +15,7 @@ import numpy as np
 
 from ...common.progress import Progress
 from ...execution.phase import Phase
-from ...survey.frame.place_index import PlaceIndex
+from ...survey.frame.placement import PlaceIndex
 from ...survey.frame.road import CORRIDOR
 from ..common.curb_points import CurbPoints, curb_points_at
 from ..common.decimation import POINTS_PER_LEVEL_CELL_IN_PLAN, PointDecimation

@@ -19,8 +19,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...common.arrays import Rows
 from ...common.progress import Progress
-from ...common.rows import Rows
 from ...execution.phase import Phase
 from ..common.corners import (
     BEHIND_FIT_LENGTH,

@@ -13,7 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ...common.order_statistics import order_by
+from ...common.arrays import order_by
 from ...lazy import cv2
 from ..common.pseudo_scanlines import DEFAULT_SCANNER_NOISE, MIN_SCANNER_NOISE, lowest_layers
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ...common.runs import stretch_of
+from ...common.arrays import stretch_of
 from ..common.curb_points import CurbPoints
 from ..common.occlusion import OCCLUSION_CELL, OcclusionGrid
 from ..common.sides import MAX_HIDDEN_GAP, SIDE_SIGNS, expected_height

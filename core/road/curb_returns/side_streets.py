@@ -15,7 +15,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ...survey.frame.reference_line import NODE_SPACING
+from ...survey.frame.road import NODE_SPACING
 from ...survey.store.records import road_of
 from ..common.corners import FACE_LOWER_SHARE, FACE_PRIOR, FACE_UPPER_SHARE
 from ..common.curb_limits import SIGNIFICANT_SIGMAS

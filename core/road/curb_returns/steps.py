@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ...common.rows import Rows
+from ...common.arrays import Rows
 from ..common.corners import BEHIND_LENGTH, FACE_MARGIN, REMEASURE_SKEW, ROAD_SIDE_LENGTH, StepPatches
 from ..common.pseudo_scanlines import expand_ranges
 from .ground_raster import PLAN_CELL, GroundRaster, diamond, grown

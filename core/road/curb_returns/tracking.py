@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ...common.groups import linked_groups
+from ...common.arrays import linked_groups
 from ..common.tracking import HEIGHT_TOLERANCE, MAX_JOINED_GAP
 from .steps import LONG_HALF_LENGTH, PlanSteps
 

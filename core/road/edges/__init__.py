@@ -7,5 +7,5 @@ from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
     "fit": ("EdgeSettings", "fit_road_edges"),
-    "road_edges": ("EdgePiece", "RoadEdges", "edges_from_features", "edges_to_features", "joined_pieces"),
+    "road_edges": ("EdgePiece", "RoadEdges", "joined_pieces"),
 })

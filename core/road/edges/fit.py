@@ -8,9 +8,9 @@ import numpy as np
 from scipy.interpolate import splev, splprep, splrep
 from scipy.ndimage import median_filter
 
+from ...common.arrays import stretch_of
 from ...common.parallel import check_cancelled
 from ...common.progress import Progress
-from ...common.runs import stretch_of
 from ...common.setting import check_limits, setting
 from ...curves.robust import MAD_TO_SIGMA
 from ...survey.frame.road_frame import RoadFrame

@@ -1,8 +1,4 @@
-"""Road edges as arrays, and their conversion from and to the layer ROAD_EDGES.
-
-Stages hand each other `RoadEdges`. Map coordinates are made in one place, `edges_to_features`, and read in one
-place, `edges_from_features`.
-"""
+"""Road edges as arrays, which stages hand each other and which the layer ROAD_EDGES holds."""
 
 from __future__ import annotations
 
@@ -13,18 +9,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import shapely
 
-from ...common.features import Features
-from ...common.schemas import NEAREST_PASS, ROAD_EDGES
-from ...survey.frame.frame_lines import FrameLines, line_parts, lines_in_frame
-from ...survey.frame.placement import COORDINATE_DECIMALS, as_written, known
-from ...survey.frame.sigma_along import cuts_where_it_changes
+from ...common.features import NEAREST_PASS, ROAD_EDGES, SIGMA, Features
+from ...common.layer_rows import LayerRows, column
+from ...survey.frame.placement import COORDINATE_DECIMALS, FrameLines, as_written, line_parts, lines_in_frame
+from ...survey.frame.row_table import cuts_where_it_changes
 from ..common.tracking import MAX_JOINED_GAP
 
 if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame
-
-EDGE_FIELDS = dict(nearest_pass=NEAREST_PASS.name, side="side", status="status", part="part", kind="kind", what="edge", chain="chain",
-                   station="station_m", end="end_m", height="height_m", length="length_m", rmse="rmse_m", sigma="sigma_m", agree="agree_cm")
 
 EDGE_DECIMALS = dict(station=3, end=3, height=3, length=3, rmse=4, sigma=4, agree=1)   # of numbers in the layer
 
@@ -72,7 +64,7 @@ class EdgePiece:
 
 
 @dataclass(frozen=True)
-class RoadEdges:
+class RoadEdges(LayerRows):
     """E pieces of road edges, each of one status.
 
     edge : (E,) int, row of the layer that the piece comes from or goes to
@@ -93,26 +85,25 @@ class RoadEdges:
     Numbers that are unknown are -1 or NaN.
     """
 
+    GEOMETRY_TYPE, SCHEMA = "LineStringZ", ROAD_EDGES
+
     edge: np.ndarray
-    nearest_pass: np.ndarray
-    side: np.ndarray
-    status: np.ndarray
-    part: np.ndarray
-    kind: np.ndarray
-    what: np.ndarray
-    chain: np.ndarray
-    station: np.ndarray
-    end: np.ndarray
-    height: np.ndarray
-    length: np.ndarray
-    rmse: np.ndarray
-    agree: np.ndarray
-    sigma: np.ndarray
+    nearest_pass: np.ndarray = column(NEAREST_PASS.name)
+    side: np.ndarray = column()
+    status: np.ndarray = column(unknown="measured")
+    part: np.ndarray = column(unknown="bottom")
+    kind: np.ndarray = column(unknown="main")
+    what: np.ndarray = column("edge", unknown="curb")
+    chain: np.ndarray = column()
+    station: np.ndarray = column("station_m")
+    end: np.ndarray = column("end_m")
+    height: np.ndarray = column("height_m")
+    length: np.ndarray = column("length_m")
+    rmse: np.ndarray = column("rmse_m")
+    agree: np.ndarray = column("agree_cm")
+    sigma: np.ndarray = column(SIGMA.name)
     course: FrameLines
     crs: str = ""
-
-    def __len__(self) -> int:
-        return len(self.edge)
 
     @property
     def road(self) -> np.ndarray:
@@ -129,38 +120,41 @@ class RoadEdges:
         """(E,) bool: is the edge a curb, not an edge of the pavement alone?"""
         return self.what != "pavement"
 
-    def take(self, rows: np.ndarray) -> RoadEdges:
-        """Some of the pieces, by their numbers."""
-        return replace(self, **{name: getattr(self, name)[rows] for name in EDGE_COLUMNS}, course=self.course.take(rows))
-
     def and_pieces(self, pieces: Sequence[EdgePiece], frame: RoadFrame) -> RoadEdges:
         """These edges and further pieces, whose chains are numbered on."""
         if not pieces:
             return self
         more = joined_pieces(pieces, frame, self.crs)
-        columns = {name: np.concatenate([getattr(self, name), getattr(more, name)]) for name in EDGE_COLUMNS}
-        columns["edge"] = np.arange(len(self) + len(more))
-        columns["chain"][len(self):] += max(self.chain.max(initial=-1), -1) + 1
-        course = FrameLines(*(np.concatenate([getattr(self.course, name), getattr(more.course, name)]) if name != "start" else
-                              np.append(self.course.start, self.course.start[-1] + more.course.start[1:])
-                              for name in ("road", "start", "x", "y", "z", "s", "d")))
-        return RoadEdges(**columns, course=course, crs=self.crs)
+        more = replace(more, chain=more.chain + max(self.chain.max(initial=-1), -1) + 1)
+        return replace(RoadEdges(*map(_joined, self.columns(), more.columns()), crs=self.crs), edge=np.arange(len(self) + len(more)))
 
-    def map_lines(self, frame: RoadFrame) -> np.ndarray:
+    def on_map(self, frame: RoadFrame) -> np.ndarray:
         """(E,) shapely lines with Z in map coordinates, as the layer holds them."""
         course = self.course
         places = np.round(np.c_[course.x, course.y, course.z] + frame.origin, COORDINATE_DECIMALS)
         found = np.full(len(self), None, object)
         return shapely.linestrings(places, indices=course.owner, out=found) if len(places) else found
 
+    def derived(self, frame: RoadFrame) -> dict[str, np.ndarray]:
+        """The road, which the course knows."""
+        return {"road": self.road}
+
+    @staticmethod
+    def from_features(features: Features, frame: RoadFrame) -> RoadEdges:
+        """The edges of a layer ROAD_EDGES in map coordinates, one piece a LineString, with the vertices of the layer.
+
+        Fields may be missing: rows without `kind` are main edges, without `edge` curbs and without `status` measured; a row without `road`
+        belongs to the road that most of its vertices are nearest to. Rows without geometry are left out.
+        """
+        parts, row_of = line_parts(features.geometries)
+        rows = [features.rows[k] for k in row_of]
+        road = [-1 if row.get("road") is None else int(row["road"]) for row in rows]
+        return RoadEdges(edge=np.array(row_of, int), **RoadEdges.read_columns(rows), course=lines_in_frame(parts, road, frame, spacing=None),
+                         crs=features.crs)
+
     def densified(self, frame: RoadFrame) -> RoadEdges:
         """The same edges with vertices at most LINE_VERTEX_SPACING apart: what is straight on the map is not straight in the road frame."""
-        return replace(self, course=lines_in_frame(self.map_lines(frame), self.road, frame))
-
-
-EDGE_COLUMNS = tuple(one.name for one in fields(RoadEdges) if one.name not in ("course", "crs"))
-EDGE_TYPES: dict[str, type] = {**dict.fromkeys(EDGE_COLUMNS, float), **dict.fromkeys(("edge", "nearest_pass", "chain"), int),
-                          **dict.fromkeys(("side", "status", "part", "kind", "what"), object)}
+        return replace(self, course=lines_in_frame(self.on_map(frame), self.road, frame))
 
 
 def joined_pieces(pieces: Sequence[EdgePiece], frame: RoadFrame, crs: str = "") -> RoadEdges:
@@ -176,8 +170,13 @@ def joined_pieces(pieces: Sequence[EdgePiece], frame: RoadFrame, crs: str = "") 
     columns: dict[str, Any] = {}
     for name in (one.name for one in fields(EdgePiece) if one.name not in ("vertices", "road")):
         values, decimals = [getattr(piece, name) for piece in pieces], EDGE_DECIMALS.get(name)
-        columns[name] = np.array(values if decimals is None else [round(value, decimals) for value in values], EDGE_TYPES[name])
+        columns[name] = RoadEdges.array_of(name, values if decimals is None else [round(value, decimals) for value in values])
     return RoadEdges(edge=np.arange(len(pieces)), nearest_pass=_nearest_passes(course, columns["station"], frame), **columns, course=course, crs=crs)
+
+
+def _joined(some, more):
+    """Arrays or lines, one after the other."""
+    return some.and_lines(more) if isinstance(some, FrameLines) else np.concatenate([some, more])
 
 
 def _nearest_passes(course, station, frame):
@@ -191,51 +190,6 @@ def _nearest_passes(course, station, frame):
         rows = course.road == road
         found[rows] = frame.nearest_pass(road, s[rows], d[rows])
     return found
-
-
-def edges_to_features(edges: RoadEdges, frame: RoadFrame) -> Features:
-    """The layer ROAD_EDGES in map coordinates.
-
-    Parameters
-    ----------
-    edges : RoadEdges
-    frame : RoadFrame, whose origin is added to local coordinates
-
-    Returns
-    -------
-    Features ROAD_EDGES: LineStringZ, in the same order
-    """
-    columns = {name: getattr(edges, attribute).tolist() for attribute, name in [("road", "road"), *EDGE_FIELDS.items()]}
-    rows = [{name: known(value) for name, value in zip(columns, row)} for row in zip(*columns.values())]
-    return Features("LineStringZ", list(ROAD_EDGES), list(edges.map_lines(frame)), rows, edges.crs)
-
-
-def edges_from_features(features: Features, frame: RoadFrame) -> RoadEdges:
-    """Read the layer ROAD_EDGES.
-
-    Parameters
-    ----------
-    features : Features with lines in map coordinates; fields may be missing. Rows without `kind` are main edges, without `edge`
-        curbs and without `status` measured; a row without `road` belongs to the road that most of its vertices are nearest to
-    frame : RoadFrame
-
-    Returns
-    -------
-    RoadEdges, one piece a LineString, with the vertices of the layer; rows without geometry are left out
-    """
-    parts, row_of = line_parts(features.geometries)
-    rows = [features.rows[k] for k in row_of]
-    road = [-1 if row.get("road") is None else int(row["road"]) for row in rows]
-    columns: dict[str, Any] = {
-        attribute: np.array([_missing(attribute) if row.get(name) is None else row[name] for row in rows], EDGE_TYPES[attribute])
-        for attribute, name in EDGE_FIELDS.items()}
-    return RoadEdges(edge=np.array(row_of, int), **columns, course=lines_in_frame(parts, road, frame, spacing=None), crs=features.crs)
-
-
-def _missing(attribute):
-    """What stands for a field that a layer does not have."""
-    texts = dict(side="", status="measured", part="bottom", kind="main", what="curb")
-    return texts[attribute] if attribute in texts else -1 if EDGE_TYPES[attribute] is int else np.nan
 
 
 # How uncertain the place of a road edge is: one sigma across it.

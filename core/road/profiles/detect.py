@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...common.features import Features
+from ...common.features import HEIGHT, OFFSET, PASS, ROAD, SIDE, STATION, Features
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
-from ...common.schemas import HEIGHT, OFFSET, PASS, ROAD, SIDE, STATION
 from ...execution.phase import Phase
 from ..common.corners import CurbSteps
 from ..common.curb_limits import CurbSettings

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...common.runs import best_within
+from ...common.arrays import best_within
 from ..common.corners import (
     BEHIND_FIT_LENGTH,
     BEHIND_LENGTH,

@@ -15,9 +15,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...common.arrays import Rows, best_within
 from ...common.errors import RoadExtractionError
-from ...common.rows import Rows
-from ...common.runs import best_within
 from ...common.setting import check_limits, setting
 from ...lazy import cv2
 from ..common.corners import FACE_MARGIN, MAX_ROAD_SLOPE, ROAD_SIDE_LENGTH

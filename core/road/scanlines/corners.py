@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...common.rows import Rows
+from ...common.arrays import Rows
 from ..common.corners import MAX_FACE_SKEW, CurbSteps
 from ..common.pseudo_scanlines import SIGMA_PER_MEAN_DEVIATION, expand_ranges
 from .candidates import CurbCandidates, ScanlineSamples

@@ -19,10 +19,9 @@ import numpy as np
 
 from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
-from ...execution.phase import Executor, Phase, Recipe
-from ...execution.threads import THREADS
+from ...execution.phase import THREADS, Executor, Phase, Recipe
+from ...survey.blocks import DEFAULT_SENSOR_HEIGHT, sensor_height_of
 from ...survey.lattice.scan_lattice import ScanLattice, find_lattice
-from ...survey.reading.sensor_height import DEFAULT_SENSOR_HEIGHT, sensor_height_of
 from ..common.curb_points import CurbPoints, curb_points_at
 from ..common.occlusion import HIDDEN_POINT_SPACING, MIN_OCCLUDER_HEIGHT, OcclusionGrid
 from ..common.pseudo_scanlines import MIN_SCANNER_NOISE
@@ -376,7 +375,7 @@ class SurveyScanlines:
     def recipe(self, folder: Path) -> Recipe:
         """How other processes open the scanlines."""
         level = None if self.level is None else self.level.recipe(folder)
-        return Recipe("road.scanlines.source:SurveyScanlines", dict(survey=self.survey.recipe(folder), settings=self.settings, level=level,
+        return Recipe("road.scanlines.detect:SurveyScanlines", dict(survey=self.survey.recipe(folder), settings=self.settings, level=level,
                                                                     sensor_height=self.sensor_height, lattice=self.lattice))
 
     def stretch(self, road: int, start: float, end: float) -> str:

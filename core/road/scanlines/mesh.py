@@ -23,7 +23,7 @@ from ...survey.store.records import COORDINATE_SCALE, take_rows
 
 if TYPE_CHECKING:
     from ...survey.frame.passes import Pass
-    from ...survey.lattice.mirror_phase import MirrorPhase
+    from ...survey.lattice.scan_lattice import MirrorPhase
     from ...survey.store.columns import Columns
     from ..common.decimation import LevelStrip
 

@@ -8,5 +8,5 @@ from ...lazy import public
 __getattr__, __all__ = public(__name__, {
     "extract": ("SurfaceSettings", "extract_road_surface"),
     "pavement_edge": ("edge_offsets",),
-    "road_surface": ("SurfaceOutlines", "surface_to_features"),
+    "road_surface": ("SurfaceOutlines",),
 })

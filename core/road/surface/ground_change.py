@@ -13,8 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import correlate1d, median_filter, uniform_filter1d
 
-from ...common.memory import by_rows
-from ...common.parallel import check_cancelled
+from ...common.parallel import by_rows, check_cancelled
 from .ground_grid import COLUMN_WIDTH, ROW_LENGTH, GroundCells, known_median
 from .pavement_limit import INNER_CELLS
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.linalg import solveh_banded
 
-from ...common.order_statistics import order_by
+from ...common.arrays import order_by
 from ...common.progress import Progress
 from ...execution.phase import Phase
 from ...survey.frame.road import CORRIDOR

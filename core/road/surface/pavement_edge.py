@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...common.memory import by_rows
-from ...common.runs import stretch_of
+from ...common.arrays import stretch_of
+from ...common.parallel import by_rows
 from ..edges.fit import MAX_EDGE_JUMP
 from .ground_change import HalfProfiles, other_ground_begins
 from .ground_grid import PROFILE_COLUMN, PROFILE_ROW, GroundCells, SurfaceProfiles, known_median

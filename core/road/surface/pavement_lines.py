@@ -14,9 +14,9 @@ import shapely
 from scipy.interpolate import splev, splrep
 from scipy.ndimage import uniform_filter1d
 
+from ...common.arrays import stretch_of
 from ...common.parallel import check_cancelled
 from ...common.progress import Progress
-from ...common.runs import stretch_of
 from ..common.tracking import GapLine
 from ..edges.fit import EDGE_VERTEX_SPACING, IN_LINE_GAP_FACTOR, MAX_EDGE_JUMP, MIN_HIDDEN_SHARE, EdgeSettings
 from ..edges.road_edges import EdgePiece, RoadEdges
@@ -87,7 +87,7 @@ def pavement_pieces(frame: RoadFrame, road: int, carriageway: Carriageway, edges
     stations = carriageway.cells.stations
     there = np.isfinite(carriageway.left) & np.isfinite(carriageway.right)
     curbs = edge_offsets(edges, road, stations)
-    curb_lines = shapely.STRtree(shapely.force_2d(edges.map_lines(frame)[edges.of_curb & (edges.status == "measured")]))
+    curb_lines = shapely.STRtree(shapely.force_2d(edges.on_map(frame)[edges.of_curb & (edges.status == "measured")]))
     for side, grown in carriageway.grown.items():
         curb = curbs[side][0]
         free = there & np.isnan(curb)

@@ -7,8 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...common.features import Features, Field
-from ...common.schemas import CURB_KIND, DRIVING_LINES, END, HEIGHT, LANES, LENGTH, PART, ROAD, ROADSIDE, SIDE, STATION, WIDTH
+from ...common.features import CURB_KIND, DRIVING_LINES, END, HEIGHT, LANES, LENGTH, PART, ROAD, ROADSIDE, SIDE, STATION, WIDTH, Features, Field
 
 VERTEX_STEP = 0.25      # m between vertices
 STRAIGHT = 1e-4         # 1/m: lines that bend less are straight

@@ -7,11 +7,9 @@ In: a `Trajectory`. Out: a `RoadFrame` that gives the station and offset of any 
 from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "build": ("build_frame",),
-    "frame_lines": ("FrameLines", "line_parts", "lines_in_frame"),
     "passes": ("Pass",),
-    "placement": ("located",),
+    "placement": ("FrameLines", "line_parts", "lines_in_frame", "located"),
     "road": ("Road",),
-    "road_frame": ("RoadFrame",),
+    "road_frame": ("RoadFrame", "build_frame"),
     "row_table": ("RowSpans", "RowTable"),
 })

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+import shapely
 
-if TYPE_CHECKING:
-    from .road_frame import RoadFrame
+from ...common.features import PASSES, Features
+from .passes import STANDSTILL_RADIUS, decimate_by_distance
+from .road_frame import RoadFrame
 
 COORDINATE_DECIMALS = 4  # of coordinates in layers: 0.1 mm
 
@@ -45,6 +49,186 @@ def as_written(frame: RoadFrame, x: np.ndarray, y: np.ndarray, z: np.ndarray) ->
     return frame.to_local(*(np.round(values, COORDINATE_DECIMALS) for values in (x, y, z)))
 
 
-def known(value: Any) -> Any:
-    """A value for the field of a layer: None (NULL) for what arrays hold as unknown, which is NaN, "" and whole numbers below 0."""
-    return None if value == "" or value != value or isinstance(value, int) and value < 0 else value
+
+# Lines of a map in the road frame: the one conversion from map coordinates to station and offset that lines go through.
+
+LINE_VERTEX_SPACING = 0.5  # m between vertices at most: straight on the map is not straight in the road frame
+
+
+@dataclass(frozen=True)
+class FrameLines:
+    """L lines, stored vertex by vertex.
+
+    road : (L,) int, number of the road; -1 where a line lies on none
+    start : (L + 1,) int, first vertex of each line, and V
+    x, y, z : (V,) local metres (map coordinates less the origin of the frame); z is NaN where there is none
+    s, d : (V,) metres, station and offset; NaN where a vertex has no foot on its road
+    """
+
+    road: np.ndarray
+    start: np.ndarray
+    x: np.ndarray
+    y: np.ndarray
+    z: np.ndarray
+    s: np.ndarray
+    d: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.road)
+
+    def line(self, k: int) -> slice:
+        """The vertices of line k."""
+        return slice(int(self.start[k]), int(self.start[k + 1]))
+
+    def __getitem__(self, rows: np.ndarray) -> FrameLines:
+        """Some of the lines, by a mask or their numbers."""
+        count, first = np.diff(self.start)[rows], self.start[:-1][rows]
+        start = np.append(0, np.cumsum(count))
+        at = np.repeat(first - start[:-1], count) + np.arange(start[-1])
+        return FrameLines(self.road[rows], start, *(values[at] for values in (self.x, self.y, self.z, self.s, self.d)))
+
+    def and_lines(self, more: FrameLines) -> FrameLines:
+        """These lines and others behind them."""
+        start = np.append(self.start, self.start[-1] + more.start[1:])
+        return FrameLines(np.append(self.road, more.road), start,
+                          *(np.append(getattr(self, name), getattr(more, name)) for name in ("x", "y", "z", "s", "d")))
+
+    @property
+    def owner(self) -> np.ndarray:
+        """(V,) int, the line of each vertex."""
+        return np.repeat(np.arange(len(self)), np.diff(self.start))
+
+    def linestrings(self) -> np.ndarray:
+        """(L,) shapely lines in local x, y."""
+        found = np.full(len(self), None, object)
+        return shapely.linestrings(np.c_[self.x, self.y], indices=self.owner, out=found) if len(self.x) else found
+
+    @staticmethod
+    def at(frame: RoadFrame, road: np.ndarray, start: np.ndarray, x: np.ndarray, y: np.ndarray, z: np.ndarray) -> FrameLines:
+        """Lines through given vertices; station and offset are found for them."""
+        return FrameLines(road, start, x, y, z, *located(frame, np.repeat(road, np.diff(start)), x, y))
+
+
+def lines_in_frame(lines: Sequence[Any] | np.ndarray, road: Sequence[int] | np.ndarray, frame: RoadFrame,
+                   spacing: float | None = LINE_VERTEX_SPACING) -> FrameLines:
+    """Lines in map coordinates as FrameLines.
+
+    Parameters
+    ----------
+    lines : L shapely LineStrings in map coordinates
+    road : (L,) int, number of the road of each; where the frame has no such road, the one that most vertices are nearest to
+    frame : RoadFrame
+    spacing : m between vertices at most; None for the vertices of the lines as they are
+
+    Returns
+    -------
+    FrameLines
+    """
+    shapes = np.asarray(lines, object) if len(lines) else np.empty(0, object)
+    if spacing is not None and len(shapes):
+        shapes = shapely.segmentize(shapes, spacing)
+    places, owner = shapely.get_coordinates(shapes, include_z=True, return_index=True)
+    start = np.append(0, np.cumsum(np.bincount(owner, minlength=len(lines))))
+    x, y = frame.to_local(places[:, 0], places[:, 1])
+    roads = np.array([int(number) if 0 <= number < len(frame.roads) else _nearest_road(frame, x[a:b], y[a:b])
+                      for number, a, b in zip(road, start[:-1], start[1:])], int)
+    return FrameLines.at(frame, roads, start, x, y, places[:, 2] - frame.origin[2])
+
+
+def _nearest_road(frame: RoadFrame, x: np.ndarray, y: np.ndarray) -> int:
+    """The road that most places are nearest to, -1 where there is none."""
+    numbers, _, _ = frame.locate_nearest(x, y)
+    numbers = numbers[numbers >= 0]
+    return int(np.bincount(numbers).argmax()) if len(numbers) else -1
+
+
+def line_parts(geometries: Sequence[Any]) -> tuple[list[Any], list[int]]:
+    """The LineStrings of lines and multi-lines that are not empty, and the row that each comes from."""
+    parts = [(part, row) for row, geometry in enumerate(geometries) if geometry is not None and not geometry.is_empty
+             for part in getattr(geometry, "geoms", [geometry])]
+    return [part for part, _ in parts], [row for _, row in parts]
+
+
+def passes_to_features(frame: RoadFrame, crs: str) -> Features:
+    """The layer PASSES in map coordinates: where the vehicle drove, as the run used it.
+
+    Parameters
+    ----------
+    frame : RoadFrame
+    crs : WKT, "" where unknown
+
+    Returns
+    -------
+    Features, LineStringZ, one row a pass in order of time, drawn as it was driven with a vertex every half metre
+    """
+    layer = Features("LineStringZ", list(PASSES), crs=crs)
+    for one in frame.passes:
+        rows = decimate_by_distance(one.x, one.y, STANDSTILL_RADIUS)
+        if len(rows) < 2:
+            continue
+        line = shapely.linestrings(np.round(np.c_[one.x, one.y, one.z][rows] + frame.origin, COORDINATE_DECIMALS))
+        timed = frame.has_time
+        layer.add(line, **{"pass": one.number}, road=one.road, direction=one.direction, station_m=float(one.s.min()), end_m=float(one.s.max()),
+                  length_m=float(line.length), begin_s=float(one.time[0]) if timed else None, finish_s=float(one.time[-1]) if timed else None)
+    return layer
+
+
+# Places by squares of the ground: those about a place are looked up there, not among all places of a whole road.
+
+class PlaceIndex:
+    """Places by squares.
+
+    Parameters
+    ----------
+    places : (N, 2) m
+    side : m, of the squares
+
+    Attributes
+    ----------
+    places, side : as given
+    """
+
+    def __init__(self, places: np.ndarray, side: float):
+        self.places, self.side = places, side
+        row, column = (np.floor(values / side).astype(np.int32) for values in places.T)
+        # a column more on either side: the neighbours of a square in the last column are none of the next row
+        self._first = np.array([values.min() if len(values) else 0 for values in (row, column)], np.int64) - 1
+        self._columns = int(column.max(initial=self._first[1]) - self._first[1]) + 2
+        key = row - self._first[0]
+        key *= self._columns
+        key += column - self._first[1]
+        order = np.argsort(key, kind="stable")
+        key = key[order]
+        self._order = order.astype(np.int32)
+        self._starts = np.flatnonzero(np.diff(key, prepend=-1))
+        self._keys, self._ends = key[self._starts], np.r_[self._starts, len(key)]
+
+    def __getstate__(self) -> dict:
+        """The places; the rest follows from them."""
+        return dict(places=self.places, side=self.side)
+
+    def __setstate__(self, state: dict) -> None:
+        PlaceIndex.__init__(self, **state)
+
+    def _rows(self, first, last):
+        """Where the places in the squares from key `first` to `last`, (K,) each, begin and end in the order."""
+        begin, end = np.searchsorted(self._keys, first), np.searchsorted(self._keys, last, side="right")
+        return self._ends[begin], self._ends[end]
+
+    def windows(self, fewest: int) -> list[np.ndarray]:
+        """Rows of the places of every window of 2 by 2 squares, which overlap by half, that has so many places at least."""
+        columns = self._columns
+        corner = np.unique(np.concatenate([self._keys + step for step in (0, 1, columns, columns + 1)]))   # the last square of each window
+        (a, b), (c, d) = (self._rows(corner - step - 1, corner - step) for step in (columns, 0))
+        enough = b - a + d - c >= fewest
+        return [np.concatenate([self._order[one:two], self._order[three:four]])
+                for one, two, three, four in zip(*(ends[enough].tolist() for ends in (a, b, c, d)))]
+
+    def within(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+        """Ascending rows of the places in a box with the corners `low` and `high`, (2,) m each."""
+        first, last = (np.floor(np.asarray(corner) / self.side).astype(np.int64) - self._first for corner in (low, high))
+        first[1], last[1] = max(first[1], 0), min(last[1], self._columns - 1)
+        row = np.arange(max(first[0], 0), last[0] + 1) * self._columns
+        rows = np.concatenate([np.empty(0, np.int32), *(self._order[a:b] for a, b in zip(*self._rows(row + first[1], row + last[1])))])
+        own = self.places[rows]
+        return np.sort(rows[((own >= low) & (own <= high)).all(axis=1)])

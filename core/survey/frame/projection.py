@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...common.memory import ScratchBuffers
+from ...common.parallel import ScratchBuffers
 from ..store.records import COORDINATE_SCALE, to_units
 from .passes import MAX_TICKS, TIME_TICK
-from .reference_line import NODE_SPACING
+from .road import NODE_SPACING
 
 if TYPE_CHECKING:
     from .passes import Pass

@@ -6,13 +6,16 @@ Both published methods use this frame, and every stage works in it.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
+from scipy.spatial import cKDTree
 
-from .passes import Pass
-from .road import CORRIDOR, Road
-from .sigma_along import SigmaAlong
+from ..trajectory.shape import shaped_trajectory
+from ..trajectory.trajectory import Trajectory, clean_trajectory
+from .passes import LEVEL_SEPARATION, MAX_ROAD_LENGTH, TURN_REACH, Pass, decimate_by_distance, moving_rows, split_into_passes
+from .road import CORRIDOR, FRAME_EXTENSION, JUNCTION_GAP, Road, continue_line, reference_nodes, track_line
+from .row_table import SigmaAlong
 
 MAX_POINT_DISTANCE = 200.0    # m from the track: exceeds the widest corridor and the extension at the ends of a road
 
@@ -117,3 +120,200 @@ class RoadFrame:
             better = np.isfinite(d) & ~(np.abs(d) >= np.abs(np.where(np.isnan(best_d), np.inf, best_d)))
             best_road[better], best_s[better], best_d[better] = road.number, s[better], d[better]
         return best_road, best_s, best_d
+
+
+# Roads and passes of a trajectory: which parts of the drive run over the same road, and along which line.
+
+MAX_PASS_DISTANCE = 12.0      # m between two passes over one carriageway (median)
+MAX_LANE_DISTANCE = 15.0      # m between two passes over one carriageway at most
+MAX_PASS_ANGLE = np.radians(30.0)
+MIN_SHARED_LENGTH = 20.0      # m of road that two passes over it must share
+
+
+def build_frame(trajectory: Trajectory) -> RoadFrame:
+    """Roads and passes of a trajectory.
+
+    The drive is split into passes. The longest becomes the reference line of the first road, lengthened by passes that
+    continue it, up to MAX_ROAD_LENGTH. Passes parallel to it within 12 m, in either direction, are further passes over
+    the same road. The remaining passes make the next road.
+
+    Parameters
+    ----------
+    trajectory : Trajectory in a projected CRS in metres
+
+    Returns
+    -------
+    RoadFrame
+
+    Raises
+    ------
+    RoadExtractionError
+        If the trajectory does not move.
+    """
+    trajectory = shaped_trajectory(clean_trajectory(trajectory)).trajectory
+    origin = np.floor([trajectory.x.min(), trajectory.y.min(), trajectory.z.min()])
+    track = np.c_[trajectory.x - origin[0], trajectory.y - origin[1], trajectory.z - origin[2]]
+    pieces = split_into_passes(trajectory)
+    turning = np.zeros(len(track), bool)
+    for piece in pieces:
+        turning[piece.first:piece.line_first] = turning[piece.line_last:piece.last] = True
+    moved = np.unique(np.concatenate([piece.first + moving_rows(*track[piece.first:piece.last, :2].T) for piece in pieces]))
+    # metres driven up to the last row that moved; a jump between two pieces lies before the later one's first row
+    driven = np.r_[0.0, np.cumsum(np.hypot(*np.diff(track[moved, :2], axis=0).T))]
+    driven = driven[np.searchsorted(moved, np.arange(len(track)), side="right") - 1]
+    waiting = [(piece.first, piece.last) for piece in pieces]
+    roads: list[Road] = []
+    passes: list[Pass] = []
+    while waiting:
+        waiting = _longest_first(waiting, driven)
+        longest = waiting[0]
+        if roads and _length(longest, driven) < MIN_SHARED_LENGTH:
+            break
+        road, members, waiting = _grow_road(len(roads), track, turning, moved, driven, waiting)
+        roads.append(road)
+        passes += [replace(_make_pass(road, trajectory.time[a:b], *track[a:b].T),
+                           attitude=trajectory.rows(slice(a, b)).attitude()) for a, b in sorted(members)]
+    passes.sort(key=lambda p: p.time[0])
+    for number, p in enumerate(passes):
+        p.number = number
+    return RoadFrame(origin, roads, passes, trajectory.crs, trajectory.has_time, trajectory.notes, way_known=trajectory.way_known)
+
+
+def _length(rows, driven):
+    return float(driven[rows[1] - 1] - driven[rows[0]])
+
+
+def _longest_first(ranges, driven):
+    # to the centimetre: of equals the earlier comes first, whatever the rounding of coordinates
+    return sorted(ranges, key=lambda rows: (-round(_length(rows, driven), 2), rows))
+
+
+def _line_of(track, turning, rows):
+    """The track of a range of rows as a line, without turns on the spot at its ends."""
+    straight = np.flatnonzero(~turning[rows[0]:rows[1]])
+    if len(straight) > 1:
+        rows = rows[0] + straight[0], rows[0] + straight[-1] + 1
+    return track_line(*track[rows[0]:rows[1]].T)
+
+
+def _grow_road(number, track, turning, moved, driven, waiting):
+    """(Road, row ranges of its passes, remaining row ranges), starting with the first of the ranges."""
+    longest, line = waiting[0], _line_of(track, turning, waiting[0])
+    while True:
+        road = Road(number, *reference_nodes(line), -FRAME_EXTENSION)
+        members, rest = [], []
+        for rows in waiting:
+            shared, left = ([rows], []) if rows == longest else _shared_with(road, line, track, moved, rows)
+            members += shared
+            rest += left
+        for rows in _longest_first(rest, driven):
+            if _length(rows, driven) >= MIN_SHARED_LENGTH and _ends_near(line, track, rows):
+                longer = continue_line(line, _line_of(track, turning, rows))
+                if longer is not None and np.hypot(*np.diff(longer[:, :2], axis=0).T).sum() <= MAX_ROAD_LENGTH:
+                    line = longer
+                    break
+        else:
+            return road, members, rest
+
+
+def _ends_near(line, track, rows):
+    """Whether a range of rows begins or ends near an end of a line, within the reach of a turn on the spot."""
+    ends = track[[rows[0], rows[1] - 1], None, :2] - line[None, [0, -1], :2]
+    return bool((np.hypot(ends[..., 0], ends[..., 1]) < JUNCTION_GAP + TURN_REACH).any())
+
+
+def _away(line, places):
+    """Whether positions lie wholly outside the bounding box of a line."""
+    return bool((places.min(axis=0) > line.max(axis=0) + MAX_LANE_DISTANCE).any()
+                or (places.max(axis=0) < line.min(axis=0) - MAX_LANE_DISTANCE).any())
+
+
+def _shared_with(road, line, track, moved, rows):
+    """The row ranges that run along a road, and those that do not."""
+    a, b = rows
+    if _away(line[:, :2], track[a:b, :2]):
+        return [], [rows]
+    kept = np.unique(np.r_[a, moved[(moved >= a) & (moved < b)], b - 1])
+    kept = kept[decimate_by_distance(*track[kept, :2].T, 2.0)]
+    x, y, z = track[kept].T
+    s, d = road.locate(x, y, corridor=MAX_LANE_DISTANCE)
+    level = np.abs(z - line[cKDTree(line[:, :2]).query(np.c_[x, y])[1], 2]) < LEVEL_SEPARATION
+    direction = np.arctan2(np.gradient(y), np.gradient(x)) if len(kept) > 1 else np.zeros(len(kept))
+    turned = np.abs((direction - road.heading(np.where(np.isnan(s), 0, s)) + np.pi / 2) % np.pi - np.pi / 2)
+    along = np.isfinite(d) & (turned < MAX_PASS_ANGLE) & level
+    if len(kept) < MIN_SHARED_LENGTH:
+        along[:] = 2 * along.sum() > len(along)
+    along = _fill_runs(along, int(MIN_SHARED_LENGTH / 2))
+    if not along.all():
+        along = ~_fill_runs(~along, int(MIN_SHARED_LENGTH / 2))
+    for i, j in _runs(along):
+        if along[i] and not np.nanmedian(np.abs(d[i:j])) <= MAX_PASS_DISTANCE:
+            along[i:j] = False
+    shared, left = [], []
+    for i, j in _runs(along):
+        ends = [int(kept[i]) if i else a, int(kept[j]) if j < len(kept) else b]
+        if not along[i]:
+            left.append(tuple(ends))
+            continue
+        # on a circuit, each round is a pass: split where the station jumps back
+        cuts = [int(kept[i + k]) for k in _jumps(s[i:j])]
+        shared += list(zip([ends[0], *cuts], [*cuts, ends[1]]))
+    return shared, left
+
+
+def _jumps(s):
+    """Indices at which the station jumps, at least half of MIN_SHARED_LENGTH from the ends and from each other."""
+    found = np.flatnonzero(np.abs(np.diff(s)) > 10.0) + 1
+    shortest, kept, last = int(MIN_SHARED_LENGTH / 2), [], 0
+    for k in found:
+        if k - last >= shortest and len(s) - k >= shortest:
+            kept.append(int(k))
+            last = k
+    return kept
+
+
+def _runs(mask):
+    """[(first, end)] of the runs of equal values."""
+    cuts = np.r_[0, np.flatnonzero(np.diff(mask.astype(int))) + 1, len(mask)]
+    return list(zip(cuts[:-1].tolist(), cuts[1:].tolist()))
+
+
+def _fill_runs(mask, shortest):
+    """Turn runs of False shorter than `shortest` into True."""
+    filled = mask.copy()
+    for i, j in _runs(mask):
+        if not mask[i] and j - i < shortest:
+            filled[i:j] = True
+    return filled
+
+
+def _make_pass(road, time, x, y, z):
+    """A Pass; stations are propagated from row to row, so that they do not jump to another part of the road."""
+    kept = moving_rows(x, y)
+    driven = np.r_[0.0, np.cumsum(np.hypot(np.diff(x[kept]), np.diff(y[kept])))]
+    s, _ = road.locate(x[kept], y[kept], corridor=2 * MAX_PASS_DISTANCE)
+    rows = np.arange(len(x))
+    run = _longest_run(s)
+    if run is None:
+        hint = np.clip(road.nearest_station(x, y, np.inf), road.start, road.end)
+        direction = 1 if hint[-1] >= hint[0] else -1
+    else:
+        i, j = run
+        direction = 1 if s[j - 1] >= s[i] else -1
+        before, after = driven[:i] - driven[i], driven[j:] - driven[j - 1]
+        walked = np.r_[s[i] + direction * before, s[i:j], s[j - 1] + direction * after]
+        hint = np.interp(rows, kept, walked)
+    s, d = road.locate(x, y, hint, corridor=2 * MAX_PASS_DISTANCE)
+    good = np.isfinite(s)
+    if not good.any():
+        return Pass(0, road.number, direction, time, x, y, z, np.clip(hint, road.start, road.end), np.zeros(len(x)))
+    s, d = np.interp(rows, rows[good], s[good]), np.interp(rows, rows[good], d[good])
+    return Pass(0, road.number, direction, time, x, y, z, s, d)
+
+
+def _longest_run(s):
+    """(first, end) of the longest run of known stations without jumps; None where none is known."""
+    broken = ~np.isfinite(s[1:]) | ~np.isfinite(s[:-1]) | (np.abs(np.diff(s)) > 30.0)
+    cuts = np.r_[0, np.flatnonzero(broken) + 1, len(s)]
+    runs = [(int(i), int(j)) for i, j in zip(cuts[:-1], cuts[1:]) if np.isfinite(s[i])]
+    return max(runs, key=lambda run: (run[1] - run[0], -run[0])) if runs else None

@@ -6,10 +6,8 @@ In: paths. Out: checked headers, blocks of points in file order, and files that 
 from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "crs_records": ("crs_of_records",),
-    "guard": ("find_damage",),
-    "near": ("points_near",),
+    "header": ("find_damage",),
     "parallel_reader": ("ParallelCloudReader",),
-    "reader": ("CloudHeader", "cloud_crs", "open_cloud", "read_blocks", "read_header", "read_headers"),
-    "writer": ("metres_of_file", "new_laz", "place_in_file", "scale_for"),
+    "reader": ("CloudHeader", "cloud_crs", "crs_of_records", "open_cloud", "read_blocks", "read_header", "read_headers"),
+    "samples": ("points_near",),
 })

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from .guard import chunks_of
+from .header import chunks_of
 from .reader import CloudHeader, layer_selection, open_cloud, read_blocks, read_points, truncated_file_error, wrap_read_error
 
 MAX_BLOCKS_PER_CHUNK = 4   # larger chunks are not decoded as a whole: the points are read one block after the other

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import os
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from math import gcd
 
 import numpy as np
+import shapely
 
+from ...common.progress import Progress
 from .parallel_reader import POINTS_PER_SAMPLE, SAMPLED_PLACES, ParallelCloudReader
-from .reader import CloudHeader
+from .reader import CloudHeader, read_blocks, read_headers
 
 COARSE_COORDINATES = 0.02        # m: coordinates in steps of more scatter by more than half a centimetre, which is what curbs and lines are told by
 VALUES_FOR_STEP = 1000       # of a file, from which the step of its coordinates is told
@@ -93,3 +97,168 @@ def coarse_coordinates(samples: Sequence[FileSample]) -> tuple[str, float]:
         return (f"The coordinates of {sample.file.path} lie in steps of {listed}: {cause}. Edges and markings are no better than that. Export "
                 "the cloud again with coordinates of 64 bits and a scale of 0.001 m.", float(np.where(told, steps, 0.0)[:2].max() / np.sqrt(6.0)))
     return "", 0.0
+
+
+# An even sample of a survey's points that keeps neighbours together, whatever the order of the files.
+
+SLOT = 0.001   # s: some hundred pulses, a part of a mirror's turn
+
+
+@dataclass(frozen=True)
+class TimeSlots:
+    """Every `stride`-th slot of time.
+
+    Points of one slot follow each other along a scan line; slots pass through all parts of a turn.
+    """
+
+    stride: int
+
+    @classmethod
+    def for_points(cls, count: int, most: int) -> TimeSlots:
+        """The slots of which `count` points fill at most `most`."""
+        stride = max(-(-count // most), 1)
+        # mirrors turn in 5, 10 or 20 ms: a stride with a common factor would see the same part of every turn
+        while stride > 1 and gcd(stride, 10) > 1:
+            stride += 1
+        return cls(stride)
+
+    def kept(self, time: np.ndarray) -> np.ndarray:
+        """(N,) bool of the points in the sample, by (N,) times in seconds."""
+        if self.stride == 1:
+            return np.ones(len(time), bool)
+        slot = np.asarray(time, float) / SLOT
+        np.floor(slot, out=slot)
+        # the nearest multiple of the stride, exact for whole numbers: a remainder takes ten times as long
+        nearest = slot * (1.0 / self.stride)
+        np.rint(nearest, out=nearest)
+        nearest *= self.stride
+        with np.errstate(invalid="ignore"):   # infinite times
+            nearest -= slot
+        return nearest == 0
+
+
+# Points about a place, for a look at it.
+
+def points_near(paths: Iterable[str | os.PathLike[str]], x: float, y: float, radius: float, progress: Progress = Progress()) -> np.ndarray:
+    """The points within a square about a place.
+
+    Parameters
+    ----------
+    paths : of point clouds; those whose bounds lie elsewhere are not opened beyond their header
+    x, y : map coordinates of the middle
+    radius : m, half the side of the square
+    progress : Progress
+
+    Returns
+    -------
+    (N, 4) x, y, z in map coordinates and intensity, in file order. Only these are held in memory, and the block being read.
+
+    Raises
+    ------
+    RoadExtractionError
+        If a file is missing or cannot be read.
+    """
+    files = read_headers(paths, progress.warn)
+    units = files[0].units   # of the map, in which the results of these clouds are
+    x, y = units.in_metres((x, y))
+    files = [file for file in files if file.count and file.minimum[0] <= x + radius and file.maximum[0] >= x - radius
+             and file.minimum[1] <= y + radius and file.maximum[1] >= y - radius]
+    total, read = sum(file.count for file in files), 0
+    found = [np.empty((0, 4))]
+    for file in files:
+        for block in read_blocks(file.path, layers=("z", "intensity"), units=file.units):
+            read += len(block)
+            progress.report(read / total)
+            near = np.flatnonzero((np.abs(np.asarray(block.x) - x) <= radius) & (np.abs(np.asarray(block.y) - y) <= radius))
+            if len(near):
+                places = np.c_[np.asarray(block.x)[near], np.asarray(block.y)[near], np.asarray(block.z)[near]]
+                found.append(np.c_[places if units.metric else units.in_file(places), np.asarray(block.intensity)[near]])
+    return np.concatenate(found)
+
+
+# Copies of files and of points among the files of a survey: they would count twice.
+
+PER_METRE = 1000.0   # places are compared in millimetres: a copy may store them with other scales and offsets
+
+
+def without_copies(files: list[CloudHeader], warn: Callable[[str], None]) -> list[CloudHeader]:
+    """The files without those that hold the same points as an earlier one, such as a COPC beside the LAZ it was made from.
+
+    Only files with the same number of points and the same bounds are read.
+
+    Parameters
+    ----------
+    files : headers
+    warn : is told of every copy
+
+    Returns
+    -------
+    headers, in the order given
+
+    Raises
+    ------
+    RoadExtractionError
+        If a file that must be read is damaged.
+    """
+    first: dict[tuple, CloudHeader] = {}
+    contents: dict[str, tuple[int, ...]] = {}
+
+    def content(file):
+        if file.path not in contents:
+            contents[file.path] = _content(file)
+        return contents[file.path]
+
+    kept = []
+    for file in files:
+        alike = (file.count, _whole(file.minimum), _whole(file.maximum))
+        other = first.setdefault(alike, file)
+        if other is not file and file.count and content(other) == content(file):
+            warn(f"{file.path} holds the same points as {other.path} and is left out, so that none counts twice.")
+        else:
+            kept.append(file)
+    return kept
+
+
+def may_overlap(files: Sequence[CloudHeader]) -> bool:
+    """Whether the bounds of any two files have an area in common."""
+    boxes = shapely.box(*np.array([(*file.minimum[:2], *file.maximum[:2]) for file in files if file.count], float).reshape(-1, 4).T)
+    one, other = shapely.STRtree(boxes).query(boxes, predicate="intersects")
+    apart = one < other
+    return bool((shapely.area(shapely.intersection(boxes[one[apart]], boxes[other[apart]])) > 0.0).any())
+
+
+def distinct_rows(time: np.ndarray, place: np.ndarray) -> np.ndarray:
+    """Indices of the points that are no copies of earlier ones.
+
+    Parameters
+    ----------
+    time : (N,) s
+    place : (N, 3) in any unit
+
+    Returns
+    -------
+    (M,) intp, ascending
+    """
+    order = np.lexsort((*place.T, time))
+    same = (time[order[1:]] == time[order[:-1]]) & (place[order[1:]] == place[order[:-1]]).all(axis=1)
+    return np.sort(order[np.r_[True, ~same][:len(order)]])
+
+
+def _whole(places):
+    return tuple(np.rint(np.asarray(places, float) * PER_METRE).astype(np.int64).tolist())
+
+
+def _content(file):
+    """Sums over a file's places, intensities and times, whatever the order of its points."""
+    names = ["x", "y", "z", "intensity"] + ["gps_time"] * file.has_time
+    sums = np.zeros(len(names), np.uint64)
+    for block in read_blocks(file.path, layers=names[2:], units=file.units):
+        for k, name in enumerate(names):
+            values = np.asarray(block[name])
+            if name == "gps_time":
+                values = np.ascontiguousarray(values, np.float64).view(np.uint64)
+            elif name != "intensity":
+                values = np.rint(values * PER_METRE).astype(np.int64).view(np.uint64)
+            # sums beyond 64 bits start again from 0, in any order the same
+            sums[k] += values.sum(dtype=np.uint64)
+    return tuple(sums.tolist())

@@ -6,6 +6,5 @@ In: time and place of points. Out: rotation rate, mirror phase, and line and pha
 from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "mirror_phase": ("MirrorPhase",),
-    "scan_lattice": ("ScanLattice", "find_lattice", "scanner_runs", "time_order"),
+    "scan_lattice": ("MirrorPhase", "ScanLattice", "find_lattice", "scanner_runs", "time_order"),
 })

@@ -9,15 +9,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...execution.phase import Executor, Recipe
-from ...execution.threads import THREADS
+from ...execution.phase import THREADS, Executor, Recipe
 from .columns import Columns
 from .records import ROAD_POINT, Points, join_columns, point_dtype
 from .section_store import ColumnOverlay, SectionStore, Stretch
 from .spill_file import Key, StoreIndex
 
 if TYPE_CHECKING:
-    from ..frame.sigma_along import SigmaAlong
+    from ..frame.row_table import SigmaAlong
 
 
 @dataclass

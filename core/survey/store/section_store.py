@@ -14,9 +14,8 @@ from uuid import uuid4
 
 import numpy as np
 
-from ...common.memory import ScratchBuffers, column_buffers
-from ...common.order_statistics import RADIX_BITS, above_least, bucket_argsort, order_by
-from ...common.parallel import check_cancelled
+from ...common.arrays import RADIX_BITS, above_least, bucket_argsort, order_by
+from ...common.parallel import ScratchBuffers, check_cancelled, column_buffers
 from .columns import Columns, columns_in_order
 from .records import COORDINATE_SCALE, Points, take_rows
 from .spill_file import Key, SpillFile, StoredColumn, StoreIndex, close_parts, new_part

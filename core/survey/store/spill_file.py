@@ -22,8 +22,8 @@ from uuid import uuid4
 
 import numpy as np
 
-from ...common.memory import column_buffers, freed_on_demand
-from ...execution.plain import checksum
+from ...common.parallel import column_buffers, freed_on_demand
+from ...execution.phase import checksum
 
 PACKING_CHUNK = 1 << 15  # values packed at a time: they fit the processor's cache
 PART_WIDTHS = {0: (), 1: (1,), 2: (2,), 3: (2, 1), 4: (4,), 5: (4, 1), 6: (4, 2)}  # bytes of a value -> bytes of its parts, lowest first

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from lanewright.core.assess.boundaries import BoundaryAccuracySettings, assess_boundaries, interval_lines
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.survey.frame.build import build_frame
+from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.trajectory.trajectory import Trajectory
 from shapely import MultiLineString, reverse
 from shapely.affinity import translate

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.common.groups import linked_groups, members_of
+from lanewright.core.common.arrays import linked_groups, members_of
 
 
 @pytest.mark.parametrize("links,groups", [([], [0, 1, 2, 3]), ([(0, 2)], [0, 1, 0, 2]), ([(3, 1), (1, 2), (1, 2)], [0, 1, 1, 1])])

@@ -9,8 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from lanewright.core.common import memory
-from lanewright.core.common.memory import by_rows, trim_heap
+from lanewright.core.common.parallel import by_rows, trim_heap
 
 BLOCK, BLOCKS = 100_000, 1000  # bytes; small blocks are kept by the C library, large ones are not
 
@@ -21,13 +20,15 @@ def resident():
 
 
 GLIBC = pytest.mark.skipif(not sys.platform.startswith("linux") or not hasattr(ctypes.CDLL(None), "gnu_get_libc_version"), reason="no glibc")
+TOOLS = Path(__file__).resolve().parents[3] / "tools"
 # prints the pages fetched while 2 MB are taken and freed 20 times, before and after the call
 FETCHES = """
-import importlib.util, resource, sys
+import resource, sys
 import numpy as np
-spec = importlib.util.spec_from_file_location("memory", sys.argv[1])
-memory = importlib.util.module_from_spec(spec)
-spec.loader.exec_module(memory)
+sys.path.insert(0, sys.argv[1])
+from plugin_package import load
+load()
+from lanewright.core.common.parallel import reuse_freed_memory
 def fetched():
     np.ones(250_000)
     before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
@@ -35,7 +36,7 @@ def fetched():
         np.ones(250_000)
     return resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before
 before = fetched()
-memory.reuse_freed_memory()
+reuse_freed_memory()
 print(before, fetched())
 """
 
@@ -43,7 +44,7 @@ print(before, fetched())
 @GLIBC
 def test_freed_memory_is_used_again_where_dask_would_give_it_back_at_once():
     environment = dict(os.environ, MALLOC_TRIM_THRESHOLD_="65536")
-    done = subprocess.run([sys.executable, "-c", FETCHES, memory.__file__], env=environment, capture_output=True, text=True, check=True)
+    done = subprocess.run([sys.executable, "-c", FETCHES, str(TOOLS)], env=environment, capture_output=True, text=True, check=True)
     before, after = map(int, done.stdout.split())
     assert before > 20 * 400 and after < 400
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.common.order_statistics import bucket_argsort, quantiles, ranked
+from lanewright.core.common.arrays import bucket_argsort, quantiles, ranked
 
 RNG = np.random.default_rng(7)
 COLUMNS = {

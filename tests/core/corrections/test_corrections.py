@@ -5,8 +5,7 @@ import pytest
 import shapely
 from clustered_streets import ClusteredStreet
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.common.features import Features
-from lanewright.core.common.schemas import CORRECTIONS, ROAD_EDGES
+from lanewright.core.common.features import CORRECTIONS, ROAD_EDGES, Features
 from lanewright.core.corrections import (
     correct_edges,
     correct_lanes,
@@ -17,7 +16,7 @@ from lanewright.core.corrections import (
 from lanewright.core.driving.driving_lines import make_driving_lines
 from lanewright.core.markings.lines.painted_lines import lines_from_features, lines_to_features
 from lanewright.core.markings.objects.marking_objects import markings_from_features
-from lanewright.core.road.edges.road_edges import edges_from_features, edges_to_features
+from lanewright.core.road.edges.road_edges import RoadEdges
 from lined_streets import EAST, HEIGHT, NORTH, Street
 from shapely.geometry import LineString, Point
 
@@ -44,12 +43,12 @@ def edges_of(street, *pieces):
         places = street.places(np.arange(first, last + 0.5, 1.0), offset)
         layer.add(LineString(np.c_[places, np.full(len(places), HEIGHT)]), road=0, side="left" if offset > 0 else "right", status=status,
                   station_m=float(first), end_m=float(last), length_m=float(last - first), chain=chain, kind="main", part="bottom")
-    return edges_from_features(layer, street.frame)
+    return RoadEdges.from_features(layer, street.frame)
 
 
 def corrected_edges(street, edges, *rows):
     corrections = corrections_from_features(layer_of(*rows), street.frame)
-    found = edges_to_features(correct_edges(edges, street.frame, corrections), street.frame)
+    found = correct_edges(edges, street.frame, corrections).to_features(street.frame)
     return [(row["status"], round(row["station_m"]), round(row["end_m"])) for row in sorted(
         found.rows, key=lambda row: (row["side"], row["station_m"]))], found, corrections
 
@@ -78,7 +77,7 @@ def test_what_lies_farther_off_or_crosses_is_left_alone_and_the_correction_is_li
     street = Street()
     across = Features("LineStringZ", list(ROAD_EDGES))
     across.add(LineString([(EAST + 50, NORTH - 3, HEIGHT), (EAST + 50, NORTH + 8, HEIGHT)]), road=0, side="left", kind="corner")
-    for edges in (edges_of(street, (10, 100, 4.8, "measured")), edges_from_features(across, street.frame)):
+    for edges in (edges_of(street, (10, 100, 4.8, "measured")), RoadEdges.from_features(across, street.frame)):
         corrections = corrections_from_features(layer_of(("delete", "edge", along(40, 60, 4.0), {"note": "a parked car"})), street.frame)
         assert correct_edges(edges, street.frame, corrections) is edges
         assert [one.described() for one in corrections.unmatched] == \

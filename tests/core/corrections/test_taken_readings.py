@@ -5,13 +5,12 @@ import json
 import numpy as np
 import pytest
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.common.features import Features
-from lanewright.core.common.schemas import CORRECTIONS
+from lanewright.core.common.features import CORRECTIONS, Features
 from lanewright.core.corrections import correct_lanes, correct_marking_lines, corrections_from_features, taken_reading
 from lanewright.core.curves.model_selection import fit_curve
 from lanewright.core.driving.driving_lines import make_driving_lines
 from lanewright.core.driving.layers import driving_lines_to_features, lanes_to_features
-from lanewright.core.markings.lines.naming import named_by_estimate
+from lanewright.core.markings.lines.fit import named_by_estimate
 from lanewright.core.markings.lines.painted_lines import lines_from_features, lines_to_features, painted_lines_of
 from lined_streets import Street
 

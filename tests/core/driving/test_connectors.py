@@ -3,11 +3,10 @@
 import numpy as np
 import pytest
 from drives import ahead, bend, chain, drive, joined
-from lanewright.core.common.features import Features
-from lanewright.core.common.schemas import MARKING_LINES
+from lanewright.core.common.features import MARKING_LINES, Features
 from lanewright.core.driving.driving_lines import make_driving_lines
 from lanewright.core.markings.lines.painted_lines import lines_from_features
-from lanewright.core.survey.frame.build import build_frame
+from lanewright.core.survey.frame.road_frame import build_frame
 from shapely.geometry import LineString
 
 RADIUS = 12.0

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 import shapely
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.common.features import Features
-from lanewright.core.common.schemas import LANES
+from lanewright.core.common.features import LANES, Features
 from lanewright.core.driving.layers import Lanes, lanes_from_features, lanes_to_features
 
 ORIGIN = np.array([500000.0, 5800000.0, 40.0])

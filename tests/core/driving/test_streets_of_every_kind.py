@@ -2,9 +2,8 @@
 
 import numpy as np
 import pytest
-from lanewright.core.common.features import Features
+from lanewright.core.common.features import MARKINGS, ROAD_EDGES, Features
 from lanewright.core.common.progress import Progress
-from lanewright.core.common.schemas import MARKINGS, ROAD_EDGES
 from lanewright.core.driving.driving_lines import make_driving_lines
 from lanewright.core.markings.lines.painted_lines import lines_from_features
 from lanewright.core.markings.objects.marking_objects import markings_from_features

@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.common.features import Features
-from lanewright.core.common.schemas import ROAD_EDGES
+from lanewright.core.common.features import ROAD_EDGES, Features
 from lanewright.core.driving.lane_track import MEASURED, LaneTrack
 from lanewright.core.driving.lanes import laid_out
 from lined_streets import EAST, HEIGHT, Street

@@ -2,9 +2,8 @@
 
 import numpy as np
 import pytest
-from lanewright.core.common.features import Features
-from lanewright.core.common.schemas import MARKINGS
-from lanewright.core.survey.frame.sigma_along import SigmaAlong
+from lanewright.core.common.features import MARKINGS, Features
+from lanewright.core.survey.frame.row_table import SigmaAlong
 from lined_streets import HEIGHT, Street
 from painted_streets import road_points, street
 from shapely.geometry import Polygon

@@ -14,15 +14,12 @@ from executed_boundaries import boundaries, numbers_of
 from lanewright.core.common.errors import Cancelled, RoadExtractionError
 from lanewright.core.common.parallel import check_cancelled
 from lanewright.core.common.progress import Progress
-from lanewright.core.execution import cluster, cluster_connection, cluster_task, tasks
+from lanewright.core.execution import cluster, tasks
 from lanewright.core.execution.choice import ExecutionSettings
-from lanewright.core.execution.cluster import Cluster
-from lanewright.core.execution.cluster_connection import check_address, client_of, is_loopback
-from lanewright.core.execution.phase import Phase
-from lanewright.core.execution.plain import read_plain, write_plain
-from lanewright.core.execution.threads import Threads
+from lanewright.core.execution.cluster import Cluster, check_address, client_of, is_loopback
+from lanewright.core.execution.phase import Phase, Threads, read_plain, write_plain
 from lanewright.core.execution.work_folder import KeptResults, WorkFolder, code_digest
-from lanewright.core.survey.frame.build import build_frame
+from lanewright.core.survey.frame.road_frame import build_frame
 
 
 class KilledWorker(Exception):
@@ -173,13 +170,13 @@ def test_tasks_with_the_most_work_begin(few_rounds):
 
 
 def test_where_workers_end_only_the_section_that_they_end_at_is_computed_again(by_threads, few_rounds, monkeypatch):
-    computed, answer = [], cluster_task._tasks.answer
+    computed, answer = [], tasks._tasks.answer
 
     def counted(phase, item, result):
         computed.append(result)
         return answer(phase, item, result)
 
-    monkeypatch.setattr(cluster_task._tasks, "answer", counted)
+    monkeypatch.setattr(tasks._tasks, "answer", counted)
     client = StandIn(lambda first, last: first <= 100 < last and not any((a == first) != (b == last) for a, b in client.items))
     assert numbers_of(boundaries(Cluster(client))) == by_threads
     assert len(computed) == len(set(computed)), "what was finished before a worker ended stays"
@@ -193,7 +190,7 @@ def test_memory_that_one_section_lacks_does_not_divide_the_others(few_rounds, mo
         write_plain(result, last - first)
         return {}
 
-    monkeypatch.setattr(cluster_task._tasks, "answer", scarce)
+    monkeypatch.setattr(tasks._tasks, "answer", scarce)
     client = StandIn()
     executor = Cluster(client)
     items = [(0, 9), (9, 18), (18, 27), (27, 36)]
@@ -203,7 +200,7 @@ def test_memory_that_one_section_lacks_does_not_divide_the_others(few_rounds, mo
 
 
 def test_what_goes_wrong_names_the_section_where_it_did(few_rounds, monkeypatch):
-    monkeypatch.setattr(cluster_task._tasks, "answer",
+    monkeypatch.setattr(tasks._tasks, "answer",
                         lambda phase, item, result: {"bug": "a traceback"} if read_plain(item) == (18, 27) else write_plain(result, 0) or {})
     executor, items = Cluster(StandIn()), [(0, 9), (9, 18), (18, 27), (27, 36)]
     with pytest.raises(RuntimeError, match=r"failed at section 18 to 27:\na traceback"):
@@ -223,10 +220,10 @@ def test_cancel_leaves_no_folder():
 
 
 def test_a_task_stops_when_its_phase_is_no_longer_wanted(tmp_path, monkeypatch):
-    monkeypatch.setattr(cluster_task, "LOOK_TIME", 0.0)
+    monkeypatch.setattr(tasks, "LOOK_TIME", 0.0)
     phase = tmp_path / "phase.plain"
     phase.touch()
-    wanted = cluster_task._WhileWanted(phase)
+    wanted = tasks._WhileWanted(phase)
     wanted.check_cancelled()
     phase.unlink()
     with pytest.raises(Cancelled):
@@ -236,24 +233,25 @@ def test_a_task_stops_when_its_phase_is_no_longer_wanted(tmp_path, monkeypatch):
 
 def test_a_result_that_is_there_is_not_computed_again(tmp_path):
     write_plain(tmp_path / "result.plain", 7)
-    assert cluster_task.do(str(tmp_path / "no phase"), [str(tmp_path / "no item")], [str(tmp_path / "result.plain")], code_digest()) == {}
+    assert tasks.items_done(str(tmp_path / "no phase"), [str(tmp_path / "no item")], [str(tmp_path / "result.plain")], code_digest()) == {}
     assert read_plain(tmp_path / "result.plain") == 7
 
 
 def test_a_worker_with_other_code_computes_nothing(tmp_path):
-    assert cluster_task.do(str(tmp_path / "phase"), [str(tmp_path / "item")], [str(tmp_path / "result")], "another") == {"code": code_digest()}
+    answer = tasks.items_done(str(tmp_path / "phase"), [str(tmp_path / "item")], [str(tmp_path / "result")], "another")
+    assert answer == {"code": code_digest()}
     assert not list(tmp_path.iterdir())
 
 
 def test_the_folder_of_a_caller_that_is_gone_is_removed_and_that_of_another_stays(tmp_path, monkeypatch):
-    monkeypatch.setattr(cluster_task, "WATCH_TIME", 0.05)
+    monkeypatch.setattr(tasks, "WATCH_TIME", 0.05)
     for name, patience in (("gone", "0.2"), ("alive", "60")):
         (tmp_path / name).mkdir()
-        (tmp_path / name / cluster_task.BEAT).write_text(patience)
-    cluster_task._remove_after(tmp_path / "gone")
-    threading.Thread(target=cluster_task._remove_after, args=(tmp_path / "alive",), daemon=True).start()
+        (tmp_path / name / tasks.BEAT).write_text(patience)
+    tasks._remove_after(tmp_path / "gone")
+    threading.Thread(target=tasks._remove_after, args=(tmp_path / "alive",), daemon=True).start()
     assert not (tmp_path / "gone").exists() and (tmp_path / "alive").exists()
-    (tmp_path / "alive" / cluster_task.BEAT).unlink()
+    (tmp_path / "alive" / tasks.BEAT).unlink()
 
 
 def test_results_go_straight_to_the_work_folder(by_threads, tmp_path):
@@ -286,12 +284,12 @@ def test_an_address_without_a_port_is_no_address(address):
 
 
 def test_a_server_that_is_no_scheduler_is_not_waited_for_without_end(monkeypatch):
-    monkeypatch.setattr(cluster_connection, "CONNECT_TIME", 0.3)
+    monkeypatch.setattr(cluster, "CONNECT_TIME", 0.3)
     with socket.create_server(("127.0.0.1", 0)) as silent:
         address = f"tcp://127.0.0.1:{silent.getsockname()[1]}"
         with pytest.raises(TimeoutError, match="does not speak as a scheduler"):
-            cluster_connection._check_greeting(address, None)
-    cluster_connection._check_greeting(address, None)   # nobody is there: a scheduler may still start
+            cluster._check_greeting(address, None)
+    cluster._check_greeting(address, None)   # nobody is there: a scheduler may still start
 
 
 def test_where_dask_is_missing_one_sentence_says_how_to_get_it(monkeypatch):

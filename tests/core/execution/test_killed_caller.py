@@ -14,7 +14,7 @@ import sys
 sys.path[:0] = [{tests!r}, {tests!r} + "/streets"]
 import conftest
 from curbed_streets import street, survey_of
-from lanewright.core.execution.interpreter import find_interpreter
+from lanewright.core.execution.tasks import find_interpreter
 from lanewright.core.execution.processes import WorkerProcesses
 from lanewright.core.road.profiles.detect import detect_curbs
 

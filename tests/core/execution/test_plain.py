@@ -4,7 +4,7 @@ import json
 
 import numpy as np
 import pytest
-from lanewright.core.execution.plain import CHECKSUM, FORMAT, TEXT_LENGTH, is_whole, read_plain, write_plain
+from lanewright.core.execution.phase import CHECKSUM, FORMAT, TEXT_LENGTH, is_whole, read_plain, write_plain
 from lanewright.core.road.common.curb_limits import CurbSettings
 from lanewright.core.road.common.occlusion import OcclusionGrid
 from lanewright.core.survey.frame.passes import Pass

@@ -4,10 +4,9 @@ import weakref
 from collections import Counter
 
 import pytest
-from lanewright.core.execution.phase import NoSource, Phase
-from lanewright.core.execution.threads import Threads
+from lanewright.core.execution.phase import NoSource, Phase, Threads
 from lanewright.core.execution.work_folder import KeptResults, WorkFolder
-from lanewright.core.survey.las.time_slots import TimeSlots
+from lanewright.core.survey.las.samples import TimeSlots
 
 ITEMS = 60
 THREADS = 2

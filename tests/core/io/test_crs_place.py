@@ -3,9 +3,7 @@
 import numpy as np
 import pytest
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.io.crs import parse_crs
-from lanewright.core.io.crs_place import check_extent, check_place, place_on_ground
-from lanewright.core.io.units import in_metres
+from lanewright.core.io.crs import check_extent, check_place, in_metres, parse_crs, place_on_ground
 from pyproj import Proj, Transformer
 
 

@@ -6,8 +6,8 @@ from contextlib import suppress
 import numpy as np
 import pytest
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.io.gdal_errors import gdal_exceptions
 from lanewright.core.io.geotiff import IntensityImage, new_geotiff
+from lanewright.core.io.local_files import gdal_exceptions
 from lanewright.core.report.map_figure import grey_background
 
 gdal = pytest.importorskip("osgeo.gdal")

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.io.geotiff import IntensityImage, new_geotiff
-from lanewright.core.io.unfinished import ABANDONED_TIME
+from lanewright.core.io.local_files import ABANDONED_TIME
 
 SIDE = 600   # px, more than one tile
 PLACE = (500_000.0, 0.04, 0.0, 5_500_000.0, 0.0, -0.04)

@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.io.crs import parse_crs, same_crs
-from lanewright.core.io.units import METRES, FileUnits, as_in_file, in_metres, plane_wkt
+from lanewright.core.io.crs import METRES, FileUnits, as_in_file, in_metres, parse_crs, plane_wkt, same_crs
 from pyproj import CRS, Transformer
 
 FOOT, US_FOOT = 0.3048, 1200 / 3937

@@ -7,8 +7,8 @@ import pytest
 from executed_stages import PHASES, found_by
 from lanewright.core.common.errors import Cancelled
 from lanewright.core.common.progress import Progress
-from lanewright.core.execution.interpreter import find_interpreter
 from lanewright.core.execution.processes import WorkerProcesses
+from lanewright.core.execution.tasks import find_interpreter
 from lanewright.core.execution.work_folder import WorkFolder
 
 pytestmark = pytest.mark.slow

@@ -8,8 +8,7 @@ import pytest
 from jinja2 import nodes
 from lanewright.core.assess.boundaries import assess_boundaries
 from lanewright.core.assess.layers import boundary_layer
-from lanewright.core.common.texts import set_translation
-from lanewright.core.common.words import word
+from lanewright.core.common.texts import set_translation, word
 from lanewright.core.export.check.findings import FAULTS, Finding, Findings
 from lanewright.core.report import boundary_report, map_check_report
 from lanewright.core.report.page import templates

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 from jinja2 import UndefinedError
-from lanewright.core.common.features import Features
-from lanewright.core.common.schemas import ROAD_EDGES
+from lanewright.core.common.features import ROAD_EDGES, Features
 from lanewright.core.report.map_figure import draw_map
 from lanewright.core.report.page import html_page, number, templates
 from shapely.geometry import LineString

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from curbed_streets import LENGTH, driven, parked_car, street, survey_of
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.execution.threads import Threads
+from lanewright.core.execution.phase import Threads
 from lanewright.core.road import detect_boundaries
 from lanewright.core.road.common.corners import CurbSteps
 from lanewright.core.road.common.curb_limits import CurbSettings
@@ -46,7 +46,7 @@ def frame():
 def test_every_method_draws_both_edges_of_a_street(method):
     found = boundaries(street(), method)
     for side, offset in (("left", 3.5), ("right", -3.5)):
-        lines = found.edges.take(np.flatnonzero(found.edges.side == side))
+        lines = found.edges[found.edges.side == side]
         assert sum(np.ptp(lines.course.s[lines.course.line(k)]) for k in range(len(lines))) > LENGTH - 2
         np.testing.assert_allclose(lines.course.d, offset, atol=0.01)
     assert (found.differences is not None) == (method == "both")

@@ -14,7 +14,7 @@ from lanewright.core.road.edges import corner_edges, road_edges
 from lanewright.core.road.edges.road_edges import EdgePiece, joined_pieces
 from lanewright.core.road.surface import ground_grid, pavement_edge, pavement_lines
 from lanewright.core.road.surface.ground_grid import WINDOW_ROWS, MeasuredGround
-from lanewright.core.survey.frame.build import build_frame
+from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.trajectory.trajectory import Trajectory
 
 SHORT, LONG = 12, 48     # pieces of edge, one every 25 m

@@ -10,14 +10,14 @@ from curbed_streets import street, survey_of
 from executed_boundaries import boundaries, numbers_of
 from lanewright.core.common.errors import Cancelled, RoadExtractionError
 from lanewright.core.common.progress import Progress
-from lanewright.core.execution import choice, interpreter, processes
+from lanewright.core.execution import choice, processes
+from lanewright.core.execution import tasks as interpreter
 from lanewright.core.execution.choice import ExecutionSettings, executor_for
-from lanewright.core.execution.phase import NoSource, Phase
+from lanewright.core.execution.phase import NoSource, Phase, Threads
 from lanewright.core.execution.processes import WorkerProcesses
-from lanewright.core.execution.threads import Threads
 from lanewright.core.markings.objects.figures import figures_of_group
-from lanewright.core.survey.point_density import cubes_of_stretch
-from lanewright.core.survey.reading.sensor_height import sensor_height_of
+from lanewright.core.survey.blocks import sensor_height_of
+from lanewright.core.survey.inspection import cubes_of_stretch
 from lanewright.core.survey.store.road_points import RoadPoints
 
 

@@ -7,10 +7,9 @@ import pytest
 import shapely
 from drives import EAST, NORTH, ahead, bend, chain, drive
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.common.features import Features
-from lanewright.core.common.schemas import CURB_POINTS, ROAD_EDGES
+from lanewright.core.common.features import CURB_POINTS, ROAD_EDGES, Features
 from lanewright.core.survey.consistency import check_features_on_roads, check_road_points_on_roads, keep_near_roads
-from lanewright.core.survey.frame.build import build_frame
+from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.store.records import ROAD_POINT, to_units
 from lanewright.core.survey.store.road_points import RoadPoints
 

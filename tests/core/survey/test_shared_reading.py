@@ -10,13 +10,15 @@ from drives import ahead, bend, chain, contents, drive, joined, surveyed_points,
 from executed_boundaries import Heard
 from lanewright.core.common.errors import Cancelled, RoadExtractionError
 from lanewright.core.common.progress import Progress
-from lanewright.core.execution import interpreter, processes
+from lanewright.core.execution import processes
+from lanewright.core.execution import tasks as interpreter
 from lanewright.core.execution.choice import ExecutionSettings
+from lanewright.core.execution.phase import Threads
 from lanewright.core.execution.processes import WorkerProcesses
-from lanewright.core.execution.threads import Threads
 from lanewright.core.survey import open_survey as opening
+from lanewright.core.survey import survey_reader
+from lanewright.core.survey import survey_reader as ordering
 from lanewright.core.survey.open_survey import open_survey
-from lanewright.core.survey.reading import ordering, survey_reader
 from lanewright.core.survey.survey import SurveySettings, survey_in_folder
 
 SETTINGS = SurveySettings(block=700)   # points

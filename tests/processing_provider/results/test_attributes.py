@@ -1,7 +1,7 @@
 """What identify, attribute tables and map tips show of a result."""
 
 import pytest
-from lanewright.core.common.schemas import CURB_POINTS, DRIVING_LINES, LANES, MARKING_LINES, MARKINGS, ROAD_EDGES, ROAD_SURFACE
+from lanewright.core.common.features import CURB_POINTS, DRIVING_LINES, LANES, MARKING_LINES, MARKINGS, ROAD_EDGES, ROAD_SURFACE
 from lanewright.processing_provider.layers import qgis_fields
 from lanewright.processing_provider.results.attributes import TITLES, short_alias
 from lanewright.processing_provider.styling import LOOKS, STYLES, Styler

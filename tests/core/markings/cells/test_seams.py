@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from clustered_marks import classes, layer_of
-from lanewright.core.survey.frame.build import build_frame
+from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.store.records import COORDINATE_SCALE, ROAD_POINT, to_units
 from lanewright.core.survey.store.road_points import RoadPoints
 from lanewright.core.survey.store.section_store import SectionStore

@@ -2,9 +2,8 @@
 
 import numpy as np
 import pytest
-from lanewright.core.common.features import Features
-from lanewright.core.common.schemas import MARKINGS
-from lanewright.core.markings.cross_section.hatching import borders_of_hatching
+from lanewright.core.common.features import MARKINGS, Features
+from lanewright.core.markings.cross_section.evidence import borders_of_hatching
 from lanewright.core.markings.objects.marking_objects import markings_from_features
 from lined_streets import HEIGHT, Street
 from shapely.geometry import Polygon

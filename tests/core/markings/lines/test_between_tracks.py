@@ -3,12 +3,11 @@
 import numpy as np
 import pytest
 import shapely
-from lanewright.core.common.features import Features
-from lanewright.core.common.schemas import MARKING_LINES, MARKINGS
-from lanewright.core.markings.lines.between_tracks import with_paint_between_tracks, with_unseen_paint
+from lanewright.core.common.features import MARKING_LINES, MARKINGS, Features
+from lanewright.core.markings.lines.linking import with_paint_between_tracks, with_unseen_paint
 from lanewright.core.markings.lines.painted_lines import lines_from_features
 from lanewright.core.markings.objects.marking_objects import markings_from_features, markings_to_features, with_kinds_of
-from lanewright.core.survey.frame.build import build_frame
+from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.store.records import ROAD_POINT, to_units
 from lanewright.core.survey.store.road_points import RoadPoints
 from lanewright.core.survey.trajectory.trajectory import Trajectory

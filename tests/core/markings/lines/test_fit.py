@@ -7,12 +7,10 @@ import pytest
 import shapely
 from clustered_streets import RADIUS, UP, ClusteredStreet, told
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.common.features import Features
+from lanewright.core.common.features import MARKINGS, Features
 from lanewright.core.common.progress import Progress
-from lanewright.core.common.schemas import MARKINGS
 from lanewright.core.curves.model_selection import curve_from_params
-from lanewright.core.markings.lines.fit import fit_marking_lines
-from lanewright.core.markings.lines.geometry import MarkingLineSettings
+from lanewright.core.markings.lines.fit import MarkingLineSettings, fit_marking_lines
 from lanewright.core.markings.lines.painted_lines import lines_from_features, lines_to_features
 from lanewright.core.markings.objects.marking_objects import markings_from_features
 from lanewright.core.survey.store.road_points import RoadPoints

@@ -2,12 +2,11 @@
 
 import numpy as np
 import shapely
-from lanewright.core.common.features import Features
-from lanewright.core.common.schemas import MARKING_LINES, MARKINGS
-from lanewright.core.markings.lines.naming import named_by_lines
+from lanewright.core.common.features import MARKING_LINES, MARKINGS, Features
+from lanewright.core.markings.lines.fit import named_by_lines
 from lanewright.core.markings.lines.painted_lines import lines_from_features
 from lanewright.core.markings.objects.marking_objects import markings_from_features
-from lanewright.core.survey.frame.build import build_frame
+from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.trajectory.trajectory import Trajectory
 
 EAST = np.arange(-5.0, 30.0, 0.1)

@@ -5,8 +5,7 @@ import pytest
 import shapely
 import shapely.affinity
 from clustered_marks import FRAME, classes
-from lanewright.core.common.features import Features
-from lanewright.core.common.schemas import MARKINGS
+from lanewright.core.common.features import MARKINGS, Features
 from lanewright.core.markings.objects.cluster import cluster_markings
 from lanewright.core.markings.objects.marking_objects import markings_from_features, markings_to_features, with_kinds_of
 from painted_streets import paint, road_points, strip

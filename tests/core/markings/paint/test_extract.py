@@ -12,7 +12,7 @@ from lanewright.core.io.geotiff import IntensityImage
 from lanewright.core.markings.paint import windows
 from lanewright.core.markings.paint.extract import extract_markings
 from lanewright.core.markings.paint.settings import MARKING_METHODS, MarkingSettings
-from lanewright.core.survey.frame.build import build_frame
+from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.store.records import ROAD_POINT, to_units
 from lanewright.core.survey.store.road_points import RoadPoints
 from lanewright.core.survey.store.section_store import SectionStore

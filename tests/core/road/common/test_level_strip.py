@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 from curbed_streets import driven, survey_of
-from lanewright.core.road.common.curb_points import curb_points_to_features
 from lanewright.core.road.common.decimation import LevelStrip, PointDecimation
 from lanewright.core.road.common.occlusion import OcclusionGrid
 from lanewright.core.road.detect_boundaries import BoundarySettings, find_curb_points
@@ -103,7 +102,7 @@ def test_points_are_held_profile_by_profile():
 def test_corners_are_the_same_to_a_millimetre_with_the_level_strip_left_out():
     survey = survey_of_scan(scanned(pulses=400_000.0, noise=0.002))
     whole = curbs_from_scanlines(SurveyScanlines(survey))
-    left_out = curb_points_to_features(find_curb_points(survey, BoundarySettings(method="scanlines"))["scanlines"], survey.frame)
+    left_out = find_curb_points(survey, BoundarySettings(method="scanlines"))["scanlines"].to_features(survey.frame)
     places = []
     for found in (whole, left_out):
         places.append(np.array([(r["side"] == "left", r["part"] == "top", r["station_m"], r["offset_m"], g.z) for g, r in found

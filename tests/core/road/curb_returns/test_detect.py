@@ -11,7 +11,7 @@ import street_plans
 from curbed_streets import EAST, NORTH, parked_car
 from lanewright.core.road.curb_returns import detect as curbs
 from lanewright.core.road.curb_returns.steps import measure_plan_steps
-from lanewright.core.road.edges.road_edges import edges_from_features
+from lanewright.core.road.edges.road_edges import RoadEdges
 from lanewright.core.road.surface.pavement_edge import edge_offsets
 from road_layers import detect_curbs, fit_road_edges
 from street_plans import LENGTH, scan, side_street, sidewalks, survey_along, with_points
@@ -156,7 +156,7 @@ def test_the_width_of_the_road_follows_from_its_own_curbs_alone():
     edges = fit_road_edges(detect_curbs(survey), survey.frame)
     assert in_plan(edges, "island")
     stations = np.arange(2.0, LENGTH - 2.0, 1.0)
-    left, seen = edge_offsets(edges_from_features(edges, survey.frame), 0, stations)["left"]
+    left, seen = edge_offsets(RoadEdges.from_features(edges, survey.frame), 0, stations)["left"]
     assert seen.all()
     np.testing.assert_allclose(left, 8.0, atol=0.03)
 

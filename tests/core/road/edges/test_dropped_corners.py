@@ -6,7 +6,7 @@ import pytest
 from curbed_streets import EAST, NORTH
 from lanewright.core.road.edges.corner_edges import dropped_corners
 from lanewright.core.road.edges.road_edges import EdgePiece
-from lanewright.core.survey.frame.build import build_frame
+from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.trajectory.trajectory import Trajectory
 
 RADIUS = 8.0

@@ -6,11 +6,10 @@ import pytest
 import shapely
 from curbed_streets import EAST, NORTH, length_of, parked_car, street, survey_of
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.common.features import Features
+from lanewright.core.common.features import CURB_POINTS, Features
 from lanewright.core.common.progress import Progress
-from lanewright.core.common.schemas import CURB_POINTS
 from lanewright.core.road.edges.fit import EdgeSettings
-from lanewright.core.survey.frame.build import build_frame
+from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.trajectory.trajectory import Trajectory
 from road_layers import detect_curbs, fit_road_edges
 

@@ -5,8 +5,7 @@ import pytest
 import shapely
 from curbed_streets import LENGTH, NORTH, SENSOR, parked_car, street, survey_of
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.common.features import Features
-from lanewright.core.common.schemas import CURB_POINTS
+from lanewright.core.common.features import CURB_POINTS, Features
 from lanewright.core.road.scanlines.candidates import ScanlineBoundarySettings
 from lanewright.core.road.scanlines.detect import LayerScanlines, SurveyScanlines
 from lanewright.core.road.scanlines.grid import Scanlines

@@ -2,7 +2,7 @@
 
 import numpy as np
 from lanewright.core.road.scanlines.mesh import PlaneVertices, ScannerLines, increasing, plane_order, slanting_edges
-from lanewright.core.survey.lattice.mirror_phase import MirrorPhase
+from lanewright.core.survey.lattice.scan_lattice import MirrorPhase
 
 PULSE = 0.001
 

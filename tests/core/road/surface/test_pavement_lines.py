@@ -3,14 +3,13 @@
 import numpy as np
 import pytest
 import shapely
-from lanewright.core.common.features import Features
-from lanewright.core.common.schemas import ROAD_EDGES
+from lanewright.core.common.features import ROAD_EDGES, Features
 from lanewright.core.road.edges.fit import EdgeSettings
-from lanewright.core.road.edges.road_edges import EdgePiece, edges_from_features, edges_to_features, joined_pieces
+from lanewright.core.road.edges.road_edges import EdgePiece, RoadEdges, joined_pieces
 from lanewright.core.road.surface import pavement_lines
 from lanewright.core.road.surface.extract import extract_road_surface
 from lanewright.core.road.surface.pavement_lines import AGREEING_LENGTH, with_pavement_edges
-from lanewright.core.survey.frame.build import build_frame
+from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.open_survey import Survey
 from lanewright.core.survey.store.records import SURVEY_POINT, to_units
 from lanewright.core.survey.store.section_store import SectionStore
@@ -67,7 +66,7 @@ def street(half=half_of, verge=True, keep=None, extra=None, backwards=False, shu
 
 
 def no_edges(survey):
-    return edges_from_features(Features("LineStringZ", list(ROAD_EDGES)), survey.frame)
+    return RoadEdges.from_features(Features("LineStringZ", list(ROAD_EDGES)), survey.frame)
 
 
 def found(survey, **settings):
@@ -203,11 +202,11 @@ def test_behind_a_vehicle_it_is_bridged_too_where_a_curb_begins_soon_after():
     hidden, curb_from = (25.0, 35.0), 42.0
     survey = street(keep=lambda s, d: ~((s > hidden[0]) & (s < hidden[1]) & (d > 2.6)))
     whole = found(street())
-    curb = edges_to_features(whole.take(np.flatnonzero(whole.side == "left")), survey.frame)
+    curb = whole[whole.side == "left"].to_features(survey.frame)
     for row in curb.rows:
         row["edge"] = "curb"
     curb.geometries = [shapely.LineString([place for place in line.coords if place[0] - EAST >= curb_from]) for line in curb.geometries]
-    edges = with_pavement_edges(survey, edges_from_features(curb, survey.frame))
+    edges = with_pavement_edges(survey, RoadEdges.from_features(curb, survey.frame))
     drawn = [places for (_, places), what in zip(on_map(edges, survey), edges.what) if what == "pavement" and places[0, 1] > 0]
     assert max(places[:, 0].max() for places in drawn) == pytest.approx(curb_from - 5.0, abs=0.5), "as far as the curb is led on"
 
@@ -249,10 +248,10 @@ def test_a_longer_gap_in_which_the_road_widens_is_not_bridged():
 
 def test_a_curb_stays_what_it_is_and_the_pavement_ends_on_the_other_side_alone(plain):
     survey, drawn = plain
-    left = edges_to_features(drawn.take(np.flatnonzero(drawn.side == "left")), survey.frame)
+    left = drawn[drawn.side == "left"].to_features(survey.frame)
     for row in left.rows:
         row["edge"] = "curb"
-    curbs = edges_from_features(left, survey.frame)
+    curbs = RoadEdges.from_features(left, survey.frame)
     both = with_pavement_edges(survey, curbs)
     assert both.side[both.what == "curb"].tolist() == ["left"] * len(curbs) and set(both.side[both.what == "pavement"]) == {"right"}
     assert len(set(both.chain)) == 2
@@ -271,7 +270,7 @@ def test_an_edge_of_the_pavement_does_not_run_across_a_curb(plain):
     left = [places[:, 0] for (_, places), side, what in zip(on_map(drawn, survey), drawn.side, drawn.what) if (side, what) == ("left", "pavement")]
     assert len(left) == 2
     assert left[0].max() == pytest.approx(30.0 - AGREEING_LENGTH, abs=1.0) and left[1].min() == pytest.approx(30.0 + AGREEING_LENGTH, abs=1.0)
-    right = drawn.take(np.flatnonzero(drawn.side == "right"))
+    right = drawn[drawn.side == "right"]
     assert len(right) == 1 and right.length[0] > LENGTH - 5.0
 
 
@@ -292,12 +291,12 @@ def test_the_surface_ends_at_the_edge_of_the_pavement_and_counts_as_measured(pla
 
 def test_written_and_read_again_an_edge_of_the_pavement_is_one(plain):
     survey, edges = plain
-    layer = edges_to_features(edges, survey.frame)
+    layer = edges.to_features(survey.frame)
     assert set(layer.column("edge")) == {"pavement"}
-    assert edges_from_features(layer, survey.frame).what.tolist() == edges.what.tolist()
+    assert RoadEdges.from_features(layer, survey.frame).what.tolist() == edges.what.tolist()
     for row in layer.rows:
         del row["edge"]
-    assert set(edges_from_features(layer, survey.frame).what) == {"curb"}
+    assert set(RoadEdges.from_features(layer, survey.frame).what) == {"curb"}
 
 
 def wide(s):

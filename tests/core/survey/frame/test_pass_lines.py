@@ -3,8 +3,8 @@
 import numpy as np
 import shapely
 from drives import ahead, chain, drive
-from lanewright.core.survey.frame.build import build_frame
-from lanewright.core.survey.frame.pass_lines import passes_to_features
+from lanewright.core.survey.frame.placement import passes_to_features
+from lanewright.core.survey.frame.road_frame import build_frame
 
 
 def test_every_pass_is_a_line_along_the_drive_in_its_direction():

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from drives import EAST, NORTH, ahead, bend, chain, drive, joined, standing
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.survey.frame.build import build_frame
+from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.trajectory.trajectory import Trajectory, clean_trajectory
 from scipy.ndimage import gaussian_filter1d
 

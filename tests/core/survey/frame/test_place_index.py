@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from lanewright.core.execution.plain import read_plain, write_plain
-from lanewright.core.survey.frame.place_index import PlaceIndex
+from lanewright.core.execution.phase import read_plain, write_plain
+from lanewright.core.survey.frame.placement import PlaceIndex
 
 SIDE = 2.5
 

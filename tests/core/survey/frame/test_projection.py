@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from drives import ahead, bend, chain, drive
-from lanewright.core.survey.frame.build import build_frame
 from lanewright.core.survey.frame.projection import RoadProjection
+from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.store.records import COORDINATE_SCALE, to_units
 
 CORRIDOR = 25.0

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from drives import ahead, bend, chain, drive
-from lanewright.core.survey.frame.build import build_frame
+from lanewright.core.survey.frame.road_frame import build_frame
 
 
 def curved_road(radius=60.0, turn=120.0):

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.survey.frame.sigma_along import cuts_where_it_changes
+from lanewright.core.survey.frame.row_table import cuts_where_it_changes
 
 ALONG = np.arange(0.0, 400.5, 0.5)
 

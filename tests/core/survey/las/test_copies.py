@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from drives import write_cloud
-from lanewright.core.survey.las.copies import distinct_rows, may_overlap, without_copies
 from lanewright.core.survey.las.reader import read_headers
+from lanewright.core.survey.las.samples import distinct_rows, may_overlap, without_copies
 
 
 def cloud(path, order=slice(None), moved=0.0, later=0.0, **other):

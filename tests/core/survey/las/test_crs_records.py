@@ -4,8 +4,7 @@ import laspy
 import numpy as np
 import pytest
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.io.cloud_crs import check_projected, crs_note
-from lanewright.core.io.crs import parse_crs
+from lanewright.core.io.crs import check_projected, crs_note, parse_crs
 from lanewright.core.survey.las.reader import read_blocks, read_headers
 
 FOOT = 1200 / 3937

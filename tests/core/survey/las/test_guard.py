@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from copc_files import write_copc
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.survey.las.guard import find_damage
+from lanewright.core.survey.las.header import find_damage
 from lanewright.core.survey.las.reader import read_blocks
 
 

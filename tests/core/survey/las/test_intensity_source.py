@@ -3,7 +3,7 @@
 import laspy
 import numpy as np
 import pytest
-from lanewright.core.survey.las.intensity_source import intensity_source_of
+from lanewright.core.survey.las.point_fields import intensity_source_of
 from lanewright.core.survey.las.reader import read_blocks, read_headers
 from lanewright.core.survey.las.samples import coarse_coordinates, sample_files
 

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from copc_files import write_copc
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.survey.las.near import points_near
 from lanewright.core.survey.las.parallel_reader import ParallelCloudReader
 from lanewright.core.survey.las.reader import read_blocks, read_header, read_headers
+from lanewright.core.survey.las.samples import points_near
 
 COUNT, LONG_COUNT, RECORD_SIZE, POINTS_AT = (107, "<I"), (247, "<Q"), (105, "<H"), (96, "<I")
 POINTS = 120_000
@@ -252,7 +252,7 @@ def test_coordinates_that_overflowed_the_integers_of_their_file_are_told(tmp_pat
 
 
 def test_an_intensity_elsewhere_is_named_by_its_fields(tmp_path):
-    from lanewright.core.survey.las.intensity_source import without_intensity
+    from lanewright.core.survey.las.point_fields import without_intensity
 
     path = written(street(1, "1.2", 3000, [("echo width", "u2")]), tmp_path / "cloud.laz")
     assert "(echo width)" in without_intensity(read_headers([path]), "intensity", ["echo width"])

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from drives import write_cloud
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.survey.las.near import points_near
+from lanewright.core.survey.las.samples import points_near
 
 
 @pytest.fixture

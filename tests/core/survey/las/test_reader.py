@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from drives import EAST, NORTH, write_cloud
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.io.cloud_crs import check_projected
+from lanewright.core.io.crs import check_projected
+from lanewright.core.survey.las.point_fields import ScannerCensus, numbers_by_value, times_by_value
 from lanewright.core.survey.las.reader import read_blocks, read_header, read_headers
-from lanewright.core.survey.las.scanners import ScannerCensus, numbers_by_value, times_by_value
 
 
 def places(count=5000):

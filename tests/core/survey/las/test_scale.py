@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from lanewright.core.common.memory import ScratchBuffers
-from lanewright.core.survey.las.scale import LasAxis
+from lanewright.core.common.parallel import ScratchBuffers
+from lanewright.core.survey.las.point_fields import LasAxis
 from lanewright.core.survey.store.records import COORDINATE_SCALE
 
 RAW = np.dtype([("X", "i4"), ("Y", "i4"), ("Z", "i4"), ("intensity", "u2")])

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.survey.las.time_slots import SLOT, TimeSlots
+from lanewright.core.survey.las.samples import SLOT, TimeSlots
 
 
 @pytest.mark.parametrize("begin", [-5e5, 0.0, 3e5, 1.4e9], ids=["before zero", "zero", "week", "adjusted"])

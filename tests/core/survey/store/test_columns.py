@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.common.order_statistics import decimate_cells, order_by
+from lanewright.core.common.arrays import decimate_cells, order_by
 from lanewright.core.survey.store.columns import Columns
 
 

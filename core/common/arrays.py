@@ -1,0 +1,312 @@
+"""Sorting, ranks and quantiles of many 32-bit numbers in linear time, and decimation of crowded cells."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import MISSING, fields, replace
+from functools import cache
+from typing import Any, TypeVar
+
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+
+FEW = 500        # numbers that numpy's lexsort takes less time for
+RADIX_BITS = 16  # numpy sorts integers of up to 16 bits in linear time (radix sort)
+
+
+def order_by(*keys: np.ndarray) -> np.ndarray:
+    """Indices that sort by several keys, like `numpy.lexsort`: stable, in linear time.
+
+    Each key is split into digits of 16 bits and sorted digit by digit, the least significant first (radix sort), where there are many.
+
+    Parameters
+    ----------
+    keys : (N,) int32 each; the last is the primary key
+
+    Returns
+    -------
+    (N,) intp
+    """
+    if keys and len(keys[0]) < FEW:
+        return np.lexsort(keys)
+    order = None
+    for key in keys:
+        key = above_least(np.asarray(key, np.int32))
+        for shift in range(0, max(int(key.max()).bit_length(), 1), RADIX_BITS):
+            digit = (key >> shift).astype(np.uint16)
+            order = np.argsort(digit, kind="stable") if order is None else order.take(np.argsort(digit.take(order), kind="stable"))
+    if order is None:
+        raise ValueError("at least one key is needed")
+    return order
+
+
+def bucket_argsort(cell: np.ndarray, count: int, own: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
+    """Rows sorted by cell, stable; in linear time for fewer than 2**16 cells.
+
+    Parameters
+    ----------
+    cell : (N,) cell numbers, 0 to count - 1
+    count : number of cells
+    own : (N,) bool, rows to use; all by default
+
+    Returns
+    -------
+    rows : (M,) row numbers, ascending within each cell
+    ends : (count,) index in `rows` at which each cell ends
+    """
+    kind = np.min_scalar_type(count)
+    cell = cell.astype(kind)
+    if own is not None:
+        cell[~own] = count
+    rows = np.argsort(cell, kind="stable")
+    ends = np.searchsorted(cell.take(rows), np.arange(count, dtype=kind), side="right")
+    return rows[:ends[-1]], ends
+
+
+def above_least(values: np.ndarray) -> np.ndarray:
+    """(N,) uint32: int32 values minus their minimum."""
+    return (values - values.min()).view(np.uint32)
+
+
+def decimate_cells(cell: np.ndarray, most: int) -> np.ndarray:
+    """Indices of at most about `most` members of every cell, evenly spaced in their order; sorted by cell.
+
+    Parameters
+    ----------
+    cell : (N,) int32 cell numbers, 0 or more
+    most : members kept per cell
+
+    Returns
+    -------
+    (M,) intp
+    """
+    count = np.bincount(cell)
+    step = -(-count // most)
+    order = order_by(cell)
+    if step.max(initial=0) > 1:
+        first = np.cumsum(count) - count
+        rank = np.arange(len(order), dtype=np.int32) - np.repeat(first.astype(np.int32), count)
+        order = order[rank % np.repeat(step.astype(np.int32), count) == 0]
+    return order
+
+
+def ranked(values: np.ndarray, ranks: np.ndarray | Sequence[int]) -> np.ndarray:
+    """The values at given ranks of the ascending order, found by counting.
+
+    Parameters
+    ----------
+    values : (N,) int32 or float32 without NaN
+    ranks : (R,) int, 0 to N - 1
+
+    Returns
+    -------
+    (R,) of the dtype of `values`
+    """
+    key = above_least(_sortable_bits(values))
+    digit = key >> max(int(key.max()).bit_length() - RADIX_BITS, 0)
+    below = np.cumsum(np.bincount(digit))
+    found = np.empty(len(ranks), values.dtype)
+    places = np.searchsorted(below, ranks, side="right")
+    for place in np.unique(places):
+        members = np.sort(values[digit == place])
+        wanted = places == place
+        found[wanted] = members[np.asarray(ranks)[wanted] - (below[place - 1] if place else 0)]
+    return found
+
+
+def ascending(values: np.ndarray) -> np.ndarray:
+    """(N,) sorted values without NaN; int32 and float32 in linear time."""
+    return values[order_by(_sortable_bits(values))] if values.dtype in (np.int32, np.float32) else np.sort(values)
+
+
+def _sortable_bits(values: np.ndarray) -> np.ndarray:
+    """(N,) int32 in the same order as the int32 or float32 values."""
+    bits = values.view(np.int32)
+    # the bit patterns of negative floats ascend in reverse order
+    return bits ^ ((bits >> 31) & np.int32(0x7FFFFFFF)) if values.dtype.kind == "f" else bits
+
+
+def quantiles(values: np.ndarray, shares: np.ndarray | Sequence[float]) -> np.ndarray:
+    """Quantiles in linear time, interpolated as by `numpy.quantile`.
+
+    Parameters
+    ----------
+    values : (N,) int32 or float32 without NaN, N > 0
+    shares : (S,) 0 to 1
+
+    Returns
+    -------
+    (S,) float64
+    """
+    return _interpolated(shares, len(values), lambda ranks: ranked(values, ranks))
+
+
+def quantile_in_order(values: np.ndarray, count: int, share: float) -> float:
+    """One quantile of the first `count` of sorted values, interpolated as by `numpy.quantile`."""
+    place = share * (count - 1)
+    k = int(place)
+    a, b = float(values[k]), float(values[min(k + 1, count - 1)])
+    share = place - k
+    return a + (b - a) * share if share < 0.5 else b - (b - a) * (1.0 - share)
+
+
+def _interpolated(shares: np.ndarray | Sequence[float], count: int, at_ranks: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
+    place = np.asarray(shares) * (count - 1)
+    before = np.floor(place).astype(np.int64)
+    a, b = at_ranks(np.r_[before, np.minimum(before + 1, count - 1)]).astype(float).reshape(2, -1)
+    share = place - before
+    return np.where(share < 0.5, a + (b - a) * share, b - (b - a) * (1.0 - share))
+
+
+# What hangs together: groups of things of which pairs are linked.
+
+def linked_groups(first: np.ndarray, second: np.ndarray, count: int) -> np.ndarray:
+    """The group of each thing: those that links lead to from each other, in either direction, over any others.
+
+    Parameters
+    ----------
+    first, second : (P,) int, the two things of each link; links may be told twice
+    count : number of things
+
+    Returns
+    -------
+    (count,) int32, groups numbered from 0 in the order of their first things
+    """
+    graph = coo_matrix((np.ones(len(first), bool), (first, second)), shape=(count, count))
+    return connected_components(graph, directed=False)[1]
+
+
+def members_of(number: np.ndarray) -> Iterator[tuple[int, np.ndarray]]:
+    """The members of all groups, found by sorting: a search of its members for every group compares everything with everything.
+
+    Parameters
+    ----------
+    number : (N,) int, the group of each thing; below 0 where it is of none
+
+    Yields
+    ------
+    number of a group, ascending, and (M,) its members, ascending
+    """
+    known = np.flatnonzero(number >= 0)
+    order = known[np.argsort(number[known], kind="stable")]
+    starts = np.flatnonzero(np.diff(number[order], prepend=-1))
+    for begin, end in zip(starts.tolist(), [*starts[1:].tolist(), len(order)]):
+        yield int(number[order[begin]]), order[begin:end]
+
+
+# Runs of True in a mask, stretches of ascending places, and the greatest of neighbours in a row of cells.
+
+def mask_runs(mask: np.ndarray) -> list[tuple[int, int]]:
+    """(first, last + 1) of every run of True in (N,) bool."""
+    change = np.flatnonzero(np.diff(np.r_[False, mask, False].astype(np.int8)))
+    return list(zip(change[::2].tolist(), change[1::2].tolist()))
+
+
+def stretch_of(places: np.ndarray, start: float, end: float) -> slice:
+    """Those of (N,) ascending places that lie from `start` to `end`, both included: looked up, since a long road has many stretches."""
+    return slice(int(np.searchsorted(places, start, side="left")), int(np.searchsorted(places, end, side="right")))
+
+
+def best_within(place: np.ndarray, row: np.ndarray, score: np.ndarray, span: int) -> np.ndarray:
+    """Which scores are the greatest of their surroundings; equal ones all are.
+
+    Parameters
+    ----------
+    place : (N,) cells, counted row by row, ascending
+    row : (N,) rows of cells
+    score : (N,)
+    span : cells of a row on either side that are compared
+
+    Returns
+    -------
+    (N,) bool
+    """
+    best = np.ones(len(place), bool)
+    for lag in range(1, min(span, len(place) - 1) + 1):
+        near = (place[lag:] - place[:-lag] <= span) & (row[lag:] == row[:-lag])
+        best[:-lag] &= ~near | (score[:-lag] >= score[lag:])
+        best[lag:] &= ~near | (score[lag:] >= score[:-lag])
+    return best
+
+
+# Which of many stretches of a road meet: found in order of station, so that a long survey needs no table of all pairs.
+
+PAIRS_PER_BLOCK = 1 << 18  # about so many are handed out at a time
+ROUNDING_TOLERANCE = 1e-6  # m, more than coordinates are rounded by
+
+
+def overlapping_pairs(first: np.ndarray, last: np.ndarray, other_first: np.ndarray, other_last: np.ndarray,
+                      apart: float = 0.0) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """Pairs of stretches that overlap, touch or lie no farther apart than a distance.
+
+    Parameters
+    ----------
+    first, last : (N,) m, first <= last
+    other_first, other_last : (M,) m, likewise
+    apart : m
+
+    Yields
+    ------
+    a, b : (P,) int each, indices of the first and the second stretch of each pair. Every pair comes
+        once, a stretch with itself too; some that lie a hair farther apart are among them.
+    """
+    reach = apart + ROUNDING_TOLERANCE
+    order, other_order = np.argsort(first, kind="stable"), np.argsort(other_first, kind="stable")
+    begins, other_begins = first[order], other_first[other_order]
+    # of two that meet, one begins before the other has ended
+    ends = np.searchsorted(other_begins, last + reach, side="right")
+    for a, b in _ranges(np.searchsorted(other_begins, first, side="left"), ends):
+        yield a, other_order[b]
+    ends = np.searchsorted(begins, other_last + reach, side="right")
+    for b, a in _ranges(np.searchsorted(begins, other_first, side="right"), ends):
+        yield order[a], b
+
+
+def _ranges(starts, ends):
+    """Blocks of pairs of each number and all that lie in its range."""
+    count = np.maximum(ends - starts, 0)
+    total = np.cumsum(count)
+    cuts = np.unique(np.searchsorted(total, np.arange(PAIRS_PER_BLOCK, total[-1] if len(total) else 0, PAIRS_PER_BLOCK), side="left"))
+    for some in np.split(np.arange(len(count)), cuts):
+        size = count[some]
+        if size.any():
+            within = np.arange(size.sum()) - np.repeat(np.cumsum(size) - size, size)
+            yield np.repeat(some, size), np.repeat(starts[some], size) + within
+
+
+# Things of one kind as columns: dataclasses of arrays that have one entry for each of them.
+
+AnyRows = TypeVar("AnyRows", bound="Rows")
+
+
+class Rows:
+    """Base of a dataclass of things of one kind: how many there are, some of them, and those of several joined.
+
+    Fields without a default are arrays of one length, or what is indexed as they are; a field with a default holds for all things.
+    """
+
+    @classmethod
+    def names(cls) -> tuple[str, ...]:
+        """Names of the fields that have one entry for each thing."""
+        return _names_of(cls)
+
+    def columns(self) -> list[np.ndarray]:
+        """The arrays, in the order of the fields."""
+        return [getattr(self, name) for name in self.names()]
+
+    def __len__(self) -> int:
+        return len(self.columns()[0])
+
+    def __getitem__(self: AnyRows, which: Any) -> AnyRows:
+        return replace(self, **{name: getattr(self, name)[which] for name in self.names()})  # type: ignore[type-var]
+
+    @classmethod
+    def join(cls: type[AnyRows], parts: Sequence[AnyRows]) -> AnyRows:
+        """The entries of all parts, one after the other."""
+        return cls(*map(np.concatenate, zip(*(part.columns() for part in parts))))
+
+
+@cache
+def _names_of(kind: type) -> tuple[str, ...]:
+    return tuple(one.name for one in fields(kind) if one.default is MISSING)

@@ -1,0 +1,699 @@
+"""The header of a LAS or LAZ file and its variable length records, byte by byte, as laspy can read them."""
+
+from __future__ import annotations
+
+import io
+import os
+import struct
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import BinaryIO
+
+import numpy as np
+
+VLR_HEADER_SIZE, EVLR_HEADER_SIZE = 54, 60  # bytes
+LASZIP_USER, LASZIP_RECORD = b"laszip encoded", 22204
+COMPRESSED_BIT = 0x80        # of the point format
+VARIABLE_CHUNKS = 0xFFFFFFFF  # as the size of chunks: each has its own number of points
+EXTRA_BYTES_USER, EXTRA_BYTES_RECORD, EXTRA_BYTES_SIZE = b"LASF_Spec", 4, 192
+CRS_USER, CRS_TEXTS = b"LASF_Projection", (2111, 2112, 34737)   # whose records are text: WKT, and names of the GeoKeys
+MAX_NAME = 24    # bytes of a name to which a number is added, of the 32 that a name may have
+TYPE_SIZES = 1, 1, 2, 2, 4, 4, 8, 8, 4, 8   # bytes of the types 1 to 10 of extra bytes; 11 to 20 are pairs of these, 21 to 30 triples
+
+
+@dataclass(frozen=True)
+class HeaderFields:
+    """The numbers of a header, as they stand there.
+
+    head : its first bytes
+    counts : those of the counts of points that are not 0, that of 64 bits first
+    first_waveform : byte of the first waveform packet, 0 without any in the file
+    """
+
+    head: bytes
+    version: int
+    header_size: int
+    points_at: int
+    vlrs: int
+    point_format: int
+    compressed: bool
+    record_size: int
+    counts: tuple[int, ...]
+    first_waveform: int
+    first_evlr: int
+    evlrs: int
+
+    @classmethod
+    def read(cls, file: BinaryIO) -> HeaderFields | None:
+        """Those of an open file; None where it is no LAS file or too short for a header."""
+        file.seek(0)
+        head = file.read(375)
+        if len(head) < 227 or head[:4] != b"LASF":
+            return None
+        header_size, points_at, vlrs, kind, record_size, count = struct.unpack_from("<HIIBHI", head, 94)
+        version = head[25]
+        waveform, evlr, evlrs, long_count = 0, 0, 0, 0
+        if version >= 3 and len(head) >= 235:
+            waveform = struct.unpack_from("<Q", head, 227)[0]
+        if version >= 4 and len(head) >= 255:
+            evlr, evlrs, long_count = struct.unpack_from("<QIQ", head, 235)
+        return cls(head, version, header_size, points_at, vlrs, kind & 0x3F, bool(kind & COMPRESSED_BIT), record_size,
+                   tuple(number for number in (long_count, count) if number), waveform, evlr, evlrs)
+
+    @property
+    def has_long_count(self) -> bool:
+        """Whether there is a count of 64 bits."""
+        return self.version >= 4 and len(self.head) >= 255
+
+    @property
+    def count(self) -> int:
+        """The number of points that laspy would take."""
+        return struct.unpack_from("<Q", self.head, 247)[0] if self.has_long_count else struct.unpack_from("<I", self.head, 107)[0]
+
+    @property
+    def scales(self) -> np.ndarray:
+        """(3,) metres."""
+        return np.frombuffer(self.head, "<f8", 3, 131)
+
+    @property
+    def offsets(self) -> np.ndarray:
+        """(3,) map coordinates."""
+        return np.frombuffer(self.head, "<f8", 3, 155)
+
+    @property
+    def minimum(self) -> np.ndarray:
+        """(3,) map coordinates."""
+        return np.frombuffer(self.head, "<f8", 6, 179)[1::2]
+
+    @property
+    def maximum(self) -> np.ndarray:
+        """(3,) map coordinates."""
+        return np.frombuffer(self.head, "<f8", 6, 179)[::2]
+
+    def records(self, file: BinaryIO, size: int) -> Iterator[Record]:
+        """The variable length records before the points of a file of so many bytes, the last as far as it is there."""
+        at = self.header_size
+        for _ in range(self.vlrs):
+            record = Record.read(file, at, VLR_HEADER_SIZE, size)
+            if record is None:
+                return
+            yield record
+            at += VLR_HEADER_SIZE + len(record.data)
+
+    def end_of_points(self, size: int) -> int:
+        """The byte before which the points end at the latest, in a file of so many bytes."""
+        after = [self.first_waveform] + [self.first_evlr] * bool(self.evlrs)
+        return min([size, *(at for at in after if self.points_at <= at <= size)])
+
+
+@dataclass(frozen=True)
+class Compression:
+    """How the points of a file are compressed, as the LASzip record says.
+
+    data : the record
+    """
+
+    data: bytes
+
+    @property
+    def compressor(self) -> int:
+        """Number of the kind of chunks."""
+        return struct.unpack_from("<H", self.data)[0]
+
+    @property
+    def chunk_size(self) -> int:
+        """Points of a chunk; VARIABLE_CHUNKS where each has its own number."""
+        return struct.unpack_from("<I", self.data, 12)[0]
+
+    @property
+    def items(self) -> list[tuple[int, int]]:
+        """(type, bytes) of each item of a point."""
+        return [struct.unpack_from("<HH", self.data, 34 + 6 * k) for k in range(struct.unpack_from("<H", self.data, 32)[0])]
+
+    @property
+    def point_size(self) -> int:
+        """Bytes of a point."""
+        return sum(size for _, size in self.items)
+
+
+@dataclass(frozen=True)
+class Record:
+    """A variable length record.
+
+    at : byte of the file at which it begins
+    head : its header
+    length : of its data, as it states
+    data : as much of it as there is and is looked into
+    """
+
+    at: int
+    head: bytes
+    length: int
+    data: bytes
+
+    @classmethod
+    def read(cls, file: BinaryIO, at: int, head_size: int, size: int) -> Record | None:
+        """That at a byte of a file of so many bytes; None where there is none."""
+        if at + head_size > size:
+            return None
+        file.seek(at)
+        head = file.read(head_size)
+        length = struct.unpack_from("<H" if head_size == VLR_HEADER_SIZE else "<Q", head, 20)[0]
+        # behind the points, where waveforms take gigabytes, only a CRS is looked into, which has less than those before them may have
+        looked_into = head_size == VLR_HEADER_SIZE or head[2:18].startswith(CRS_USER) and length < 2**16
+        return cls(at, head, length, file.read(length) if looked_into else b"")
+
+    @property
+    def user(self) -> bytes:
+        """Who defined what it holds."""
+        return self.head[2:18].split(b"\0")[0]
+
+    @property
+    def number(self) -> int:
+        """Of the record, among those of its user."""
+        return struct.unpack_from("<H", self.head, 18)[0]
+
+    @property
+    def end(self) -> int:
+        """The byte behind it."""
+        return self.at + len(self.head) + self.length
+
+    @property
+    def whole(self) -> bytes:
+        """All of it, with the length that is there."""
+        kind = "<H" if len(self.head) == VLR_HEADER_SIZE else "<Q"
+        return self.head[:20] + struct.pack(kind, len(self.data)) + self.head[20 + struct.calcsize(kind):] + self.data
+
+    @property
+    def describes_extra_bytes(self) -> bool:
+        """Whether it names the extra bytes of points."""
+        return self.user == EXTRA_BYTES_USER and self.number == EXTRA_BYTES_RECORD
+
+    @property
+    def compression(self) -> Compression | None:
+        """What it says of compressed points; None where it is another record, or too short."""
+        laszip = self.user == LASZIP_USER and self.number == LASZIP_RECORD and len(self.data) >= 34
+        return Compression(self.data) if laszip and len(self.data) >= 34 + 6 * struct.unpack_from("<H", self.data, 32)[0] else None
+
+    def mended(self) -> Record:
+        """The same with a user and a CRS that laspy can decode; itself where nothing is wrong."""
+        head = self.head[:2] + decodable(self.head[2:18]) + self.head[18:]
+        data = decodable(self.data) if self.user == CRS_USER and self.number in CRS_TEXTS else self.data
+        return self if (head, data) == (self.head, self.data) else replace(self, head=head, data=data)
+
+    def patches(self) -> Iterator[tuple[int, bytes]]:
+        """What `mended` changes, where it lies in the file."""
+        mended = self.mended()
+        if mended is not self:
+            yield self.at, mended.head + mended.data
+
+
+def base_size(point_format: int) -> int | None:
+    """Bytes of a point without extra bytes; None for a format that laspy does not know."""
+    from laspy import PointFormat, supported_point_formats
+
+    return PointFormat(point_format).size if point_format in supported_point_formats() else None
+
+
+def extra_bytes_described(records: list[Record]) -> int:
+    """Bytes that the records which name extra bytes describe together."""
+    return sum(_size(entry) or 0 for record in records if record.describes_extra_bytes for entry in _entries(record))
+
+
+def readable_extra_bytes(record: Record, point_format: int, room: int) -> Record:
+    """A record of extra bytes that describes no more than there is room for, in names that a table can have; itself where nothing is wrong.
+
+    Parameters
+    ----------
+    record : which describes extra bytes
+    point_format : whose own fields have their names already
+    room : extra bytes of a point
+    """
+    from laspy import PointFormat
+
+    taken, left, kept = {*PointFormat(point_format).dimension_names, *PointFormat(point_format).dtype().names, "ExtraBytes"}, room, []
+    for number, entry in enumerate(_entries(record), 1):
+        size = _size(entry)
+        if size == 0:
+            continue
+        if size is None or size > left:
+            break
+        left -= size
+        name = _name(entry[4:36], taken, number)
+        taken.add(name)
+        same = name.encode() == entry[4:36].split(b"\0")[0]
+        kept.append(entry[:4] + (entry[4:36] if same else name.encode()[:32].ljust(32, b"\0")) + entry[36:160] + decodable(entry[160:]))
+    data = b"".join(kept)
+    return record if data == record.data and record.length == len(data) else replace(record, data=data, length=len(data))
+
+
+def _entries(record):
+    """The descriptions of the fields; one that is not whole is none."""
+    return [record.data[at:at + EXTRA_BYTES_SIZE] for at in range(0, len(record.data) - EXTRA_BYTES_SIZE + 1, EXTRA_BYTES_SIZE)]
+
+
+def _size(entry):
+    """Bytes of a field; None for a type that nobody defined."""
+    kind, options = entry[2], entry[3]
+    if kind == 0:
+        return options
+    return TYPE_SIZES[(kind - 1) % 10] * ((kind - 1) // 10 + 1) if kind <= 30 else None
+
+
+def _name(text, taken, number):
+    """A name in UTF-8 that no other field has."""
+    name = decodable(text.split(b"\0")[0]).decode() or "extra"
+    unique, again = name, number
+    while unique in taken:
+        unique, again = f"{name.encode()[:MAX_NAME].decode(errors='ignore')}_{again}", again + 1
+    return unique
+
+
+def decodable(text: bytes) -> bytes:
+    """The same bytes where they are UTF-8 up to the first zero, else with question marks for those beyond ASCII."""
+    try:
+        text.split(b"\0")[0].decode()
+    except UnicodeDecodeError:
+        return bytes(byte if byte < 128 else ord("?") for byte in text)
+    return text
+
+
+# Headers of LAS and LAZ files as the points behind them show that they should be.
+#
+# Exporters leave numbers and texts in a header that do not fit the points: a count from before the last points, lengths of other records, names in
+# the encoding of their country. laspy believes all of them. Here such bytes are replaced in memory before laspy reads them, and what may matter to
+# the survey is told. Offsets are those of LAS 1.4 (ASPRS, R15, tables 3, 6 and 7) and of its extra bytes (table 25).
+
+MAX_RECORD_SIZE = 65535     # bytes of a point
+SAMPLED_RECORDS = 1000     # of those behind the last point that a header states, to see whether they are points too
+# derived: whole numbers of 32 bits within which points lie about those stated: the road goes on, but what is read as places and is none lies
+# anywhere, or, as text and floating-point numbers, near the upper end; one in eight of it in each axis lies as near by chance
+NEAR_STATED = 2**31 // 8
+COUNT_AT, LONG_COUNT_AT, RECORD_SIZE_AT, POINTS_AT, EVLR_COUNT_AT = 107, 247, 105, 96, 243
+
+
+@dataclass(frozen=True)
+class MendedHeader:
+    """What is read in place of some bytes of a file, and what to tell of it.
+
+    patches : (first byte, bytes)
+    notes : the ends of sentences about the file
+    """
+
+    patches: tuple[tuple[int, bytes], ...] = ()
+    notes: tuple[str, ...] = ()
+
+    def with_count(self, fields: HeaderFields, count: int, note: str = "") -> MendedHeader:
+        """The same with another number of points."""
+        patches = [(COUNT_AT, struct.pack("<I", count if count < 2**32 else 0))]
+        if fields.has_long_count:
+            patches.append((LONG_COUNT_AT, struct.pack("<Q", count)))
+        return MendedHeader((*self.patches, *patches), (*self.notes, *([note] if note else [])))
+
+
+class MendedFile(io.FileIO):
+    """A file that is read with some bytes replaced."""
+
+    def __init__(self, path: str | os.PathLike[str], patches: Sequence[tuple[int, bytes]]):
+        super().__init__(path, "rb")
+        self._patches = patches
+
+    def readinto(self, buffer: bytearray | memoryview) -> int:   # type: ignore[override]
+        """As that of a file."""
+        first = self.tell()
+        count = super().readinto(buffer) or 0
+        view = memoryview(buffer).cast("B")
+        for at, data in self._patches:
+            low, high = max(at, first), min(at + len(data), first + count)
+            if low < high:
+                view[low - first:high - first] = data[low - at:high - at]
+        return count
+
+
+def opened(path: str | os.PathLike[str], mended: MendedHeader) -> io.BufferedReader:
+    """A file open for reading as it was mended."""
+    return io.BufferedReader(MendedFile(path, mended.patches)) if mended.patches else open(path, "rb")  # noqa: SIM115
+
+
+def mend(path: str | os.PathLike[str]) -> MendedHeader:
+    """What a file says of itself against what is in it; the points in compressed chunks are not counted here.
+
+    Parameters
+    ----------
+    path : of a LAS or LAZ file
+
+    Returns
+    -------
+    MendedHeader; without patches where nothing is wrong, or nothing is sure
+    """
+    size = os.path.getsize(path)
+    with open(path, "rb") as file:
+        stated = HeaderFields.read(file)
+        if stated is None or not stated.header_size <= size:
+            return MendedHeader()
+        patches: list[tuple[int, bytes]] = []
+        notes: list[str] = []
+        records, extended = list(stated.records(file, size)), list(_extended(file, stated, size))
+        if len(extended) < stated.evlrs:
+            patches.append((EVLR_COUNT_AT, struct.pack("<I", len(extended))))
+            notes.append(f"{stated.evlrs - len(extended):,} of its {stated.evlrs:,} extended records lie beyond its end and are left out")
+            stated = replace(stated, evlrs=len(extended))
+        fields = _lengths(stated, records, size)
+        if fields.points_at != stated.points_at:
+            patches.append((POINTS_AT, struct.pack("<I", fields.points_at)))
+            notes.append(f"its header states that the points begin at byte {stated.points_at:,}, and they begin at {fields.points_at:,}")
+        if fields.record_size != stated.record_size:
+            patches.append((RECORD_SIZE_AT, struct.pack("<H", fields.record_size)))
+            notes.append(f"its header states {stated.record_size} bytes per point, and there are {fields.record_size}")
+        patches += _mended_records(records, fields) + [patch for record in extended for patch in record.patches()]
+        found = MendedHeader(tuple(patches), tuple(notes))
+        if fields.compressed:
+            return found
+        count = _points_in_las(file, fields, size)
+        if count == fields.count:
+            return found
+        return found.with_count(fields, count, "" if count in fields.counts else count_note(fields.count, count))
+
+
+def count_note(stated: int, there: int) -> str:
+    """The end of a sentence about a file whose header states another number of points than there are."""
+    return f"its header states {stated:,} points, and {there:,} are there: those were read" + (
+        ". If it was copied or downloaded, compare its length with the original's" if there < stated else "")
+
+
+def _extended(file, fields, size):
+    """The extended records behind the points that lie in the file."""
+    at = fields.first_evlr
+    for _ in range(fields.evlrs):
+        record = Record.read(file, at, EVLR_HEADER_SIZE, size) if at >= fields.header_size else None
+        if record is None or at + EVLR_HEADER_SIZE + record.length > size:
+            return
+        yield record
+        at += EVLR_HEADER_SIZE + record.length
+
+
+def _lengths(fields, records, size):
+    """The fields with the place and the length of the points by which they fill the file."""
+    base = base_size(fields.point_format)
+    if base is None:
+        return fields
+    described = base + extra_bytes_described(records)
+    if fields.compressed:
+        # the decoder cannot do without the record that says of what its points consist
+        point_size = next((record.compression.point_size for record in records if record.compression is not None), 0)
+        return replace(fields, record_size=point_size) if base <= point_size <= MAX_RECORD_SIZE else fields
+    behind = records[-1].end if records else fields.header_size
+    end = fields.end_of_points(size)
+
+    def fits(points_at, record_size):
+        return points_at <= size and base <= record_size <= MAX_RECORD_SIZE and any(points_at + count * record_size == end for count in fields.counts)
+
+    if fits(fields.points_at, fields.record_size):
+        return fields
+    for points_at in (fields.points_at, behind):
+        for record_size in (fields.record_size, described, base):
+            if fits(points_at, record_size):
+                return replace(fields, points_at=points_at, record_size=record_size)
+    return fields
+
+
+def _mended_records(records, fields):
+    """The patch of the records before the points, where any cannot be read as it is."""
+    base = base_size(fields.point_format)
+    mended = [record.mended() for record in records]
+    if base is not None:
+        mended = [readable_extra_bytes(record, fields.point_format, fields.record_size - base) if record.describes_extra_bytes else record
+                  for record in mended]
+    if all(record is before for record, before in zip(mended, records)):
+        return []
+    data = b"".join(record.whole for record in mended)
+    room = fields.points_at - fields.header_size
+    return [(fields.header_size, data.ljust(room, b"\0"))] if len(data) <= room else []
+
+
+def _points_in_las(file, fields, size):
+    """The points of an uncompressed file by its length; what its header states where nothing is sure."""
+    if fields.record_size < 20 or not fields.header_size <= fields.points_at <= size:
+        return fields.count
+    there, rest = divmod(fields.end_of_points(size) - fields.points_at, fields.record_size)
+    if there in fields.counts:
+        return there
+    fitting = max((count for count in fields.counts if count <= there), default=0)
+    if fields.counts and not fitting:
+        return there if there and not rest else fields.count   # a file cut off ends within a record
+    return there if _are_points(file, fields, fitting, there, rest) else fitting
+
+
+def _are_points(file, fields, first, end, rest):
+    """Whether the records from `first` to before `end`, behind those that the header states, are points of the same survey."""
+    behind = sampled_places(file, fields, first, end)
+    if not len(behind) or not behind.any(axis=1).mean() > 0.5:   # zeros that fill up a block
+        return False
+    if first:
+        inside = np.abs(behind - np.median(sampled_places(file, fields, 0, first), axis=0)) <= NEAR_STATED
+    else:
+        low, high = fields.minimum, fields.maximum
+        if not (np.isfinite([low, high]).all() and (low < high).any()):
+            return not rest
+        places = behind * fields.scales + fields.offsets
+        inside = (places >= low) & (places <= high)
+    return bool(inside.all(axis=1).mean() > 0.5)
+
+
+def sampled_places(file: BinaryIO, fields: HeaderFields, first: int, end: int) -> np.ndarray:
+    """(N, 3) coordinates, as they are stored, of up to SAMPLED_RECORDS points of an uncompressed file from `first` to before `end`."""
+    found = []
+    for row in np.unique(np.linspace(first, end - 1, min(SAMPLED_RECORDS, max(end - first, 0))).astype(np.int64)).tolist():
+        file.seek(fields.points_at + row * fields.record_size)
+        place = file.read(12)
+        if len(place) < 12:   # of a file cut off
+            break
+        found.append(np.frombuffer(place, "<i4"))
+    return np.array(found, float).reshape(-1, 3)
+
+
+# Checks of the lengths in a LAS or LAZ header before a decoder relies on them.
+#
+# The decoder does not check them: with a wrong number of chunks it asks for more memory than any machine has, which ends the whole program. Offsets
+# and sizes are those of LAS 1.4 (ASPRS, R15, tables 3 and 6) and of the LASzip VLR.
+
+MAX_CHUNK_SIZE = 50_000_000  # points; LASzip writes 50,000
+CHUNKED_COMPRESSOR = 2       # of the other point formats, where each chunk begins anew
+LAYERED_COMPRESSOR = 3       # of point formats 6 and above: a chunk holds its values layer by layer
+MAX_DECODED = 400_000        # points of a last chunk that is decoded to count them: larger ones take too much memory
+FLUSHED_BYTES = 16           # at most that a coder writes behind its last point: points that need fewer bytes are not all there are
+MAX_LOOKS = 1000             # chunks whose first point is looked at
+LAYERS_OF_ITEM = {10: 9, 11: 1, 12: 2, 13: 1}  # POINT14, RGB14, RGBNIR14, WAVEPACKET14; BYTE14 has one layer for each byte
+
+
+def find_damage(path: str | os.PathLike[str], mended: MendedHeader | None = None) -> str:
+    """What is wrong with the lengths in a file's header.
+
+    Parameters
+    ----------
+    path : of a LAS or LAZ file
+    mended : what is read in place of some of its bytes; by default as `mend` says
+
+    Returns
+    -------
+    The end of a sentence; "" where nothing is wrong, or the file is not a LAS file at all
+    """
+    size = os.path.getsize(path)
+    with opened(path, mend(path) if mended is None else mended) as file:
+        fields = HeaderFields.read(file)
+        if fields is None:
+            return ""
+        if not 227 <= fields.header_size <= fields.points_at <= size:
+            return f"its header states that the points begin at byte {fields.points_at:,} of {size:,}"
+        if fields.vlrs * VLR_HEADER_SIZE > fields.points_at - fields.header_size:
+            return f"its header states {fields.vlrs:,} variable length records, more than fit before the points"
+        least = base_size(fields.point_format)
+        if least is not None and fields.record_size < least:
+            return f"its header states {fields.record_size} bytes per point, and points of format {fields.point_format} have {least}"
+        if not fields.compressed:
+            there = (size - fields.points_at) // fields.record_size if fields.record_size else 0
+            return f"its header promises {fields.count:,} points, and {there:,} are there" if fields.count > there else ""
+        compression = _compression(file)
+        if compression is None:
+            return "it is compressed, but the record that describes the compression is missing"
+        if compression.point_size != fields.record_size:
+            return f"its header states {fields.record_size} bytes per point, the compressor {compression.point_size}"
+        if compression.chunk_size != VARIABLE_CHUNKS and not 0 < compression.chunk_size <= MAX_CHUNK_SIZE:
+            return f"its compressor states chunks of {compression.chunk_size:,} points"
+        return _chunk_table_damage(file, fields.points_at, size, compression)
+
+
+def with_points_of_chunks(path: str | os.PathLike[str], mended: MendedHeader) -> MendedHeader:
+    """The header of an undamaged file, with as many points as its chunks hold where it is compressed.
+
+    Chunks of point formats 6 and above, and those of all sizes, state their points. Of the others each but the last is full, and how many
+    points the last has shows when it is decoded: points beyond its last need bytes that are not there.
+    """
+    with opened(path, mended) as file:
+        fields = HeaderFields.read(file)
+        if fields is None or not fields.compressed:
+            return mended
+        compression, begin, table = _chunks(file)
+        count = _points_of(file, compression, begin, table, fields)
+    if count == fields.count:
+        return mended
+    return mended.with_count(fields, count, "" if count in fields.counts else count_note(fields.count, count))
+
+
+def places_here_and_there(path: str | os.PathLike[str], mended: MendedHeader) -> np.ndarray:
+    """Coordinates of points all over an undamaged file, without decoding it.
+
+    Returns
+    -------
+    (N, 3) map coordinates: of the first point of every chunk, which is not compressed, or of points evenly spread in a file without chunks
+    """
+    with opened(path, mended) as file:
+        fields = HeaderFields.read(file)
+        if fields is None or not fields.count:
+            return np.empty((0, 3))
+        if not fields.compressed:
+            places = sampled_places(file, fields, 0, fields.count)
+        else:
+            _, begin, table = _chunks(file)
+            at = begin + np.cumsum([0] + [length for points, length in table if points and length])[:-1]
+            places = np.empty((0, 3), "<i4")
+            if len(at):
+                places = np.array([_integers_at(file, int(place)) for place in at[np.unique(np.linspace(0, len(at) - 1, MAX_LOOKS).astype(int))]])
+        return places * fields.scales + fields.offsets
+
+
+def _integers_at(file, place):
+    """The stored x, y and z of a point that is not compressed."""
+    file.seek(place)
+    return np.frombuffer(file.read(12), "<i4")
+
+
+def _points_of(file, compression, begin, table, fields):
+    """The points in the chunks of a file; the header's number where they do not tell."""
+    size, compressor = compression.chunk_size, compression.compressor
+    if size == VARIABLE_CHUNKS:
+        return sum(points for points, _ in table)
+    if not table or compressor not in (CHUNKED_COMPRESSOR, LAYERED_COMPRESSOR):
+        return fields.count
+    full, length = size * (len(table) - 1), table[-1][1]
+    file.seek(begin + sum(nbytes for _, nbytes in table[:-1]))
+    chunk = file.read(length)
+    if compressor == LAYERED_COMPRESSOR:
+        raw = compression.point_size
+        return full + struct.unpack_from("<I", chunk, raw)[0] if len(chunk) >= raw + 4 else fields.count
+    stated = next((count for count in fields.counts if full < count <= full + size), 0)
+    if min(size, stated - full if stated else size) > MAX_DECODED:
+        return stated or fields.count
+    if stated and not _holds(compression, chunk[:length - max(FLUSHED_BYTES, length // 100)], stated - full):
+        return stated
+    low, high = max(stated - full, 1), size + 1   # points that can be decoded, and that cannot
+    while high - low > 1:
+        middle = (low + high) // 2
+        low, high = (middle, high) if _holds(compression, chunk, middle) else (low, middle)
+    return full + low
+
+
+def _holds(compression, chunk, points):
+    """Whether so many points can be decoded from the bytes of a chunk."""
+    import lazrs
+
+    buffer = np.empty(points * compression.point_size, np.uint8)
+    try:
+        lazrs.decompress_points_with_chunk_table(chunk, compression.data, buffer, [(points, len(chunk))])
+    except lazrs.LazrsError:
+        return False
+    return True
+
+
+def points_per_chunk(path: str | os.PathLike[str]) -> int:
+    """Points that are compressed together in an undamaged file: 1 in a LAS file, 0 where the number varies."""
+    with open(path, "rb") as file:
+        compression = _compression(file)
+    return 1 if compression is None else 0 if compression.chunk_size == VARIABLE_CHUNKS else compression.chunk_size
+
+
+def chunks_of(path: str | os.PathLike[str]) -> tuple[bytes, int, list[tuple[int, int]]]:
+    """The chunks of an undamaged LAZ file.
+
+    Returns
+    -------
+    record : the LASzip record
+    begin : byte at which the chunks begin
+    table : [(points, bytes)] of each chunk
+    """
+    with open(path, "rb") as file:
+        compression, begin, table = _chunks(file)
+        return compression.data, begin, table
+
+
+def _chunks(file):
+    """(Compression, first byte, [(points, bytes)] of each chunk) of an open file."""
+    import lazrs
+
+    compression, points_at = _compression(file), HeaderFields.read(file).points_at
+    file.seek(points_at)
+    return compression, points_at + 8, lazrs.read_chunk_table(file, lazrs.LazVlr(compression.data))
+
+
+def _compression(file):
+    """The Compression of the points of an open LAS or LAZ file; None where they are not compressed, or the record of it is missing."""
+    fields = HeaderFields.read(file)
+    records = fields.records(file, os.fstat(file.fileno()).st_size) if fields.compressed else ()
+    return next((record.compression for record in records if record.at < fields.points_at and record.compression is not None), None)
+
+
+def _chunk_table_damage(file, points_at, size, compression):
+    """What is wrong with the table of chunks, or with the chunks."""
+    file.seek(points_at)
+    place = file.read(8)
+    if len(place) < 8:
+        return "it ends where its points should begin"
+    at = struct.unpack("<q", place)[0]
+    if at == -1:  # written as a stream: the place of the table is at the end of the file
+        file.seek(size - 8)
+        at = struct.unpack("<q", file.read(8))[0]
+    if not points_at <= at <= size - 8:
+        return f"its table of chunks should be at byte {at:,} of {size:,}"
+    file.seek(at)
+    _, chunks = struct.unpack("<II", file.read(8))
+    if chunks > at - points_at:  # a chunk has at least one byte
+        return f"it states {chunks:,} chunks in {at - points_at:,} bytes"
+    file.seek(at)
+    return _chunk_damage(file, points_at + 8, at, compression)
+
+
+def _chunk_damage(file, first, end, compression):
+    """What is wrong with the chunks: they must fit before their table."""
+    import lazrs
+
+    try:
+        table = lazrs.read_chunk_table_only(file, lazrs.LazVlr(compression.data))
+    except BaseException as problem:  # a panic of the decoder is not an Exception
+        if isinstance(problem, (KeyboardInterrupt, SystemExit, GeneratorExit)):
+            raise
+        return f"its table of chunks cannot be read ({problem})"
+    taken = sum(length for _, length in table)
+    if taken > end - first:
+        return f"its chunks should take {taken:,} bytes, and there are {end - first:,}"
+    if end > first and not taken:
+        return f"its table of chunks is empty, and there are {end - first:,} bytes of points"
+    return _layer_damage(file, first, compression, table) if compression.compressor == LAYERED_COMPRESSOR else ""
+
+
+def _layer_damage(file, first, compression, table):
+    """What is wrong with the lengths of the layers, which each chunk states after its first, uncompressed point, or with its points."""
+    raw = compression.point_size
+    layers = sum(LAYERS_OF_ITEM.get(kind, size) for kind, size in compression.items)
+    head = raw + 4 + 4 * layers  # the number of points, and the lengths
+    counted = compression.chunk_size == VARIABLE_CHUNKS
+    at = first
+    for points, length in table:
+        file.seek(at)
+        data = file.read(min(head, length))
+        count, *lengths = struct.unpack_from(f"<{1 + layers}I", data, raw) if len(data) == head else (points,)
+        if length and head + sum(lengths) > length:
+            return f"a chunk of {length:,} bytes states layers of {sum(lengths):,}"
+        if counted and count != points:
+            return f"its table of chunks states {points:,} points in a chunk that holds {count:,}"
+        at += length
+    return ""

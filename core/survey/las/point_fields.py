@@ -1,0 +1,422 @@
+"""Which scanner measured a point, where a vehicle carries more than one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import laspy
+import numpy as np
+
+from ...common.errors import RoadExtractionError
+from ..store.records import COORDINATE_SCALE, MAX_XY_32_BIT, fill_units
+from .reader import CloudHeader, read_blocks
+
+if TYPE_CHECKING:
+    from .samples import FileSample
+
+MAX_SCANNERS = 8
+MIN_INTERLEAVED_SHARE = 0.8   # of the points: their values must overlap in time if the values identify scanners
+EVER = (-np.inf, np.inf)      # s
+
+
+@dataclass
+class ScannerCensus:
+    """Counts and time spans of scanner_channel and point_source_id, gathered while reading.
+
+    In a cloud without times stations along the road stand in their place: scanners measure the same stretches of it, files and tiles do not.
+
+    spans : {LAS field: {value: (first time, last time, count)}}
+    """
+
+    spans: dict[str, dict[int, tuple[float, float, int]]] = field(default_factory=lambda: {"scanner_channel": {}, "point_source_id": {}})
+
+    def add(self, name: str, values: np.ndarray, time: np.ndarray) -> None:
+        """Add a block: (N,) values of one LAS field and (N,) gps_time."""
+        self.take(name, times_by_value(values, time))
+
+    def take(self, name: str, times: dict[int, tuple[float, float, int]]) -> None:
+        """Add the result of `times_by_value` for a block."""
+        seen = self.spans[name]
+        if len(seen) > 4 * MAX_SCANNERS:
+            return
+        for value, (start, end, number) in times.items():
+            first, last, count = seen.get(value, (np.inf, -np.inf, 0))
+            seen[value] = min(first, start), max(last, end), count + number
+
+    def choose(self, wanted: str | None = "automatic") -> tuple[str | None, list[Any]]:
+        """The LAS field that identifies the scanners.
+
+        This is `scanner_channel` if it has more than one value, else `point_source_id` if it has 2 to 32 values that
+        overlap in time, or along the road where there are no times. LAS defines the latter as a flight line or file number;
+        some exporters count frames in it, others number every recording of every scanner.
+
+        Parameters
+        ----------
+        wanted : "automatic", or the LAS field to use
+
+        Returns
+        -------
+        name : of the field; None if there is one scanner
+        values : one entry per scanner in ascending order, a tuple where successive recordings belong to one scanner
+
+        Raises
+        ------
+        RoadExtractionError
+            If the wanted field is unknown or has too many values.
+        """
+        if wanted not in ("", "automatic", None):
+            if wanted not in self.spans:
+                raise RoadExtractionError(
+                    f"Scanner field {wanted!r} is not known; choose automatic, scanner_channel or point_source_id.")
+            values = sorted(self.spans[wanted])
+            if len(values) > 4 * MAX_SCANNERS:
+                raise RoadExtractionError(
+                    f"{wanted} has more than {4 * MAX_SCANNERS} different values, too many to be scanners. "
+                    "Set the scanner field to automatic.")
+            return wanted, values if len(values) <= MAX_SCANNERS else _heads(self.spans[wanted])
+        channels = self.spans["scanner_channel"]
+        if 1 < len(channels) <= MAX_SCANNERS:
+            return "scanner_channel", sorted(channels)
+        sources = self.spans["point_source_id"]
+        if 1 < len(sources) <= 4 * MAX_SCANNERS and _interleaved(sources.values()):
+            heads = _heads(sources)
+            if 1 < len(heads) <= MAX_SCANNERS:
+                return "point_source_id", heads
+        return None, [0]
+
+
+def times_by_value(values: np.ndarray, time: np.ndarray, span: tuple[float, float] = EVER) -> dict[int, tuple[float, float, int]]:
+    """{value: (first time, last time, count)} of (N,) small integers and times; incomplete if there are too many values.
+
+    Points at times out of the span, or at none, do not count: some exporters write a wrong time here and there.
+    """
+    if len(values) and not (time.min() >= span[0] and time.max() <= span[1]):
+        usable = np.flatnonzero((time >= span[0]) & (time <= span[1]))
+        values, time = values[usable], time[usable]
+    if not len(values):
+        return {}
+    # a broadcast column has one value
+    few = values if values.strides[0] else values[:1]
+    low, high = int(few.min()), int(few.max())
+    present = [low, high][:high - low + 1] if high - low < 2 else np.flatnonzero(np.bincount(values))[: 4 * MAX_SCANNERS + 1].tolist()
+    found = {}
+    for value in present:
+        times = time if low == high else time[values == value]
+        found[value] = float(times.min()), float(times.max()), len(times)
+    return found
+
+
+def numbers_by_value(scanners: Sequence[Any], count: int) -> np.ndarray:
+    """(count,) uint8 scanner number of each value 0 ... count - 1; `scanners` as returned by `choose`."""
+    numbers = np.zeros(count, np.uint8)
+    for number, values in enumerate(scanners):
+        values = np.atleast_1d(values)
+        numbers[values[values < count]] = number
+    return numbers
+
+
+def _heads(spans):
+    """Values of a field, ascending; those that measured one after the other are combined into one scanner."""
+    heads: list[list[int]] = []
+    for value in sorted(spans):
+        free = next((head for head in heads if not any(_together(spans[value], spans[other]) for other in head)), None)
+        if free is None:
+            heads.append([value])
+        else:
+            free.append(value)
+    return [head[0] if len(head) == 1 else tuple(head) for head in heads]
+
+
+def _together(one, other):
+    """Whether the overlap of two time spans is more than half of the shorter one."""
+    return min(one[1], other[1]) - max(one[0], other[0]) > 0.5 * min(one[1] - one[0], other[1] - other[0])
+
+
+def _interleaved(spans):
+    """Whether most points have a value whose time span overlaps that of another by at least half of its length."""
+    spans, total, shared = list(spans), 0, 0
+    for k, (first, last, count) in enumerate(spans):
+        longest = max((min(last, b) - max(first, a) for j, (a, b, _) in enumerate(spans) if j != k), default=0.0)
+        total += count
+        # at the ends of a recording one scanner may see the road alone
+        shared += count * (longest > 0 and longest >= 0.5 * (last - first))
+    return shared >= MIN_INTERLEAVED_SHARE * total
+
+
+# What the intensity of a point is read from, and how: exporters write it with a sign, in decibels, or into an extra field.
+
+INTENSITY_SOURCES = "intensity", "rgb"
+COLOUR_FIELDS = "red", "green", "blue"
+LUMINANCE_WEIGHTS = 0.2126, 0.7152, 0.0722   # of red, green and blue (ITU-R BT.709-6, section 3.2)
+USUAL_FIELDS = "reflect", "amplitude", "intensity"   # parts of names of extra fields that hold what a scanner received, the best first
+MAX_INTENSITY = 65535
+SIGN = 2**15
+EMPTY_MIDDLE = 0.001      # share of values in the middle half of 16 bits, at most, where values with a sign were wrapped
+LEAST_SHARE = 0.01        # of values in the uppermost quarter, which were negative
+USUAL_SPREAD = 20.0       # dB between dark asphalt and paint or signs, at one range and another
+MAX_SPREAD = 60.0         # dB that no survey exceeds
+VALUES_PER_DECIBEL = 1, 10, 100   # as exporters store it
+MAX_POWER = 290.0         # of ten, with which a double can be multiplied
+TOP, TOP_STEP = 30_000, 5.0   # intensity of the brightest points, and dB to which they are rounded, so that samples agree
+
+
+@dataclass(frozen=True)
+class IntensitySource:
+    """How the intensity of points is read.
+
+    field : of the points: "intensity", an extra field, or "rgb" for the luminance of their colours
+    signed : whether values from SIGN on stand for negative ones
+    per_decibel : values that make a decibel; 0 where they are linear
+    zero : of linear values, what counts as 0
+    factor : by which linear values, or those of decibels made linear, are multiplied
+    """
+
+    field: str = "intensity"
+    signed: bool = False
+    per_decibel: float = 0.0
+    zero: float = 0.0
+    factor: float = 1.0
+
+    @property
+    def layers(self) -> tuple[str, ...]:
+        """The LAZ layers that it needs beside that of the intensity."""
+        return {"intensity": (), "rgb": ("rgb",)}.get(self.field, ("all_extra_bytes",))
+
+    def of(self, points: Any) -> np.ndarray:
+        """Intensities of a laspy point record, (N,) uint16."""
+        if self.field == "rgb":
+            return luminance(points)
+        if self.field != "intensity":
+            return self._converted(np.asarray(points[self.field], float))
+        raw = points.array["intensity"]
+        return self._table.take(raw) if self.signed else raw
+
+    @cached_property
+    def _table(self):
+        """The intensity of each value of 16 bits."""
+        return self._converted(np.arange(MAX_INTENSITY + 1, dtype=np.uint16).view(np.int16).astype(float))
+
+    def _converted(self, values):
+        # no decibels are beyond what doubles hold, but the table has values that no file has
+        linear = 10.0 ** np.minimum(values / (10.0 * self.per_decibel), MAX_POWER) if self.per_decibel else values - self.zero
+        return np.clip(np.rint(np.nan_to_num(linear * self.factor)), 0, MAX_INTENSITY).astype(np.uint16)
+
+
+def intensity_source_of(samples: Sequence[FileSample], wanted: str) -> tuple[IntensitySource, str]:
+    """How the intensities of files are to be read.
+
+    Parameters
+    ----------
+    samples : of all files
+    wanted : one of INTENSITY_SOURCES
+
+    Returns
+    -------
+    source : IntensitySource
+    note : what the user should know of it, "" where intensities are read as they are
+    """
+    if wanted == "rgb":
+        return IntensitySource("rgb"), ""
+    values = np.concatenate([sample.intensity for sample in samples])
+    if values.min(initial=MAX_INTENSITY) < values.max(initial=0):
+        if not _wrapped(values):
+            return IntensitySource(), ""
+        source = _source("intensity", values.view(np.int16).astype(float), signed=True)
+        example = int(values.max())
+        return source, (f"The intensities are numbers with a sign, written into 16 bits without one: {example:,} stands for {example - 2 * SIGN:,}. "
+                        f"They are read as {_unit(source)}.")
+    names = [name for part in USUAL_FIELDS for name in samples[0].fields if part in name.lower()] if samples else []
+    for name in dict.fromkeys(names):
+        if all(name in sample.fields for sample in samples):
+            numbers = np.concatenate([sample.fields[name] for sample in samples])
+            numbers = numbers[np.isfinite(numbers)]
+            if len(numbers) and numbers.min() < numbers.max():
+                source = _source(name, numbers)
+                return source, (f"The intensity of all points is the same, {int(values.max(initial=0))}; the extra field {name} is read in its "
+                                f"place, as {_unit(source)}.")
+    return IntensitySource(), ""
+
+
+def _wrapped(values):
+    """Whether (N,) intensities are negative and positive values that were written without their sign: one body or two, with nothing between.
+
+    What a saturated scanner has at the upper end is mostly one value, and signs brighter than all else are few.
+    """
+    quarter = np.bincount(values >> 14, minlength=4) / len(values)
+    if quarter[1] + quarter[2] > EMPTY_MIDDLE or quarter[3] < LEAST_SHARE:
+        return False
+    counts = np.bincount(values[values >= 3 * SIGN // 2])
+    return bool(counts.max() < 0.5 * counts.sum())
+
+
+def _source(field, values, signed=False):
+    """The source that makes linear intensities of (N,) values."""
+    low, high = np.quantile(values, [0.005, 0.995])
+    spread = float(high - low)
+    decibels = spread <= MAX_SPREAD * VALUES_PER_DECIBEL[-1] and (low < 0 or "amplitude" in field.lower() and USUAL_SPREAD / 4 < spread <= MAX_SPREAD)
+    if not decibels:
+        zero = min(float(values.min()), 0.0)
+        return IntensitySource(field, signed, zero=zero, factor=TOP / max(float(high) - zero, 1e-12))
+    unit = float(min(VALUES_PER_DECIBEL, key=lambda each: abs(np.log(max(spread, 1e-9) / each / USUAL_SPREAD))))
+    top = np.ceil(high / unit / TOP_STEP) * TOP_STEP
+    return IntensitySource(field, signed, unit, factor=float(TOP / 10.0 ** (top / 10.0)))
+
+
+def _unit(source):
+    """What the values of a source are taken for."""
+    return f"decibels, {source.per_decibel:g} a dB, and made linear" if source.per_decibel else "linear values"
+
+
+def luminance(points: Any) -> np.ndarray:
+    """Brightness of coloured points, the weighted sum of their colours.
+
+    Parameters
+    ----------
+    points : laspy point record with red, green and blue
+
+    Returns
+    -------
+    (N,) uint16, in the unit of the colours
+    """
+    return np.rint(sum(weight * np.asarray(points[name], np.float32) for name, weight in zip(COLOUR_FIELDS, LUMINANCE_WEIGHTS))).astype(np.uint16)
+
+
+def check_coloured(files: Sequence[CloudHeader]) -> None:
+    """Refuse files whose points have no colours.
+
+    Raises
+    ------
+    RoadExtractionError
+        If the point format of a file that has points holds no colours.
+    """
+    grey = [file for file in files if file.count and not file.has_colour]
+    if grey:
+        raise RoadExtractionError(
+            f"The points of {grey[0].path} have no colours (point format {grey[0].point_format}), from which the intensity was to be taken. "
+            "Set Intensity from to intensity, or export the points with red, green and blue.")
+
+
+def without_intensity(files: Sequence[CloudHeader], taken_from: str, fields: Sequence[str] = ()) -> str:
+    """What to say of a cloud whose points are all equally bright.
+
+    Parameters
+    ----------
+    files : headers of the clouds
+    taken_from : one of INTENSITY_SOURCES, what was read as intensity
+    fields : extra fields of the points
+
+    Returns
+    -------
+    A sentence that names the colours, or else the extra fields, where they are a way out; "" where they are not
+    """
+    if taken_from == "rgb":
+        return "The colours of the points are all the same, so they do not stand in for intensity."
+    if any(_has_colours(file) for file in files):
+        return ("The intensity of all points is the same, but they have colours: set Intensity from (INTENSITY_FROM) to rgb, and paint is "
+                "looked for in their brightness.")
+    return (f"The intensity of all points is the same. If one of their extra fields ({', '.join(fields)}) holds what came back to the scanner, "
+            "export it as intensity.") if fields else ""
+
+
+def _has_colours(file):
+    """Whether the first points of a file differ in colour."""
+    if not (file.count and file.has_colour):
+        return False
+    values = luminance(next(read_blocks(file.path, layers=("rgb",))))
+    return bool(values.min() < values.max())
+
+
+# Points that whoever made the cloud marked as none of the survey: withheld ones and noise.
+#
+# References ---------- ASPRS, LAS specification 1.4 R15: a withheld point "should not be included in processing (synonymous with Deleted)"; table
+# 17, classes 7 (low point, noise) and 18 (high noise).
+
+NOISE_CLASSES = 7, 18
+
+
+def flagged(block: laspy.ScaleAwarePointRecord) -> bool:
+    """Whether any point of a block has a flag or a scanner channel: LAS 1.4 keeps them in one byte, and most clouds have none."""
+    raw = block.array
+    return "classification_flags" not in raw.dtype.names or bool(raw["classification_flags"].max(initial=0))
+
+
+def valid_points(block: laspy.ScaleAwarePointRecord) -> np.ndarray | None:
+    """Which points of a block are neither withheld nor classified as noise: (N,) bool, None for all.
+
+    Parameters
+    ----------
+    block : laspy point record of N points, of whose LAZ layers `flags` and `classification` are decoded
+    """
+    there = flagged(block) and "withheld" in block.point_format.dimension_names
+    withheld = np.asarray(block["withheld"]) != 0 if there else np.zeros(1, bool)
+    classes = np.asarray(block["classification"])
+    low, high = NOISE_CLASSES
+    noise = (classes == low) | (classes == high)
+    if not noise.any():
+        return ~withheld if withheld.any() else None
+    return ~(noise | withheld)
+
+
+# Coordinates of a LAS file, stored as integers, converted to the local integers of a record.
+
+# m from the frame's origin: points beyond are outliers, and would overflow the integers of a record
+MAX_COORDINATE = {"X": MAX_XY_32_BIT, "Y": MAX_XY_32_BIT, "Z": 2e4}
+MAX_COORDINATE_64_BIT = 1e8    # m, where the records have 64 bits
+
+
+class LasAxis:
+    """One coordinate axis of a file.
+
+    Parameters
+    ----------
+    name : "X", "Y" or "Z"
+    scale, offset : of the file's header, metres
+    origin : metres, of the road frame
+    dtype : of the units, int32 or int64
+    """
+
+    def __init__(self, name: str, scale: float, offset: float, origin: float, dtype: np.dtype | type = np.int32):
+        self._dtype = np.dtype(dtype)
+        self.name, self.scale, self.shift = name, scale, offset - origin
+        step, start = scale / COORDINATE_SCALE, self.shift / COORDINATE_SCALE
+        # For nearly every file the units follow from the file's integers by integer arithmetic.
+        self._integer = abs(step - round(step)) <= 1e-13 * abs(step) and abs(start - round(start)) < 1e-3
+        unsigned = np.dtype(f"u{self._dtype.itemsize}")
+        modulus = 2**(8 * unsigned.itemsize)
+        self._step, self._start = (np.array(round(value) % modulus if self._integer else 0, unsigned).view(self._dtype)
+                                   for value in (step, start))
+
+        # the file's integers of places within MAX_COORDINATE
+        farthest = MAX_COORDINATE[name] if self._dtype == np.int32 else MAX_COORDINATE_64_BIT
+        limits = sorted((sign * farthest - self.shift) / scale for sign in (-1, 1))
+        self._least, self._most = np.ceil(limits[0]), np.floor(limits[1])
+
+    def units(self, raw: np.ndarray, buffer: Callable[..., np.ndarray]) -> tuple[np.ndarray, np.ndarray | None]:
+        """Local coordinates of raw points.
+
+        Parameters
+        ----------
+        raw : (N,) structured array with the column `name` of the file's integers
+        buffer : function of a name and a dtype (float64 by default) that returns an (N,) working array
+
+        Returns
+        -------
+        units : (N,) units of 0.1 mm
+        valid : (N,) bool, whether a point lies within MAX_COORDINATE; None where all do
+        """
+        numbers = buffer(self.name, self._dtype)
+        np.copyto(numbers, raw[self.name])
+        valid = None
+        if len(numbers) and not (numbers.min() >= self._least and numbers.max() <= self._most):
+            valid = (numbers >= self._least) & (numbers <= self._most)
+        if not self._integer:
+            metres = np.multiply(numbers, self.scale, out=buffer("metres"))
+            metres += self.shift
+            return fill_units(metres, numbers), valid
+        # Integer overflow in between cancels: the result is right modulo 2**bits, and fits.
+        numbers *= self._step
+        numbers += self._start
+        return numbers, valid
