@@ -61,8 +61,7 @@ class FitMarkingLines(Algorithm):
                               "centre line looks like any other."))
 
     def work(self, call, progress):
-        from ...core.markings.lines.fit import fit_marking_lines
-        from ...core.markings.lines.naming import named_by_lines
+        from ...core.markings.lines.fit import fit_marking_lines, named_by_lines
         from ...core.markings.objects.marking_objects import MarkingObjects, with_kinds_of
         from ...core.road.edges.road_edges import RoadEdges
 

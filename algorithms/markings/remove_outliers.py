@@ -5,7 +5,7 @@ from ..parameters import SettingSpec
 from ..survey_input import paint_of
 from ..texts import tr
 
-OUTLIERS = "markings.outliers.remove:OutlierSettings"
+OUTLIERS = "markings.outliers:OutlierSettings"
 
 OUTLIER_SETTINGS = (
     SettingSpec(
@@ -36,8 +36,8 @@ class RemoveOutliers(Algorithm):
         self.add_laz("OUTPUT", tr("Marking points without outliers"))
 
     def work(self, call, progress):
-        from ...core.markings.outliers.remove import remove_outliers
-        from ...core.survey.las.writer import write_road_points
+        from ...core.markings.outliers import remove_outliers
+        from ...core.survey.road_points_las import write_road_points
 
         points = paint_of(call, "INPUT", progress.part(0.0, 0.3))
         settings = call.settings(OUTLIER_SETTINGS)

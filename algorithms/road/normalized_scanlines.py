@@ -34,7 +34,7 @@ LAYER_SETTINGS = (
 )
 POINT_SETTINGS = (
     SettingSpec(
-        "RESAMPLED_SPACING", "road.scanlines.resampling:ResamplingSettings", "spacing", tr("Spacing of resampled points along a scanline (m)"),
+        "RESAMPLED_SPACING", "road.scanlines.layer:ResamplingSettings", "spacing", tr("Spacing of resampled points along a scanline (m)"),
         tr("Smaller gives more points, without more being known of the surface."),
         advanced=True,
     ),

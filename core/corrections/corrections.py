@@ -13,7 +13,7 @@ import shapely
 from ..common.errors import RoadExtractionError
 from ..common.features import Features
 from ..io.crs import horizontal_part, parse_crs, same_crs
-from ..markings.cross_section.confidence import TakenReading
+from ..markings.cross_section.weights import TakenReading
 from ..survey.frame.placement import LINE_VERTEX_SPACING
 
 if TYPE_CHECKING:

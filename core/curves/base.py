@@ -1,4 +1,4 @@
-"""Plane curves parametrised by arc length: position, heading, curvature and orthogonal projection of points."""
+"""Plane curves parametrised by arc length (position, heading, curvature, orthogonal projection), and the result of fitting one."""
 
 from __future__ import annotations
 

@@ -35,10 +35,6 @@ def fit_curve(x: np.ndarray, y: np.ndarray, curve: str = "automatic", degree: in
     curve : one of CURVES
     degree : of the polynomial
 
-    Returns
-    -------
-    CurveFit
-
     Raises
     ------
     RoadExtractionError

@@ -1,4 +1,4 @@
-"""Robust statistics of small arrays: soft L1 weights, medians and percentiles."""
+"""Robust statistics of small arrays, least squares of many curves at once, and smoothing."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Straight lines and circles through points."""
+"""Straight lines, circles, ellipses and polynomials through points."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The alignment that the lanes of a road have in common: its straights, arcs and clothoids."""
+"""The alignment that the lanes of a road have in common, the smooth courses of lanes through it, and the elements of their curves."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from bisect import bisect_left
 from collections.abc import Sequence
 from dataclasses import dataclass
 from heapq import heapify, heappop, heappush
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -19,12 +19,9 @@ from ..curves.model_selection import MAX_MISFIT, fit_curves, select_each
 from ..curves.segmentation import element_ranges
 from ..io.crs import FOOT
 from ..markings.cross_section.sections import STATION_STEP
-from .lane_track import BRIDGED, LANE_STATUS, spans_of
+from ..survey.frame.road import Road
+from .lane_track import BRIDGED, LANE_STATUS, LaneTrack, spans_of
 from .settings import MIN_PLACES_PER_FIT
-
-if TYPE_CHECKING:
-    from ..survey.frame.road import Road
-    from .lane_track import LaneTrack
 
 MAX_PARALLEL_DEVIATION = 0.06  # m: 95 % of a lane's places are nearer than this to a parallel of the others
 MIN_SHARED_LANE_LENGTH = 10.0       # m that a lane must share with others to be compared
@@ -60,7 +57,6 @@ def lane_elements(tracks: list[LaneTrack], s: np.ndarray, road: Road) -> list[li
     ----------
     tracks : list of LaneTrack
     s : (K,) grid stations
-    road : Road
 
     Returns
     -------
@@ -293,7 +289,6 @@ def lane_courses(tracks: list[LaneTrack], s: np.ndarray, road: Road, elements: l
     ----------
     tracks : list of LaneTrack
     s : (K,) grid stations
-    road : Road
     elements : Elements of each lane; on them the course is the arc or straight itself, so
         that lanes of one bend are concentric
 

@@ -1,25 +1,26 @@
-"""Driving lines: the middle of every lane, in the direction of travel, and the curves along them."""
+"""Driving lines: the middle of every lane, in the direction of travel, the curves along them, and one sigma of their place."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from scipy.ndimage import distance_transform_edt, gaussian_filter1d, uniform_filter1d
 
 from ..common.progress import Progress
 from ..countries.catalogue import country
-from ..markings.cross_section.confidence import share_within
 from ..markings.cross_section.evidence import point_spacing
 from ..markings.cross_section.roads import EstimatedRoad, estimate_roads
 from ..markings.cross_section.sections import STATION_STEP, CrossSections, sections_of_edges, sections_of_lines, sections_of_pavement
-from ..markings.cross_section.weights import HATCHING, OUTSIDE
+from ..markings.cross_section.weights import HATCHING, OUTSIDE, TakenReading, share_within
 from ..markings.lines.painted_lines import PaintedLines
 from ..markings.objects.marking_objects import MarkingObjects
 from ..road.edges.road_edges import RoadEdges
+from ..survey.frame.road_frame import Road, RoadFrame
 from ..survey.frame.row_table import cuts_where_it_changes
+from ..survey.store.road_points import RoadPoints
 from .alignment import Course, Element, element_of, is_curve, lane_courses, lane_elements, track_pieces
 from .heights import lane_heights
 from .lane_areas import RoadLanes, connectors_between_roads, lane_areas, make_lanes
@@ -27,11 +28,6 @@ from .lane_track import LANE_STATUS, MEASURED, LaneTrack, connect
 from .lanes import estimated_lanes, laid_out
 from .layers import CurveElements, DrivingLines, Lanes
 from .settings import DrivingSettings
-
-if TYPE_CHECKING:
-    from ..markings.cross_section.confidence import TakenReading
-    from ..survey.frame.road_frame import Road, RoadFrame
-    from ..survey.store.road_points import RoadPoints
 
 __all__ = ["DrivingSettings", "make_driving_lines"]
 
@@ -46,10 +42,6 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
 
     Parameters
     ----------
-    marking_lines : PaintedLines
-    frame : RoadFrame
-    settings : DrivingSettings
-    progress : Progress
     markings : MarkingObjects or None: no lane leads along a hatched area
     edges : RoadEdges or None: no lane leads over a curb
     road_points : RoadPoints or None: the heights of the road
@@ -112,8 +104,6 @@ def road_lanes(road: EstimatedRoad, settings: DrivingSettings, lane_width: float
 
     Parameters
     ----------
-    road : EstimatedRoad
-    settings : DrivingSettings
     lane_width : metres, of lanes beside which only one line is painted
     """
     tracks = estimated_lanes(road.boundaries, road.estimate, lane_width, settings.line_distance)
@@ -253,7 +243,6 @@ def lane_sigma(track: LaneTrack, course: Course, road: Road, known: EstimatedRoa
     ----------
     track : LaneTrack of N places
     course : Course of the lane
-    road : Road
     known : EstimatedRoad of the road's lines, on whose stations the track runs, and of its boundaries, between which it lies
     paint : {number of a line: m, RMS distance of its paint from its curve}
     passes : m, one sigma of the middle of the passes, see `RoadFrame.pass_sigma`: one for all, or (N,)

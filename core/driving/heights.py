@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from scipy.ndimage import gaussian_filter1d, median_filter
@@ -11,14 +11,10 @@ from ..common.arrays import order_by
 from ..common.parallel import check_cancelled
 from ..common.progress import Progress
 from ..execution.phase import Phase
-from ..markings.cross_section.sections import STATION_STEP
+from ..markings.cross_section.sections import STATION_STEP, CrossSections
 from ..survey.store.records import COORDINATE_SCALE
-from .lane_track import spans_of
-
-if TYPE_CHECKING:
-    from ..markings.cross_section.sections import CrossSections
-    from ..survey.store.road_points import RoadPoints
-    from .lane_track import LaneTrack
+from ..survey.store.road_points import RoadPoints
+from .lane_track import LaneTrack, spans_of
 
 HEIGHT_REACH = 0.3        # m either side of the driving line
 MIN_POINTS_PER_HEIGHT = 3
@@ -39,7 +35,6 @@ def road_heights(road_points: RoadPoints, road: int, s: np.ndarray, tracks: list
     road : number
     s : (K,) grid stations
     tracks : list of LaneTrack
-    progress : Progress
 
     Returns
     -------
@@ -72,7 +67,6 @@ def heights_of_windows(road_points: RoadPoints, item: list[tuple[Any, ...]], roa
 
     Parameters
     ----------
-    road_points : RoadPoints
     item : of each window the first and the last section that it lies in, (K,) m its stations, and of each lane (M,) int those that it has, and
         (M,) m its offsets there
     road : number

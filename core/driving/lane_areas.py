@@ -1,25 +1,23 @@
-"""The areas of lanes between their borders, and what follows each lane."""
+"""The areas of lanes between their borders, the shoulders beside them, and what follows each lane."""
 
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..common.arrays import mask_runs
 from ..common.parallel import check_cancelled
 from ..markings.cross_section.evidence import driven_offsets
+from ..markings.cross_section.roads import EstimatedRoad
 from ..markings.cross_section.sections import STATION_STEP, CrossSections
 from ..markings.cross_section.weights import CENTRE_LINE, CURB, EDGE_LINE, HATCHING, ISLAND, LANE_LINE, OTHER_LINE, SURFACE
+from ..survey.frame.passes import Pass
+from ..survey.frame.road_frame import RoadFrame
 from .alignment import track_pieces
 from .lane_track import LANE_STATUS, LaneTrack, spans_of
 from .layers import Lanes
-
-if TYPE_CHECKING:
-    from ..markings.cross_section.roads import EstimatedRoad
-    from ..survey.frame.passes import Pass
-    from ..survey.frame.road_frame import RoadFrame
 
 KIND_OF_BORDER = {LANE_LINE: "lane", CENTRE_LINE: "centre", EDGE_LINE: "edge", OTHER_LINE: "edge"}
 
@@ -30,11 +28,9 @@ def lane_areas(road: EstimatedRoad, curbs: CrossSections | None, tracks: list[La
 
     Parameters
     ----------
-    road : EstimatedRoad
     curbs : CrossSections of the road edges that were given to the estimate, or None
     tracks : list of LaneTrack; lanes are numbered from 1 in their order
     heights : local z along each track
-    frame : RoadFrame
     number : of the road
     pavement : CrossSections of the edges of the pavement without a curb, or None
     """
@@ -151,11 +147,9 @@ def shoulders(road: EstimatedRoad, tracks: list[LaneTrack], borders: list[list[n
 
     Parameters
     ----------
-    road : EstimatedRoad
     tracks : list of LaneTrack
     borders : the left and the right border of each track along the road, (N, 3) local metres each
     pavement : CrossSections of the edges of the pavement without a curb
-    frame : RoadFrame
     number : of the road
 
     Returns
@@ -324,7 +318,6 @@ def connectors_between_roads(lanes: dict[int, RoadLanes], frame: RoadFrame, rows
     Parameters
     ----------
     lanes : {number of the road: RoadLanes}
-    frame : RoadFrame
     rows : rows of Lanes of all roads; `successors` of the lanes that are left name the connectors afterwards
 
     Returns

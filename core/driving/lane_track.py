@@ -5,19 +5,15 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from ..common.arrays import mask_runs
 from ..common.parallel import check_cancelled
-from ..markings.cross_section.confidence import SAME_LANE, Reading, confidence_of
-from ..markings.cross_section.sections import STATION_STEP
-from ..markings.cross_section.weights import EstimateWeights
+from ..markings.cross_section.sections import STATION_STEP, CrossSections
+from ..markings.cross_section.weights import SAME_LANE, EstimateWeights, Reading, confidence_of
 from ..survey.frame.row_table import RowSpans
-
-if TYPE_CHECKING:
-    from ..markings.cross_section.sections import CrossSections
 
 MEASURED, INFERRED, BRIDGED = 0, 1, 2
 LANE_STATUS = ("measured", "inferred", "bridged")
@@ -220,7 +216,6 @@ def connect(tracks: list[LaneTrack], lines: CrossSections, most_bridged: float, 
     Parameters
     ----------
     tracks : list of LaneTrack
-    lines : CrossSections
     most_bridged, most_inferred : metres, the longest gap without and with such a guide
     shown : (K,) bool, whether any line is seen at a grid station
     """

@@ -1,4 +1,4 @@
-"""Lanes followed along the road: from the cross-sections that were estimated to tracks with offsets at every station."""
+"""Lanes followed along the road, from the estimated cross-sections to tracks with offsets at every station, and their tapers."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from scipy.ndimage import binary_dilation
 from ..common.parallel import check_cancelled
 from ..markings.cross_section.candidates import STATIONS_OF_CELL, Boundaries
 from ..markings.cross_section.estimate import LaneSpan, RoadEstimate, lane_spans
-from ..markings.cross_section.lane_width import beside_island, beside_surface_end, lane_places
 from ..markings.cross_section.sections import STATION_STEP
+from ..markings.cross_section.sequence import beside_island, beside_surface_end, lane_places
 from .lane_track import BRIDGED, END_WIDTH_LENGTH, INFERRED, MAX_LANE_JUMP_SHARE, MEASURED, LaneTrack, spans_of
 
 BESIDE_ONE, BETWEEN_WORN, DIVIDED, BETWEEN_LINES = 1, 2, 3, 4   # ranks of lanes by how sure their place is; those between two lines are not moved
@@ -25,7 +25,6 @@ def estimated_lanes(boundaries: Boundaries, estimate: RoadEstimate, lane_width: 
 
     Parameters
     ----------
-    boundaries : Boundaries
     estimate : RoadEstimate over them
     lane_width : metres, of a lane beside which only one line is painted; line_distance : metres from that line to its middle, 0 for half of its width
     """

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import shapely
@@ -16,10 +16,8 @@ from ..common.layer_rows import LayerRows, column
 from ..countries.catalogue import country
 from ..countries.neutral import NEUTRAL
 from ..curves.base import Arc, Curve
+from ..survey.frame.road_frame import RoadFrame
 from .alignment import element_row
-
-if TYPE_CHECKING:
-    from ..survey.frame.road_frame import RoadFrame
 
 LANE_TYPES = ("driving", "shoulder", "parking", "bicycle", "hatched", "median", "connector")
 

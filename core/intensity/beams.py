@@ -151,7 +151,6 @@ class BeamGeometry:
 
         Parameters
         ----------
-        p : Pass
         points : (N) points
         time : (N,) s, the time at which the position of the vehicle is taken for each point
         """
@@ -192,10 +191,8 @@ class Beams:
 
         Parameters
         ----------
-        road_points : RoadPoints
         frame : RoadFrame with times
         scanners : their numbers are below this
-        progress : Progress
         """
         samples = _samples(road_points, frame, scanners)
         if not samples:

@@ -1,4 +1,4 @@
-"""Intensity without the effect of range and incidence, scanner by scanner, from the road's own asphalt."""
+"""Intensity without the effect of range and incidence, scanner by scanner, from the road's own asphalt; what is saturated."""
 
 from __future__ import annotations
 
@@ -192,10 +192,7 @@ def correct_intensity(road_points: RoadPoints, frame: RoadFrame, settings: Inten
 
     Parameters
     ----------
-    road_points : RoadPoints
     frame : RoadFrame of the same trajectory
-    settings : IntensitySettings
-    progress : Progress
 
     Returns
     -------
@@ -263,7 +260,6 @@ def levels_of_stretch(road_points: RoadPoints, stretch: Stretch, passes: Sequenc
 
     Parameters
     ----------
-    road_points : RoadPoints
     stretch : Stretch of a road
     passes : of the road frame
     beams : Beams whose brightness is made equal, None for none

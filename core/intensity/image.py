@@ -111,7 +111,6 @@ def interpolation_sums(points: Points, brightness: Callable[[np.ndarray], np.nda
     points : Points, at least one
     brightness : function of (N,) float32 intensities that returns (N,) float32 factors of the points' weights
     origin : (2,) or more, map coordinates that x and y of the points leave out, m
-    settings : ImageSettings
     step : one of `step` points stands for all of them on cells farther than the next
 
     Returns
@@ -257,9 +256,6 @@ def make_intensity_image(road_points: RoadPoints, settings: ImageSettings = Imag
 
     Parameters
     ----------
-    road_points : RoadPoints
-    settings : ImageSettings
-    progress : Progress
     path : of the GeoTIFF, the same pixels as `write_intensity_image` writes; None for no file
     memory_limit : bytes of pixels kept in memory; the others go to a temporary file, and all where other processes work on the points
 
@@ -301,10 +297,7 @@ def write_intensity_image(road_points: RoadPoints, path: str | PathLike, setting
 
     Parameters
     ----------
-    road_points : RoadPoints
     path : of the GeoTIFF; it appears when it is complete
-    settings : ImageSettings
-    progress : Progress
 
     Raises
     ------
@@ -335,7 +328,6 @@ def check_fits(width: float, height: float, settings: ImageSettings) -> None:
     Parameters
     ----------
     width, height : m, east and north
-    settings : ImageSettings
 
     Raises
     ------
@@ -407,9 +399,7 @@ def windows_of_image(road_points: RoadPoints, windows: Sequence[tuple[int, int]]
 
     Parameters
     ----------
-    road_points : RoadPoints
     windows : road and number along it of each
-    settings : ImageSettings
 
     Returns
     -------
@@ -460,9 +450,7 @@ def sums_of_pieces(road_points: RoadPoints, items: list[tuple[PieceKey, int, tup
 
     Parameters
     ----------
-    road_points : RoadPoints
     items : of each the piece, one of how many of its points weighs on farther cells, and 1 % and 99 % of the intensities about it
-    settings : ImageSettings
     """
     return [_sums_of_piece(road_points, *item, settings) for item in items]
 
@@ -547,11 +535,6 @@ MIN_SHOWN_SHARE = 0.5  # of the sample_road_points points: must lie on a pixel w
 
 def check_image_shows(image: IntensityImage, road_points: RoadPoints) -> None:
     """Refuse an image of another road, and the 8-bit picture for viewing.
-
-    Parameters
-    ----------
-    image : IntensityImage
-    road_points : RoadPoints
 
     Raises
     ------

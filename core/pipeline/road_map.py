@@ -10,7 +10,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -30,11 +30,9 @@ from ..intensity.correction import IntensitySettings, correct_intensity
 from ..intensity.image import ImageSettings, check_fits, make_intensity_image
 from ..io.crs import check_projected
 from ..io.geotiff import IntensityImage
-from ..markings.lines.fit import fit_marking_lines
-from ..markings.lines.geometry import MarkingLineSettings
-from ..markings.lines.naming import named_by_estimate, named_by_lines
+from ..markings.lines.fit import MarkingLineSettings, fit_marking_lines, named_by_estimate, named_by_lines
 from ..markings.objects.cluster import ClusterSettings, cluster_markings
-from ..markings.outliers.remove import OutlierSettings, remove_outliers
+from ..markings.outliers import OutlierSettings, remove_outliers
 from ..markings.paint.extract import extract_markings
 from ..markings.paint.settings import MarkingSettings
 from ..road.common.curb_limits import CurbSettings
@@ -47,16 +45,13 @@ from ..road.scanlines.section_planes import ScanlineSettings
 from ..road.surface.extract import SurfaceSettings, extract_road_surface
 from ..road.surface.road_surface import SurfaceOutlines
 from ..survey.frame.road import CORRIDOR
+from ..survey.frame.road_frame import RoadFrame
+from ..survey.inspection import CubeDensity, cube_densities
 from ..survey.las.reader import read_headers
 from ..survey.open_survey import SurveySettings, open_survey
-from ..survey.point_density import CubeDensity, cube_densities
 from ..survey.store.records import Points
 from ..survey.store.road_points import columns_of_roads
-from ..survey.trajectory.reprojection import reproject_trajectory
-
-if TYPE_CHECKING:
-    from ..survey.frame.road_frame import RoadFrame
-    from ..survey.trajectory.trajectory import Trajectory
+from ..survey.trajectory.trajectory import Trajectory, reproject_trajectory
 
 
 @dataclass(frozen=True)
@@ -148,15 +143,9 @@ def make_road_map(paths: Sequence[str | Path], trajectory: Trajectory, image_pat
     Parameters
     ----------
     paths : point cloud files
-    trajectory : Trajectory
     image_path : where the intensity image is written (.tif)
     settings : RoadMapSettings, those of every stage
-    progress : Progress
     corrections : the layer CORRECTIONS of an analyst, or None; each is made where its kind of line was found, so that what follows builds on it
-
-    Returns
-    -------
-    RoadMap
 
     Raises
     ------
@@ -309,7 +298,6 @@ class Extent:
         Parameters
         ----------
         paths : point cloud files
-        trajectory : Trajectory
         crs : WKT for clouds that carry none
 
         Raises

@@ -4,8 +4,7 @@ import numpy as np
 import shapely
 from lanewright.core.common.features import MARKINGS, ROAD_EDGES, Features
 from lanewright.core.common.progress import Progress
-from lanewright.core.markings.lines.fit import fit_marking_lines
-from lanewright.core.markings.lines.geometry import MarkingLineSettings
+from lanewright.core.markings.lines.fit import MarkingLineSettings, fit_marking_lines
 from lanewright.core.markings.objects.marking_objects import MarkingObjects
 from lanewright.core.road.edges.road_edges import RoadEdges
 from lanewright.core.survey.frame.road_frame import build_frame

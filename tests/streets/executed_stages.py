@@ -12,22 +12,22 @@ from lanewright.core.intensity import correction
 from lanewright.core.intensity import image as imaging
 from lanewright.core.intensity.correction import correct_intensity
 from lanewright.core.intensity.image import make_intensity_image
-from lanewright.core.markings.cells import clusters as linking
+from lanewright.core.markings import outliers as remove
 from lanewright.core.markings.cross_section import evidence
 from lanewright.core.markings.lines.fit import fit_marking_lines
-from lanewright.core.markings.objects import phases
+from lanewright.core.markings.objects import cluster as phases
+from lanewright.core.markings.objects import grouping as linking
 from lanewright.core.markings.objects.cluster import cluster_markings
-from lanewright.core.markings.outliers import remove
-from lanewright.core.markings.outliers.remove import remove_outliers
+from lanewright.core.markings.outliers import remove_outliers
 from lanewright.core.markings.paint import extract as extraction
-from lanewright.core.markings.paint import scatter
+from lanewright.core.markings.paint import extract as scatter
 from lanewright.core.markings.paint.extract import extract_markings
 from lanewright.core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
 from lanewright.core.road.surface import extract, ground_grid
 from lanewright.core.road.surface.extract import extract_road_surface
+from lanewright.core.survey import inspection as point_density
 from lanewright.core.survey import open_survey as opening
-from lanewright.core.survey import point_density
-from lanewright.core.survey.point_density import cube_densities
+from lanewright.core.survey.inspection import cube_densities
 
 PHASES = ["ground_of_windows", "surface_points", "cubes_of_stretch", "levels_of_stretch", "corrected_of_stretch", "windows_of_image",
           "sums_of_pieces", "scatter_of_windows", "levels_of_windows", "paint_of_windows", "kept_of_windows", "links_of_windows",

@@ -7,10 +7,9 @@ from lanewright.core.driving.driving_lines import make_driving_lines
 from lanewright.core.intensity.correction import correct_intensity
 from lanewright.core.intensity.image import write_intensity_image
 from lanewright.core.io.geotiff import IntensityImage
-from lanewright.core.markings.lines.fit import fit_marking_lines
-from lanewright.core.markings.lines.naming import named_by_lines
+from lanewright.core.markings.lines.fit import fit_marking_lines, named_by_lines
 from lanewright.core.markings.objects.cluster import cluster_markings
-from lanewright.core.markings.outliers.remove import remove_outliers
+from lanewright.core.markings.outliers import remove_outliers
 from lanewright.core.markings.paint.extract import extract_markings
 from lanewright.core.pipeline.road_map import RoadMapSettings
 from lanewright.core.road.detect_boundaries import draw_boundaries, find_curb_points

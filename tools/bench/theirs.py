@@ -49,13 +49,13 @@ def image_gdal(size):
 
 
 def sor_pcl(size):
-    from lanewright.core.markings.outliers.remove import OutlierSettings
+    from lanewright.core.markings.outliers import OutlierSettings
 
     return _outliers("pcl", size, *pcl.outliers(_places(size), OutlierSettings.neighbours, OutlierSettings.std_ratio))
 
 
 def sor_open3d(size):
-    from lanewright.core.markings.outliers.remove import OutlierSettings
+    from lanewright.core.markings.outliers import OutlierSettings
 
     return _outliers("open3d", size, *open3d_peer.outliers(_places(size), OutlierSettings.neighbours, OutlierSettings.std_ratio))
 
@@ -94,7 +94,7 @@ def _places(size):
 
 def _plan(size):
     """(N, 3) station and offset, stretched until near is a circle: quicker for PCL than a condition on a wider search."""
-    from lanewright.core.markings.cells.clusters import REACH_ACROSS_DIVISOR, REACH_ALONG_FACTOR
+    from lanewright.core.markings.objects.grouping import REACH_ACROSS_DIVISOR, REACH_ALONG_FACTOR
 
     paint = np.load(prepared("paint.npy", size))
     return np.c_[paint[:, 3:5] - paint[:, 3:5].mean(axis=0).round(), np.zeros(len(paint))] * [1 / REACH_ALONG_FACTOR, REACH_ACROSS_DIVISOR, 0.0]

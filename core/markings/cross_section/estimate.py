@@ -7,14 +7,29 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...common.parallel import check_cancelled
-from .across import Sections, best_sections, lane_strips, misnamed_costs, separated_kinds
-from .along import INTERVALS_AT_ONCE, behind_best, best_sequence, best_through, probabilities, transitions
 from .candidates import Candidates
-from .confidence import SAME_LANE, Reading
 from .evidence import Evidence
-from .lane_width import UNPAINTED, beside_surface_end, lane_places
-from .strips import FIRST, SECOND, strip_costs, width_cost
-from .weights import CENTRE_LINE, DASHED, LANE_LINE, EstimateWeights
+from .sequence import (
+    FIRST,
+    INTERVALS_AT_ONCE,
+    SECOND,
+    UNPAINTED,
+    Sections,
+    behind_best,
+    beside_surface_end,
+    best_sections,
+    best_sequence,
+    best_through,
+    lane_places,
+    lane_strips,
+    misnamed_costs,
+    probabilities,
+    separated_kinds,
+    strip_costs,
+    transitions,
+    width_cost,
+)
+from .weights import CENTRE_LINE, DASHED, LANE_LINE, SAME_LANE, EstimateWeights, Reading
 
 FARTHEST_BEHIND = 30.0   # nats at most by which one direction is less probable than the other
 INTERVALS_OF_STRETCH = 256      # intervals that are looked at together, 1 to 2 km of road: what they are chosen from takes 0.2 MB for each
@@ -70,11 +85,9 @@ def estimate_road(candidates: Candidates, evidence: Evidence, first_direction: i
 
     Parameters
     ----------
-    candidates : Candidates
     evidence : Evidence of their intervals
     first_direction : 1 or -1, of the lanes that are met first from the left: -1 with traffic on the right
     lane_width : metres, the usual width of a lane
-    weights : EstimateWeights
     """
     sections = _best_sections(candidates, evidence, weights, lane_width, first_direction)
     # where no line is seen, as on a crossing, much may change; where no line is known nothing can be said

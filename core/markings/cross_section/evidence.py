@@ -1,25 +1,28 @@
-"""What speaks for or against lanes beside lines and curbs: the drive, the road surface, hatching, arrows and stop lines."""
+"""What speaks for or against lanes beside lines and curbs: the drive, the road surface, hatched areas, parking bays, arrows and stop lines."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 from weakref import WeakKeyDictionary
 
 import numpy as np
-from scipy.ndimage import binary_closing, median_filter
+import shapely
+from scipy.ndimage import binary_closing, grey_closing, median_filter
 
+from ...common.arrays import linked_groups
 from ...execution.phase import Phase
+from ...survey.frame.placement import located
+from ...survey.frame.road_frame import RoadFrame
+from ...survey.frame.row_table import RowTable
 from ...survey.store.records import COORDINATE_SCALE
-from ...survey.store.section_store import STRETCH_POINTS
+from ...survey.store.road_points import RoadPoints
+from ...survey.store.section_store import STRETCH_POINTS, Stretch
+from ..objects.classify import LINE_KINDS
+from ..objects.marking_objects import MarkingObjects
+from ..road_grid import CELL_SIZE
 from .candidates import FAR, Candidates
 from .sections import STATION_STEP
-
-if TYPE_CHECKING:
-    from ...survey.frame.road_frame import RoadFrame
-    from ...survey.store.road_points import RoadPoints
-    from ...survey.store.section_store import Stretch
-    from ..objects.marking_objects import MarkingObjects
 
 BIN = 0.2              # m across, of what is seen of the surface and of hatching
 BINS = int(round(2 * FAR / BIN))
@@ -67,7 +70,6 @@ def driven_offsets(frame: RoadFrame, road: int, s: np.ndarray) -> tuple[np.ndarr
 
     Parameters
     ----------
-    frame : RoadFrame
     road : number of the road
     s : (K,) metres, stations
 
@@ -90,7 +92,6 @@ def other_carriageway(frame: RoadFrame, road: int, s: np.ndarray) -> np.ndarray:
 
     Parameters
     ----------
-    frame : RoadFrame
     road : number of the road
     s : (K,) metres, stations
     """
@@ -122,7 +123,6 @@ def surface_coverage(points: RoadPoints, road: int, s: np.ndarray) -> tuple[np.n
 
     Parameters
     ----------
-    points : RoadPoints
     road : number of the road
     s : (K,) metres, stations of a grid with steps of STATION_STEP
 
@@ -163,7 +163,6 @@ def point_spacing(road_points: RoadPoints, road: int, s: np.ndarray) -> np.ndarr
 
     Parameters
     ----------
-    road_points : RoadPoints
     road : number
     s : (K,) m, the grid stations of the road's lines
 
@@ -188,7 +187,6 @@ def seen_in_stretch(points: RoadPoints, stretch: Stretch, first: int, count: int
 
     Parameters
     ----------
-    points : RoadPoints
     stretch : Stretch of a road
     first, count : stations first to first + count of the grid are looked at
 
@@ -250,7 +248,6 @@ def evidence_of(candidates: Candidates, s: np.ndarray, driven: np.ndarray, direc
 
     Parameters
     ----------
-    candidates : Candidates
     s : (K,) metres
     driven, directions : as `driven_offsets` gives them
     covered, hatched : (K, BINS) bool, or None
@@ -293,3 +290,270 @@ def _stop_lines(candidates, s, markings, road):
     found = [(k, low, high) for first, last, low, high in _extents(markings, road, "stop")
              for k in np.flatnonzero((begin <= last + STOP_REACH) & (end >= first - STOP_REACH)).tolist()]
     return np.array(found).reshape(-1, 3)
+
+
+# Hatched areas and parking bays: where nobody drives, and the borders that bound the lanes beside.
+
+BAR_REACH = 1.6        # m: bars of one hatched area are at most twice as far apart
+OUTLINE_SPACING = 0.25 # m between places of an outline
+HALF_BORDER = 0.06     # m from the outside of its border line to the middle: half of a narrow line
+OUTSIDE_PAINT = CELL_SIZE / 2   # m: outlines are of whole cells, of which paint reaches into the outermost ones by half on average
+SHORTEST_AREA = 5.0    # m
+BORDER_LINE_REACH = 0.5  # m between the ends of bars and the middle of the border line that they lead to: gap, and half of a broad line
+MAX_TIP = 20.0         # m from the last bar to where the borders meet
+MAX_TIP_GAP = 2.0      # m of border that is not seen
+TIP_COURSE = 4.0       # m of border that give its course
+
+
+def hatched_places(markings: MarkingObjects, frame: RoadFrame, road: int, s: np.ndarray) -> np.ndarray | None:
+    """(K, BINS) bool, where bars of hatched areas are painted; None where there are none."""
+    rows = np.flatnonzero((markings.road == road) & (markings.kind == "hatch") & np.isfinite(markings.extent[:, 0]))
+    if not len(rows):
+        return None
+    shape = shapely.union_all(shapely.force_2d(markings.outlines.polygons()[rows]))
+    shapely.prepare(shape)
+    first, last, low, high = (markings.extent[rows, k] for k in range(4))
+    near = np.zeros(len(s), bool)
+    for a, b in zip(np.searchsorted(s, first), np.searchsorted(s, last, side="right")):
+        near[a:b] = True
+    offsets = (np.arange(BINS) + 0.5) * BIN - FAR
+    across = np.flatnonzero((offsets >= low.min() - BIN) & (offsets <= high.max() + BIN))
+    found, along = np.zeros((len(s), BINS), bool), np.flatnonzero(near)
+    if len(along) and len(across):
+        at_s, at_d = np.repeat(s[along], len(across)), np.tile(offsets[across], len(along))
+        inside = shapely.contains_xy(shape, *frame.road(road).to_map(at_s, at_d))
+        found[np.ix_(along, across)] = inside.reshape(len(along), len(across))
+    return found
+
+
+def borders_of_hatching(markings: MarkingObjects, frame: RoadFrame, road: int, s: np.ndarray) -> RowTable:
+    """The outer borders of hatched areas: nobody drives between them, and they bound the lanes beside.
+
+    A border is the middle of the line that is painted along the ends of the bars; where there is none, the ends themselves. Where the area narrows
+    to a tip, too narrow for bars, the borders go on along their lines to where these meet.
+
+    Parameters
+    ----------
+    road : number of the road
+    s : (K,) metres, stations
+
+    Returns
+    -------
+    RowTable (2 G, K) of metres, the left and the right border of each of G areas and of tips of them, NaN where it is not
+    """
+    here = markings.road == road
+    bars, lines = ([shape for shape in shapely.force_2d(markings.outlines.polygons()[here & kind]) if not shape.is_empty]
+                   for kind in (markings.kind == "hatch", np.isin(markings.kind.astype(str), LINE_KINDS)))
+    areas = shapely.get_parts(shapely.union_all(shapely.buffer(bars, BAR_REACH))) if bars else np.empty(0, object)
+    bars_of, lines_of = _meeting(areas, bars), _meeting(shapely.buffer(areas, MAX_TIP), lines)
+    found = []
+    for k in range(len(areas)):
+        first, reach = _reach([bars[j] for j in bars_of[k]], frame, road, s)
+        known = np.flatnonzero(np.isfinite(reach[0]))
+        if not len(known) or np.ptp(known) * STATION_STEP < SHORTEST_AREA:
+            continue
+        borders = np.empty(reach.shape)
+        for side, sign in enumerate((1.0, -1.0)):
+            # bars touch the border only at their ends
+            outer = grey_closing(np.where(np.isfinite(reach[side]), sign * reach[side], -FAR),
+                                 size=int(2 * BAR_REACH / STATION_STEP) + 1, mode="nearest")
+            borders[side] = sign * (outer - OUTSIDE_PAINT - HALF_BORDER)
+        beside = [(begin, along.mean(axis=0)) for begin, along in (_reach([lines[j]], frame, road, s) for j in lines_of[k])]
+        for begin, middle in beside:
+            low, high = max(begin, first), min(begin + len(middle), first + reach.shape[1])
+            if low < high:
+                _follow(borders[:, low - first:high - first], middle[low - begin:high - begin])
+        before, behind = _tip(borders[:, ::-1], first, -1, beside), _tip(borders, first + reach.shape[1] - 1, 1, beside)
+        for begin, rows in ((first - before.shape[1], before[:, ::-1]), (first, borders), (first + reach.shape[1], behind)):
+            if rows.size:
+                found += [(begin, border) for border in rows]
+    return RowTable.of_rows(found, len(s))
+
+
+def _tip(borders, last, step, lines):
+    """Where both borders go on along lines behind the last bar and come nearer to each other: (2, N) m.
+
+    `borders` : (2, M) m, those beside the bars, up to the station of the number `last`; `step` : 1 or -1, the way that stations are counted on;
+    `lines` : (number of the first station, (L,) m of its middle) of the lines about the area
+    """
+    course, count = int(TIP_COURSE / STATION_STEP), int(MAX_TIP / STATION_STEP)
+    table = np.full((len(lines), course + count), np.nan)
+    for row, (begin, middle) in zip(table, lines):
+        at = (begin + np.arange(len(middle)) - last) * step + course - 1
+        inside = (at >= 0) & (at < len(row))
+        row[at[inside]] = middle[inside]
+    found = np.full((2, course + count), np.nan)
+    found[:, max(course - borders.shape[1], 0):course] = borders[:, -course:]
+    for border in found:
+        known = course
+        for k in range(course, course + count):
+            before = np.arange(known - course, known)
+            before = before[np.isfinite(border[before])]
+            if k - known > MAX_TIP_GAP / STATION_STEP or len(before) < 2:
+                break
+            slope, level = np.polyfit(before - k, border[before], 1)
+            off = np.abs(table[:, k] - level)
+            if np.isfinite(off).any() and np.nanmin(off) <= BORDER_LINE_REACH:
+                border[k] = table[np.nanargmin(off), k]
+                border[known:k] = np.interp(np.arange(known, k), [known - 1, k], border[[known - 1, k]])
+                known = k + 1
+    width = found[0] - found[1]
+    narrowing = (width[course:] > 0) & (np.diff(width[course - 1:]) <= 0)
+    end = course + (len(narrowing) if narrowing.all() else int(np.argmin(narrowing)))
+    return found[:, course:end]
+
+
+def _meeting(areas, shapes):
+    """For each area the numbers of the shapes that meet it, ascending."""
+    found: list[list[int]] = [[] for _ in areas]
+    if len(areas) and shapes:
+        for shape, area in sorted(zip(*shapely.STRtree(areas).query(shapes, predicate="intersects").tolist())):
+            found[area].append(shape)
+    return found
+
+
+def places_of_bays(rows: list[np.ndarray], s: np.ndarray, driven: np.ndarray) -> tuple[np.ndarray, RowTable]:
+    """Where parking bays lie, and their ends towards the lanes.
+
+    Parameters
+    ----------
+    rows : as `rows_of_bays` gives them
+    s : (K,) metres, stations
+    driven : (P, K) metres, offset of every pass, NaN where it did not drive
+
+    Returns
+    -------
+    places : (K, BINS) bool, cells of station and offset that lie in bays
+    ends : RowTable (G, K) of metres, offset at which the lines of each row end towards the vehicle, NaN beyond the row
+    """
+    places, ends = np.zeros((len(s), BINS), bool), []
+    offsets = (np.arange(BINS) + 0.5) * BIN - FAR
+    for row in rows:
+        within = slice(*np.searchsorted(s, [row[0, 0], row[-1, 0]]))
+        low, high = (np.interp(s[within], row[:, 0], row[:, k]) for k in (1, 2))
+        places[within] |= (offsets > low[:, None]) & (offsets < high[:, None])
+        track = driven[:, within][np.isfinite(driven[:, within])]
+        ends.append((within.start, high if np.median(row[:, 1:].sum(axis=1)) < 2 * (track.mean() if len(track) else 0.0) else low))
+    return places, RowTable.of_rows(ends, len(s))
+
+
+def _reach(shapes, frame, road, s):
+    """Greatest and least offset of outlines, (2, N) m, from a first station on that is given; NaN at stations where there are none."""
+    x, y = shapely.get_coordinates(shapely.segmentize(shapes, OUTLINE_SPACING)).T
+    station, d = located(frame, np.full(len(x), road), x, y)
+    at = np.rint((station - s[0]) / STATION_STEP)
+    inside = np.isfinite(at) & (at >= 0) & (at < len(s))
+    if not inside.any():
+        return 0, np.empty((2, 0))
+    at, d = at[inside].astype(int), d[inside]
+    first = int(at.min())
+    found = np.repeat([[-np.inf], [np.inf]], int(at.max()) - first + 1, axis=1)
+    np.maximum.at(found[0], at - first, d)
+    np.minimum.at(found[1], at - first, d)
+    return first, np.where(np.isfinite(found), found, np.nan)
+
+
+def _follow(borders, middle):
+    """Put borders on the middle of a line that runs along them, (N,) m at the same stations."""
+    with np.errstate(invalid="ignore"):
+        along = np.abs(borders - middle) < BORDER_LINE_REACH
+    for border, near in zip(borders, along):
+        border[near] = middle[near]
+
+
+# Rows of parking bays: the lines between bays are as narrow as other lines and run across or askew, from the lane to the edge of the road (RMS
+# part 1, bays of 2.3 to 2.7 m, parallel ones of 5 to 7 m; MUTCD 3B.19). Joints of a concrete road and rumble bars lie across driven lanes, too.
+
+WIDEST_BAY_LINE = 0.20   # m, of lines of usual breadth in all countries of the catalogue
+LEAST_REACH = 1.2        # m across the road that is seen of a line: a parked car hides the rest
+MAX_SKEW = 1.3           # m along the road for each metre across
+BAY_PITCH = 2.0, 8.0     # m along the road from line to line
+MAX_BAYS_HIDDEN = 3      # bays without a line between them, which cars hide
+EVEN_PITCH = 0.12        # of the pitch, by which a line may lie off an even row
+MIN_BAY_LINES = 4        # of a row
+MIN_EVEN = 0.75          # of the steps of a row that are even
+PIECES_OF_LINE = 0.5     # m along the road between pieces of one line at most
+SHARED_REACH = 0.5       # of the shorter of two neighbours that lies beside the other
+
+
+def rows_of_bays(markings: MarkingObjects, road: int, s: np.ndarray, driven: np.ndarray) -> list[np.ndarray]:
+    """Rows of parking bays on one road.
+
+    Parameters
+    ----------
+    road : number of the road
+    s : (K,) metres, stations, increasing
+    driven : (P, K) metres, offset of every pass at these, NaN where it did not drive
+
+    Returns
+    -------
+    list of (n, 3) metres: station of the middle, least and greatest offset of the lines of each row, by station
+    """
+    rows = _rows(_lines_across(markings, road))
+    crossed = [_driven_over(row, s, driven) for row in rows]
+    return [row for row, over in zip(rows, crossed) if not over
+            and not any(_beside(row, other) for other, driven_over in zip(rows, crossed) if driven_over)]
+
+
+def _lines_across(markings, road):
+    """(N, 3) station of the middle, least and greatest offset of narrow lines across the road; the parts of one marking are one."""
+    here = np.flatnonzero((markings.road == road) & ~markings.keep & (markings.width <= WIDEST_BAY_LINE) & np.isfinite(markings.extent[:, 0]))
+    if not len(here):
+        return np.empty((0, 3))
+    cluster = markings.cluster[here]
+    _, of = np.unique(np.where(cluster >= 0, cluster, -2 - np.arange(len(here))), return_inverse=True)
+    first, last, low, high = (pick(markings.extent[here, k], of) for k, pick in enumerate((_least, _greatest, _least, _greatest)))
+    across = (high - low >= LEAST_REACH) & (last - first <= MAX_SKEW * (high - low) + WIDEST_BAY_LINE)
+    lines = np.column_stack([(first + last) / 2, low, high])[across]
+    return lines[np.argsort(lines[:, 0], kind="stable")]
+
+
+def _least(values, of):
+    found = np.full(of.max() + 1, np.inf)
+    np.minimum.at(found, of, values)
+    return found
+
+
+def _greatest(values, of):
+    return -_least(-values, of)
+
+
+def _rows(lines):
+    """Rows of lines that follow each other at an even pace: list of (n, 3), each by station."""
+    station = lines[:, 0]
+    low, high = np.searchsorted(station, station + BAY_PITCH[0]), np.searchsorted(station, station + BAY_PITCH[1], side="right")
+    a = np.repeat(np.arange(len(lines)), high - low)
+    b = np.arange(len(a)) - np.repeat(np.cumsum(high - low) - (high - low), high - low) + low[a]
+    shared = np.minimum(lines[a, 2], lines[b, 2]) - np.maximum(lines[a, 1], lines[b, 1])
+    linked = shared >= SHARED_REACH * np.minimum(lines[a, 2] - lines[a, 1], lines[b, 2] - lines[b, 1])
+    group = linked_groups(a[linked], b[linked], len(lines))
+    found = [_whole(lines[group == number]) for number in np.flatnonzero(np.bincount(group) >= MIN_BAY_LINES)]
+    return [row for row in found if _even(row)]
+
+
+def _whole(row):
+    """The row with the pieces of each line, which lie at one station, put together."""
+    start = np.flatnonzero(np.r_[True, np.diff(row[:, 0]) > PIECES_OF_LINE])
+    return np.column_stack([np.add.reduceat(row[:, 0], start) / np.diff(np.r_[start, len(row)]), np.minimum.reduceat(row[:, 1], start),
+                            np.maximum.reduceat(row[:, 2], start)])
+
+
+def _even(row):
+    if len(row) < MIN_BAY_LINES:
+        return False
+    steps = np.diff(row[:, 0])
+    pitch = float(np.median(steps))
+    times = np.clip(np.round(steps / pitch), 1, MAX_BAYS_HIDDEN)
+    return np.mean(np.abs(steps - times * pitch) <= EVEN_PITCH * pitch) >= MIN_EVEN
+
+
+def _driven_over(row, s, driven):
+    """Whether a pass drove across the lines of a row."""
+    at = np.clip(np.searchsorted(s, row[:, 0]), 0, len(s) - 1)
+    with np.errstate(invalid="ignore"):
+        return bool((((driven[:, at] > row[:, 1]) & (driven[:, at] < row[:, 2])).mean(axis=1) > 0.5).any())
+
+
+def _beside(row, other):
+    """Whether two rows lie at the same stations."""
+    return min(row[-1, 0], other[-1, 0]) > max(row[0, 0], other[0, 0])

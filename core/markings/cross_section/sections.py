@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -12,8 +13,7 @@ from ...common.parallel import check_cancelled
 from ...curves.robust import median
 from ...road.edges.road_edges import RoadEdges
 from ...survey.frame.placement import FrameLines
-from ...survey.frame.row_table import RowTable
-from .grid_lines import STATION_STEP, GridLines, PieceOfLine, even_doubles, joined, lead_over, lengthen_dashed, lines_on_grid
+from ...survey.frame.row_table import BLOCK, RowSpans, RowTable
 
 if TYPE_CHECKING:
     from ..lines.painted_lines import PaintedLines
@@ -162,3 +162,308 @@ def _sections(lines: GridLines) -> CrossSections:
     tables = lines.tables()
     return CrossSections(lines.s, tables["d"], tables["z"], tables["seen"], [row.kind for row in lines.rows], [row.pattern for row in lines.rows],
                          tables["drawn"], lines.names, tables["number"], tables["width"])
+
+
+# Lines resampled to common stations: short gaps are bridged, and lines that continue each other are merged.
+
+STATION_STEP = 0.5                             # m of station between places where lanes are looked for
+MIN_BOUNDARY_SPACING = 0.8                     # m: lines nearer than this are one boundary, a lane ends at the nearer one
+MAX_LINE_JUMP = 0.3                         # m across by which a line may jump where it goes on as another
+PARTING = 0.1                                  # m by which a line must leave one neighbour more than the other to run along that one
+MAX_DASH_GAP = 9.5                             # m that a dashed line may be silent at its ends before it is known to end
+GAP_REACH = int(MAX_DASH_GAP / STATION_STEP)   # the same in stations
+# what is known of a line at each station, and what stands where it is not
+MISSING = dict(d=np.float64(np.nan), z=np.float64(np.nan), seen=np.bool_(False), drawn=np.int32(-1), number=np.int32(-1), width=np.float64(np.nan))
+
+
+@dataclass
+class PieceOfLine:
+    """Part of a line with rising stations: s, d, z (N,) metres, how it is drawn, and how broad, metres."""
+
+    s: np.ndarray
+    d: np.ndarray
+    z: np.ndarray
+    kind: str
+    pattern: str
+    seen: bool
+    width: float
+
+
+class GridRow:
+    """One line at the stations from `first` on: columns d, z, seen, drawn, number and width as of CrossSections.
+
+    begin, end : the first and the last station at which it is
+    """
+
+    def __init__(self, kind: str, pattern: str, first: int, columns: dict[str, np.ndarray]) -> None:
+        self.kind, self.pattern, self.first, self.columns = kind, pattern, first, columns
+        known = np.flatnonzero(np.isfinite(columns["d"]))
+        self.begin, self.end = (first + int(known[0]), first + int(known[-1])) if len(known) else (first, first - 1)
+
+    @classmethod
+    def empty(cls, kind: str, pattern: str, first: int, size: int) -> GridRow:
+        return cls(kind, pattern, first, {name: np.full(size, missing) for name, missing in MISSING.items()})
+
+    def at(self, name: str, stations: np.ndarray) -> np.ndarray:
+        """(N,) values of a column."""
+        values = self.columns[name]
+        place = np.asarray(stations) - self.first
+        there = (place >= 0) & (place < len(values))
+        return np.where(there, values[np.where(there, place, 0)], MISSING[name]) if len(values) else np.full(place.shape, MISSING[name])
+
+    def put(self, name: str, stations: np.ndarray, values: np.ndarray | bool) -> None:
+        """Set values of a column at some stations, which the row is lengthened to."""
+        if not len(stations):
+            return
+        self._reach(int(stations.min()), int(stations.max()))
+        self.columns[name][stations - self.first] = values
+        if name == "d" and (known := stations[np.isfinite(values)]).size:
+            self.begin, self.end = min(self.begin, int(known.min())), max(self.end, int(known.max()))
+
+    def _reach(self, low, high):
+        before, behind = max(self.first - low, 0), max(high + 1 - self.first - len(self.columns["d"]), 0)
+        if before or behind:
+            self.columns = {name: np.concatenate([np.full(before, MISSING[name]), values, np.full(behind, MISSING[name])])
+                            for name, values in self.columns.items()}
+            self.first -= before
+
+
+class GridLines:
+    """The lines of one road.
+
+    s : (K,) m, stations; rows : list of GridRow; names : the patterns that `drawn` counts
+    """
+
+    def __init__(self, s: np.ndarray, rows: list[GridRow], names: list[str]) -> None:
+        self.s, self.rows, self.names = s, rows, names
+        self._rows_of_block: dict[int, list[int]] = defaultdict(list)
+        for k, row in enumerate(rows):
+            for block in range(row.begin // BLOCK, row.end // BLOCK + 1):
+                self._rows_of_block[block].append(k)
+
+    def near(self, station: int, reach: int = 0) -> list[int]:
+        """Numbers of the rows that may be within `reach` stations of one, as the lines were when this was made, ascending."""
+        blocks = range((station - reach) // BLOCK, (station + reach) // BLOCK + 1)
+        return sorted({k for block in blocks for k in self._rows_of_block.get(block, ())})
+
+    def tables(self) -> dict[str, RowTable]:
+        """{name: (L, K)} of the columns, each row from where the line begins to where it ends."""
+        spans = RowSpans(np.array([row.begin for row in self.rows], int), np.array([row.end + 1 - row.begin for row in self.rows], int), len(self.s))
+        found = {name: np.concatenate([np.empty(0, missing.dtype), *(
+            row.columns[name][row.begin - row.first:row.end + 1 - row.first] for row in self.rows)]) for name, missing in MISSING.items()}
+        found["seen"] &= np.isfinite(found["d"])
+        return {name: RowTable(spans, values, MISSING[name]) for name, values in found.items()}
+
+
+def lines_on_grid(lines: dict[int, list[PieceOfLine]]) -> GridLines:
+    """Lines of one road, given as their pieces by number, on the stations from their first to their last place."""
+    first = np.ceil(min(p.s[0] for pieces in lines.values() for p in pieces) / STATION_STEP)
+    last = np.floor(max(p.s[-1] for pieces in lines.values() for p in pieces) / STATION_STEP)
+    s = STATION_STEP * np.arange(first, last + 1)
+    # the order of the layer's rows must not matter
+    order = sorted(lines, key=lambda key: (min(p.s[0] for p in lines[key]), np.median(lines[key][0].d), key))
+    names = sorted({p.pattern for pieces in lines.values() for p in pieces})
+    rows = []
+    for key in order:
+        pieces = sorted(lines[key], key=lambda p: (p.s[0], p.s[-1]))
+        longest = max(pieces, key=lambda p: (p.seen, p.s[-1] - p.s[0]))
+        rows.append(_row_of(key, pieces, s, names, longest))
+    return GridLines(s, rows, names)
+
+
+def _row_of(number, pieces, s, names, longest):
+    # pieces of one line touch: a grid station between their ends belongs to the line too
+    bounds = np.array([(np.searchsorted(s, p.s[0] - 1e-6), np.searchsorted(s, p.s[-1] + 1e-6, side="right")) for p in pieces])
+    first, end = int(bounds[:, 0].min()), int(bounds[:, 1].max())
+    row = GridRow.empty(longest.kind, longest.pattern, first, max(end - first, 0))
+    for p, (a, b) in zip(pieces, bounds.tolist()):
+        inside, at = slice(a - first, b - first), s[a:b]
+        for name, value in (("d", np.interp(at, p.s, p.d)), ("z", np.interp(at, p.s, p.z)), ("drawn", names.index(p.pattern)), ("number", number),
+                            ("width", p.width)):
+            row.columns[name][inside] = value
+        row.columns["seen"][inside] |= p.seen
+    return GridRow(row.kind, row.pattern, first, row.columns)
+
+
+def joined(lines: GridLines) -> tuple[GridLines, list[tuple[int, int, int, bool, bool]]]:
+    """Lines that go on as another line after at most a dash gap, in one row: a dashed line turns solid at a junction.
+
+    Returns the lines, and of each gap that was closed the row, the stations on both its sides and whether the line is double there.
+    """
+    rows = lines.rows
+    kept = [k for k, row in enumerate(rows) if row.end >= row.begin]
+    chains = {k: [k] for k in kept}     # the lines that a row is made of, by the number of its first one
+    ending = defaultdict(set)           # rows by the station that they end at
+    for k in kept:
+        ending[rows[k].end].add(k)
+    gaps: list[tuple[int, int, int, bool, bool]] = []
+    for k in sorted(kept, key=lambda k: (rows[k].begin, k)):
+        check_cancelled()
+        last, d = rows[k].begin, rows[k].columns["d"][rows[k].begin - rows[k].first]
+        behind = np.array(sorted(j for end in range(last - GAP_REACH, last) for j in ending.get(end, ())), int)
+        away = np.array([abs(d - rows[chains[j][-1]].at("d", np.array([rows[chains[j][-1]].end]))[0]) for j in behind.tolist()])
+        behind, away = behind[away <= MAX_LINE_JUMP], away[away <= MAX_LINE_JUMP]
+        if not len(behind):
+            continue
+        j = int(behind[np.argmin(away)])
+        before = rows[chains[j][-1]]
+        gaps.append((j, before.end, last, "double" in before.pattern, "double" in rows[k].pattern))
+        ending[before.end].remove(j)
+        ending[rows[k].end].remove(k)
+        ending[rows[k].end].add(j)
+        chains[j] += chains.pop(k)
+    number = {j: k for k, j in enumerate(sorted(chains))}
+    found = [_chained([rows[k] for k in chains[j]]) for j in sorted(chains)]
+    return GridLines(lines.s, found, lines.names), [(number[j], first, last, before, behind) for j, first, last, before, behind in gaps]
+
+
+def _chained(rows):
+    """Rows that follow each other as one; the gaps between them are closed."""
+    head = rows[0]
+    if len(rows) == 1:
+        return head
+    found = GridRow.empty(head.kind, head.pattern, head.begin, rows[-1].end + 1 - head.begin)
+    for k, row in enumerate(rows):
+        own = slice(row.begin - head.begin, row.end + 1 - head.begin)
+        for name, values in found.columns.items():
+            values[own] = row.columns[name][row.begin - row.first:row.end + 1 - row.first]
+        if k:
+            first, last = rows[k - 1].end - head.begin, own.start
+            gap = np.arange(first + 1, last)
+            for name in ("d", "z"):
+                found.columns[name][gap] = np.interp(gap, [first, last], found.columns[name][[first, last]])
+            # a gap of a dashed line is no gap
+            found.columns["seen"][gap] = head.pattern.startswith("dash") or row.pattern.startswith("dash")
+    return GridRow(head.kind, head.pattern, head.begin, found.columns)
+
+
+def lead_over(lines: GridLines, gaps: list[tuple[int, int, int, bool, bool]]) -> set[tuple[int, int]]:
+    """Where a double line goes on as a single one, both of its lines lead over to it: lanes on either side end at that one.
+
+    Returns the ends of lines that were led on, as (row, 1 where it ended or -1 where it began).
+    """
+    led: set[tuple[int, int]] = set()
+    for j, last, first, before, after in gaps:
+        if before == after:
+            continue
+        single = lines.rows[j]
+        # from the double line's own end to where the single one begins, in whichever direction
+        own, other, step = (last, first, 1) if before else (first, last, -1)
+        # a line that was led on before reaches farther than it did
+        near = sorted({*lines.near(own, GAP_REACH), *(k for k, _ in led)})
+        for k in near:
+            row = lines.rows[k]
+            end = row.end if step > 0 else row.begin
+            if k == j or "double" not in row.pattern or not 0 <= (own - end) * step <= GAP_REACH:
+                continue
+            apart = _step_between(row, single, end)
+            if abs(apart["d"]) >= MIN_BOUNDARY_SPACING:
+                continue
+            beside, gap = np.arange(end + step, own + step, step), np.arange(own + step, other, step)
+            for name in ("d", "z"):
+                row.put(name, beside, single.at(name, beside) + apart[name])
+                row.put(name, gap, single.at(name, gap) + apart[name] * (other - gap) / (other - own))
+            for columns in (beside, gap):
+                row.put("seen", columns, single.at("seen", columns))
+            led.add((k, step))
+    return led
+
+
+def _step_between(row, other, station):
+    """By how much, of d and z, a row lies beside another one at a station."""
+    at = np.array([station])
+    return {name: row.at(name, at)[0] - other.at(name, at)[0] for name in ("d", "z")}
+
+
+def even_doubles(lines: GridLines, led: set[tuple[int, int]]) -> None:
+    """The two lines of a double line begin and end together: the shorter goes on beside the longer, a dash gap at most.
+
+    Else a lane would reach for the farther of the two where the nearer is worn away.
+    """
+    lines = GridLines(lines.s, lines.rows, lines.names)
+    known = [(row.begin, row.end) for row in lines.rows]
+    for k, row in enumerate(lines.rows):
+        if "double" not in row.pattern:
+            continue
+        for end, step in ((known[k][1], 1), (known[k][0], -1)):
+            if (k, step) in led:
+                continue
+            others, offsets = _beside(lines, known, k, end)
+            twin = _nearest(np.abs(offsets) < MIN_BOUNDARY_SPACING, np.abs(offsets))
+            if twin is None:
+                continue
+            other = lines.rows[others[twin]]
+            ahead = _ahead(lines, end, step)
+            go = _present(other, known[others[twin]], ahead)
+            ahead = ahead[:len(go) if go.all() else int(np.argmin(go))]
+            apart = _step_between(row, other, end)
+            for name in ("d", "z"):
+                row.put(name, ahead, other.at(name, ahead) + apart[name])
+            row.put("seen", ahead, other.at("seen", ahead))
+
+
+def _beside(lines, known, k, station):
+    """Numbers of the other lines that are at a station, and how far left of line k they lie there."""
+    at = np.array([station])
+    others = [j for j in lines.near(station) if j != k and _present(lines.rows[j], known[j], at)[0]]
+    own = lines.rows[k].at("d", at)[0]
+    return others, np.array([lines.rows[j].at("d", at)[0] - own for j in others], float)
+
+
+def _present(row, known, stations):
+    """(N,) bool, whether a line is at some stations between those that it was known at first."""
+    return np.isfinite(row.at("d", stations)) & (stations >= known[0]) & (stations <= known[1])
+
+
+def _ahead(lines, end, step):
+    """The stations of a dash gap beyond the end of a line."""
+    ahead = end + step * np.arange(1, GAP_REACH + 1)
+    return ahead[(ahead >= 0) & (ahead < len(lines.s))]
+
+
+def lengthen_dashed(lines: GridLines) -> None:
+    """A dashed line goes on by up to one gap where lines on both its sides do.
+
+    Where the last dash ends says nothing of where the line does: the next dash is only
+    missed after a gap's length.
+    """
+    lines = GridLines(lines.s, lines.rows, lines.names)
+    known = [(row.begin, row.end) for row in lines.rows]
+    for k, row in enumerate(lines.rows):
+        if not row.pattern.startswith("dash") or row.end == row.begin:
+            continue
+        for end, step in ((known[k][1], 1), (known[k][0], -1)):
+            others, offsets = _beside(lines, known, k, end)
+            sides = [_nearest(offsets > MIN_BOUNDARY_SPACING, np.abs(offsets)), _nearest(offsets < -MIN_BOUNDARY_SPACING, np.abs(offsets))]
+            if None in sides:
+                continue
+            numbers = [others[side] for side in sides]
+            left, right = (lines.rows[j] for j in numbers)
+            ahead = _ahead(lines, end, step)
+            go = np.all([_present(lines.rows[j], known[j], ahead) & lines.rows[j].at("seen", ahead) for j in numbers], axis=0)
+            ahead = ahead[:len(go) if go.all() else int(np.argmin(go))]
+            inner = end - step * np.arange(GAP_REACH + 1)
+            share = _share_across(row, left, right, inner[(inner >= 0) & (inner < len(lines.s))])
+            for name in ("d", "z"):
+                own, (beside, begin) = row.at(name, np.array([end]))[0], (
+                    left.at(name, at) * share + right.at(name, at) * (1 - share) for at in (ahead, np.array([end])))
+                row.put(name, ahead, beside + own - begin[0])
+            row.put("seen", ahead, True)
+
+
+def _share_across(row, left, right, inner):
+    """How a line lies between two others, 0 on the right one and 1 on the left one: where they part, as they do along a taper, it keeps to one.
+
+    `inner` are stations at its end, from there on.
+    """
+    apart = np.abs(np.stack([left.at("d", inner), right.at("d", inner)]) - row.at("d", inner))
+    apart = apart[:, np.isfinite(apart).all(axis=0)]
+    away = np.ptp(apart, axis=1)
+    if abs(away[0] - away[1]) > PARTING:
+        return float(away[0] < away[1])
+    return apart[1, 0] / (apart[0, 0] + apart[1, 0])
+
+
+def _nearest(which, distance):
+    rows = np.flatnonzero(which)
+    return rows[np.argmin(distance[rows])] if len(rows) else None

@@ -7,7 +7,6 @@ dashes linked and gaps marked as bridged.
 from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "fit": ("MarkingLineSettings", "fit_marking_lines"),
-    "naming": ("named_by_lines",),
+    "fit": ("MarkingLineSettings", "fit_marking_lines", "named_by_lines"),
     "painted_lines": ("PaintedLines",),
 })

@@ -1,36 +1,350 @@
-"""Marking lines: the painted lines of a road traced, linked over gaps and fitted with curves."""
+"""Marking lines: the painted lines of a road traced, linked over gaps, fitted with curves and named."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import json
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import shapely
 
 from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
+from ...common.setting import check_limits, setting
 from ...countries.catalogue import country
-from ...survey.store.road_points import columns_of_roads
+from ...countries.neutral import NEUTRAL
+from ...curves.base import CurveFit
+from ...curves.bspline import fit_splines, smooth_profiles
+from ...curves.model_selection import CURVES, fit_curve, fit_curves
+from ...curves.robust import median
+from ...road.edges.road_edges import RoadEdges
+from ...survey.frame.placement import LINE_VERTEX_SPACING
+from ...survey.frame.road import Road
+from ...survey.frame.road_frame import RoadFrame
+from ...survey.store.road_points import RoadPoints, columns_of_roads
+from ..cross_section.estimate import boundary_uses
+from ..cross_section.roads import estimate_roads
+from ..cross_section.sections import sections_of_edges, sections_of_lines, sections_of_pavement
+from ..cross_section.sequence import separated_kinds
+from ..cross_section.weights import CENTRE_LINE, EDGE_LINE, LANE_LINE, EstimateWeights, TakenReading
+from ..objects.classify import LINE_KINDS
 from ..objects.marking_objects import MarkingObjects
-from .between_tracks import with_unseen_paint
-from .common_trend import CommonTrend
-from .dash_pattern import same_dash_pattern
-from .edges_beside import edges_beside
-from .few_tracks import painted_strands
-from .geometry import LineShape, MarkingLineSettings, fit_line_shapes
-from .linking import link_lines, link_over_long_gaps, without_strays
-from .naming import named_by_estimate
+from .linking import CommonTrend, link_lines, link_over_long_gaps, weighted_medians, with_paint_between_tracks, with_unseen_paint, without_strays
 from .painted_lines import PaintedLines, painted_lines_of
-from .selection import SelectedLine, crossings, hatching_bars, hatching_borders, select_lines
-from .strands import LinkedLine, line_paint
+from .selection import SelectedLine, crossings, hatching_bars, hatching_borders, same_dash_pattern, select_lines
+from .strands import LEVEL_REACH, EdgesBeside, LinkedLine, Strand, edges_beside, line_paint, painted_strands
 
-if TYPE_CHECKING:
-    from ...road.edges.road_edges import RoadEdges
-    from ...survey.frame.road_frame import RoadFrame
-    from ...survey.store.road_points import RoadPoints
-    from ..cross_section.confidence import TakenReading
-    from .strands import Strand
+# The course of one marking line in plan and height: places from its paint, a curve through them.
+
+MIN_POINTS_PER_PLACE = 3     # points that a place must have to count, where there are enough such places
+MIN_GUIDED_GAP = 4.0         # m: in a longer gap the curve is guided parallel to the other lines
+GUIDE_SPACING = 2.0          # m between guiding places
+KEPT_DISTANCE = 0.1          # m within which a line keeps its distance from what it runs along, as MAX_STRAY_OFFSET of its own pieces
+LINE_HEIGHT_SMOOTHING = 3.0  # m
+
+
+@dataclass(frozen=True)
+class MarkingLineSettings:
+    """How marking lines are linked and which curve is fitted.
+
+    curve : one of core.curves.model_selection.CURVES; degree : of the polynomial
+    max_gap : m along the road over which paint of one line is linked
+    max_bridge : m over which it is linked where the line's own dash pattern or a neighbouring line continues
+    min_paint : m of paint without which there is no line (unless it fits another one's dashes)
+    country : whose dashes are looked for; one of core.countries.COUNTRIES
+    """
+
+    curve: str = "automatic"
+    degree: int = setting(2, 0, 9, "The polynomial's degree")
+    max_gap: float = setting(13.0, 0.1, 100.0, "The longest gap that is linked", "m")
+    max_bridge: float = setting(30.0, 0.1, 200.0, "The longest gap that is bridged", "m")
+    min_paint: float = setting(4.0, 0.0, 100.0, "The least paint of a line", "m")
+    country: str = NEUTRAL.name
+
+    def __post_init__(self):
+        check_limits(self)
+        country(self.country)
+        if self.curve not in CURVES:
+            raise RoadExtractionError(f"There is no curve called {self.curve!r}. Choose one of {', '.join(CURVES)}.")
+        if self.max_gap > self.max_bridge:
+            raise RoadExtractionError(
+                f"Gaps are linked up to {self.max_gap} m and bridged up to {self.max_bridge} m; the second must not "
+                "be below the first.")
+
+
+@dataclass
+class LineShape:
+    """A line that can be drawn between two stations.
+
+    fit : CurveFit of the curve; residuals belong to the places `s`
+    s : (K,) stations of the places
+    """
+
+    fit: CurveFit
+    s: np.ndarray
+    _station_to_u: tuple
+    _height: Callable[[np.ndarray], np.ndarray]
+
+    def u(self, s: np.ndarray) -> np.ndarray:
+        """Arc length on the curve at stations s, going on evenly beyond the ends."""
+        stations, lengths = self._station_to_u
+        inside = np.interp(s, stations, lengths)
+        return inside + np.minimum(s - stations[0], 0.0) + np.maximum(s - stations[-1], 0.0)
+
+    def draw(self, first: float, last: float) -> np.ndarray:
+        """(M, 3) local places from station `first` to `last`, at most half a metre apart."""
+        ends = self.u(np.array([first, last]))
+        count = max(2, int(np.ceil((ends[1] - ends[0]) / LINE_VERTEX_SPACING - 1e-9)) + 1)
+        u = np.linspace(ends[0], ends[1], count)
+        stations, lengths = self._station_to_u
+        s = np.interp(u, lengths, stations) + np.minimum(u - lengths[0], 0.0) + np.maximum(u - lengths[-1], 0.0)
+        return np.c_[self.fit.curve.at(u), self._height(s)]
+
+
+def fit_line_shapes(lines: list[LinkedLine], spans: list[tuple[float, float]], road: Road, trend: CommonTrend, edges: EdgesBeside,
+                    track_height: Callable[[np.ndarray], np.ndarray], settings: MarkingLineSettings,
+                    progress: Progress = Progress()) -> tuple[list[LineShape], int]:
+    """The LineShapes of linked lines, fitted together.
+
+    Parameters
+    ----------
+    lines : list of LinkedLine
+    spans : (first, last) stations of each to be drawn, which may reach beyond the paint
+    trend : CommonTrend, how the painted lines of the road run together
+    edges : EdgesBeside of the road
+    track_height : function of stations (N,), height of the trajectory; the line's height is
+        smoothed as the difference to it, so that it goes on along the road's slope
+
+    Returns
+    -------
+    list of LineShape, and how many could not take the wanted curve (automatic replaces it there)
+    """
+    if not lines:
+        return [], 0
+    courses = []
+    for line, span in zip(lines, spans):
+        courses.append(_course(line, trend, edges, span))
+        progress.report(0.2 * len(courses) / len(lines))
+    s, d, own = (np.concatenate(parts) for parts in zip(*((course.s, course.d, course.own) for course in courses)))
+    bounds = np.cumsum([len(course.s) for course in courses])[:-1]
+    x, y = (np.split(values, bounds) for values in road.to_map(s, d))
+    measured = [(x[k][course.own], y[k][course.own]) for k, course in enumerate(courses)]
+    fits, replaced = _fitted(measured, settings)
+    progress.report(0.6)
+    # splines once more with the guides, which are no measurements and count in no choice
+    curved = [k for k, fit in enumerate(fits) if fit.curve.kind == "b-spline"]
+    along = [_along(road, courses[k].s, courses[k].d) for k in curved]
+    near = [None] * len(courses)
+    for k, t, guided in zip(curved, along, fit_splines([(x[k], y[k]) for k in curved], along)):
+        fits[k], near[k] = guided, guided.curve.u_of(t)
+    track = np.split(track_height(s[own]), np.cumsum([len(course.z) for course in courses])[:-1])
+    heights = smooth_profiles([(course.s[course.own], course.z - below) for course, below in zip(courses, track)], LINE_HEIGHT_SMOOTHING)
+    found = []
+    for k, (course, fit, height) in enumerate(zip(courses, fits, heights)):
+        progress.report(0.9 + 0.1 * k / len(courses))
+        u, e = fit.curve.project(x[k], y[k], near[k])
+        if near[k] is not None:
+            fit = CurveFit(fit.curve, e[course.own], fit.parameters)
+        rising = np.maximum.accumulate(u)
+        keep = np.append(True, np.diff(rising) > 1e-6)
+        found.append(LineShape(fit, course.s[course.own], (course.s[keep], rising[keep]),
+                               _height_above(height, track_height)))
+    return found, replaced
+
+
+def _height_above(height, track_height):
+    """The function of stations that gives the height of a line from that above the trajectory."""
+    return lambda s: height(s) + track_height(s)
+
+
+@dataclass
+class _Course:
+    """Places of a line by station, and places that guide its curve where nothing is painted.
+
+    s, d : (N,) metres; own : (N,) True for the line's own places; z : heights of these
+    """
+
+    s: np.ndarray
+    d: np.ndarray
+    own: np.ndarray
+    z: np.ndarray
+
+
+def _course(line, trend, edges, span):
+    s, d, z, weight = line.places()
+    strong = weight >= MIN_POINTS_PER_PLACE
+    if strong.sum() >= max(4, 0.5 * len(s)):
+        s, d, z = s[strong], d[strong], z[strong]
+    order = np.argsort(s, kind="stable")
+    s, d, z = s[order], d[order], z[order]
+    guide_s, guide_d = _guides(s, d, trend, edges, span)
+    order = np.argsort(np.concatenate([s, guide_s]), kind="stable")
+    return _Course(np.concatenate([s, guide_s])[order], np.concatenate([d, guide_d])[order], order < len(s), z)
+
+
+def _fitted(places, settings):
+    """Fits to a list of (x, y), and how many of them are not the wanted curve."""
+    if settings.curve == "automatic":
+        return fit_curves(places), 0
+    found, replaced = [], 0
+    for x, y in places:
+        try:
+            found.append(fit_curve(x, y, settings.curve, settings.degree))
+        except RoadExtractionError:
+            found.append(fit_curve(x, y, "automatic"))
+            replaced += 1
+    return found, replaced
+
+
+def _guides(s, d, trend, edges, span):
+    """Places in long gaps and beyond the ends, where nothing is painted: parallel to the other lines, an edge of the road and the road."""
+    wide = np.flatnonzero(np.diff(s) > MIN_GUIDED_GAP)
+    stations, offsets = [], []
+    for k in wide.tolist():
+        a, b = s[[k, k + 1]].tolist()
+        at = np.linspace(a, b, int(np.ceil((b - a) / GUIDE_SPACING)) + 1)[1:-1]
+        near = [slice(np.searchsorted(s, a - LEVEL_REACH), k + 1), slice(k + 1, np.searchsorted(s, b + LEVEL_REACH, "right"))]
+        edge = edges.between((a, d[k]), (b, d[k + 1]))
+        courses = [trend.at] if edge is None else [trend.at, edge, np.zeros_like]
+        levels = np.array([[median(d[side] - course(s[side])) for side in near] for course in courses])
+        stations.append(at)
+        offsets.append(_common_course(np.array([np.interp(at, [a, b], ends) + course(at) for ends, course in zip(levels, courses)]),
+                                      levels[:, 1] - levels[:, 0]))
+    for tip, end in ((s[0], span[0]), (s[-1], span[1])):
+        if abs(end - tip) > GUIDE_SPACING / 4:
+            at = np.linspace(tip, end, int(np.ceil(abs(end - tip) / GUIDE_SPACING)) + 1)[1:]
+            stations.append(at)
+            near = np.abs(s - tip) <= LEVEL_REACH
+            offsets.append(median(d[near] - trend.at(s[near])) + trend.at(at))
+    if not stations:
+        return np.empty(0), np.empty(0)
+    return np.concatenate(stations), np.concatenate(offsets)
+
+
+def _common_course(found, missed):
+    """(N,) offsets in a gap of what others have in common: the other lines, an edge of the road and the road itself.
+
+    Each course counts by how well the line keeps its distance from it from one end of the gap to the other. Which of them it runs along is not told
+    by the ends alone: an edge that gives way to a bay in the gap comes back to where it was.
+
+    found : (C, N) metres, offsets that lead parallel to each course; missed : (C,) metres by which the line's distance from it differs at the ends
+    """
+    weight = 1.0 / (KEPT_DISTANCE**2 + missed**2)
+    order = np.argsort(found, axis=0, kind="stable")
+    values = np.take_along_axis(found, order, axis=0)
+    return weighted_medians(values.T.ravel(), weight[order].T.ravel(), len(found) * np.arange(found.shape[1]))
+
+
+def _along(road, s, d):
+    """(N,) length along the line at each station: the inner side of a bend is shorter."""
+    middle = (s[1:] + s[:-1]) / 2
+    rate = np.maximum(1.0 - road.curvature(middle) * (d[1:] + d[:-1]) / 2, 0.1)
+    return np.r_[0.0, np.cumsum(np.maximum(np.diff(s), 1e-6) * rate)]
+
+
+# Lines named by the estimate of their road, and markings after the lines that they make: a dash alone does not show what it separates.
+
+KINDS = {EDGE_LINE: "edge", LANE_LINE: "lane", CENTRE_LINE: "centre"}
+CONFIRMED = "accepted"        # status of a line that an analyst looked at
+MAX_DISTANCE_TO_LINE = 0.15   # m between a marking and the line along it
+
+
+def named_by_estimate(lines: PaintedLines, frame: RoadFrame, usual_width: float, markings: MarkingObjects | None = None,
+                      edges: RoadEdges | None = None, road_points: RoadPoints | None = None, paint: RoadPoints | None = None,
+                      progress: Progress = Progress(), taken: Sequence[TakenReading] = ()) -> PaintedLines:
+    """Lines with the `kind` that the estimate of their road gives them; one that bounds no lane is called by how it is drawn.
+
+    Parameters
+    ----------
+    usual_width : metres, of lanes where the lines do not tell
+    markings, edges, road_points : what else the estimate is made from, or None
+    paint : points of markings, which serve where there are no road points, or None
+    taken : second readings that an analyst took
+
+    Returns
+    -------
+    PaintedLines, the same with the new names
+    """
+    if not len(lines):
+        return lines
+    curbs, pavement = (sections_of_edges(edges), sections_of_pavement(edges)) if edges is not None else (None, None)
+    estimates = estimate_roads(sections_of_lines(lines), frame, usual_width, curbs=curbs, markings=markings, road_points=road_points,
+                                      paint=paint, pavement=pavement, progress=progress, taken=taken)
+    found, second = _line_kinds(estimates), _second_kinds(estimates)
+    drawn = np.where([pattern.startswith("double") for pattern in lines.pattern], "centre",
+                     np.where(lines.pattern == "dashed", "lane", "edge")).astype(object)
+    kind = np.array([found.get(number, own) for number, own in zip(lines.line.tolist(), drawn)], object)
+    # what an analyst confirmed keeps its name
+    confirmed = lines.status == CONFIRMED
+    kind[confirmed] = lines.kind[confirmed]
+    other = np.array(["" if done else second.get(number, "") for number, done in zip(lines.line.tolist(), confirmed.tolist())], object)
+    return replace(lines, kind=kind, other=other)
+
+
+def named_by_lines(markings: MarkingObjects, lines: PaintedLines) -> MarkingObjects:
+    """Markings of lines (`keep`) with the `kind` of the marking line that runs along them, and paint between tracks of the scan.
+
+    Parameters
+    ----------
+    lines : PaintedLines fitted to them
+
+    Returns
+    -------
+    MarkingObjects, the same with the new names, and what `with_paint_between_tracks` adds
+    """
+    rows = np.flatnonzero(markings.keep & np.isin(markings.kind.astype(str), LINE_KINDS))
+    if not len(rows) or not len(lines):
+        return markings
+    places = shapely.point_on_surface(markings.outlines.polygons()[rows])
+    found, line = shapely.STRtree(lines.course.linestrings()).query_nearest(places, max_distance=MAX_DISTANCE_TO_LINE, all_matches=False)
+    same_road = markings.road[rows[found]] == lines.course.road[line]
+    kind = markings.kind.copy()
+    kind[rows[found][same_road]] = lines.kind[line[same_road]]
+    return with_paint_between_tracks(markings.with_kinds(kind), lines)
+
+
+def _line_kinds(estimates):
+    """{number of a marking line: edge, lane or centre}, by what most of it separates; lines that bound no lane are not in it."""
+    votes: dict[int, np.ndarray] = {}
+    for road in estimates.roads.values():
+        c, uses = road.estimate.candidates, boundary_uses(road.estimate)
+        for i, m in zip(*np.nonzero((uses >= 0) & np.isin(uses, list(KINDS)))):
+            for row in set(c.rows[i, m].tolist()) - {-1}:
+                if not road.boundaries.painted[row]:
+                    continue
+                numbers = road.lines.number[row, c.first[i]:c.last[i] + 1]
+                for number, count in zip(*np.unique(numbers[numbers >= 0], return_counts=True)):
+                    votes.setdefault(int(number), np.zeros(len(KINDS)))[uses[i, m]] += count
+    return {number: KINDS[int(np.argmax(found))] for number, found in votes.items()}
+
+
+def _second_kinds(estimates):
+    """{number of a marking line: its second kind as JSON}, of lines that are almost as probable to separate something else along most of them."""
+    behind: dict[int, list[tuple[float, np.ndarray]]] = {}
+    for road in estimates.roads.values():
+        c, estimate = road.estimate.candidates, road.estimate
+        uses, kinds = boundary_uses(estimate), separated_kinds(estimate.sections)
+        nats = np.stack([np.where(kinds == use, estimate.second[:, :, None], np.inf).min(axis=1) for use in KINDS])
+        for i, m in zip(*np.nonzero(np.isin(uses, list(KINDS)) & c.painted)):
+            own = list(KINDS).index(uses[i, m])
+            others = np.where(np.arange(len(KINDS)) == own, np.inf, nats[:, i, m] - nats[own, i, m])
+            for row in set(c.rows[i, m].tolist()) - {-1}:
+                numbers = road.lines.number[row, c.first[i]:c.last[i] + 1]
+                for number, count in zip(*np.unique(numbers[numbers >= 0], return_counts=True)):
+                    behind.setdefault(int(number), []).append((float(count), others))
+    found, doubt = {}, EstimateWeights().doubt
+    for number, parts in behind.items():
+        count, others = (np.array(values) for values in zip(*parts))
+        share = (count[:, None] * (others < doubt)).sum(axis=0) / count.sum()
+        second = int(np.argmax(share))
+        if share[second] > 0.5:
+            near = others[:, second][others[:, second] < doubt]
+            found[number] = json.dumps({"nats": round(max(float(np.median(near)), 0.0), 2), "kind": list(KINDS.values())[second]})
+    return found
+
 
 LINES_SHARE = 0.65         # of the work; the rest is the estimate that names the lines
 PAINT_BESIDE_PIECE = 2.0   # m of station before and after a piece whose paint counts for its offset
@@ -45,9 +359,6 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
     ----------
     clustered_points : RoadPoints with `cluster`
     markings : MarkingObjects of the same clusters
-    frame : RoadFrame
-    settings : MarkingLineSettings
-    progress : Progress
     edges, road_points : RoadEdges and RoadPoints, or None: what the lines separate is told better with them
     taken : second readings that an analyst took
 
@@ -128,4 +439,3 @@ def _drawn_pieces(one: SelectedLine, shape: LineShape, origin: np.ndarray) -> It
             curve=shape.fit.curve, arc=shape.u(np.array([piece.first, piece.last])), places=places,
             station=piece.first, end=piece.last, offset=np.median(near) if len(near) else np.nan, width=one.width(piece),
             rmse=np.sqrt(np.mean(residuals**2)) if measured else np.nan)
-

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any, cast
 
 import numpy as np
 import shapely
@@ -13,9 +13,7 @@ from ...common.features import MARKING_LINES, Features
 from ...common.layer_rows import LayerRows, column
 from ...curves.base import Curve
 from ...survey.frame.placement import FrameLines, line_parts, lines_in_frame
-
-if TYPE_CHECKING:
-    from ...survey.frame.road_frame import RoadFrame
+from ...survey.frame.road_frame import RoadFrame
 
 LONG_LISTS = ("knots", "control_x", "control_y")  # parameters of splines
 
@@ -151,7 +149,6 @@ def painted_lines_of(rows: list[dict[str, Any]], frame: RoadFrame, crs: str) -> 
     ----------
     rows : dicts of road, line, kind, pattern, status, and of what FittedPieces holds: curve, arc, places (V, 3), station, end, offset, width, rmse;
         and of `unseen`, where it is known
-    frame : RoadFrame
     crs : WKT, "" where unknown
     """
     def column(name: str, kind: Any) -> np.ndarray:

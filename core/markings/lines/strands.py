@@ -2,22 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
-from typing import TYPE_CHECKING
+from functools import cached_property, partial
+from itertools import chain
 
 import numpy as np
 
 from ...common.arrays import linked_groups, order_by
 from ...common.parallel import check_cancelled
 from ...curves.robust import median, percentiles
+from ...road.edges.road_edges import RoadEdges
+from ...survey.store.columns import Columns
 from ...survey.store.records import COORDINATE_SCALE
+from ..cross_section.sections import CrossSections, sections_of_edges, sections_of_pavement
 from ..objects.classify import LINE_KINDS
-from .edges_beside import LEVEL_REACH
-
-if TYPE_CHECKING:
-    from ...survey.store.columns import Columns
-    from ..objects.marking_objects import MarkingObjects
+from ..objects.marking_objects import MarkingObjects
+from ..objects.shape import middle_line
 
 RUN_BIN_UNITS = 5000  # units of 0.1 mm: 0.5 m of station in which runs of paint are separated
 PLACE_STEP_UNITS = 2500  # 0.25 m: one place of the line each, so that neighbouring places are nearly independent
@@ -140,7 +141,6 @@ def line_paint(records: Columns, markings: MarkingObjects, road: int) -> tuple[C
     Parameters
     ----------
     records : N points of one road with `cluster`
-    markings : MarkingObjects
     road : number
 
     Returns
@@ -354,3 +354,108 @@ def _strand(place, rank, along, across, height):
     share = np.bincount(rank, minlength=len(LINE_KINDS) + 1) / len(rank) * (last - first)
     classes = {name: float(share[k]) for k, name in enumerate(LINE_KINDS + ("mixed",)) if share[k] > 0}
     return Strand(first, last, s, d, z, count.astype(float), (high - low) / 0.95, classes)
+
+
+# The edges of the road beside painted lines: an edge line keeps its distance from the edge, also where the road widens.
+
+LINE_TO_EDGE = 4.0   # m between a line and the edge that it runs along: the widest paved shoulders are 12 ft (AASHTO, Green Book, 4.4.2)
+LOOKUP_STRETCH = 50.0   # m of road whose edges are listed together
+LEVEL_REACH = 3.0    # m of a line at either side of a gap that say how far it lies from the edge
+
+
+class EdgesBeside:
+    """The edges along one road.
+
+    Parameters
+    ----------
+    sections : CrossSections of edges
+    """
+
+    def __init__(self, sections: list[CrossSections]) -> None:
+        self._by_stretch: dict[int, list[tuple[np.ndarray, np.ndarray]]] = {}
+        for s, d in chain.from_iterable(map(_edges, sections)):
+            for stretch in range(int(s[0] // LOOKUP_STRETCH), int(s[-1] // LOOKUP_STRETCH) + 1):
+                self._by_stretch.setdefault(stretch, []).append((s, d))
+
+    def between(self, before: tuple[float, float], after: tuple[float, float]) -> Callable[[np.ndarray], np.ndarray] | None:
+        """The nearest edge that leads along both of two places, (station, offset) in m: a function of stations (N,), its offset; None without one."""
+        (s0, d0), (s1, d1) = before, after
+        best = None
+        for s, d in self._by_stretch.get(int(min(s0, s1) // LOOKUP_STRETCH), ()):
+            if not s[0] <= min(s0, s1) <= max(s0, s1) <= s[-1]:
+                continue
+            far = float(np.abs(np.interp([s0, s1], s, d) - (d0, d1)).max())
+            if far <= LINE_TO_EDGE and (best is None or far < best[0]):
+                best = far, s, d
+        return None if best is None else partial(np.interp, xp=best[1], fp=best[2])
+
+
+def _edges(sections):
+    """(stations, offsets) of the edges of CrossSections; where one is interrupted another begins."""
+    for k, first in enumerate(sections.d.spans.first.tolist()):
+        d = sections.d.row(k)
+        known = np.flatnonzero(np.isfinite(d))
+        for part in np.split(known, np.flatnonzero(np.diff(known) > 1) + 1):
+            if len(part) > 1:
+                yield sections.s[first + part], d[part]
+
+
+def edges_beside(edges: RoadEdges | None, roads: list[int]) -> dict[int, EdgesBeside]:
+    """EdgesBeside of every road; those of a road without edges, or where none are known, are empty."""
+    kinds = [sections_of_edges(edges), sections_of_pavement(edges)] if edges is not None else []
+    return {road: EdgesBeside([found[road] for found in kinds if road in found]) for road in roads}
+
+
+# Lines that few tracks of the scan met: each track shows such a line at one place of its width.
+
+FEW_TRACKS = 0.20           # m across the road between tracks of the scan: of a line, which is 0.10 to 0.30 m broad, one or two meet it
+LONGEST_HOLE_UNITS = MAX_BIN_STEP * RUN_BIN_UNITS   # of wear in one strand
+
+
+def painted_strands(records: Columns, rank: np.ndarray) -> list[Strand]:
+    """Strands of painted line: traced place by place where points lie close together, else along the middle line of their marking.
+
+    Parameters
+    ----------
+    records : N points with `cluster` and `spacing`
+    rank : (N,) class of each point as `line_paint` gives it
+
+    Returns
+    -------
+    list of Strand, by station
+    """
+    if not len(records):
+        return []
+    of = records["cluster"]
+    # most points of the marking, which is a line
+    apart = (records["spacing"] >= FEW_TRACKS * 1e3) & (rank < len(LINE_KINDS))
+    sparse = (2 * np.bincount(of[apart], minlength=int(of.max()) + 1) > np.bincount(of))[of]
+    few = np.flatnonzero(sparse)
+    check_cancelled()
+    few = few[np.lexsort((records["s"][few], of[few]))]
+    found = trace_strands(records[~sparse], rank[~sparse]) if len(few) else trace_strands(records, rank)
+    along = records["s"][few]
+    new = np.r_[True, (np.diff(of[few]) != 0) | (np.diff(along) > LONGEST_HOLE_UNITS)] if len(few) else np.empty(0, bool)
+    bounds = np.append(np.flatnonzero(new), len(few))
+    columns = [records[name][few] for name in ("s", "d", "z", "spacing")]
+    for a, b in zip(bounds[:-1].tolist(), bounds[1:].tolist()):
+        if (along[b - 1] - along[a]) * COORDINATE_SCALE >= MIN_STRAND_LENGTH:
+            s, d, z, spacing = (values[a:b] for values in columns)
+            found.append(_strand_of_marking(s, d, z, spacing, LINE_KINDS[int(rank[few[a]])]))
+    return sorted(found, key=lambda strand: (strand.first, strand.d[0]))
+
+
+def _strand_of_marking(along, across, height, spacing, kind):
+    """The Strand of the points of one marking, by station; lengths in units, the spacing in mm."""
+    nodes, offsets = middle_line(along, across, median(spacing) * 1e-3)
+    if len(nodes) < 3:
+        # too short to be followed: straight
+        nodes = along[[0, -1]]
+        offsets = np.polyval(np.polyfit(along - along[0], across, 1), nodes - along[0])
+    starts = np.flatnonzero(np.r_[True, np.diff(along // PLACE_STEP_UNITS) != 0])
+    count = np.diff(np.append(starts, len(along)))
+    s, z = (np.add.reduceat(values, starts, dtype=np.int64) / count for values in (along, height))
+    low, high = percentiles((across - np.interp(along, nodes, offsets)) * COORDINATE_SCALE, (2.5, 97.5))
+    first, last = (float(along[k]) * COORDINATE_SCALE for k in (0, -1))
+    return Strand(first, last, s * COORDINATE_SCALE, np.interp(s, nodes, offsets) * COORDINATE_SCALE, z * COORDINATE_SCALE, count.astype(float),
+                  (high - low) / 0.95, {kind: last - first})

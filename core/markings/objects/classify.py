@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,11 +11,9 @@ from ...common.arrays import overlapping_pairs
 from ...common.errors import RoadExtractionError
 from ...curves.robust import percentiles
 from ...survey.store.records import COORDINATE_SCALE
-from ..cells.clusters import ROAD_EDGE_CLEARANCE
-from .dash_rows import rows_of_dashes
-
-if TYPE_CHECKING:
-    from .shape import Shape
+from .grouping import ROAD_EDGE_CLEARANCE
+from .repeating import rows_of_dashes
+from .shape import Shape
 
 NOT_PAINT = ""
 LINE_KINDS = ("edge", "lane", "centre")
@@ -128,7 +125,6 @@ def classify_markings(shapes: list[Shape], half_widths: Sequence[float], setting
     ----------
     shapes : list of Shape
     half_widths : (N,) m from the reference line to the road edge on each cluster's side
-    settings : ClassSettings
     covered : (N,) share of each cluster's points that lie beneath or right beside something standing on the road
     blocks : (N,) bool of `give_way_blocks`, which looks at all roads at once
 

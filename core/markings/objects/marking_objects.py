@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import shapely
@@ -12,9 +12,7 @@ import shapely
 from ...common.features import MARKINGS, Features
 from ...common.layer_rows import LayerRows, column
 from ...survey.frame.placement import located
-
-if TYPE_CHECKING:
-    from ...survey.frame.road_frame import RoadFrame
+from ...survey.frame.road_frame import RoadFrame
 
 
 @dataclass(frozen=True)
@@ -132,7 +130,6 @@ def make_marking_objects(rows: Sequence[dict[str, Any]], polygons: Sequence[Any]
     ----------
     rows : M dicts of field name to value; `road` -1, `cluster` -1, `class` "" and NaN stand for what is missing
     polygons : M shapely polygons or multipolygons in local coordinates, None where there is none
-    frame : RoadFrame
     crs : WKT
     """
     columns, outlines = MarkingObjects.read_columns(rows), Outlines.of(polygons)

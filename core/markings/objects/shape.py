@@ -1,19 +1,21 @@
-"""Length, width and direction of a cluster, measured in the road frame from its points."""
+"""Length, width, direction and outline of a cluster, measured in the road frame from its points."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import shapely
+from scipy import ndimage
+from scipy.spatial import cKDTree
 
 from ...common.arrays import order_by
-from ...curves.robust import median, percentiles
+from ...curves.robust import median, percentiles, row_medians
 from ...lazy import cv2
+from ...survey.frame.road import Road
 from ...survey.store.records import COORDINATE_SCALE
-from ..cells.components import occupied
-from ..cells.road_grid import CELL_SIZE, CELL_UNITS
-from ..cells.scan_tracks import fill_gaps, filled_between_tracks, track_reach
-from .zigzag import zigzag_legs
+from ..road_grid import CELL_SIZE, CELL_UNITS, fill_gaps, filled_between_tracks, occupied, track_reach
 
 MIDDLE_LINE_STEP_UNITS = 5000                         # units: 0.5 m of station that the run of a line is followed in
 TRACKS_PER_STEP = 10.0                                # times the distance between the tracks of the scan that the step is at least
@@ -220,3 +222,237 @@ def _smooth(nodes, values, weight, step):
     spread_x = sw * sxx - sx * sx
     steady = spread_x > 1e-6 * sw * sw * step**2
     return np.where(steady, (sxx * sy - sx * sxy) / np.where(steady, spread_x, 1.0), sy / sw)
+
+
+# Zigzag lines, no stopping before a pedestrian crossing or at a bus stop: straight legs of one length and slope, to the left and to the right in
+# turns. Germany, Zeichen 299: at 50 gon (45 degrees) to the road, 1 to 2 m from side to side (RMS part 2, chapter 4.2.1). United Kingdom, diagram
+# 1001.3: marks of 2 m, at least 1 m, gaps of 150 mm, 1.979 m along the road and 0.29 m across it, up to 18 (Traffic Signs Manual, chapter 5, 15.17).
+
+STEP_CELLS = 3              # cells along the road whose middle is one place: 12 cm
+ZIGZAG_LENGTH = 2.0, 45.0     # m along the road: three legs of the shortest, and "school keep clear"
+ZIGZAG_BREADTH = 0.25, 2.6         # m across it
+MAX_STROKE = 0.50           # m across the road of a leg within a step: a line of 0.12 m at 45 degrees takes up 0.29 m
+MIN_STEPS_SEEN = 0.7        # of the steps, for the run to be known: gaps between marks are 150 mm
+MIN_THIN = 0.85             # of the steps that were seen, where there is one stroke alone; a bar may end the line
+LEAST_TURN = 0.15           # m that a line goes back for its turn to count: half the depth of the flattest zigzag
+MIN_LEGS = 3
+LEG_ALONG = 0.7, 2.6        # m along the road of a whole leg
+LEG_SLOPE = 0.10, 1.4       # m across per m along
+MAX_SLOPE_RATIO = 1.6       # times: one leg to another
+MAX_LENGTH_RATIO = 1.5      # times, of those between turns
+MAX_OFF_STRAIGHT = 0.12     # of a leg's depth that its places lie off it at most, root mean square, or
+LEAST_OFF_STRAIGHT = 0.05   # m
+
+
+def zigzag_legs(cells: np.ndarray) -> int:
+    """How many legs a zigzag line has.
+
+    Parameters
+    ----------
+    cells : (K, 2) int, painted cells along the road and across it
+
+    Returns
+    -------
+    int, 0 where the cells are no zigzag line
+    """
+    step = (cells[:, 0] - cells[:, 0].min()) // STEP_CELLS
+    length, breadth = (np.ptp(cells, axis=0) + 1) * CELL_SIZE
+    if not (ZIGZAG_LENGTH[0] <= length <= ZIGZAG_LENGTH[1] and ZIGZAG_BREADTH[0] <= breadth <= ZIGZAG_BREADTH[1]):
+        return 0
+    count = np.bincount(step)
+    seen = count > 0
+    if seen.mean() < MIN_STEPS_SEEN:
+        return 0
+    low, high = np.full(len(count), np.inf), np.full(len(count), -np.inf)
+    np.minimum.at(low, step, cells[:, 1])
+    np.maximum.at(high, step, cells[:, 1])
+    thin = seen & (high - low < MAX_STROKE / CELL_SIZE)
+    if np.count_nonzero(thin) < MIN_THIN * np.count_nonzero(seen):
+        return 0
+    rows = np.flatnonzero(thin)
+    along, across = (rows + 0.5) * STEP_CELLS * CELL_SIZE, (low[rows] + high[rows]) / 2 * CELL_SIZE
+    return _legs(along, across)
+
+
+def _legs(along, across):
+    ends = _turns(across)
+    if len(ends) <= MIN_LEGS:
+        return 0
+    runs, rises, off = [], [], []
+    for first, last in zip(ends[:-1], ends[1:]):
+        u, v = along[first:last + 1], across[first:last + 1]
+        if len(u) < 3:
+            return 0
+        slope, middle = np.polyfit(u - u.mean(), v, 1)
+        runs.append(u[-1] - u[0])
+        rises.append(slope)
+        off.append(np.sqrt(np.mean((v - middle - slope * (u - u.mean())) ** 2)))
+    runs, rises, off = np.array(runs), np.array(rises), np.array(off)
+    # what is left of a leg at either end may be short
+    whole = np.r_[runs[0] >= LEG_ALONG[0], np.ones(max(len(runs) - 2, 0), bool), runs[-1] >= LEG_ALONG[0]]
+    if np.count_nonzero(whole) < MIN_LEGS or (np.sign(rises[:-1]) == np.sign(rises[1:])).any():
+        return 0
+    inner, slopes = runs[1:-1], np.abs(rises[whole])
+    even = inner.min() >= LEG_ALONG[0] and runs.max() <= LEG_ALONG[1] and inner.max() <= MAX_LENGTH_RATIO * inner.min() \
+        and runs.max() <= MAX_LENGTH_RATIO * inner.max()
+    steep = LEG_SLOPE[0] <= slopes.min() and slopes.max() <= LEG_SLOPE[1] and slopes.max() <= MAX_SLOPE_RATIO * slopes.min()
+    straight = (off[whole] <= np.maximum(MAX_OFF_STRAIGHT * slopes * runs[whole], LEAST_OFF_STRAIGHT)).all()
+    return int(np.count_nonzero(whole)) if even and steep and straight else 0
+
+
+def _turns(across):
+    """Places where a run turns back by at least `LEAST_TURN`, and its extremes before the first turn and after the last."""
+    found, best, way = [], 0, 0
+    lowest = highest = 0
+    for k, value in enumerate(across.tolist()):
+        if way == 0:
+            lowest = k if value < across[lowest] else lowest
+            highest = k if value > across[highest] else highest
+            if across[highest] - across[lowest] >= LEAST_TURN:
+                way, best = (1, k) if highest > lowest else (-1, k)
+                found.append(lowest if way > 0 else highest)
+        elif way * (value - across[best]) >= 0:
+            best = k
+        elif way * (across[best] - value) >= LEAST_TURN:
+            found.append(best)
+            best, way = k, -way
+    return [*found, best]
+
+
+# Outlines: the cells that a cluster's points lie in, closed along the road, where scan lines lie apart, and much less across it, where the next
+# stripe may begin.
+
+CLOSE_ALONG = 0.40            # m of station over which a gap is closed
+CLOSE_ACROSS = 0.04           # m of offset likewise
+MIN_HOLE_AREA = 0.02          # m2: smaller holes are wear, not shape
+END_STRETCH, MAX_END_GAP = 20000, 5000   # 0.1 mm: 2 m at an end, whose gaps tell how far it goes on, and half a metre: what is longer is worn
+STRIP_TOLERANCE = 0.004       # m by which the outline of a strip may leave its middle line's curve
+MIN_PART_AREA = 0.005         # m2: three cells
+OUTLINE_TOLERANCE = 0.025     # m by which a simplified outline may leave the cells
+OUTLINE_VERTEX_SPACING = 1.0  # m of station between vertices: 2 mm of sagitta at R = 60 m
+OUTLINE_HEIGHT_NEIGHBOURS = 8
+
+
+def band(s: np.ndarray, d: np.ndarray, shape: Shape) -> shapely.Polygon:
+    """Outline of a strip: its middle line, as wide as the whole of it is.
+
+    Parameters
+    ----------
+    s, d : (N,) int, units of 0.1 mm
+    shape : Shape of an elongated cluster along the road, or in any straight direction
+
+    Returns
+    -------
+    shapely Polygon in (s, d)
+    """
+    c, n = (1.0, 0.0) if shape.along else (np.cos(shape.direction), np.sin(shape.direction))
+    u, v = (s, d) if shape.along else (np.rint(s * c + d * n).astype(np.int64), np.rint(d * c - s * n).astype(np.int64))
+    nodes, offsets = middle_line(u, v, shape.spacing)
+    # the last node lies in the middle of a step that the strip may fill to a small part
+    along = np.sort(u)
+    first, last = along[0] - _beyond_the_last(along), along[-1] + _beyond_the_last(-along[::-1])
+    all_nodes = np.concatenate([[first], nodes[nodes < last], [last]])
+    offsets, nodes = np.interp(all_nodes, nodes, offsets) * COORDINATE_SCALE, all_nodes * COORDINATE_SCALE
+    keep = np.append(True, np.diff(nodes) > 1e-6)
+    nodes, offsets = nodes[keep], offsets[keep]
+    ring = np.stack([np.concatenate([nodes, nodes[::-1]]),
+                     np.concatenate([offsets - shape.width / 2, offsets[::-1] + shape.width / 2])], axis=1)
+    return shapely.simplify(shapely.Polygon(ring @ np.array([[c, n], [-n, c]])), STRIP_TOLERANCE)
+
+
+def _beyond_the_last(along):
+    """How far a strip goes on beyond its first point on average: half the gap that any place of it falls into.
+
+    along : (N,) int, ascending; a gap of length g is met by a share of places that grows with g, and half of it lies beyond
+    """
+    gaps = np.diff(along[:np.searchsorted(along, along[0] + END_STRETCH)])
+    gaps = gaps[gaps <= MAX_END_GAP].astype(float)
+    return int(round((gaps * gaps).sum() / (2.0 * gaps.sum()))) if gaps.any() else 0
+
+
+def painted_cells(s: np.ndarray, d: np.ndarray, spacing: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
+    """Cells covered by a cluster.
+
+    Parameters
+    ----------
+    s, d : (N,) metres
+    spacing : (N,) int, mm across the road between the tracks of the scan; None where it is not known
+
+    Returns
+    -------
+    mask : (A, B) bool, first axis along the road, second across it
+    first : (2,) int, the cell number of mask[0, 0]: it begins at first * CELL
+    """
+    cells = np.floor(np.c_[s, d] / CELL_SIZE).astype(np.int64)
+    mask, first = filled_between_tracks(cells, track_reach(spacing if spacing is not None else np.zeros(len(cells))))
+    mask = fill_gaps(mask, int(round(CLOSE_ALONG / CELL_SIZE)), 0)
+    mask = fill_gaps(mask, int(round(CLOSE_ACROSS / CELL_SIZE)), 1)
+    return _without_small_holes(mask), first
+
+
+def _without_small_holes(mask):
+    holes, count = ndimage.label(~mask)
+    if count > 1:
+        sizes = np.bincount(holes.ravel())
+        small = sizes * CELL_SIZE**2 < MIN_HOLE_AREA
+        small[0] = False
+        mask = mask | small[holes]
+    return mask
+
+
+def cell_outline(mask: np.ndarray, first: np.ndarray) -> shapely.Geometry:
+    """Shapely polygon or multipolygon in (s, d) of the cells that are on, its staircase smoothed."""
+    edges = np.diff(np.pad(mask, ((1, 1), (0, 0))).astype(np.int8), axis=0)
+    column, start = np.nonzero(edges.T == 1)
+    _, end = np.nonzero(edges.T == -1)
+    boxes = shapely.box((first[0] + start) * CELL_SIZE, (first[1] + column) * CELL_SIZE,
+                        (first[0] + end) * CELL_SIZE, (first[1] + column + 1) * CELL_SIZE)
+    # cells that touch at a corner only make one polygon after a hair of widening
+    shape = shapely.union_all(boxes, grid_size=0.001)
+    return shape.simplify(OUTLINE_TOLERANCE, preserve_topology=True)
+
+
+def parts(shape: shapely.Geometry) -> list[shapely.Polygon]:
+    """The polygons of an outline that are large enough to be drawn, from the road's start on."""
+    pieces = [piece for piece in getattr(shape, "geoms", [shape]) if piece.area >= MIN_PART_AREA]
+    return sorted(pieces, key=lambda piece: piece.bounds)
+
+
+def drawn_outline(columns: Sequence[np.ndarray], shape: Shape, strip: bool, road: Road) -> list[shapely.Polygon]:
+    """The polygons of one marking in local coordinates, from the road's start on.
+
+    Parameters
+    ----------
+    columns : s, d, x, y, z, units of 0.1 mm, and spacing, mm between the tracks of the scan: (N,) int each of its points
+    strip : whether it is drawn as an even strip, else cell by cell
+    """
+    s, d, x, y, z, spacing = columns
+    drawn = band(s, d, shape) if strip else cell_outline(*painted_cells(s * COORDINATE_SCALE, d * COORDINATE_SCALE, spacing))
+    places = np.stack([x, y, z], axis=1) * COORDINATE_SCALE
+    return [to_local(part, road, places) for part in parts(drawn)]
+
+
+def to_local(shape: shapely.Polygon, road: Road, places: np.ndarray) -> shapely.Polygon:
+    """The outline in local coordinates with Z.
+
+    Parameters
+    ----------
+    shape : polygon in (s, d)
+    places : (N, 3) local x, y, z of the cluster's points
+
+    Returns
+    -------
+    shapely Polygon with Z: each vertex at the median height of the points nearest to it
+    """
+    shape = shapely.segmentize(shape, OUTLINE_VERTEX_SPACING)
+    vertices = shapely.get_coordinates(shape)
+    return lifted(shapely.set_coordinates(shape, np.column_stack(road.to_map(vertices[:, 0], vertices[:, 1]))), places)
+
+
+def lifted(shape: shapely.Polygon, places: np.ndarray) -> shapely.Polygon:
+    """An outline in local coordinates, each vertex at the median height of the points (N, 3) nearest to it."""
+    k = min(OUTLINE_HEIGHT_NEIGHBOURS, len(places))
+    vertices = shapely.get_coordinates(shape)
+    _, nearest = cKDTree(places[:, :2], balanced_tree=False, compact_nodes=False).query(vertices, k)
+    z = row_medians(places[:, 2][nearest.reshape(len(vertices), k)])[:, 0]
+    return shapely.set_coordinates(shapely.force_3d(shape), np.c_[vertices, z])

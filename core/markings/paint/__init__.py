@@ -9,7 +9,5 @@ from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
     "extract": ("extract_markings",),
-    "peaks": ("PeakSettings",),
-    "point_segments": ("SegmentSettings",),
-    "settings": ("MarkingSettings",),
+    "settings": ("MarkingSettings", "PeakSettings", "SegmentSettings"),
 })

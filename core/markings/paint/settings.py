@@ -6,10 +6,55 @@ from dataclasses import dataclass, field
 
 from ...common.errors import RoadExtractionError
 from ...common.setting import check_limits, setting
-from .peaks import PeakSettings
-from .point_segments import SegmentSettings
 
 MARKING_METHODS = ("multi-threshold", "intensity-peaks", "point-segments")
+
+
+@dataclass(frozen=True)
+class PeakSettings:
+    """When a peak of intensity across the road is a painted line.
+
+    profile_length : m of road that one profile is averaged over
+    prominence : deviations (MAD of the profile) that a peak must rise above both its feet
+    narrowest, widest : m, width of a peak at half its height
+    jump : m across that the peak may move from profile to profile
+    gap : m along the road without a peak that a chain continues over
+    shortest : m, least length of a chain
+    """
+
+    profile_length: float = setting(0.20, 0.02, 2.0, "The length of a profile", "m")
+    prominence: float = setting(7.0, 0.5, 100.0, "The prominence of a peak")
+    narrowest: float = setting(0.08, 0.0, 1.95, "The narrowest line", "m")
+    widest: float = setting(0.35, 0.02, 2.0, "The widest line", "m")
+    jump: float = setting(0.15, 0.01, 1.0, "The shift between profiles", "m")
+    gap: float = setting(0.60, 0.02, 10.0, "The gap along a line", "m")
+    shortest: float = setting(1.0, 0.0, 50.0, "The shortest line", "m")
+
+    def __post_init__(self) -> None:
+        check_limits(self)
+        if not self.narrowest < self.widest:
+            raise RoadExtractionError(f"Peaks are {self.narrowest} to {self.widest} m wide; the first must be below the second.")
+        if self.gap < self.profile_length:
+            raise RoadExtractionError(f"Peaks are linked over {self.gap} m along the road; it must be at least the length of a "
+                                      f"profile ({self.profile_length} m).")
+
+
+@dataclass(frozen=True)
+class SegmentSettings:
+    """How road points are split, and when a bright one is paint.
+
+    length, width : m, of a segment along and across the road
+    separation : spreads of asphalt between the means of the two classes, below which a segment has no paint
+    radius : m around a bright point in which its bright neighbours are counted
+    """
+
+    length: float = setting(10.0, 0.5, 200.0, "The length of a segment", "m")
+    width: float = setting(1.0, 0.1, 50.0, "The width of a segment", "m")
+    separation: float = setting(3.0, 0.0, 50.0, "The distance of paint from asphalt", "spreads")
+    radius: float = setting(0.12, 0.01, 1.0, "The radius in which neighbours are counted", "m")
+
+    def __post_init__(self) -> None:
+        check_limits(self)
 
 
 @dataclass(frozen=True)

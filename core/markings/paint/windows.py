@@ -1,38 +1,46 @@
-"""Paint in windows of 20 m along a road: the level of asphalt of each, then the cells that are brighter, and the points on these.
+"""Paint in windows of 20 m along a road: the level of asphalt of each, the cells that are brighter, the points on these, and the mask.
 
-Windows are worked on by phases: levels first, as a window needs those of its neighbours, then paint. The image is resampled in the
-road frame, station along and offset across, so that "along the road" is an axis of the array and a bend is straight.
+Levels come first, as a window needs those of its neighbours, then paint. The image is resampled in the road frame, so that a bend is straight.
 """
 
 from __future__ import annotations
 
 import threading
-from collections.abc import Collection
+from collections.abc import Callable, Collection, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
+from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from ...curves.robust import median
 from ...execution.phase import Recipe
+from ...intensity.tiled_image import IntensityRaster
+from ...io.geotiff import new_geotiff
+from ...survey.frame.road import Road
+from ...survey.frame.road_frame import RoadFrame
+from ...survey.store.columns import Columns
 from ...survey.store.records import COORDINATE_SCALE, Points, join_columns, take_rows
-from ..cells.road_grid import CELL_UNITS, PieceOfRoad, RoadCells, RoadGrid, cell_numbers, cells_of_road
-from .asphalt_level import AsphaltLevels, asphalt_profile, dark_cells, flatten
-from .fading import without_fading_areas, without_fading_rims
-from .faint_lines import faint_lines
-from .gutters import RimBands, edge_distance, rim_distance
-from .mask import painted_pixels
-from .morphology import morphology, track_spacing
-from .noisy import CellAverages, ViewSamples, noisy_paint_cells, views
-from .raised import raised_cells
-from .threshold_bins import MIN_BIN_CELLS, AsphaltBin, OtsuSplit, asphalt_bins, bin_edges, split_bins
-
-if TYPE_CHECKING:
-    from ...survey.frame.road_frame import RoadFrame
-    from ...survey.store.columns import Columns
-    from ...survey.store.road_points import RoadPoints
-    from .settings import MarkingSettings
+from ...survey.store.road_points import RoadPoints
+from ..objects.shape import CLOSE_ALONG, painted_cells
+from ..road_grid import CELL_SIZE, CELL_UNITS, PieceOfRoad, RoadCells, RoadGrid, cell_numbers, cells_of_road
+from .asphalt_level import (
+    MIN_BIN_CELLS,
+    AsphaltBin,
+    AsphaltLevels,
+    OtsuSplit,
+    asphalt_bins,
+    asphalt_profile,
+    bin_edges,
+    dark_cells,
+    flatten,
+    split_bins,
+)
+from .noisy import CellAverages, ViewSamples, faint_lines, noisy_paint_cells, views
+from .not_paint import RimBands, edge_distance, morphology, raised_cells, rim_distance, track_spacing, without_fading_areas, without_fading_rims
+from .settings import MarkingSettings
 
 RIM_WIDTH = 0.60         # m from the rim of the road: gutters; asphalt is taken from the cells inside
 THRESHOLD_WINDOW = 500   # cells: thresholds are taken from 20 m of road
@@ -91,9 +99,7 @@ def levels_of_windows(source: PaintSource, windows: Windows, settings: MarkingSe
 
     Parameters
     ----------
-    source : PaintSource
     windows : Windows of a road
-    settings : MarkingSettings
     noisy : {road: windows with noisy points}, which have no level
 
     Returns
@@ -110,9 +116,7 @@ def paint_of_windows(source: PaintSource, item: tuple[Windows, dict[int, Bins]],
 
     Parameters
     ----------
-    source : PaintSource
     item : Windows of a road, and the bins that are known, by window
-    settings : MarkingSettings
     noisy : {road: windows with noisy points}
     masked : whether the mask's pixels are asked for
     """
@@ -337,3 +341,108 @@ class _WindowView:
     brightness: np.ndarray
     rims: list[RimBands]
     occupied: np.ndarray
+
+
+# The mask of markings as a raster, in the pixels of the intensity image.
+
+BURN_BLOCK = 2048   # px: pixels are burnt in blocks of the image, so that a window in a bend reads only the blocks it touches
+BURN_WINDOW = 500   # cells: 20 m of station burnt at a time
+
+Burn = Callable[[np.ndarray, np.ndarray], None]   # burns (M,) local x, y
+
+
+@contextmanager
+def marking_mask(path: str | PathLike, image: IntensityRaster, origin: np.ndarray) -> Iterator[Burn]:
+    """Open a byte GeoTIFF, 1 where a marking is, no data elsewhere; gives a function that burns local x, y into it.
+
+    Parameters
+    ----------
+    path : of the GeoTIFF; it appears when the block is left without an error
+    image : IntensityRaster whose pixels the mask has
+    origin : map coordinates that local ones leave out, m
+    """
+    with new_geotiff(path, image.width, image.height, image.geotransform, image.crs, byte=True, nodata=0) as mask:
+
+        def burn(x, y):
+            column, row = (np.floor(c).astype(np.int64) for c in image.pixel_of(x, y, origin))
+            inside = (column >= 0) & (row >= 0) & (column < image.width) & (row < image.height)
+            column, row = column[inside], row[inside]
+            block = row // BURN_BLOCK * (image.width // BURN_BLOCK + 1) + column // BURN_BLOCK
+            for number in np.unique(block):
+                c, r = column[block == number], row[block == number]
+                c0, r0, width, height = int(c.min()), int(r.min()), int(np.ptp(c)) + 1, int(np.ptp(r)) + 1
+                pixels = mask.read(c0, r0, width, height)
+                pixels[r - r0, c - c0] = 1
+                mask.write(c0, r0, pixels)
+
+        yield burn
+
+
+def pixel_centres(image: IntensityRaster, x: np.ndarray, y: np.ndarray, origin: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The pixels that local places lie in.
+
+    Parameters
+    ----------
+    x, y : (N,) local coordinates, m
+    origin : map coordinates that local ones leave out, m
+
+    Returns
+    -------
+    x, y : (M,) local centres of the pixels, each once
+    first : (M,) index of a place in each pixel
+    """
+    column, row = (np.floor(c).astype(np.int64) for c in image.pixel_of(x, y, origin))
+    _, first = np.unique(row * (image.width + 1) + column, return_index=True)
+    left, size, _, top, _, _ = image.geotransform
+    return (left - origin[0]) + (column[first] + 0.5) * size, (top - origin[1]) - (row[first] + 0.5) * size, first
+
+
+def painted_pixels(cells: np.ndarray, first: tuple[int, int], image: IntensityRaster, origin: np.ndarray,
+                   road: Road) -> tuple[np.ndarray, np.ndarray]:
+    """The image's pixels whose centres lie in painted cells of a road.
+
+    Parameters
+    ----------
+    cells : (A, B) bool in (s, d), 4 cm each
+    first : cell numbers of cells[0, 0]: it begins at first * 4 cm
+    origin : map coordinates that local ones leave out, m
+
+    Returns
+    -------
+    x, y : (M,) local centres of the pixels
+    """
+    row, column = np.nonzero(cells)
+    # four places a cell: pixels may be smaller than cells and rotated against them
+    quarter = np.array([[-0.25, -0.25], [-0.25, 0.25], [0.25, -0.25], [0.25, 0.25]]) * CELL_SIZE
+    s = ((first[0] + row + 0.5)[:, None] * CELL_SIZE + quarter[:, 0]).ravel()
+    d = ((first[1] + column + 0.5)[:, None] * CELL_SIZE + quarter[:, 1]).ravel()
+    x, y = road.to_map(s, d)
+    x, y, near = pixel_centres(image, x, y, origin)
+    s, d = road.locate(x, y, s[near], np.inf)
+    known = np.isfinite(s)
+    x, y, s, d = x[known], y[known], s[known], d[known]
+    row, column = (np.floor(c / CELL_SIZE).astype(np.int64) - f for c, f in ((s, first[0]), (d, first[1])))
+    inside = (row >= 0) & (row < cells.shape[0]) & (column >= 0) & (column < cells.shape[1])
+    inside[inside] = cells[row[inside], column[inside]]
+    return x[inside], y[inside]
+
+
+def burn_points(burn: Burn, points: RoadPoints, image: IntensityRaster, frame: RoadFrame) -> None:
+    """Burn the cells that points lie in, gaps between scan lines closed.
+
+    Parameters
+    ----------
+    burn : function given by `marking_mask`
+    points : RoadPoints on paint
+    """
+    halo = int(np.ceil(CLOSE_ALONG / CELL_SIZE)) + 1
+    for road in points.roads():
+        start, end = points.store.span(road)
+        for window in range(int(np.floor(start / CELL_SIZE / BURN_WINDOW)), int(np.ceil(end / CELL_SIZE / BURN_WINDOW))):
+            first, last = window * BURN_WINDOW, (window + 1) * BURN_WINDOW
+            found = points.window(road, (first - halo) * CELL_SIZE, (last + halo) * CELL_SIZE).records
+            if not len(found):
+                continue
+            cells, corner = painted_cells(found["s"] * COORDINATE_SCALE, found["d"] * COORDINATE_SCALE)
+            top, bottom = max(first - corner[0], 0), max(last - corner[0], 0)
+            burn(*painted_pixels(cells[top:bottom], (corner[0] + top, corner[1]), image, frame.origin, frame.road(road)))

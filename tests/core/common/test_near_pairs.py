@@ -7,7 +7,7 @@ import pytest
 from lanewright.core.common import arrays as near_pairs
 from lanewright.core.markings.objects import classify as classes
 from lanewright.core.markings.objects.classify import MAX_DOUBLE_LINE_SPACING, classify_markings
-from lanewright.core.markings.objects.dash_rows import give_way_blocks
+from lanewright.core.markings.objects.repeating import give_way_blocks
 from lanewright.core.markings.objects.shape import Shape
 from lanewright.core.markings.objects.split_merge import join_fragments
 

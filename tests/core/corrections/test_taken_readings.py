@@ -9,7 +9,7 @@ from lanewright.core.common.features import CORRECTIONS, Features
 from lanewright.core.corrections import correct_lanes, correct_marking_lines, corrections_from_features, taken_reading
 from lanewright.core.curves.model_selection import fit_curve
 from lanewright.core.driving.driving_lines import make_driving_lines
-from lanewright.core.markings.lines.naming import named_by_estimate
+from lanewright.core.markings.lines.fit import named_by_estimate
 from lanewright.core.markings.lines.painted_lines import PaintedLines, painted_lines_of
 from lined_streets import Street
 

@@ -1,7 +1,7 @@
 """What all lines of a road may be off by together goes into the confidence of its lanes."""
 
 import numpy as np
-from lanewright.core.markings.cross_section.confidence import share_within
+from lanewright.core.markings.cross_section.weights import share_within
 
 
 def test_lines_of_drives_that_differ_much_are_seldom_within_fifteen_centimetres():

@@ -8,7 +8,7 @@ import pytest
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.intensity.image import ImageSettings, _kernels, check_image_shows, make_intensity_image, write_intensity_image
 from lanewright.core.io.geotiff import IntensityImage, write_display_image
-from lanewright.core.markings.paint.mask import marking_mask
+from lanewright.core.markings.paint.windows import marking_mask
 from lanewright.core.survey.store.records import COORDINATE_SCALE, ROAD_POINT, point_dtype, to_units
 from lanewright.core.survey.store.road_points import RoadPoints
 from lanewright.core.survey.store.section_store import SectionStore

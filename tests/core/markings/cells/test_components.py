@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.markings.cells.components import components
+from lanewright.core.markings.road_grid import components
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial.distance import cdist
 

@@ -1,7 +1,7 @@
 """Points of a few metres of road keep their cells in the grid of a whole window."""
 
 import numpy as np
-from lanewright.core.markings.cells.road_grid import CELL_UNITS, PieceOfRoad, RoadGrid, cell_numbers
+from lanewright.core.markings.road_grid import CELL_UNITS, PieceOfRoad, RoadGrid, cell_numbers
 from lanewright.core.survey.store.records import ROAD_POINT, Points
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from lanewright.core.common.features import MARKINGS, Features
-from lanewright.core.markings.cross_section.arrows import arrows_of
+from lanewright.core.markings.cross_section.roads import arrows_of
 from lanewright.core.markings.objects.marking_objects import MarkingObjects
 from lanewright.core.sample.parts.paint import left_arrow, straight_arrow, turn_arrow
 from lined_streets import HEIGHT, Street

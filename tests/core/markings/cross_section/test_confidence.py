@@ -1,8 +1,7 @@
 """How often a lane is right that the estimate holds for so probable."""
 
 import numpy as np
-from lanewright.core.markings.cross_section.confidence import calibrated, confidence_of
-from lanewright.core.markings.cross_section.weights import EstimateWeights
+from lanewright.core.markings.cross_section.weights import EstimateWeights, calibrated, confidence_of
 
 
 def test_what_is_more_probable_is_said_with_more_confidence_and_nothing_is_certain():

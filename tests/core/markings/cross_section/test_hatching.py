@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from lanewright.core.common.features import MARKINGS, Features
-from lanewright.core.markings.cross_section.hatching import borders_of_hatching
+from lanewright.core.markings.cross_section.evidence import borders_of_hatching
 from lanewright.core.markings.objects.marking_objects import MarkingObjects
 from lined_streets import HEIGHT, Street
 from shapely.geometry import Polygon

@@ -3,10 +3,10 @@
 from dataclasses import replace
 
 import numpy as np
-from lanewright.core.markings.cross_section.across import lane_strips
 from lanewright.core.markings.cross_section.estimate import lane_spans
 from lanewright.core.markings.cross_section.roads import estimate_roads
 from lanewright.core.markings.cross_section.sections import sections_of_lines
+from lanewright.core.markings.cross_section.sequence import lane_strips
 from lanewright.core.markings.lines.painted_lines import PaintedLines
 from lined_streets import Street
 

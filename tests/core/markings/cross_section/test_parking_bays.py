@@ -3,9 +3,7 @@
 import numpy as np
 import pytest
 from lanewright.core.common.features import MARKINGS, Features
-from lanewright.core.markings.cross_section.evidence import BINS
-from lanewright.core.markings.cross_section.hatching import places_of_bays
-from lanewright.core.markings.figures.parking_bays import rows_of_bays
+from lanewright.core.markings.cross_section.evidence import BINS, places_of_bays, rows_of_bays
 from lanewright.core.markings.objects.marking_objects import MarkingObjects
 from lined_streets import HEIGHT, Street
 from shapely.geometry import Polygon

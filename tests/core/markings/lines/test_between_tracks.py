@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import shapely
 from lanewright.core.common.features import MARKING_LINES, MARKINGS, Features
-from lanewright.core.markings.lines.between_tracks import with_paint_between_tracks, with_unseen_paint
+from lanewright.core.markings.lines.linking import with_paint_between_tracks, with_unseen_paint
 from lanewright.core.markings.lines.painted_lines import PaintedLines
 from lanewright.core.markings.objects.marking_objects import MarkingObjects, with_kinds_of
 from lanewright.core.survey.frame.road_frame import build_frame

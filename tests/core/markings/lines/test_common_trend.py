@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.markings.lines.common_trend import CommonTrend
+from lanewright.core.markings.lines.linking import CommonTrend
 from lanewright.core.markings.lines.strands import Strand
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import shapely
 from clustered_streets import ClusteredStreet
-from lanewright.core.markings.lines.edges_beside import edges_beside
+from lanewright.core.markings.lines.strands import edges_beside
 
 
 def widening(s):

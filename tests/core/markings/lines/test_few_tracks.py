@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.markings.lines.few_tracks import painted_strands
+from lanewright.core.markings.lines.strands import painted_strands
 from lanewright.core.survey.store.columns import Columns
 from lanewright.core.survey.store.records import ROAD_POINT
 

@@ -10,8 +10,7 @@ from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.features import MARKINGS, Features
 from lanewright.core.common.progress import Progress
 from lanewright.core.curves.model_selection import curve_from_params
-from lanewright.core.markings.lines.fit import fit_marking_lines
-from lanewright.core.markings.lines.geometry import MarkingLineSettings
+from lanewright.core.markings.lines.fit import MarkingLineSettings, fit_marking_lines
 from lanewright.core.markings.lines.painted_lines import PaintedLines
 from lanewright.core.markings.objects.marking_objects import MarkingObjects
 from lanewright.core.survey.store.road_points import RoadPoints

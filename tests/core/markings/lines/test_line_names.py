@@ -3,7 +3,7 @@
 import numpy as np
 import shapely
 from lanewright.core.common.features import MARKING_LINES, MARKINGS, Features
-from lanewright.core.markings.lines.naming import named_by_lines
+from lanewright.core.markings.lines.fit import named_by_lines
 from lanewright.core.markings.lines.painted_lines import PaintedLines
 from lanewright.core.markings.objects.marking_objects import MarkingObjects
 from lanewright.core.survey.frame.road_frame import build_frame

@@ -5,13 +5,9 @@ from functools import partial
 import numpy as np
 import pytest
 from counted_calls import calls
-from lanewright.core.markings.lines.common_trend import CommonTrend
-from lanewright.core.markings.lines.dash_pattern import same_dash_pattern
-from lanewright.core.markings.lines.edges_beside import EdgesBeside
-from lanewright.core.markings.lines.lines_beside import StretchLookup
-from lanewright.core.markings.lines.linking import link_lines, link_over_long_gaps
-from lanewright.core.markings.lines.selection import hatching_borders, select_lines
-from lanewright.core.markings.lines.strands import LinkedLine, Strand
+from lanewright.core.markings.lines.linking import CommonTrend, StretchLookup, link_lines, link_over_long_gaps
+from lanewright.core.markings.lines.selection import hatching_borders, same_dash_pattern, select_lines
+from lanewright.core.markings.lines.strands import EdgesBeside, LinkedLine, Strand
 
 BLOCK = 100.0   # m from one junction to the next
 FEW, MANY = 10, 40

@@ -4,10 +4,12 @@ import tracemalloc
 
 import numpy as np
 import pytest
-from lanewright.core.markings.cells import scan_tracks
-from lanewright.core.markings.cells.scan_tracks import filled_between_tracks
-from lanewright.core.markings.objects import bars, dash_rows, split_merge
-from lanewright.core.markings.objects.zebra import Comb, _alike
+from lanewright.core.markings import road_grid as scan_tracks
+from lanewright.core.markings.objects import repeating as dash_rows
+from lanewright.core.markings.objects import split_merge
+from lanewright.core.markings.objects import split_merge as bars
+from lanewright.core.markings.objects.repeating import Comb, _alike
+from lanewright.core.markings.road_grid import filled_between_tracks
 
 SHORT, LONG = 4, 16
 

@@ -9,10 +9,10 @@ from lanewright.core.countries.painted_symbols import SYMBOLS
 from lanewright.core.execution.phase import Threads
 from lanewright.core.execution.processes import WorkerProcesses
 from lanewright.core.execution.tasks import find_interpreter
-from lanewright.core.markings.cells.road_grid import CELL_SIZE
-from lanewright.core.markings.figures.match import figures_of
-from lanewright.core.markings.objects import phases
-from lanewright.core.markings.objects.phases import ApartWork
+from lanewright.core.markings.objects import cluster as phases
+from lanewright.core.markings.objects.cluster import ApartWork
+from lanewright.core.markings.objects.figures import figures_of
+from lanewright.core.markings.road_grid import CELL_SIZE
 from lanewright.core.survey.store.columns import Columns
 
 RNG = np.random.default_rng(3)

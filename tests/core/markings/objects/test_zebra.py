@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from clustered_marks import FRAME, classes, layer_of
-from lanewright.core.markings.objects.zebra import zebra_stripes
+from lanewright.core.markings.objects.repeating import zebra_stripes
 from painted_streets import paint, road_points, strip
 
 STRIPES = [strip(-2.0, 2.0, d, d + 0.5) for d in np.arange(-3.0, 3.0, 1.0)]   # 4 m long, a metre apart

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.markings.outliers.nearest_neighbours import Neighbours, mean_distances, points_at_place
+from lanewright.core.markings.outliers import Neighbours, mean_distances, points_at_place
 from scipy.spatial.distance import cdist
 
 

@@ -5,9 +5,8 @@ import tracemalloc
 import numpy as np
 import pytest
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.markings.outliers import remove
-from lanewright.core.markings.outliers.nearest_neighbours import mean_distances
-from lanewright.core.markings.outliers.remove import OutlierSettings, outlier_candidates, remove_outliers
+from lanewright.core.markings import outliers as remove
+from lanewright.core.markings.outliers import OutlierSettings, mean_distances, outlier_candidates, remove_outliers
 from painted_streets import assert_same_points, drive, paint, road_points, shuffled, strip
 from scipy.spatial.distance import cdist
 

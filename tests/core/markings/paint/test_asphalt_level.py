@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 from lanewright.core.intensity.asphalt_model import asphalt_statistics
-from lanewright.core.markings.paint.asphalt_level import background, patch_level
-from lanewright.core.markings.paint.threshold_bins import asphalt_bins, bin_edges, otsu, split_bins
+from lanewright.core.markings.paint.asphalt_level import asphalt_bins, background, bin_edges, otsu, patch_level, split_bins
 from lanewright.core.survey.store.records import to_units
 
 RNG = np.random.default_rng(4)

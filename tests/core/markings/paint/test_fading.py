@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.markings.paint.fading import side_fading, without_fading_areas, without_fading_rims
+from lanewright.core.markings.paint.not_paint import side_fading, without_fading_areas, without_fading_rims
 
 SHAPE = 500, 200     # cells of 4 cm: 20 m along the road, 8 m across it
 EVERYWHERE = np.ones(SHAPE, bool)

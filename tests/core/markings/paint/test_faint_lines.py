@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from lanewright.core.markings.paint.faint_lines import faint_lines
-from lanewright.core.markings.paint.gutters import rim_distance
+from lanewright.core.markings.paint.noisy import faint_lines
+from lanewright.core.markings.paint.not_paint import rim_distance
 
 ROWS, COLUMNS = 400, 200   # 16 m by 8 m in cells of 4 cm
 ASPHALT, NOISE = 1000.0, 60.0

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.markings.paint.morphology import morphology
+from lanewright.core.markings.paint.not_paint import morphology
 from lanewright.core.markings.paint.settings import MarkingSettings
 
 SPOT = np.array([(row, column) for row in range(3) for column in range(3)])   # cells that one point brightens

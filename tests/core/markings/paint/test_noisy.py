@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from lanewright.core.intensity.correction import correct_intensity
-from lanewright.core.markings.objects.dash_rows import dashes_beyond, rows_of_dashes
+from lanewright.core.markings.objects.repeating import dashes_beyond, rows_of_dashes
 from lanewright.core.markings.objects.shape import measure
 from lanewright.core.markings.paint.extract import extract_markings
 from lanewright.core.markings.paint.noisy import SPOT_SIGMA, CellAverages, ViewSamples, noisy_paint_cells

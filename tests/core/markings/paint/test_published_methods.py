@@ -7,11 +7,10 @@ import pytest
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.intensity.image import write_intensity_image
 from lanewright.core.io.geotiff import IntensityImage
-from lanewright.core.markings.paint import point_segments
+from lanewright.core.markings.paint import published as point_segments
 from lanewright.core.markings.paint.extract import extract_markings
-from lanewright.core.markings.paint.peaks import PeakSettings, in_chains, profile_peaks
-from lanewright.core.markings.paint.point_segments import SegmentSettings, dense_enough, segment_thresholds
-from lanewright.core.markings.paint.settings import MarkingSettings
+from lanewright.core.markings.paint.published import dense_enough, in_chains, profile_peaks, segment_thresholds
+from lanewright.core.markings.paint.settings import MarkingSettings, PeakSettings, SegmentSettings
 from painted_streets import ASPHALT, DENSITY, PAINT, assert_same_points, drive, records_at, road_points, shuffled, street, strip
 
 FRAME = drive()

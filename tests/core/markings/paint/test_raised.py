@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from lanewright.core.intensity.image import make_intensity_image
 from lanewright.core.markings.paint.extract import extract_markings
-from lanewright.core.markings.paint.raised import raised_cells
+from lanewright.core.markings.paint.not_paint import raised_cells
 from painted_streets import drive, road_points, street, strip
 
 SHAPE = 300, 200     # cells of 4 cm: 12 m along the road, 8 m across it

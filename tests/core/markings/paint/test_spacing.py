@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.markings.paint.gutters import rim_distance
-from lanewright.core.markings.paint.morphology import track_spacing
+from lanewright.core.markings.paint.not_paint import rim_distance, track_spacing
 
 DENSE, SPARSE = 50, slice(60, 200)   # columns of cells: the middle of the dense half, the sparse half
 

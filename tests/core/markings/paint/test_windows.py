@@ -4,8 +4,8 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from lanewright.core.markings.paint.asphalt_level import AsphaltBin, OtsuSplit
 from lanewright.core.markings.paint.settings import MarkingSettings
-from lanewright.core.markings.paint.threshold_bins import AsphaltBin, OtsuSplit
 from lanewright.core.markings.paint.windows import WindowExtractor, bins_about
 
 SOURCE = SimpleNamespace(road_points=None, image=None, frame=None)

@@ -1,0 +1,614 @@
+"""The most probable sequence of cross-sections along a road, by dynamic programming.
+
+First what it costs to take a strip between two boundaries for lanes, then the best cross-sections of one interval, from left to right, then
+the best sequence of them along the road.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...common.parallel import check_cancelled
+from ...countries.neutral import NEUTRAL
+from .candidates import FAR, Candidates
+from .evidence import BIN, Evidence
+from .weights import (
+    CENTRE_LINE,
+    CURB,
+    DASHED,
+    EDGE_LINE,
+    HATCHING,
+    ISLAND,
+    LANE_LINE,
+    OPEN,
+    OTHER_LINE,
+    OUTSIDE,
+    PAVEMENT,
+    SOLID,
+    SURFACE,
+    EstimateWeights,
+)
+
+# How wide lanes are in the strip between two boundaries, and where they begin.
+
+LIKELY_SHARE = 0.8, 1.5    # of the usual width of a lane: lanes in bends
+# whether nothing is painted there, and whether the surface ends without an edge or nothing is known of it, by what a boundary is made of
+UNPAINTED, SURFACE_END = (np.isin(np.arange(PAVEMENT + 1), made) for made in ((CURB, ISLAND, PAVEMENT, SURFACE, OPEN), (SURFACE, OPEN)))
+
+
+def lane_places(left: np.ndarray, right: np.ndarray, made_left: np.ndarray, made_right: np.ndarray, number: np.ndarray | int, usual: float,
+                bend: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Where lanes lie in strips.
+
+    Between two lines they share the strip. Beside a curb, or an edge of the pavement that was seen, they are no wider than usual; beside an island,
+    where nothing else has room, they share the strip too, but are as wide as usual where it reaches somewhat into them. Elsewhere the surface may
+    end at what hides it, and reach into side streets: beside its end they are as wide as usual. In bends, where lanes are widened, lanes beside the
+    end of the surface are as wide as there is room.
+
+    Parameters
+    ----------
+    left, right : metres, offsets of the two boundaries of each strip; all arrays broadcast together
+    made_left, made_right : SOLID ... ISLAND, what the boundaries are made of
+    number : lanes in the strip
+    usual : metres, the usual width of a lane
+    bend : bool, whether the road bends so much that lanes are widened
+
+    Returns
+    -------
+    begin : metres, offset of the left border of the leftmost lane
+    each : metres, width of each lane
+    """
+    open_left, open_right = UNPAINTED[made_left], UNPAINTED[made_right]
+    loose = open_left ^ open_right
+    each = (left - right) / number
+    widened = bend & (each > LIKELY_SHARE[0] * usual) & (each < LIKELY_SHARE[1] * usual)
+    hidden = loose & beside_surface_end(made_left, made_right)
+    least = np.where(widened & ((made_left == PAVEMENT) | (made_right == PAVEMENT)), each, np.minimum(each, usual))
+    likely = beside_island(made_left, made_right) & (each > LIKELY_SHARE[0] * usual) & (each < LIKELY_SHARE[1] * usual)
+    each = np.where(hidden, np.where(widened, each, usual), np.where(loose, np.where(likely, np.maximum(each, usual), least), each))
+    return np.where(loose & open_left, right + number * each, left), each
+
+
+def beside_island(made_left: np.ndarray, made_right: np.ndarray) -> np.ndarray:
+    """Bool, whether a strip reaches to the curb of an island."""
+    return (made_left == ISLAND) | (made_right == ISLAND)
+
+
+def beside_surface_end(made_left: np.ndarray, made_right: np.ndarray) -> np.ndarray:
+    """Bool, whether a strip reaches to where the surface ends without an edge, or to where nothing is known of it."""
+    return SURFACE_END[made_left] | SURFACE_END[made_right]
+
+
+# What it costs to take the strip between two boundaries for a lane, for several lanes, or for what nobody drives on.
+
+# Strips from left to right: what nobody drives on, lanes of the direction that is met first, lanes of both directions without
+# paint between them, most of them of the first direction, as many of either, or most of the other, lanes of the other direction,
+# and again what nobody drives on
+REST_FIRST, FIRST, MOST_FIRST, BOTH, MOST_SECOND, SECOND, REST_SECOND = STRIPS = range(7)
+TWO_WAY = MOST_FIRST, BOTH, MOST_SECOND
+MAX_LANES = 4              # between two boundaries without paint between them
+HATCHED_SHARE = 0.12       # of a strip that is covered by hatching: its bars leave most of it free
+ASPHALT_OF_A_LANE = 2.2, 3.0   # m of asphalt that could be a lane: between two lines, and elsewhere
+ASPHALT_SOFTNESS = 0.2     # m by which that is uncertain
+OTHER_SIGMA = 0.8          # m, scatter of lane widths from road to road
+STOP_MARGIN = 0.5          # m by which a stop line may reach beyond the lanes that it is for
+MIN_SCANNED_SHARE = 0.6    # of a lane's width that must be seen of a lane beside the end of the surface
+
+
+@dataclass
+class StripCosts:
+    """Costs of all strips.
+
+    cost : (7, I, M, M) nats, of a strip of one kind between two boundaries; inf where it cannot be
+    lanes, first_lanes : (7, I, M, M) int8, how many lanes it holds at that cost, and how many of them are of the direction that is met first
+    lane_width : metres, the usual width of a lane; beside a curb or the end of the surface no lane is wider
+    """
+
+    cost: np.ndarray
+    lanes: np.ndarray
+    first_lanes: np.ndarray
+    lane_width: float
+
+
+def strip_costs(candidates: Candidates, evidence: Evidence, weights: EstimateWeights, lane_width: float, first_direction: int) -> StripCosts:
+    """Costs of all strips, the lanes of `first_direction` (1 or -1) being met first from the left."""
+    c, w = candidates, weights
+    count, size = c.left.shape
+    scale = c.observations(w)[:, None, None]
+    d_left, d_right = c.right[:, :, None], c.left[:, None, :]
+    width = d_left - d_right
+    ordered = c.valid[:, :, None] & c.valid[:, None, :] & (np.arange(size)[:, None] < np.arange(size))
+    outside = (c.made_of == OUTSIDE)[:, :, None] | (c.made_of == OUTSIDE)[:, None, :]
+    through, rest = _passed_over(c, w)
+    hatched = _share_between(evidence.hatched, c, width) > HATCHED_SHARE if evidence.hatched is not None else np.zeros(width.shape, bool)
+    paint = c.painted | (c.made_of == HATCHING)
+    both_paint, any_paint = paint[:, :, None] & paint[:, None, :], paint[:, :, None] | paint[:, None, :]
+    asphalt = width * _share_between(evidence.asphalt, c, width) if evidence.asphalt is not None else np.where(both_paint, width, 0.0)
+    arrows_in, arrows = _arrows(c, evidence.arrows)
+
+    cost = np.full((len(STRIPS), count, size, size), np.inf)
+    lanes, first_lanes = np.zeros((2, len(STRIPS), count, size, size), np.int8)
+    between = np.where(width > NEUTRAL.widest_lane, w.unused_wide, w.unused_asphalt[0])
+    # beyond short dashes the bay that they open, however it is bounded
+    opened = np.nan_to_num(c.short) > 0.5
+    lined = both_paint & ~(opened[:, :, None] | opened[:, None, :])
+    unused = np.where(lined, _unused(asphalt, between, ASPHALT_OF_A_LANE[0]), _unused(asphalt, w.unused_asphalt[1]))
+    inside = _inside(evidence.driven, c)
+    idle = scale * (np.where(hatched, 0.0, unused) + rest) + arrows_in * w.arrow_outside + scale * w.driven_rest * inside.sum(0)
+    cost[REST_FIRST] = cost[REST_SECOND] = np.where(ordered, idle, np.inf)
+
+    made_left, made_right = c.made_of[:, :, None], c.made_of[:, None, :]
+    # strips with paint on one side only, and of those the ones whose other side may be hidden
+    loose = any_paint & ~both_paint
+    hidden = loose & beside_surface_end(made_left, made_right)
+    off = np.clip(1 - asphalt / np.maximum(width, 0.1), 0, 1) if evidence.asphalt is not None else 0.0
+    possible = ordered & ~outside & any_paint & (width < MAX_LANES * NEUTRAL.widest_lane)
+    base = scale * (through + hatched * w.hatched_lane + off * w.off_asphalt)
+    driven_there = inside.any(0)
+    for number in range(1, MAX_LANES + 1):
+        begin, each = lane_places(d_left, d_right, made_left, made_right, number, lane_width, c.bend[:, None, None])
+        fits = width_cost(each, lane_width, w) + _unused(asphalt - number * lane_width, w.unused_asphalt[1]) * loose
+        # what lies beyond the end of the surface
+        beyond = np.clip(1 - width / np.maximum(number * each, 0.1), 0, 1) * hidden
+        total = base + scale * (fits + beyond * w.off_asphalt)
+        scanned = ~hidden | (width > MIN_SCANNED_SHARE * number * lane_width)
+        # only where somebody drove is a lane known to be wider than lanes are built: elsewhere nothing tells its place in the strip
+        built = (each >= NEUTRAL.narrowest_lane) & ((each <= NEUTRAL.widest_lane) | driven_there)
+        total = np.where(possible & scanned & built, total, np.inf)
+        for split in range(number + 1):
+            kind = SECOND if split == 0 else FIRST if split == number else TWO_WAY[1 + int(np.sign(number - 2 * split))]
+            alike = max(split - 1, 0) + max(number - split - 1, 0)
+            unpainted = (0 < split < number) * w.unpainted_divider + alike * w.unpainted_lane_line
+            driven = total + scale * (unpainted + _driven_cost(evidence, inside, begin, each, number, split, first_direction, w)) \
+                + _arrow_cost(arrows, each, number, split, first_direction, begin, w)
+            if kind in TWO_WAY:
+                driven += w.split_stop * stops_across(evidence.stops, begin - split * each)
+            better = driven < cost[kind]
+            cost[kind][better], lanes[kind][better], first_lanes[kind][better] = driven[better], number, split
+    return StripCosts(cost, lanes, first_lanes, lane_width)
+
+
+def _unused(asphalt, cost, enough=ASPHALT_OF_A_LANE[1]):
+    """Nats of some metres of asphalt where no lane is."""
+    return cost / (1 + np.exp(-(asphalt - enough) / ASPHALT_SOFTNESS))
+
+
+def width_cost(width: np.ndarray, usual: float, w: EstimateWeights) -> np.ndarray:
+    """Nats of a lane of some width, m, against one of the usual width: most lanes of a road are alike, some as on other roads, few are odd."""
+    own = np.exp(-0.5 * ((width - usual) / w.width_sigma) ** 2)
+    other = np.exp(-0.5 * ((width - NEUTRAL.usual_lane) / OTHER_SIGMA) ** 2)
+    share = (1 - w.other_width - w.odd_width) * own + w.other_width * other + w.odd_width
+    return np.where((width >= NEUTRAL.narrowest_lane) & (width <= w.widest_odd), -np.log(share), np.inf)
+
+
+def _passed_over(c, w):
+    """(I, M, M) costs of the boundaries that lie between two others, inside a lane and where nobody drives; per observation."""
+    paint = c.painted
+    there = c.valid & (c.made_of != OUTSIDE)
+    shown = 0.5 + 0.5 * c.seen
+    lane = np.where(paint, w.lane_through_paint * c.trust * shown,
+                    np.select([np.isin(c.made_of, (CURB, ISLAND)), np.isin(c.made_of, (SURFACE, PAVEMENT)), c.made_of == HATCHING],
+                              [w.lane_through_curb * c.seen, w.lane_through_surface, w.lane_through_hatching], 0.0)) * there
+    rest = np.where(paint, w.paint_in_rest * c.trust * shown, 0.0) * there
+    found = []
+    for values in (lane, rest):
+        total = np.cumsum(values, axis=1)
+        found.append(np.maximum(total[:, None, :] - values[:, None, :] - total[:, :, None], 0.0))
+    return found
+
+
+def _share_between(shares, c, width):
+    """(I, M, M) share of the strip between two boundaries that is covered."""
+    total = np.concatenate([np.zeros((len(shares), 1)), np.cumsum(shares, axis=1)], axis=1) * BIN
+
+    def up_to(d):
+        at = np.clip((d + FAR) / BIN, 0, shares.shape[1] - 1e-6)
+        k = at.astype(int)
+        row = np.arange(len(shares))[:, None]
+        return total[row, k] + (at - k) * (total[row, k + 1] - total[row, k])
+
+    return np.clip(up_to(c.right)[:, :, None] - up_to(c.left)[:, None, :], 0, None) / np.maximum(width, 0.1)
+
+
+def _inside(driven, c):
+    """(P, I, M, M) whether a pass drove between two boundaries."""
+    d = driven[:, :, None, None]
+    with np.errstate(invalid="ignore"):
+        return (d < c.right[None, :, :, None]) & (d >= c.left[None, :, None, :])
+
+
+def _driven_cost(evidence, inside, d_left, each, number, split, first_direction, w):
+    """Nats per observation of where and which way the vehicle drove in strips of `number` lanes, of which `split` are of the first direction."""
+    cost = np.zeros(each.shape)
+    for p, direction in enumerate(evidence.directions.tolist()):
+        if not inside[p].any():
+            continue
+        with np.errstate(invalid="ignore", divide="ignore"):
+            place = (d_left - evidence.driven[p][:, None, None]) / np.maximum(each, 0.1)
+        lane = np.clip(np.floor(np.nan_to_num(place)), 0, number - 1)
+        off = (np.nan_to_num(place) - lane - 0.5) * each
+        way = np.where(lane < split, first_direction, -first_direction)
+        cost += inside[p] * (np.minimum(0.5 * (off / w.driven_sigma) ** 2, w.driven_astride) + np.where(way == -direction, w.driven_against, 0.0))
+    return cost
+
+
+def _arrows(c, arrows):
+    """(I, M, M) number of arrows between two boundaries, and a list of (interval, offset, way, which boundaries it lies between)."""
+    number = np.zeros((*c.left.shape, c.left.shape[1]))
+    found = []
+    for interval, d, way in arrows:
+        k = int(interval)
+        inside = (d < c.right[k][:, None]) & (d > c.left[k][None, :])
+        number[k] += inside
+        found.append((k, float(d), float(way), inside))
+    return number, found
+
+
+def _arrow_cost(arrows, each, count, split, first_direction, d_left, w):
+    """(I, M, M) nats of arrows beside the middle of their lanes, and of arrows that point against them."""
+    cost = np.zeros(each.shape)
+    for k, d, way, inside in arrows:
+        place = (d_left[k] - d) / np.maximum(each[k], 0.1)
+        lane = np.clip(np.floor(place), 0, count - 1)
+        against = np.maximum(-way * np.where(lane < split, first_direction, -first_direction), 0.0)
+        cost[k] += inside * (np.minimum(0.5 * ((place - lane - 0.5) * each[k] / w.arrow_sigma) ** 2, w.arrow_outside) + against * w.arrow_against)
+    return cost
+
+
+def stops_across(stops: np.ndarray, divider: np.ndarray) -> np.ndarray:
+    """(I, ...) how many stop lines, as in Evidence, cross the border between the two directions, which lies at `divider`, (I, ...) m."""
+    number = np.zeros(divider.shape)
+    for interval, low, high in stops:
+        k = int(interval)
+        number[k] += (divider[k] > low + STOP_MARGIN) & (divider[k] < high - STOP_MARGIN)
+    return number
+
+
+KEPT = 32     # cross-sections of an interval that are kept
+
+# What a boundary between two strips separates, -1 where the two cannot follow each other, and whether traffic is on the wrong side there
+SEPARATES = np.full((len(STRIPS), len(STRIPS)), -1, np.int8)
+for _left, _right, _what in (
+        (REST_FIRST, REST_FIRST, OTHER_LINE), (REST_FIRST, FIRST, EDGE_LINE), (REST_FIRST, SECOND, EDGE_LINE),
+        *((before, both, what) for both in TWO_WAY for before, what in ((REST_FIRST, EDGE_LINE), (FIRST, LANE_LINE))),
+        *((both, after, what) for both in TWO_WAY for after, what in ((SECOND, LANE_LINE), (REST_SECOND, EDGE_LINE))),
+        (FIRST, FIRST, LANE_LINE), (FIRST, SECOND, CENTRE_LINE), (FIRST, REST_FIRST, EDGE_LINE),
+        (SECOND, SECOND, LANE_LINE), (SECOND, REST_SECOND, EDGE_LINE),
+        (REST_SECOND, REST_SECOND, OTHER_LINE), (REST_SECOND, SECOND, EDGE_LINE), (REST_SECOND, FIRST, EDGE_LINE), (SECOND, FIRST, CENTRE_LINE)):
+    SEPARATES[_left, _right] = _what
+_WRONG_SIDE = {(REST_SECOND, FIRST), (SECOND, FIRST)}
+
+
+@dataclass
+class Sections:
+    """The best cross-sections of each interval, the best one first.
+
+    cost : (I, K) nats; inf where there are fewer than K
+    strip : (I, K, M) int8, kind of the strip to the right of each boundary, -1 where a boundary bounds nothing
+    right : (I, K, M) int8, the boundary that the strip ends at
+    lanes, first_lanes : (I, K, M) int8, how many lanes the strip holds, and how many of them are of the direction that is met first
+    """
+
+    cost: np.ndarray
+    strip: np.ndarray
+    right: np.ndarray
+    lanes: np.ndarray
+    first_lanes: np.ndarray
+
+    def take(self, intervals: slice | np.ndarray) -> Sections:
+        """Those of some intervals."""
+        return Sections(**{name: values[intervals] for name, values in vars(self).items()})
+
+    def chosen(self, choice: np.ndarray) -> Sections:
+        """One of each interval."""
+        rows = np.arange(len(choice))
+        return Sections(**{name: values[rows, choice][:, None] for name, values in vars(self).items()})
+
+    @staticmethod
+    def joined(parts: Sequence[Sections]) -> Sections:
+        """The cross-sections of intervals that follow each other."""
+        return Sections(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in vars(parts[0])})
+
+
+@dataclass
+class LaneStrips:
+    """The strips of cross-sections that hold lanes.
+
+    interval, section, left, right : (S,) int, where they are and the boundaries they lie between
+    kind : (S,) FIRST ... SECOND; number, first : (S,) lanes in them, and how many of these are of the direction that is met first
+    """
+
+    interval: np.ndarray
+    section: np.ndarray
+    left: np.ndarray
+    right: np.ndarray
+    kind: np.ndarray
+    number: np.ndarray
+    first: np.ndarray
+
+
+def lane_strips(sections: Sections) -> LaneStrips:
+    """The LaneStrips of all cross-sections, in order of interval, cross-section and from left to right."""
+    i, k, m = np.nonzero((sections.strip >= FIRST) & (sections.strip <= SECOND))
+    return LaneStrips(i, k, m, *(values[i, k, m].astype(int) for values in (sections.right, sections.strip, sections.lanes, sections.first_lanes)))
+
+
+def separated_kinds(sections: Sections) -> np.ndarray:
+    """(I, K, M) what each boundary separates, LANE_LINE ... OTHER_LINE; -1 where it bounds nothing."""
+    strip = sections.strip
+    before = np.full(strip.shape, -1, np.int8)
+    i, k, m = np.nonzero(strip >= 0)
+    before[i, k, sections.right[i, k, m]] = strip[i, k, m]
+    return np.where((strip >= 0) & (before >= 0), SEPARATES[before, strip], np.int8(-1))
+
+
+def misnamed_costs(candidates: Candidates, sections: Sections, weights: EstimateWeights) -> np.ndarray:
+    """(I, K) nats of lines that separate something else than their layer says."""
+    what, named = separated_kinds(sections), candidates.named[:, None, :]
+    return weights.named * _misnamed(what, named).sum(2) * candidates.observations(weights)[:, None]
+
+
+def _misnamed(what, named):
+    return (what >= 0) & (named >= 0) & (named != what) & (what != OTHER_LINE)
+
+
+def best_sections(candidates: Candidates, costs: StripCosts, stops: np.ndarray, weights: EstimateWeights, kept: int = KEPT) -> Sections:
+    """The `kept` best cross-sections of each interval; `stops` are those of Evidence."""
+    count, size = candidates.left.shape
+    kinds = len(STRIPS)
+    between = _boundary_costs(candidates, stops, weights)
+    best = np.full((count, size, kinds, kept), np.inf)
+    back = np.full((count, size, kinds, kept), -1, np.int32)
+    # to the left of everything nobody drives
+    best[:, 0, REST_FIRST, 0] = 0.0
+    for j in range(1, size - 1):
+        reach = _reach(best, costs, j)
+        for kind in STRIPS:
+            back[:, j, kind], best[:, j, kind] = _lowest(reach + between[:, j, :, kind][:, None, :, None], kept)
+        best[:, j][~candidates.valid[:, j]] = np.inf
+    reach = _reach(best, costs, size - 1)
+    reach[:, :, FIRST:SECOND + 1] = np.inf
+    return _traced(back, _lowest(reach, kept), costs)
+
+
+def _reach(best, costs, j):
+    """(I, j, 7, kept) nats up to boundary j with a strip of a kind that begins at an earlier boundary."""
+    return best[:, :j] + costs.cost[:, :, :j, j].transpose(1, 2, 0)[..., None]
+
+
+def _lowest(values, kept):
+    """(I, kept) places, in the flattened rows, and values of the lowest of each of I rows; inf where there are fewer."""
+    flat = values.reshape(len(values), -1)
+    flat = np.pad(flat, ((0, 0), (0, max(kept - flat.shape[1], 0))), constant_values=np.inf)
+    place = np.argpartition(flat, kept - 1, axis=1)[:, :kept]
+    lowest = np.take_along_axis(flat, place, axis=1)
+    order = np.argsort(lowest, axis=1, kind="stable")
+    return np.take_along_axis(place, order, axis=1), np.take_along_axis(lowest, order, axis=1)
+
+
+def _boundary_costs(c, stops, w):
+    """(I, M, 7, 7) nats of a boundary between a strip on its left and one on its right."""
+    scale = c.observations(w)[:, None]
+    table = w.boundary[c.made_of]
+    stopped = stops_across(stops, (c.left + c.right) / 2)
+    for share, costs in ((c.short, np.array(w.short_dashed)), (c.wide, w.wide_line[c.made_of.clip(SOLID, DASHED)])):
+        share = np.nan_to_num(share)[..., None]
+        table = np.where(share > 0, (1 - share) * table + share * costs, table)
+    cost = np.full((*c.left.shape, len(STRIPS), len(STRIPS)), np.inf)
+    for left in STRIPS:
+        for right in STRIPS:
+            what = SEPARATES[left, right]
+            if what >= 0:
+                misnamed = w.named * _misnamed(what, c.named)
+                wrong = w.wrong_side if (left, right) in _WRONG_SIDE else 0.0
+                cost[:, :, left, right] = scale * (table[:, :, what] + wrong + misnamed) \
+                    + w.split_stop * stopped * (what == CENTRE_LINE)
+    return cost
+
+
+def _traced(back, ends, costs):
+    """Sections from the ends of the chains: `back` tells from where each chain came."""
+    count, size, kinds, kept = back.shape
+    chosen, value = ends
+    strip, right, lanes, first_lanes = np.full((4, *chosen.shape, size), -1, np.int8)
+    row = np.arange(count)[:, None]
+    at, place = np.full(chosen.shape, size - 1), np.where(np.isfinite(value), chosen, -1)
+    while (alive := place >= 0).any():
+        boundary, rest = np.divmod(place, kinds * kept)
+        kind, rank = np.divmod(rest, kept)
+        r, k = np.nonzero(alive)
+        strip[r, k, boundary[alive]] = kind[alive]
+        right[r, k, boundary[alive]] = at[alive]
+        for values, of_strip in ((lanes, costs.lanes), (first_lanes, costs.first_lanes)):
+            values[r, k, boundary[alive]] = of_strip[kind[alive], r, boundary[alive], at[alive]]
+        at = np.where(alive, boundary, at)
+        place = np.where(alive & (boundary > 0), back[row, boundary.clip(0), kind, rank], -1)
+    return Sections(value, strip, right, lanes, first_lanes)
+
+
+# The most probable sequence of cross-sections along a road, and how sure each is.
+
+PLACE = 0.5      # m across at which cross-sections are compared
+INTERVALS_AT_ONCE = 32   # of which cross-sections are compared with each other
+SAME_DIVIDER = 1 # places by which the same border between lanes may lie elsewhere
+
+
+def transitions(candidates: Candidates, sections: Sections, known: np.ndarray, lane_width: float, left: Sequence[np.ndarray],
+                weights: EstimateWeights) -> np.ndarray:
+    """Nats of going from each cross-section of an interval to each of the next of those of which something is known.
+
+    Parameters
+    ----------
+    candidates, sections : of all intervals
+    known : (N,) int, intervals, ascending
+    lane_width : metres, usual
+    left : of what was known of lanes, and of directions, what is left after the way to the next one, (N - 1,) 0 to 1 each
+
+    Returns
+    -------
+    (N - 1, K, K)
+    """
+    kept = sections.cost.shape[1]
+    found = np.empty((max(len(known) - 1, 0), kept, kept))
+    # what is compared is larger than the costs
+    for first in range(0, len(found), INTERVALS_AT_ONCE):
+        check_cancelled()
+        some = known[first:first + INTERVALS_AT_ONCE + 1]
+        own = slice(first, first + len(some) - 1)
+        costs = _transition_costs(*occupancy(candidates.take(some), sections.take(some), lane_width), weights)
+        found[own] = sum(cost * share[own, None, None] for cost, share in zip(costs, left))
+    return found
+
+
+def occupancy(candidates: Candidates, sections: Sections, lane_width: float) -> tuple[np.ndarray, np.ndarray]:
+    """What lies where across the road.
+
+    Returns
+    -------
+    area : (2, I, K, B) whether lanes of the first and of the second direction lie at a place across
+    divider : (I, K, B) whether a border between two lanes lies there
+    """
+    count, kept, size = sections.strip.shape
+    bins = int(2 * FAR / PLACE)
+    area, divider = np.zeros((2, count, kept, bins + 1)), np.zeros((count, kept, bins), bool)
+    strips = lane_strips(sections)
+    i, k, m, end, number = strips.interval, strips.section, strips.left, strips.right, strips.number
+    d_left, each = lane_places(candidates.right[i, m], candidates.left[i, end], candidates.made_of[i, m], candidates.made_of[i, end], number,
+                               lane_width, candidates.bend[i])
+    d_right = d_left - number * each
+    split = d_left - each * strips.first
+    for which, (high, low) in enumerate(((d_left, split), (split, d_right))):
+        some = high - low > 1e-6
+        a, b = (np.clip(np.rint((v[some] + FAR) / PLACE).astype(int), 0, bins) for v in (low, high))
+        np.add.at(area[which], (i[some], k[some], a), 1.0)
+        np.add.at(area[which], (i[some], k[some], b), -1.0)
+    area = np.cumsum(area, axis=-1)[..., :-1]
+    for place in range(1, int(number.max(initial=1))):
+        some = number > place
+        d = d_left[some] - each[some] * place
+        divider[i[some], k[some], np.clip(np.rint((d + FAR) / PLACE).astype(int), 0, bins - 1)] = True
+    # painted borders with a lane on both sides
+    lane = (sections.strip >= FIRST) & (sections.strip <= SECOND)
+    ends = np.zeros(sections.strip.shape, bool)
+    ends[i, k, end] = True
+    i, k, m = np.nonzero(lane & ends)
+    d = (candidates.left[i, m] + candidates.right[i, m]) / 2
+    divider[i, k, np.clip(np.rint((d + FAR) / PLACE).astype(int), 0, bins - 1)] = True
+    return area, divider
+
+
+def _transition_costs(area, divider, weights):
+    """Nats of going from a cross-section to one of the next interval: of lanes that begin, end or divide, and of those that change direction."""
+    first, second = area.astype(np.float32)
+    wide = np.zeros(divider.shape, np.float32)
+    for shift in range(-SAME_DIVIDER, SAME_DIVIDER + 1):
+        wide = np.maximum(wide, np.roll(divider, shift, axis=-1))
+    marks = divider.astype(np.float32)
+    change, turn = weights.change * PLACE, weights.turn * PLACE
+
+    def product(a, b):
+        return np.einsum("ikb,ilb->ikl", a[:-1], b[1:], optimize=True)
+
+    def core(values):
+        # borders that move by a place across are no change
+        return np.minimum(np.minimum(np.roll(values, 1, -1), np.roll(values, -1, -1)), values)
+
+    lane = first + second
+    inner, ahead, back = core(lane), core(first), core(second)
+    size = inner.sum(-1)
+    differs = size[:-1, :, None] + size[1:, None, :] - product(inner, lane) - product(lane, inner)
+    turned = product(ahead, second) + product(back, first)
+    number = marks.sum(-1)
+    lost = number[:-1, :, None] + number[1:, None, :] - product(marks, wide) - product(wide, marks)
+    return change * differs + weights.divider_change * np.clip(lost, 0, None), turn * turned
+
+
+def best_sequence(cost: np.ndarray, transition: np.ndarray) -> tuple[np.ndarray, float]:
+    """The most probable sequence (Viterbi).
+
+    Parameters
+    ----------
+    cost : (I, K) nats, inf where there is no cross-section
+    transition : (I - 1, K, K) nats
+
+    Returns
+    -------
+    choice : (I,) the cross-section of each interval; total : nats of the whole
+    """
+    count, kept = cost.shape
+    best, came = cost[0].copy(), np.zeros((count, kept), int)
+    for i in range(1, count):
+        step = best[:, None] + transition[i - 1]
+        came[i] = np.argmin(step, axis=0)
+        best = step[came[i], np.arange(kept)] + cost[i]
+    choice = np.zeros(count, int)
+    choice[-1] = int(np.argmin(best))
+    for i in range(count - 1, 0, -1):
+        choice[i - 1] = came[i, choice[i]]
+    return choice, float(best.min())
+
+
+def probabilities(cost: np.ndarray, transition: np.ndarray) -> np.ndarray:
+    """(I, K) how probable each cross-section is among all sequences (forward-backward); parameters as of `best_sequence`."""
+    forward, backward = np.zeros((2, *cost.shape))
+    forward[0] = -cost[0]
+    for i in range(1, len(cost)):
+        forward[i] = _log_sum(forward[i - 1][:, None] - transition[i - 1], 0) - cost[i]
+    for i in range(len(cost) - 1, 0, -1):
+        backward[i - 1] = _log_sum(backward[i][None, :] - transition[i - 1] - cost[i][None, :], 1)
+    log = forward + backward
+    posterior = np.exp(log - log.max(axis=1, keepdims=True))
+    return posterior / posterior.sum(axis=1, keepdims=True)
+
+
+def best_through(cost: np.ndarray, transition: np.ndarray) -> np.ndarray:
+    """(I, K) nats of the most probable sequence through each cross-section; parameters as of `best_sequence`."""
+    forward, backward = cost.copy(), np.zeros(cost.shape)
+    for i in range(1, len(cost)):
+        forward[i] += (forward[i - 1][:, None] + transition[i - 1]).min(0)
+    for i in range(len(cost) - 1, 0, -1):
+        backward[i - 1] = (transition[i - 1] + (cost[i] + backward[i])[None, :]).min(1)
+    return forward + backward
+
+
+def behind_best(cost: np.ndarray, transition: np.ndarray, length: np.ndarray, repeats: float) -> np.ndarray:
+    """By how many nats the most probable sequence through each cross-section is behind the most probable one of all.
+
+    Where the two differ over a longer way than `repeats`, they differ in how the whole road is laid out. What is seen there again and again was
+    laid out and driven once, so it counts as on a way of that length.
+
+    Parameters
+    ----------
+    cost, transition : as of `best_sequence`
+    length : (I,) metres of each interval
+    repeats : metres
+
+    Returns
+    -------
+    (I, K) nats, 0 for the most probable sequence; inf for cross-sections that are none
+    """
+    choice, total = best_sequence(cost, transition)
+    apart = np.repeat(length[:, None].astype(float), cost.shape[1], axis=1)
+    apart[np.arange(len(choice)), choice] = 0.0
+    # metres for which a sequence has been apart from the best one, up to a cross-section and from it on
+    before, after = apart.copy(), apart.copy()
+    forward, backward = cost.copy(), np.zeros(cost.shape)
+    for i in range(1, len(cost)):
+        step = forward[i - 1][:, None] + transition[i - 1]
+        forward[i] += step.min(0)
+        before[i] = np.where(apart[i] > 0, before[i] + before[i - 1][step.argmin(0)], 0.0)
+    for i in range(len(cost) - 1, 0, -1):
+        step = transition[i - 1] + (cost[i] + backward[i])[None, :]
+        backward[i - 1] = step.min(1)
+        after[i - 1] = np.where(apart[i - 1] > 0, after[i - 1] + after[i][step.argmin(1)], 0.0)
+    return (forward + backward - total) * np.minimum(1.0, repeats / np.maximum(before + after - apart, 1e-9))
+
+
+def _log_sum(values, axis):
+    highest = values.max(axis=axis, keepdims=True)
+    highest = np.where(np.isfinite(highest), highest, 0.0)
+    with np.errstate(divide="ignore"):
+        return np.squeeze(highest, axis) + np.log(np.exp(values - highest).sum(axis=axis))
