@@ -14,10 +14,11 @@ import numpy as np
 from ...common.errors import RoadExtractionError
 from ...io.crs import horizontal_part, parse_crs
 from ...io.text_table import SAMPLE_BYTES, finite_or_nan, read_number_table
-from .columns import HEADING_TOLERANCE, angle_between, driven_course, geographic_unit, listed, rough_metres, stated_angle_unit
+from .columns import listed, stated_angle_unit
 from .meaning import meaning_of, meaning_of_table, values_by_role
 from .table_columns import columns_of_record, columns_of_rows, is_record, titled_columns
 from .trajectory import MAX_VEHICLE_SPEED, Trajectory, lengths_in_metres, reproject_trajectory
+from .unnamed_columns import HEADING_TOLERANCE, angle_between, driven_course, geographic_unit, rough_metres
 
 SBET_DOUBLES = 17  # time, lat, lon, height, 3 velocities, roll, pitch, heading, wander angle, 6 more
 WGS84 = "EPSG:4326"

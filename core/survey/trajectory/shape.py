@@ -18,8 +18,8 @@ from scipy.interpolate import CubicHermiteSpline, CubicSpline
 from scipy.signal import savgol_filter
 
 from ...curves.robust import MAD_TO_SIGMA
-from .columns import HEADING_TOLERANCE, angle_between
 from .trajectory import Trajectory
+from .unnamed_columns import HEADING_TOLERANCE, angle_between
 
 GAP_FACTOR, SHORTEST_PAUSE = 3.0, 1.0     # weight: times the usual step of time, and s, beyond which the vehicle is not interpolated
 MAX_SAGITTA = 0.05      # weight: m; bends are curved that straight lines between vertices miss by more
