@@ -89,7 +89,6 @@ class HeightFilter:
 
     Parameters
     ----------
-    frame : RoadFrame
     drop : metres from the trajectory down to the road
     above : metres above the road up to which points are kept
     """
@@ -154,13 +153,7 @@ class PointChoice:
 
 
 class BlockProjector:
-    """Turns blocks into compact records in the road frame; safe to use in several threads.
-
-    Parameters
-    ----------
-    frame : RoadFrame
-    choice : PointChoice
-    """
+    """Turns blocks into compact records in the road frame; safe to use in several threads."""
 
     def __init__(self, frame: RoadFrame, choice: PointChoice):
         self.frame, self.choice, self.corridor, self.has_time = frame, choice, choice.corridor, choice.has_time
@@ -341,8 +334,6 @@ class BlockReader:
 
     Parameters
     ----------
-    frame : RoadFrame
-    choice : PointChoice
     slots : TimeSlots of the points that are sampled
     """
 
@@ -408,12 +399,7 @@ HEIGHT_PEAK_REACH = 0.5           # m either side of the peak that belong to the
 
 
 class VehicleTracks:
-    """The tracks of the vehicle in the road frame, to find the points that lie on them.
-
-    Parameters
-    ----------
-    frame : RoadFrame
-    """
+    """The tracks of the vehicle in the road frame, to find the points that lie on them."""
 
     def __init__(self, frame: RoadFrame):
         self.frame = frame
@@ -431,7 +417,6 @@ class VehicleTracks:
         Parameters
         ----------
         road : number
-        points : Columns
         own : (N,) bool, points to use; all by default
 
         Yields

@@ -35,7 +35,6 @@ def check_features_on_roads(features: Features, frame: RoadFrame, label: str) ->
     Parameters
     ----------
     features : Features with the fields `road` and `station_m`, and maybe `offset_m`
-    frame : RoadFrame
     label : name of the input, as at the beginning of a sentence
 
     Raises
@@ -67,7 +66,6 @@ def keep_near_roads(features: Features, frame: RoadFrame, label: str) -> str:
     Parameters
     ----------
     features : Features in map coordinates, which are changed: points and polygons go whole, of lines the vertices far away
-    frame : RoadFrame
     label : name of the input, as at the beginning of a sentence
 
     Returns
@@ -107,8 +105,6 @@ def check_road_points_on_roads(road_points: RoadPoints, frame: RoadFrame, label:
 
     Parameters
     ----------
-    road_points : RoadPoints
-    frame : RoadFrame
     label : name of the input, as at the beginning of a sentence
 
     Raises

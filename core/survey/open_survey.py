@@ -179,13 +179,7 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     ----------
     files : headers of LAS, LAZ or COPC files in any order
     trajectory : Trajectory in any CRS and time system
-    settings : SurveySettings
-    progress : Progress
     shared : who reads, where the points are to lie in a folder; None for threads of this process and its memory
-
-    Returns
-    -------
-    Survey
 
     Raises
     ------
@@ -279,7 +273,7 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
         shared.ordered.mkdir(exist_ok=True)
         survey.put_in_order(shared.ordered, shared.ordering, progress.part(PARTS_PROGRESS * read_at, read_at))
     if has_time and not feet:   # a scanner that rides three times too high sees three times too far
-        check_clock(survey, progress)
+        _check_clock(survey, progress)
     measured = survey.store
     mounted = lay_scanners(survey, progress.part(read_at, read_at), None if shared is None else shared.points) if has_time and not feet else 0.0
     if again:
@@ -310,7 +304,6 @@ def section_length(files: list[CloudHeader], frame: RoadFrame) -> float:
     Parameters
     ----------
     files : headers of the clouds
-    frame : RoadFrame
     """
     density = sum(file.count for file in files) / max(sum(road.length for road in frame.roads), 1.0)
     return max((length for length in SECTION_LENGTHS if length * density <= SECTION_POINTS), default=SECTION_LENGTH)
@@ -350,9 +343,7 @@ def match_clocks(files: list[CloudHeader], trajectory: Trajectory, settings: Sur
     Parameters
     ----------
     files : headers of the clouds
-    trajectory : Trajectory
     settings : SurveySettings, of which `time` is used
-    progress : Progress
 
     Returns
     -------
@@ -478,11 +469,9 @@ CLOCK_SECTIONS, CLOCK_POINTS_PER_SECTION = 20, 5000  # sampled, evenly over the 
 MIN_CLOCK_POINTS = 500         # sampled points that a judgement needs
 
 
-def check_clock(survey: Survey, progress: Progress = Progress()) -> None:
+def _check_clock(survey: Survey, progress: Progress = Progress()) -> None:
     """Warn if points were measured at times at which the vehicle was elsewhere.
 
-    Parameters
-    ----------
     survey : Survey with times
     progress : receives the warning
     """

@@ -54,9 +54,7 @@ class SurveyReader:
 
     Parameters
     ----------
-    frame : RoadFrame
     store : SectionStore that the points are added to
-    choice : PointChoice
 
     Attributes, complete after `read` or `read_in_parts`
     ----------------------------------------------------
@@ -222,9 +220,7 @@ class PartsOfFiles:
     Parameters
     ----------
     files : CloudHeaders
-    frame : RoadFrame
     store : SectionStore, of which dtype, section length, memory limit and folder count
-    choice : PointChoice
     slots : TimeSlots of the points that are sampled
     drop : m from the trajectory down to the road, about
     ranges : (B, 3) number of a file, index of the first point and points of every block
@@ -277,7 +273,6 @@ def read_part(source: PartsOfFiles, item: tuple[int, int]) -> PartOfFiles:
 
     Parameters
     ----------
-    source : PartsOfFiles
     item : (first, last + 1) numbers of blocks
     """
     chosen, found = source.reader.chosen(source.drop), BlockSummary()
@@ -330,7 +325,6 @@ class UnorderedPoints:
         ----------
         executor : who does it
         place : names the stretch of a road between two stations (m)
-        progress : Progress
         """
         length = self.store.section_length
 
@@ -354,7 +348,6 @@ def order_sections(source: UnorderedPoints, item: Stretch) -> StoreIndex:
 
     Parameters
     ----------
-    source : UnorderedPoints
     item : Stretch of its road
     """
     try:

@@ -246,7 +246,6 @@ def pass_offsets(survey: Any, road: int, progress: Progress = Progress()) -> lis
     ----------
     survey : Survey with times
     road : number
-    progress : Progress
 
     Returns
     -------

@@ -37,10 +37,6 @@ class LineLookup:
     """The reference line of a road in tables by node.
 
     Lengths are in nodes (NODE_SPACING metres). `bend` is the offset of a point times the curvature of the line.
-
-    Parameters
-    ----------
-    road : Road
     """
 
     def __init__(self, road: Road):
@@ -212,7 +208,6 @@ class RoadProjection:
 
     Parameters
     ----------
-    frame : RoadFrame
     corridor : metres either side
     """
 

@@ -343,7 +343,7 @@ def _read_sbet(path, crs):
     columns = dict(time=rows[:, 0], x=np.degrees(rows[:, 2]), y=np.degrees(rows[:, 1]), z=rows[:, 3],
                    roll=rows[:, 7], pitch=rows[:, 8], heading=true_heading)
     trajectory = trajectory_from_columns(columns, crs or WGS84, "radians", path.name, notes)
-    sigma, remark = accuracy_across(path, rows[:, 0], columns["x"], columns["y"])
+    sigma, remark = _accuracy_across(path, rows[:, 0], columns["x"], columns["y"])
     remarks = tuple(note for note in (*trajectory.notes, remark) if note and "radians" not in note)
     return replace(trajectory, notes=remarks, sigma_across=sigma)
 
@@ -354,18 +354,13 @@ SMRMSG_DOUBLES = 10   # time, RMS north, east, down (m), of three velocities (m/
 WORST = 100.0         # m: a position that is known worse than this is none, and the file another one
 
 
-def accuracy_across(sbet: Path, time: np.ndarray, x: np.ndarray, y: np.ndarray) -> tuple[float, str]:
+def _accuracy_across(sbet: Path, time: np.ndarray, x: np.ndarray, y: np.ndarray) -> tuple[float, str]:
     """One sigma of a trajectory across its way, from the file beside it.
 
-    Parameters
-    ----------
     sbet : path of the SBET
     time : (N,) s, as it stands in the SBET
     x, y : (N,) longitude and latitude, degrees
-
-    Returns
-    -------
-    sigma : m, the root of the mean square over the way driven, so that waiting does not count; 0 where nothing is known
+    Returns: sigma : m, the root of the mean square over the way driven, so that waiting does not count; 0 where nothing is known
     note : a sentence on it, "" where there is no such file
     """
     try:

@@ -137,7 +137,7 @@ def _agreeing_headings(sample, time, others, pairs):
         for h in others:
             if h in (a, b):
                 continue
-            wrong = heading_disagreement(x, y, sample[:, h])
+            wrong = _heading_disagreement(x, y, sample[:, h])
             # every trajectory has heights and not every one headings: of a single column that may be either it is the height
             if wrong is not None and _height_column(sample, time, others, (a, b), h) is not None:
                 # roll and pitch agree with the course of a drive due north, so a wide range of values counts more than a close fit,
@@ -254,17 +254,12 @@ def angle_between(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     return np.abs((np.asarray(a) - b + 180.0) % 360.0 - 180.0)
 
 
-def heading_disagreement(x: np.ndarray, y: np.ndarray, heading: np.ndarray) -> float | None:
+def _heading_disagreement(x: np.ndarray, y: np.ndarray, heading: np.ndarray) -> float | None:
     """How far a column that may be the heading differs from the course driven.
 
-    Parameters
-    ----------
     x, y : (N,) metres
     heading : (N,) degrees or radians
-
-    Returns
-    -------
-    Median difference in degrees; None beyond HEADING_TOLERANCE or where the column cannot be an angle
+    Returns: Median difference in degrees; None beyond HEADING_TOLERANCE or where the column cannot be an angle
     """
     good = np.isfinite(x) & np.isfinite(y) & np.isfinite(heading)
     rows, course = driven_course(x[good], y[good])
