@@ -11,17 +11,16 @@ import numpy as np
 
 from ..common.parallel import ScratchBuffers
 from .frame.projection import POINTS_PER_PROJECTION, RoadProjection
+from .frame.road_frame import RoadFrame
 from .las.point_fields import EVER, IntensitySource, LasAxis, flagged, times_by_value, valid_points
 from .las.samples import TimeSlots
 from .store.columns import Columns
 from .store.records import COORDINATE_SCALE, SURVEY_POINT, beside_road, fill_units, point_dtype, road_of, to_units
+from .store.section_store import PartitionedPoints, SectionStore
 from .trajectory.time_systems import SECONDS_PER_WEEK
 
 if TYPE_CHECKING:
     import laspy
-
-    from .frame.road_frame import RoadFrame
-    from .store.section_store import PartitionedPoints, SectionStore
 
 DECODED_LAYERS = ("z", "intensity", "point_source_id", "gps_time", "flags", "classification")  # LAZ layers that are decoded
 KEPT_ABOVE_ROAD, KEPT_BELOW_ROAD = 3.5, 4.0  # m: vehicles that hide a curb above the road, ditches below it

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -23,14 +23,11 @@ from .las.point_fields import INTENSITY_SOURCES, ScannerCensus, intensity_source
 from .las.reader import POINTS_PER_BLOCK, read_blocks, read_headers
 from .las.samples import PER_METRE, coarse_coordinates, distinct_rows, may_overlap, sample_files, without_copies
 from .open_survey import match_clocks
+from .store.records import Points
+from .store.road_points import RoadPoints
 from .store.section_store import STRETCH_POINTS, Stretch
-from .survey import SurveySettings
+from .survey import Survey, SurveySettings
 from .trajectory.trajectory import Trajectory, clean_trajectory, reproject_trajectory
-
-if TYPE_CHECKING:
-    from .store.records import Points
-    from .store.road_points import RoadPoints
-    from .survey import Survey
 
 NEAR_TRAJECTORY = 25.0        # m: points within this distance count as measured from the trajectory
 SAMPLING_INTERVAL = 50       # the distance to the trajectory is measured for every 50th point

@@ -7,7 +7,6 @@ import shutil
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -23,7 +22,7 @@ from .adjustment.scanner_fit import lay_scanners
 from .adjustment.trajectory_fit import LOWEST_SENSOR, fitted_trajectory
 from .blocks import PointChoice, unwrap_week
 from .frame.road import CORRIDOR
-from .frame.road_frame import build_frame
+from .frame.road_frame import RoadFrame, build_frame
 from .frame.row_table import SigmaAlong
 from .las.parallel_reader import ParallelCloudReader
 from .las.point_fields import check_coloured, intensity_source_of, without_intensity
@@ -36,11 +35,7 @@ from .survey import SURVEY_FOLDER, Survey, SurveySettings, survey_in_folder
 from .survey_reader import SurveyReader
 from .trajectory.meaning import EARTH_RADIUS
 from .trajectory.time_systems import align_time, wrapped_week
-from .trajectory.trajectory import refuse_standstill, reproject_trajectory
-
-if TYPE_CHECKING:
-    from .frame.road_frame import RoadFrame
-    from .trajectory.trajectory import Trajectory
+from .trajectory.trajectory import Trajectory, refuse_standstill, reproject_trajectory
 
 
 def open_survey(paths: Sequence[str | Path], trajectory: Trajectory, settings: SurveySettings = SurveySettings(),

@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -29,6 +29,7 @@ from .blocks import (
     PointChoice,
     estimate_sensor_height,
 )
+from .estimation.interleaved import ScannerSplitter
 from .frame.road_frame import RoadFrame
 from .las.parallel_reader import ParallelCloudReader
 from .las.point_fields import ScannerCensus, numbers_by_value
@@ -38,9 +39,6 @@ from .store.columns import Columns
 from .store.records import COORDINATE_SCALE, road_of
 from .store.section_store import STRETCH_POINTS, SectionStore, Stretch
 from .store.spill_file import StoreIndex, close_parts
-
-if TYPE_CHECKING:
-    from .estimation.interleaved import ScannerSplitter
 
 MAX_WAITING_POINTS = 4_000_000  # points held back at most until the height of the road is known
 HEIGHT_SAMPLES = 5_000     # points on the own track from which the rough height is estimated

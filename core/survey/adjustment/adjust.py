@@ -11,7 +11,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
@@ -20,8 +20,10 @@ from scipy.sparse.linalg import spsolve
 
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
-from ..frame.passes import LEVEL_SEPARATION
+from ..frame.passes import LEVEL_SEPARATION, Pass
+from ..frame.road_frame import RoadFrame
 from ..frame.row_table import SigmaAlong
+from ..store.columns import Columns
 from ..store.records import COORDINATE_SCALE, to_units
 from ..store.section_store import SectionStore
 from .register import (
@@ -36,11 +38,6 @@ from .register import (
     pass_offsets,
     sigma_of_passes,
 )
-
-if TYPE_CHECKING:
-    from ..frame.passes import Pass
-    from ..frame.road_frame import RoadFrame
-    from ..store.columns import Columns
 
 MOVED_COLUMNS = "x", "y", "z", "s", "d"
 AGREEMENT_PLAN, AGREEMENT_HEIGHT = 0.020, 0.007    # m: a road stays as measured if nine tenths of its offsets are less

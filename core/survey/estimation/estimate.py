@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.ndimage import median_filter
@@ -32,10 +31,7 @@ from .samples import (
     ridge_of,
     rounding_of,
 )
-from .turning_head import HEAD_HEIGHT, HEAD_HEIGHT_SIGMA, head_heights, turning_heads
-
-if TYPE_CHECKING:
-    from .turning_head import HeadTrack
+from .turning_head import HEAD_HEIGHT, HEAD_HEIGHT_SIGMA, HeadTrack, head_heights, turning_heads
 
 ROW_SPACING = 0.02         # s between the positions written: a third of a metre on a motorway
 MAX_SIGMA = 0.15           # m: a position that is known less well is not written; errors of twice that happen

@@ -8,19 +8,14 @@ than 0.01 mm and needs half the memory bandwidth of double precision.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...common.parallel import ScratchBuffers
 from ..store.records import COORDINATE_SCALE, to_units
-from .passes import MAX_TICKS, TIME_TICK
-from .road import NODE_SPACING
-
-if TYPE_CHECKING:
-    from .passes import Pass
-    from .road import Road
-    from .road_frame import RoadFrame
+from .passes import MAX_TICKS, TIME_TICK, Pass
+from .road import NODE_SPACING, Road
+from .road_frame import RoadFrame
 
 Buffers = Callable[..., np.ndarray]   # what `ScratchBuffers.of` returns
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import laspy
 import numpy as np
@@ -13,9 +13,7 @@ import numpy as np
 from ...common.errors import RoadExtractionError
 from ..store.records import COORDINATE_SCALE, MAX_XY_32_BIT, fill_units
 from .reader import CloudHeader, read_blocks
-
-if TYPE_CHECKING:
-    from .samples import FileSample
+from .samples import FileSample
 
 MAX_SCANNERS = 8
 MIN_INTERLEAVED_SHARE = 0.8   # of the points: their values must overlap in time if the values identify scanners
