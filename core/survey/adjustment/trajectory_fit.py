@@ -400,8 +400,8 @@ def _usual_lever(mountings: Sequence[Mounting]) -> np.ndarray:
 
 # The numbers by which a survey is told to fit itself, each with where it comes from.
 #
-# source : a standard or the law derived : follows from another number or from how the thing is built weight : our own estimate, rounded; beside it
-# what it stands for cost : decides how long the work takes, not what it says
+# source: a standard or the law; derived: follows from another number or from how the thing is built; weight: our own estimate, rounded, with what
+# it stands for beside it; cost: decides how long the work takes, not what it says
 
 # Vehicles
 HALF_VEHICLE = 1.275     # source: m; no vehicle on the road is wider than 2.55 m (Directive 96/53/EC), so no scanner rides farther beside its middle

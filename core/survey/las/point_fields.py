@@ -327,10 +327,8 @@ def _has_colours(file):
     return bool(values.min() < values.max())
 
 
-# Points that whoever made the cloud marked as none of the survey: withheld ones and noise.
-#
-# References ---------- ASPRS, LAS specification 1.4 R15: a withheld point "should not be included in processing (synonymous with Deleted)"; table
-# 17, classes 7 (low point, noise) and 18 (high noise).
+# Points that whoever made the cloud marked as none of the survey: withheld ones, which "should not be included in processing (synonymous with
+# Deleted)", and noise, classes 7 and 18 (ASPRS, LAS specification 1.4 R15, table 17).
 
 NOISE_CLASSES = 7, 18
 
