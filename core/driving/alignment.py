@@ -368,11 +368,11 @@ def without_short_status(status: np.ndarray) -> np.ndarray:
 def track_pieces(track: LaneTrack, s: np.ndarray) -> list[tuple[int, float, float]]:
     """(status, start station, end station) of the pieces of a lane, cut where its status changes and where doubt begins or ends; ends touch."""
     kinds = len(LANE_STATUS)
-    found = status_pieces(without_short_status(track.status + kinds * track.in_doubt()), track.first, s)
+    found = _status_pieces(without_short_status(track.status + kinds * track.in_doubt()), track.first, s)
     return [(code % kinds, start, end) for code, start, end in found]
 
 
-def status_pieces(status: np.ndarray, first: int, s: np.ndarray) -> list[tuple[int, float, float]]:
+def _status_pieces(status: np.ndarray, first: int, s: np.ndarray) -> list[tuple[int, float, float]]:
     """(status, start station, end station) of the pieces of a lane; ends touch."""
     cuts = np.r_[0, np.flatnonzero(np.diff(status)) + 1, len(status)]
     bounds = s[first + cuts[:-1]]

@@ -162,7 +162,7 @@ def asphalt_statistics(values: np.ndarray) -> tuple[float, float]:
     return median, spread
 
 
-def distance_bin(distances: np.ndarray) -> np.ndarray:
+def _distance_bin(distances: np.ndarray) -> np.ndarray:
     """(N,) int32 bin of (N,) int32 signed distances, units of 0.1 mm."""
     number = distances + np.int32(MAX_DISTANCE / COORDINATE_SCALE)
     number //= np.int32(DISTANCE_BIN / COORDINATE_SCALE)
@@ -222,7 +222,7 @@ class IntensityHistograms:
         level, scanners = to_level(intensity), self.counts.shape[1]
         found = []
         for kind, row in zip(kinds, distances):
-            number = distance_bin(row)
+            number = _distance_bin(row)
             first, bins = int(number.min()), int(np.ptp(number)) + 1
             number -= first
             if scanners > 1:

@@ -62,7 +62,7 @@ class OutlierSettings:
             raise RoadExtractionError(f"The scope {self.scope!r} is not known; use one of {', '.join(OUTLIER_SCOPES)}.")
 
 
-def within_spread(distances: np.ndarray, std_ratio: float) -> np.ndarray:
+def _within_spread(distances: np.ndarray, std_ratio: float) -> np.ndarray:
     """(N,) bool: mean distance at most mu + m * sigma, sigma with n - 1 as in PCL."""
     if len(distances) < 2:
         return np.ones(len(distances), bool)
@@ -202,7 +202,7 @@ def _kept_of_all(points, settings, progress):
     """(N,) bool of all points."""
     sections = [points.section(*key).records for key in points.all_sections()]
     units = np.concatenate([np.empty((0, 3), np.int32), *map(_units, sections)])
-    return within_spread(mean_distances(units, settings.neighbours, progress), settings.std_ratio)
+    return _within_spread(mean_distances(units, settings.neighbours, progress), settings.std_ratio)
 
 
 def _units(records):

@@ -152,7 +152,7 @@ def _piece(s, d, z, kind, pattern, seen, width):
 
 def _on_grid(pieces: dict[int, list[PieceOfLine]]) -> CrossSections:
     """CrossSections of the lines of one road, which go on over short gaps."""
-    found, gaps = joined(lines_on_grid(pieces))
+    found, gaps = joined(_lines_on_grid(pieces))
     even_doubles(found, lead_over(found, gaps))
     lengthen_dashed(found)
     return _sections(found)
@@ -255,7 +255,7 @@ class GridLines:
         return {name: RowTable(spans, values, MISSING[name]) for name, values in found.items()}
 
 
-def lines_on_grid(lines: dict[int, list[PieceOfLine]]) -> GridLines:
+def _lines_on_grid(lines: dict[int, list[PieceOfLine]]) -> GridLines:
     """Lines of one road, given as their pieces by number, on the stations from their first to their last place."""
     first = np.ceil(min(p.s[0] for pieces in lines.values() for p in pieces) / STATION_STEP)
     last = np.floor(max(p.s[-1] for pieces in lines.values() for p in pieces) / STATION_STEP)

@@ -110,7 +110,7 @@ def select_lines(lines: list[LinkedLine], trend: CommonTrend, crossed: np.ndarra
             single = dashes.alike(k)
         if frayed[k] or outside[k] or _frames_hatching(line, bars) or not (line.painted >= min_paint or patterns[k] or single):
             continue
-        drawn = line_pieces(parts[k])
+        drawn = _line_pieces(parts[k])
         if single is not None:
             drawn = [LinePiece(line.first, line.last, "measured", "dashed")]
         drawn = _extended(drawn, parts[k], single, (painted_from, painted_to), partial(_crossed_there, crossed, crossings_there, line.middle),
@@ -411,7 +411,7 @@ class Stretch:
         return "dashed" if self.dashes else "solid"
 
 
-def painted_intervals(line: LinkedLine) -> np.ndarray:
+def _painted_intervals(line: LinkedLine) -> np.ndarray:
     """(K, 2) stations between which a line is painted, holes of wear closed."""
     spans = [span for strand in line.strands for span in _painted(strand)]
     found = [list(spans[0])]
@@ -441,7 +441,7 @@ def stretches(line: LinkedLine, longest_dash: float = NEUTRAL.longest_dash) -> l
 
     longest_dash : metres, longer paint is solid line; of the catalogue of countries
     """
-    spans = painted_intervals(line)
+    spans = _painted_intervals(line)
     long = np.diff(spans, axis=1)[:, 0] > longest_dash
     cuts = np.flatnonzero(np.r_[True, np.diff(long.astype(int)) != 0, True])
     found: list[tuple[np.ndarray, DashPattern | None]] = []
@@ -529,12 +529,9 @@ class LinePiece:
     pattern: str
 
 
-def line_pieces(parts: list[Stretch]) -> list[LinePiece]:
-    """Cut a line of some stretches where its status or pattern changes.
-
-    A regular gap between dashes is part of the dashed line; a hole longer than the
-    line's own gap, or in a solid line longer than 2.5 m, is bridged.
-    """
+def _line_pieces(parts: list[Stretch]) -> list[LinePiece]:
+    """Cut a line of some stretches where its status or pattern changes. A hole longer than the line's own gap, or in a solid line longer than
+    2.5 m, is bridged."""
     found = []
     for k, part in enumerate(parts):
         gap = part.dashes.gap * 1.25 + 0.8 if part.dashes else MAX_SOLID_GAP
