@@ -97,7 +97,8 @@ def remove_outliers(points: RoadPoints, settings: OutlierSettings = OutlierSetti
     if settings.scope == "all":
         _put(kept, points, _kept_of_all(points, settings, progress))
     else:
-        windows = [(road, number) for road in points.roads() for number in _windows(*points.store.span(road))]
+        windows = [(road, number) for road in points.roads() for start, end in [points.store.span(road)]
+                   for number in range(int(np.floor(start / OUTLIER_WINDOW)), int(np.ceil(end / OUTLIER_WINDOW)))]
         together = TASK_WINDOWS if executor.folder is not None else 1
         phase = Phase(kept_of_windows, NoSource(), (settings,), lambda item: f"markings {item[0][0] * OUTLIER_WINDOW:.0f} m along a road")
         keep = [np.empty(0, bool)]
@@ -109,10 +110,6 @@ def remove_outliers(points: RoadPoints, settings: OutlierSettings = OutlierSetti
         _put(kept, points, np.concatenate(keep))
     progress.info(f"Outliers: {len(points) - len(kept):,} of {len(points):,} points lay apart from the others and were left out.")
     return kept
-
-
-def _windows(start, end):
-    return range(int(np.floor(start / OUTLIER_WINDOW)), int(np.ceil(end / OUTLIER_WINDOW)))
 
 
 def _put(kept, points, keep):

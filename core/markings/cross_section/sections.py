@@ -18,8 +18,6 @@ from ...survey.frame.row_table import BLOCK, RowSpans, RowTable
 if TYPE_CHECKING:
     from ..lines.painted_lines import PaintedLines
 
-__all__ = ["STATION_STEP", "CrossSections", "cross_sections", "sections_of_edges", "sections_of_lines", "sections_of_pavement"]
-
 MAX_LINE_OBLIQUITY = np.tan(np.radians(25.0))  # a line that runs more across the road than this bounds no lane
 CLOSED_ISLAND = 1.0                            # m between the ends of a line round an island that closes
 

@@ -96,7 +96,7 @@ def select_lines(lines: list[LinkedLine], trend: CommonTrend, crossed: np.ndarra
     crossings_there = StretchLookup(crossed[:, 0], crossed[:, 1])
     parts = [_without_pairs_at_crossings(stretches(line, longest_dash), line, crossed, crossings_there) for line in lines]
     level = np.array([_level(line, trend) for line in lines])
-    patterns = [_dash_patterns(stretch) for stretch in parts]
+    patterns = [[part.dashes for part in stretch if part.dashes] for stretch in parts]
     painted_to = max(line.last for line in lines)
     painted_from = min(line.first for line in lines)
     frayed, double = _beside(lines, beside, trend, longest_dash)
@@ -156,10 +156,6 @@ class _StrandsBeside:
 def _level(line, trend):
     s, d, *_ = line.places()
     return median(d - trend.at(s))
-
-
-def _dash_patterns(parts):
-    return [part.dashes for part in parts if part.dashes]
 
 
 class _DashesElsewhere:

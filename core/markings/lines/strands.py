@@ -205,7 +205,8 @@ def trace_strands(records: Columns, rank: np.ndarray) -> list[Strand]:
         return []
     across, bins = records["d"], records["s"] // RUN_BIN_UNITS
     order = order_by(across, bins)
-    run = _without_thin(_runs(bins[order], across[order]))
+    run = _runs(bins[order], across[order])
+    run = np.where((np.bincount(run) >= MIN_POINTS_PER_RUN)[run], run, np.int32(-1))   # runs of too few points are none
     inside = np.flatnonzero(run >= 0)
     check_cancelled()
     if not len(inside):
@@ -267,11 +268,6 @@ def _part_hazy_doubles(bins, across, starts):
             gap = int(np.argmax(np.diff(edges)))
             cuts.append(starts[k] + int(np.searchsorted(values, edges[gap], "right")))
     return np.unique(np.r_[starts, cuts]).astype(np.int64)
-
-
-def _without_thin(run):
-    """-1 for the points of runs of too few points."""
-    return np.where((np.bincount(run) >= MIN_POINTS_PER_RUN)[run], run, np.int32(-1))
 
 
 def _middle_and_width(across, starts):

@@ -148,10 +148,6 @@ def _least_spread(places):
     return float(np.sqrt(max((xx + yy) / 2 - np.hypot((xx - yy) / 2, xy), 0.0)))
 
 
-def _across(places, heading):
-    return places @ np.array([-np.sin(heading), np.cos(heading)])
-
-
 def _mean_phase(across, pitches):
     """(H, P) complex, the mean phase of spots for every pitch; across : (N, H) m, where they lie across each direction."""
     turn = (2 * np.pi / pitches)[:, None, None] * across
@@ -213,7 +209,7 @@ def _clear(across, pitches):
 
 def _numbered(own, comb):
     """Number of the stripe nearest to each spot, how far off its middle the spot lies, and where along it."""
-    across = _across(own, comb.heading) - comb.phase
+    across = own @ np.array([-np.sin(comb.heading), np.cos(comb.heading)]) - comb.phase
     number = np.rint(across / comb.pitch).astype(np.int64)
     return number, across - number * comb.pitch, own @ np.array([np.cos(comb.heading), np.sin(comb.heading)])
 

@@ -286,7 +286,7 @@ def join_fragments(shapes: Sequence[Shape], max_width: float) -> np.ndarray:
 
 def _along(shapes, max_width):
     """(P, 2) narrow pieces, the second of which goes on where the first ends."""
-    narrow = np.array([k for k, shape in enumerate(shapes) if _narrow(shape, max_width)], np.int64)
+    narrow = np.array([k for k, shape in enumerate(shapes) if shape.width <= max_width and shape.along or shape.d1 - shape.d0 <= max_width], np.int64)
     if len(narrow) < 2:
         return np.empty((0, 2), np.int64)
     begins = np.array([(shapes[k].s0, shapes[k].begin) for k in narrow])
@@ -316,10 +316,6 @@ def _unseen_gaps(shapes, narrow):
     gap = first[b] - last[a]
     unseen = (a != b) & (gap >= 0) & (gap <= MAX_UNSEEN_GAP) & (sideways[a, 1] | sideways[b, 0])
     return sparse[np.column_stack([a, b])[unseen & (np.abs(offset[a] - offset[b]) <= MAX_UNSEEN_OFFSET)]]
-
-
-def _narrow(shape, max_width):
-    return shape.width <= max_width and shape.along or shape.d1 - shape.d0 <= max_width
 
 
 def _bars(column):

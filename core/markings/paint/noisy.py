@@ -181,11 +181,6 @@ class BrightPiece:
         thin = self.shape.width <= FAINT_LINE_WIDTH and self.shape.elongation >= FAINT_LINE_ELONGATION
         return self.is_elongated and thin and self.shape.length >= FAINT_LINE_LENGTH and self.fading >= -MAX_FADING
 
-    @property
-    def may_be_dash(self) -> bool:
-        """Whether it is long and narrow enough for a dash in a row."""
-        return self.shape.length >= DASH_LENGTH and self.shape.width <= DASH_WIDTH
-
 
 @dataclass(frozen=True)
 class ViewSamples:
@@ -277,7 +272,7 @@ def _dashes(averages, rim, samples, bright, threshold):
     with np.errstate(invalid="ignore"):
         cut = bright & (contrast > HALF_MAXIMUM * tops)
     found = [piece for piece in _bright_pieces(cut, averages, rim, threshold)
-             if piece.may_be_dash and np.hypot(*piece.slope) < DASH_SLOPE_FACTOR * MAX_SLOPE]
+             if piece.shape.length >= DASH_LENGTH and piece.shape.width <= DASH_WIDTH and np.hypot(*piece.slope) < DASH_SLOPE_FACTOR * MAX_SLOPE]
     return _without_artefacts(found, samples, rim.shape)
 
 
