@@ -33,9 +33,8 @@ def _knot_intervals(length: float, bandwidth: float) -> int:
 class SplineBasis:
     """Uniform cubic B-splines with a roughness penalty, of several lines and bandwidths.
 
-    Each pair of a line and a bandwidth is a block. The equations of all blocks are solved as one
-    banded system in which they are independent: most lines have a few hundred points, for which the
-    overhead of a numpy call exceeds its work.
+    Each pair of a line and a bandwidth is a block. The equations of all blocks are solved as one banded system in which they are independent: most
+    lines have a few hundred points, for which the overhead of a numpy call exceeds its work.
 
     Parameters
     ----------

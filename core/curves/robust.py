@@ -133,14 +133,13 @@ def batches(counts: Sequence[int] | np.ndarray, max_points: int = FIT_POINTS_PER
 def fit_batch(lines: Sequence[tuple[np.ndarray, np.ndarray]], problem_of: Callable[..., Any], max_misfit: float = np.inf) -> list[Any]:
     """Fit curves of one kind to many lines.
 
-    Each curve is fitted to a subsample of its line first, which takes most of the steps,
-    then to all points, unless its misfit is too large.
+    Each curve is fitted to a subsample of its line first, which takes most of the steps, then to all points, unless its misfit is too large.
 
     Parameters
     ----------
     lines : list of (x, y), each (N,) metres, ordered along the line
-    problem_of : makes a problem for `_minimise_batch` from PointGroups, x and y; it also has `start()`, (L, P), `scale`, `fit`,
-        and `with_points(points, x, y, lines, state)`: the same unknowns for more points of some of its lines
+    problem_of : makes a problem for `_minimise_batch` from PointGroups, x and y; it also has `start()`, (L, P), `scale`, `fit`, and
+        `with_points(points, x, y, lines, state)`: the same unknowns for more points of some of its lines
     max_misfit : metres; a curve from which a twentieth of the points lie farther is not refined with all points
 
     Returns
@@ -189,15 +188,14 @@ def _minimise_batch(problem: Any, start: np.ndarray, scale: np.ndarray, toleranc
                     max_misfit: float = np.inf) -> tuple[np.ndarray, np.ndarray, tuple[np.ndarray, ...]]:
     """Parameters of each line that minimise the soft L1 loss of its residuals, by Levenberg-Marquardt.
 
-    Plain least squares comes first; where the curve cannot follow the points, no residual
-    is an outlier, so the scale of soft L1 grows with that misfit. The result of a line does
-    not depend on the other lines.
+    Plain least squares comes first; where the curve cannot follow the points, no residual is an outlier, so the scale of soft L1 grows with that
+    misfit. The result of a line does not depend on the other lines.
 
     Parameters
     ----------
-    problem : has `points` (PointGroups of L lines); `evaluate(unknown, state)`, which returns (N,) residuals and the new
-        state, a tuple of (N,) arrays; `jacobian(unknown, state)`, (P, N); `subset(lines, rows)`, the problem of some lines,
-        whose points are `rows`; and the initial `state`
+    problem : has `points` (PointGroups of L lines); `evaluate(unknown, state)`, which returns (N,) residuals and the new state, a tuple of (N,)
+        arrays; `jacobian(unknown, state)`, (P, N); `subset(lines, rows)`, the problem of some lines, whose points are `rows`; and the initial
+        `state`
     start : (L, P) initial parameters
     scale : (L, P) the size of a sensible step in each parameter
     tolerance : (L,) or one; the share of such a step below which the fit has converged

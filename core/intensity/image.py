@@ -108,10 +108,9 @@ def _interpolation_sums(points: Points, brightness: Callable[[np.ndarray], np.nd
 
     Notes
     -----
-    Points are taken in blocks and sorted by cell. What the points of one cell add to
-    its neighbours is then one row of a matrix product. Weights and sums are in single
-    precision, far finer than intensities are. A cell and a half away or farther, weights are
-    so small that a share of the points gives the same result.
+    Points are taken in blocks and sorted by cell. What the points of one cell add to its neighbours is then one row of a matrix product. Weights
+    and sums are in single precision, far finer than intensities are. A cell and a half away or farther, weights are so small that a share of the
+    points gives the same result.
     """
     x, y, values = points.records["x"], points.records["y"], points.value
     reach, cell = _reach_of(settings), settings.cell_size
@@ -463,8 +462,7 @@ def _with_pieces(work: list[tuple[tuple[int, int], list[PieceKey]]],
                  sums: Callable[[list[PieceKey]], Iterator[WeightedSums]]) -> Iterator[tuple[tuple[int, int], list[WeightedSums]]]:
     """Yield (tile, WeightedSums of its pieces) in order; `sums` are those of pieces, in their order.
 
-    A piece is kept for the tiles that follow soon, and computed again for those that
-    follow late, such as the ones that another road crosses.
+    A piece is kept for the tiles that follow soon, and computed again for those that follow late, such as the ones that another road crosses.
     """
     uses: dict[PieceKey, list[int]] = {}
     for k, (_, pieces) in enumerate(work):

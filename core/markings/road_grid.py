@@ -215,9 +215,8 @@ def components(cells: np.ndarray, places: np.ndarray, size: tuple[float, float],
 
     Notes
     -----
-    Exact, and without measuring every pair: where places of cells that touch are
-    near enough wherever they lie, an image of the cells gives the patches that
-    are connected, and pairs are measured between patches only.
+    Exact, and without measuring every pair: where places of cells that touch are near enough wherever they lie, an image of the cells gives the
+    patches that are connected, and pairs are measured between patches only.
     """
     if not len(cells):
         return np.empty(0, np.int32)

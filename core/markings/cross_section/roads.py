@@ -222,10 +222,6 @@ def arrows_of(markings: MarkingObjects, frame: RoadFrame, road: int) -> np.ndarr
     An arrow begins with a bare shaft and soon is broad behind its tip, so it points to the end at which less of it is a single stroke. That
     is read from the painted outline alone. Shorter arrows than a lane of a road has belong to cycle paths or are none.
 
-    Parameters
-    ----------
-    road : number of the road
-
     Returns
     -------
     (A, 3) station and offset of the middle, m, and which way it points: 1 along the road, -1 against it, nearer 0 the less that shows

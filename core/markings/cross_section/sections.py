@@ -422,8 +422,7 @@ def _ahead(lines, end, step):
 def lengthen_dashed(lines: GridLines) -> None:
     """A dashed line goes on by up to one gap where lines on both its sides do.
 
-    Where the last dash ends says nothing of where the line does: the next dash is only
-    missed after a gap's length.
+    Where the last dash ends says nothing of where the line does: the next dash is only missed after a gap's length.
     """
     lines = GridLines(lines.s, lines.rows, lines.names)
     known = [(row.begin, row.end) for row in lines.rows]

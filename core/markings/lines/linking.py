@@ -230,9 +230,8 @@ def link_over_long_gaps(lines: list[LinkedLine], trend: CommonTrend, edges: Edge
                         same_dash_pattern: Callable[[LinkedLine, LinkedLine], bool], allowed: float = 0.25) -> list[LinkedLine]:
     """Link over longer gaps, up to `max_bridge`, where something carries over.
 
-    Either both sides have one dash pattern and the gap is a whole multiple of
-    it (`same_dash_pattern(before, after)`), or another line runs on beside the gap
-    without one, so that the road does not end there.
+    Either both sides have one dash pattern and the gap is a whole multiple of it (`same_dash_pattern(before, after)`), or another line runs on
+    beside the gap without one, so that the road does not end there.
     """
     while True:
         ends, starts = (_line_ends(lines, trend, at_start, 3 * END_WINDOW) for at_start in (False, True))

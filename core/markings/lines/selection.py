@@ -73,10 +73,8 @@ def select_lines(lines: list[LinkedLine], trend: CommonTrend, crossed: np.ndarra
                  longest_dash: float = NEUTRAL.longest_dash) -> list[SelectedLine]:
     """The lines worth drawing.
 
-    A line needs paint: `min_paint` metres of it, or two dashes of a pattern, or one dash
-    on the course and of the length of a dashed line elsewhere on the road. What runs
-    close beside a much longer line is that line's frayed edge; what frames a hatched
-    area belongs to that area.
+    A line needs paint: `min_paint` metres of it, or two dashes of a pattern, or one dash on the course and of the length of a dashed line elsewhere
+    on the road. What runs close beside a much longer line is that line's frayed edge; what frames a hatched area belongs to that area.
 
     Parameters
     ----------
@@ -230,8 +228,7 @@ def _painted_there(line, other):
 def _beyond_the_edge(lines, beside, level):
     """(N,) whether a fragment lies farther out than a long line that bounds the road there: gutter, verge or yard.
 
-    With less than a lane's room between the two, what is much shorter than the edge
-    line is no line of its own; farther out, what is short.
+    With less than a lane's room between the two, what is much shorter than the edge line is no line of its own; farther out, what is short.
     """
     result = np.zeros(len(lines), bool)
     bounds = {j for j, line in enumerate(lines)
@@ -456,11 +453,9 @@ def stretches(line: LinkedLine, longest_dash: float = NEUTRAL.longest_dash) -> l
 def find_dash_pattern(spans: np.ndarray, beside_solid: bool = False) -> DashPattern | None:
     """The DashPattern of painted intervals (K, 2), or None where they follow none.
 
-    Dashes may be missing: steps between dashes are then whole multiples of the
-    period. Some may be worn at their ends: three of five must have the common length.
-    Of three pieces alone all must have it, or their two steps must be equal: by chance
-    one step is soon a multiple of the other. In a line that is solid elsewhere (`beside_solid`)
-    all must have it: there three pieces are what wear left of it, and equal steps chance.
+    Dashes may be missing: steps between dashes are then whole multiples of the period. Some may be worn at their ends: three of five must have the
+    common length. Of three pieces alone all must have it, or their two steps must be equal: by chance one step is soon a multiple of the other. In
+    a line that is solid elsewhere (`beside_solid`) all must have it: there three pieces are what wear left of it, and equal steps chance.
     """
     if len(spans) < 2:
         return None

@@ -134,9 +134,8 @@ class LinkedLine:
 def line_paint(records: Columns, markings: MarkingObjects, road: int) -> tuple[Columns, np.ndarray]:
     """The points that may belong to a painted line.
 
-    Those of markings of use keep; of other long markings (a line that touches a stop
-    line or a hatched area is clustered with it) those places where the marking is
-    no wider across than a double line.
+    Those of markings of use keep; of other long markings (a line that touches a stop line or a hatched area is clustered with it) those places
+    where the marking is no wider across than a double line.
 
     Parameters
     ----------

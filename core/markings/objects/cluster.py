@@ -64,8 +64,7 @@ def cluster_markings(marking_points: RoadPoints, frame: RoadFrame, settings: Clu
 
     Returns
     -------
-    markings : MarkingObjects, one polygon a marking; one that wear or a shadow cut apart has
-        several, with one `cluster` number
+    markings : MarkingObjects, one polygon a marking; one that wear or a shadow cut apart has several, with one `cluster` number
     clustered : RoadPoints with `cluster`, the number of the marking; 0 on what is no marking
     """
     clustered = replace(marking_points, store=marking_points.store.with_column("cluster"), has_cluster=True)

@@ -37,7 +37,6 @@ def connected_points(marking_points: RoadPoints, road: int, distance: float, pro
     Parameters
     ----------
     marking_points : RoadPoints on paint
-    road : number of the road
     distance : m, by which points of one marking are joined
     executor : who links the points of windows
 
@@ -48,10 +47,8 @@ def connected_points(marking_points: RoadPoints, road: int, distance: float, pro
 
     Notes
     -----
-    Points of one 4 cm cell are one member, at their mean place: points of dense
-    paint would otherwise have hundreds of neighbours each. Cells are fixed
-    in station, and windows are joined through the cells they share, so neither
-    window nor section length shows in the result.
+    Points of one 4 cm cell are one member, at their mean place: points of dense paint would otherwise have hundreds of neighbours each. Cells are
+    fixed in station, and windows are joined through the cells they share, so neither window nor section length shows in the result.
     """
     records = columns_of_roads(marking_points.store, [road], PAINT_COLUMNS)
     labels, links = [], []

@@ -91,8 +91,7 @@ def measure(s: np.ndarray, d: np.ndarray, spacing: np.ndarray | None = None) -> 
 
     Notes
     -----
-    Width is the 95 % range across the local tangent, scaled to the full range of
-    evenly spread points: a principal axis would call every bend wide.
+    Width is the 95 % range across the local tangent, scaled to the full range of evenly spread points: a principal axis would call every bend wide.
     """
     cells, member = occupied(s // CELL_UNITS, d // CELL_UNITS)
     apart = 0.0

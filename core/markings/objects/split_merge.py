@@ -273,9 +273,8 @@ def join_fragments(shapes: Sequence[Shape], max_width: float) -> np.ndarray:
 
     Notes
     -----
-    Narrow pieces along the road are joined where one begins up to 0.9 m after the end of
-    another on the same line, farther where tracks of the scan cross it askew; pieces of a bar across the road over 0.3 m where their
-    front and rear are the same.
+    Narrow pieces along the road are joined where one begins up to 0.9 m after the end of another on the same line, farther where tracks of the scan
+    cross it askew; pieces of a bar across the road over 0.3 m where their front and rear are the same.
     """
     if len(shapes) < 2:
         return np.arange(len(shapes))
@@ -389,7 +388,7 @@ def complete_bar(parts: np.ndarray, bar: np.ndarray, turned: np.ndarray, along: 
 
 
 def bar_with_lines(cells: np.ndarray) -> tuple[np.ndarray, int]:
-    """Cut a bar from the lines that end at it or cross it, if that is all there is.
+    """Cut a bar from the lines that end at it or cross it, if that is all there is. The head of an arrow is no bar: it is longer or has a tip.
 
     Parameters
     ----------
@@ -399,10 +398,6 @@ def bar_with_lines(cells: np.ndarray) -> tuple[np.ndarray, int]:
     -------
     parts : (K,) int, the part of every cell, numbered from 0
     count : how many there are; 1 for anything else
-
-    Notes
-    -----
-    The head of an arrow is no bar: it is longer or has a tip.
     """
     whole = np.zeros(len(cells), np.int64), 1
     if not len(cells):

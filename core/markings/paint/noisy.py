@@ -65,8 +65,7 @@ class CellAverages:
     contrast : (rows, columns) float32 brightness above `ground`
     ground : (rows, columns) brightness of asphalt in the half metre around
     spread : (rows, columns) scatter of asphalt's contrast there, a standard deviation
-    slope : (2, rows, columns) along and across the road against the ground around, metres per metre: small on a road, large on
-        the face of a curb
+    slope : (2, rows, columns) along and across the road against the ground around, metres per metre: small on a road, large on the face of a curb
     """
 
     contrast: np.ndarray

@@ -47,9 +47,8 @@ def track_spacing(occupied: np.ndarray) -> np.ndarray:
 def morphology(mask: np.ndarray, seen: np.ndarray, settings: MarkingSettings) -> np.ndarray:
     """Close gaps along the road, then remove runs that are short both along and across it.
 
-    A stop line is short along the road and a lane line across it: a cell stays
-    where either run through it is long enough. The remains of a worn line between
-    two such runs stay, too. Where points lie far apart, cells between two bright ones that no point was near are no gap.
+    A stop line is short along the road and a lane line across it: a cell stays where either run through it is long enough. The remains of a worn
+    line between two such runs stay, too. Where points lie far apart, cells between two bright ones that no point was near are no gap.
 
     Parameters
     ----------
