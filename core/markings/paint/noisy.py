@@ -218,19 +218,16 @@ def views(points: Points, frame: RoadFrame) -> np.ndarray | None:
 
 
 def noisy_paint_cells(averages: CellAverages, rim: np.ndarray, samples: ViewSamples, threshold: float) -> np.ndarray:
-    """Cells of paint.
+    """(rows, columns) bool, cells of paint; `rim` is their distance from the rim of the road, m, and `threshold` the spreads that paint reaches."""
+    # holes that noise left in strokes are closed
+    mask = ndimage.binary_closing(_stroke_cells(averages, rim, samples, threshold), np.ones((3, 3), bool), iterations=2)
+    for piece in _dashes_of_rows(averages, rim, samples, threshold):
+        mask[piece.cells] = True
+    return mask
 
-    Parameters
-    ----------
-    averages : CellAverages of a window of the road
-    rim : (rows, columns) metres from the rim of the road
-    samples : ViewSamples of the window
-    threshold : spreads above asphalt that paint reaches
 
-    Returns
-    -------
-    (rows, columns) bool
-    """
+def _stroke_cells(averages, rim, samples, threshold):
+    """Cells of clear strokes and of thin straight lines, which may be fainter."""
     z, contrast = averages.z, averages.contrast
     with np.errstate(invalid="ignore"):
         bright, faint = z > PIECE_BRIGHTNESS * threshold, z > PIECE_BRIGHTNESS * FAINT_LINE * threshold
@@ -245,23 +242,24 @@ def noisy_paint_cells(averages: CellAverages, rim: np.ndarray, samples: ViewSamp
         # beside a broad stroke the average is darker than asphalt
         inner = contrast[row, column] > HALF_MAXIMUM * piece.top * (1.0 + min(piece.fading, 0.0))
         mask[row[inner], column[inner]] = True
-    # holes that noise left in strokes
-    mask = ndimage.binary_closing(mask, np.ones((3, 3), bool), iterations=2)
-    dashes = _dashes(averages, rim, samples, bright, FAINT_DASH * threshold)
+    return mask
+
+
+def _dashes_of_rows(averages, rim, samples, threshold):
+    """Pieces that follow on each other as dashes do, and fainter ones where these rows lead."""
+    with np.errstate(invalid="ignore"):
+        dashes = _dashes(averages, rim, samples, averages.z > PIECE_BRIGHTNESS * threshold, FAINT_DASH * threshold)
     rows = []
     for row in rows_of_dashes([piece.shape for piece in dashes]):
         clear = sum(dashes[k].z >= threshold for k in row)
         if clear >= max(MIN_DASHES_IN_ROW, len(row) / 2) and np.hypot(*np.mean([dashes[k].slope for k in row], axis=0)) < MAX_SLOPE:
             rows.append([dashes[k] for k in row])
-    # fainter ones where these rows lead
-    if rows:
-        with np.errstate(invalid="ignore"):
-            worn = _dashes(averages, rim, samples, z > PIECE_BRIGHTNESS * WORN_DASH * threshold, WORN_DASH * threshold)
-        shapes = [piece.shape for piece in worn]
-        rows = [row + [worn[k] for k in dashes_beyond([piece.shape for piece in row], shapes)] for row in rows]
-    for piece in (piece for row in rows for piece in row):
-        mask[piece.cells] = True
-    return mask
+    if not rows:
+        return []
+    with np.errstate(invalid="ignore"):
+        worn = _dashes(averages, rim, samples, averages.z > PIECE_BRIGHTNESS * WORN_DASH * threshold, WORN_DASH * threshold)
+    shapes = [piece.shape for piece in worn]
+    return [piece for row in rows for piece in row + [worn[k] for k in dashes_beyond([piece.shape for piece in row], shapes)]]
 
 
 def _dashes(averages, rim, samples, bright, threshold):
