@@ -138,8 +138,8 @@ def _images(folder):
 
 
 def _maps():
-    from lanewright.core.export.lanelet.reader import read_lanelet2
-    from lanewright.core.export.opendrive.reader import read_opendrive
+    from lanewright.core.export.lanelet_map import read_lanelet2
+    from lanewright.core.export.opendrive.xodr import read_opendrive
     from map_files import geometry, lanelet_street, opendrive, road
 
     shapes = ["<line/>", '<arc curvature="0.01"/>', '<spiral curvStart="0" curvEnd="0.02"/>',

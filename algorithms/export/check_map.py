@@ -75,8 +75,8 @@ def _is_lanelet2(path):
 
 def _roads(path, crs, progress):
     from ...core.export.check.roads import check_opendrive
-    from ...core.export.map_crs import crs_of_reference
-    from ...core.export.opendrive.reader import read_opendrive
+    from ...core.export.map_layers import crs_of_reference
+    from ...core.export.opendrive.xodr import read_opendrive
 
     whole = read_opendrive(path, progress.part(0.0, 0.4))
     crs, note = crs_of_reference(whole.reference, crs)
@@ -85,8 +85,7 @@ def _roads(path, crs, progress):
 
 def _lanelets(path, crs, progress):
     from ...core.export.check.lanelets import check_lanelets
-    from ...core.export.lanelet.layers import node_places
-    from ...core.export.lanelet.reader import read_lanelet2
+    from ...core.export.lanelet_map import node_places, read_lanelet2
 
     whole = read_lanelet2(path, progress.part(0.0, 0.4))
     return check_lanelets(whole, *node_places(whole, crs), progress.part(0.4, 0.95)), ""

@@ -75,8 +75,7 @@ def _landxml(call, source, progress):
     from datetime import datetime
     from pathlib import Path
 
-    from ...core.export.cad.alignments import alignments_of
-    from ...core.export.cad.landxml import landxml_text
+    from ...core.export.cad.landxml import alignments_of, landxml_text
 
     tolerance = call.setting(CAD_SETTINGS[0])
     found = alignments_of(source, tolerance)

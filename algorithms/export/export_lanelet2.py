@@ -5,7 +5,7 @@ from ..parameters import ChoiceSpec, FlagSpec, SettingSpec
 from ..texts import told, tr
 from .inputs import add_road_map_layers, road_map_source
 
-LANELETS = "export.lanelet.exporter:LaneletSettings"
+LANELETS = "export.lanelet_export:LaneletSettings"
 LOCATIONS = ("urban", "nonurban")
 LANELET_SETTINGS = (
     SettingSpec("SPEED_LIMIT", LANELETS, "speed_limit", tr("Speed limit (km/h)"),
@@ -44,10 +44,8 @@ class ExportLanelet2(Algorithm):
 
         from ...core.export.check.lanelets import check_lanelets
         from ...core.export.inferred_ways import with_inferred_ways
-        from ...core.export.lanelet.exporter import draft_lanelets
-        from ...core.export.lanelet.layers import layers_of_lanelets, node_places
-        from ...core.export.lanelet.reader import read_lanelet2
-        from ...core.export.lanelet.writer import lanelet2_text, to_degrees
+        from ...core.export.lanelet_export import draft_lanelets, lanelet2_text, to_degrees
+        from ...core.export.lanelet_map import layers_of_lanelets, node_places, read_lanelet2
         from ...core.export.shared_borders import with_shared_borders
         from ...core.report.map_export import map_export_report
 

@@ -46,13 +46,11 @@ class ExportOpenDrive(Algorithm):
         from pathlib import Path
 
         from ...core.export.check.roads import check_opendrive
-        from ...core.export.fit_of_export import border_misses, driving_line_misses
         from ...core.export.inferred_ways import with_inferred_ways
-        from ...core.export.map_crs import reference_of_crs
+        from ...core.export.map_layers import border_misses, driving_line_misses, reference_of_crs
         from ...core.export.opendrive.exporter import draft_opendrive
         from ...core.export.opendrive.layers import layers_of_opendrive
-        from ...core.export.opendrive.reader import read_opendrive
-        from ...core.export.opendrive.writer import opendrive_text
+        from ...core.export.opendrive.xodr import opendrive_text, read_opendrive
         from ...core.export.shared_borders import with_shared_borders
 
         source = with_shared_borders(with_inferred_ways(road_map_source(call, progress.part(0.0, 0.2))))

@@ -82,7 +82,7 @@ def road_map_source(call, progress):
         call.features("MARKINGS", MARKING_FIELDS, "PolygonZ"))
     source = checked(source)
     if call.cloud("ROAD_POINTS"):
-        from ...core.export.surface_heights import with_surface_heights
+        from ...core.export.sources import with_surface_heights
 
         road_points = road_points_of(call, "ROAD_POINTS", progress)
         lanes, share = with_surface_heights(source.lanes, road_points)

@@ -42,7 +42,7 @@ class ClusterMarkings(Algorithm):
     def work(self, call, progress):
         from ...core.markings.objects.cluster import cluster_markings
         from ...core.markings.objects.marking_objects import markings_to_features
-        from ...core.survey.las.writer import write_road_points
+        from ...core.survey.road_points_las import write_road_points
 
         points = paint_of(call, "MARKING_POINTS", progress.part(0.0, 0.2))
         frame = frame_of(call, points.crs, progress, points)

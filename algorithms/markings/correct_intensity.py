@@ -33,7 +33,7 @@ class CorrectIntensity(Algorithm):
     def work(self, call, progress):
         from ...core.intensity.correction import correct_intensity
         from ...core.report.intensity import intensity_correction_report
-        from ...core.survey.las.writer import write_road_points
+        from ...core.survey.road_points_las import write_road_points
 
         road_points = bright_road_points_of(call, "ROAD_POINTS", progress.part(0.0, 0.2))
         frame = frame_of(call, road_points.crs, progress, road_points)

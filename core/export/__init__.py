@@ -7,12 +7,11 @@ ours; findings on a map.
 from ..lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "fit_of_export": ("Misses", "border_misses", "driving_line_misses"),
     "inferred_ways": ("with_inferred_ways",),
-    "map_layers": ("MapLayers", "MapLine"),
-    "painted_objects": ("stop_lines", "walked_crossings"),
+    "lanelet_export": ("Degrees", "LaneletDraft", "LaneletSettings", "draft_lanelets", "lanelet2_text", "to_degrees"),
+    "lanelet_map": ("Lanelet", "LaneletMap", "LaneletNetwork", "Way", "layers_of_lanelets", "read_lanelet2"),
+    "map_layers": ("MapLayers", "MapLine", "Misses", "border_misses", "driving_line_misses"),
     "shared_borders": ("SharedBorders", "meet_lanes", "share_borders", "with_shared_borders"),
-    "sources": ("RoadMapSource", "checked"),
-    "surface_heights": ("with_surface_heights",),
+    "sources": ("RoadMapSource", "checked", "stop_lines", "walked_crossings", "with_surface_heights"),
     "xml_tree": ("XmlElement", "read_xml", "xml_text"),
 })

@@ -1,10 +1,10 @@
-"""The layers of a road map on their way into another format: checked before anything is written."""
+"""The layers of a road map on their way into another format: checked, with the heights and uncertainty that maps state."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import shapely
@@ -13,6 +13,9 @@ from ..common.errors import RoadExtractionError
 from ..common.features import Features
 from ..driving.layers import Lanes
 from ..io.crs import check_metric, parse_crs
+
+if TYPE_CHECKING:
+    from ..survey.store.road_points import RoadPoints
 
 MOST_OVERLAP = 0.5       # share of a lane that may lie on lanes of another road: more is two roads at one place
 SAME_LEVEL = 2.0         # m of height within which two roads are no bridge
@@ -208,3 +211,143 @@ def sigma_of_lanes(lanes: Lanes, driving_lines: Features | None) -> np.ndarray:
         square += shared * float(row["sigma_m"]) ** 2
         length += shared
     return np.sqrt(np.divide(square, length, out=np.full(len(lanes), np.nan), where=length > 0))
+
+
+# Heights of the lanes' borders from the points of the road's surface.
+
+SURFACE_REACH = 0.3          # m about a vertex within which the surface is flat enough for a median
+FEWEST_POINTS = 5    # about a vertex
+MOST_CHANGE = 0.5    # m: a surface farther above or below is another one, such as a bridge's
+
+
+def with_surface_heights(lanes: Lanes, road_points: RoadPoints) -> tuple[Lanes, float]:
+    """Lanes in map coordinates with borders at the median height of the road points about each vertex.
+
+    Parameters
+    ----------
+    lanes : Lanes in map coordinates
+    road_points : RoadPoints of the same survey
+
+    Returns
+    -------
+    lanes : Lanes; vertices without points are raised or lowered as those before and after them on the border, and keep their heights on a
+        border without any
+    share : 0 to 1, of the vertices that have points
+
+    Raises
+    ------
+    RoadExtractionError
+        If no vertex has points.
+    """
+    from scipy.spatial import cKDTree
+
+    vertices = np.concatenate([lanes.left, lanes.right])
+    origin = road_points.origin
+    tree = cKDTree(vertices[:, :2] - origin[:2])
+    owners, heights = [], []
+    for key in road_points.all_sections():
+        points = road_points.section(*key)
+        _, nearest = tree.query(np.c_[points.x, points.y], distance_upper_bound=SURFACE_REACH)
+        near = nearest < len(vertices)
+        owners.append(nearest[near])
+        heights.append(np.asarray(points.z, float)[near])
+    owner, height = np.concatenate([np.empty(0, int), *owners]), np.concatenate([np.empty(0), *heights]) + origin[2]
+    # vertices of neighbours lie at one place, of which the tree gives the points to one
+    same, which = np.unique(np.round(vertices[:, :2], 3), axis=0, return_inverse=True)
+    which = which.ravel()
+    place = which[owner]
+    order = np.lexsort((height, place))
+    place, height = place[order], height[order]
+    counts = np.bincount(place, minlength=len(same))
+    first = np.append(0, np.cumsum(counts))[:-1]
+    enough = counts >= FEWEST_POINTS
+    if not enough.any():
+        raise RoadExtractionError("Road points do not lie where the lanes are: no border has any beside it. Choose the road points of the same "
+                                  "survey, or leave them out.")
+    median = np.full(len(same), np.nan)
+    median[enough] = height[(first + counts // 2)[enough]]
+    change = median[which] - vertices[:, 2]
+    change[~(np.abs(change) < MOST_CHANGE)] = np.nan
+    found = np.c_[vertices[:, :2], vertices[:, 2] + _along_borders(change, vertices, lanes.start)]
+    return replace(lanes, left=found[:len(lanes.left)], right=found[len(lanes.left):]), float(enough[which].mean())
+
+
+def _along_borders(change, vertices, start):
+    """(V,) the changes of the vertices of left and right borders; NaN is filled in from those before and after it on its border."""
+    filled = np.nan_to_num(change)
+    count = len(change) // 2
+    for side in (0, count):
+        for a, b in zip(start[:-1] + side, start[1:] + side):
+            known = np.isfinite(change[a:b])
+            if known.any() and not known.all():
+                along = np.append(0.0, np.cumsum(np.hypot(*np.diff(vertices[a:b, :2], axis=0).T)))
+                filled[a:b] = np.interp(along, along[known], change[a:b][known])
+    return filled
+
+
+# Crossings and stop lines of the layer MARKINGS, as lines across and along the road.
+
+STRIPE_GAP = 1.5     # m between stripes of one crossing: a gap of one stripe, worn on both sides
+LEAST_CROSSING = 3   # stripes
+
+
+def stop_lines(markings: Features | None) -> list[np.ndarray]:
+    """(2, 3) the middle line of every stop line."""
+    found = [_corners(shape) for shape in _shapes(markings, ("stop", "stop_line"))]
+    return [(corners[[0, 1]] + corners[[3, 2]]) / 2 for corners in found if len(corners)]
+
+
+def walked_crossings(markings: Features | None) -> list[tuple[np.ndarray, np.ndarray]]:
+    """((2, 3) left, (2, 3) right) sides of every zebra crossing, along the way of those who cross: over the row of its stripes."""
+    stripes = _shapes(markings, ("zebra", "crosswalk", "zebra_crossing"))
+    found = []
+    for group in _groups(stripes):
+        corners = _corners(shapely.unary_union(group)) if len(group) > 1 else _corners(group[0])
+        if not len(corners) or len(group) < LEAST_CROSSING and len(stripes) >= LEAST_CROSSING:
+            continue
+        across = np.mean([_long_side(stripe) for stripe in group], axis=0)
+        along = corners[1] - corners[0]
+        if len(group) > 1 and abs(along[:2] @ across) > abs((corners[2] - corners[1])[:2] @ across):
+            corners = corners[[1, 2, 3, 0]]   # walkers go from stripe to stripe, which lie along the road
+        found.append((corners[[3, 2]], corners[[0, 1]]))
+    return found
+
+
+def _shapes(markings: Features | None, classes: tuple[str, ...]) -> list[Any]:
+    if markings is None:
+        return []
+    return [geometry for geometry, row in markings if geometry is not None and not geometry.is_empty and row.get("class") in classes]
+
+
+def _groups(shapes: list[Any]) -> list[list[Any]]:
+    """Shapes that lie together."""
+    if not shapes:
+        return []
+    joined = shapely.get_parts(shapely.union_all(shapely.buffer(shapely.force_2d(np.array(shapes, object)), STRIPE_GAP / 2)))
+    found: list[list[Any]] = [[] for _ in joined]
+    tree = shapely.STRtree(joined)
+    for shape in shapes:
+        found[int(tree.query(shapely.force_2d(shape).representative_point(), predicate="intersects")[0])].append(shape)
+    return [group for group in found if group]
+
+
+def _corners(shape: Any) -> np.ndarray:
+    """(4, 3) corners of the rectangle about a shape, its long side first, counter-clockwise; heights are those of the nearest vertices."""
+    rectangle = shapely.force_2d(shape).minimum_rotated_rectangle
+    if rectangle.geom_type != "Polygon":
+        return np.empty((0, 3))
+    corners = shapely.get_coordinates(shapely.orient_polygons(rectangle).exterior)[:4] if hasattr(shapely, "orient_polygons") else \
+        shapely.get_coordinates(shapely.geometry.polygon.orient(rectangle).exterior)[:4]
+    if np.hypot(*(corners[1] - corners[0])) < np.hypot(*(corners[2] - corners[1])):
+        corners = corners[[1, 2, 3, 0]]
+    vertices = shapely.get_coordinates(shape, include_z=True)
+    nearest = np.argmin(np.hypot(*(corners[:, None] - vertices[None, :, :2]).transpose(2, 0, 1)), axis=1)
+    return np.c_[corners, np.nan_to_num(vertices[nearest, 2])]
+
+
+def _long_side(shape):
+    corners = _corners(shape)
+    if not len(corners):
+        return np.zeros(2)
+    side = (corners[1] - corners[0])[:2]
+    return side * (1 if side[0] > 0 or side[0] == 0 and side[1] > 0 else -1)

@@ -49,13 +49,12 @@ from ..road.surface.extract import SurfaceSettings, extract_road_surface
 from ..road.surface.road_surface import SurfaceOutlines
 from ..survey.frame.road import CORRIDOR
 from ..survey.frame.road_frame import RoadFrame
+from ..survey.inspection import CubeDensity, cube_densities
 from ..survey.las.reader import read_headers
 from ..survey.open_survey import SurveySettings, open_survey
-from ..survey.point_density import CubeDensity, cube_densities
 from ..survey.store.records import Points
 from ..survey.store.road_points import columns_of_roads
-from ..survey.trajectory.reprojection import reproject_trajectory
-from ..survey.trajectory.trajectory import Trajectory
+from ..survey.trajectory.trajectory import Trajectory, reproject_trajectory
 
 
 @dataclass(frozen=True)

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..common.errors import RoadExtractionError
-from .estimation.resection import HEIGHT_RANGE_ABOVE
-from .fit.limits import LOWEST_SENSOR
+from .adjustment.trajectory_fit import LOWEST_SENSOR
+from .estimation.poses import HEIGHT_RANGE_ABOVE
 
 if TYPE_CHECKING:
     from ..common.features import Features

@@ -6,7 +6,6 @@ In: `RoadMapSource`. Out: a file.
 from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "alignments": ("Alignment", "alignments_of"),
     "dxf": ("dxf_lines", "write_dxf"),
-    "landxml": ("landxml_text",),
+    "landxml": ("Alignment", "alignments_of", "landxml_text"),
 })

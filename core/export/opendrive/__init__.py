@@ -7,11 +7,9 @@ from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
     "exporter": ("OpenDriveDraft", "OpenDriveSettings", "draft_opendrive"),
-    "geometry": ("PlanView", "PlanElement", "Cubics"),
+    "geometry": ("Cubics", "PlanElement", "PlanView"),
     "layers": ("layers_of_opendrive",),
-    "model": ("Connection", "Junction", "MapLane", "MapRoad", "LaneSection", "OpenDriveMap", "RoadLink", "RoadMark"),
-    "reader": ("read_opendrive",),
+    "model": ("Connection", "Junction", "LaneSection", "MapLane", "MapRoad", "OpenDriveMap", "RoadLink", "RoadMark", "RoadSurface"),
     "reference_line": ("fit_reference", "polynomial_reference"),
-    "surface": ("RoadSurface",),
-    "writer": ("opendrive_text",),
+    "xodr": ("opendrive_text", "read_opendrive"),
 })

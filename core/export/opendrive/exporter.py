@@ -1,21 +1,21 @@
-"""Lanes of a road map as a map of OpenDRIVE."""
+"""Lanes of a road map as a map of OpenDRIVE, with links, junctions and objects."""
 
 from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import dataclass, field, replace
+from typing import Any, NamedTuple
 
 import numpy as np
+import shapely
 
+from ...common.features import Features
 from ...common.progress import Progress
 from ...common.setting import check_limits, setting
 from ..shared_borders import with_driven_middles
-from ..sources import NearestValues, RoadMapSource, sigma_of_lanes
-from .heights import add_heights, heights_above_road
-from .junctions import DraftRoad, link_roads
-from .model import OPEN_END, LaneNetwork, MapLane, MapRoad, OpenDriveMap, RoadMark
-from .road_objects import add_objects
-from .road_shape import add_lanes, centre_of, shape_of
+from ..sources import NearestValues, RoadMapSource, sigma_of_lanes, stop_lines, walked_crossings
+from .model import OPEN_END, Connection, Junction, LaneNetwork, MapLane, MapRoad, OpenDriveMap, RoadLink, RoadMark, travel
+from .road_shape import add_heights, add_lanes, centre_of, heights_above_road, shape_of
 from .strips import (
     Cell,
     Slice,
@@ -306,3 +306,221 @@ def _cut_row(one: Slice, at_end: bool) -> int:
     wanted = min(max(SHORTEST_WAY, along[-1] / 3), LONGEST_WAY)
     row = int(np.argmin(np.abs(along - (along[-1] - wanted if at_end else wanted))))
     return min(max(row, 1), len(along) - 2)
+
+
+# Links between the roads of an export: lanes of sections, ends of roads, junctions with their connections.
+
+@dataclass
+class DraftRoad:
+    """A road with the cells that its lanes come from.
+
+    road; strip : slices; numbers : lane of every cell of every slice; single : whether it is a way through a junction
+    """
+
+    road: MapRoad
+    strip: list[Slice]
+    numbers: list[list[int]]
+    single: bool
+
+
+class _Place(NamedTuple):
+    """Where a cell is: road, section, lane."""
+
+    draft: int
+    section: int
+    lane: int
+
+
+class _Touch(NamedTuple):
+    """A lane at a road's end and the lane that it touches at an end of another road."""
+
+    lane: int
+    other: int
+    other_end: str
+    other_lane: int
+
+
+def link_roads(whole: OpenDriveMap, drafts: list[DraftRoad]) -> list[str]:
+    """Fill in the links of lanes and roads, and the junctions.
+
+    Returns
+    -------
+    list of sentences on what OpenDRIVE cannot say
+    """
+    place = {id(cell): _Place(k, j, number) for k, draft in enumerate(drafts) for j, (one, ids) in enumerate(zip(draft.strip, draft.numbers))
+             for cell, number in zip(one.cells, ids)}
+    touches: dict[tuple[int, str], list[_Touch]] = defaultdict(list)
+    for draft in drafts:
+        for one in draft.strip:
+            for cell in one.cells:
+                here = place[id(cell)]
+                for end, others in (("end", cell.after), ("start", cell.before)):
+                    for other in others:
+                        there = place.get(id(other))
+                        if there is not None:
+                            _link(drafts, touches, here, end, there, "start" if any(cell is back for back in other.before) else "end")
+    junction = _clusters(drafts, touches)
+    notes = []
+    for k, end in touches:
+        notes += _end_link(drafts, k, end, touches, junction)
+    _connections(whole, drafts, touches, junction)
+    return sorted(set(notes))
+
+
+def _link(drafts, touches, here, end, there, other_end):
+    """One touch: of lanes of neighbouring sections at once, of ends of roads for later."""
+    sections = drafts[here.draft].road.sections
+    beyond = here.section + (1 if end == "end" else -1)
+    if here.draft == there.draft and there.section == beyond:
+        lane = sections[here.section].lanes[here.lane]
+        known = lane.successors if end == "end" else lane.predecessors
+        if there.lane not in known:
+            known.append(there.lane)
+    elif not 0 <= beyond < len(sections):
+        touch = _Touch(here.lane, there.draft, other_end, there.lane)
+        if touch not in touches[here.draft, end]:
+            touches[here.draft, end].append(touch)
+
+
+def _clusters(drafts, touches):
+    """Number of the junction of every way through one: those at one road's end, or end to end, are of one junction."""
+    parent = {k: k for k, draft in enumerate(drafts) if draft.single}
+
+    def root(k):
+        while parent[k] != k:
+            k = parent[k]
+        return k
+
+    for (k, _), found in touches.items():
+        together = [touch.other for touch in found if touch.other in parent] + ([k] if k in parent else [])
+        for other in together[1:]:
+            parent[root(other)] = root(together[0])
+    roots = sorted({root(k) for k in parent})
+    return {k: roots.index(root(k)) for k in parent}
+
+
+def _end_link(drafts, k, end, touches, junction):
+    """Link one end of a road; sentences on what cannot be linked."""
+    found = touches[k, end]
+    road = drafts[k].road
+    name = "successor" if end == "end" else "predecessor"
+    if k not in junction and any(touch.other in junction for touch in found):
+        setattr(road, name, RoadLink("junction", junction_id(drafts, junction[next(t.other for t in found if t.other in junction)])))
+        return []
+    # a junction lies between this road and those whose ends are linked to it
+    found = [touch for touch in found if k in junction or not any(one.other in junction for one in touches.get((touch.other, touch.other_end), ()))]
+    if not found:
+        return []
+    # of several roads the one with the most lanes is kept: OpenDRIVE has one link an end
+    ends = sorted({(touch.other, touch.other_end) for touch in found}, key=lambda way: (-sum(touch[1:3] == way for touch in found), way))
+    other, other_end = ends[0]
+    setattr(road, name, RoadLink("road", drafts[other].road.id, other_end))
+    section = road.sections[-1 if end == "end" else 0]
+    for touch in found:
+        if (touch.other, touch.other_end) == ends[0]:
+            lane = section.lanes[touch.lane]
+            (lane.successors if end == "end" else lane.predecessors).append(touch.other_lane)
+    if len(ends) > 1:
+        return [f"Road {road.id} touches {len(ends)} roads at its {end} without a connector; it is linked to road {drafts[other].road.id} alone."]
+    return []
+
+
+def junction_id(drafts: list[DraftRoad], number: int) -> str:
+    """The id of a junction: beyond those of the roads, as both share one space in some readers."""
+    return str(len(drafts) + 1 + number)
+
+
+def _connections(whole, drafts, touches, junction):
+    found = {number: Junction(junction_id(drafts, number)) for number in sorted(set(junction.values()))}
+    for k, number in junction.items():
+        drafts[k].road.junction = found[number].id
+    for (k, end), touched in sorted(touches.items()):
+        road = drafts[k].road
+        if k in junction:
+            continue
+        lanes = defaultdict(list)
+        for touch in touched:
+            # only what drives out of the road at this end is incoming traffic of the junction
+            if touch.other in junction and (travel(road, touch.lane) > 0) == (end == "end"):
+                lanes[touch.other, touch.other_end].append((touch.lane, touch.other_lane))
+        for (other, other_end), links in sorted(lanes.items()):
+            connections = found[junction[other]].connections
+            connections.append(Connection(str(len(connections)), road.id, drafts[other].road.id, other_end, links))
+    whole.junctions = [one for one in found.values() if one.connections]
+    known = {one.id for one in whole.junctions}
+    for draft in drafts:
+        for name in ("predecessor", "successor"):
+            link = getattr(draft.road, name)
+            if link is not None and link.element == "junction" and link.id not in known:
+                setattr(draft.road, name, None)
+        if draft.road.junction not in known:
+            draft.road.junction = "-1"
+
+
+# Crossings, stop lines, arrows, bicycle symbols, the word BUS and hatched areas as objects of the roads that they lie on.
+
+SAMPLES = 1.0          # m between places of reference lines that objects are held against
+FARTHEST = 25.0        # m from a reference line
+SIMPLER = 0.02         # m by which an outline may be straightened
+STOP_LINE_HALF = 0.15  # m, half of the breadth of a stop line whose outline is not known
+THINNEST = 0.01        # m of an object's length and width at the least: the format has none of 0
+NAME_OF_CLASS = {"hatch": ("roadMark", "hatched area"), "arrow": ("roadMark", "arrow"), "bicycle": ("roadMark", "bicycle symbol"),
+                 "bus": ("roadMark", "word BUS")}
+
+
+def add_objects(whole: OpenDriveMap, markings: Features | None, origin: np.ndarray) -> None:
+    """Give the roads the objects that lie on them.
+
+    Parameters
+    ----------
+    whole : OpenDriveMap with its roads
+    markings : the layer MARKINGS in map coordinates, or None
+    origin : (3,) metres of the file's false origin
+    """
+    shapes: list[tuple[str, str, np.ndarray]] = []
+    for left, right in walked_crossings(markings):
+        shapes.append(("crosswalk", "zebra crossing", np.concatenate([left, right[::-1]])))
+    for line in stop_lines(markings):
+        way = line[1] - line[0]
+        across = np.array([-way[1], way[0], 0.0]) / max(float(np.hypot(*way[:2])), 1e-6) * STOP_LINE_HALF
+        shapes.append(("roadMark", "stop line", np.array([line[0] - across, line[1] - across, line[1] + across, line[0] + across])))
+    for geometry, row in markings if markings is not None else ():
+        known = NAME_OF_CLASS.get(next((name for name in NAME_OF_CLASS if str(row.get("class")).startswith(name)), ""))
+        if known is not None and geometry is not None and not geometry.is_empty:
+            shapes += [(*known, shapely.get_coordinates(shapely.simplify(part, SIMPLER).exterior, include_z=True)[:-1])
+                       for part in shapely.get_parts(geometry)]
+    if not shapes:
+        return
+    roads = [road for road in whole.roads if road.junction == "-1"] or whole.roads
+    tree, owner, station = _places(roads)
+    for number, (kind, name, corners) in enumerate(shapes):
+        local = corners - origin
+        near = tree.query_nearest(shapely.Point(local[:, :2].mean(0)), max_distance=FARTHEST, all_matches=False)
+        if len(near):
+            roads[owner[near[0]]].objects.append(_object(number, kind, name, local, roads[owner[near[0]]], float(station[near[0]])))
+
+
+def _places(roads: list[MapRoad]) -> tuple[shapely.STRtree, np.ndarray, np.ndarray]:
+    """(tree of places on reference lines, road of each, s of each)."""
+    stations = [np.linspace(0, road.plan.length, max(int(road.plan.length / SAMPLES), 1) + 1) for road in roads]
+    places = np.concatenate([road.plan.at(s)[0] for road, s in zip(roads, stations)])
+    owner = np.repeat(np.arange(len(roads)), [len(s) for s in stations])
+    return shapely.STRtree(shapely.points(places)), owner, np.concatenate(stations)
+
+
+def _object(number: int, kind: str, name: str, corners: np.ndarray, road: MapRoad, near: float) -> dict[str, Any]:
+    """The attributes of an object; its outline is told along the road, or beside its own place where it reaches beyond the road's end."""
+    s, t = road.plan.feet(corners[:, :2], np.full(len(corners), near))
+    at, aside = float(np.clip(s.mean(), 0.0, road.length)), float(t.mean())
+    local = bool(s.min() < 0.0 or s.max() > road.length)
+    if local:
+        (place,), (heading,), _ = road.plan.at(np.array([at]))
+        way = np.array([[np.cos(heading), -np.sin(heading)], [np.sin(heading), np.cos(heading)]])
+        u, v = ((corners[:, :2] - place) @ way).T
+        outline = np.c_[u, v - aside, corners[:, 2] - road.elevation.at(at)]
+    else:
+        outline = np.c_[s, t, corners[:, 2] - road.elevation.at(s)]
+    outline[:, 2] = np.round(outline[:, 2], 4)
+    length, width = (max(float(size), THINNEST) for size in np.ptp(outline[:, :2], axis=0))
+    return {"id": str(number), "type": kind, "subtype": "", "name": name, "orientation": "none", "s": at, "t": aside, "zOffset": 0.0,
+            "length": length, "width": width, "hdg": 0.0, "height": 0.0, "corners": outline, "local": local}

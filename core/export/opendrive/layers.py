@@ -10,8 +10,7 @@ import numpy as np
 from ...common.progress import Progress
 from ..map_layers import LaneRows, MapLayers, MapLine, plan_length, without_repeats
 from ..sources import LEAST_CURB
-from .model import DRIVEN_TYPES, LaneNetwork, MapLane, OpenDriveMap, travel
-from .surface import RoadSurface
+from .model import DRIVEN_TYPES, LaneNetwork, MapLane, OpenDriveMap, RoadSurface, travel
 
 LANE_TYPE_OF = {"shoulder": "shoulder", "stop": "shoulder", "border": "shoulder", "parking": "parking", "biking": "bicycle", "restricted": "hatched",
          "median": "median"}

@@ -1,15 +1,18 @@
-"""A map of OpenDRIVE as objects: what the reader makes, the exporter fills, the writer writes and the check looks at."""
+"""A map of OpenDRIVE as objects, which lane follows which on it, and where lanes lie."""
 
 from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
+import shapely
 
+from ..sources import LEAST_CURB
 from ..xml_tree import XmlElement
-from .geometry import Cubics, PlanView
+from .geometry import LEAST_STEP, STEP_RUN, Cubics, PlanView
 
 ROAD_LANE_TYPES = ("none", "driving", "stop", "shoulder", "biking", "sidewalk", "border", "restricted", "parking", "bidirectional", "median",
                    "special1", "special2", "special3", "roadWorks", "tram", "rail", "entry", "exit", "offRamp", "onRamp", "connectingRamp", "bus",
@@ -230,3 +233,189 @@ class LaneNetwork:
 def travel(road: MapRoad, id: int) -> int:
     """1 where the lanes of this side are driven along the reference line, -1 where against it."""
     return 1 if (id < 0) == (road.rule != "LHT") else -1
+
+
+# Where the lanes of an OpenDRIVE road lie: borders in x, y, z.
+
+BORDER_STEP = 1.0   # m between the places at which borders are computed
+SAGITTA = 0.0005    # m by which the chord between two of them may miss a curve
+LEAST_BORDER_STEP = 0.05   # m
+BENDING_ROUNDS = 5   # of halving the steps where a border bends
+BEFORE_END = 1e-6    # m before the end of a section at which its functions still hold
+LONGEST_FOLD = 200      # places before and after a step back among which its crossing is looked for
+GAP, KINK = 1e-4, 1e-4  # m and rad between elements of the reference line from which a border jumps there: it is cut on both sides
+
+
+class RoadSurface:
+    """The borders of one road's lanes.
+
+    Parameters
+    ----------
+    road : MapRoad
+    """
+
+    def __init__(self, road: MapRoad) -> None:
+        self.road = road
+        self._axis: tuple[np.ndarray, ...] = (np.empty(0),)   # s, and what all borders there share
+
+    def stations(self, number: int, step: float = BORDER_STEP) -> np.ndarray:
+        """(N,) metres of s at which a section is cut: evenly, wherever a function of it changes, and closer where a border bends."""
+        road, first, last = self.road, self.road.sections[number].s, self.road.section_end(number)
+        bend = np.abs(road.plan.at(np.linspace(first, last, max(int((last - first) / step), 1) + 1))[2]).max()
+        step = min(step, max(float(np.sqrt(8 * SAGITTA / max(bend, 1e-9))), LEAST_BORDER_STEP))
+        even = np.linspace(first, last, max(int(np.ceil((last - first) / step - 1e-9)), 1) + 1)
+        own = [rows[:, 0] + first for lane in road.sections[number].lanes.values() for rows in (lane.width.rows, lane.heights)]
+        heights = road.elevation.rows[:, 0], road.superelevation.rows[:, 0], road.shape[:, 0]
+        knots = np.concatenate([even, [element.s for element in road.plan.elements], road.lane_offset.rows[:, 0], *heights, *own])
+        knots = np.unique(knots[(knots >= first) & (knots <= last)])
+        keep = np.append(True, np.diff(knots) > STEP_RUN) & (knots < last - STEP_RUN)
+        keep[0] = True
+        knots = np.append(knots[keep], last) if last > first else knots[[0, -1]]
+        if number + 1 < len(road.sections):   # the functions of the next section begin at its end
+            knots[-1] = max(knots[-1] - BEFORE_END, knots[-2])
+        lanes = road.sections[number].lanes.values()
+        steps = [_steps(lane.width) for lane in lanes] + [_steps(lane.heights) for lane in lanes]
+        cuts = np.concatenate([self._cuts, *(s + first - 2 * LEAST_STEP for s in steps)])
+        knots = np.unique(np.append(knots, cuts[(cuts > knots[0] + STEP_RUN) & (cuts < knots[-1] - STEP_RUN)]))
+        for _ in range(BENDING_ROUNDS):
+            middles = (knots[:-1] + knots[1:]) / 2
+            ends, inner = (np.stack(list(self.offsets(number, s).values())) for s in (knots, middles))
+            rise, run = np.diff(ends, axis=1), np.diff(knots)
+            missed = np.abs(inner - (ends[:, :-1] + ends[:, 1:]) / 2) * run / np.hypot(run, rise)
+            bent = (missed > SAGITTA).any(0) & (run > 2 * LEAST_BORDER_STEP / 2**BENDING_ROUNDS)
+            if not bent.any():
+                break
+            knots = np.sort(np.append(knots, middles[bent]))
+        return knots
+
+    @cached_property
+    def _cuts(self):
+        """(N,) metres of s before every gap or kink of the reference line, and before every step of a function of the whole road."""
+        steps = [_steps(cubics) for cubics in (self.road.elevation, self.road.superelevation, self.road.lane_offset)]
+        return np.append([s - BEFORE_END for s, _, _ in self.road.plan.jumps(GAP, KINK)], np.concatenate(steps) - 2 * LEAST_STEP)
+
+    def offsets(self, number: int, s: np.ndarray) -> dict[int, np.ndarray]:
+        """(N,) metres left of the reference line of every lane's outer border, and of lane 0, by lane number."""
+        section = self.road.sections[number]
+        centre = self.road.lane_offset.at(s)
+        found = {0: centre}
+        for side in (1, -1):
+            outer = centre
+            for id in sorted((id for id in section.lanes if id * side > 0), key=abs):
+                lane = section.lanes[id]
+                value = lane.width.at(s - section.s)
+                outer = side * np.abs(value) if lane.border else outer + side * np.maximum(value, 0.0)
+                found[id] = outer
+        return found
+
+    def places(self, s: np.ndarray, t: np.ndarray, height: np.ndarray | float = 0.0) -> np.ndarray:
+        """(N, 3) coordinates of the file at s and t: the t axis rolled by the superelevation, the shape laid on it."""
+        road = self.road
+        if not np.array_equal(self._axis[0], s):
+            plan, heading, _ = road.plan.at(s)
+            roll = road.superelevation.at(s)
+            self._axis = s.copy(), *plan.T, np.sin(heading), np.cos(heading), np.sin(roll), np.cos(roll), road.elevation.at(s)
+        _, x, y, sine, cosine, rise, run, level = self._axis
+        flat = t * run
+        return np.stack([x - sine * flat, y + cosine * flat, level + t * rise + shape_height(road.shape, s, t) + height], axis=1)
+
+    def borders(self, number: int, id: int, s: np.ndarray, offsets: dict[int, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+        """((N, 3) inner, (N, 3) outer) border of a lane along the road."""
+        inner = offsets[self.inside(number, id)]
+        lift = self.lifts(number, id, s)
+        return self.places(s, inner, lift[0]), self.places(s, offsets[id], lift[1])
+
+    def jumps(self) -> list[tuple[float, float, int]]:
+        """(s, metres, lane) of every gap or kink of the reference line, with the jump of the farthest border there and its lane, and of every step
+        of a width or height."""
+        road, found = self.road, []
+        for s, gap, turn in road.plan.jumps(GAP, KINK):
+            number = max((k for k, section in enumerate(road.sections) if section.s <= s), default=-1)
+            if number >= 0:
+                farthest, lane = max((abs(float(t[0])), id) for id, t in self.offsets(number, np.array([s])).items())
+                found.append((s, gap + 2 * farthest * float(np.sin(turn / 2)), lane))
+        starts = [section.s for section in road.sections]   # where lanes begin lane 0 may lie elsewhere
+        found += [(s, size, 0) for cubics in (road.elevation, road.lane_offset) for s, size in zip(*cubics.steps())
+                  if cubics is road.elevation or s not in starts]
+        return found + [(section.s + s, size, lane.id) for section in road.sections for lane in section.lanes.values()
+                        for s, size in zip(*lane.width.steps())]
+
+    def inside(self, number: int, id: int) -> int:
+        """The lane next to one on the side of lane 0, which is never missing."""
+        return max((other for other in self.road.sections[number].lanes if other * id >= 0 and abs(other) < abs(id)), key=abs, default=0)
+
+    def lifts(self, number: int, id: int, s: np.ndarray) -> np.ndarray:
+        """(2, N) metres that the inner and the outer border of a lane lie above the road."""
+        heights = self.road.sections[number].lanes[id].heights if id in self.road.sections[number].lanes else np.empty((0, 3))
+        if not len(heights):
+            return np.zeros((2, len(s)))
+        k = np.searchsorted(heights[:, 0], s - self.road.sections[number].s + 1e-9, side="right") - 1
+        return np.where(k < 0, 0.0, heights[np.maximum(k, 0), 1:].T)
+
+    def without_folds(self, s: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray | None]:
+        """(N, 3) places of a border at s, of which none lies on a loop, and where the first loop was, None where there was none.
+
+        Where a curve is tighter than a border is far from the reference line, the border runs back for a while and crosses itself twice over.
+        The places between are led to the crossing, so that the border stands still there.
+        """
+        heading = self.road.plan.at((s[:-1] + s[1:]) / 2)[1]
+        steps = np.diff(points[:, :2], axis=0)
+        back = steps[:, 0] * np.cos(heading) + steps[:, 1] * np.sin(heading) < 0
+        if not back.any() or shapely.linestrings(points[:, :2]).is_simple:
+            return points, None
+        points, first = points.copy(), None
+        for a in np.flatnonzero(back & ~np.append(False, back[:-1])):
+            b = a + int(np.argmin(np.append(back[a:], False)))   # the steps a to b - 1 run back
+            crossing = _crossing(points, a, b)
+            if crossing is not None:
+                before, after, place = crossing
+                first = place if first is None else first
+                points[before + 1:after + 1] = place
+        return points, first
+
+
+def _steps(values):
+    """(N,) metres of s at which Cubics, or (M, 3) heights that hold from row to row, step by more than LEAST_CURB."""
+    s, sizes = values.steps() if isinstance(values, Cubics) else (values[1:, 0], np.abs(np.diff(values[:, 1:], axis=0)).max(1, initial=0.0))
+    return s[sizes > LEAST_CURB]
+
+
+def _crossing(points, a, b):
+    """(step, step, place) at which the steps before a cross those from b on: the one that is left last; None where none do."""
+    lines = shapely.linestrings(np.stack([points[:-1, :2], points[1:, :2]], axis=1))
+    before, after = np.arange(max(a - LONGEST_FOLD, 0), a), np.arange(b, min(b + LONGEST_FOLD, len(lines)))
+    if not len(before) or not len(after):
+        return None
+    pairs = shapely.STRtree(lines[after]).query(lines[before], predicate="intersects")
+    if not pairs.shape[1]:
+        return None
+    # the outermost crossing takes all smaller loops with it
+    i, j = min(((before[p], after[q]) for p, q in pairs.T), key=lambda pair: (pair[0], -pair[1]))
+    place = shapely.get_coordinates(shapely.intersection(lines[i], lines[j]))[0]
+    share = np.hypot(*(place - points[i, :2])) / max(float(np.hypot(*(points[i + 1] - points[i])[:2])), 1e-12)
+    return i, j, np.append(place, points[i, 2] + share * (points[i + 1, 2] - points[i, 2]))
+
+
+def shape_height(shape: np.ndarray, s: np.ndarray, t: np.ndarray) -> np.ndarray:
+    """(N,) metres of the lateral shape at s and t: a cubic in t at each given s, linear between them.
+
+    Right of the first t its cubic goes on straight.
+    """
+    if not len(shape):
+        return np.zeros(len(s))
+    rows = shape[np.lexsort((shape[:, 1], shape[:, 0]))]
+    given, first, count = np.unique(rows[:, 0], return_index=True, return_counts=True)
+    starts = np.full((len(given), count.max()), np.inf)
+    starts[np.repeat(np.arange(len(given)), count), np.arange(len(rows)) - np.repeat(first, count)] = rows[:, 1]
+
+    def value(k: np.ndarray) -> np.ndarray:
+        piece = np.maximum((starts[k] <= t[:, None] + 1e-9).sum(1) - 1, 0)
+        _, start, a, b, c, d = rows[first[k] + piece].T
+        dt = t - start
+        return np.where(t < starts[k, 0], a + b * dt, a + dt * (b + dt * (c + dt * d)))
+
+    k = np.clip(np.searchsorted(given, s, side="right") - 1, 0, max(len(given) - 2, 0))
+    if len(given) == 1:
+        return value(k)
+    share = np.clip((s - given[k]) / (given[k + 1] - given[k]), 0.0, 1.0)
+    return value(k) * (1 - share) + value(k + 1) * share

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .adjustment import MIN_RANGE, misfits
 from .poses import Poses
-from .rays import MIN_RANGE, misfits
-from .rough.first_track import FirstTrack
+from .samples import FirstTrack
 
 FOLLOWERS = 8            # points after a point, to which its line may lead: beside a scanner of many pulses those of another come seldom
 NEAREST_STEP, FARTHEST_STEP = 0.02, 1.5   # m of them apart: nearer, noise turns the direction, farther it is another line

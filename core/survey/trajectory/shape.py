@@ -3,7 +3,7 @@
 Between two vertices the vehicle is taken to be on the straight line between them. In a bend of radius R it was off it by up to the sagitta
 L²/8R of vertices L apart; at each vertex the line turns by about L/R, so the sagitta is L/8 times that turn. A spline through the vertices
 passes such bends; how far it is off shows where every second vertex is left out, and falls with the fourth power of the spacing (de Boor, A
-Practical Guide to Splines, ch. V). Every number below has where it comes from: see fit/limits.py.
+Practical Guide to Splines, ch. V). Every number below has where it comes from: see adjustment/trajectory_fit.py.
 
 Positions of a receiver that nobody filtered scatter from row to row by more than any vehicle shakes. A cubic over a second follows the vehicle
 to centimetres (see VEHICLE_JERK), so what is left beyond that is the noise.
@@ -18,7 +18,7 @@ from scipy.interpolate import CubicHermiteSpline, CubicSpline
 from scipy.signal import savgol_filter
 
 from ...curves.robust import MAD_TO_SIGMA
-from .drive_checks import HEADING_TOLERANCE, angle_between
+from .columns import HEADING_TOLERANCE, angle_between
 from .trajectory import Trajectory
 
 GAP_FACTOR, SHORTEST_PAUSE = 3.0, 1.0     # weight: times the usual step of time, and s, beyond which the vehicle is not interpolated

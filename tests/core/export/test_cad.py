@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 import shapely
 from lanewright.core.common.features import DRIVING_LINES, Features
-from lanewright.core.export.cad.alignments import alignments_of, elements_without_reversal
 from lanewright.core.export.cad.dxf import dxf_lines, write_dxf
-from lanewright.core.export.cad.landxml import NAMESPACE, landxml_text
+from lanewright.core.export.cad.landxml import NAMESPACE, alignments_of, elements_without_reversal, landxml_text
 from lanewright.core.export.opendrive.geometry import PlanElement, PlanView
 from lanewright.core.export.sources import RoadMapSource, checked
 from lanewright.core.export.xml_tree import read_xml

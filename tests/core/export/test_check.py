@@ -6,9 +6,8 @@ import pytest
 from lanewright.core.export.check.findings import FAULTS
 from lanewright.core.export.check.lanelets import check_lanelets
 from lanewright.core.export.check.roads import check_opendrive
-from lanewright.core.export.lanelet.layers import node_places
-from lanewright.core.export.lanelet.reader import read_lanelet2
-from lanewright.core.export.opendrive.reader import read_opendrive
+from lanewright.core.export.lanelet_map import node_places, read_lanelet2
+from lanewright.core.export.opendrive.xodr import read_opendrive
 from map_files import geometry, lanelet_street, opendrive, road, street_section, written
 
 BOTH = '<predecessor id="{0}"/><successor id="{0}"/>'

@@ -4,11 +4,10 @@ import numpy as np
 import pytest
 import shapely
 from lanewright.core.common.features import DRIVING_LINES, Features
-from lanewright.core.export.fit_of_export import border_misses, driving_line_misses
+from lanewright.core.export.map_layers import border_misses, driving_line_misses
 from lanewright.core.export.opendrive.exporter import OpenDriveSettings, draft_opendrive
 from lanewright.core.export.opendrive.layers import layers_of_opendrive
-from lanewright.core.export.opendrive.reader import read_opendrive
-from lanewright.core.export.opendrive.writer import opendrive_text
+from lanewright.core.export.opendrive.xodr import opendrive_text, read_opendrive
 from lanewright.core.export.shared_borders import with_driven_middles, with_shared_borders
 from lanewright.core.export.sources import RoadMapSource, checked
 from made_lanes import double_line, street

@@ -7,13 +7,10 @@ import pytest
 from lanewright.core.export.check.lanelets import check_lanelets
 from lanewright.core.export.check.roads import check_opendrive
 from lanewright.core.export.inferred_ways import UNDRIVEN_CONFIDENCE, with_inferred_ways
-from lanewright.core.export.lanelet.exporter import draft_lanelets
-from lanewright.core.export.lanelet.layers import node_places
-from lanewright.core.export.lanelet.reader import read_lanelet2
-from lanewright.core.export.lanelet.writer import lanelet2_text, to_degrees
+from lanewright.core.export.lanelet_export import draft_lanelets, lanelet2_text, to_degrees
+from lanewright.core.export.lanelet_map import node_places, read_lanelet2
 from lanewright.core.export.opendrive.exporter import draft_opendrive
-from lanewright.core.export.opendrive.reader import read_opendrive
-from lanewright.core.export.opendrive.writer import opendrive_text
+from lanewright.core.export.opendrive.xodr import opendrive_text, read_opendrive
 from lanewright.core.export.shared_borders import with_shared_borders
 from lanewright.core.export.sources import RoadMapSource, checked
 from made_lanes import CRS, Axis, LaneScene, crossing, hermite, kinds

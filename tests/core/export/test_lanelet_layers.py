@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 import shapely
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.export.lanelet.layers import layers_of_lanelets, matched
-from lanewright.core.export.lanelet.reader import read_lanelet2
+from lanewright.core.export.lanelet_map import layers_of_lanelets, matched, read_lanelet2
 from map_files import lanelet_street, written
 
 

@@ -7,20 +7,16 @@ import pytest
 import shapely
 from lanewright.core.driving.layers import lanes_from_features
 from lanewright.core.export.check.lanelets import check_lanelets
-from lanewright.core.export.fit_of_export import border_misses
 from lanewright.core.export.inferred_ways import with_inferred_ways
-from lanewright.core.export.lanelet.exporter import draft_lanelets
-from lanewright.core.export.lanelet.layers import layers_of_lanelets, node_places
-from lanewright.core.export.lanelet.reader import read_lanelet2
-from lanewright.core.export.lanelet.writer import lanelet2_text, to_degrees
-from lanewright.core.export.map_layers import LaneRows
+from lanewright.core.export.lanelet_export import draft_lanelets, lanelet2_text, to_degrees
+from lanewright.core.export.lanelet_map import layers_of_lanelets, node_places, read_lanelet2
+from lanewright.core.export.map_layers import LaneRows, border_misses
 from lanewright.core.export.opendrive.exporter import draft_opendrive
+from lanewright.core.export.opendrive.geometry import fit_cubics
 from lanewright.core.export.opendrive.layers import layers_of_opendrive
-from lanewright.core.export.opendrive.profiles import fit_cubics
-from lanewright.core.export.opendrive.reader import read_opendrive
+from lanewright.core.export.opendrive.model import shape_height
 from lanewright.core.export.opendrive.reference_line import fit_reference
-from lanewright.core.export.opendrive.surface import shape_height
-from lanewright.core.export.opendrive.writer import opendrive_text
+from lanewright.core.export.opendrive.xodr import opendrive_text, read_opendrive
 from lanewright.core.export.shared_borders import with_shared_borders
 from lanewright.core.export.sources import RoadMapSource, checked
 from map_files import geometry, lane, opendrive, road, street_section, written

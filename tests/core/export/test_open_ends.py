@@ -6,8 +6,7 @@ from dataclasses import fields, replace
 import numpy as np
 from lanewright.core.export.check.roads import check_opendrive
 from lanewright.core.export.opendrive.exporter import draft_opendrive
-from lanewright.core.export.opendrive.reader import read_opendrive
-from lanewright.core.export.opendrive.writer import opendrive_text
+from lanewright.core.export.opendrive.xodr import opendrive_text, read_opendrive
 from lanewright.core.export.sources import RoadMapSource, checked
 from made_lanes import crossing
 from map_files import written

@@ -3,11 +3,10 @@
 import numpy as np
 import pytest
 from lanewright.core.export.check.roads import check_opendrive
-from lanewright.core.export.fit_of_export import border_misses
+from lanewright.core.export.map_layers import border_misses
 from lanewright.core.export.opendrive.exporter import draft_opendrive
 from lanewright.core.export.opendrive.layers import layers_of_opendrive
-from lanewright.core.export.opendrive.reader import read_opendrive
-from lanewright.core.export.opendrive.writer import opendrive_text
+from lanewright.core.export.opendrive.xodr import opendrive_text, read_opendrive
 from lanewright.core.export.sources import RoadMapSource, checked
 from made_lanes import CRS, Axis, LaneScene, kinds, parting
 from map_files import written

@@ -7,14 +7,12 @@ import pytest
 import shapely
 from lanewright.core.common.features import DRIVING_LINES, MARKING_LINES, MARKINGS, ROAD_EDGES, Features
 from lanewright.core.export.check.roads import check_opendrive
-from lanewright.core.export.fit_of_export import border_misses, driving_line_misses
-from lanewright.core.export.map_crs import crs_of_reference, reference_of_crs
+from lanewright.core.export.map_layers import border_misses, crs_of_reference, driving_line_misses, reference_of_crs
 from lanewright.core.export.opendrive.exporter import OpenDriveSettings, draft_opendrive
+from lanewright.core.export.opendrive.geometry import fit_cubics
 from lanewright.core.export.opendrive.layers import layers_of_opendrive
-from lanewright.core.export.opendrive.profiles import fit_cubics
-from lanewright.core.export.opendrive.reader import read_opendrive
 from lanewright.core.export.opendrive.reference_line import fit_reference, polynomial_reference
-from lanewright.core.export.opendrive.writer import opendrive_text
+from lanewright.core.export.opendrive.xodr import opendrive_text, read_opendrive
 from lanewright.core.export.sources import RoadMapSource, checked
 from made_lanes import CRS, Axis, LaneScene, crossing, kinds, roundabout, s_curve, split, street, widening
 from map_files import written

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 import shapely
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.export.map_crs import crs_of_reference
+from lanewright.core.export.map_layers import crs_of_reference
 from lanewright.core.export.opendrive.geometry import Cubics, PlanElement
 from lanewright.core.export.opendrive.layers import layers_of_opendrive
-from lanewright.core.export.opendrive.reader import read_opendrive
+from lanewright.core.export.opendrive.xodr import read_opendrive
 from map_files import geometry, lane, opendrive, road, street_section, written
 
 

@@ -5,14 +5,11 @@ import pytest
 import shapely
 from lanewright.core.common.features import ROAD_EDGES, Features
 from lanewright.core.export.cad.dxf import dxf_lines
-from lanewright.core.export.lanelet.exporter import draft_lanelets
-from lanewright.core.export.lanelet.layers import layers_of_lanelets
-from lanewright.core.export.lanelet.reader import read_lanelet2
-from lanewright.core.export.lanelet.writer import lanelet2_text, to_degrees
+from lanewright.core.export.lanelet_export import draft_lanelets, lanelet2_text, to_degrees
+from lanewright.core.export.lanelet_map import layers_of_lanelets, read_lanelet2
 from lanewright.core.export.opendrive.exporter import draft_opendrive
 from lanewright.core.export.opendrive.layers import layers_of_opendrive
-from lanewright.core.export.opendrive.reader import read_opendrive
-from lanewright.core.export.opendrive.writer import opendrive_text
+from lanewright.core.export.opendrive.xodr import opendrive_text, read_opendrive
 from lanewright.core.export.shared_borders import with_shared_borders
 from lanewright.core.export.sources import RoadMapSource, checked
 from made_lanes import CRS, Axis, LaneScene, double_line, kinds

@@ -7,14 +7,12 @@ import numpy as np
 import pytest
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.export.check.roads import check_opendrive
-from lanewright.core.export.fit_of_export import border_misses
+from lanewright.core.export.map_layers import border_misses
 from lanewright.core.export.opendrive.exporter import draft_opendrive
 from lanewright.core.export.opendrive.layers import layers_of_opendrive
-from lanewright.core.export.opendrive.reader import read_opendrive
-from lanewright.core.export.opendrive.writer import opendrive_text
+from lanewright.core.export.opendrive.xodr import opendrive_text, read_opendrive
 from lanewright.core.export.shared_borders import SHARED_FADE, meet_lanes, share_borders, with_shared_borders
-from lanewright.core.export.sources import RoadMapSource, checked
-from lanewright.core.export.surface_heights import with_surface_heights
+from lanewright.core.export.sources import RoadMapSource, checked, with_surface_heights
 from made_lanes import CRS, Axis, LaneScene, crossing, double_line, kinds, parting, street
 from map_files import written
 

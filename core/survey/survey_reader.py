@@ -15,23 +15,32 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...common.parallel import POLL_INTERVAL, check_cancelled
-from ...common.progress import Progress
-from ...execution.phase import Executor, Phase, Recipe
-from ..frame.road_frame import RoadFrame
-from ..las.parallel_reader import ParallelCloudReader
-from ..las.point_fields import ScannerCensus, numbers_by_value
-from ..las.reader import CloudHeader
-from ..las.samples import TimeSlots
-from ..store.columns import Columns
-from ..store.records import COORDINATE_SCALE, road_of
-from ..store.section_store import STRETCH_POINTS, SectionStore, Stretch
-from ..store.spill_file import StoreIndex, close_parts
-from .blocks import KEPT_BELOW_ROAD, LEVEL_HEIGHT, BlockReader, BlockSummary, ChosenPoints, HeightFilter, PointChoice
-from .sensor_height import DEFAULT_SENSOR_HEIGHT, estimate_sensor_height
+from ..common.parallel import POLL_INTERVAL, check_cancelled
+from ..common.progress import Progress
+from ..execution.phase import Executor, Phase, Recipe
+from .blocks import (
+    DEFAULT_SENSOR_HEIGHT,
+    KEPT_BELOW_ROAD,
+    LEVEL_HEIGHT,
+    BlockReader,
+    BlockSummary,
+    ChosenPoints,
+    HeightFilter,
+    PointChoice,
+    estimate_sensor_height,
+)
+from .frame.road_frame import RoadFrame
+from .las.parallel_reader import ParallelCloudReader
+from .las.point_fields import ScannerCensus, numbers_by_value
+from .las.reader import CloudHeader
+from .las.samples import TimeSlots
+from .store.columns import Columns
+from .store.records import COORDINATE_SCALE, road_of
+from .store.section_store import STRETCH_POINTS, SectionStore, Stretch
+from .store.spill_file import StoreIndex, close_parts
 
 if TYPE_CHECKING:
-    from ..estimation.interleaved import ScannerSplitter
+    from .estimation.interleaved import ScannerSplitter
 
 MAX_WAITING_POINTS = 4_000_000  # points held back at most until the height of the road is known
 HEIGHT_SAMPLES = 5_000     # points on the own track from which the rough height is estimated
@@ -233,7 +242,7 @@ class PartsOfFiles:
         """How other processes read the same."""
         store = self.store
         files = [replace(file, path=os.path.abspath(file.path), crs="") for file in self.files]
-        return Recipe("survey.reading.survey_reader:parts_of_files", dict(
+        return Recipe("survey.survey_reader:parts_of_files", dict(
             files=files, frame=self.reader.frame, columns=[list(column) for column in store.dtype.descr], section_length=store.section_length,
             memory_limit=store.memory_limit, folder=str(store.folder), choice=self.reader.choice, slots=self.reader.slots, drop=self.drop,
             ranges=self.ranges, block=self.block))
@@ -311,7 +320,7 @@ class UnorderedPoints:
 
     def recipe(self, folder: Path) -> Recipe:
         """How other processes open the points."""
-        return Recipe("survey.reading.survey_reader:unordered_points", dict(contents=self.store.contents(), points_folder=str(self.store.folder),
+        return Recipe("survey.survey_reader:unordered_points", dict(contents=self.store.contents(), points_folder=str(self.store.folder),
                                                                finishing=self.finishing, folder=str(self.folder)))
 
     def put_in_order(self, executor: Executor, place: Callable[[int, float, float], str], progress: Progress) -> None:

@@ -17,8 +17,9 @@ import numpy as np
 
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
-from ..adjustment.adjust import AGREEMENT_HEIGHT, AGREEMENT_PLAN, MOVED_COLUMNS, replace_points
-from ..adjustment.register import (
+from ..store.records import COORDINATE_SCALE, to_units
+from .adjust import AGREEMENT_HEIGHT, AGREEMENT_PLAN, MOVED_COLUMNS, replace_points
+from .register import (
     CHANNELS,
     FLAT_STEP,
     LAG_CELL,
@@ -34,8 +35,7 @@ from ..adjustment.register import (
     correlation_sums,
     height_offset,
 )
-from ..store.records import COORDINATE_SCALE, to_units
-from .limits import LOOK_WINDOWS, MAX_SCANNER_OFFSETS, SCANNER_WINDOWS, SIGNIFICANT
+from .trajectory_fit import LOOK_WINDOWS, MAX_SCANNER_OFFSETS, SCANNER_WINDOWS, SIGNIFICANT
 
 SIDES = "right", "left"
 SAID_AS = ("ahead", "behind"), ("left", "right"), ("above", "below")

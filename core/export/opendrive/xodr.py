@@ -1,4 +1,4 @@
-"""Reads OpenDRIVE 1.1 to 1.8."""
+"""Reads OpenDRIVE 1.1 to 1.8, and writes 1.7 and 1.8."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 
 from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
-from ..xml_tree import XmlElement, read_xml
+from ..xml_tree import XmlElement, read_xml, xml_text
 from .geometry import Cubics, PlanElement, PlanView
 from .model import Connection, Junction, LaneSection, MapLane, MapRoad, OpenDriveMap, RoadLink, RoadMark
 
@@ -61,7 +61,7 @@ def opendrive_of(root: XmlElement) -> OpenDriveMap:
             found.offset = (offset.number("x", 0.0), offset.number("y", 0.0), offset.number("z", 0.0), offset.number("hdg", 0.0))
     for element in root.all("road"):
         try:
-            found.roads.append(_road(element, found.problems))
+            found.roads.append(_road_of(element, found.problems))
         except RoadExtractionError as problem:
             found.problems.append((element.line, f"road {element.get('id')} cannot be read: {problem}"))
     for element in root.all("junction"):
@@ -69,7 +69,7 @@ def opendrive_of(root: XmlElement) -> OpenDriveMap:
     return found
 
 
-def _road(element, problems):
+def _road_of(element, problems):
     plan = element.find("planView")
     elements = sorted((_geometry(child) for child in (plan.all("geometry") if plan is not None else ())), key=lambda one: one.s)
     if not elements:
@@ -83,7 +83,7 @@ def _road(element, problems):
         element.get("rule", "RHT"), _link(element.find("link", "predecessor")), _link(element.find("link", "successor")),
         _cubics(profile, "elevation"), _cubics(lateral, "superelevation"), _shape(lateral), _cubics(lanes, "laneOffset"))
     for child in lanes.all("laneSection") if lanes is not None else ():
-        road.sections.append(_section(child))
+        road.sections.append(_section_of(child))
     road.sections.sort(key=lambda section: section.s)
     if not road.sections:
         problems.append((element.line, f"road {road.id} has no lane section."))
@@ -125,18 +125,18 @@ def _shape(parent):
     return np.array(rows, float).reshape(-1, 6)
 
 
-def _section(element):
+def _section_of(element):
     section = LaneSection(element.number("s"))
     for side in ("left", "center", "right"):
         group = element.find(side)
         for child in group.all("lane") if group is not None else ():
-            lane = _lane(child)
+            lane = _lane_of(child)
             section.order.append(lane.id)
             section.lanes[lane.id] = lane
     return section
 
 
-def _lane(element):
+def _lane_of(element):
     number = element.number("id")
     lane = MapLane(int(number), element.get("type"), _cubics(element, "width", "sOffset"))
     if not len(lane.width) and element.find("border") is not None:
@@ -183,3 +183,132 @@ def _junction(element):
         connecting = child.get("connectingRoad") or child.get("linkedRoad")
         junction.connections.append(Connection(child.get("id"), child.get("incomingRoad"), connecting, child.get("contactPoint"), links))
     return junction
+
+
+# Writing.
+
+FILLED_BY_PAINT = 8  # of version 1: from there on outlines may be filled by paint
+SOLID_LENGTH = 1.0   # m: a stripe without gaps is repeated from any length on
+
+
+def opendrive_text(whole: OpenDriveMap, vendor: str = "Lanewright") -> str:
+    """The file as text."""
+    root = XmlElement("OpenDRIVE")
+    places = np.concatenate([road.plan.at(np.linspace(0, road.plan.length, max(int(road.plan.length / 5), 1) + 1))[0] for road in whole.roads]) \
+        if whole.roads else np.zeros((1, 2))
+    (west, south), (east, north) = places.min(0), places.max(0)
+    header = root.add("header", revMajor=whole.version[0], revMinor=whole.version[1], name=whole.name, version="1.0", north=_round(north),
+                      south=_round(south), east=_round(east), west=_round(west), vendor=vendor)
+    if whole.reference:
+        header.add("geoReference", whole.reference)
+    x, y, z, heading = whole.offset
+    header.add("offset", x=x, y=y, z=z, hdg=heading)
+    for road in whole.roads:
+        root.append(_road_element(road, whole.version[1]))
+    for junction in whole.junctions:
+        element = root.add("junction", id=junction.id, name=junction.name, type="default")
+        for connection in junction.connections:
+            child = element.add("connection", id=connection.id, incomingRoad=connection.incoming, connectingRoad=connection.connecting,
+                                contactPoint=connection.contact)
+            for start, to in connection.lanes:
+                child.append(XmlElement("laneLink", {"from": start, "to": to}))
+    return xml_text(root)
+
+
+def _road_element(road: MapRoad, minor: int) -> XmlElement:
+    element = XmlElement("road", {"name": road.name, "length": float(road.length), "id": road.id, "junction": road.junction, "rule": road.rule})
+    if road.predecessor or road.successor:
+        link = element.add("link")
+        for name, target in (("predecessor", road.predecessor), ("successor", road.successor)):
+            if target is not None:
+                link.add(name, elementType=target.element, elementId=target.id, contactPoint=target.contact or None)
+    element.append(_plan(road.plan.elements))
+    _rows(element.add("elevationProfile"), "elevation", road.elevation)
+    lateral = element.add("lateralProfile")
+    if np.abs(road.superelevation.rows[:, 1:]).max(initial=0.0) > 0:
+        _rows(lateral, "superelevation", road.superelevation)
+    for s, t, a, b, c, d in road.shape:
+        lateral.add("shape", s=s, t=t, a=a, b=b, c=c, d=d)
+    lanes = element.add("lanes")
+    _rows(lanes, "laneOffset", road.lane_offset)
+    for section in road.sections:
+        lanes.append(_section_element(section))
+    if road.objects:
+        objects = element.add("objects")
+        for item in road.objects:
+            _add_object(objects, item, minor)
+    for code, value in road.data.items():
+        element.add("userData", code=code, value=value)
+    return element
+
+
+def _plan(elements: tuple[PlanElement, ...]) -> XmlElement:
+    plan = XmlElement("planView")
+    for one in elements:
+        child = plan.add("geometry", s=one.s, x=one.x, y=one.y, hdg=one.heading, length=one.length)
+        if one.kind == "line":
+            child.add("line")
+        elif one.kind == "arc":
+            child.add("arc", curvature=one.values[0])
+        elif one.kind == "spiral":
+            child.add("spiral", curvStart=one.values[0], curvEnd=one.values[1])
+        else:
+            names = [name + axis for axis in "UV" for name in "abcd"]
+            child.append(XmlElement("paramPoly3", dict(zip(names, one.values)) | {"pRange": "normalized" if one.normalized else "arcLength"}))
+    return plan
+
+
+def _rows(parent: XmlElement, tag: str, cubics: Cubics, start: str = "s") -> None:
+    for s, a, b, c, d in cubics.rows:
+        parent.append(XmlElement(tag, {start: s, "a": a, "b": b, "c": c, "d": d}))
+
+
+def _section_element(section: LaneSection) -> XmlElement:
+    element = XmlElement("laneSection", {"s": float(section.s)})
+    for side, ids in (("left", [id for id in section.order if id > 0]), ("center", [0]), ("right", [id for id in section.order if id < 0])):
+        if ids:
+            group = element.add(side)
+            for id in ids:
+                group.append(_lane_element(section.lanes[id]))
+    return element
+
+
+def _lane_element(lane: MapLane) -> XmlElement:
+    element = XmlElement("lane", {"id": lane.id, "type": lane.type, "level": "false"})
+    if lane.predecessors or lane.successors:
+        link = element.add("link")
+        for name, ids in (("predecessor", lane.predecessors), ("successor", lane.successors)):
+            for id in ids:
+                link.add(name, id=id)
+    _rows(element, "width", lane.width, "sOffset")
+    for mark in lane.marks:
+        _add_mark(element, mark)
+    for s, inner, outer in lane.heights:
+        element.add("height", sOffset=s, inner=inner, outer=outer)
+    for code, value in lane.data.items():
+        element.add("userData", code=code, value=value)
+    return element
+
+
+def _add_mark(lane: XmlElement, mark: RoadMark) -> None:
+    width = mark.width if mark.type != "none" else None
+    element = lane.add("roadMark", sOffset=mark.s, type=mark.type, weight=mark.weight, color=mark.colour, width=width, laneChange=None)
+    stripes = mark.type.split(" ") if mark.apart else [mark.type] if mark.dash else []
+    if stripes:
+        kind = element.add("type", name=mark.type, width=mark.width)
+        for stripe, t in zip(stripes, (mark.apart / 2, -mark.apart / 2)):
+            dash, gap = (mark.dash, mark.gap) if "broken" in stripe else (SOLID_LENGTH, 0.0)
+            kind.add("line", length=dash, space=gap, tOffset=t if mark.apart else 0.0, sOffset=0.0, width=mark.width)
+
+
+def _add_object(objects: XmlElement, item: dict, minor: int) -> None:
+    element = objects.add("object", id=item["id"], type=item["type"], name=item["name"], s=item["s"], t=item["t"], zOffset=item["zOffset"],
+                          orientation=item["orientation"], length=item["length"], width=item["width"], hdg=item["hdg"])
+    outline = element.add("outlines").add("outline", id=0, fillType="paint" if minor >= FILLED_BY_PAINT else None, outer="true", closed="true")
+    tag, names = ("cornerLocal", ("u", "v", "z")) if item["local"] else ("cornerRoad", ("s", "t", "dz"))
+    for number, corner in enumerate(item["corners"]):
+        outline.append(XmlElement(tag, {"id": number} | dict(zip(names, corner)) | {"height": 0.0}))
+
+
+def _round(value: float) -> float:
+    return round(float(value), 3)

@@ -1,4 +1,4 @@
-"""Writing a LAS or LAZ file whole or not at all."""
+"""LAS and LAZ files that are written whole or not at all, above all road points, whose extra fields hold the road frame for later stages."""
 
 from __future__ import annotations
 
@@ -10,16 +10,15 @@ from typing import Any
 
 import numpy as np
 
-from ...common.errors import RoadExtractionError
-from ...common.progress import Progress
-from ...io.crs import as_in_file, parse_crs
-from ...io.local_files import unfinished_path
-from ..adjustment import pass_sigma
-from ..adjustment.corrections import PassCorrections
-from ..store.records import COORDINATE_SCALE, ROAD_POINT, point_dtype
-from ..store.road_points import RoadPoints
-from ..store.section_store import SectionStore
-from .reader import POINTS_PER_BLOCK, cloud_crs, open_cloud, read_blocks
+from ..common.errors import RoadExtractionError
+from ..common.progress import Progress
+from ..io.crs import as_in_file, parse_crs
+from ..io.local_files import unfinished_path
+from .adjustment.register import PassCorrections, sigma_of_records, sigma_to_record
+from .las.reader import POINTS_PER_BLOCK, cloud_crs, open_cloud, read_blocks
+from .store.records import COORDINATE_SCALE, ROAD_POINT, point_dtype
+from .store.road_points import RoadPoints
+from .store.section_store import SectionStore
 
 MAX_LAS_INTEGER = 2**31 - 2    # largest coordinate, as an integer about the offset, in a LAS file
 
@@ -155,7 +154,7 @@ def _header(road_points):
         for name, kind, text, scale in extra])
     if road_points.moves is not None:
         header.vlrs.extend(road_points.moves.to_records())
-    header.vlrs.extend(pass_sigma.to_record(road_points.pass_sigma))
+    header.vlrs.extend(sigma_to_record(road_points.pass_sigma))
     place_in_file(header, road_points.origin, road_points.crs, _farthest(road_points))
     return header
 
@@ -229,7 +228,7 @@ def read_road_points(path: str | Path, progress: Progress = Progress()) -> RoadP
         # where the file says its points lie; 32 bits of x and y reach beyond where they change to 64
         farthest = max((np.abs(np.r_[header.mins, header.maxs][[0, 1, 3, 4]] - origin[[0, 1, 0, 1]])).max(), 0.0) if total else 0.0
         dtype = point_dtype(ROAD_POINT, farthest)
-        crs, moves, sigma = cloud_crs(header), PassCorrections.of_records(header.vlrs), pass_sigma.of_records(header.vlrs)
+        crs, moves, sigma = cloud_crs(header), PassCorrections.of_records(header.vlrs), sigma_of_records(header.vlrs)
     has_corrected, has_cluster, has_spacing = (name in names for name in ("intensity_corrected", "cluster", "spacing"))
     store = SectionStore(dtype)
     done = 0
