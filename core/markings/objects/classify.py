@@ -144,7 +144,7 @@ def classify_markings(shapes: list[Shape], half_widths: Sequence[float], setting
     outside = _beyond_the_edge_line(column, line, clearance)
     doubles = _has_partner(column, line)
     covered_feet = (np.broadcast_to(covered, len(shapes)) > MIN_COVERED_SHARE) & ~(line & (column["length"] > MAX_CAR_LENGTH))
-    kinds = [_kind(*of_one, settings.margin) for of_one in zip(
+    kinds = [_kind(*of_one, margin=settings.margin) for of_one in zip(
         shapes, clearance, line, zigzag, np.broadcast_to(blocks, len(shapes)), doubles, covered_feet, outside | covered_feet | curb)]
     found = [(kind, "keep" if kind in LINE_KINDS else "other") for kind in kinds]
     for looked_like in (_outlines, _tips):
