@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import repeat
 
 import numpy as np
 
@@ -144,8 +145,9 @@ def classify_markings(shapes: list[Shape], half_widths: Sequence[float], setting
     outside = _beyond_the_edge_line(column, line, clearance)
     doubles = _has_partner(column, line)
     covered_feet = (np.broadcast_to(covered, len(shapes)) > MIN_COVERED_SHARE) & ~(line & (column["length"] > MAX_CAR_LENGTH))
-    kinds = [_kind(*of_one, margin=settings.margin) for of_one in zip(
-        shapes, clearance, line, zigzag, np.broadcast_to(blocks, len(shapes)), doubles, covered_feet, outside | covered_feet | curb)]
+    refused = outside | covered_feet | curb
+    kinds = [_kind(*of_one) for of_one in zip(shapes, clearance, line, zigzag, np.broadcast_to(blocks, len(shapes)), doubles, covered_feet, refused,
+                                              repeat(settings.margin))]
     found = [(kind, "keep" if kind in LINE_KINDS else "other") for kind in kinds]
     for looked_like in (_outlines, _tips):
         for k in looked_like(column, [kind for kind, _ in found]):
