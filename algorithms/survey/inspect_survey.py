@@ -45,7 +45,7 @@ class InspectSurvey(Algorithm):
             self.add_number(name, label)
 
     def work(self, call, progress):
-        from ...core.report.inspection import inspection_report
+        from ...core.report.survey import inspection_report
         from ...core.survey.inspection import NEAR_TRAJECTORY, inspect_survey, write_density
 
         found = inspect_survey(

@@ -25,7 +25,7 @@ NUMBERS = {
     "survey": 430,
     "road": 522,
     "intensity": 49,
-    "markings": 448,
+    "markings": 439,
     "driving": 63,
     "corrections": 11,
     "inventory": 148,

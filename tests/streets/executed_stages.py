@@ -12,7 +12,7 @@ from lanewright.core.intensity import correction
 from lanewright.core.intensity import image as imaging
 from lanewright.core.intensity.correction import correct_intensity
 from lanewright.core.intensity.image import make_intensity_image
-from lanewright.core.markings import outliers as remove
+from lanewright.core.markings import outliers
 from lanewright.core.markings.cross_section import evidence
 from lanewright.core.markings.lines.fit import fit_marking_lines
 from lanewright.core.markings.objects import cluster as phases
@@ -47,7 +47,7 @@ def found_by(sample, executor=None, work=None, progress=Progress()):
         patch.setattr(extraction, "WINDOWS_PER_TASK", 1)
         patch.setattr(scatter, "EXAMINED_WINDOWS", 1)
         patch.setattr(phases, "TASK_POINTS", 300)
-        patch.setattr(remove, "TASK_WINDOWS", 1)
+        patch.setattr(outliers, "TASK_WINDOWS", 1)
         patch.setattr(heights, "HEIGHT_POINTS", 1)
         patch.setattr(linking, "LINKING_WINDOW_CELLS", 250)
         patch.setattr(linking, "LINKED_POINTS", 300)

@@ -1,25 +1,30 @@
-"""The report on cross-sections: charts along every road, the stretches that exceed a limit, and what could not be known."""
+"""Reports on the inventory: cross-sections against their limits, and what stands beside the road."""
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..common.texts import told, tr, word
+from ..common.texts import language, tr, word
 from .figures import Chart
-from .page import Page
+from .page import html_page
 
 if TYPE_CHECKING:
     from ..common.features import Features
     from ..inventory.cross_sections import RoadSections
+    from ..inventory.roadside.shared import Roadside
 
 LANE_COLOURS = ("#2b6ca3", "#d55e00", "#009e73", "#cc79a7", "#8a6d00", "#56b4e9", "#7f3fbf", "#444444")
 EXCEEDED_COLOUR, KEPT_COLOUR, LIMIT_COLOUR = "#f6c6c6", "#cfe3cf", "#b00020"
 PLAN_EXCEEDED_COLOUR = "#d43d51"
 MAX_TABLE_ROWS = 200
 VALUE_OF_LIMIT = dict(rut="rut_l_mm", crossfall="crossf_pct", grade="grade_pct", width="width_m", clearance="clear_m")
+KIND_COLOURS = dict(guard_rail="#5b6b8c", barrier="#b08a3e", wall="#8c4b3c", fence="#e08020", hedge="#3f8f3a", gutter="#2b8cbe",
+                    pole="#7f7f7f", sign="#c9a400", trunk="#6b4a2b")
+EDGE_COLOUR = "#444444"
+MARK_SIZE = 0.004, 0.02   # of the plan's length and width
 
 
 def _charts():
@@ -50,27 +55,22 @@ def cross_section_report(sections: RoadSections, table: Features) -> str:
     sections : RoadSections
     table : Features of `sections_to_features`, the rows of all sections
     """
-    page = Page(tr("Cross-sections"), tr(
-        "Stations count along the road, offsets to its left. Crossfall is positive where the road falls to the right, "
-        "seen along the road; left and right are seen that way too."))
-    for note in sections.notes:
-        page.warning(told(note))
-    limits = sections.settings.limits()
-    page.heading(tr("Limits"))
-    page.facts([(title, getattr(limits, name) if getattr(limits, name) is not None else tr("no limit")) for name, title in _limit_titles().items()])
-    page.note(tr("Of the country: {sources}").format(sources=" ".join(map(told, limits.sources))) if limits.sources
-              else tr("The country of the catalogue sets no limits."))
-    _exceeded(page, table.rows)
+    limits, interval = sections.settings.limits(), sections.settings.interval
+    exceeded = _exceeded(table.rows)
     by_road = defaultdict(list)
     for row in table.rows:
         by_road[row["road"]].append(row)
+    roads = []
     for road, rows in by_road.items():
-        _road(page, road, rows, limits, sections.settings.interval)
-    return page.html()
+        station = (min(row["station_m"] for row in rows) - interval / 2, max(row["station_m"] for row in rows) + interval / 2)
+        charts = [_chart(rows, station, interval, limits, chart) for chart in _charts()]
+        roads.append((road, [_summary(name, part) for name, part in _parts(rows).items()], _plan(rows, station, interval), filter(None, charts)))
+    return html_page("cross_sections", notes=sections.notes, limits=limits, limit_titles=_limit_titles(), exceeded=exceeded[:MAX_TABLE_ROWS],
+                  more=len(exceeded) - MAX_TABLE_ROWS, roads=roads)
 
 
-def _exceeded(page, rows):
-    page.heading(tr("What exceeds the limits"))
+def _exceeded(rows):
+    """(road, lane, limit, from, to, worst value) of stretches that exceed a limit."""
     runs: dict[Any, list[list[dict]]] = defaultdict(list)
     for row in rows:
         for name in (row["exceeds"] or "").split(", ") if row["exceeds"] else ():
@@ -79,17 +79,9 @@ def _exceeded(page, rows):
                 runs[key][-1].append(row)
             else:
                 runs[key].append([row])
-    found = [(road, lane or word("carriageway"), word(name), run[0]["station_m"], run[-1]["station_m"], _worst(run, name))
+    found = [(road, str(lane or word("carriageway")), word(name), run[0]["station_m"], run[-1]["station_m"], _worst(run, name))
              for (road, lane, name), some in runs.items() for run in some]
-    if not found:
-        page.text(tr("No section exceeds a limit."))
-        return
-    found.sort(key=lambda one: (one[0], one[3]))
-    page.table((tr("Road"), tr("Lane"), tr("Limit"), tr("From (m)"), tr("To (m)"), tr("Worst")),
-               [(road, str(lane), *rest) for road, lane, *rest in found[:MAX_TABLE_ROWS]],
-               (0, None, None, 1, 1, 2))
-    if len(found) > MAX_TABLE_ROWS:
-        page.note(tr("{count} more are in the layer (field exceeds).").format(count=len(found) - MAX_TABLE_ROWS))
+    return sorted(found, key=lambda one: (one[0], one[3]))
 
 
 def _worst(run, name):
@@ -97,19 +89,6 @@ def _worst(run, name):
         return max(value for row in run for value in (row["rut_l_mm"], row["rut_r_mm"]) if value is not None)
     values = [row[VALUE_OF_LIMIT[name]] for row in run]
     return min(values, key=abs) if name in ("width", "clearance") else max(values, key=abs)
-
-
-def _road(page, road, rows, limits, interval):
-    page.heading(tr("Road {road}").format(road=road))
-    page.table((tr("Part"), tr("Sections"), tr("Width (m)"), tr("Crossfall (%)"), "± (%)", tr("Grade (%)"), tr("Rut left (mm)"), tr("Rut right (mm)"),
-                tr("Least clearance (m)")),
-               [_summary(name, part) for name, part in _parts(rows).items()], (None, 0, 2, 2, 2, 2, 1, 1, 2))
-    page.note(tr("Medians along the road. ± is the standard deviation of a crossfall, with what roll leaves unknown."))
-    station = (min(row["station_m"] for row in rows) - interval / 2, max(row["station_m"] for row in rows) + interval / 2)
-    _plan(page, rows, station, interval)
-    for title, unit, names, part, levels, limit in _charts():
-        _chart(page, rows, station, interval, (title, unit, names, part, [(name, sign * getattr(limits, name)) for name, sign in levels
-                                                                             if getattr(limits, name) is not None], limit))
 
 
 def _parts(rows):
@@ -129,7 +108,7 @@ def _summary(name, rows):
             min(clear) if clear else None)
 
 
-def _plan(page, rows, station, interval):
+def _plan(rows, station, interval):
     """The sections from above, straightened: the same height on the page whatever way the road runs."""
     reach = [row["offset_m"] + side * row["width_m"] / 2 for row in rows for side in (-1, 1)]
     chart = Chart(station, (min(reach) - 0.5, max(reach) + 0.5), tr("Station (m)"), tr("Offset (m)"))
@@ -139,16 +118,18 @@ def _plan(page, rows, station, interval):
             middle = np.array([row["station_m"] for row in own])
             width = np.array([row["width_m"] for row in own])
             chart.bars(middle - 0.35 * interval, middle + 0.35 * interval, width, colour, np.array([row["offset_m"] for row in own]) - width / 2)
-    page.drawing(chart.svg(), tr("The lanes from above, straightened. Red: a limit is exceeded."))
+    return chart.svg()
 
 
-def _chart(page, rows, station, interval, what):
-    title, unit, names, part, levels, limit = what
-    series = {name: some for name, some in _parts([row for row in rows if row["part"] == part]).items()}
+def _chart(rows, station, interval, limits, what):
+    """(title, SVG, (colour, name) of its curves), None where nothing of it was measured."""
+    title, unit, names, part, lines, limit = what
+    levels = [(name, sign * getattr(limits, name)) for name, sign in lines if getattr(limits, name) is not None]
+    series = _parts([row for row in rows if row["part"] == part])
     values = {name: [_value(row, names) for row in some] for name, some in series.items()}
     known = [value for some in values.values() for value in some if value is not None]
     if not known:
-        return
+        return None
     # limits far off would flatten what was measured
     near = [level for _, level in levels if min(known) - np.ptp(known) - 1 < level < max(known) + np.ptp(known) + 1]
     low, high = min([*known, *near]), max([*known, *near])
@@ -167,9 +148,7 @@ def _chart(page, rows, station, interval, what):
         s, y = _with_gaps([row["station_m"] for row in some], values[name], interval)
         chart.curve(s, y, colour, name, 2.0)
         drawn.append((colour, name))
-    page.drawing(chart.svg(), title)
-    if len(drawn) > 1:
-        page.colour_key(drawn)
+    return title, chart.svg(), drawn
 
 
 def _value(row, names):
@@ -187,3 +166,43 @@ def _with_gaps(stations, values, interval):
         s += [at - 0.2 * interval, at + 0.2 * interval]
         y += [np.nan if value is None else value] * 2
     return np.array(s), np.array(y)
+
+
+def roadside_report(found: Roadside, lines: Features, points: Features) -> str:
+    """The report as HTML.
+
+    Parameters
+    ----------
+    found : Roadside
+    lines, points : Features of `roadside_to_features`
+    """
+    lengths: dict[tuple[str, str], float] = defaultdict(float)
+    for row in lines.rows:
+        lengths[row["kind"], row["side"]] += row["length_m"]
+    roads = [(road, *_roadside_plan(found, road, edges, [row for row in points.rows if row["road"] == road]),
+              [row for row in lines.rows if row["road"] == road]) for road, edges in found.edges.items()]
+    return html_page("roadside", notes=found.notes, lengths=lengths, counts=Counter((row["kind"], row["side"]) for row in points.rows),
+                  name_of=_kind_name, roads=roads)
+
+
+def _kind_name(kind):
+    return kind.replace("_", " ") if language() == "en" else word(kind)
+
+
+def _roadside_plan(found, road, edges, points):
+    """SVG of a road from above, straightened, the same height on the page whatever way it runs; (colour, kind) of what stands there."""
+    lines = [line for line in found.lines if line.chain.road == road]
+    reach = np.concatenate([edges.left, edges.right, *(line.chain.d for line in lines), [row["offset_m"] for row in points]])
+    chart = Chart((float(edges.s[0]), float(edges.s[-1])), (float(reach.min()) - 0.5, float(reach.max()) + 0.5),
+                  tr("Station (m)"), tr("Offset (m)"), 260)
+    chart.curve(edges.s, edges.left, EDGE_COLOUR, tr("edge of the carriageway"), 1.0)
+    chart.curve(edges.s, edges.right, EDGE_COLOUR, tr("edge of the carriageway"), 1.0)
+    for line in lines:
+        chart.curve(line.chain.s, line.chain.d, KIND_COLOURS[line.kind], _kind_name(line.kind), 2.4)
+    along, across = MARK_SIZE[0] * np.ptp(edges.s), MARK_SIZE[1] * np.ptp(reach)
+    for row in points:
+        at = np.array([row["station_m"]])
+        chart.bars(at - along / 2, at + along / 2, np.array([across]), KIND_COLOURS[row["kind"]], np.array([row["offset_m"] - across / 2]),
+                   f"{_kind_name(row['kind'])}, {row['height_m']:.1f} m")
+    kinds = {line.kind for line in lines} | {row["kind"] for row in points}
+    return chart.svg(), [(colour, _kind_name(kind)) for kind, colour in KIND_COLOURS.items() if kind in kinds]

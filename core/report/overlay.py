@@ -1,4 +1,4 @@
-"""The report on a georeferenced image: errors, residuals point by point, and a picture of the residuals."""
+"""Reports on images laid on the map: a georeferenced image with its residuals, and proposed control points with their cut-outs."""
 
 from __future__ import annotations
 
@@ -6,22 +6,27 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..common.texts import told, tr, word
+from ..common.texts import word
 from ..io.crs import NO_PLACE, horizontal_part, parse_crs, place_of_raster
 from ..io.local_files import gdal_exceptions, open_raster
 from ..lazy import cv2
 from ..overlay.control_points import CHECK, CONTROL, DISABLED
+from ..overlay.pair_cutouts import pair_cutouts
 from ..overlay.warp import drawn_area, output_grid
-from .map_figure import png
-from .page import Page, number
+from .page import html_page
 
 if TYPE_CHECKING:
     from ..overlay.georeference import Georeferencing
+    from ..overlay.matching.propose import Proposal
 
 RESIDUAL_PICTURE_SIDE = 1300  # px, longer side of the picture
 MAX_ARROW_LENGTH = 0.06       # of the longest arrow, as a share of that side
 ROLE_COLOURS = {CONTROL: (60, 60, 230), CHECK: (230, 190, 40), DISABLED: (150, 150, 150)}  # blue, green, red
 ROLE_CSS = {role: f"#{red:02x}{green:02x}{blue:02x}" for role, (blue, green, red) in ROLE_COLOURS.items()}
+CUT_SIDE = 110       # px, of a cut-out
+PAIRS_PER_ROW = 5    # pairs side by side
+_GAP, _TEXT = 8, 20
+_ACCEPTED, _REFUSED = (80, 150, 40), (50, 50, 210)  # blue, green, red
 
 
 def georeferencing_report(found: Georeferencing, drawn: str, departure: float) -> str:
@@ -33,63 +38,21 @@ def georeferencing_report(found: Georeferencing, drawn: str, departure: float) -
     drawn : path of the GeoTIFF that was drawn
     departure : pixels between the drawn image and the polynomial, from `draw_image`
     """
-    page = Page(tr("Georeferenced image"), tr("How well the image lies on its control points."))
-    for note in found.notes:
-        page.warning(told(note))
-    image, crs = found.image, found.points.crs
-    _, width, height = output_grid(found)
-    page.heading(tr("Image"))
-    outside = tr("{share:.0f} % of the image, left out") if found.cut else tr("{share:.0f} % of the image")
-    page.facts((
-        (tr("Image"), image.path), (tr("Pixels and lines"), f"{image.width} × {image.height}"), (tr("Placed by"), _polynomial(found.settings.order)),
-        (tr("CRS"), horizontal_part(parse_crs(crs)).name if crs else tr("no CRS")),
-        (tr("Result"), tr("{width} × {height} pixels of {size:g} m").format(width=width, height=height, size=found.pixel_size)),
-        (tr("Drawn within"), tr("{departure:.2f} pixels of the polynomial, everywhere").format(departure=departure)),
-        (tr("Outside the hull of the control points"), outside.format(share=100 * found.outside))))
-    _errors(page, found)
+    points, crs = found.points, found.points.crs
+    control, check = points.having(CONTROL), points.having(CHECK)
     picture, magnification = residual_picture(found, drawn)
-    page.heading(tr("Residuals"))
-    page.picture(png(picture), tr("From where the polynomial puts each point to where it was measured, {times} times as long as on "
-                                  "the ground. North is up; the thin line is the hull of the control points.").format(
-                                      times=number(round(magnification)) if magnification >= 1 else f"{magnification:g}"))
-    page.colour_key([(ROLE_CSS[role], word(role)) for role in (CONTROL, CHECK, DISABLED) if len(found.points.having(role))])
-    _points(page, found)
-    return page.html()
-
-
-def _polynomial(order):
-    return {0: tr("shift (order 0)"), 1: tr("polynomial of order 1 (affine)"), 2: tr("polynomial of order 2"), 3: tr("polynomial of order 3")}[order]
-
-
-def _errors(page, found):
-    fit, pixel = found.fit, found.pixel_size
-    rows = [(tr("Control points"), len(found.points.having(CONTROL)), found.rmse()),
-            (tr("Control points, each left out in turn"), len(found.points.having(CONTROL)), found.left_out_rmse),
-            (tr("Check points"), len(found.points.having(CHECK)), found.rmse(CHECK))]
-    page.heading(tr("Errors"))
-    page.table(("", tr("Points"), "RMSE (m)", tr("RMSE (pixels)"), tr("Largest (m)")),
-               [(title, count, error, error / pixel, _largest(vectors)) for (title, count, error), vectors in zip(
-                   rows, (found.errors[found.points.having(CONTROL)], found.left_out[found.points.having(CONTROL)],
-                          found.errors[found.points.having(CHECK)]))])
-    page.note(tr("RMSE = √(Σ(dx² + dy²) / n). The residuals of control points are too small, since the polynomial was fitted to them; "
-                 "there are {free} more than it needs. Points measured in the laser point cloud itself show how well the image fits "
-                 "the cloud, not how well either fits the ground.").format(free=fit.free))
+    return html_page(
+        "georeferencing", found=found, notes=found.notes, grid=output_grid(found)[1:], crs=horizontal_part(parse_crs(crs)).name if crs else "",
+        departure=departure, residuals=picture, magnification=magnification,
+        sizes=(np.hypot(*found.errors.T), np.hypot(*found.left_out.T)),
+        errors=[(len(control), found.rmse(), _largest(found.errors[control])), (len(control), found.left_out_rmse, _largest(found.left_out[control])),
+                (len(check), found.rmse(CHECK), _largest(found.errors[check]))],
+        colours=[(ROLE_CSS[role], word(role)) for role in (CONTROL, CHECK, DISABLED) if len(points.having(role))])
 
 
 def _largest(vectors):
     known = vectors[np.isfinite(vectors).all(axis=1)]
     return float(np.hypot(*known.T).max()) if len(known) else float("nan")
-
-
-def _points(page, found):
-    page.heading(tr("Points"))
-    points = found.points
-    page.table(
-        (tr("Point"), tr("Role"), tr("Pixel"), tr("Line, downwards"), tr("East (m)"), tr("North (m)"), tr("Residual (m)"),
-         tr("Without this point (m)")),
-        [(points.names[k], word(points.roles[k]), round(float(points.pixel[k]), 2), round(float(points.line[k]), 2),
-          *(float(error) for error in found.errors[k]), float(np.hypot(*found.errors[k])), float(np.hypot(*found.left_out[k])))
-         for k in range(len(points))])
 
 
 def residual_picture(found: Georeferencing, drawn: str) -> tuple[np.ndarray, float]:
@@ -167,3 +130,29 @@ def _reduced_copy(path):
     canvas[drawn] = np.clip(np.rint(values[drawn]), 0, 255).astype(np.uint8)
     x0, size, _, y0, _, _ = place_of_raster(dataset)[0] or NO_PLACE
     return canvas, width / (dataset.RasterXSize * size), (x0, y0)
+
+
+def proposed_points_report(found: Proposal) -> str:
+    """The report of a Proposal as HTML."""
+    return html_page("proposed_points", found=found, notes=found.notes, cut_outs=pairs_picture(found),
+                  rival=None if found.rival is None else np.hypot(found.rival.dx, found.rival.dy))
+
+
+def pairs_picture(found: Proposal) -> np.ndarray:
+    """(H, W, 3) uint8, blue, green, red: all pairs of cut-outs in rows."""
+    width, height = 2 * CUT_SIDE + 3 * _GAP, CUT_SIDE + _TEXT + 2 * _GAP
+    rows = -(-len(found) // PAIRS_PER_ROW)
+    canvas = np.full((rows * height, PAIRS_PER_ROW * width, 3), 255, np.uint8)
+    cuts = pair_cutouts(found.image, found.intensity, found.pixel, found.line, found.easting, found.northing, side=CUT_SIDE)
+    for k, pair in enumerate(cuts):
+        left, top = (k % PAIRS_PER_ROW) * width + _GAP, (k // PAIRS_PER_ROW) * height + _GAP
+        tint = _ACCEPTED if found.accepted[k] else _REFUSED
+        for number, cut in enumerate(pair):
+            x = left + number * (CUT_SIDE + _GAP // 2)
+            canvas[top:top + CUT_SIDE, x:x + CUT_SIDE] = cut[..., ::-1]
+            middle = (x + CUT_SIDE // 2, top + CUT_SIDE // 2)
+            cv2.drawMarker(canvas, middle, (0, 220, 255), cv2.MARKER_CROSS, 16, 1, cv2.LINE_AA)
+        cv2.rectangle(canvas, (left - 2, top - 2), (left + 2 * CUT_SIDE + _GAP // 2 + 1, top + CUT_SIDE + 1), tint, 2)
+        text = f"{k + 1}   {found.score[k]:.2f}   {100 * found.residual[k]:.1f} cm"
+        cv2.putText(canvas, text, (left, top + CUT_SIDE + _TEXT - 4), cv2.FONT_HERSHEY_SIMPLEX, 0.42, tint, 1, cv2.LINE_AA)
+    return canvas
