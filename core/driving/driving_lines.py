@@ -74,7 +74,7 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
         s = one.lines.s
         passes = frame.passes_sigma(number, s)
         tracks = [replace(track, confidence=track.confidence * share_within(passes[track.first:track.last + 1]))
-                  for track in road_lanes(one, settings, estimates.lane_width)]
+                  for track in _road_lanes(one, settings, estimates.lane_width)]
         part.report(0.25)
         alignment = lane_elements(tracks, s, frame.roads[number])
         part.report(0.5)
@@ -99,13 +99,8 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
     return lines, _curve_elements(arcs, marking_lines.crs, settings.country), make_lanes(areas, marking_lines.crs)
 
 
-def road_lanes(road: EstimatedRoad, settings: DrivingSettings, lane_width: float) -> list[LaneTrack]:
-    """The lanes of one road as a list of LaneTrack, by first station, then from right to left.
-
-    Parameters
-    ----------
-    lane_width : metres, of lanes beside which only one line is painted
-    """
+def _road_lanes(road: EstimatedRoad, settings: DrivingSettings, lane_width: float) -> list[LaneTrack]:
+    """The lanes of one road as a list of LaneTrack, by first station, then from right to left; `lane_width` where only one line is painted."""
     tracks = estimated_lanes(road.boundaries, road.estimate, lane_width, settings.line_distance)
     tracks = connect(tracks, road.lines, settings.max_bridge, settings.max_inferred, _shown(road.boundaries))
     known = [track.without_doubtful_ends() for track in laid_out(tracks)]

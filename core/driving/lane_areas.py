@@ -41,7 +41,7 @@ def lane_areas(road: EstimatedRoad, curbs: CrossSections | None, tracks: list[La
             part = slice(*np.searchsorted(road.lines.s[track.first:track.last + 1], [start, end + STATION_STEP / 2]))
             if part.stop - part.start >= 2:
                 rows.append(_area(road, curbs, track, part, z, frame, number) | dict(lane=lane, status=LANE_STATUS[code]))
-    rows += connectors_on_road(road.lines.s, tracks, heights, frame, number)
+    rows += _connectors_on_road(road.lines.s, tracks, heights, frame, number)
     if pavement is not None:
         lanes = max((row["lane"] for row in rows), default=0)
         borders = [_sides(road, track, slice(0, len(track)), z, frame, number) for track, z in zip(tracks, heights)]
@@ -227,19 +227,8 @@ CONNECTOR_CONFIDENCE = 0.5            # where the way is known from the drive al
 DRIVEN_ON = 2.0                       # s between two passes of one drive at most: it went on without a stop between them
 
 
-def connectors_on_road(s: np.ndarray, tracks: list[LaneTrack], heights: list[np.ndarray], frame: RoadFrame, number: int) -> list[dict[str, Any]]:
-    """Areas along the drive from the end of a lane to the beginning of the next one of its direction on the same road.
-
-    Parameters
-    ----------
-    s : (K,) metres, stations of the grid
-    tracks : list of LaneTrack; heights : local z along each of them
-    frame : RoadFrame; number : of the road
-
-    Returns
-    -------
-    rows of Lanes, numbered on from the lanes
-    """
+def _connectors_on_road(s: np.ndarray, tracks: list[LaneTrack], heights: list[np.ndarray], frame: RoadFrame, number: int) -> list[dict[str, Any]]:
+    """Rows of Lanes along the drive from the end of a lane to the beginning of the next one of its direction on the same road."""
     driven, directions = driven_offsets(frame, number, s)
     rows, lane = [], len(tracks)
     for way in (1, -1):

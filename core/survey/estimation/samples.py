@@ -73,7 +73,6 @@ def read_samples(files: Sequence[CloudHeader], scanner_field: str = "automatic",
     ----------
     files : headers of the clouds
     scanner_field : "automatic", "scanner_channel" or "point_source_id"
-    progress : Progress
 
     Raises
     ------

@@ -201,7 +201,6 @@ def reproject_trajectory(trajectory: Trajectory, target_wkt: str) -> Trajectory:
 
     Parameters
     ----------
-    trajectory : Trajectory
     target_wkt : WKT or "EPSG:n", projected; "" where unknown
 
     Returns
