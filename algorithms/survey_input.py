@@ -117,7 +117,7 @@ def execution_of(call):
 def survey_inputs(call):
     """Paths of POINT_CLOUDS, and TRAJECTORY brought to the clouds' CRS."""
     from ..core.survey.las.reader import read_headers
-    from ..core.survey.trajectory.reprojection import reproject_trajectory
+    from ..core.survey.trajectory.trajectory import reproject_trajectory
 
     paths = call.point_clouds()
     clouds = next((header.crs for header in read_headers(paths) if header.crs), "") or call.crs()
@@ -153,10 +153,10 @@ def frame_of(call, crs, progress, road_points=None, layers=None):
 
     `layers` (parameter name to Features) and the road points must have been made with this trajectory.
     """
-    from ..core.survey.adjustment.pass_sigma import of_layer
+    from ..core.survey.adjustment.register import sigma_of_layer
     from ..core.survey.consistency import check_road_points_on_roads
     from ..core.survey.frame.road_frame import build_frame
-    from ..core.survey.trajectory.reprojection import reproject_trajectory
+    from ..core.survey.trajectory.trajectory import reproject_trajectory
 
     trajectory = reproject_trajectory(call.trajectory(), crs)
     has_time = trajectory.has_time
@@ -166,7 +166,7 @@ def frame_of(call, crs, progress, road_points=None, layers=None):
     frame.crs, frame.has_time = crs or trajectory.crs, has_time
     # what passes differ by is seen where the points are read; here it comes with what was made of them
     frame.pass_sigma = {road: sigma for found in ([road_points.pass_sigma] if road_points is not None else [])
-                        + [of_layer(layer) for layer in (layers or {}).values() if layer is not None] for road, sigma in found.items()}
+                        + [sigma_of_layer(layer) for layer in (layers or {}).values() if layer is not None] for road, sigma in found.items()}
     check_layers_on_roads(call, layers or {}, frame, progress)
     if road_points is not None:
         check_road_points_on_roads(road_points, frame, tr("The points"))
@@ -194,7 +194,7 @@ def _on_clock_of(road_points, trajectory, progress):
 
 def road_points_of(call, name, progress):
     """A LAZ file made by Extract road surface or Correct intensity, as RoadPoints."""
-    from ..core.survey.las.writer import read_road_points
+    from ..core.survey.road_points_las import read_road_points
 
     return read_road_points(call.cloud(name), progress)
 
@@ -231,8 +231,8 @@ def paint_of(call, name, progress):
 def imported_trajectory(call, progress):
     """INPUT in TARGET_CRS (or the clouds' CRS) and, with POINT_CLOUDS given, on the clouds' clock."""
     from ..core.survey.las.reader import read_headers
-    from ..core.survey.read_survey import match_clocks
-    from ..core.survey.trajectory.reprojection import reproject_trajectory, taken_to_be_in
+    from ..core.survey.open_survey import match_clocks
+    from ..core.survey.trajectory.trajectory import reproject_trajectory, taken_to_be_in
 
     trajectory = call.trajectory("INPUT", call.crs("INPUT_CRS"), columns=call.string("COLUMNS"))
     headers = read_headers(call.point_clouds()) if call.given("POINT_CLOUDS") else []

@@ -73,7 +73,7 @@ class ColumnsWidget(QWidget):
         self.told.hide()
 
     def _read(self):
-        from ..core.survey.trajectory.assigned_columns import columns_of_table, facts_of
+        from ..core.survey.trajectory.meaning import columns_of_table, facts_of
         from ..core.survey.trajectory.reader import read_trajectory
 
         if not self.path:

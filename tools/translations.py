@@ -13,10 +13,12 @@ import sys
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
+from jinja2 import Environment, nodes
 from models import RECIPES
 
 ROOT = Path(__file__).resolve().parents[1]
 FOLDER = ROOT / "resources" / "i18n"
+TEMPLATES = ROOT / "core" / "report" / "templates"
 SCHEMAS = ROOT / "core" / "common" / "features.py"
 CONTEXT = "Lanewright"
 FOLDERS = ("algorithms", "processing_provider", "desktop", "core", "library")
@@ -41,6 +43,9 @@ def texts():
     files = sorted(file for folder in FOLDERS for file in (ROOT / folder).rglob("*.py"))
     for path in [ROOT / "plugin.py", ROOT / "tools" / "make_manual.py", *files]:
         for text in texts_of(ast.parse(path.read_text(encoding="utf-8"))):
+            found.setdefault(text, path.relative_to(ROOT).as_posix())
+    for path in sorted(TEMPLATES.glob("*.html")):
+        for text in template_texts(path):
             found.setdefault(text, path.relative_to(ROOT).as_posix())
     for text in aliases():
         found.setdefault(text, SCHEMAS.relative_to(ROOT).as_posix())
@@ -76,6 +81,14 @@ def in_a_class(target, value):
 def constants(node):
     parts = node.elts if isinstance(node, (ast.Tuple, ast.List)) else [node]
     return [part.value for part in parts if isinstance(part, ast.Constant) and isinstance(part.value, str) and part.value.strip()]
+
+
+def template_texts(path):
+    """The texts of a report's template."""
+    tree = Environment().parse(path.read_text(encoding="utf-8"))
+    for call in tree.find_all(nodes.Call):
+        if isinstance(call.node, nodes.Name) and call.node.name == "tr" and isinstance(call.args[0], nodes.Const):
+            yield call.args[0].value
 
 
 def legend(path):

@@ -106,7 +106,7 @@ def painted_of(call, name, progress):
 def frame_of_drive(call, crs):
     """The road frame of TRAJECTORY in the CRS; None where it was not given. Heights are not needed."""
     from ...core.survey.frame.road_frame import build_frame
-    from ...core.survey.trajectory.reprojection import reproject_trajectory
+    from ...core.survey.trajectory.trajectory import reproject_trajectory
 
     trajectory = call.trajectory(heights_needed=False)
     if trajectory is None:

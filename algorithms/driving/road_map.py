@@ -108,7 +108,7 @@ class RoadMap(Algorithm):
 
     def work(self, call, progress):
         from ...core.pipeline.road_map import RoadMapSettings, make_road_map
-        from ...core.survey.las.writer import write_road_points
+        from ...core.survey.road_points_las import write_road_points
 
         settings = RoadMapSettings(
             correct=call.flag("CORRECT_INTENSITY"),

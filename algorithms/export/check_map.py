@@ -40,7 +40,7 @@ class CheckMap(Algorithm):
             self.add_number(name, label)
 
     def work(self, call, progress):
-        from ...core.report.map_check import map_check_report, places_of_findings
+        from ...core.report.hd_map import map_check_report, places_of_findings
 
         path = map_file(call)
         found, note = (_lanelets if _is_lanelet2(path) else _roads)(path, call.crs(), progress)

@@ -38,7 +38,7 @@ class ExportCad(Algorithm):
             self.add_number(name, label)
 
     def work(self, call, progress):
-        from ...core.report.map_export import map_export_report
+        from ...core.report.hd_map import map_export_report
 
         kind = call.choice("FORMAT")
         self._check_name(call, kind)

@@ -47,7 +47,7 @@ class ExportLanelet2(Algorithm):
         from ...core.export.lanelet_export import draft_lanelets, lanelet2_text, to_degrees
         from ...core.export.lanelet_map import layers_of_lanelets, node_places, read_lanelet2
         from ...core.export.shared_borders import with_shared_borders
-        from ...core.report.map_export import map_export_report
+        from ...core.report.hd_map import map_export_report
 
         source = with_shared_borders(with_inferred_ways(road_map_source(call, progress.part(0.0, 0.2))))
         progress.report(0.2)

@@ -90,7 +90,7 @@ def _report(call, whole, found, shown, misses, notes):
     from collections import defaultdict
 
     from ...core.common.texts import word
-    from ...core.report.map_export import map_export_report
+    from ...core.report.hd_map import map_export_report
 
     lengths = defaultdict(float)
     for road in whole.roads:

@@ -74,7 +74,7 @@ class CrossSections(Algorithm):
     def work(self, call, progress):
         from ...core.inventory.cross_sections import measure_cross_sections
         from ...core.inventory.section_layer import sections_to_features
-        from ...core.report.cross_sections import cross_section_report
+        from ...core.report.inventory import cross_section_report
 
         settings = call.settings(SECTION_SETTINGS)
         survey, layers = survey_with_borders(call, progress.part(0.0, 0.5), ABOVE_ROAD)

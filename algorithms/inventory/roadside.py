@@ -65,7 +65,7 @@ class Roadside(Algorithm):
     def work(self, call, progress):
         from ...core.inventory.roadside.find import find_roadside
         from ...core.inventory.roadside.layers import roadside_to_features
-        from ...core.report.roadside import roadside_report
+        from ...core.report.inventory import roadside_report
 
         settings = call.settings(ROADSIDE_SETTINGS)
         survey, layers = survey_with_borders(call, progress.part(0.0, 0.6), ABOVE_ROAD)

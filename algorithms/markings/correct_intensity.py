@@ -32,8 +32,8 @@ class CorrectIntensity(Algorithm):
 
     def work(self, call, progress):
         from ...core.intensity.correction import correct_intensity
-        from ...core.report.intensity import intensity_correction_report
-        from ...core.survey.las.writer import write_road_points
+        from ...core.report.page import html_page
+        from ...core.survey.road_points_las import write_road_points
 
         road_points = bright_road_points_of(call, "ROAD_POINTS", progress.part(0.0, 0.2))
         frame = frame_of(call, road_points.crs, progress, road_points)
@@ -42,4 +42,4 @@ class CorrectIntensity(Algorithm):
         for line in report.lines()[1:]:  # the first was said when it was found, as was a warning
             if line != report.saturation_warning:
                 progress.info(line)
-        call.text("REPORT", intensity_correction_report(report))
+        call.text("REPORT", html_page("intensity_correction", found=report))

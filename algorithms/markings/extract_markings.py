@@ -115,7 +115,7 @@ class ExtractMarkings(Algorithm):
         from ...core.intensity.image import check_image_shows
         from ...core.io.geotiff import IntensityImage
         from ...core.markings.paint.extract import extract_markings
-        from ...core.survey.las.writer import write_road_points
+        from ...core.survey.road_points_las import write_road_points
 
         road_points = bright_road_points_of(call, "ROAD_POINTS", progress.part(0.0, 0.2))
         frame = frame_of(call, road_points.crs, progress, road_points)

@@ -37,7 +37,7 @@ class RemoveOutliers(Algorithm):
 
     def work(self, call, progress):
         from ...core.markings.outliers import remove_outliers
-        from ...core.survey.las.writer import write_road_points
+        from ...core.survey.road_points_las import write_road_points
 
         points = paint_of(call, "INPUT", progress.part(0.0, 0.3))
         settings = call.settings(OUTLIER_SETTINGS)

@@ -92,7 +92,7 @@ class GeoreferenceImage(Algorithm):
         from ...core.overlay.georeference import georeference, residual_vectors
         from ...core.overlay.source_image import open_image
         from ...core.overlay.warp import draw_image
-        from ...core.report.georeferencing import georeferencing_report
+        from ...core.report.overlay import georeferencing_report
 
         image = open_image(call.raster("IMAGE"))
         if image.geotransform is None:

@@ -76,7 +76,7 @@ class ProposeControlPoints(Algorithm):
         from ...core.overlay.matching.propose import propose_control_points
         from ...core.overlay.rough_place import rough_place
         from ...core.overlay.source_image import open_image
-        from ...core.report.proposed_points import proposed_points_report
+        from ...core.report.overlay import proposed_points_report
 
         image = open_image(call.raster("IMAGE"))
         intensity = IntensityImage.open(call.raster("INTENSITY_IMAGE"))

@@ -94,12 +94,12 @@ class BoundariesFromScanlines(Algorithm):
     def work(self, call, progress):
         from ...core.road.scanlines.detect import CORNER_BLOCK, LayerScanlines, boundary_lines, curbs_from_scanlines
         from ...core.road.scanlines.layer import scanlines_from_features
-        from ...core.survey.adjustment.pass_sigma import of_layer
+        from ...core.survey.adjustment.register import sigma_of_layer
 
         settings = call.settings(BOUNDARY_SETTINGS)
         layer = call.features("SCANLINES", SCANLINES, "LineStringZM")
         frame = frame_of(call, layer.crs, progress)
-        frame.pass_sigma = of_layer(layer)
+        frame.pass_sigma = sigma_of_layer(layer)
         lines, interval = scanlines_from_features(layer, frame)
         source = LayerScanlines(lines, frame, interval, layer.crs, settings.sensor_height)
         corners = curbs_from_scanlines(source, settings, CORNER_BLOCK, progress.part(0.3, 0.95))

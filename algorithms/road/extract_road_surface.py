@@ -45,7 +45,7 @@ class ExtractRoadSurface(Algorithm):
     def work(self, call, progress):
         from ...core.road.edges.road_edges import RoadEdges
         from ...core.road.surface.extract import extract_road_surface
-        from ...core.survey.las.writer import write_road_points
+        from ...core.survey.road_points_las import write_road_points
 
         layer = call.features("ROAD_EDGES", ROAD_EDGES, "LineStringZ")
         survey = open_survey_of(call, progress.part(0.0, 0.5))

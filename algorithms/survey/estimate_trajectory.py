@@ -48,7 +48,7 @@ class EstimateTrajectory(Algorithm):
     def work(self, call, progress):
         import numpy as np
 
-        from ...core.report.estimated_trajectory import estimated_trajectory_report
+        from ...core.report.survey import estimated_trajectory_report
         from ...core.survey.estimation import estimate_trajectory
 
         found = estimate_trajectory(call.point_clouds(), call.crs(), call.setting(SCANNER_SETTING[0]), progress)

@@ -45,9 +45,8 @@ class InspectSurvey(Algorithm):
             self.add_number(name, label)
 
     def work(self, call, progress):
-        from ...core.report.inspection import inspection_report
-        from ...core.survey.inspection import NEAR_TRAJECTORY, inspect_survey
-        from ...core.survey.point_density import write_density
+        from ...core.report.survey import inspection_report
+        from ...core.survey.inspection import NEAR_TRAJECTORY, inspect_survey, write_density
 
         found = inspect_survey(
             call.point_clouds(), call.trajectory(), call.settings(INSPECTION_SETTINGS), call.crs(), progress.part(0.0, 0.95)

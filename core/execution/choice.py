@@ -70,7 +70,6 @@ def executor_for(points: int, settings: ExecutionSettings = ExecutionSettings(),
     Parameters
     ----------
     points : of the files
-    settings : ExecutionSettings
     progress : is told who does the work, where that are not threads as usual
     cluster : result of `cluster_for`
     """

@@ -99,10 +99,6 @@ def read_number_table(path: str | os.PathLike[str]) -> NumberTable:
     ----------
     path : of the file, in UTF-8, UTF-16 or an encoding that shares the characters of ASCII
 
-    Returns
-    -------
-    NumberTable
-
     Raises
     ------
     RoadExtractionError

@@ -9,12 +9,10 @@ from ..lazy import public
 
 __getattr__, __all__ = public(__name__, {
     "assessment": ("boundary_report", "driving_report", "marking_report"),
-    "estimated_trajectory": ("estimated_trajectory_report",),
-    "georeferencing": ("georeferencing_report",),
-    "inspection": ("inspection_report",),
-    "intensity": ("intensity_correction_report",),
-    "map_check": ("map_check_report",),
-    "map_export": ("map_export_report",),
-    "page": ("Page",),
+    "hd_map": ("map_check_report", "map_export_report"),
+    "inventory": ("cross_section_report", "roadside_report"),
+    "overlay": ("georeferencing_report", "proposed_points_report"),
+    "page": ("html_page",),
     "road_map": ("road_map_report",),
+    "survey": ("estimated_trajectory_report", "inspection_report"),
 })

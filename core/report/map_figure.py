@@ -128,11 +128,6 @@ def draw_map(layers: Mapping[str, Any], background: tuple[np.ndarray, Sequence[f
     return canvas
 
 
-def png(image: np.ndarray) -> bytes:
-    """The bytes of a PNG file."""
-    return cv2.imencode(".png", image)[1].tobytes()
-
-
 def _paste(canvas, grey, extent, bounds, scale):
     """Put an image where it belongs on the canvas."""
     height, width = canvas.shape[:2]

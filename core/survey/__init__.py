@@ -7,6 +7,6 @@ from ..lazy import public
 
 __getattr__, __all__ = public(__name__, {
     "inspection": ("inspect_survey",),
-    "las.writer": ("read_road_points", "write_road_points"),
+    "road_points_las": ("read_road_points", "write_road_points"),
     "survey": ("Survey", "SurveySettings"),
 })

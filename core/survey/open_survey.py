@@ -5,22 +5,37 @@ from __future__ import annotations
 import os
 import shutil
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+
+import numpy as np
 
 from ..common.errors import RoadExtractionError
+from ..common.parallel import ordered_map
 from ..common.progress import Progress
 from ..execution.choice import ExecutionSettings, cluster_for, executor_for
 from ..execution.phase import THREADS, Executor, digest
 from ..execution.work_folder import Heard, KeptResults, WorkFolder, code_digest
-from .las.reader import read_headers
-from .las.samples import without_copies
-from .read_survey import SharedReading, read_survey
+from ..io.crs import FOOT, US_SURVEY_FOOT, as_in_file, check_projected, crs_name, crs_note, parse_crs, unit_note
+from .adjustment.adjust import adjust_passes, compare_carriageways, said_of_levels
+from .adjustment.scanner_fit import lay_scanners
+from .adjustment.trajectory_fit import LOWEST_SENSOR, fitted_trajectory
+from .blocks import PointChoice, unwrap_week
+from .frame.road import CORRIDOR
+from .frame.road_frame import RoadFrame, build_frame
+from .frame.row_table import SigmaAlong
+from .las.parallel_reader import ParallelCloudReader
+from .las.point_fields import check_coloured, intensity_source_of, without_intensity
+from .las.reader import CloudHeader, read_headers
+from .las.samples import coarse_coordinates, distinct_rows, may_overlap, sample_files, without_copies
+from .store.records import COORDINATE_SCALE, SURVEY_POINT, point_dtype
+from .store.section_store import SECTION_LENGTH, SectionStore
 from .store.spill_file import parts_are_whole
 from .survey import SURVEY_FOLDER, Survey, SurveySettings, survey_in_folder
-
-if TYPE_CHECKING:
-    from .trajectory.trajectory import Trajectory
+from .survey_reader import SurveyReader
+from .trajectory.meaning import EARTH_RADIUS
+from .trajectory.time_systems import align_time, wrapped_week
+from .trajectory.trajectory import Trajectory, refuse_standstill, reproject_trajectory
 
 
 def open_survey(paths: Sequence[str | Path], trajectory: Trajectory, settings: SurveySettings = SurveySettings(),
@@ -124,3 +139,398 @@ def _found_survey(work, name, files, progress):
         (progress.warn if kind == "warn" else progress.info)(text)
     progress.report(1.0)
     return survey
+
+
+# Reading a survey: its points are read once and projected into the road frame, and checked against the trajectory.
+
+INGEST_PROGRESS = 0.7        # of the work, where the passes are adjusted afterwards
+SECTION_POINTS = 250_000      # points of a section, about, and
+SECTION_LENGTHS = SECTION_LENGTH, 10.0, 25.0   # m that it may be long
+PARTS_PROGRESS = 0.85        # of reading, where the points are put in order afterwards
+HIGHEST_SENSOR = 5.0         # m above the road: vehicles are up to 4 m high (Directive 96/53/EC), and a mast on a roof adds some
+
+
+@dataclass(frozen=True)
+class SharedReading:
+    """A survey that is read by workers, or kept.
+
+    reading : Executor that reads the files
+    ordering : Executor that puts the points in order
+    points : folder for the points as they are read, seen by both; it is made
+    ordered : folder that gets the points; it is made where it is missing
+    """
+
+    reading: Executor
+    ordering: Executor
+    points: Path
+    ordered: Path
+
+
+def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: SurveySettings = SurveySettings(),
+                progress: Progress = Progress(), shared: SharedReading | None = None) -> Survey:
+    """Read point clouds once and project every point into the road frame.
+
+    Parameters
+    ----------
+    files : headers of LAS, LAZ or COPC files in any order
+    trajectory : Trajectory in any CRS and time system
+    shared : who reads, where the points are to lie in a folder; None for threads of this process and its memory
+
+    Raises
+    ------
+    RoadExtractionError
+        If a file cannot be read, the CRS is geographic or not in metres, or the
+        trajectory does not overlap the cloud in space or time.
+    """
+    if settings.intensity_from == "rgb":
+        check_coloured(files)
+    crs = _metric_crs(files, trajectory, settings, progress)
+    trajectory = reproject_trajectory(trajectory, crs)
+    refuse_standstill(trajectory)
+    trajectory, time_note, has_time, week_ends = match_clocks(files, trajectory, settings, progress)
+    if time_note:
+        progress.info(time_note)
+    fitted = fitted_trajectory(files, trajectory, settings.scanner_field, progress)
+    trajectory = fitted.trajectory
+    frame = _frame_of(files, trajectory, crs, has_time, progress)
+    samples = sample_files(files)
+    intensity, intensity_note = intensity_source_of(samples, settings.intensity_from)
+    coarse_note, rounding = coarse_coordinates(samples)
+    for note in (coarse_note, intensity_note):
+        if note:
+            progress.warn(note)
+    store = SectionStore(point_dtype(SURVEY_POINT, frame.farthest), settings.section_length or section_length(files, frame),
+                         settings.memory_limit, folder=None if shared is None else shared.points)
+    reader = SurveyReader(frame, store, PointChoice(settings.corridor, has_time, week_ends, settings.above_road, intensity))
+    again = settings.fit_passes and has_time and len(frame.passes) > len(frame.roads)
+    read_at = INGEST_PROGRESS if again else 1.0
+    if shared is None:
+        reader.read(files, settings.block, progress.part(0.0, read_at))
+    else:
+        shared.points.mkdir(exist_ok=True)
+        reader.read_in_parts(files, settings.block, shared.reading, progress.part(0.0, PARTS_PROGRESS * read_at))
+    _say_left_out(files, frame, reader, settings, progress)
+    height = float(np.mean(list(reader.heights.values())))
+    feet = _check_height(height, crs, fitted.seen or reader.uneven, progress)
+    total = sum(file.count for file in files)
+    scanner_field, scanners = reader.census.choose(settings.scanner_field)
+    survey = Survey(files, frame, store, crs, reader.heights, scanner_field, scanners,
+                    reader.brightest > reader.darkest, has_time,
+                    dict(read=total, kept=store.count, outside=total - store.count), above_road=settings.above_road)
+    progress.info(f"Points read: {total:,} from {len(files)} file(s), {store.count:,} near the road kept; "
+                 f"{len(frame.roads)} road(s), {len(frame.passes)} pass(es), {len(scanners)} scanner(s); "
+                 f"sensor {height:.2f} m above the road.")
+    time, place = _sampled(files, reader, has_time, progress)
+    if intensity.field == "rgb":
+        progress.info("The brightness of the points' colours is taken as their intensity.")
+    if not survey.has_intensity and (note := without_intensity(files, settings.intensity_from, list(samples[0].fields))):
+        progress.warn(note)
+    if has_time and len(scanners) == 1:
+        at = read_at if shared is None else PARTS_PROGRESS * read_at
+        _tell_scanners_apart(survey, time, place, reader.slots.stride, progress.part(at, at))
+    if shared is not None:
+        shared.ordered.mkdir(exist_ok=True)
+        survey.put_in_order(shared.ordered, shared.ordering, progress.part(PARTS_PROGRESS * read_at, read_at))
+    if has_time and not feet:   # a scanner that rides three times too high sees three times too far
+        _check_clock(survey, progress)
+    measured = survey.store
+    mounted = lay_scanners(survey, progress.part(read_at, read_at), shared and shared.points) if has_time and not feet else 0.0
+    if again:
+        adjust_passes(survey, progress.part(INGEST_PROGRESS, 1.0), shared and shared.points)
+    _see_passes(survey, settings.fit_passes, measured, shared, progress)
+    # what the user says overrules what lies beside the trajectory
+    if across := max(settings.trajectory_sigma or trajectory.sigma_across, float(np.hypot(fitted.sigma, rounding)), mounted):
+        # what passes differ by is part of the same error
+        differ = survey.frame.pass_sigma
+        survey.frame.pass_sigma = {road: differ.get(road, SigmaAlong.everywhere(0.0)).at_least(across) for road in range(len(frame.roads))}
+    if shared is not None:
+        survey.keep(shared.ordered)
+    return survey
+
+
+def _metric_crs(files, trajectory, settings, progress):
+    """WKT of the survey's CRS in metres, and a word on what is not as the files say."""
+    crs = check_projected(files, settings.crs, trajectory.crs)
+    if note := crs_note(files, settings.crs, crs):
+        progress.warn(note)
+    if not (units := as_in_file(crs)[1]).metric:
+        progress.info(f"The survey is in {crs_name(crs)}. It is worked on in metres (x and y times {units.across:.9g}, heights times "
+                      f"{units.up:.9g}), and the results are written in its own CRS.")
+    return crs
+
+
+def _frame_of(files, trajectory, crs, has_time, progress):
+    """The road frame of a trajectory, which the clouds must lie at."""
+    frame = build_frame(trajectory)
+    frame.crs = crs
+    frame.has_time = has_time
+    for note in frame.notes:
+        progress.info(note)
+    for doubt in trajectory.doubts:
+        progress.warn(doubt)
+    if not has_time and len(frame.passes) > len(frame.roads):
+        progress.warn(f"The trajectory drives {len(frame.passes)} times over {len(frame.roads)} road(s), and as {_without_time(files, trajectory)} "
+                      "the passes are mixed: whatever they differ by blurs the map. Export points and trajectory with their time, or process "
+                      "the files of each drive with its own part of the trajectory.")
+    _check_extent(files, frame, crs, trajectory.crs)
+    return frame
+
+
+def _say_left_out(files, frame, reader, settings, progress):
+    """Refuse clouds that do not lie at the road, and tell of points that were not taken and of heights that change."""
+    total = sum(file.count for file in files)
+    if not reader.store.count:
+        raise RoadExtractionError(_no_overlap(files, frame, reader, settings.corridor))
+    if reader.excluded:
+        progress.info(f"{reader.excluded:,} of {total:,} points were left out: they are withheld or classified as noise (LAS classes 7 and 18).")
+    if reader.unplaced_time:
+        progress.warn(f"{reader.unplaced_time:,} of {total:,} points were left out: their gps_time is missing or lies outside the "
+                      "trajectory's.")
+    if reader.uneven:
+        progress.warn("The trajectory does not keep to one height above the road: half of the points under the vehicle lie more than "
+                      f"{reader.uneven[0]:.2f} m off {reader.uneven[1]:.2f} m below it, and curbs are missed for that. Its heights may be in feet "
+                      "where the cloud's are in metres, or not be those that the cloud was made with: export both anew from one solution.")
+
+
+def _check_height(height, crs, explained, progress):
+    """Refuse or doubt a trajectory by its height above the road, m; a word where that is in feet, otherwise ""."""
+    if abs(height) < LOWEST_SENSOR:
+        raise RoadExtractionError(
+            f"The trajectory lies {height:.2f} m above the road; a scanner rides at least {LOWEST_SENSOR} m above it. "
+            "It seems to be a line on the road, such as a driving line of a map, and not where the scanner was: choose the "
+            "trajectory that the navigation system recorded. If it is that of the vehicle's wheels, add the height of the scanner to its heights.")
+    if feet := unit_note(height, crs):
+        progress.warn(feet)
+    elif not explained and not 0.0 < height < HIGHEST_SENSOR:
+        progress.warn(f"The trajectory lies {abs(height):.1f} m {'above' if height > 0 else 'below'} the road; scanners ride up to "
+                      f"{HIGHEST_SENSOR:g} m above it. Heights of cloud and trajectory seem to be of two kinds (above the ellipsoid and above sea "
+                      "level), in feet, or upside down. Export both anew with one kind of heights in metres.")
+    return feet
+
+
+def _see_passes(survey, fit_passes, measured, shared, progress):
+    """Put points that were moved since they were measured in order, and tell where roads and carriageways do not fit each other."""
+    if shared is not None and survey.store is not measured:
+        for file in shared.ordered.iterdir():
+            file.unlink()
+        survey.put_in_order(shared.ordered, shared.ordering, progress.part(1.0, 1.0))
+    if len(survey.frame.roads) > 1:
+        for said in said_of_levels(survey.frame):
+            progress.warn(said)
+        if fit_passes and survey.has_time:
+            compare_carriageways(survey, progress.part(1.0, 1.0))
+
+
+def section_length(files: list[CloudHeader], frame: RoadFrame) -> float:
+    """Metres of station in a section of the store: the longest of SECTION_LENGTHS that holds up to SECTION_POINTS, or the shortest.
+
+    Threads work section by section, and Python lets several of them work at once only where arrays are large.
+
+    Parameters
+    ----------
+    files : headers of the clouds
+    """
+    density = sum(file.count for file in files) / max(sum(road.length for road in frame.roads), 1.0)
+    return max((length for length in SECTION_LENGTHS if length * density <= SECTION_POINTS), default=SECTION_LENGTH)
+
+
+def _sampled(files, reader, has_time, progress):
+    """Times and places of the points sampled, each once, and a word on those that files have in common; empty without times."""
+    time, place = (np.concatenate(column) for column in zip((np.empty(0), np.empty((0, 3), np.int32)), *reader.sampled))
+    if not has_time or len(files) == 1 or not may_overlap(files):
+        return time, place
+    rows = distinct_rows(time, place)
+    if len(rows) < len(time):
+        progress.info(f"About {100 * (1 - len(rows) / len(time)):.2g} % of the points that were read are copies of points in another file, as where "
+                      "tiles overlap. Each point is used once.")
+    return time[rows], place[rows]
+
+
+def _tell_scanners_apart(survey, time, place, stride, progress):
+    """Where the points of one scanner, as it seems, are those of several by their scan lines, let the survey tell them apart."""
+    from .estimation.estimate import splitter_of
+    from .estimation.interleaved import told_apart
+    from .estimation.samples import samples_of
+
+    if not len(time) or time.min() == time.max():
+        return
+    samples = samples_of(time, place * COORDINATE_SCALE, np.zeros(len(time), np.uint8), np.zeros(3), stride)
+    survey.splitter = splitter_of(samples, progress)
+    if survey.splitter is not None:
+        survey.scanners = list(range(survey.splitter.poses.scanners))
+        progress.info(told_apart(len(survey.scanners)))
+
+
+def match_clocks(files: list[CloudHeader], trajectory: Trajectory, settings: SurveySettings,
+                 progress: Progress) -> tuple[Trajectory, str, bool, bool]:
+    """Convert the trajectory to the time system of the cloud.
+
+    Parameters
+    ----------
+    files : headers of the clouds
+    settings : SurveySettings, of which `time` is used
+
+    Returns
+    -------
+    trajectory : in the time system of the cloud
+    note : for the log, "" without one
+    has_time : whether points can be assigned to passes by their time
+    week_ends : whether the GPS week ends during the scan
+
+    Raises
+    ------
+    RoadExtractionError
+        If the times of cloud and trajectory do not overlap.
+    """
+    if not trajectory.has_time:
+        return trajectory, "The trajectory has no time; each point is assigned to the nearest position on it.", False, False
+    if not all(file.has_time for file in files):
+        return trajectory, "The point cloud has no gps_time; each point is assigned to the nearest position on the trajectory.", False, False
+    span = _time_span(files)
+    if span is None:
+        return trajectory, "All gps_time values are equal; each point is assigned to the nearest position on the trajectory.", False, False
+    span, week_ends = span
+    offset, note = align_time(trajectory.time, span, settings.time, files[0].adjusted_time)
+    return trajectory.shifted(offset), note, True, week_ends
+
+
+def _without_time(files, trajectory):
+    """What lacks the time that would tell the passes apart."""
+    if not trajectory.has_time:
+        return "the trajectory has no time"
+    if not all(file.has_time for file in files):
+        return "the points have no gps_time"
+    return "all points have the same gps_time"
+
+
+def _time_span(files):
+    """((first, last) gps_time, whether the week ends in between), of samples of every file; None if all times are equal.
+
+    The samples include the last points of each file.
+    """
+    with ParallelCloudReader(("gps_time",)) as readers:
+        samples = [time[np.isfinite(time)] for file in files if file.count for time in readers.times(file)]
+    times = np.concatenate(samples)
+    if not len(times) or times.max() <= times.min():
+        return None
+    week_ends = wrapped_week((times.min(), times.max()))
+    times = unwrap_week(times) if week_ends else times
+    return (float(times.min()), float(times.max())), week_ends
+
+
+def _check_extent(files, frame, crs, trajectory_crs):
+    low = np.min([file.minimum for file in files if file.count], axis=0)
+    high = np.max([file.maximum for file in files if file.count], axis=0)
+    x = np.concatenate([p.x for p in frame.passes]) + frame.origin[0]
+    y = np.concatenate([p.y for p in frame.passes]) + frame.origin[1]
+    reach = CORRIDOR
+    if not _runs_through(low, high, x, y, reach):
+        raise RoadExtractionError(
+            f"The trajectory does not run through the point cloud. The cloud covers x {low[0]:.1f} to {high[0]:.1f}, "
+            f"y {low[1]:.1f} to {high[1]:.1f}; the trajectory runs over x {x.min():.1f} to {x.max():.1f}, "
+            f"y {y.min():.1f} to {y.max():.1f}. {_what_to_try(low, high, x, y, crs, trajectory_crs, reach)}")
+
+
+def _runs_through(low, high, x, y, reach):
+    """Does a drive come within `reach` m of a box?"""
+    return bool(((x > low[0] - reach) & (x < high[0] + reach) & (y > low[1] - reach) & (y < high[1] + reach)).any())
+
+
+def _what_to_try(low, high, x, y, crs, trajectory_crs, reach):
+    """The advice of the error message, where cloud and trajectory do not overlap."""
+    if _runs_through(low, high, y, x, reach):
+        return ("In one of them x and y are exchanged: where the trajectory's x is its easting or it is in longitude and latitude, export the cloud "
+                "with the easting as x; otherwise name the trajectory's columns the other way round, or swap them.")
+    if any(_runs_through(low * foot, high * foot, x, y, reach) for foot in (FOOT, US_SURVEY_FOOT)):
+        if not as_in_file(crs)[1].metric:
+            return "The trajectory was taken to be in feet like the cloud, and seems to be in metres: give it its own CRS, as Import trajectory does."
+        return ("The cloud's coordinates are the trajectory's in feet: give each the CRS that it is in (the parameter CRS is that of clouds that "
+                "carry none), or convert the cloud to metres.")
+    if any(_runs_through(low, high, x * foot, y * foot, reach) for foot in (FOOT, US_SURVEY_FOOT)):
+        return ("The trajectory's coordinates are the cloud's in feet: give it the CRS in feet that it is in, as Import trajectory does, or convert "
+                "it to metres.")
+    if (np.abs(high[:2]) <= 180).all() and (np.abs(low[:2]) <= 180).all() and (high - low)[:2].max() < 1.0:
+        return "The cloud's coordinates look like degrees: reproject it to a projected CRS, such as the UTM zone of the survey."
+    if EARTH_RADIUS[0] < np.linalg.norm((low + high) / 2) < EARTH_RADIUS[1]:
+        return ("The cloud's coordinates are as far from 0, 0, 0 as the ground is from the centre of the earth: reproject it from those "
+                "earth-centred coordinates to a projected CRS, such as the UTM zone of the survey.")
+    if crs and _runs_through(low, high, *_angles_exchanged(x, y, crs), reach):
+        return ("The trajectory's longitude and latitude are exchanged: it runs through the cloud where each is taken for the other. Name its "
+                "columns the other way round, and run again.")
+    if trajectory_crs:
+        return f"Both were taken to be in {crs_name(crs)}. Check that they belong to one survey, and the CRS of the trajectory."
+    cloud = f"The cloud is in {crs_name(crs)}, the trajectory" if crs else "The trajectory"
+    return f"{cloud} carries no CRS. Give it the one its coordinates are in (Import trajectory does), and check that both belong to one survey."
+
+
+def _angles_exchanged(x, y, crs):
+    """x and y of a trajectory, had its longitude and latitude been exchanged."""
+    from pyproj import Transformer
+
+    to_degrees = Transformer.from_crs(crs, parse_crs(crs).geodetic_crs, always_xy=True)
+    lon, lat = to_degrees.transform(x, y)
+    return to_degrees.transform(lat, lon, direction="INVERSE")
+
+
+def _no_overlap(files, frame, reader, corridor):
+    if reader.excluded == sum(file.count for file in files):
+        return ("All points are withheld or classified as noise (LAS classes 7 and 18), which are left out. Give the cloud as it was before its "
+                "classification, or with these classes corrected.")
+    if reader.unplaced_time:
+        starts, ends = [p.time[0] for p in frame.passes], [p.time[-1] for p in frame.passes]
+        times = f"{min(starts):.1f} s to {max(ends):.1f} s"
+        return (f"No point was measured while the trajectory was driven: {reader.unplaced_time} points lie outside "
+                f"its time, {times}. Set the trajectory's time system, or check that both belong to one survey.")
+    return (f"No point lies within {corridor:.0f} m of the trajectory and near its height. Check that "
+            "cloud and trajectory belong to one survey and use one CRS.")
+
+
+# Check that points and trajectory use the same clock: the road on the own track is scanned when the vehicle is near it.
+
+CLOCK_TRACK_HALF_WIDTH = 2.0     # m either side of the own track
+MAX_LOOK_AHEAD = 6.5        # m along the road: every scanner measures road nearer than this in each rotation
+NEAREST_PERCENTILE = 10           # percentile of the distances that must be less than MAX_LOOK_AHEAD
+CLOCK_SECTIONS, CLOCK_POINTS_PER_SECTION = 20, 5000  # sampled, evenly over the survey
+MIN_CLOCK_POINTS = 500         # sampled points that a judgement needs
+
+
+def _check_clock(survey: Survey, progress: Progress = Progress()) -> None:
+    """Warn if points were measured at times at which the vehicle was elsewhere.
+
+    survey : Survey with times
+    progress : receives the warning
+    """
+    ahead, speed = _look_ahead(survey)
+    if len(ahead) < MIN_CLOCK_POINTS or np.percentile(np.abs(ahead), NEAREST_PERCENTILE) < MAX_LOOK_AHEAD:
+        return
+    away, fast = float(np.median(ahead)), float(np.median(speed))
+    seconds = f", about {abs(away) / fast:.1f} s at its speed" if fast > 1.0 else ""
+    progress.warn(f"The times of the points do not seem to fit the trajectory: the road on the vehicle's own way was scanned when it was "
+                  f"{abs(away):.0f} m {'before' if away > 0 else 'past'} that place{seconds}, and scanners see road nearer than that in every turn. "
+                  "The map is blurred where passes are mixed up for it. Check that cloud and trajectory are of one drive and count time alike "
+                  "(leap seconds, a lag of the recorder).")
+
+
+def _look_ahead(survey):
+    """Of sampled points on the own track: metres ahead of the vehicle when measured, and its speed then (m/s)."""
+    keys = [(road, number) for road in survey.store.roads() for number in survey.store.sections(road)]
+    sampled = [keys[k] for k in np.unique(np.linspace(0, len(keys) - 1, CLOCK_SECTIONS).astype(int))] if keys else []
+    # most of the time goes into putting the points of these sections in order
+    found = [part for parts in ordered_map(lambda key: _look_ahead_in_section(survey, key), sampled) for part in parts]
+    ahead, speed = zip(*found) if found else ([np.empty(0)], [np.empty(0)])
+    return np.concatenate(ahead), np.concatenate(speed)
+
+
+def _look_ahead_in_section(survey, key):
+    """The same of one section, by pass: list of (ahead, speed)."""
+    points, found = survey.section(*key), []
+    if len(points) > CLOCK_POINTS_PER_SECTION:
+        points = points[np.unique(np.linspace(0, len(points) - 1, CLOCK_POINTS_PER_SECTION).astype(int))]
+    s, d, time, owner = points.s, points.d, points.time, points.pass_number
+    for number in np.unique(owner).tolist():
+        p = survey.frame.passes[number]
+        on_track = np.abs(d - p.at_station(s)[0]) < CLOCK_TRACK_HALF_WIDTH
+        own = np.flatnonzero((owner == number) & on_track & (time >= p.time[0]) & (time <= p.time[-1]))
+        here, soon = (p.station_at(time[own] + wait) for wait in (0.0, 0.5))
+        found.append((p.direction * (s[own] - here), 2.0 * np.abs(soon - here)))
+    return found

@@ -12,16 +12,16 @@ from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from ..common.setting import check_limits, setting
 from ..execution.phase import THREADS, Executor, Recipe, read_plain, write_plain
+from .blocks import KEPT_ABOVE_ROAD
 from .frame.road import CORRIDOR
 from .las.point_fields import INTENSITY_SOURCES
 from .las.reader import POINTS_PER_BLOCK, CloudHeader
-from .reading.blocks import KEPT_ABOVE_ROAD
-from .reading.survey_reader import Finishing, UnorderedPoints
 from .store.records import Points, road_of
 from .store.section_store import MEMORY_LIMIT, SectionStore
+from .survey_reader import Finishing, UnorderedPoints
 
 if TYPE_CHECKING:
-    from .adjustment.corrections import PassCorrections
+    from .adjustment.register import PassCorrections
     from .estimation.interleaved import ScannerSplitter
     from .frame.road_frame import RoadFrame
 

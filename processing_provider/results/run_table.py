@@ -68,10 +68,6 @@ def run_table() -> str:
     """An HTML page with these tables; "" where there was no run."""
     if not _runs:
         return ""
-    from ...core.report.page import Page
+    from ...core.report.page import html_page
 
-    page = Page(tr("Runs of Lanewright"), tr("since QGIS was started"))
-    for title, head, rows in run_tables():
-        page.heading(title)
-        page.table(head, rows)
-    return page.html()
+    return html_page("runs", tables=run_tables())

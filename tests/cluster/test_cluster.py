@@ -29,9 +29,9 @@ from lanewright.core.execution.work_folder import KeptResults, WorkFolder
 from lanewright.core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
 from lanewright.core.road.scanlines.section_planes import all_scanlines
 from lanewright.core.sample import SampleSettings, make_sample_survey
+from lanewright.core.survey import survey_reader
+from lanewright.core.survey.blocks import sensor_height_of
 from lanewright.core.survey.open_survey import open_survey
-from lanewright.core.survey.reading import survey_reader
-from lanewright.core.survey.reading.sensor_height import sensor_height_of
 from lanewright.core.survey.survey import SurveySettings
 from lanewright.library import run
 

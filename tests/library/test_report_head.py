@@ -1,7 +1,7 @@
 """A report says first which survey it is about, and how it was made."""
 
 from lanewright.algorithms.provenance import own_version
-from lanewright.core.report.page import Page, with_facts
+from lanewright.core.report.page import html_page, with_facts
 from lanewright.library import run
 
 
@@ -19,6 +19,6 @@ def test_a_report_names_survey_files_crs_time_version_and_what_was_set(tmp_path)
 
 
 def test_what_files_are_called_is_text_and_no_page():
-    page = with_facts(Page("Road map").html(), [("Survey", "<script>alert(1)</script>")])
+    page = with_facts(html_page("runs", tables=[]), [("Survey", "<script>alert(1)</script>")])
     assert "<script>alert" not in page and "&lt;script&gt;" in page
     assert with_facts("<p>no page of ours</p>", [("Survey", "B12")]) == "<p>no page of ours</p>"

@@ -52,11 +52,11 @@ def read(size, survey="dense"):
 def placing(size):
     """Station and offset of points that are decoded already, from their raw coordinates and times."""
     from lanewright.core.common.parallel import ordered_map
+    from lanewright.core.survey.blocks import DECODED_LAYERS
     from lanewright.core.survey.frame.projection import RoadProjection
     from lanewright.core.survey.frame.road import CORRIDOR
     from lanewright.core.survey.frame.road_frame import build_frame
     from lanewright.core.survey.las.reader import POINTS_PER_BLOCK, read_blocks
-    from lanewright.core.survey.reading.blocks import DECODED_LAYERS
     from lanewright.core.survey.trajectory.reader import read_trajectory
 
     blocks = [block for path in clouds_of("dense", size) for block in read_blocks(str(path), POINTS_PER_BLOCK, DECODED_LAYERS)]
@@ -75,10 +75,10 @@ def placing(size):
 
 def storing(size):
     """Points that are decoded already into the sections of the road frame, ready for the next stage."""
+    from lanewright.core.survey import survey_reader as reading
+    from lanewright.core.survey.blocks import DECODED_LAYERS
     from lanewright.core.survey.las.reader import POINTS_PER_BLOCK, read_blocks
     from lanewright.core.survey.open_survey import open_survey
-    from lanewright.core.survey.reading import survey_reader as reading
-    from lanewright.core.survey.reading.blocks import DECODED_LAYERS
     from lanewright.core.survey.trajectory.reader import read_trajectory
 
     clouds, trajectory = clouds_of("dense", size), read_trajectory(trajectory_of("dense", size))
@@ -123,7 +123,7 @@ def scanlines(size):
 def image_ours(size):
     """Road points of 50 m in memory to the 4 cm intensity image by inverse distance alone, as gdal_grid does it."""
     from lanewright.core.intensity.image import ImageSettings, write_intensity_image
-    from lanewright.core.survey.las.writer import read_road_points
+    from lanewright.core.survey.road_points_las import read_road_points
 
     points, target = read_road_points(prepared("strip.laz", size)), prepared("ours.tif", size)
     for key in points.all_sections():
@@ -161,7 +161,7 @@ def clusters_ours(size):
 
 def _paint(size):
     """The prepared million, in memory and in order."""
-    from lanewright.core.survey.las.writer import read_road_points
+    from lanewright.core.survey.road_points_las import read_road_points
 
     points = read_road_points(prepared("paint.laz", size))
     for key in points.all_sections():

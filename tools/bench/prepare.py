@@ -23,7 +23,7 @@ def prepared(name, size):
 def prepare(size):
     """Make the files."""
     from lanewright.core.intensity.image import write_intensity_image
-    from lanewright.core.survey.las.writer import write_road_points
+    from lanewright.core.survey.road_points_las import write_road_points
 
     folder = prepared("", size)
     folder.mkdir(parents=True, exist_ok=True)

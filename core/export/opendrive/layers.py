@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
 from ...common.progress import Progress
-from ..map_layers import LaneRows, MapLayers, MapLine, plan_length, without_repeats
+from ...driving.layers import Lanes
+from ..map_layers import MapLayers, MapLine, plan_length, without_repeats
 from ..sources import LEAST_CURB
 from .model import DRIVEN_TYPES, LaneNetwork, MapLane, OpenDriveMap, RoadSurface, travel
 
@@ -39,7 +41,8 @@ def layers_of_opendrive(whole: OpenDriveMap, crs: str = "", progress: Progress =
     MapLayers. Every section of a lane is a piece, whose lane_id is "road.lane.section"; lanes of roads in junctions are connectors.
     Sidewalks are no lanes of ours: where one begins there is an edge
     """
-    rows, found, network = LaneRows(), MapLayers(LaneRows().lanes(crs)), LaneNetwork(whole)
+    rows: list[dict[str, Any]] = []
+    found, network = MapLayers(Lanes.of_pieces([], crs)), LaneNetwork(whole)
     numbers, faults = road_numbers(whole), _Faults()
     for count, road in enumerate(whole.roads):
         surface = RoadSurface(road)
@@ -48,7 +51,7 @@ def layers_of_opendrive(whole: OpenDriveMap, crs: str = "", progress: Progress =
             if road.section_end(number) - section.s > SHORTEST_SECTION:
                 _add_section(rows, found.lines, whole, network, surface, number, numbers[road.id], faults)
         progress.report((count + 1) / len(whole.roads))
-    found.lanes = _existing(rows).lanes(crs)
+    found.lanes = Lanes.of_pieces(_existing(rows), crs)
     if whole.problems:
         line, text = whole.problems[0]
         found.notes.append(f"{len(whole.problems)} parts of the file were passed over; the first: line {line}, {text}")
@@ -116,7 +119,7 @@ def _add_section(rows, lines, whole, network, surface, number, road_number, faul
         lines += _painted(road_number, lane, section.s, s, outer, _kind(section.lanes, id))
         lines += _edges(surface, number, id, s, inner, outer, road_number)
         if lane.type not in NO_LANES and np.abs(offsets[id] - offsets[surface.inside(number, id)]).max() >= LEAST_WIDTH:
-            rows.add(**_lane(network, surface, number, id, s, inner, outer), road=road_number)
+            rows.append({**_lane(network, surface, number, id, s, inner, outer), "road": road_number})
 
 
 def _edges(surface, number, id, s, inner, outer, road_number):
@@ -166,8 +169,8 @@ def _curb(surface, number, id, s, inner, road_number):
 
 def _existing(rows):
     """Successors that were no lanes of ours are dropped."""
-    known = {row["lane_id"] for row in rows.rows}
-    for row in rows.rows:
+    known = {row["lane_id"] for row in rows}
+    for row in rows:
         row["successors"] = [name for name in row["successors"] if name in known]
     return rows
 

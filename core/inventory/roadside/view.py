@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...survey.reading.sensor_height import DEFAULT_SENSOR_HEIGHT
+from ...survey.blocks import DEFAULT_SENSOR_HEIGHT
 
 if TYPE_CHECKING:
     from ...survey.open_survey import Survey

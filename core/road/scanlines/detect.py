@@ -20,8 +20,8 @@ import numpy as np
 from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
 from ...execution.phase import THREADS, Executor, Phase, Recipe
+from ...survey.blocks import DEFAULT_SENSOR_HEIGHT, sensor_height_of
 from ...survey.lattice.scan_lattice import ScanLattice, find_lattice
-from ...survey.reading.sensor_height import DEFAULT_SENSOR_HEIGHT, sensor_height_of
 from ..common.curb_points import CurbPoints, curb_points_at
 from ..common.occlusion import HIDDEN_POINT_SPACING, MIN_OCCLUDER_HEIGHT, OcclusionGrid
 from ..common.pseudo_scanlines import MIN_SCANNER_NOISE

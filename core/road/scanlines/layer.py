@@ -14,8 +14,8 @@ from ...common.errors import RoadExtractionError
 from ...common.features import SCANLINES, Features, Field
 from ...common.progress import Progress
 from ...common.setting import check_limits, setting
-from ...survey.las.writer import metres_of_file, new_laz, place_in_file
 from ...survey.lattice.scan_lattice import find_lattice
+from ...survey.road_points_las import metres_of_file, new_laz, place_in_file
 from ...survey.store.records import COORDINATE_SCALE
 from .grid import Scanlines
 from .section_planes import ScanlineSettings, all_scanlines

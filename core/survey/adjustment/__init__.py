@@ -7,6 +7,5 @@ from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
     "adjust": ("adjust_passes",),
-    "corrections": ("PassCorrections",),
-    "register": ("pass_offsets",),
+    "register": ("PassCorrections", "pass_offsets"),
 })

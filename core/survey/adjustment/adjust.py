@@ -9,25 +9,35 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any, NamedTuple
 
 import numpy as np
+import shapely
 from scipy import sparse
 from scipy.sparse.linalg import spsolve
 
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
+from ..frame.passes import LEVEL_SEPARATION, Pass
+from ..frame.road_frame import RoadFrame
+from ..frame.row_table import SigmaAlong
+from ..store.columns import Columns
 from ..store.records import COORDINATE_SCALE, to_units
 from ..store.section_store import SectionStore
-from .carrying import continued_corrections
-from .corrections import CORRECTION_STEP, PassCorrections
-from .pass_sigma import sigma_of_passes
-from .register import AXES, MAX_OFFSET, PassOffsets, pass_offsets
-from .remaining import places_of_one_drive, remaining_places, said_of_one_drive, said_of_places
-
-if TYPE_CHECKING:
-    from ..store.columns import Columns
+from .register import (
+    AXES,
+    CORRECTION_STEP,
+    MAX_OFFSET,
+    PLAN_AXES,
+    POOLING_SIGMA,
+    WINDOW_LENGTH,
+    PassCorrections,
+    PassOffsets,
+    pass_offsets,
+    sigma_of_passes,
+)
 
 MOVED_COLUMNS = "x", "y", "z", "s", "d"
 AGREEMENT_PLAN, AGREEMENT_HEIGHT = 0.020, 0.007    # m: a road stays as measured if nine tenths of its offsets are less
@@ -47,7 +57,6 @@ def adjust_passes(survey: Any, progress: Progress = Progress(), folder: Path | N
     Parameters
     ----------
     survey : Survey with times; its store and frame are replaced where passes are moved
-    progress : Progress
     folder : of the moved points that are not kept in memory; None for a temporary file
     """
     roads = [road for road in survey.store.roads() if len(survey.frame.passes_of(road)) > 1]
@@ -196,7 +205,6 @@ def replace_points(survey: Any, moved: Callable[[Columns], Columns], progress: P
     ----------
     survey : Survey
     moved : gives the Columns of a section with other coordinates
-    progress : Progress
     folder : of the moved points that are not kept in memory; None for a temporary file
     """
     before = survey.store
@@ -215,3 +223,326 @@ def replace_points(survey: Any, moved: Callable[[Columns], Columns], progress: P
         raise
     before.close()
     survey.store = store
+
+
+# A drive that was laid on others goes on where it measures alone: it is moved on as where it left them, not back to where it was measured.
+
+MAX_SEAM = 1.0   # s between the end of a pass and the start of the next one of the same drive
+
+
+def continued_corrections(frame: RoadFrame, moves: PassCorrections, compared: list[PassOffsets]) -> PassCorrections:
+    """Corrections of passes with those of the passes that follow or precede them in the same drive and could be compared with no other.
+
+    Navigation drifts slowly, by centimetres over kilometres, so what a drive is off by at the end of a road is what it is off by at the start of
+    the next. Between two that were moved the correction changes evenly. Two passes meet in their middle, so what one was moved by across the road
+    is also the sigma of where they meet; `frame.pass_sigma` of roads without one says so.
+
+    Parameters
+    ----------
+    moves : PassCorrections of the passes that were compared
+    compared : PassOffsets of all roads; passes that were found to lie as the others do are not moved
+    """
+    known = {number for pair in compared for number in (pair.one, pair.other)}
+    by_pass = dict(moves.by_pass)
+    passes = sorted(frame.passes, key=lambda p: float(p.time[0]))
+    while found := _beside_moved(passes, by_pass, known):
+        by_pass.update(found)
+        for number in found:
+            across = _moved_across(frame, PassCorrections(by_pass), frame.passes[number])
+            frame.pass_sigma.setdefault(frame.passes[number].road, SigmaAlong.everywhere(across))
+    return PassCorrections(by_pass)
+
+
+def _beside_moved(passes, by_pass, known):
+    """Corrections of the passes, in order of time, that touch one of those moved, and are neither moved nor known to lie right."""
+    found = {}
+    for before, p, after in zip([None, *passes[:-1]], passes, [*passes[1:], None]):
+        if p.number not in by_pass and p.number not in known:
+            ends = _touching(before, p, by_pass), _touching(p, after, by_pass)
+            if any(ends):
+                found[p.number] = _led_on(PassCorrections(by_pass), p, *ends)
+    return found
+
+
+def _moved_across(frame, moves, p):
+    """RMS metres by which a pass is moved across its road."""
+    s = np.linspace(*p.span, max(int(np.ptp(p.span) / CORRECTION_STEP), 2))
+    east, north, _ = moves.metres(p.number, s)
+    heading = frame.road(p.road).heading(s)
+    return float(np.sqrt(np.mean((north * np.cos(heading) - east * np.sin(heading)) ** 2)))
+
+
+def _touching(first: Pass | None, then: Pass | None, by_pass: dict) -> Pass | None:
+    """The one of two passes that was moved, if they touch in time."""
+    if first is None or then is None or not 0.0 <= then.time[0] - first.time[-1] <= MAX_SEAM:
+        return None
+    return next((one for one in (first, then) if one.number in by_pass), None)
+
+
+def _led_on(moves, p, before, after):
+    """(station of the first node, (3, N) int16 in 0.1 mm) of a pass from the ends of those before and after it, either of them None."""
+    ends = [np.array(moves.metres(one.number, one.s[[row]])) for one, row in ((before, -1), (after, 0)) if one is not None]
+    first, last = p.span
+    nodes = first + CORRECTION_STEP * np.arange(int(np.ceil((last - first) / CORRECTION_STEP)) + 1)
+    share = np.interp(nodes, [first, last], [0.0, 1.0] if p.s[-1] > p.s[0] else [1.0, 0.0])
+    return first, to_units(ends[0] + share * (ends[-1] - ends[0])).astype(np.int16)
+
+
+# Where passes still differ after they were laid on each other, and where one was moved that no other confirms, place by place.
+
+MAX_REMAINING = 0.02   # m in plan that two passes may still differ by: less than a marking's edge is blurred by
+MAX_CHANGE = 0.04      # m to the next window that a correction changes by: navigation drifts more slowly, so a pass jumped somewhere between
+MOST_NAMED = 12        # places that a message names
+
+
+def remaining_places(offsets: list[PassOffsets], corrections: dict[int, tuple[np.ndarray, np.ndarray]]) -> list[tuple[float, float, float]]:
+    """Stretches of a road along which two of its passes still differ.
+
+    Parameters
+    ----------
+    offsets : PassOffsets of the road
+    corrections : of `solve_corrections`; empty where nothing was moved
+
+    Returns
+    -------
+    list of (start, end, metres that they differ by at most), by station; infinite where they lie farther apart than can be measured
+    """
+    places: dict[float, float] = {}
+    for pair in offsets:
+        rest = np.zeros(len(pair.stations))
+        for axis in PLAN_AXES:
+            # what is unknown does not remain: it is bridged by what is known around it
+            applied = _applied(pair, corrections, axis)
+            left = np.abs(np.nan_to_num(getattr(pair, axis) - applied))
+            rest = np.hypot(rest, np.maximum(left, _evened_out(pair.stations, applied)))
+        for station, metres in (*zip(pair.stations[rest > MAX_REMAINING], rest[rest > MAX_REMAINING]), *((station, np.inf) for station in pair.far)):
+            places[float(station)] = max(places.get(float(station), 0.0), float(metres))
+    return _stretches_of(places)
+
+
+def places_of_one_drive(passes: list[Pass], offsets: list[PassOffsets], corrections: PassCorrections) -> list[tuple[float, float, float]]:
+    """Stretches of a road along which a pass was moved in plan and was compared with no other, there or as near as drift changes little.
+
+    Parameters
+    ----------
+    passes : of the road
+    offsets : PassOffsets of all roads
+    corrections : PassCorrections, as they are applied
+
+    Returns
+    -------
+    list of (start, end, metres that the pass was moved by at most), by station
+    """
+    places: dict[float, float] = {}
+    for p in passes:
+        if p.number not in corrections.by_pass:
+            continue
+        known = np.concatenate([pair.stations[np.isfinite(pair.left) | np.isfinite(pair.along)] for pair in offsets
+                                if p.number in (pair.one, pair.other)] or [np.empty(0)])
+        first, last = np.floor(np.array(p.span) / WINDOW_LENGTH).astype(int)
+        stations = (np.arange(first, last + 1) + 0.5) * WINDOW_LENGTH
+        away = np.abs(stations[:, None] - known).min(axis=1, initial=np.inf)
+        moved = np.hypot(*corrections.metres(p.number, stations)[:2])
+        for station, metres in zip(*(values[(away > POOLING_SIGMA) & (moved > MAX_REMAINING)].tolist() for values in (stations, moved))):
+            places[station] = max(places.get(station, 0.0), metres)
+    return _stretches_of(places)
+
+
+def _evened_out(stations, applied):
+    """(N,) m of a jump that remain in the windows it lies between, as corrections change evenly from one to the next; 0 where there is none."""
+    found = np.zeros(len(stations))
+    change = np.abs(np.diff(applied))
+    for k in np.flatnonzero((change > MAX_CHANGE) & (np.diff(stations) < 1.5 * WINDOW_LENGTH)).tolist():
+        found[k:k + 2] = np.maximum(found[k:k + 2], change[k] / 2)
+    return found
+
+
+def _stretches_of(places: dict[float, float]) -> list[tuple[float, float, float]]:
+    """[(start, end, largest metres)] of {middle of a window: metres}, windows that touch in one; infinite ones apart from the others."""
+    found: list[tuple[float, float, float]] = []
+    for station, metres in sorted(places.items()):
+        start, end = station - WINDOW_LENGTH / 2, station + WINDOW_LENGTH / 2
+        if found and start <= found[-1][1] and np.isinf(metres) == np.isinf(found[-1][2]):
+            found[-1] = found[-1][0], end, max(metres, found[-1][2])
+        else:
+            found.append((start, end, metres))
+    return found
+
+
+def _applied(pair, corrections, axis):
+    """(N,) metres along an axis by which the second pass of a pair was moved against the first."""
+    if pair.one not in corrections:
+        return np.zeros(len(pair.stations))
+    row = ("along", "left", "up").index(axis)
+    one, other = (np.interp(pair.stations, stations, moved[row]) for stations, moved in (corrections[pair.one], corrections[pair.other]))
+    return other - one
+
+
+def said_of_places(road: int, places: list[tuple[float, float, float]]) -> str:
+    """The warning about places that remain; "" where there is none."""
+    if not places:
+        return ""
+    named = [f"{start:.0f} to {end:.0f} m (" + (f"more than {100 * MAX_OFFSET:.0f} cm apart, too far to lay them on each other)" if np.isinf(metres)
+                                                else f"up to {100 * metres:.1f} cm remain)") for start, end, metres in places[:MOST_NAMED]]
+    more = _further(places)
+    return (f"Road {road}: its passes do not lie on each other at {', '.join(named)}{more}: curbs and lines may be doubled or blurred there. "
+            "Adjust the trajectories of the drives to each other, or process the files of each drive by itself.")
+
+
+def said_of_one_drive(road: int, places: list[tuple[float, float, float]]) -> str:
+    """The warning about places where one drive alone was moved; "" where there is none."""
+    if not places:
+        return ""
+    return (f"Road {road}: one drive alone shows what lies at {_named_places(places, 'by up to {:.1f} cm')}. It was moved there as where it last "
+            "lay beside the others, and nothing shows how well that fits: measure a control point there if these centimetres matter.")
+
+
+def _named_places(places: list[tuple[float, float, float]], size: str) -> str:
+    """Places by station with what is said of their metres in cm, those beyond MOST_NAMED as a number."""
+    return ", ".join(f"{start:.0f} to {end:.0f} m ({size.format(100 * metres)})" for start, end, metres in places[:MOST_NAMED]) + _further(places)
+
+
+def _further(places):
+    return f" and at {len(places) - MOST_NAMED} further places" if len(places) > MOST_NAMED else ""
+
+
+# Carriageways that were driven one by one, as of a motorway: whether their drives agree on the ground between them, place by place.
+#
+# Such roads share no pass, so nothing lays them on each other. What both drives see is the strip between the two tracks. Its flat places give the
+# difference in height to millimetres. Across they tell nothing: of a guard rail each drive sees its own side, and rails hide the paint behind them.
+
+FARTHEST_BESIDE = 30.0                    # m between the tracks of two carriageways
+LEAST_PARALLEL = np.cos(np.radians(15))  # cosine of the angle between them, at least
+SHORTEST_BESIDE = 50.0                    # m beside each other, shorter than which it is a junction
+SAME_GROUND, SHARE_ALONG = 12.0, 0.8     # m between tracks over one road, and share of the shorter one that they run along each other
+EVEN_RISE = 0.15                          # m by which one may vary in height above the other: navigation drifts by less, ramps climb by more
+SHARE_BETWEEN = 0.25, 0.75               # of the way from one track to the other: what both drives see well
+HEIGHT_CELL = 0.25                        # m, of the cells that heights are compared in
+FLAT_CELL_RANGE = 0.03                    # m between the highest and the lowest point of a flat cell
+MIN_FLAT_CELLS = 40                     # flat cells that both drives see, for a difference
+MAX_HEIGHT_APART = 0.02                   # m in height that two drives may differ by without a warning
+
+
+class Beside(NamedTuple):
+    """Two roads that run beside each other.
+
+    one, other : their numbers
+    stations : (N,) m on the first, middles of windows of CORRECTION_STEP
+    places : (N,) m, the same on the second
+    apart : (N,) m of offset, left positive, from the first to the second
+    up : (N,) m by which the points of the second lie higher, NaN where both hardly see the same
+    """
+
+    one: int
+    other: int
+    stations: np.ndarray
+    places: np.ndarray
+    apart: np.ndarray
+    up: np.ndarray
+
+
+def compare_carriageways(survey: Any, progress: Progress = Progress()) -> None:
+    """Tell how far roads lie apart in height that run beside each other and share no pass.
+
+    Parameters
+    ----------
+    survey : Survey with times, after its passes were adjusted
+    progress : Progress, for the messages
+    """
+    for pair in roads_beside(survey.frame):
+        up = ordered_map(partial(_height_apart, survey, pair), range(len(pair.stations)))
+        found = pair._replace(up=np.array(list(up)))
+        said, warns = _said_of_carriageways(found)
+        (progress.warn if warns else progress.info)(said)
+
+
+def roads_beside(frame: Any) -> list[Beside]:
+    """Pairs of roads that run beside each other for SHORTEST_BESIDE and more on one level; `up` is not known yet."""
+    found = []
+    for one, other, s, place, offset, rise in _parallel(frame):
+        known = np.flatnonzero(np.abs(rise) < LEVEL_SEPARATION)
+        if len(known) * CORRECTION_STEP >= SHORTEST_BESIDE:
+            way = np.sign(np.cos(frame.road(one).heading(s[known]) - frame.road(other).heading(place[known])))
+            found.append(Beside(one, other, s[known], place[known], -way * offset[known], np.full(len(known), np.nan)))
+    return found
+
+
+def said_of_levels(frame: Any) -> list[str]:
+    """Warnings about roads that were driven along each other at another height, always by the same: one road, with heights of two kinds.
+
+    A bridge or a second deck climbs to its height somewhere, and roads on a slope lie farther apart.
+    """
+    said = []
+    for one, other, s, _, offset, rise in _parallel(frame):
+        known = np.flatnonzero((np.abs(offset) < SAME_GROUND) & (np.abs(rise) >= LEVEL_SEPARATION))
+        length = min(np.ptp([p.span for p in frame.passes_of(road)]) for road in (one, other))
+        if len(known) * CORRECTION_STEP < max(SHORTEST_BESIDE, SHARE_ALONG * length):
+            continue
+        middle = float(np.median(rise[known]))
+        if np.quantile(np.abs(rise[known] - middle), SHARE_ALONG) < EVEN_RISE:
+            first, last = s[known].min() - CORRECTION_STEP / 2, s[known].max() + CORRECTION_STEP / 2
+            said.append(
+                f"Roads {one} and {other} run along each other at stations {first:.0f} to {last:.0f} m of road {one}, and one lies "
+                f"{abs(middle):.2f} m above the other all along, as no bridge does. They seem to be one road with heights of two kinds (above the "
+                "ellipsoid and above sea level), and the map shows it twice. Bring the drives to one kind of heights, or process the files of each "
+                "drive by itself.")
+    return said
+
+
+def _parallel(frame):
+    """Yield (road, other road, stations, places, offsets and m that the first lies higher) where roads run beside or above each other."""
+    tracks = [shapely.linestrings(np.c_[p.x, p.y]) for p in frame.passes]
+    near = shapely.STRtree(tracks).query(tracks, predicate="dwithin", distance=FARTHEST_BESIDE).T
+    roads = np.array([p.road for p in frame.passes])
+    for one, other in sorted({(int(a), int(b)) for a, b in roads[near] if a < b}):
+        spans = np.array([p.span for p in frame.passes_of(one)])
+        s = np.arange(np.floor(spans.min() / CORRECTION_STEP), np.ceil(spans.max() / CORRECTION_STEP)) * CORRECTION_STEP + CORRECTION_STEP / 2
+        x, y = frame.road(one).to_map(s, np.zeros(len(s)))
+        place, offset = frame.road(other).locate(x, y, corridor=FARTHEST_BESIDE)
+        known = np.flatnonzero(np.isfinite(offset))
+        known = known[np.abs(np.cos(frame.road(one).heading(s[known]) - frame.road(other).heading(place[known]))) > LEAST_PARALLEL]
+        rise = frame.track_height(one, s[known]) - frame.track_height(other, place[known])
+        yield one, other, s[known], place[known], offset[known], rise
+
+
+def _height_apart(survey, pair, k):
+    """m by which the second road's points lie higher in one window; NaN where too little is seen of both."""
+    road, half = survey.frame.road(pair.one), CORRECTION_STEP / 2
+    sides, cells = np.sort(pair.apart[k] * np.array(SHARE_BETWEEN)), []
+    for number, station in ((pair.one, pair.stations[k]), (pair.other, pair.places[k])):
+        points = survey.window(number, station - 1.5 * half, station + 1.5 * half)
+        between = np.flatnonzero(np.abs(np.abs(points.d) - 0.5 * abs(pair.apart[k])) < np.ptp(sides) / 2 + 1.0)
+        s, d = road.locate(points.x[between], points.y[between], corridor=FARTHEST_BESIDE)
+        own = (np.abs(s - pair.stations[k]) < half) & (d > sides[0]) & (d < sides[1])
+        cells.append(_flat_cells(s[own] - pair.stations[k] + half, d[own] - sides[0], points.z[between[own]]))
+    (one, low), (other, high) = cells
+    _, a, b = np.intersect1d(one, other, return_indices=True)
+    return float(np.median(high[b] - low[a])) if len(a) >= MIN_FLAT_CELLS else np.nan
+
+
+def _flat_cells(along, across, z):
+    """Numbers of the flat cells that points lie in, rising, and their mean heights, m."""
+    if not len(z):
+        return np.empty(0, int), np.empty(0)
+    cell = (along / HEIGHT_CELL).astype(int) * 1000 + (across / HEIGHT_CELL).astype(int)
+    order = np.argsort(cell, kind="stable")
+    numbers, first = np.unique(cell[order], return_index=True)
+    z = z[order]
+    flat = np.maximum.reduceat(z, first) - np.minimum.reduceat(z, first) < FLAT_CELL_RANGE
+    return numbers[flat], (np.add.reduceat(z, first) / np.diff(np.append(first, len(z))))[flat]
+
+
+def _said_of_carriageways(pair: Beside) -> tuple[str, bool]:
+    """What is said of two roads beside each other, and whether it is a warning."""
+    known = np.isfinite(pair.up)
+    far = known & (np.abs(pair.up) > MAX_HEIGHT_APART)
+    where = (f"Road {pair.other} runs beside road {pair.one} at its stations {pair.stations.min() - CORRECTION_STEP / 2:.0f} to "
+             f"{pair.stations.max() + CORRECTION_STEP / 2:.0f} m, and no drive measured both")
+    if far.any():
+        return (f"{where}. Their drives differ in height at "
+                f"{_named_places(_stretches_of(dict(zip(pair.stations[far].tolist(), np.abs(pair.up[far]).tolist()))), 'by up to {:.1f} cm')}. "
+                "They stay as they were measured, and nothing that both see shows how far they lie apart across: adjust the trajectories of the "
+                "drives to each other, or measure control points on both, if these centimetres matter.", True)
+    if not known.any():
+        return f"{where}: nothing that both see shows how far they lie apart.", False
+    return (f"{where}: in height they agree within {100 * np.abs(pair.up[known]).max():.1f} cm; how far they lie apart across is not known.", False)

@@ -8,17 +8,78 @@ measured, such as vehicles, do not correlate and have no effect.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft
 from scipy.ndimage import gaussian_filter1d, maximum_filter1d, median_filter, minimum_filter1d
 
+from ...common.features import PASS_SIGMA, Features
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
+from ...curves.robust import MAD_TO_SIGMA
 from ...lazy import cv2
-from .corrections import CORRECTION_STEP
+from ..frame.row_table import SigmaAlong
+from ..store.columns import Columns
+from ..store.records import COORDINATE_SCALE, to_units
+
+if TYPE_CHECKING:
+    import laspy
+
+
+# Corrections of passes that were adjusted to each other; stored with the points, so that measured coordinates can be restored.
+
+CORRECTION_STEP = 10.0        # m of station between nodes
+VLR_USER_ID = "Lanewright"    # of the LAS records, one per pass; the record id is the pass number + 1
+_HEAD = np.dtype([("first", "<f8"), ("count", "<u4")])
+
+
+@dataclass(frozen=True)
+class PassCorrections:
+    """East, north and up corrections of every pass that was moved, by station.
+
+    by_pass : {pass number: (station of the first node in m, (3, N) int16 in 0.1 mm)}, nodes CORRECTION_STEP apart; constant
+        beyond the first and the last node
+    """
+
+    by_pass: dict[int, tuple[float, np.ndarray]]
+
+    def metres(self, number: int, s: np.ndarray) -> tuple[np.ndarray, ...]:
+        """East, north and up corrections, (N,) metres each, of a pass at (N,) stations."""
+        first, values = self.by_pass[number]
+        nodes = first + CORRECTION_STEP * np.arange(values.shape[1])
+        return tuple(np.interp(s, nodes, row) * COORDINATE_SCALE for row in values)
+
+    def units(self, records: Columns | np.ndarray) -> np.ndarray:
+        """(3, N) int32 corrections of x, y and z of moved points (Columns or structured records), in units of 0.1 mm."""
+        numbers, found = records["pass_number"], np.zeros((3, len(records)), np.int32)
+        for number in np.unique(numbers).tolist():
+            if number in self.by_pass:
+                own = np.flatnonzero(numbers == number)
+                found[:, own] = [to_units(v) for v in self.metres(number, records["s"].take(own) * COORDINATE_SCALE)]
+        return found
+
+    def to_records(self) -> list[laspy.VLR]:
+        """The corrections as LAS variable length records, one per pass."""
+        import laspy
+
+        return [laspy.VLR(VLR_USER_ID, number + 1, "Move of a pass",
+                          np.array([(first, values.shape[1])], _HEAD).tobytes() + np.ascontiguousarray(values, "<i2").tobytes())
+                for number, (first, values) in sorted(self.by_pass.items())]
+
+    @classmethod
+    def of_records(cls, records: Iterable[laspy.VLR]) -> PassCorrections | None:
+        """Read what `to_records` wrote, from the records of a file; None where there is nothing."""
+        found = {}
+        for record in records:
+            if record.user_id.rstrip("\0") == VLR_USER_ID:
+                data = bytes(record.record_data_bytes())
+                first, count = np.frombuffer(data, _HEAD, 1)[0].tolist()
+                found[record.record_id - 1] = first, np.frombuffer(data, "<i2", 3 * count, _HEAD.itemsize).reshape(3, count)
+        return cls(found) if found else None
+
 
 AXES = "along", "left", "up"
 PLAN_AXES = AXES[:2]
@@ -183,7 +244,6 @@ def pass_offsets(survey: Any, road: int, progress: Progress = Progress()) -> lis
     ----------
     survey : Survey with times
     road : number
-    progress : Progress
 
     Returns
     -------
@@ -395,3 +455,79 @@ def _second_best(unlikely, best):
     dips[:, 1:-1] = (unlikely[:, 1:-1] <= unlikely[:, :-2]) & (unlikely[:, 1:-1] <= unlikely[:, 2:])
     dips &= np.abs(np.arange(unlikely.shape[1]) - best[:, None]) > PEAK_CELLS
     return np.where(dips, unlikely, np.inf).min(axis=1)
+
+
+# How far the middle of the passes over a road may be off, and how that travels from stage to stage with points and layers.
+
+SIGMA_REACH = 25.0           # m of road either way over which passes are compared: less would be the noise of single offsets
+SIGMA_USER_ID = "LanewrightSigma"   # of the LAS records: FIRST_RECORD and those that follow it, and ROAD_RECORD of earlier versions
+ROAD_RECORD, FIRST_RECORD = 1, 2
+NODES_PER_RECORD = 5000      # a LAS record holds 65,535 bytes
+_ROAD = np.dtype([("road", "<u4"), ("sigma", "<f8")])
+_NODE = np.dtype([("road", "<u4"), ("station", "<f4"), ("sigma", "<f4")])
+
+
+def sigma_of_passes(offsets: list[PassOffsets]) -> SigmaAlong | None:
+    """How far the middle of the passes over a road may be off across it, from what they differ, place by place.
+
+    Two passes with independent errors of one sigma s differ by s * sqrt(2), and the mean of n of them is off by s / sqrt(n). Single offsets
+    that are far off do not count: of the RMS and the median deviation as a sigma the smaller is taken.
+
+    Parameters
+    ----------
+    offsets : PassOffsets of one road
+
+    Returns
+    -------
+    SigmaAlong; None where no offset was measured
+    """
+    known = [(pair, np.isfinite(pair.left)) for pair in offsets]
+    stations = np.concatenate([pair.stations[own] for pair, own in known] or [np.empty(0)])
+    if not len(stations):
+        return None
+    order = np.argsort(stations, kind="stable")
+    stations, left = stations[order], np.concatenate([_apart(pair)[own] for pair, own in known])[order]
+    one, other = (np.concatenate([np.full(own.sum(), getattr(pair, name)) for pair, own in known])[order] for name in ("one", "other"))
+    places = np.unique(stations)
+    bounds = np.searchsorted(stations, places - SIGMA_REACH), np.searchsorted(stations, places + SIGMA_REACH, side="right")
+    found = []
+    for first, end in zip(*bounds):
+        apart = min(np.sqrt(np.mean(left[first:end] ** 2)), MAD_TO_SIGMA * np.median(np.abs(left[first:end])))
+        found.append(apart / np.sqrt(2 * len({*one[first:end].tolist(), *other[first:end].tolist()})))
+    return SigmaAlong(tuple(places.tolist()), tuple(map(float, found)))
+
+
+def _apart(pair):
+    """(N,) m across that two passes lie apart; in any direction where it is more than drift, as roads that cross are off along this one too."""
+    anywhere = np.hypot(pair.left, np.nan_to_num(pair.along))
+    return np.where(anywhere > MAX_OFFSET, anywhere, pair.left)
+
+
+def sigma_to_record(sigma: dict[int, SigmaAlong]) -> list[laspy.VLR]:
+    """{road number: SigmaAlong} as LAS variable length records; none where nothing is known."""
+    import laspy
+
+    rows = np.array([(road, *node) for road, along in sorted(sigma.items()) for node in zip(along.stations, along.metres)], _NODE)
+    return [laspy.VLR(SIGMA_USER_ID, FIRST_RECORD + k, "Uncertainty that passes leave", rows[first:first + NODES_PER_RECORD].tobytes())
+            for k, first in enumerate(range(0, len(rows), NODES_PER_RECORD))]
+
+
+def sigma_of_records(records: Iterable[laspy.VLR]) -> dict[int, SigmaAlong]:
+    """{road number: SigmaAlong} as `sigma_to_record` wrote it, from the records of a file."""
+    own = {record.record_id: bytes(record.record_data_bytes()) for record in records if record.user_id.rstrip("\0") == SIGMA_USER_ID}
+    if ROAD_RECORD in own:
+        return {road: SigmaAlong.everywhere(metres) for road, metres in np.frombuffer(own[ROAD_RECORD], _ROAD).tolist()}
+    rows = np.frombuffer(b"".join(own[number] for number in sorted(own)), _NODE)
+    return {road: SigmaAlong(*(tuple(rows[name][rows["road"] == road].tolist()) for name in ("station", "sigma")))
+            for road in np.unique(rows["road"]).tolist()}
+
+
+def sigma_of_layer(features: Features) -> dict[int, SigmaAlong]:
+    """{road number: SigmaAlong} that the rows of a layer hold, such as CURB_POINTS and MARKING_LINES."""
+    found: dict[int, list[tuple[float, float]]] = {}
+    for row in features.rows:
+        road, metres, start = (row.get(name) for name in ("road", PASS_SIGMA.name, "station_m"))
+        if road is not None and metres is not None:
+            ends = [place for place in (start, row.get("end_m")) if place is not None]
+            found.setdefault(int(road), []).append((float(np.mean(ends)) if ends else 0.0, float(metres)))
+    return {road: SigmaAlong.through(*np.array(rows).T) for road, rows in found.items()}

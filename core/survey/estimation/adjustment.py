@@ -6,14 +6,14 @@ leave open is filled by how vehicles move: smoothly, nose ahead, and on average 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.linalg import cho_solve_banded, cholesky_banded
 
 from ...common.progress import Progress
-from .normal_equations import BandedEquations
-from .poses import KNOT_SPACING, PITCH, ROLL, YAW, Poses, X, Y, Z, spline_slopes, spline_weights
-from .rays import MIN_RANGE, MOUNTING, misfits
+from ...curves.robust import robustly_smoothed
+from .poses import KNOT_SPACING, PITCH, POSE, ROLL, YAW, Poses, X, Y, Z, spline_slopes, spline_weights, vehicle_axes
 
 ACCELERATION = 3.0          # m/s^2, usual of a vehicle on the road
 ANGULAR_ACCELERATION = 0.5  # rad/s^2
@@ -77,17 +77,14 @@ class Adjusted:
     mounting_sigma: np.ndarray
 
 
-def adjust_poses(poses: Poses, guess: Poses, crossfall: np.ndarray, returns: Returns, noise: np.ndarray, progress: Progress = Progress()) -> Adjusted:
+def _adjust_poses(poses: Poses, guess: Poses, crossfall: np.ndarray, returns: Returns, noise: np.ndarray,
+                  progress: Progress = Progress()) -> Adjusted:
     """Adjust poses and mountings to the returns by Gauss-Newton steps with robust weights.
 
-    Parameters
-    ----------
     poses : Poses near the truth: within a metre, mirror phases within half a radian
     guess : Poses with the mounting that the unknown one scatters about
     crossfall : (K,) radians of the road under the vehicle at every interval, positive where it rises to the left
-    returns : Returns
     noise : (K, S) m, how far returns of each interval and scanner may lie off their rays to begin with
-    progress : Progress
     """
     for number in range(ADJUSTMENT_ROUNDS):
         equations, misfit, by_rounding, count = _equations(poses, guess, crossfall, returns, noise, progress)
@@ -193,3 +190,322 @@ def _add_mounting(equations, poses, guess):
 
 
 HELD = 1e8  # weight of what is held
+
+
+# The adjustment, begun where the poses are known well enough and grown along time from there.
+
+REACH = 10            # intervals that poses are carried on at a time: for a second a vehicle's motion is foreseen within decimetres
+MAX_GROWTHS = 12
+GROWTH_STRIDE = 3     # every n-th return is enough while growing
+MAX_TRIES = 4         # of an interval: with longer known motion beside it, it may come right after failing
+MAX_RAY_MISFIT = 0.03     # m: an interval of a scanner whose returns lie farther off the rays is not understood
+MAX_UNEXPLAINED = 0.05    # m: where returns usually lie farther off, the rays are not those of these scanners
+MAX_TIMES_USUAL = 10.0  # times the usual misfit, where that is larger
+POSE_STIFFNESS, PHASE_STIFFNESS = 10.0, 1e3   # of the curves by which they are carried on
+
+
+def grown_poses(poses: Poses, known: np.ndarray, returns: Returns, progress: Progress = Progress()) -> Adjusted:
+    """Adjust poses to the returns, from the known intervals on.
+
+    Parameters
+    ----------
+    poses : Poses to start from
+    known : (K, S) bool, intervals of each scanner where they are near the truth
+
+    Returns
+    -------
+    Adjusted; its misfit is NaN in the intervals of scanners whose returns were not used
+    """
+    guess, crossfall = poses, np.zeros(len(poses.control))
+    held = np.zeros(known.shape, bool)
+    held[returns.interval, returns.scanner] = True
+    tries = known.astype(int)
+    noise = np.full(known.shape, FIRST_NOISE)
+    some = returns[np.arange(0, len(returns.interval), GROWTH_STRIDE)]
+    for number in range(MAX_GROWTHS):
+        part = progress.part(number / (MAX_GROWTHS + 2), (number + 1) / (MAX_GROWTHS + 2))
+        found = _adjust_poses(poses, guess, crossfall, some[known[some.interval, some.scanner]], noise, part)
+        limit = max(MAX_RAY_MISFIT, MAX_TIMES_USUAL * found.usual)
+        with np.errstate(invalid="ignore"):
+            good = known & (found.misfit <= limit)
+        fresh = _reached(found.poses, good) & held & ~good & (tries < MAX_TRIES)
+        poses = _carried_on(found.poses, good)
+        crossfall = _crossfall_of(poses, some[good[some.interval, some.scanner]])
+        noise = np.where(good, found.noise, FIRST_NOISE)
+        if not fresh.any():
+            break
+        tries += fresh
+        known = good | fresh
+    return _adjust_poses(poses, guess, crossfall, returns[good[returns.interval, returns.scanner]], noise,
+                        progress.part(MAX_GROWTHS / (MAX_GROWTHS + 2), 1.0))
+
+
+def _reached(poses, good):
+    """Intervals within REACH of good ones of their drive."""
+    reached = np.zeros(good.shape, bool)
+    for drive in poses.drives:
+        own = slice(drive.first, drive.first + drive.count - 3)
+        total = np.concatenate([np.zeros((1, good.shape[1]), int), np.cumsum(good[own], axis=0)])
+        places = np.arange(drive.count - 3)
+        low, high = np.maximum(places - REACH, 0), np.minimum(places + REACH + 1, drive.count - 3)
+        reached[own] = total[high] > total[low]
+    return reached
+
+
+def _carried_on(poses: Poses, good: np.ndarray) -> Poses:
+    """The poses with values where no interval is good replaced by smooth continuation.
+
+    good : (K, S) bool of intervals
+    """
+    control = poses.control.copy()
+    for drive in poses.drives:
+        own = slice(drive.first, drive.first + drive.count)
+        # a control value is known where one of the four intervals that it belongs to is
+        known = np.zeros((drive.count, poses.scanners), bool)
+        for step in range(4):
+            known[step:] |= good[own][:drive.count - step]
+        parts = [(slice(0, POSE), known.any(axis=1), POSE_STIFFNESS)]
+        parts += [(slice(POSE + k, POSE + k + 1), known[:, k], PHASE_STIFFNESS) for k in range(poses.scanners)]
+        for columns, rows, stiffness in parts:
+            if rows.any() and not rows.all():
+                values = control[own, columns]
+                bridged = robustly_smoothed(values, rows.astype(float), stiffness)
+                control[own, columns] = np.where(rows[:, None], values, bridged)
+    return replace(poses, control=control)
+
+
+# How far returns lie off the rays that the mirror had at their times, and how that changes with the poses.
+
+MIN_RANGE = 0.3       # m: nearer than this no scanner measures
+MOUNTING = 5          # unknowns of a scanner's mounting: turn, lean and lever
+
+
+@dataclass
+class Misfits:
+    """Of N returns: off the scan plane and, within it, off the ray.
+
+    off : (2, N) m
+    pose : (2, N, 6 + S) change per change of the values of the spline
+    mounting : (2, N, 5 S) change per change of turn, lean and lever of each scanner
+    range : (N,) m along the ray; negative behind the scanner
+    """
+
+    off: np.ndarray
+    pose: np.ndarray
+    mounting: np.ndarray
+    range: np.ndarray
+
+
+def misfits(poses: Poses, interval: np.ndarray, share: np.ndarray, time: np.ndarray, place: np.ndarray, scanner: np.ndarray,
+            noise: tuple[np.ndarray, np.ndarray] | None = None) -> Misfits:
+    """The Misfits of returns.
+
+    Parameters
+    ----------
+    interval, share : (N,) place in the splines
+    time : (N,) s
+    place : (N, 3) m
+    scanner : (N,) numbers
+    noise : (N,) m of the returns' places and (N,) radians of the rays' directions; None where the directions are exact
+    """
+    values = poses.at(interval, share)
+    ahead, left, up = vehicle_axes(values[:, ROLL], values[:, PITCH], values[:, YAW])
+    away = place - values[:, :3]
+    seen = np.stack([(axis * away).sum(axis=1) for axis in (ahead, left, up)], axis=1) - poses.lever[scanner]
+    normal, across, upright = (axes[scanner] for axes in poses.scan_planes())
+    rows = np.arange(len(time))
+    angle = 2 * np.pi * poses.rate[scanner] * time + values[rows, POSE + scanner]
+    along, above = (seen * across).sum(axis=1), (seen * upright).sum(axis=1)
+    reach, beside = along * np.cos(angle) + above * np.sin(angle), above * np.cos(angle) - along * np.sin(angle)
+    if noise is not None:
+        # where the direction is uncertain, the return lies somewhere between it and the direction in which it is seen; taken by the ray
+        # alone, returns that all lie far ahead would draw the scanner towards them
+        turned = (noise[1] * reach) ** 2
+        angle = angle + np.arctan2(beside, reach) * turned / (noise[0] ** 2 + turned)
+    cos, sin = np.cos(angle), np.sin(angle)
+    sides = (normal, cos[:, None] * upright - sin[:, None] * across)
+    off = np.stack([(seen * normal).sum(axis=1), beside])
+    by_pose = np.zeros((2, len(time), values.shape[1]))
+    by_mounting = np.zeros((2, len(time), MOUNTING * poses.scanners))
+    level_right = np.stack([np.sin(values[:, YAW]), -np.cos(values[:, YAW]), np.zeros(len(time))], axis=1)
+    first = MOUNTING * scanner.astype(np.int64)
+    for k, side in enumerate(sides):
+        on_map = side[:, :1] * ahead + side[:, 1:2] * left + side[:, 2:] * up
+        torque = np.cross(on_map, away)
+        by_pose[k, :, :3] = -on_map
+        for column, axis in ((ROLL, ahead), (PITCH, level_right)):
+            by_pose[k, :, column] = (axis * torque).sum(axis=1)
+        by_pose[k, :, YAW] = torque[:, 2]
+        torque = np.cross(side, seen)
+        by_mounting[k, rows, first] = torque[:, 2]
+        by_mounting[k, rows, first + 1] = (torque * across).sum(axis=1)
+        for j in range(3):
+            by_mounting[k, rows, first + 2 + j] = -side[:, j]
+    by_pose[1, rows, POSE + scanner] = -(along * cos + above * sin)
+    return Misfits(off, by_pose, by_mounting, reach)
+
+
+# Normal equations of splines with a few common unknowns: a band along time with a border.
+
+class BandedEquations:
+    """Sums of the normal equations; control values of one drive only meet those up to three knots away.
+
+    Parameters
+    ----------
+    knots, columns : control values are (knots, columns)
+    common : number of common unknowns
+    """
+
+    def __init__(self, knots: int, columns: int, common: int):
+        self.band = np.zeros((knots, 4, columns, columns))  # of knot k with knot k + j
+        self.right = np.zeros((knots, columns))
+        self.border = np.zeros((knots, columns, common))
+        self.corner, self.common = np.zeros((common, common)), np.zeros(common)
+
+    def add_rows(self, interval: int, weights: np.ndarray, pose: np.ndarray, common: np.ndarray, off: np.ndarray, weight: np.ndarray) -> None:
+        """Observations of one interval.
+
+        Parameters
+        ----------
+        interval : number
+        weights : (N, 4) of the spline
+        pose : (N, columns) change per change of the spline's values
+        common : (N, common) change per change of the common unknowns
+        off : (N,) misfit
+        weight : (N,)
+        """
+        columns = pose.shape[1]
+        rows = (weights[:, :, None] * pose[:, None, :]).reshape(len(off), 4 * columns)
+        weighted = rows * weight[:, None]
+        product = (rows.T @ weighted).reshape(4, columns, 4, columns)
+        for i in range(4):
+            for j in range(i, 4):
+                self.band[interval + i, j - i] += product[i, :, j, :]
+        self.right[interval:interval + 4] -= (weighted.T @ off).reshape(4, columns)
+        self.border[interval:interval + 4] += (weighted.T @ common).reshape(4, columns, -1)
+        self.corner += common.T @ (common * weight[:, None])
+        self.common -= common.T @ (weight * off)
+
+    def add_each(self, first: int, change: np.ndarray, off: np.ndarray, weight: np.ndarray) -> None:
+        """One observation for each of M consecutive intervals.
+
+        Parameters
+        ----------
+        first : number of the first interval
+        change : (M, W, columns) change per change of its first W control values
+        off, weight : (M,)
+        """
+        size, width = change.shape[:2]
+        for i in range(width):
+            for j in range(i, width):
+                self.band[first + i:first + i + size, j - i] += weight[:, None, None] * change[:, i, :, None] * change[:, j, None, :]
+            self.right[first + i:first + i + size] -= (weight * off)[:, None] * change[:, i]
+
+    def solve(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Changes of the control values (knots, columns) and of the common unknowns (common,), the covariance of the latter, and
+        (knots, columns, common) how control values follow from them."""
+        knots, _, columns, _ = self.band.shape
+        lower = np.zeros((4 * columns, knots * columns))
+        for step in range(4):
+            for a in range(columns):
+                for b in range(columns):
+                    below = step * columns + b - a
+                    if below >= 0:
+                        lower[below, a:(knots - step) * columns:columns] = self.band[:knots - step, step, a, b]
+        lower[0] += TINY
+        factor = (cholesky_banded(lower, lower=True, overwrite_ab=True, check_finite=False), True)
+        border = self.border.reshape(knots * columns, -1)
+        solved = cho_solve_banded(factor, np.concatenate([self.right.reshape(-1, 1), border], axis=1), check_finite=False)
+        free, follow = solved[:, 0], solved[:, 1:]
+        covariance = np.linalg.inv(self.corner - border.T @ follow)
+        common = covariance @ (self.common - border.T @ free)
+        return (free - follow @ common).reshape(knots, columns), common, covariance, -follow.reshape(knots, columns, -1)
+
+    def variances(self) -> np.ndarray:
+        """(knots, columns, columns) covariance of each knot's control values, common unknowns held.
+
+        Blocks of three knots form a block-tridiagonal matrix, the diagonal blocks of whose inverse follow from one sweep
+        from either end.
+        """
+        knots, _, columns, _ = self.band.shape
+        blocks = -(-knots // 3)
+        side = 3 * columns
+        own, next_ = np.zeros((blocks, side, side)), np.zeros((blocks, side, side))
+        for knot in range(3 * blocks):
+            at = slice((knot % 3) * columns, (knot % 3 + 1) * columns)
+            if knot >= knots:
+                own[knot // 3, at, at] = np.eye(columns)
+                continue
+            for step in range(min(4, knots - knot)):
+                other = knot + step
+                to = slice((other % 3) * columns, (other % 3 + 1) * columns)
+                part = self.band[knot, step] + (step == 0) * TINY * np.eye(columns)
+                if other // 3 == knot // 3:
+                    own[knot // 3, at, to] += part
+                    if step:
+                        own[knot // 3, to, at] += part.T
+                else:
+                    next_[knot // 3, at, to] += part
+        ahead, behind = own.copy(), own.copy()
+        for k in range(1, blocks):
+            ahead[k] -= next_[k - 1].T @ np.linalg.solve(ahead[k - 1], next_[k - 1])
+        for k in range(blocks - 2, -1, -1):
+            behind[k] -= next_[k] @ np.linalg.solve(behind[k + 1], next_[k].T)
+        inverse = np.linalg.inv(ahead + behind - own)
+        return np.concatenate([inverse[:, i * columns:(i + 1) * columns, i * columns:(i + 1) * columns][:, None] for i in range(3)],
+                              axis=1).reshape(3 * blocks, columns, columns)[:knots]
+
+
+TINY = 1e-6  # added to the diagonal: keeps a control value that nothing determines where it is
+
+
+# How the road is inclined across under the vehicle, by the returns on its own way.
+
+UNDER_VEHICLE = 1.5        # m either side of the track: what the vehicle stands on
+AHEAD_REACH = 5.0        # m along: nearer than this a road's grade changes little
+HEIGHT_BAND = 0.15       # m about the usual height below the track: road, not what stands on it
+BESIDE_INTERVALS = 10    # either side that are taken together: a second of driving
+MIN_RETURNS, MIN_SPREAD = 50, 0.3   # and m across (standard deviation), or nothing is known
+MAX_CROSSFALL = 0.1      # roads are no steeper across
+
+
+def _crossfall_of(poses: Poses, returns: Returns) -> np.ndarray:
+    """Crossfall under the vehicle.
+
+    Returns: (K,) radians at the start of every interval, positive where the road rises to the left; 0 where it is not seen
+    """
+    found = np.zeros(len(poses.control))
+    for drive in poses.drives:
+        rows = slice(*np.searchsorted(returns.interval, [drive.first, drive.first + drive.count]))
+        if rows.start < rows.stop:
+            found[drive.first:drive.first + drive.count] = _of_drive(poses, drive, returns, rows)
+    return np.arctan(np.clip(found, -MAX_CROSSFALL, MAX_CROSSFALL))
+
+
+def _of_drive(poses, drive, returns, rows):
+    interval, share, place = returns.interval[rows], returns.share[rows], returns.place[rows]
+    values = poses.at(interval, share)
+    slopes = spline_slopes(share)
+    speed = sum(slopes[:, j, None] * poses.control[interval + j][:, [X, Y, Z]] for j in range(4))
+    flat = np.maximum(np.hypot(speed[:, 0], speed[:, 1]), 0.1)
+    cos, sin = np.cos(values[:, YAW]), np.sin(values[:, YAW])
+    away = place - values[:, :3]
+    ahead, left = away[:, 0] * cos + away[:, 1] * sin, away[:, 1] * cos - away[:, 0] * sin
+    # the road keeps to the track's own climb
+    below = away[:, 2] - ahead * speed[:, 2] / flat
+    near = np.flatnonzero((np.abs(left) < UNDER_VEHICLE) & (np.abs(ahead) < AHEAD_REACH) & (below < 0))
+    if not len(near):
+        return np.zeros(drive.count)
+    near = near[np.abs(below[near] - np.median(below[near])) < HEIGHT_BAND]
+    # where the vehicle rolls over them
+    cell = np.clip(interval[near] - drive.first + np.rint(ahead[near] / flat[near] / KNOT_SPACING).astype(np.int64), 0, drive.count - 1)
+    sums = np.stack([np.bincount(cell, weight, drive.count) for weight in
+                     (np.ones(len(near)), left[near], below[near], left[near] ** 2, left[near] * below[near])])
+    total = np.concatenate([np.zeros((5, 1)), np.cumsum(sums, axis=1)], axis=1)
+    places = np.arange(drive.count)
+    count, x, y, xx, xy = (total[:, np.minimum(places + BESIDE_INTERVALS + 1, drive.count)] - total[:, np.maximum(places - BESIDE_INTERVALS, 0)])
+    count = np.maximum(count, 1.0)
+    spread = xx / count - (x / count) ** 2
+    known = (count >= MIN_RETURNS) & (spread > MIN_SPREAD**2)
+    slope = (xy / count - x * y / count**2) / np.where(known, spread, 1.0)
+    return np.interp(places, places[known], slope[known]) if known.any() else np.zeros(drive.count)

@@ -6,6 +6,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ...curves.robust import robustly_smoothed
+from ..lattice.scan_lattice import MIN_ROTATION_PEAK, ROTATION_WINDOW, rotation_spectrum, strongest_rotation
+from .samples import MIN_WINDOW_SAMPLES, WINDOW, FirstTrack, Samples, headings_of
+
 KNOT_SPACING = 0.1   # s between the knots of the splines: suspensions swing at 1 to 3 Hz
 X, Y, Z, ROLL, PITCH, YAW = range(6)   # columns of the control values; the phases of the scanners follow
 POSE = 6             # columns before the phases
@@ -93,3 +97,294 @@ def vehicle_axes(roll: np.ndarray, pitch: np.ndarray, yaw: np.ndarray) -> tuple[
     return (np.stack([ct * cp, st * cp, sp], axis=-1),
             np.stack([-st * cr - ct * sp * sr, ct * cr - st * sp * sr, cp * sr], axis=-1),
             np.stack([st * sr - ct * sp * cr, -ct * sr - st * sp * cr, cp * cr], axis=-1))
+
+
+# Where one scanner was in short windows of time, from the angles its mirror turned through between points.
+#
+# In the scan plane a return lies on the ray that the mirror had at its time. Two directions are as far apart as the mirror turned in between, so
+# many returns fix the place of the scanner as a resection does: whatever stands around, and however many points are missing. With place (a, b),
+# direction angle t + phi and rays' origin (u, v)::
+#
+# (a - u) sin(t + phi) - (b - v) cos(t + phi) = 0
+#
+# is linear and homogeneous in cos(phi), sin(phi) and two combinations of them with u and v; the smallest eigenvector solves it.
+
+EXPECTED_HEIGHT = 2.3        # m of the scanner above the ground, to tell in which direction and how fast its mirror turns
+ROTATION_SAMPLES_PER_DRIVE = 8   # windows in which the rate is sought
+MIN_SPECTRUM_SAMPLES = 200
+NEAR_FOOT = 8.0              # m from the track, within which ground points show the direction of the scan lines
+GROUND_BAND = 0.4            # m either side of the ground
+HEIGHT_RANGE_ABOVE = 0.6, 15.0   # m of a scanner on a vehicle above the ground; of clouds in feet that do not say so, too
+MIN_SHARE_IN_FRONT = 0.95    # of the points lie before the scanner, not behind it
+MAX_WORSE = 4.0              # times the median misfit: windows beyond are not used
+MAX_WINDOW_POINTS = 400      # used of a window
+RESECTION_ROUNDS = 3
+
+
+@dataclass
+class Fixes:
+    """Places of one scanner in windows of one drive; only windows with a good one.
+
+    time : (W,) s, middles
+    place : (W, 3) m, as if the scan plane stood upright
+    phase : (W,) radians that the direction of a point was ahead of 2 pi rate t, in the plane, 0 to the left, from the middle of the window
+    yaw : (W,) radians by which the scan line is turned, counter-clockwise, from straight across
+    misfit : (W,) m
+    """
+
+    time: np.ndarray
+    place: np.ndarray
+    phase: np.ndarray
+    yaw: np.ndarray
+    misfit: np.ndarray
+
+
+def _rotation_rate_of(runs: list[tuple[np.ndarray, np.ndarray, FirstTrack]]) -> float | None:
+    """The rate at which one scanner's mirror turns, Hz; None where its points show none.
+
+    runs : per drive (N,) times, (N, 3) places and the drive's FirstTrack
+    """
+    spectra = []
+    for time, place, track in runs:
+        for middle in np.linspace(track.time[0], track.time[-1], ROTATION_SAMPLES_PER_DRIVE + 2)[1:-1]:
+            own = slice(*np.searchsorted(time, [middle - ROTATION_WINDOW / 2, middle + ROTATION_WINDOW / 2]))
+            if own.stop - own.start < MIN_SPECTRUM_SAMPLES:
+                continue
+            foot, heading = track.at(time[own])
+            away = place[own] - foot
+            across = away[:, 1] * np.cos(heading) - away[:, 0] * np.sin(heading)
+            phasor = away[:, 2] - EXPECTED_HEIGHT + 1j * across
+            spectra.append(rotation_spectrum(time[own], phasor / np.maximum(np.abs(phasor), 1e-9)))
+    if not spectra:
+        return None
+    rate, peak = strongest_rotation(spectra)
+    return abs(rate) if peak >= MIN_ROTATION_PEAK else None
+
+
+def _fixes_of(time: np.ndarray, place: np.ndarray, track: FirstTrack, rate: float) -> Fixes:
+    """The places of one scanner in the windows of one drive.
+
+    time : (N,) s, ascending
+    place : (N, 3) m
+    track : FirstTrack of the drive, against which the vehicle's motion within a window is removed
+    rate : Hz, positive where directions turn counter-clockwise seen from ahead, looking back
+    """
+    window = np.clip(((time - track.time[0] + WINDOW / 2) / WINDOW).astype(np.int64), 0, len(track.time) - 1)
+    rank = np.arange(len(window)) - np.searchsorted(window, window)
+    held = np.bincount(window, minlength=len(track.time))
+    kept = rank % -(-held // MAX_WINDOW_POINTS)[window] == 0
+    time, place, window = time[kept], place[kept], window[kept]
+    size = len(track.time)
+    foot, heading = track.at(time)
+    away = place - foot
+    near = np.flatnonzero((np.abs(away[:, 2]) < GROUND_BAND) & (np.hypot(away[:, 0], away[:, 1]) < NEAR_FOOT))
+    direction, middle, grounded = _line_directions(away[near, :2], window[near], size)
+    # scan lines run to the left of the way driven
+    yaw = (direction - track.heading + 0.0) % np.pi - np.pi / 2
+    direction = track.heading + np.pi / 2 + yaw
+    beside = middle[:, 1] * np.cos(direction) - middle[:, 0] * np.sin(direction)
+    along = away[:, 0] * np.cos(direction)[window] + away[:, 1] * np.sin(direction)[window]
+    angle = 2 * np.pi * rate * (time - track.time[window])
+    u, v, phase, misfit, in_front = resected(along, away[:, 2], angle, window, size)
+    found = track.foot + np.stack([u * np.cos(direction) - beside * np.sin(direction), u * np.sin(direction) + beside * np.cos(direction), v], axis=1)
+    count = np.bincount(window, minlength=size)
+    good = (count >= MIN_WINDOW_SAMPLES) & (grounded >= MIN_WINDOW_SAMPLES / 2) & (in_front >= MIN_SHARE_IN_FRONT)
+    good &= (v > HEIGHT_RANGE_ABOVE[0]) & (v < HEIGHT_RANGE_ABOVE[1])
+    if good.any():
+        good &= misfit <= MAX_WORSE * np.median(misfit[good])
+    return Fixes(track.time[good], found[good], phase[good], yaw[good], misfit[good])
+
+
+def _line_directions(place, window, size):
+    """Direction of the longer axis, middle (size, 2) and number of the points of every window."""
+    count = np.bincount(window, minlength=size)
+    total = np.maximum(count, 1)
+    middle = np.stack([np.bincount(window, column, size) / total for column in place.T], axis=1)
+    x, y = (place - middle[window]).T
+    xx, xy, yy = (np.bincount(window, product, size) for product in (x * x, x * y, y * y))
+    return 0.5 * np.arctan2(2 * xy, xx - yy), middle, count
+
+
+def resected(a: np.ndarray, b: np.ndarray, angle: np.ndarray, window: np.ndarray, size: int) -> tuple[np.ndarray, ...]:
+    """The places from which the rays of windows lead.
+
+    Parameters
+    ----------
+    a, b : (N,) m, places of returns in the scan plane
+    angle : (N,) radians that the mirror has turned through, from any start in each window
+    window : (N,) number of the window, below `size`
+
+    Returns
+    -------
+    u, v, phase, misfit, in_front : (size,) m of the place, radians of the angle's start, m, and share of the returns that lie before the place
+    """
+    sin, cos = np.sin(angle), np.cos(angle)
+    rows = (a * sin - b * cos, a * cos + b * sin, -sin, -cos)
+    weight = np.ones(len(a))
+    for _ in range(RESECTION_ROUNDS):
+        total = np.empty((size, 4, 4))
+        for i in range(4):
+            for j in range(i, 4):
+                total[:, i, j] = total[:, j, i] = np.bincount(window, weight * rows[i] * rows[j], size)
+        inner, mixed = total[:, 2:, 2:] + 1e-9 * np.eye(2), total[:, 2:, :2]
+        carried = np.linalg.solve(inner, mixed)
+        turn = np.linalg.eigh(total[:, :2, :2] - mixed.transpose(0, 2, 1) @ carried)[1][:, :, 0]
+        moved = -np.einsum("wij,wj->wi", carried, turn)
+        (c, s), (g1, g2) = turn.T, moved.T
+        off = rows[0] * c[window] + rows[1] * s[window] + rows[2] * g1[window] + rows[3] * g2[window]
+        misfit = np.sqrt(np.bincount(window, weight * off**2, size) / np.maximum(np.bincount(window, weight, size), 1e-9))
+        weight = 1.0 / (1.0 + (off / (2.0 * misfit[window] + 1e-6)) ** 2)
+    u, v, phase = g1 * c + g2 * s, g1 * s - g2 * c, np.arctan2(s, c)
+    forward = (a - u[window]) * np.cos(angle + phase[window]) + (b - v[window]) * np.sin(angle + phase[window])
+    ahead = np.bincount(window, forward > 0, size) / np.maximum(np.bincount(window, minlength=size), 1)
+    # a direction and its opposite lie on one line
+    return u, v, phase + np.pi * (ahead < 0.5), misfit, np.maximum(ahead, 1.0 - ahead)
+
+
+# Poses to start the adjustment from, of the fixes of every scanner.
+
+MIN_FIXES = 5             # good windows of a scanner, or it is left out
+FIX_STIFFNESS = 10.0      # (0.1 m of scatter / 0.03 m, see TRACK_STIFFNESS)^2
+PHASE_STIFFNESSES = 1e8, 1e6, 1e4, 1e2, 0.1   # from a mirror that turns evenly for seconds to one whose rate swings from window to window
+MAX_WORSE_PHASES = 1.5    # times the median deviation of the most flexible curve: a stiffer one deviates no more than this
+
+
+@dataclass
+class Spinning:
+    """A scanner whose mirror was seen to turn.
+
+    number : of the scanner
+    rate : Hz, signed
+    fixes : of each drive
+    """
+
+    number: int
+    rate: float
+    fixes: list[Fixes]
+
+
+def spinning_scanners(samples: Samples, tracks: list[FirstTrack]) -> list[Spinning]:
+    """The scanners with a mirror that turns, and where they were."""
+    found = []
+    for number in range(samples.scanners):
+        runs = []
+        for drive, track in zip(samples.drives, tracks):
+            own = drive.start + np.flatnonzero(samples.scanner[drive] == number)
+            runs.append((samples.time[own], samples.place[own], track))
+        rate = _rotation_rate_of([run for run in runs if len(run[0])])
+        if rate is None:
+            continue
+        # seen from either side a mirror turns either way: the true way gives more windows that make sense, and a smaller misfit
+        both = [Spinning(number, sign * rate, [_fixes_of(*run, sign * rate) if len(run[0]) else EMPTY for run in runs]) for sign in (1, -1)]
+        best = max(both, key=lambda one: _quality(one.fixes))
+        if sum(len(fixes.time) for fixes in best.fixes) >= MIN_FIXES:
+            found.append(_with_true_rate(best))
+    return found
+
+
+EMPTY = Fixes(np.empty(0), np.empty((0, 3)), np.empty(0), np.empty(0), np.empty(0))
+
+
+def _quality(fixes):
+    misfit = np.concatenate([one.misfit for one in fixes])
+    return len(misfit) / (float(np.median(misfit)) + 1e-3) if len(misfit) else 0.0
+
+
+def _with_true_rate(one):
+    """The scanner with its mean rate, by which the phases of neighbouring windows agree."""
+    change = np.concatenate([_phase_steps(fixes, one.rate) for fixes in one.fixes])
+    return Spinning(one.number, one.rate + float(np.median(change)) / (2 * np.pi * WINDOW), one.fixes) if len(change) else one
+
+
+def _phase_steps(fixes, rate):
+    """(M,) radians by which the phase gains on an even rate between neighbouring windows."""
+    apart = np.diff(fixes.time)
+    step = np.diff(fixes.phase) - 2 * np.pi * rate * apart
+    return ((step + np.pi) % (2 * np.pi) - np.pi)[apart < 1.5 * WINDOW]
+
+
+def first_poses(samples: Samples, tracks: list[FirstTrack], scanners: list[Spinning]) -> Poses:
+    """Poses through the fixes of all scanners; mountings upright.
+
+    Parameters
+    ----------
+    tracks : FirstTrack of each drive
+    scanners : those that spin; they are numbered anew in this order
+    """
+    turn = np.array([np.median(np.concatenate([fixes.yaw for fixes in one.fixes])) for one in scanners])
+    lever = _levers(tracks, scanners)
+    drives, control, first = [], [], 0
+    for number, (drive, track) in enumerate(zip(samples.drives, tracks)):
+        start = float(samples.time[drive.start]) - KNOT_SPACING / 2
+        count = int(np.ceil((samples.time[drive.stop - 1] - start) / KNOT_SPACING)) + 4
+        knots = DriveKnots(start, first, count)
+        values = np.zeros((count, POSE + len(scanners)))
+        values[:, :3] = _places(track, [one.fixes[number] for one in scanners], lever, knots.middles)
+        values[:, YAW] = headings_of(values[:, :2], track.at(knots.middles)[1])
+        for k, one in enumerate(scanners):
+            values[:, POSE + k] = _phases(one.fixes[number], one.rate, knots.middles)
+        drives.append(knots)
+        control.append(values)
+        first += count
+    return Poses(tuple(drives), np.concatenate(control), np.array([one.rate for one in scanners]), turn, np.zeros(len(scanners)), lever)
+
+
+def _levers(tracks, scanners):
+    """(S, 3) m ahead, left and up of every scanner from their middle."""
+    lever = np.zeros((len(scanners), 3))
+    for k, one in enumerate(scanners[1:], 1):
+        apart = [np.empty((0, 3))]
+        for track, base, fixes in zip(tracks, scanners[0].fixes, one.fixes):
+            if len(base.time) and len(fixes.time):
+                heading = np.interp(fixes.time, track.time, track.heading)
+                away = fixes.place - np.stack([np.interp(fixes.time, base.time, column) for column in base.place.T], axis=1)
+                cos, sin = np.cos(heading), np.sin(heading)
+                apart.append(np.stack([away[:, 0] * cos + away[:, 1] * sin, away[:, 1] * cos - away[:, 0] * sin, away[:, 2]], axis=1))
+        together = np.concatenate(apart)
+        lever[k] = np.median(together, axis=0) if len(together) else 0.0
+    return lever - lever.mean(axis=0)
+
+
+def _places(track, fixes, lever, middles):
+    """(K, 3) m of the pose at times of the drive."""
+    cells = len(middles)
+    total, weight = np.zeros((cells, 3)), np.zeros(cells)
+    for own, arm in zip(fixes, lever):
+        if not len(own.time):
+            continue
+        heading = np.interp(own.time, track.time, track.heading)
+        cos, sin = np.cos(heading), np.sin(heading)
+        place = own.place - np.stack([cos * arm[0] - sin * arm[1], sin * arm[0] + cos * arm[1], np.full(len(cos), arm[2])], axis=1)
+        cell = np.clip(np.rint((own.time - middles[0]) / KNOT_SPACING).astype(np.int64), 0, cells - 1)
+        # a window's middle lies off the knot; the track tells how far the vehicle got in between
+        place[:, :2] += (track.at(middles[cell])[0] - track.at(own.time)[0])[:, :2]
+        total += np.stack([np.bincount(cell, column, cells) for column in place.T], axis=1)
+        weight += np.bincount(cell, minlength=cells)
+    if not weight.any():
+        return track.at(middles)[0] + [0.0, 0.0, 2.0]
+    return robustly_smoothed(total / np.maximum(weight, 1)[:, None], weight, FIX_STIFFNESS)
+
+
+def _phases(fixes, rate, middles):
+    """(K,) radians that the direction was ahead of 2 pi rate t at times of the drive."""
+    if not len(fixes.time):
+        return np.zeros(len(middles))
+    ahead = np.unwrap(fixes.phase - 2 * np.pi * rate * fixes.time)
+    cell = np.clip(np.rint((fixes.time - middles[0]) / KNOT_SPACING).astype(np.int64), 0, len(middles) - 1)
+    values, weight = np.zeros((len(middles), 1)), np.zeros(len(middles))
+    values[cell, 0], weight[cell] = ahead, 1.0
+    curves = [robustly_smoothed(values, weight, stiffness) for stiffness in PHASE_STIFFNESSES]
+    off = [float(np.median(np.abs(curve - values)[weight > 0])) for curve in curves]
+    return next(curve for curve, one in zip(curves, off) if one <= MAX_WORSE_PHASES * off[-1] + 1e-3)[:, 0]
+
+
+def known_intervals(poses: Poses, scanners: list[Spinning]) -> np.ndarray:
+    """(K, S) bool: the intervals of the poses in or beside which a scanner has a fix."""
+    known = np.zeros((len(poses.control), len(scanners)), bool)
+    for k, one in enumerate(scanners):
+        for knots, fixes in zip(poses.drives, one.fixes):
+            if len(fixes.time):
+                interval = knots.interval(fixes.time)[0]
+                for step in (-1, 0, 1):
+                    known[np.clip(interval + step, knots.first, knots.first + knots.count - 4), k] = True
+    return known

@@ -10,5 +10,4 @@ __getattr__, __all__ = public(__name__, {
     "parallel_reader": ("ParallelCloudReader",),
     "reader": ("CloudHeader", "cloud_crs", "crs_of_records", "open_cloud", "read_blocks", "read_header", "read_headers"),
     "samples": ("points_near",),
-    "writer": ("metres_of_file", "new_laz", "place_in_file", "scale_for"),
 })

@@ -74,10 +74,6 @@ def find_lattice(survey: Any, rotation_frequency: float = 0.0, progress: Progres
     survey : Survey
     rotation_frequency : Hz, turns of the mirror per second; 0 = from the data
     progress : receives progress, and messages about what was found
-
-    Returns
-    -------
-    ScanLattice
     """
     lattice = ScanLattice()
     if not survey.has_time:
@@ -307,7 +303,7 @@ def _mirror_phases(survey, road, rotations, samples, progress):
     found = {}
     for key, (frequency, peak, origin) in rotations.items():
         b = bins[key]
-        mirror = mirror_phase_from_phasors(frequency, b.since, b.phasor, b.count, b.length, b.start, peak=peak, origin=origin)
+        mirror = _mirror_phase_from_phasors(frequency, b.since, b.phasor, b.count, b.length, b.start, peak=peak, origin=origin)
         if mirror is not None:
             found[key] = replace(mirror, **_line_properties(samples[key], mirror))
     return found
@@ -331,7 +327,7 @@ def _mounting(windows, frequency):
         time, seen = w.time[some], w.phasor[some]
         bins = _PhasorBins(w, length)
         first, count, since, phasor = bins.sums_of(time - bins.start, seen * np.exp(-2j * np.pi * frequency * (time - bins.start)))
-        mirror = mirror_phase_from_phasors(frequency, since, phasor, count, length, bins.start)
+        mirror = _mirror_phase_from_phasors(frequency, since, phasor, count, length, bins.start)
         if mirror is not None:
             ahead = np.exp(2j * np.pi * np.sign(frequency) * mirror.turns_at(time)) * np.conj(seen)
             direction = _direction_number(seen)
@@ -468,22 +464,17 @@ def _interpolate(x, nodes, values, rate):
     return found + first * before + last * behind
 
 
-def mirror_phase_from_phasors(frequency: float, time: np.ndarray, phasor: np.ndarray, count: np.ndarray, bin_length: float,
+def _mirror_phase_from_phasors(frequency: float, time: np.ndarray, phasor: np.ndarray, count: np.ndarray, bin_length: float,
                               start: float = 0.0, **fields: Any) -> MirrorPhase | None:
     """The mirror phase of a pass from the mean phase of its bins.
 
-    Parameters
-    ----------
     frequency : Hz, signed, near the truth
     time : (B,) seconds since the start, sums over the points of each bin
     phasor : (B,) complex, sums of exp(i (angle - 2 pi frequency t)) over the points of each bin
     count : (B,) points
     bin_length, start : seconds
     fields : further attributes of the MirrorPhase
-
-    Returns
-    -------
-    MirrorPhase, or None where no bin has a phase
+    Returns: MirrorPhase, or None where no bin has a phase
     """
     usable = np.flatnonzero((count >= MIN_PHASE_BIN_POINTS) & (np.abs(phasor) >= MIN_PHASE_COHERENCE * count))
     if not len(usable):
@@ -545,16 +536,16 @@ def rotation_spectrum(time: np.ndarray, phasor: np.ndarray) -> np.ndarray:
 
     Returns
     -------
-    (SPECTRUM_SIZE,) float64, 0 to 1, in the order of `spectrum_frequencies`
+    (SPECTRUM_SIZE,) float64, 0 to 1, in the order of `_spectrum_frequencies`
     """
     cell = ((time - time.min()) / SPECTRUM_CELL).astype(np.int64)
     size = int(cell.max()) + 1
     total = np.bincount(cell, phasor.real, size) + 1j * np.bincount(cell, phasor.imag, size)
     # averaging over a cell attenuates high frequencies by sinc
-    return np.abs(np.fft.fft(total, SPECTRUM_SIZE)) / len(time) / np.sinc(spectrum_frequencies() * SPECTRUM_CELL)
+    return np.abs(np.fft.fft(total, SPECTRUM_SIZE)) / len(time) / np.sinc(_spectrum_frequencies() * SPECTRUM_CELL)
 
 
-def spectrum_frequencies() -> np.ndarray:
+def _spectrum_frequencies() -> np.ndarray:
     """(SPECTRUM_SIZE,) frequencies of a spectrum, Hz."""
     return np.fft.fftfreq(SPECTRUM_SIZE, SPECTRUM_CELL)
 
@@ -574,7 +565,7 @@ def strongest_rotation(spectra: Sequence[np.ndarray], given: float = 0.0, signed
     peak : median of the windows' peaks, 0 to 1; 0 where the opposite rotation fits nearly as well, as for
         scanners that spin about the vertical
     """
-    f = spectrum_frequencies()
+    f = _spectrum_frequencies()
     allowed = (np.abs(f) >= MIN_ROTATION) & (np.abs(f) <= MAX_ROTATION)
     if given:
         allowed &= np.abs(np.abs(f) - given) <= ROTATION_TOLERANCE * given + 0.25

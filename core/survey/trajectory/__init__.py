@@ -8,7 +8,6 @@ from ...lazy import public
 __getattr__, __all__ = public(__name__, {
     "columns": ("columns_by_role",),
     "reader": ("read_trajectory", "trajectory_from_columns"),
-    "reprojection": ("reproject_trajectory",),
     "time_systems": ("align_time", "unwrap_time"),
-    "trajectory": ("Trajectory", "clean_trajectory"),
+    "trajectory": ("Trajectory", "clean_trajectory", "reproject_trajectory"),
 })

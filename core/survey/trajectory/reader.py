@@ -14,15 +14,11 @@ import numpy as np
 from ...common.errors import RoadExtractionError
 from ...io.crs import horizontal_part, parse_crs
 from ...io.text_table import SAMPLE_BYTES, finite_or_nan, read_number_table
-from .accuracy_file import accuracy_across
-from .assigned_columns import meaning_of_table
 from .columns import listed, stated_angle_unit
-from .drive_checks import HEADING_TOLERANCE, angle_between, driven_course, geographic_unit, rough_metres
-from .meaning import meaning_of, values_by_role
-from .receiver_logs import columns_of_record, is_record
-from .reprojection import lengths_in_metres, reproject_trajectory
-from .table_columns import columns_of_rows, titled_columns
-from .trajectory import MAX_VEHICLE_SPEED, Trajectory
+from .meaning import meaning_of, meaning_of_table, values_by_role
+from .table_columns import columns_of_record, columns_of_rows, is_record, titled_columns
+from .trajectory import MAX_VEHICLE_SPEED, Trajectory, lengths_in_metres, reproject_trajectory
+from .unnamed_columns import HEADING_TOLERANCE, angle_between, driven_course, geographic_unit, rough_metres
 
 SBET_DOUBLES = 17  # time, lat, lon, height, 3 velocities, roll, pitch, heading, wander angle, 6 more
 WGS84 = "EPSG:4326"
@@ -347,6 +343,61 @@ def _read_sbet(path, crs):
     columns = dict(time=rows[:, 0], x=np.degrees(rows[:, 2]), y=np.degrees(rows[:, 1]), z=rows[:, 3],
                    roll=rows[:, 7], pitch=rows[:, 8], heading=true_heading)
     trajectory = trajectory_from_columns(columns, crs or WGS84, "radians", path.name, notes)
-    sigma, remark = accuracy_across(path, rows[:, 0], columns["x"], columns["y"])
+    sigma, remark = _accuracy_across(path, rows[:, 0], columns["x"], columns["y"])
     remarks = tuple(note for note in (*trajectory.notes, remark) if note and "radians" not in note)
     return replace(trajectory, notes=remarks, sigma_across=sigma)
+
+
+# The accuracy of a trajectory as Applanix POSPac writes it beside an SBET: smrmsg_MISSION.out for sbet_MISSION.out.
+
+SMRMSG_DOUBLES = 10   # time, RMS north, east, down (m), of three velocities (m/s), roll, pitch, heading (arc minutes)
+WORST = 100.0         # m: a position that is known worse than this is none, and the file another one
+
+
+def _accuracy_across(sbet: Path, time: np.ndarray, x: np.ndarray, y: np.ndarray) -> tuple[float, str]:
+    """One sigma of a trajectory across its way, from the file beside it.
+
+    sbet : path of the SBET
+    time : (N,) s, as it stands in the SBET
+    x, y : (N,) longitude and latitude, degrees
+    Returns: sigma : m, the root of the mean square over the way driven, so that waiting does not count; 0 where nothing is known
+    note : a sentence on it, "" where there is no such file
+    """
+    try:
+        path = _beside(sbet)
+        rows = None if path is None else _records(path)
+    except OSError:   # what may not be read was not given
+        return 0.0, ""
+    if path is None:
+        return 0.0, ""
+    if rows is None or not (rows[0, 0] < time[-1] and time[0] < rows[-1, 0]):
+        return 0.0, f"{path.name} is no accuracy file of {sbet.name} and is not used."
+    east, north = np.diff(x) * np.cos(np.radians(y[:-1])), np.diff(y)
+    step, middle = np.hypot(east, north), (time[1:] + time[:-1]) / 2
+    driven = (step > 0) & (middle >= rows[0, 0]) & (middle <= rows[-1, 0])
+    if not driven.any():
+        return 0.0, f"{path.name} is no accuracy file of {sbet.name} and is not used."
+    step, east, north, middle = (values[driven] for values in (step, east, north, middle))
+    rms_north, rms_east = (np.interp(middle, rows[:, 0], rows[:, k]) for k in (1, 2))
+    # across the way; how the errors in both directions hang together is not in the file
+    square = (rms_north * east / step)**2 + (rms_east * north / step)**2
+    sigma = float(np.sqrt(np.average(square, weights=step)))
+    return sigma, f"{path.name} gives the accuracy of the trajectory: {sigma:.3f} m across, over the way driven."
+
+
+def _beside(sbet):
+    """The accuracy file beside an SBET, by its name; None where there is none."""
+    named = re.fullmatch(r"sbet(.*)", sbet.name, re.IGNORECASE)
+    wanted = f"smrmsg{named[1]}".lower() if named else ""
+    return next((path for path in sorted(sbet.parent.iterdir()) if path.name.lower() == wanted and path.is_file()), None) if wanted else None
+
+
+def _records(path):
+    """(N, 10) float64; None where the file holds something else."""
+    data = np.fromfile(path, "<f8")
+    rows = data[:len(data) // SMRMSG_DOUBLES * SMRMSG_DOUBLES].reshape(-1, SMRMSG_DOUBLES)
+    if len(rows) < 2 or len(data) != rows.size:
+        return None
+    with np.errstate(invalid="ignore"):
+        usable = np.isfinite(rows).all() and (np.diff(rows[:, 0]) > 0).all() and (rows[:, 1:4] >= 0).all() and (rows[:, 1:4] < WORST).all()
+    return rows if usable else None

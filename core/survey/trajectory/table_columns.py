@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import re
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import NamedTuple
+from xml.parsers.expat import ExpatError, ParserCreate
 
 import numpy as np
 
+from ...common.errors import RoadExtractionError
 from ...io.text_table import NumberTable, as_number, finite_or_nan
 from .columns import MAX_HEADER_LINES, Unit, candidates_by_role, listed, split_header, unit_named, unit_of_name, units_above
-from .time_systems import SECONDS_PER_WEEK
-from .written_values import degrees_of, hold_times
+from .time_systems import SECONDS_PER_WEEK, degrees_of, hemisphere_signs, hold_times, whole_minutes
 
 FIRST_WHOLE_WEEK, LAST_WEEK = 1024.0, 4096.0  # weeks since 1980; smaller ones are those of old receivers, which begin anew after 1024
 LEAST_NAMED = 2         # roles in the line of names
@@ -190,3 +194,211 @@ def _together(names, spans, units, fields):
         written = parts[0].written if count == 1 else lambda parts=parts: [" ".join(texts) for texts in zip(*(part.written() for part in parts))]
         found.append(TableColumn(name, values, unit, written, " ".join(part.first for part in parts)))
     return found
+
+
+# What receivers and telephones keep: sentences of NMEA 0183 and NovAtel's ASCII logs, and tracks in GPX and KML.
+
+HEAD_BYTES = 20_000
+KINDS_OF_POSITIONS = ("trkpt", "coord", "rtept", "coordinates", "wpt", "point")   # in GPX and KML, the likeliest drive first
+TRACK_ENDINGS = (".gpx", ".kml")
+CHUNK = 1 << 16            # bytes handed to the parser at once
+MOST_TEXT = 200            # characters of a coordinate or time that are kept
+
+
+class Sentence(NamedTuple):
+    """Where a sentence has its values: {what: place among its fields}; rank: which is used where a log has several, the least first."""
+
+    rank: int
+    fields: Mapping[str, int]
+
+
+# NMEA 0183: fields behind the name of the sentence. NovAtel (OEM7 Commands and Logs Reference): fields behind the semicolon, and of
+# the header before it the week and the seconds. Heights of NMEA and BESTPOS are above mean sea level; "geoid" leads to the ellipsoid.
+SENTENCES = {
+    "GGA": Sentence(0, {"clock": 1, "lat": 2, "lat_side": 3, "lon": 4, "lon_side": 5, "quality": 6, "z": 9, "geoid": 11}),
+    "GNS": Sentence(1, {"clock": 1, "lat": 2, "lat_side": 3, "lon": 4, "lon_side": 5, "z": 9, "geoid": 10}),
+    **{name: Sentence(0, {"week": 0, "seconds": 1, "lat": 2, "lon": 3, "z": 4, "roll": 8, "pitch": 9, "heading": 10})
+       for name in ("INSPVAA", "INSPVASA")},
+    "INSPVAXA": Sentence(0, {"status": 0, "lat": 2, "lon": 3, "z": 4, "geoid": 5, "roll": 9, "pitch": 10, "heading": 11}),
+    **{name: Sentence(1, {"status": 0, "lat": 2, "lon": 3, "z": 4, "geoid": 5}) for name in ("BESTPOSA", "BESTGNSSPOSA", "INSPOSA")},
+}
+NO_SOLUTION = ("INSUFFICIENT_OBS", "NO_CONVERGENCE", "INS_INACTIVE", "INS_ALIGNING", "COLD_START")
+NMEA = re.compile(r"\$(?:G[A-Z]|BD|QZ)(?P<name>GGA|GNS|RMC|ZDA),(?P<rest>[^*\s]*)")
+NOVATEL = re.compile(r"[#%](?P<name>[A-Z]+A),(?P<head>[^;\n]*);(?P<rest>[^*\n]*)")
+
+
+def _read_log(path: Path) -> list[TableColumn]:
+    """The positions in a log of sentences, as columns with names.
+
+    Raises
+    ------
+    RoadExtractionError
+        If its sentences hold no positions.
+    """
+    kept: dict[str, list[list[str]]] = {}
+    day = ""
+    for line in path.read_text(encoding="latin-1").split("\n"):
+        nmea = NMEA.search(line)
+        if nmea:
+            fields = [nmea["name"], *nmea["rest"].split(",")]
+            if nmea["name"] in ("RMC", "ZDA"):
+                day = _day_of(fields) or day
+            else:
+                kept.setdefault(nmea["name"], []).append([day, *fields])
+            continue
+        novatel = NOVATEL.search(line)
+        if novatel and novatel["name"] in SENTENCES:
+            head = novatel["head"].split(",")
+            # the short header of logs that end with SA has the week and seconds at its end, the long one within
+            at = 0 if line.lstrip().startswith("%") else 4
+            kept.setdefault(novatel["name"], []).append([*(head[at:at + 2] + ["", ""])[:2], *novatel["rest"].split(",")])
+    named = sorted(kept, key=lambda name: (SENTENCES[name].rank, name))
+    if not named:
+        raise RoadExtractionError(f"{path} is a log of a receiver, but has no sentence with positions and heights. Log GGA with RMC (NMEA) or "
+                                  "INSPVAA (NovAtel), or export the trajectory as a table.")
+    return _columns_of_log(kept[named[0]], SENTENCES[named[0]].fields)
+
+
+def _day_of(fields):
+    """YYYY-MM-DD of an RMC (ddmmyy) or ZDA sentence."""
+    if fields[0] == "ZDA" and len(fields) > 4:
+        return f"{fields[4]}-{fields[3]}-{fields[2]}" if all(part.isdigit() for part in fields[2:5]) else ""
+    day = fields[9] if len(fields) > 9 else ""
+    return f"20{day[4:6]}-{day[2:4]}-{day[:2]}" if re.fullmatch(r"\d{6}", day) else ""
+
+
+def _columns_of_log(rows, fields):
+    """TableColumns with the names that the table of names knows."""
+    offset = 1 if "clock" in fields else 2   # what stands in a row before the fields of its sentence
+    text = {what: [row[k + offset] if len(row) > k + offset else "" for row in rows] for what, k in fields.items()}
+    number = {what: np.array([as_number(value) for value in values]) for what, values in text.items()}
+    time = _clock_column([row[0] for row in rows], text["clock"]) if "clock" in fields else _gps_column(rows, number)
+    return [time, *_place_columns(text, number)]
+
+
+def _place_columns(text, number):
+    """Latitude, longitude, height and angles; without a place where the receiver had no solution."""
+    rows = len(text["lat"])
+    bad = np.array([value in NO_SOLUTION for value in text.get("status", [""] * rows)]) | (number.get("quality", np.ones(rows)) == 0)
+    for axis in ("lat", "lon"):
+        if f"{axis}_side" in text:
+            signs = hemisphere_signs(text[f"{axis}_side"])
+            number[axis] = whole_minutes(number[axis]) * (1.0 if signs is None else signs)
+        number[axis] = np.where(bad, np.nan, number[axis])
+    if "geoid" in number and np.isfinite(number["geoid"]).any():
+        number["z"] = number["z"] + number["geoid"]
+    return [TableColumn(title, number[what], Unit("degrees" if what in ("lat", "lon", "roll", "pitch", "heading") else "metres"),
+                        lambda what=what: text[what], text[what][0])
+            for what, title in (("lat", "latitude"), ("lon", "longitude"), ("z", "ellipsoidal height" if "geoid" in number else "height"),
+                                ("roll", "roll"), ("pitch", "pitch"), ("heading", "heading")) if what in number]
+
+
+def _clock_column(days, clocks):
+    """The time of sentences with hhmmss.ss of UTC; those before the first date are of the same day, or of no known one."""
+    first = next((day for day in days if day), "")
+    times = [f"{day or first} {clock[:2]}:{clock[2:4]}:{clock[4:]}".strip() if re.match(r"\d{6}", clock) else "" for day, clock in zip(days, clocks)]
+    return TableColumn("UTC", np.full(len(times), np.nan), Unit(), lambda: times, next((time for time in times if time), ""))
+
+
+def _gps_column(rows, number):
+    """The time of logs with the week and its seconds among their fields, otherwise in their headers."""
+    if "seconds" in number:
+        week, seconds = number["week"], number["seconds"]
+    else:
+        week, seconds = (np.array([as_number(row[k]) for row in rows]) for k in (0, 1))
+    return TableColumn("GPS time", with_week(seconds, week), Unit("seconds"), first=str(seconds[0]))
+
+
+def _read_track(path: Path) -> list[TableColumn]:
+    """The positions of a GPX or KML file, as columns with names.
+
+    Of GPX the points of tracks are taken, otherwise those of its route, otherwise its waypoints; of KML the tracks (gx:Track), otherwise the
+    lines, otherwise the points.
+
+    Raises
+    ------
+    RoadExtractionError
+        If it is no XML, or holds neither track nor line.
+    """
+    reader = _TrackReader()
+    try:
+        reader.read(path)
+    except ExpatError as problem:
+        raise RoadExtractionError(f"{path} cannot be read as XML ({problem}). Save the track again.") from problem
+    except (LookupError, ValueError) as problem:
+        raise RoadExtractionError(f"{path} cannot be read ({problem}). Save the track again, as UTF-8.") from problem
+    kind = next((kind for kind in KINDS_OF_POSITIONS if reader.rows[kind]), None)
+    if kind is None:
+        raise RoadExtractionError(f"{path} holds no track. A drive is a track (layer track_points): save it with its track, or choose the layer of "
+                                  "positions.")
+    rows = reader.rows[kind]
+    if kind == "coord":
+        rows = [[*row[:3], when] for row, when in zip(rows, reader.whens if len(reader.whens) == len(rows) else [""] * len(rows))]
+    columns = [_column_of_track(rows, k, title, unit)
+               for k, (title, unit) in enumerate((("longitude", "degrees"), ("latitude", "degrees"), ("height", "metres"), ("UTC", "")))]
+    return columns if columns[3].first else columns[:3]
+
+
+def _column_of_track(rows, k, title, unit):
+    texts = [row[k] for row in rows]
+    return TableColumn(title, np.array([as_number(text) for text in texts]), Unit(unit), lambda: texts, next((text for text in texts if text), ""))
+
+
+class _TrackReader:
+    """Points of a file, [longitude, latitude, height, time] as texts, by the element that they stand in."""
+
+    def __init__(self):
+        self.rows: dict[str, list[list[str]]] = {kind: [] for kind in KINDS_OF_POSITIONS}
+        self.whens: list[str] = []
+        self._text, self._point = "", None
+        self._parser = ParserCreate()
+        self._parser.StartElementHandler, self._parser.EndElementHandler = self._start, self._end
+        self._parser.CharacterDataHandler = self._characters
+        self._parser.EntityDeclHandler = self._refuse
+
+    def read(self, path):
+        with open(path, "rb") as file:
+            while chunk := file.read(CHUNK):
+                self._parser.Parse(chunk)
+            self._parser.Parse(b"", True)
+
+    def _refuse(self, *declared):
+        raise ValueError("it declares entities of its own")
+
+    def _start(self, name, attributes):
+        name = name.rpartition(":")[2]
+        self._text = ""
+        if name in ("trkpt", "rtept", "wpt"):
+            self._point = [attributes.get("lon", ""), attributes.get("lat", ""), "", ""]
+            self.rows[name].append(self._point)
+
+    def _characters(self, text):
+        # the coordinates of a line in KML are one text
+        self._text = self._text + text if len(self._text) < MOST_TEXT or self._point is None else self._text
+
+    def _end(self, name):
+        name, text = name.rpartition(":")[2], self._text.strip()
+        if self._point is not None and name in ("ele", "time"):
+            self._point[2 if name == "ele" else 3] = text
+        elif name in ("trkpt", "rtept", "wpt"):
+            self._point = None
+        elif name == "when":
+            self.whens.append(text)
+        elif name == "coord":
+            self.rows["coord"].append([*text.split(), "", "", ""][:4])
+        elif name == "coordinates":
+            self.rows["coordinates" if len(text.split()) > 1 else "point"] += [[*tuple_.split(","), "", "", ""][:3] + [""] for tuple_ in text.split()]
+        self._text = ""
+
+
+def is_record(path: Path) -> bool:
+    """Whether a file is a track or a log of sentences, by its ending and its beginning."""
+    with open(path, "rb") as file:
+        head = file.read(HEAD_BYTES)
+    text = head.decode("latin-1")
+    return path.suffix.lower() in TRACK_ENDINGS or bool(NMEA.search(text) or NOVATEL.search(text))
+
+
+def columns_of_record(path: Path) -> list[TableColumn]:
+    """The positions of a track or of a log of sentences, as columns with names; RoadExtractionError where it holds none."""
+    return _read_track(path) if path.suffix.lower() in TRACK_ENDINGS else _read_log(path)

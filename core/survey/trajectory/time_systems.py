@@ -2,12 +2,225 @@
 
 from __future__ import annotations
 
+import re
 import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from typing import Any
 
 import numpy as np
 
 from ...common.errors import RoadExtractionError
-from .written_values import LEAP_DAYS, SECONDS_PER_DAY, SECONDS_PER_WEEK, UNIX_EPOCH, leap_seconds
+
+# Times and angles that are written as text: dates and clocks, degrees with minutes and seconds, hemispheres.
+
+_DATE = r"(?P<date>\d{4}[-/.]\d{1,2}[-/.]\d{1,2}|\d{1,2}[-/.]\d{1,2}[-/.]\d{4}|\d{8})"
+_CLOCK = r"(?P<hour>\d{1,2}):(?P<minute>\d{2})(?::(?P<second>\d{2}(?:[.,]\d*)?))?\s*(?P<half>[ap]\.?m\.?)?"
+_ZONE = r"(?P<zone>Z|UTC|GMT|GPST?|[+-]\d{2}:?\d{2})?"
+TIME = re.compile(rf"(?:{_DATE}(?:\s*[T ,]\s*|$))?(?:{_CLOCK})?\s*{_ZONE}$", re.IGNORECASE)
+ANGLE = re.compile(r"(?P<before>[NSEW])?\s*(?P<sign>[+-])?\s*(?P<degrees>\d{1,3}(?:[.,]\d*)?)\s*[°ºd:\s]?\s*"
+                   r"(?:(?P<minutes>\d{1,2}(?:[.,]\d*)?)\s*['′’m:\s]?\s*)?(?:(?P<seconds>\d{1,2}(?:[.,]\d*)?)\s*(?:''|[\"″”s])?\s*)?"
+                   r"(?P<after>[NSEW])?$", re.IGNORECASE)
+COMPACT = re.compile(r"(\d{4})(\d{2})(\d{2})T(\d{2})(\d{2})(\d{2})(?!\d)")                       # 20211013T234640
+MONTH_NAME = re.compile(r"(\d{1,2})[-/. ](jan|feb|mar|apr|may|jun|jul|aug|sep|oct|nov|dec)[a-z]*\.?[-/., ]+(\d{4})", re.IGNORECASE)
+YEAR_SIGN = re.compile(r"(\d{4}) ?年 ?(\d{1,2}) ?月 ?(\d{1,2}) ?日")               # 2021年10月13日
+CLOCK_SIGNS = re.compile(r"(\d{1,2}) ?[时時] ?(\d{1,2}) ?分(?: ?(\d{1,2}(?:[.,]\d*)?) ?秒)?")   # 23时46分40秒
+MONTHS = ("jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec")
+LOOKED_AT = 50          # texts of a column by which it is told what they are
+MOST = 0.9              # of them
+GPS_EPOCH = datetime(1980, 1, 6)
+SECONDS_PER_WEEK, SECONDS_PER_DAY = 604800.0, 86400.0
+UNIX_EPOCH = 315_964_800.0   # s from 1970 to the start of GPS time
+# Days on which a second was inserted into UTC since GPS time began (IERS Bulletin C); none is announced after the last
+LEAP_DAYS = ("1981-07-01", "1982-07-01", "1983-07-01", "1985-07-01", "1988-01-01", "1990-01-01", "1991-01-01", "1992-07-01", "1993-07-01",
+             "1994-07-01", "1996-01-01", "1997-07-01", "1999-01-01", "2006-01-01", "2009-01-01", "2012-07-01", "2015-07-01", "2017-01-01")
+
+
+# Where counts of days begin, in the Gregorian calendar; of several that may be, the first that gives a day of FIRST_SURVEY or later
+DAY_COUNTS = {"modified Julian days": "1858-11-17", "days of a spreadsheet": "1899-12-30", "days of MATLAB": "-0001-12-31",
+              "Julian days": "-4713-11-24T12"}
+FIRST_SURVEY, LAST_SURVEY = "1990-01-01", "2050-01-01"
+SHORTEST_STEP = 5e-4    # weight: s from row to row; no trajectory has 2000 positions a second, and a vehicle drives a centimetre in it
+
+
+@dataclass(frozen=True)
+class ClockTimes:
+    """Clock times that were written as text, or as days.
+
+    seconds : (N,) since 6 January 1980 as the clock counts, or since its midnight where no date is written; NaN where a text is no time
+    dated : whether dates are written
+    zone : "UTC" or "GPS" where the texts say so, "" otherwise; times with an offset from UTC are brought to UTC
+    order_known : whether day and month can be told apart
+    kind, first : what was written, and the first of them
+    """
+
+    seconds: np.ndarray
+    dated: bool
+    zone: str
+    order_known: bool
+    kind: str = "clock times"
+    first: str = ""
+
+
+def hold_times(texts: Sequence[str]) -> bool:
+    """Whether most texts of a column are clock times, with dates or without, or dates."""
+    some = [text for text in texts if text.strip()][:LOOKED_AT]
+    found = [_match(text) for text in some]
+    times = [match for match in found if match and (match["hour"] or match["date"] and not match["date"].isdigit())]
+    return bool(some) and len(times) >= MOST * len(some)
+
+
+def _match(text):
+    """TIME in a text, where months may have English names, ISO 8601 its short form, and the parts their Chinese and Japanese signs."""
+    text = COMPACT.sub(r"\1-\2-\3 \4:\5:\6", text.strip())
+    text = CLOCK_SIGNS.sub(lambda parts: ":".join(part.zfill(2) for part in parts.groups() if part), YEAR_SIGN.sub(r"\1-\2-\3 ", text))
+    return TIME.match(MONTH_NAME.sub(lambda named: f"{named[3]}-{MONTHS.index(named[2].lower()) + 1}-{named[1]}", text))
+
+
+def clock_times(texts: Sequence[str]) -> ClockTimes | None:
+    """Clock times of (N,) texts; None where they are none."""
+    if not hold_times(texts) and not all(re.fullmatch(r"\d{8} .*:.*", text) for text in texts[:LOOKED_AT] if text):
+        return None
+    found = [_match(text) for text in texts]
+    dates = {match["date"] for match in found if match and match["date"]}
+    day_first, order_known = _order(dates)
+    midnight = {date: _midnight(date, day_first) for date in dates}
+    seconds = np.full(len(texts), np.nan)
+    zones = set()
+    for row, match in enumerate(found):
+        if match is None or (match["hour"] is None and not match["date"]) or (dates and not match["date"]):
+            continue
+        value = midnight[match["date"]] if match["date"] else 0.0
+        if match["hour"]:
+            value += _since_midnight(match)
+        zone = (match["zone"] or "").upper()
+        zones.add(zone)
+        if zone[:1] in ("+", "-") and zone:
+            value -= (60 * int(zone[1:3]) + int(zone[-2:])) * 60.0 * (1 if zone[0] == "+" else -1)
+        seconds[row] = value
+    zone = "" if "" in zones or not zones else "GPS" if all(name.startswith("GPS") for name in zones) else "UTC"
+    return ClockTimes(seconds, bool(dates), zone, order_known, first=next(filter(None, texts), ""))
+
+
+def _since_midnight(match):
+    hour = int(match["hour"])
+    if match["half"]:
+        hour = hour % 12 + (12 if match["half"][0] in "pP" else 0)
+    return 3600.0 * hour + 60.0 * int(match["minute"]) + float((match["second"] or "0").replace(",", "."))
+
+
+def _order(dates):
+    """(whether the day stands before the month, whether that is beyond doubt) of dates with the year behind."""
+    parts = [list(map(int, re.split(r"[-/.]", date))) for date in dates if re.match(r"\d{1,2}[-/.]", date)]
+    if any(first > 12 for first, *_ in parts):
+        return True, True
+    if any(second > 12 for _, second, _ in parts):
+        return False, True
+    return True, all("." in date or not re.match(r"\d{1,2}[-/]", date) for date in dates)
+
+
+def _midnight(date, day_first):
+    """Seconds from 6 January 1980 to the beginning of a day; NaN for a day that there is not."""
+    if date.isdigit():
+        parts = [date[:4], date[4:6], date[6:]]
+    else:
+        parts = re.split(r"[-/.]", date)
+        if len(parts[0]) != 4:
+            parts = [parts[2], *(parts[1::-1] if day_first else parts[:2])]
+    try:
+        return (datetime(*map(int, parts)) - GPS_EPOCH).total_seconds()
+    except ValueError:
+        return np.nan
+
+
+def counted_days(values: np.ndarray, texts: Callable[[], Sequence[str]], what: str) -> ClockTimes | None:
+    """The clock times of (N,) days and their shares, as MJD or spreadsheets count them; None of values that count seconds.
+
+    Parameters
+    ----------
+    values : (N,) numbers
+    texts : gives the (N,) texts as they are written
+    what : the beginning of a message
+
+    Raises
+    ------
+    RoadExtractionError
+        If they go up like days, but are of no known count, or have too few decimals.
+    """
+    steps = np.diff(values)
+    steps = steps[steps > 0]
+    if not len(steps) or not np.median(steps) < SHORTEST_STEP:
+        return None
+    first = values[np.isfinite(values)][0]
+    kind = next((kind for kind, begins in DAY_COUNTS.items() if _days_from(begins, FIRST_SURVEY) <= first < _days_from(begins, LAST_SURVEY)), "")
+    last_decimal = SECONDS_PER_DAY * 10.0 ** -max(len(re.split("[.,]", text)[-1]) for text in texts()[:LOOKED_AT])
+    said = f"{what} goes up by {np.median(steps):.2g} from row to row as if it counted days, "
+    if not kind:
+        raise RoadExtractionError(f"{said}but {first:.10g} is no day of a known count (MJD, Julian days, a spreadsheet). GPS seconds are needed: "
+                                  "export the trajectory with these.")
+    if last_decimal / 2 > SHORTEST_STEP:   # by half of it times are rounded
+        raise RoadExtractionError(f"{said}and its last decimal is {last_decimal:.2g} s, while a vehicle drives centimetres in a thousandth of a "
+                                  "second. Export the trajectory with GPS seconds, or with 8 decimals of a day or more.")
+    seconds = (values - _days_from(DAY_COUNTS[kind], GPS_EPOCH)) * SECONDS_PER_DAY
+    return ClockTimes(seconds, True, "", True, kind, f"{first:.10g}")
+
+
+def _days_from(begins, day):
+    return (np.datetime64(day) - np.datetime64(begins)) / np.timedelta64(1, "D")
+
+
+def leap_seconds(seconds: np.ndarray) -> np.ndarray:
+    """(N,) seconds by which GPS time is ahead of UTC, at UTC times in seconds since 6 January 1980."""
+    days = [(datetime.fromisoformat(day) - GPS_EPOCH).total_seconds() for day in LEAP_DAYS]
+    return np.searchsorted(days, seconds, side="right").astype(float)
+
+
+def hold_angles(texts: Sequence[str]) -> bool:
+    """Whether most texts of a column are degrees with minutes, or with a hemisphere."""
+    some = [text.strip() for text in texts if text.strip()][:LOOKED_AT]
+    return bool(some) and sum(bool((found := ANGLE.match(text)) and (found["minutes"] or found["before"] or found["after"] or "°" in text))
+                              for text in some) >= MOST * len(some)
+
+
+def angles_of(texts: Sequence[str]) -> np.ndarray:
+    """(N,) degrees of texts such as 48°12'30.5"N, 48 12 30.5, N 48° 12.5' or 48.2085°; south and west negative, NaN where a text is none."""
+    found = np.full(len(texts), np.nan)
+    for row, text in enumerate(texts):
+        match = ANGLE.match(text.strip())
+        if match:
+            parts = [float((match[name] or "0").replace(",", ".")) for name in ("degrees", "minutes", "seconds")]
+            negative = match["sign"] == "-" or (match["before"] or match["after"] or "").upper() in ("S", "W")
+            found[row] = degrees_of(*parts) * (-1.0 if negative else 1.0)
+    return found
+
+
+def degrees_of(degrees: Any, minutes: Any, seconds: Any) -> np.ndarray:
+    """(N,) degrees of degrees, minutes and seconds; the sign is that of the degrees, also where these are -0."""
+    return np.copysign(np.abs(degrees) + np.asarray(minutes) / 60.0 + np.asarray(seconds) / 3600.0, degrees)
+
+
+def hemisphere_signs(texts: Sequence[str]) -> np.ndarray | None:
+    """(N,) 1 or -1 of a column of N, S, E and W; None for other texts."""
+    letters = [text.strip().upper() for text in texts]
+    if not any(letters) or not set(letters) <= {"N", "S", "E", "W", ""}:
+        return None
+    return np.array([-1.0 if letter in ("S", "W") else 1.0 for letter in letters])
+
+
+def whole_minutes(values: np.ndarray) -> np.ndarray:
+    """(N,) degrees of numbers in which receivers write degrees and minutes together, ddmm.mmmm (NMEA 0183)."""
+    size = np.where(np.isfinite(values), np.abs(values), np.nan)
+    return np.copysign(np.floor(size / 100.0) + size % 100.0 / 60.0, values)
+
+
+def whole_seconds(values: np.ndarray) -> np.ndarray:
+    """(N,) numbers ddmm.mmmm of numbers in which degrees, minutes and seconds are written together, ddmmss.ss."""
+    size = np.abs(values)
+    # 1e-7 s are 3 µm on the ground, and more than what doubles lose in 1800000
+    size = np.where(np.isfinite(size), np.round(size, 7), np.nan)
+    return np.copysign(np.floor(size / 100.0) + size % 100.0 / 60.0, values)
+
 
 ADJUSTED_OFFSET = 1e9  # s by which adjusted standard GPS time is less than GPS time (ASPRS LAS 1.4)
 TIME_SYSTEMS = ("automatic", "gps", "adjusted", "week", "day")

@@ -9,7 +9,7 @@ from lanewright.core.common.progress import Progress
 from lanewright.core.intensity import correction as intensity
 from lanewright.core.intensity.asphalt_model import UNKNOWN_DISTANCE, VehicleDistances
 from lanewright.core.intensity.correction import IntensitySettings, correct_intensity
-from lanewright.core.report.intensity import intensity_correction_report
+from lanewright.core.report.page import html_page
 from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.store.records import ROAD_POINT, Points, to_units
 from lanewright.core.survey.store.road_points import RoadPoints
@@ -181,7 +181,7 @@ def test_points_are_left_or_right_of_the_vehicle_as_it_drove_and_as_far_away_as_
 def test_without_time_the_intensity_is_left_raw_and_the_report_says_why():
     points, report = corrected(street(count=5000)[0], straight_drive(time=False))
     assert np.isnan(points.corrected).all() and "gps_time" in report.reason
-    assert report.lines() == [report.reason] and "gps_time" in intensity_correction_report(report)
+    assert report.lines() == [report.reason] and "gps_time" in html_page("intensity_correction", found=report)
 
 
 def test_a_trajectory_of_another_day_leaves_the_intensity_raw():
@@ -232,7 +232,7 @@ def test_an_export_that_cuts_off_the_brightest_sixth_of_the_road_is_warned_of(sc
     warnings, report = warned(records)
     assert len(warnings) == 1 and warnings[0].startswith("16 % of the road's points have the highest intensity, 255:")
     assert warnings[0] in report.lines()
-    assert warnings[0] in html.unescape(intensity_correction_report(report))
+    assert warnings[0] in html.unescape(html_page("intensity_correction", found=report))
 
 
 def test_an_export_that_cuts_off_the_darkest_third_of_the_road_is_warned_of():

@@ -11,7 +11,7 @@ from lanewright.core.overlay.matching.propose import AMBIGUOUS, propose_control_
 from lanewright.core.overlay.pair_cutouts import pair_cutouts
 from lanewright.core.overlay.rough_place import rough_place
 from lanewright.core.overlay.source_image import open_image
-from lanewright.core.report.proposed_points import proposed_points_report
+from lanewright.core.report.overlay import proposed_points_report
 from lanewright.core.sample.orthophoto import uav_control_points, write_uav_image
 from lanewright.core.sample.survey import make_sample_survey
 from paint_from_above import EAST, NORTH, Ground, Overhead, about, arrow, bar, dashes, errors, street, zebra

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 from drives import EAST, NORTH, ahead, bend, chain, drive, joined, surveyed_points, write_cloud
-from lanewright.core.survey.las.writer import read_road_points, scale_for, write_road_points
+from lanewright.core.survey.inspection import cube_density
 from lanewright.core.survey.open_survey import SurveySettings, open_survey
-from lanewright.core.survey.point_density import cube_density
+from lanewright.core.survey.road_points_las import read_road_points, scale_for, write_road_points
 from lanewright.core.survey.store.road_points import RoadPoints
 from lanewright.core.survey.trajectory.trajectory import Trajectory
 from road_layers import extract_road_surface

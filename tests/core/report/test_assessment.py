@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from lanewright.core.assess.boundaries import assess_boundaries
 from lanewright.core.assess.layers import boundary_layer
-from lanewright.core.report.assessment import boundary_report
-from lanewright.core.report.assessment_figures import bins_of
+from lanewright.core.report.assessment import bins_of, boundary_report
 from lanewright.core.report.figures import Chart, ticks
 from shapely.geometry import LineString
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from drives import ahead, chain, drive, surveyed_points, write_cloud
 from lanewright.core.execution.choice import ExecutionSettings
+from lanewright.core.survey import survey_reader
 from lanewright.core.survey.open_survey import open_survey
-from lanewright.core.survey.reading import survey_reader
 from lanewright.core.survey.store.records import beside_road
 from lanewright.core.survey.survey import SurveySettings
 from lanewright.core.survey.trajectory.trajectory import Trajectory

@@ -4,7 +4,7 @@ import laspy
 import numpy as np
 import pytest
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.report.inspection import inspection_report
+from lanewright.core.report.survey import inspection_report
 from lanewright.core.survey.inspection import InspectionSettings, inspect_survey
 from lanewright.core.survey.trajectory.trajectory import Trajectory
 

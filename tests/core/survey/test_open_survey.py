@@ -10,8 +10,7 @@ from drives import EAST, NORTH, ahead, bend, chain, contents, drive, joined, sur
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.progress import Progress
 from lanewright.core.survey.frame.row_table import SigmaAlong
-from lanewright.core.survey.open_survey import SurveySettings, open_survey
-from lanewright.core.survey.read_survey import section_length
+from lanewright.core.survey.open_survey import SurveySettings, open_survey, section_length
 from lanewright.core.survey.trajectory.trajectory import Trajectory
 
 CRS = "EPSG:32632"

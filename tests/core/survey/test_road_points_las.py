@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from drives import write_cloud
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.survey.adjustment.corrections import CORRECTION_STEP, PassCorrections
+from lanewright.core.survey.adjustment.register import CORRECTION_STEP, PassCorrections
 from lanewright.core.survey.frame.row_table import SigmaAlong
-from lanewright.core.survey.las.writer import read_road_points, write_road_points
+from lanewright.core.survey.road_points_las import read_road_points, write_road_points
 from lanewright.core.survey.store.records import ROAD_POINT, to_units
 from lanewright.core.survey.store.road_points import RoadPoints
 

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from drives import ahead, bend, chain, drive
+from lanewright.core.survey.blocks import HeightHistogram, VehicleTracks, estimate_sensor_height
 from lanewright.core.survey.frame.road_frame import build_frame
-from lanewright.core.survey.reading.sensor_height import HeightHistogram, VehicleTracks, estimate_sensor_height
 from lanewright.core.survey.store.columns import Columns
 from lanewright.core.survey.store.records import SURVEY_POINT, to_units
 

@@ -16,9 +16,9 @@ from lanewright.core.execution.choice import ExecutionSettings
 from lanewright.core.execution.phase import Threads
 from lanewright.core.execution.processes import WorkerProcesses
 from lanewright.core.survey import open_survey as opening
+from lanewright.core.survey import survey_reader
+from lanewright.core.survey import survey_reader as ordering
 from lanewright.core.survey.open_survey import open_survey
-from lanewright.core.survey.reading import survey_reader
-from lanewright.core.survey.reading import survey_reader as ordering
 from lanewright.core.survey.survey import SurveySettings, survey_in_folder
 
 SETTINGS = SurveySettings(block=700)   # points

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from lanewright.core.common.progress import Progress
-from lanewright.core.survey.adjustment.beside import compare_carriageways, roads_beside, said_of_levels
+from lanewright.core.survey.adjustment.adjust import compare_carriageways, roads_beside, said_of_levels
 from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.trajectory.trajectory import Trajectory
 

@@ -3,10 +3,8 @@
 import numpy as np
 import pytest
 from drives import ahead, bend, chain, drive, joined
-from lanewright.core.survey.adjustment.carrying import continued_corrections
-from lanewright.core.survey.adjustment.corrections import PassCorrections
-from lanewright.core.survey.adjustment.register import PassOffsets
-from lanewright.core.survey.adjustment.remaining import places_of_one_drive, said_of_one_drive
+from lanewright.core.survey.adjustment.adjust import continued_corrections, places_of_one_drive, said_of_one_drive
+from lanewright.core.survey.adjustment.register import PassCorrections, PassOffsets
 from lanewright.core.survey.frame.road_frame import build_frame
 
 EAST, LEFT = 300, 700   # 0.1 mm by which the second drive was moved

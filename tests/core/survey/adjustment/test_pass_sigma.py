@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from lanewright.core.common.features import CURB_POINTS, MARKING_LINES
 from lanewright.core.road.common.curb_points import curb_points_at
-from lanewright.core.survey.adjustment.pass_sigma import of_layer, of_records, sigma_of_passes, to_record
-from lanewright.core.survey.adjustment.register import PassOffsets
+from lanewright.core.survey.adjustment.register import PassOffsets, sigma_of_layer, sigma_of_passes, sigma_of_records, sigma_to_record
 from lanewright.core.survey.frame.row_table import SigmaAlong
 from lined_streets import Street
 
@@ -21,14 +20,14 @@ def curb_layer(sigma):
 
 @pytest.mark.parametrize("sigma", [{}, {0: SigmaAlong.everywhere(0.012)}])
 def test_curb_points_carry_it_where_it_is_known(sigma):
-    assert of_layer(curb_layer(sigma)) == sigma
+    assert sigma_of_layer(curb_layer(sigma)) == sigma
 
 
 def test_layers_of_an_earlier_version_know_nothing_of_it():
     layer = curb_layer({0: SigmaAlong.everywhere(0.012)})
     for row in layer.rows:
         del row["pass_sig_m"]
-    assert of_layer(layer) == {}
+    assert sigma_of_layer(layer) == {}
     assert all(any(field.name == "pass_sig_m" and not field.needed for field in schema) for schema in (CURB_POINTS, MARKING_LINES))
 
 
@@ -58,11 +57,11 @@ def test_three_drives_meet_better_than_two():
 
 def test_points_and_curb_points_carry_where_along_the_road_it_is_how_much():
     sigma = {0: SigmaAlong((10.0, 30.0, 60.0), (0.01, 0.05, 0.02)), 2: SigmaAlong.everywhere(0.03)}
-    read = of_records(to_record(sigma))
+    read = sigma_of_records(sigma_to_record(sigma))
     assert list(read) == [0, 2]
     for road, along in sigma.items():
         np.testing.assert_allclose(read[road].at(np.arange(0.0, 80.0)), along.at(np.arange(0.0, 80.0)), atol=1e-6)
-    found = of_layer(curb_layer({0: sigma[0]}))[0]
+    found = sigma_of_layer(curb_layer({0: sigma[0]}))[0]
     np.testing.assert_allclose(found.at(np.array([15.0, 25.0, 45.0])), sigma[0].at(np.array([15.0, 25.0, 45.0])), atol=0.005)
 
 
@@ -70,4 +69,4 @@ def test_points_of_an_earlier_version_say_one_sigma_of_the_road():
     import laspy
 
     rows = np.array([(3, 0.0125)], [("road", "<u4"), ("sigma", "<f8")])
-    assert of_records([laspy.VLR("LanewrightSigma", 1, "", rows.tobytes())]) == {3: SigmaAlong.everywhere(0.0125)}
+    assert sigma_of_records([laspy.VLR("LanewrightSigma", 1, "", rows.tobytes())]) == {3: SigmaAlong.everywhere(0.0125)}

@@ -1,9 +1,8 @@
 """Places at which passes still differ are named with how much."""
 
 import numpy as np
-from lanewright.core.survey.adjustment.adjust import solve_corrections
+from lanewright.core.survey.adjustment.adjust import remaining_places, said_of_places, solve_corrections
 from lanewright.core.survey.adjustment.register import PassOffsets
-from lanewright.core.survey.adjustment.remaining import remaining_places, said_of_places
 
 STATIONS = np.arange(5.0, 300.0, 10.0)
 NOTHING = np.zeros(len(STATIONS))

@@ -6,10 +6,8 @@ import numpy as np
 import pytest
 from drives import EAST, NORTH, write_cloud
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.survey.estimation.estimate import MAX_SIGMA, estimate_trajectory
-from lanewright.core.survey.estimation.kinds import refuse_handheld
-from lanewright.core.survey.estimation.rough.first_track import FirstTrack
-from lanewright.core.survey.estimation.rough.samples import rounding_of
+from lanewright.core.survey.estimation.estimate import MAX_SIGMA, estimate_trajectory, refuse_handheld
+from lanewright.core.survey.estimation.samples import FirstTrack, rounding_of
 from mirror_drives import START, Mirror, mirror_drive, section, swaying
 from scipy.interpolate import PchipInterpolator
 

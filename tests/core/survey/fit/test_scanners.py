@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from lanewright.core.common.progress import Progress
-from lanewright.core.survey.fit.scanners import lay_scanners
+from lanewright.core.survey.adjustment.scanner_fit import lay_scanners
 from scanned_streets import driven, scanned, survey_of
 
 

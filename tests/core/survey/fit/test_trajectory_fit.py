@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 from drives import EAST, NORTH
 from lanewright.core.common.progress import Progress
-from lanewright.core.survey.fit.mounting import read_places, scanner_mountings
-from lanewright.core.survey.fit.trajectory_fit import fitted_trajectory
+from lanewright.core.survey.adjustment.trajectory_fit import fitted_trajectory, read_places, scanner_mountings
 from lanewright.core.survey.las.reader import read_headers
 from lanewright.core.survey.open_survey import open_survey
 from mirror_drives import Mirror, mirror_drive

@@ -4,9 +4,9 @@ import laspy
 import numpy as np
 import pytest
 from drives import EAST, NORTH
+from lanewright.core.survey.blocks import DECODED_LAYERS
 from lanewright.core.survey.las.point_fields import valid_points
 from lanewright.core.survey.las.reader import read_blocks
-from lanewright.core.survey.reading.blocks import DECODED_LAYERS
 
 ROAD, LOW_NOISE, VEGETATION, HIGH_NOISE = 11, 7, 5, 18
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.survey.las.writer import new_laz
+from lanewright.core.survey.road_points_las import new_laz
 
 laspy = pytest.importorskip("laspy")
 

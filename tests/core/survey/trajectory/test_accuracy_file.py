@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 from lanewright.core.survey.trajectory.reader import read_trajectory
-from lanewright.core.survey.trajectory.reprojection import reproject_trajectory
-from lanewright.core.survey.trajectory.trajectory import clean_trajectory
+from lanewright.core.survey.trajectory.trajectory import clean_trajectory, reproject_trajectory
 
 TIME = np.arange(0.0, 60.0, 0.1) + 300_000.0
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.survey.trajectory.assigned_columns import columns_of_table, facts_of, time_system_by_size
+from lanewright.core.survey.trajectory.meaning import columns_of_table, facts_of, time_system_by_size
 from lanewright.core.survey.trajectory.reader import read_trajectory
 
 

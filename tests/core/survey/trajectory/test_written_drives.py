@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.survey.trajectory.assigned_columns import columns_of_table
+from lanewright.core.survey.trajectory.meaning import columns_of_table
 from lanewright.core.survey.trajectory.reader import read_trajectory, trajectory_from_rows
 from lanewright.core.survey.trajectory.time_systems import align_time
 from lanewright.core.survey.trajectory.trajectory import clean_trajectory

@@ -1,0 +1,274 @@
+"""Scanners of one vehicle against each other: what one sees lies where the other sees it, or its mounting is not what the files were made with.
+
+As passes are laid on each other, so are scanners: the strips of both within one pass are correlated (see adjustment/register.py), on either side
+of the vehicle apart. An error of the lever moves all points of a scanner alike. An error of the boresight turns them about it: on the ground
+of one scan plane that is a move that grows evenly from the right to the left. So moves of both sides tell both.
+"""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...common.parallel import ordered_map
+from ...common.progress import Progress
+from ..store.records import COORDINATE_SCALE, to_units
+from .adjust import AGREEMENT_HEIGHT, AGREEMENT_PLAN, MOVED_COLUMNS, replace_points
+from .register import (
+    CHANNELS,
+    FLAT_STEP,
+    LAG_CELL,
+    MAX_CELL_HEIGHT,
+    MAX_OFFSET,
+    MIN_CELL_HEIGHT,
+    MIN_SHARED_CELLS,
+    ROW_CELL,
+    STRIP_HALF_WIDTH,
+    WINDOW_LENGTH,
+    Strips,
+    best_offsets,
+    correlation_sums,
+    height_offset,
+)
+from .trajectory_fit import LOOK_WINDOWS, MAX_SCANNER_OFFSETS, SCANNER_WINDOWS, SIGNIFICANT
+
+SIDES = "right", "left"
+SAID_AS = ("ahead", "behind"), ("left", "right"), ("above", "below")
+SAID_M = 0.005           # m; less is not named in the warning
+
+
+@dataclass(frozen=True)
+class ScannerOffsets:
+    """Moves of a scanner onto the first one, on the right and the left of the vehicle.
+
+    scanner : its number
+    beside : (2, 3) m left of the track at which each move was measured, negative on the right
+    moves : (2, 3) m ahead, left and up that bring its points onto those of the first scanner; NaN where nothing shows it
+    sigma : (2, 3) m, of the moves: how far they differ between windows of road, of which all show the same mounting; infinite of one window
+    far : whether they lie farther apart than could be measured
+    """
+
+    scanner: int
+    beside: np.ndarray
+    moves: np.ndarray
+    sigma: np.ndarray
+    far: bool
+
+
+def lay_scanners(survey: Any, progress: Progress = Progress(), folder: Path | None = None) -> float:
+    """Lay the scanners of a survey on each other where they measurably lie apart; each is moved by its share, as nothing shows which is right.
+
+    Parameters
+    ----------
+    survey : Survey with times; its store is replaced where points are moved
+    progress : Progress, which hears a warning then
+    folder : of the moved points that are not kept in memory; None for a temporary file
+
+    Returns
+    -------
+    m across, one sigma that stays open: how far the middle of the scanners may be off; 0 where they agree
+    """
+    if len(survey.scanners) < 2 or _agree_at_a_look(survey):
+        return 0.0
+    offsets = _scanner_offsets(survey, SCANNER_WINDOWS)
+    if not any(map(_apart, offsets)):
+        return 0.0
+    moves = _shares(offsets)
+    across = np.array([[0.0, 0.0], *(np.nan_to_num(one.moves[:, 1]) for one in offsets)])
+    # independent errors of one sigma s in n scanners, whose middle is off by s / sqrt(n)
+    sigma = float((across.std(axis=0, ddof=1) / np.sqrt(len(across))).max())
+    for one in offsets:
+        if _apart(one):
+            progress.warn(_said(survey, one, sigma))
+    frame = survey.frame
+    replace_points(survey, lambda records: _moved(frame, moves, records), progress, folder)
+    return sigma
+
+
+def _agree_at_a_look(survey):
+    """Whether scanners agree in the first windows that show all of their moves, or in all LOOK_WINDOWS together.
+
+    An error of a mounting is the same all along a survey, so that one window clears a scanner.
+    """
+    seen: dict[int, list] = {}
+    for window in _windows(survey, LOOK_WINDOWS):
+        for number, evidence in _window_evidence(survey, window).items():
+            seen.setdefault(number, []).append(evidence)
+        if len(seen) == len(survey.scanners) - 1 and all(map(_clear, seen.values())):
+            return True
+    return not any(_apart(_offsets(number, evidence)) for number, evidence in seen.items())
+
+
+def _clear(evidence):
+    """Whether windows show all moves of a scanner, on both sides those across and up, on one that along the way, and none that matters."""
+    moves, _, far = zip(*(_moves_of(side) for side in zip(*evidence)))
+    known = np.isfinite(moves)
+    return bool(known[:, 1:].all() and known[:, 0].any() and not any(far) and not (np.abs(moves) > MAX_SCANNER_OFFSETS).any())
+
+
+def _apart(one):
+    """Whether a scanner lies measurably beside the first: by more than is harmless, and than windows of road differ by."""
+    known = np.nan_to_num(np.abs(one.moves))
+    return one.far or bool((known > MAX_SCANNER_OFFSETS + SIGNIFICANT * one.sigma).any())
+
+
+def _said(survey, one, sigma):
+    """The warning about a scanner that lies beside the first."""
+    names = f"Scanner {survey.scanners[one.scanner]} and scanner {survey.scanners[0]}"
+    if one.far:
+        return (f"{names} lie more than {100 * MAX_OFFSET:.0f} cm apart, too far to lay them on each other: curbs and lines are doubled. Calibrate "
+                "the mounting of the scanners anew, or process the points of one scanner alone.")
+    right, left = (", ".join(f"{100 * abs(metres):.1f} cm {words[int(metres < 0)]}" for metres, words in zip(side, SAID_AS) if abs(metres) > SAID_M)
+                   or "nothing that is measurable" for side in np.nan_to_num(-one.moves))
+    return (f"{names} differ all along the survey, as with a wrong lever arm or boresight angles. On the left of the vehicle, points of the first "
+            f"are displaced from those of the other by {left}, on the right by {right}. Each was moved by its share. Nothing shows which of them is "
+            f"right, so the map may be off by {100 * sigma:.1f} cm (one sigma). Calibrate the mounting of the scanners anew.")
+
+
+def _shares(offsets):
+    """{scanner: (2, 3) m on the right and the left, and (2, 3) m beside} by which each is moved to the middle of all."""
+    middle = np.mean([np.zeros((2, 3)), *(_filled(one) for one in offsets)], axis=0)
+    beside = np.mean([one.beside for one in offsets], axis=0)
+    return {0: (-middle, beside), **{one.scanner: (_filled(one) - middle, one.beside) for one in offsets}}
+
+
+def _filled(one):
+    """(2, 3) m of moves: where one side shows nothing, the other's; where both are alike, their mean."""
+    right, left = one.moves
+    right, left = (np.where(np.isnan(a), np.nan_to_num(b), a) for a, b in ((right, left), (left, right)))
+    alike = np.abs(left - right) < np.array([AGREEMENT_PLAN, AGREEMENT_PLAN, AGREEMENT_HEIGHT])
+    return np.where(alike, 0.5 * (left + right), [right, left])
+
+
+def _moved(frame, moves, records):
+    """The Columns of a section with the points of scanners moved."""
+    moved = {name: np.array(records[name]) for name in MOVED_COLUMNS}
+    number, scanner = records["pass_number"], records["scanner"]
+    for p, one in itertools.product(np.unique(number).tolist(), moves):
+        own = np.flatnonzero((number == p) & (scanner == one))
+        if not len(own):
+            continue
+        driven, road = frame.passes[p], frame.road(frame.passes[p].road)
+        station, x, y = driven.at(records["time"].take(own), "s", "x", "y")
+        yaw = road.heading(station) + (0.0 if driven.direction > 0 else np.pi)
+        cos, sin = np.cos(yaw), np.sin(yaw)
+        left = (records["y"].take(own) * COORDINATE_SCALE - y) * cos - (records["x"].take(own) * COORDINATE_SCALE - x) * sin
+        values, beside = moves[one]
+        left = np.clip(left, -STRIP_HALF_WIDTH, STRIP_HALF_WIDTH)
+        ahead, aside, up = (a + (left - first) / (last - first) * (b - a) for (a, b), (first, last) in zip(values.T, beside.T))
+        east, north = ahead * cos - aside * sin, ahead * sin + aside * cos
+        s, d = (records[name].take(own) * COORDINATE_SCALE for name in ("s", "d"))
+        heading = road.heading(s)
+        c, n = np.cos(heading), np.sin(heading)
+        along = (east * c + north * n) / np.clip(1.0 - road.curvature(s) * d, 0.4, 2.5)
+        for name, metres in zip(MOVED_COLUMNS, (east, north, up, along, north * c - east * n)):
+            moved[name][own] += to_units(metres)
+    return records.with_columns(**moved)
+
+
+def _scanner_offsets(survey: Any, windows: int = SCANNER_WINDOWS) -> list[ScannerOffsets]:
+    """How far the scanners of a survey lie beside the first one.
+
+    survey : Survey with times
+    windows : how many windows of road are looked at
+    """
+    seen: dict[int, list] = {}
+    for found in ordered_map(partial(_window_evidence, survey), _windows(survey, windows)):
+        for number, evidence in found.items():
+            seen.setdefault(number, []).append(evidence)
+    return [_offsets(number, evidence) for number, evidence in sorted(seen.items())]
+
+
+def _windows(survey, count):
+    """[(pass, station of the beginning, m of length)] of so many windows evenly along all passes, without the first and the last."""
+    passes = survey.frame.passes
+    # in short surveys windows are shorter; three are not looked at: the first, the last, and what is left over at the end of a drive
+    length = min(WINDOW_LENGTH, sum(np.ptp(p.span) for p in passes) / (LOOK_WINDOWS + 3))
+    every = [(p, start, length) for p in passes for start in np.arange(p.span[0], p.span[1] - length, length)]
+    return [every[k] for k in np.unique(np.linspace(0, len(every) - 1, count + 2).astype(int))[1:-1]] if every else []
+
+
+def _window_evidence(survey, window):
+    """{scanner: [of each side (sums across, sums along, m up, m beside, weight of it)]} of a window, each scanner against the first."""
+    p, start, long = window
+    points = survey.window(p.road, start, start + long)
+    own = np.flatnonzero(points.pass_number == p.number)
+    s, d = points.s[own], points.d[own]
+    nodes = start + np.arange(int(long / ROW_CELL) + 1) * ROW_CELL
+    h = points.z[own] - np.interp(s, nodes, survey.road_height(p.road, nodes))
+    beside = p.direction * (d - p.at_station(s)[0])
+    near = np.flatnonzero((np.abs(beside) < STRIP_HALF_WIDTH) & (h > MIN_CELL_HEIGHT) & (h < MAX_CELL_HEIGHT))
+    ahead = s - start if p.direction > 0 else start + long - s
+    ahead, beside, h = ahead[near], beside[near] + STRIP_HALF_WIDTH, h[near]
+    scanner, intensity = points.scanner[own[near]], points.intensity[own[near]].astype(float)
+
+    def strips(number):
+        rows = np.flatnonzero(scanner == number)
+        if len(rows) < MIN_SHARED_CELLS:
+            return None
+        return [Strips.of(fine[rows], coarse[rows], h[rows], intensity[rows], (round(width / ROW_CELL), round(length / LAG_CELL)))
+                for fine, coarse, length, width in ((beside, ahead, 2 * STRIP_HALF_WIDTH, long), (ahead, beside, long, 2 * STRIP_HALF_WIDTH))]
+
+    first, found = strips(0), {}
+    for number in range(1, len(survey.scanners)):
+        other = strips(number) if first is not None else None
+        if other is not None:
+            found[number] = [_side_evidence(first, other, side) for side in range(len(SIDES))]
+    return found
+
+
+def _side_evidence(first, other, side):
+    """(sums across, sums along, m up, {what shows it: (weight, m beside times weight)}) of the right or the left side of a window."""
+    half = [slice(size // 2) if side == 0 else slice(size // 2, None) for size in (first[0].heights.shape[1], first[1].heights.shape[0])]
+    a, b = (strips[0].part(slice(None), half[0]) for strips in (first, other))
+    along = correlation_sums(*(strips[1].part(half[1], slice(None)) for strips in (first, other)))
+    place = (np.arange(a.heights.shape[1]) + 0.5) * LAG_CELL - (STRIP_HALF_WIDTH if side == 0 else 0.0)
+    # unknown cells are NaN, and nothing is less than that
+    shown = {name: np.nansum(np.square(getattr(a, name)) * np.isfinite(getattr(b, name)), axis=0) for name in CHANNELS}
+    shown["heights"] = np.count_nonzero(np.maximum(np.abs(a.steps), np.abs(b.steps)) < FLAT_STEP, axis=0)
+    weights = {name: (float(weight.sum()), float(weight @ place)) for name, weight in shown.items()}
+    return correlation_sums(a, b), along, height_offset(a, b, 0), weights
+
+
+def _offsets(number, evidence):
+    """ScannerOffsets of the evidence of windows."""
+    beside, moves, sigma, far = np.zeros((len(SIDES), 3)), np.full((len(SIDES), 3), np.nan), np.full((len(SIDES), 3), np.inf), False
+    for side in range(len(SIDES)):
+        seen = [one[side] for one in evidence]
+        moves[side], channel, at_limit = _moves_of(seen)
+        for axis, name in enumerate((channel, channel, "heights")):
+            total, place = (sum(weights[name][k] for *_, weights in seen) for k in (0, 1))
+            beside[side, axis] = place / total if total else STRIP_HALF_WIDTH * (side - 0.5)
+        if len(seen) > 1:
+            left_out, _, still = zip(*(_moves_of(seen[:k] + seen[k + 1:]) for k in range(len(seen))))
+            sigma[side] = _jackknife(left_out)
+            far |= at_limit and 2 * sum(still) > len(seen)
+    return ScannerOffsets(number, beside, moves, sigma, far)
+
+
+def _moves_of(seen):
+    """(3,) m ahead, left and up, the channel that shows the second, and whether it is beyond what can be measured, of one side of windows."""
+    across, along, up, _ = zip(*seen)
+    found, at_limit = best_offsets(np.sum(across, axis=0))
+    # as with passes: a face looks different from another side, so it counts only where no paint shows it
+    channel = next((name for name in CHANNELS[::-1] if np.isfinite(found[CHANNELS.index(name)])), CHANNELS[0])
+    known = [one for one in up if np.isfinite(one)]
+    ahead = best_offsets(np.sum(along, axis=0))[0][CHANNELS.index("paint")]
+    return np.array([ahead, found[CHANNELS.index(channel)], np.median(known) if known else np.nan]), channel, bool(at_limit.any())
+
+
+def _jackknife(left_out):
+    """(3,) sigma of an estimate from (N, 3) estimates without one window each (Tukey 1958).
+
+    Infinite where half of these show nothing: the estimate then hangs on single windows.
+    """
+    values = np.array(left_out)
+    count = np.isfinite(values).sum(axis=0)
+    mean = np.nansum(values, axis=0) / np.maximum(count, 1)
+    sigma = np.sqrt((count - 1) / np.maximum(count, 1) * np.nansum(np.square(values - mean), axis=0))
+    return np.where(2 * count > len(values), sigma, np.inf)

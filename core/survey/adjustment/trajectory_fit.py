@@ -1,0 +1,437 @@
+"""Whether a trajectory is that of the scanners: its own shape, and where the scanners rode beside, above and below it.
+
+What can be mended safely is mended before any point is read, and said; what cannot goes into the uncertainty of everything that is drawn.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...common.progress import Progress
+from ...curves.robust import MAD_TO_SIGMA
+from ...io.crs import FOOT
+from ..estimation.adjustment import MAX_RAY_MISFIT, MAX_UNEXPLAINED
+from ..estimation.poses import EXPECTED_HEIGHT, MIN_SHARE_IN_FRONT, RESECTION_ROUNDS, resected, vehicle_axes
+from ..estimation.samples import DENSITY_ROUNDS, DENSITY_WIDTH, GROUND_WEIGHT_DEPTH, LOWEST_SHARE, SAMPLED_LAYERS
+from ..frame.road import CORRIDOR
+from ..las.parallel_reader import ParallelCloudReader
+from ..las.point_fields import ScannerCensus, numbers_by_value, times_by_value, valid_points
+from ..las.reader import CloudHeader
+from ..lattice.scan_lattice import MIN_ROTATION_PEAK, ROTATION_WINDOW, rotation_spectrum, strongest_rotation
+from ..trajectory.shape import shaped_trajectory
+from ..trajectory.trajectory import Trajectory, clean_trajectory
+from .adjust import AGREEMENT_PLAN
+
+
+@dataclass(frozen=True)
+class FittedTrajectory:
+    """A trajectory as the scanners were carried.
+
+    trajectory : the one given where everything fits
+    sigma : m across, one sigma that is left of what did not
+    seen : whether the rays of the scanners show where they rode
+    """
+
+    trajectory: Trajectory
+    sigma: float
+    seen: bool
+
+
+def fitted_trajectory(files: Sequence[CloudHeader], trajectory: Trajectory, scanner_field: str | None = "automatic",
+                      progress: Progress = Progress()) -> FittedTrajectory:
+    """The trajectory as the scanners were carried, where the one given is not.
+
+    Parameters
+    ----------
+    files : headers of the clouds
+    trajectory : Trajectory in their CRS and, where it has times, in their time system
+    scanner_field : as of `ScannerCensus.choose`
+    progress : Progress, which hears one warning for each thing that does not fit
+    """
+    shape = shaped_trajectory(clean_trajectory(trajectory))
+    for warning in shape.said:
+        progress.warn(warning)
+    given = shape.trajectory if shape.said else trajectory
+    if not trajectory.has_time or not all(file.has_time for file in files if file.count):
+        return FittedTrajectory(given, shape.sigma, False)
+    sample = read_places(files, scanner_field)
+    mountings = _near(scanner_mountings(sample, shape.trajectory))
+    if mountings and _other_heights(sample, shape.trajectory, mountings, progress):
+        return FittedTrajectory(given, float(np.hypot(shape.sigma, SIGMA_OF_OTHER_HEIGHTS)), True)
+    if not (mountings := _met(mountings)):
+        return FittedTrajectory(given, shape.sigma, False)
+    moved = _carried(sample, shape.trajectory, mountings, progress)
+    return FittedTrajectory(given if moved is shape.trajectory else moved, shape.sigma, True)
+
+
+def _carried(sample, trajectory, mountings, progress):
+    """The trajectory moved to the height and the way of the scanners where it is not theirs; else the same."""
+    level = _at_height(trajectory, mountings, progress)
+    # a trajectory far above its scanners swings over them, as the vehicle rolls
+    return _on_way(level, mountings if level is trajectory else _met(scanner_mountings(sample, level)), progress)
+
+
+def _near(mountings):
+    """Those of the mountings that lie within reach of the trajectory."""
+    return [one for one in mountings if np.hypot(*_usual_lever([one])[:2]) < CORRIDOR]
+
+
+def _met(mountings):
+    """Those of the mountings whose rays meet in one place."""
+    return [one for one in mountings if one.misfit <= MAX_UNEXPLAINED]
+
+
+def _other_heights(sample, trajectory, mountings, progress):
+    """Whether heights are in another unit than places, or upside down; it is said."""
+    if max(one.misfit for one in mountings) > MAX_UNEXPLAINED:
+        for stretch, said in ((FOOT, "in feet where x and y are in metres"), (1.0 / FOOT, "in metres where x and y are in feet")):
+            other = scanner_mountings(sample, trajectory, stretch)
+            if len(other) >= len(mountings) and len(_met(other)) == len(other):
+                up, height = float(_usual_lever(other)[0][2]), float(np.median(trajectory.z))
+                # from a trajectory that is stretched alike the scanners lie where they ride on the vehicle
+                alone = abs(up) > max(VEHICLE_HEIGHT, abs(up - (1.0 - stretch) * height))
+                of = "the cloud alone" if alone else "cloud and trajectory"
+                progress.warn(f"The heights of {of} seem to be {said}: the laser beams meet in the scanner only if heights are "
+                              f"multiplied by {stretch:.4g}. Curbs are missed, and heights and slopes are wrong by that factor. Convert the heights "
+                              f"of {'the cloud' if alone else 'both'}, and run again.")
+                return True
+    if all(one.ground > 0 for one in mountings):
+        progress.warn(f"The road lies {np.mean([one.ground for one in mountings]):.1f} m above the scanners, as if heights were counted downwards or "
+                      "turned upside down: curbs, slopes and heights are wrong. Export cloud and trajectory with heights that rise upwards.")
+        return True
+    return False
+
+
+def _at_height(trajectory: Trajectory, mountings: Sequence[Mounting], progress: Progress) -> Trajectory:
+    """The trajectory moved to the height of the scanners where it runs below the road or higher than vehicles are; else the same."""
+    at, lever = _places(mountings)
+    above_road = -float(np.mean([one.ground for one in mountings]))
+    up = lever[:, 2]
+    far = (np.abs(up) > VEHICLE_HEIGHT) | (up > above_road + LOWEST_SENSOR)
+    if not far.any():
+        return trajectory
+    worst = float(up[np.argmax(np.abs(up))])
+    where = "" if far.all() else f" at {np.count_nonzero(far)} of {len(far)} places looked at"
+    progress.warn(f"The trajectory lies {abs(worst):.2f} m {'below' if worst > 0 else 'above'} the scanners{where}, as their laser beams "
+                  f"show: {'below the road' if worst > 0 else 'no vehicle is so high'}. Heights of cloud and trajectory seem to be of two kinds "
+                  "(above the ellipsoid and above sea level), or one of them is wrong. The trajectory was moved to the height of the scanners; the "
+                  "map has the heights of the cloud. Export both with one kind of heights.")
+    metres = np.full(len(trajectory), np.median(up)) if np.ptp(up) < ONE_MOVE * abs(worst) else np.interp(trajectory.time, at, up)
+    return replace(trajectory, z=trajectory.z + metres)
+
+
+def _on_way(trajectory: Trajectory, mountings: Sequence[Mounting], progress: Progress) -> Trajectory:
+    """The trajectory moved to the way of the scanners where no vehicle is so wide; else the same."""
+    if not mountings:
+        return trajectory
+    at, lever = _places(mountings)
+    far = np.abs(lever[:, 1]) > HALF_VEHICLE
+    if not far.any():
+        return trajectory
+    worst = float(lever[np.argmax(np.abs(lever[:, 1])), 1])
+    x, y = (np.interp(at[np.argmax(far)], trajectory.time, getattr(trajectory, name)) for name in "xy")
+    where = "" if far.all() else f" at {np.count_nonzero(far)} of {len(far)} places looked at"
+    progress.warn(f"The trajectory runs {abs(worst):.2f} m to the {'right' if worst > 0 else 'left'} of the way that the scanners took{where} "
+                  f"(first near x {x:.0f}, y {y:.0f}), as their laser beams show; no vehicle is so wide. It may belong to another lane or "
+                  "drive, or be in another datum than the cloud. It was moved to where the scanners were; check that both files belong together.")
+    return _moved_aside(trajectory, mountings, at, lever[:, 1])
+
+
+def _windows(mountings):
+    """(W,) s of the windows of all scanners, in order, and (W, 3) m from the trajectory to the middle of the scanners then."""
+    time = np.concatenate([one.time for one in mountings])
+    lever = np.concatenate([one.lever - np.median(one.lever, axis=0) for one in mountings]) + _usual_lever(mountings)
+    order = np.argsort(time, kind="stable")
+    return time[order], lever[order]
+
+
+def _places(mountings):
+    """(P,) s of places that were looked at, and (P, 3) m from the trajectory to the middle of the scanners there."""
+    time, lever = _windows(mountings)
+    cuts = [0, *(np.flatnonzero(np.diff(time) > PLACE_GAP) + 1).tolist(), len(time)]
+    places = [slice(i, j) for i, j in zip(cuts[:-1], cuts[1:]) if j - i > PLACE_WINDOWS / 2] or [slice(0, len(time))]
+    return np.array([time[one].mean() for one in places]), np.array([np.median(lever[one], axis=0) for one in places])
+
+
+def _moved_aside(trajectory, mountings, at, beside):
+    """The trajectory moved to where the scanners were; `beside` (P,) m to the left at (P,) times of places.
+
+    What is the same in the vehicle (another lane) or on the map (another datum) is one move, of which the one is taken that leaves less. Where
+    neither fits, as with several drives of which one is wrong, the trajectory is moved to the left evenly between the places.
+    """
+    time, lever = _windows(mountings)
+    yaw = _vehicle_angles(trajectory)[2]
+    here = np.interp(time, trajectory.time, yaw)
+    cos, sin, one, none = np.cos(here), np.sin(here), np.ones(len(here)), np.zeros(len(here))
+    measured = np.r_[lever[:, 0], lever[:, 1]]
+    in_vehicle = np.median(lever[:, 1])
+    rows = np.r_[np.c_[cos, sin, one], np.c_[-sin, cos, none]]
+    on_map = np.linalg.lstsq(np.r_[rows, [[0.0, 0.0, 1.0 / USUAL_AHEAD]]], np.r_[measured, 0.0], rcond=None)[0]
+    left_over = [float(np.quantile(np.abs(off), MOST)) for off in (lever[:, 1] - in_vehicle, measured - rows @ on_map)]
+    east, north, metres = 0.0, 0.0, in_vehicle
+    if left_over[1] < CLEARLY_BETTER * left_over[0]:
+        (east, north), metres = on_map[:2], 0.0
+    if min(left_over) > ONE_MOVE:
+        east, north, metres = 0.0, 0.0, np.interp(trajectory.time, at, beside)
+    return replace(trajectory, x=trajectory.x + east - np.sin(yaw) * metres, y=trajectory.y + north + np.cos(yaw) * metres)
+
+
+# Where the scanners rode, seen from the trajectory: by the rays of their mirrors, whatever the trajectory says.
+#
+# In the frame of the vehicle all points of one mirror lie in one plane, all along the survey. In this plane two directions are as far apart as the
+# mirror turned between their times, so that the points of some turns fix the place of the scanner (see estimation/poses.py). It is the lever arm
+# from the trajectory to the scanner, as it is in the files. A trajectory of another lane, of another datum, or with heights of another kind shows
+# as a lever arm that no vehicle has; coordinates that are stretched, as heights in feet, as rays that do not meet.
+
+@dataclass(frozen=True)
+class Mounting:
+    """A scanner in the frame of the vehicle, whose origin is the trajectory.
+
+    scanner : its number
+    time : (W,) s, middles of windows
+    lever : (W, 3) m ahead, left and up
+    ground : m of the ground above the scanner; negative where the scanner rides above it
+    misfit : m, median distance of points from their rays
+    """
+
+    scanner: int
+    time: np.ndarray
+    lever: np.ndarray
+    ground: float
+    misfit: float
+
+
+@dataclass(frozen=True)
+class _Sample:
+    """First returns in order of time: s, (N, 3) map coordinates, number of the scanner."""
+
+    time: np.ndarray
+    place: np.ndarray
+    scanner: np.ndarray
+
+
+def read_places(files: Sequence[CloudHeader], scanner_field: str | None = "automatic") -> _Sample:
+    """First returns of PLACE_WINDOWS of time, or more, at each of PLACES_READ places spread evenly over the points of the files.
+
+    Parameters
+    ----------
+    files : headers of the clouds
+    scanner_field : as of `ScannerCensus.choose`
+    """
+    ends = np.cumsum([file.count for file in files])
+    census, parts = ScannerCensus(), []
+    with ParallelCloudReader(SAMPLED_LAYERS) as reader:
+        starts = set()
+        for at in ((np.arange(PLACES_READ) + 0.5) / PLACES_READ * ends[-1]).astype(np.int64).tolist():
+            number = int(np.searchsorted(ends, at, side="right"))
+            starts.add((number, reader.chunk_start(files[number], at - int(ends[number] - files[number].count))))
+        for number, start in sorted(starts):
+            parts += _read_place(reader, files[number], start, -(-PLACES_READ * PLACE_WINDOWS // len(starts)))
+    time, place, source, channel = (np.concatenate(column) for column in zip(*parts))
+    for name, values in (("point_source_id", source), ("scanner_channel", channel)):
+        census.take(name, times_by_value(values, time))
+    field, values = census.choose(scanner_field)
+    scanner = np.zeros(len(time), np.uint8)
+    if field is not None:
+        column = source if field == "point_source_id" else channel
+        scanner = numbers_by_value(values, int(column.max(initial=0)) + 1)[column]
+    order = np.argsort(time, kind="stable")
+    return _Sample(time[order], place[order], scanner[order])
+
+
+def _read_place(reader, file, start, windows):
+    """[`_first_returns`] of points of a file from the beginning of a chunk on, as many as some windows hold."""
+    parts, seen = [], {}
+    for block in reader.following(file, start, PLACE_POINTS // 10):
+        parts.append(_first_returns(block))
+        for window, count in zip(*np.unique(np.floor(parts[-1][0] / TURNS_WINDOW), return_counts=True)):
+            seen[window] = seen.get(window, 0) + count
+        if sum(count >= MIN_TURNS_POINTS for count in seen.values()) >= windows or sum(len(part[0]) for part in parts) >= PLACE_POINTS:
+            break
+    return parts
+
+
+def _first_returns(block):
+    """(N,) gps_time, (N, 3) map coordinates, point source and scanner channel of the usable first returns of a block."""
+    raw, names = block.array, set(block.point_format.dimension_names)
+    own = np.asarray(block["return_number"]) <= 1
+    time = raw["gps_time"].astype(float)
+    own &= np.isfinite(time)
+    if (valid := valid_points(block)) is not None:
+        own &= valid
+    place = np.stack([raw[name][own] * scale + offset for name, scale, offset in zip("XYZ", block.scales, block.offsets)], axis=1)
+    channel = np.asarray(block["scanner_channel"]) if "scanner_channel" in names else np.zeros(len(raw), np.int64)
+    return time[own], place, raw["point_source_id"][own].astype(np.int64), channel[own].astype(np.int64)
+
+
+def scanner_mountings(sample: _Sample, trajectory: Trajectory, stretch: float = 1.0) -> list[Mounting]:
+    """The Mounting of every scanner whose mirror is seen to turn.
+
+    Parameters
+    ----------
+    sample : of `read_places`
+    trajectory : Trajectory with times, in the CRS and time system of the sample
+    stretch : by which heights of points and trajectory are multiplied before, to try other units of them
+    """
+    seen = _in_vehicle_frame(sample, trajectory, stretch)
+    found = (_mounting_of(number, *(column[seen[2] == number] for column in seen[:2])) for number in np.unique(seen[2]).tolist())
+    return [one for one in found if one is not None]
+
+
+def _in_vehicle_frame(sample, trajectory, stretch):
+    """(N,) s, (N, 3) m ahead, left and up, and (N,) scanner of points evenly chosen from windows of time."""
+    driven = np.flatnonzero((sample.time >= trajectory.time[0]) & (sample.time <= trajectory.time[-1]))
+    # by scanner, then by time, as the sample is
+    driven = driven[np.argsort(sample.scanner[driven], kind="stable")]
+    windows = np.stack([sample.scanner[driven], np.floor(sample.time[driven] / TURNS_WINDOW)])
+    begin = np.flatnonzero((np.diff(windows, axis=1, prepend=np.nan) != 0).any(axis=0))
+    size = np.diff(np.append(begin, len(driven)))
+    rank = np.arange(len(driven)) - np.repeat(begin, size)
+    used = np.repeat(size >= MIN_TURNS_POINTS, size) & (rank % np.repeat(-(-size // MAX_TURNS_POINTS), size) == 0)
+    rows = np.sort(driven[used])
+    time, place = sample.time[rows], sample.place[rows]
+    away = place - np.stack([np.interp(time, trajectory.time, getattr(trajectory, name)) for name in "xyz"], axis=1)
+    away[:, 2] *= stretch
+    axes = vehicle_axes(*(np.interp(time, trajectory.time, angle) for angle in _vehicle_angles(trajectory, stretch)))
+    return time, np.stack([(axis * away).sum(axis=1) for axis in axes], axis=1), sample.scanner[rows]
+
+
+def _vehicle_angles(trajectory: Trajectory, stretch: float = 1.0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(N,) roll, pitch and yaw (counter-clockwise from east) in radians; from the way driven where the trajectory has none.
+
+    stretch : by which heights are multiplied before
+    """
+    attitude = trajectory.attitude()
+    if attitude is not None:
+        return attitude[0], attitude[1], np.pi / 2 - attitude[2]
+    dx, dy, dz = (np.gradient(getattr(trajectory, name), trajectory.time) for name in "xyz")
+    return np.zeros(len(trajectory)), np.arctan2(stretch * dz, np.maximum(np.hypot(dx, dy), 0.1)), np.unwrap(np.arctan2(dy, dx))
+
+
+def _mounting_of(number, time, place):
+    """The Mounting of one scanner from the points that it saw, (N,) s and (N, 3) m in the frame of the vehicle; None where they do not show it."""
+    if len(time) < MIN_WINDOWS * MIN_TURNS_POINTS:
+        return None
+    _, window = np.unique(np.floor(time / TURNS_WINDOW), return_inverse=True)
+    size = int(window[-1]) + 1
+    middle, normal, off = _scan_plane(place, window, size)
+    # points of several mirrors, or of many beams, lie in no plane
+    if abs(normal[2]) > MAX_UPRIGHT or MAD_TO_SIGMA * np.median(np.abs(off)) > SIGNIFICANT:
+        return None
+    across = np.cross([0.0, 0.0, 1.0], normal)
+    across /= np.linalg.norm(across)
+    upright = np.cross(normal, across)
+    a, b = ((place - middle[window]) @ axis for axis in (across, upright))
+    rate = _rate(time, a, b, window, size)
+    if rate is None:
+        return None
+    middles = np.bincount(window, time, size) / np.bincount(window, minlength=size)
+    found = max((_resected_places(a, b, time - middles[window], window, middles, sign * rate) for sign in (1, -1)),
+                key=lambda one: (one[2].sum(), -one[3]))
+    u, v, good, misfit = found
+    if good.sum() < max(MIN_WINDOWS, size / 2):
+        return None
+    lever = middle + u[:, None] * across + v[:, None] * upright
+    away = place - lever[window]
+    below = away[(np.hypot(*away.T[:2]) < EXPECTED_HEIGHT) & good[window], 2]
+    return Mounting(number, middles[good], lever[good], float(np.median(below)) if len(below) else np.nan, misfit)
+
+
+def _scan_plane(place, window, size):
+    """(W, 3) middles of the windows of places, the unit normal of the planes through them, and (N,) sigma off these, outliers weighted down.
+
+    Each window has a plane of its own, parallel to the others: trajectories may wander against the scanner.
+    """
+
+    def means(weight, values):
+        return np.stack([np.bincount(window, weight * column, size) for column in values.T], axis=1) / np.bincount(window, weight, size)[:, None]
+
+    far = np.linalg.norm(place - means(np.ones(len(place)), place)[window], axis=1)
+    variance = MAX_RAY_MISFIT**2 + (ATTITUDE_NOISE * far) ** 2
+    weight = 1.0 / variance
+    for _ in range(DENSITY_ROUNDS):
+        middle = means(weight, place)
+        away = place - middle[window]
+        normal = np.linalg.eigh((weight[:, None] * away).T @ away)[1][:, 0]
+        off = away @ normal / np.sqrt(variance)
+        weight = 1.0 / variance / (1.0 + off**2 / 4.0)
+    return middle, normal if normal[0] >= 0 else -normal, off
+
+
+def _rate(time, a, b, window, size):
+    """Turns of the mirror per second, from places in the planes of windows; None where they show none."""
+    foot, ground = np.zeros(size), np.zeros(size)
+    order = np.lexsort((b, window))
+    held = np.bincount(window, minlength=size)
+    ground = b[order][np.cumsum(held) - held + (held * LOWEST_SHARE).astype(int)]
+    for _ in range(DENSITY_ROUNDS):
+        weight = 1.0 / ((1.0 + ((a - foot[window]) / DENSITY_WIDTH) ** 2) * (1.0 + ((b - ground[window]) / GROUND_WEIGHT_DEPTH) ** 2))
+        foot, ground = (np.bincount(window, weight * values, size) / np.bincount(window, weight, size) for values in (a, b))
+    phasor = b - ground[window] - EXPECTED_HEIGHT + 1j * (a - foot[window])
+    phasor /= np.maximum(np.abs(phasor), 1e-9)
+    piece = np.floor((time - time[0]) / ROTATION_WINDOW)
+    cuts = np.flatnonzero(np.r_[True, np.diff(piece) > 0, True])
+    spectra = [rotation_spectrum(time[i:j], phasor[i:j]) for i, j in zip(cuts[:-1], cuts[1:]) if j - i >= MIN_TURNS_POINTS]
+    rate, peak = strongest_rotation(spectra) if spectra else (0.0, 0.0)
+    return abs(rate) if peak >= MIN_ROTATION_PEAK else None
+
+
+def _resected_places(a, b, since, window, middles, rate):
+    """(W,) m of the scanner along and up its plane, (W,) bool of good windows, and m of their misfit, by a rate that is made better."""
+    for _ in range(RESECTION_ROUNDS):
+        u, v, phase, misfit, in_front = resected(a, b, 2 * np.pi * rate * since, window, len(middles))
+        good = in_front >= MIN_SHARE_IN_FRONT
+        apart = np.diff(middles)
+        step = np.diff(phase) - 2 * np.pi * rate * apart
+        step = (step + np.pi) % (2 * np.pi) - np.pi
+        near = good[1:] & good[:-1] & (apart < 1.5 * TURNS_WINDOW)
+        if near.sum() >= MIN_WINDOWS:
+            rate += float(np.median(step[near] / apart[near])) / (2 * np.pi)
+    return u, v, good, float(np.median(misfit[good])) if good.any() else np.inf
+
+
+def _usual_lever(mountings: Sequence[Mounting]) -> np.ndarray:
+    """(3,) m ahead, left and up of the middle of the scanners from the trajectory."""
+    return np.mean([np.median(one.lever, axis=0) for one in mountings], axis=0)
+
+
+# The numbers by which a survey is told to fit itself, each with where it comes from.
+#
+# source: a standard or the law; derived: follows from another number or from how the thing is built; weight: our own estimate, rounded, with what
+# it stands for beside it; cost: decides how long the work takes, not what it says
+
+# Vehicles
+HALF_VEHICLE = 1.275     # source: m; no vehicle on the road is wider than 2.55 m (Directive 96/53/EC), so no scanner rides farther beside its middle
+VEHICLE_HEIGHT = 4.0     # source: m (the same), so no scanner rides farther above or below a trajectory that is on the vehicle
+LOWEST_SENSOR = 0.5      # weight: m above the road; no scanner rides lower, but lines and places drawn on the road lie within
+USUAL_AHEAD = 3.0        # weight: m ahead of a trajectory on the same vehicle that scanners ride, one sigma
+
+# Points from which places of scanners are found
+TURNS_WINDOW = 0.05      # weight: s; every mirror turns a few times, and a vehicle on the road hardly sways
+PLACES_READ = 6          # cost: places in the files that are looked at, and
+PLACE_WINDOWS = 5        # cost: windows that points are read of at a place; the first and the last of them are not whole
+PLACE_GAP = 2.0          # derived: s between windows, from which they are of another place, as PLACE_WINDOWS take far less
+PLACE_POINTS = 50_000    # cost: that are read at a place, at most
+MIN_TURNS_POINTS, MAX_TURNS_POINTS = 60, 200   # weight: of a window, with which four unknowns are found well; cost: those that are used
+MIN_WINDOWS = 8          # weight: good ones that the place of a scanner needs
+ATTITUDE_NOISE = 0.01    # weight: radians that roll, pitch and heading may be off, or differ from those of the way driven
+MAX_UPRIGHT = 0.8        # weight: of the plane's normal; what lies flatter is the ground
+
+# What one move of a trajectory may leave
+ONE_MOVE, MOST = 0.20, 0.9   # weight: m at this share of the windows, as navigation drifts; more is the error of a drive by itself
+CLEARLY_BETTER = 0.5     # weight: of what one move leaves, below which another is taken
+
+# Where heights are in another unit or upside down, curbs are looked for at heights that they do not have. Their edges are then drawn along
+# another line of the curb: its top, the back of its stone, the rim of its gutter. Nothing in such a survey says which, so that any place within
+# the stone (15 cm: DIN 483, HB 15 × 30) and its gutter (30 cm are usual) is as likely
+SIGMA_OF_OTHER_HEIGHTS = (0.15 + 0.30) / 12.0**0.5   # derived: m
+
+# Scanners against each other
+# cost: windows of the survey in which scanners are looked at, and measured, as an error of a mounting is the same in all
+LOOK_WINDOWS, SCANNER_WINDOWS = 3, 16
+# derived: m ahead, left and up that scanners may differ by without a move, as passes may; along lines nothing is drawn sharply
+MAX_SCANNER_OFFSETS = 2 * AGREEMENT_PLAN, AGREEMENT_PLAN, AGREEMENT_PLAN / 2
+SIGNIFICANT = 3.0        # derived: sigma; of a normal error one in 370 is larger

@@ -1,0 +1,257 @@
+"""LAS and LAZ files that are written whole or not at all, above all road points, whose extra fields hold the road frame for later stages."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..common.errors import RoadExtractionError
+from ..common.progress import Progress
+from ..io.crs import as_in_file, parse_crs
+from ..io.local_files import unfinished_path
+from .adjustment.register import PassCorrections, sigma_of_records, sigma_to_record
+from .las.reader import POINTS_PER_BLOCK, cloud_crs, open_cloud, read_blocks
+from .store.records import COORDINATE_SCALE, ROAD_POINT, point_dtype
+from .store.road_points import RoadPoints
+from .store.section_store import SectionStore
+
+MAX_LAS_INTEGER = 2**31 - 2    # largest coordinate, as an integer about the offset, in a LAS file
+
+
+def scale_for(farthest: float) -> float:
+    """The coordinate scale of a LAS file: 0.1 mm, or the least power of ten times it with which all points fit.
+
+    Parameters
+    ----------
+    farthest : metres, the largest coordinate counted from the offset of the file
+
+    Returns
+    -------
+    Metres per integer
+
+    Raises
+    ------
+    RoadExtractionError
+        If even 0.1 m is too fine.
+    """
+    for per_metre in (10_000, 1_000, 100, 10):
+        if farthest * per_metre <= MAX_LAS_INTEGER:
+            return COORDINATE_SCALE if per_metre == 10_000 else 1 / per_metre
+    raise RoadExtractionError(f"The points lie up to {farthest / 1000:,.0f} km from the start of the survey, farther than a LAS file can hold. "
+                              "Check the coordinates of the trajectory, or process the files of each region separately.")
+
+
+def place_in_file(header: Any, origin: np.ndarray, crs: str, farthest: float) -> None:
+    """Set the scales, offsets and CRS of a new file, in the units of the survey's own CRS.
+
+    Parameters
+    ----------
+    header : laspy.LasHeader
+    origin : (3,) metres, map coordinates of the local origin
+    crs : WKT, metric, "" where unknown
+    farthest : metres, the largest local coordinate
+    """
+    file_wkt, units = as_in_file(crs)
+    header.scales = np.full(3, scale_for(farthest / min(units.across, units.up)))
+    header.offsets = np.asarray(origin, float) if units.metric else units.in_file(origin)
+    if file_wkt:
+        header.add_crs(parse_crs(file_wkt))
+
+
+def metres_of_file(header: Any, crs: str) -> list[float]:
+    """Metres per integer of x, y and z in a new file of a survey."""
+    units = as_in_file(crs)[1]
+    return (header.scales if units.metric else units.in_metres(header.scales)).tolist()
+
+
+@contextmanager
+def new_laz(path: str | os.PathLike[str], header: Any) -> Iterator[Any]:
+    """A laspy writer of a new file, which appears at its path only when all is written.
+
+    Parameters
+    ----------
+    path : of the file; compressed unless it ends in .las
+    header : laspy.LasHeader
+
+    Raises
+    ------
+    RoadExtractionError
+        If the file cannot be written.
+    """
+    import laspy
+
+    suffix = ".las" if str(path).lower().endswith(".las") else ".laz"
+    unfinished = unfinished_path(path, suffix)
+    try:
+        # A file that laspy opened itself would stay open when its last points cannot be written.
+        with open(unfinished, "wb") as stream, laspy.open(
+                stream, mode="w", header=header, do_compress=suffix == ".laz", closefd=False) as writer:
+            yield writer
+        os.replace(unfinished, path)
+    except (OSError, RuntimeError) as problem:  # lazrs raises RuntimeErrors
+        raise RoadExtractionError(f"{path} cannot be written ({problem}). Choose another folder or free some disk space.") from problem
+    finally:
+        unfinished.unlink(missing_ok=True)
+
+
+# Road points as a LAZ file, with the road frame in extra fields for the later stages.
+
+ROAD_CLASS = 11  # ASPRS: road surface
+MAX_CORRECTION = 10.0  # m: larger than any correction of a pass
+
+# stations and offsets are integers of 0.1 mm, so that reading returns exactly the records that were written
+EXTRA_FIELDS = [("road", "uint16", "Road", None), ("pass", "uint16", "Pass", None), ("scanner", "uint8", "Scanner", None),
+                ("station_m", "int32", "Station along the road", COORDINATE_SCALE), ("offset_m", "int32", "Offset, left positive", COORDINATE_SCALE),
+                ("half_width", "uint16", "Half width of the road", 1e-3), ("covered", "uint8", "Beneath something on the road", None)]
+CORRECTED_FIELD = ("intensity_corrected", "float32", "Intensity, range corrected", None)
+CLUSTER_FIELD = ("cluster", "int32", "Cluster of paint", None)
+SPACING_FIELD = ("spacing", "uint16", "Spacing across the road", 1e-3)
+REQUIRED_FIELDS = ("road", "pass", "station_m", "offset_m", "half_width")
+
+
+def write_road_points(road_points: RoadPoints, path: str | Path, progress: Progress = Progress()) -> None:
+    """Write road points as LAS 1.4, class 11, in road order; a failed run leaves no file.
+
+    Coordinates are written as measured, in the units of the survey's own CRS; in metres with a scale of 0.1 mm, of 1 mm beyond 214 km from
+    the origin and of 1 cm beyond 2,147 km. Corrections of passes are written beside them and applied again on reading.
+
+    Parameters
+    ----------
+    path : of the file, .laz or .las
+
+    Raises
+    ------
+    RoadExtractionError
+        If the file cannot be written.
+    """
+    sections = road_points.all_sections()
+    header = _header(road_points)
+    with new_laz(path, header) as writer:
+        for k, (road, number) in enumerate(sections):
+            writer.write_points(_record(road_points, road, number, header))
+            progress.report((k + 1) / len(sections))
+
+
+def _header(road_points):
+    import laspy
+
+    header = laspy.LasHeader(point_format=6, version="1.4")
+    # times are written as they were read
+    header.global_encoding.gps_time_type = laspy.header.GpsTimeType.STANDARD
+    header.generating_software = "Lanewright"
+    extra = EXTRA_FIELDS + ([CORRECTED_FIELD] if road_points.has_corrected else []) + ([CLUSTER_FIELD] if road_points.has_cluster else []) \
+        + ([SPACING_FIELD] if road_points.has_spacing else [])
+    header.add_extra_dims([
+        laspy.ExtraBytesParams(name=name, type=kind, description=text,
+                               **({} if scale is None else dict(scales=np.array([scale]), offsets=np.array([0.0]))))
+        for name, kind, text, scale in extra])
+    if road_points.moves is not None:
+        header.vlrs.extend(road_points.moves.to_records())
+    header.vlrs.extend(sigma_to_record(road_points.pass_sigma))
+    place_in_file(header, road_points.origin, road_points.crs, _farthest(road_points))
+    return header
+
+
+def _farthest(road_points):
+    """The largest |local x| or |local y| of a point, m; 0 where x and y have 32 bits, which need no coarser scale in metres."""
+    if road_points.store.dtype["x"] == np.int32 and as_in_file(road_points.crs)[1].metric:
+        return 0.0
+    ends = [int(np.abs(road_points.store.section(road, number)[name]).max(initial=0))
+            for road, number in road_points.all_sections() for name in "xy"]
+    return max(ends, default=0) * COORDINATE_SCALE + MAX_CORRECTION
+
+
+def _whole(units, share):
+    """Coordinates in units of the file, of which one unit of 0.1 mm is `share`."""
+    return units if abs(share - 1.0) < 1e-12 else np.rint(units * share)
+
+
+def _record(road_points, road, number, header):
+    import laspy
+
+    records = road_points.store.section(road, number)
+    out = laspy.ScaleAwarePointRecord.zeros(len(records), header=header)
+    off = (0, 0, 0) if road_points.moves is None else road_points.moves.units(records)
+    for name, moved, metres in zip("xyz", off, metres_of_file(header, road_points.crs)):
+        out.array[name.upper()] = _whole(records[name] - moved, COORDINATE_SCALE / metres)
+    out["gps_time"] = records["time"]
+    out["intensity"] = records["intensity"]
+    out["point_source_id"] = records["source"]
+    out["return_number"], out["number_of_returns"] = records["returns"] & 15, records["returns"] >> 4
+    out["classification"] = np.full(len(records), ROAD_CLASS, np.uint8)
+    out.array["road"], out.array["pass"] = road, records["pass_number"]
+    out.array["scanner"] = records["scanner"]
+    out.array["station_m"], out.array["offset_m"] = records["s"], records["d"]
+    out.array["half_width"], out.array["covered"] = records["half_width"], records["covered"]
+    if road_points.has_corrected:
+        out.array["intensity_corrected"] = records["corrected"]
+    if road_points.has_cluster:
+        out.array["cluster"] = records["cluster"]
+    if road_points.has_spacing:
+        out.array["spacing"] = records["spacing"]
+    return out
+
+
+def read_road_points(path: str | Path, progress: Progress = Progress()) -> RoadPoints:
+    """Read a LAZ file written by `write_road_points`.
+
+    Parameters
+    ----------
+    path : of the file
+
+    Raises
+    ------
+    RoadExtractionError
+        If the file lacks the extra fields of road points, or holds no points.
+    """
+    with open_cloud(path) as reader:
+        header = reader.header
+        names = set(header.point_format.dimension_names)
+        missing = [name for name in REQUIRED_FIELDS if name not in names]
+        if missing:
+            raise RoadExtractionError(
+                f"{path} lacks the extra field(s) {', '.join(missing)} that tell where on the road a point lies. "
+                "Give it the road points written by “Extract road surface” or a stage after it.")
+        origin, scales, total = np.asarray(header.offsets, float), np.asarray(header.scales), header.point_count
+        # where the file says its points lie; 32 bits of x and y reach beyond where they change to 64
+        farthest = max((np.abs(np.r_[header.mins, header.maxs][[0, 1, 3, 4]] - origin[[0, 1, 0, 1]])).max(), 0.0) if total else 0.0
+        dtype = point_dtype(ROAD_POINT, farthest)
+        crs, moves, sigma = cloud_crs(header), PassCorrections.of_records(header.vlrs), sigma_of_records(header.vlrs)
+    has_corrected, has_cluster, has_spacing = (name in names for name in ("intensity_corrected", "cluster", "spacing"))
+    store = SectionStore(dtype)
+    done = 0
+    for block in read_blocks(path, POINTS_PER_BLOCK):
+        records = np.zeros(len(block), dtype)
+        # another program may have rewritten the file with its own scale
+        for _axis, (name, scale) in enumerate(zip("xyz", scales)):
+            raw = np.asarray(block[name.upper()])
+            records[name] = raw if abs(scale - COORDINATE_SCALE) < 1e-12 else np.rint(raw * (scale / COORDINATE_SCALE))
+        records["time"] = block["gps_time"]
+        records["intensity"], records["source"] = block["intensity"], block["point_source_id"]
+        records["returns"] = np.asarray(block["return_number"]) | (np.asarray(block["number_of_returns"]) << 4)
+        records["pass_number"] = block["pass"]
+        records["scanner"] = block["scanner"] if "scanner" in names else 0
+        records["s"] = np.rint(np.asarray(block["station_m"], float) / COORDINATE_SCALE)
+        records["d"] = np.rint(np.asarray(block["offset_m"], float) / COORDINATE_SCALE)
+        records["half_width"] = np.rint(np.asarray(block["half_width"], float) / 1e-3)
+        records["corrected"] = block["intensity_corrected"] if has_corrected else np.nan
+        records["cluster"] = block["cluster"] if has_cluster else 0
+        records["covered"] = block["covered"] if "covered" in names else 0
+        if has_spacing:
+            records["spacing"] = np.rint(np.asarray(block["spacing"], float) / 1e-3)
+        if moves is not None:
+            for name, moved in zip("xyz", moves.units(records)):
+                records[name] += moved
+        roads = np.asarray(block["road"])
+        for road in np.unique(roads):
+            store.append(int(road), records[roads == road])
+        done += len(block)
+        progress.report(done / max(total, 1))
+    if not store.count:
+        raise RoadExtractionError(f"{path} holds no points. Run the stage that made it again with other settings.")
+    return RoadPoints(store, origin, crs, has_corrected, has_cluster, moves, has_spacing, sigma)

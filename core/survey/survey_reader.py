@@ -1,0 +1,418 @@
+"""Reading point cloud files into the section store: by threads of this process, or part by part by whoever runs phases.
+
+The height of the road is estimated from the first blocks, which are always read here.
+"""
+
+from __future__ import annotations
+
+import os
+from collections import deque
+from collections.abc import Callable, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor, wait
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..common.parallel import POLL_INTERVAL, check_cancelled
+from ..common.progress import Progress
+from ..execution.phase import Executor, Phase, Recipe
+from .blocks import (
+    DEFAULT_SENSOR_HEIGHT,
+    KEPT_BELOW_ROAD,
+    LEVEL_HEIGHT,
+    BlockReader,
+    BlockSummary,
+    ChosenPoints,
+    HeightFilter,
+    PointChoice,
+    estimate_sensor_height,
+)
+from .estimation.interleaved import ScannerSplitter
+from .frame.road_frame import RoadFrame
+from .las.parallel_reader import ParallelCloudReader
+from .las.point_fields import ScannerCensus, numbers_by_value
+from .las.reader import CloudHeader
+from .las.samples import TimeSlots
+from .store.columns import Columns
+from .store.records import COORDINATE_SCALE, road_of
+from .store.section_store import STRETCH_POINTS, SectionStore, Stretch
+from .store.spill_file import StoreIndex, close_parts
+
+MAX_WAITING_POINTS = 4_000_000  # points held back at most until the height of the road is known
+HEIGHT_SAMPLES = 5_000     # points on the own track from which the rough height is estimated
+MAX_INGEST_THREADS = 4     # each decodes blocks with all cores (lazrs keeps the others waiting) and projects their points
+BLOCKS_PER_THREAD = 3      # begun or queued per thread: keeps the threads busy while sections are written to the temporary file
+MAX_SPLIT_SAMPLES = 1_500_000   # points sampled, by which two scanners are told apart
+
+
+class SurveyReader:
+    """Reads files into a section store and gathers statistics of the whole survey.
+
+    Parameters
+    ----------
+    store : SectionStore that the points are added to
+
+    Attributes, complete after `read` or `read_in_parts`
+    ----------------------------------------------------
+    census : ScannerCensus
+    darkest, brightest : lowest and highest intensity
+    unplaced_time : number of points at a time of no pass
+    excluded : number of points that are withheld or classified as noise
+    heights : {pass number: metres from the trajectory down to the road}
+    uneven : see `HeightHistogram.uneven`
+    slots : TimeSlots of the points sampled, to tell scanners apart that no field distinguishes
+    sampled : their (N,) times and (N, 3) units of 0.1 mm, in no order; without times none
+    """
+
+    def __init__(self, frame: RoadFrame, store: SectionStore, choice: PointChoice):
+        self.frame, self.store, self.choice = frame, store, choice
+        self.census, self.darkest, self.brightest, self.unplaced_time, self.excluded = ScannerCensus(), 65535, 0, 0, 0
+        self.slots = TimeSlots(1)
+        self._blocks: BlockReader
+        # both are created once the rough height of the road is known; until then parts of blocks wait
+        self._ground: HeightFilter | None = None
+        self._chosen: ChosenPoints
+        self._drop = DEFAULT_SENSOR_HEIGHT
+        self._waiting: list[tuple[int, Columns]] = []
+        self._samples: list[np.ndarray] = []
+
+    @property
+    def sampled(self) -> list[tuple[np.ndarray, np.ndarray]]:
+        """See above."""
+        return self._chosen.sampled
+
+    def read(self, files: list[CloudHeader], block: int, progress: Progress) -> None:
+        """Read all files, `block` points at a time, in several threads of this process."""
+        total, done = self._begin(files), 0
+        threads = min(MAX_INGEST_THREADS, os.cpu_count() or 1)
+        with ParallelCloudReader(self.choice.layers) as readers, ThreadPoolExecutor(threads) as pool:
+            waiting: deque[Future] = deque()
+
+            def take():
+                nonlocal done
+                while not wait([waiting[0]], POLL_INTERVAL).done:
+                    progress.report(done / total)
+                done += self._take(*waiting.popleft().result())
+                progress.report(done / total)
+
+            try:
+                for load in readers.blocks(files, block):
+                    waiting.append(pool.submit(self._read_block, load))
+                    # the height of the road is estimated from the first blocks and filters the others
+                    while len(waiting) > (BLOCKS_PER_THREAD * threads if self._ground else 0):
+                        take()
+                while waiting:
+                    take()
+            finally:
+                for coming in waiting:
+                    coming.cancel()
+        self._end()
+
+    def read_in_parts(self, files: list[CloudHeader], block: int, executor: Executor, progress: Progress) -> None:
+        """Read all files, `block` points at a time: what follows the first blocks as a phase, into the folder of the store."""
+        total, done = self._begin(files), 0
+        with ParallelCloudReader(self.choice.layers) as readers:
+            ranges = deque(readers.ranges(files, block))
+            while ranges and self._ground is None:
+                number, first, count = ranges.popleft()
+                for points in readers.points(files[number], first, count, block):
+                    done += self._take(*self._read_block(lambda points=points: points))
+                    progress.report(done / total)
+        self._settle()
+        source = PartsOfFiles(files, self.frame, self.store, self.choice, self.slots, self._drop, np.array(ranges, np.int64).reshape(-1, 3), block)
+        phase = Phase(read_part, source, (), source.place, source.size, join_parts)
+        for part in executor.run(phase, source.items(PART_POINTS), progress.part(done / total, 1.0)):
+            self._take_part(part)
+        self._end()
+
+    def _begin(self, files):
+        """Prepare for the points of files; how many there are."""
+        total = sum(file.count for file in files)
+        self.slots = TimeSlots.for_points(total, MAX_SPLIT_SAMPLES)
+        self._blocks = BlockReader(self.frame, self.choice, self.slots)
+        return total
+
+    def _end(self):
+        self._settle()
+        self.heights, self.uneven = self._chosen.histogram.heights(), self._chosen.histogram.uneven()
+
+    def _read_block(self, load):
+        """BlockSummary, points by road, whether these are filtered by height and partitioned, and the size of the block."""
+        block, ground, found = load(), self._ground, BlockSummary()
+        parts: Any = self._blocks.unfiltered(block, found) if ground is None else self._blocks.read(block, found, ground, self._chosen, self.store)
+        return found, parts, ground is not None, len(block)
+
+    def _take(self, found, parts, parted, count):
+        """Take the result of a block, in the order of the files."""
+        self._hear(found)
+        if parted:
+            for part in parts:
+                self.store.add(part)
+        elif self._ground is not None:
+            self._choose(parts)
+        else:
+            self._waiting += parts
+            self._samples += [drops[::7] for road, points in parts if road >= 0 for _, drops in self._blocks.tracks.drops(road, points)]
+            if sum(map(len, self._samples)) > HEIGHT_SAMPLES or sum(len(points) for _, points in self._waiting) > MAX_WAITING_POINTS:
+                self._settle()
+        return count
+
+    def _take_part(self, part):
+        """Take a part that somebody else read, in the order of the files."""
+        self._hear(part.found)
+        self._chosen.histogram.join(part.drops)
+        self._chosen.sampled.append((part.times, part.places))
+        if self.store.folder is not None:
+            self.store.adopt(part.index, self.store.folder)
+
+    def _hear(self, found):
+        self.darkest, self.brightest = min(self.darkest, found.darkest), max(self.brightest, found.brightest)
+        self.unplaced_time += found.without_time
+        self.excluded += found.excluded
+        for name, times in found.scanners.items():
+            self.census.take(name, times)
+
+    def _settle(self):
+        """Estimate the rough height of the road and store the points that waited for it."""
+        if self._ground is not None:
+            return
+        drop = estimate_sensor_height(np.concatenate(self._samples)) if self._samples else None
+        self._drop = DEFAULT_SENSOR_HEIGHT if drop is None else drop
+        self._ground, self._chosen = self._blocks.ground(self._drop), self._blocks.chosen(self._drop)
+        waiting, self._waiting, self._samples = self._waiting, [], []
+        self._choose(waiting)
+
+    def _choose(self, parts):
+        """Filter by height the points that were projected before it was known, and store them."""
+        for points in self._blocks.filtered(parts, self._ground, self._chosen, self.store):
+            self.store.add(points)
+
+
+# The phase of reading: ranges of points of the files, each decoded, placed and written to the store's folder by whoever is given it.
+
+PART_POINTS = 1_200_000   # points of a part, about: a second or two of a worker's time, some 20 MB of its file
+
+
+@dataclass(frozen=True)
+class PartOfFiles:
+    """What was found in a range of points.
+
+    index : where those lie that were kept
+    found : what all of them contribute to the knowledge of the cloud
+    drops : {pass number: counts of its HeightHistogram}
+    times, places : (N,) s and (N, 3) units of 0.1 mm of the sampled points
+    """
+
+    index: StoreIndex
+    found: BlockSummary
+    drops: dict[int, np.ndarray]
+    times: np.ndarray
+    places: np.ndarray
+
+
+class PartsOfFiles:
+    """Files whose points are read part by part into the folder of a store; several threads may do so.
+
+    Parameters
+    ----------
+    files : CloudHeaders
+    store : SectionStore, of which dtype, section length, memory limit and folder count
+    slots : TimeSlots of the points that are sampled
+    drop : m from the trajectory down to the road, about
+    ranges : (B, 3) number of a file, index of the first point and points of every block
+    block : points of a block, about
+    """
+
+    def __init__(self, files: Sequence[CloudHeader], frame: RoadFrame, store: SectionStore, choice: PointChoice, slots: TimeSlots, drop: float,
+                 ranges: np.ndarray, block: int):
+        self.files, self.store, self.drop, self.ranges, self.block = files, store, drop, ranges, block
+        self.reader = BlockReader(frame, choice, slots)
+        self.clouds = ParallelCloudReader(choice.layers)
+        self.ground = self.reader.ground(drop)
+
+    def recipe(self, folder: Path) -> Recipe:
+        """How other processes read the same."""
+        store = self.store
+        files = [replace(file, path=os.path.abspath(file.path), crs="") for file in self.files]
+        return Recipe("survey.survey_reader:parts_of_files", dict(
+            files=files, frame=self.reader.frame, columns=[list(column) for column in store.dtype.descr], section_length=store.section_length,
+            memory_limit=store.memory_limit, folder=str(store.folder), choice=self.reader.choice, slots=self.reader.slots, drop=self.drop,
+            ranges=self.ranges, block=self.block))
+
+    def items(self, points: int) -> list[tuple[int, int]]:
+        """(first, last + 1) numbers of blocks that have about so many points together."""
+        ends = np.cumsum(self.ranges[:, 2])
+        cuts = np.searchsorted(ends, np.arange(points, self.ranges[:, 2].sum(), points)) + 1
+        bounds = np.unique(np.r_[0, cuts, len(ends)]).tolist()
+        return list(zip(bounds[:-1], bounds[1:]))
+
+    def place(self, item: tuple[int, int]) -> str:
+        """What messages call blocks."""
+        number, first, _ = self.ranges[item[0]].tolist()
+        last, begin, count = self.ranges[item[1] - 1].tolist()
+        other = "" if last == number else f" of {Path(self.files[last].path).name}"
+        return f"{Path(self.files[number].path).name}, points {first + 1:,} to {begin + count:,}{other}"
+
+    def size(self, item: tuple[int, int]) -> float:
+        """Points of blocks."""
+        return float(self.ranges[item[0]:item[1], 2].sum())
+
+
+def parts_of_files(columns: list[list[str]], section_length: float, memory_limit: int, folder: str, **others: Any) -> PartsOfFiles:
+    """What `PartsOfFiles.recipe` describes."""
+    store = SectionStore([tuple(column) for column in columns], section_length, memory_limit, folder=Path(folder))
+    return PartsOfFiles(store=store, **others)
+
+
+def read_part(source: PartsOfFiles, item: tuple[int, int]) -> PartOfFiles:
+    """The phase of reading: the points of some blocks that lie near the road.
+
+    Parameters
+    ----------
+    item : (first, last + 1) numbers of blocks
+    """
+    chosen, found = source.reader.chosen(source.drop), BlockSummary()
+    with source.store.part() as store:
+        for number, first, count in source.ranges[item[0]:item[1]].tolist():
+            for points in source.clouds.points(source.files[number], first, count, source.block):
+                check_cancelled()
+                for part in source.reader.read(points, found, source.ground, chosen, store):
+                    store.add(part)
+        index = store.index()
+    sampled = list(zip(*chosen.sampled)) or [[np.empty(0)], [np.empty((0, 3), np.int32)]]
+    return PartOfFiles(index, found, chosen.histogram.counts, *(np.concatenate(column) for column in sampled))
+
+
+def join_parts(parts: list[PartOfFiles]) -> PartOfFiles:
+    """One part of several that follow each other."""
+    found = BlockSummary()
+    drops: dict[int, np.ndarray] = {}
+    for part in parts:
+        found.join(part.found)
+        drops = {number: counts + drops.get(number, 0) for number, counts in part.drops.items()}
+    return PartOfFiles(StoreIndex.join([part.index for part in parts]), found, drops, *(np.concatenate([getattr(part, name) for part in parts])
+                                                                                   for name in ("times", "places")))
+
+
+# The phase that puts points in order: sections are read from where they were stored, finished, sorted, and written to a folder.
+
+class UnorderedPoints:
+    """Points of a store, to be put in order in a folder.
+
+    Parameters
+    ----------
+    store : SectionStore; the executor's workers must see its folder
+    finishing : what its points are finished with, None where they are
+    folder : that gets the points
+    """
+
+    def __init__(self, store: SectionStore, finishing: Finishing | None, folder: Path):
+        self.store, self.finishing, self.folder = store, finishing, folder
+
+    def recipe(self, folder: Path) -> Recipe:
+        """How other processes open the points."""
+        return Recipe("survey.survey_reader:unordered_points", dict(contents=self.store.contents(), points_folder=str(self.store.folder),
+                                                               finishing=self.finishing, folder=str(self.folder)))
+
+    def put_in_order(self, executor: Executor, place: Callable[[int, float, float], str], progress: Progress) -> None:
+        """Put all points in order; the store has them from the folder, from then on.
+
+        Parameters
+        ----------
+        executor : who does it
+        place : names the stretch of a road between two stations (m)
+        """
+        length = self.store.section_length
+
+        def points(item):
+            return self.store.points_between(item[0], item[1] * length, item[2] * length)
+
+        phase = Phase(order_sections, self, (), lambda item: place(item[0], item[1] * length, item[2] * length), points)
+        found = list(executor.run(phase, self.store.stretches(STRETCH_POINTS, self.store.numbers()), progress))
+        self.store.take_over(StoreIndex.join(found), self.folder)
+
+
+def unordered_points(contents: dict[str, Any], points_folder: str, finishing: Finishing | None, folder: str) -> UnorderedPoints:
+    """What `UnorderedPoints.recipe` describes."""
+    store = SectionStore.opened(Path(points_folder), **contents)
+    store.finish = finishing
+    return UnorderedPoints(store, finishing, Path(folder))
+
+
+def order_sections(source: UnorderedPoints, item: Stretch) -> StoreIndex:
+    """The phase: the points of some sections, in order, in a file of the folder.
+
+    Parameters
+    ----------
+    item : Stretch of its road
+    """
+    try:
+        return source.store.write_in_order(source.store.in_stretch(item), source.folder)
+    finally:
+        # they are removed when all is in order, which Windows refuses for files that are open
+        close_parts()
+
+
+# What is done with the points of a section before they are put in order: scanners are numbered, and those far above or below the road go.
+
+ROAD_HEIGHT_STEP = 0.25      # m between the stations at which points are compared with the height of the road
+
+
+@dataclass(frozen=True)
+class Finishing:
+    """Finishes the points of sections.
+
+    frame : RoadFrame
+    sensor_height : {pass number: metres from the trajectory down to the road}
+    scanner_field : LAS field that identifies the scanners, None if there is one
+    scanners : values of that field, see `ScannerCensus.choose`
+    splitter : tells scanners apart that no field distinguishes; None where there is no need
+    above_road : metres above the road up to which points are kept
+    """
+
+    frame: RoadFrame
+    sensor_height: dict[int, float]
+    scanner_field: str | None
+    scanners: list[Any]
+    splitter: ScannerSplitter | None
+    above_road: float
+
+    def __call__(self, road: int, records: Columns) -> np.ndarray | None:
+        """Number the scanners of the records of a section from 0.
+
+        Parameters
+        ----------
+        road : number, or that of what lies beside it
+        records : (N,) Columns, in no order, N > 0
+
+        Returns
+        -------
+        (N,) bool of those near the height of the road, None for all
+        """
+        if self.splitter is not None:
+            records["scanner"] = self.splitter.numbers(records["time"], np.stack([records[name] for name in "xyz"], axis=1) * COORDINATE_SCALE)
+        elif self.scanner_field is None:
+            records["scanner"] = 0
+        else:
+            numbers = records["source" if self.scanner_field == "point_source_id" else "scanner"]
+            records["scanner"] = numbers_by_value(self.scanners, int(numbers.max()) + 1).take(numbers)
+        # only records near the limits are compared with the height at their own station
+        z = records["z"]
+        below, above = (KEPT_BELOW_ROAD, self.above_road) if road >= 0 else (LEVEL_HEIGHT, LEVEL_HEIGHT)
+        first, nodes = self._heights(road_of(road), records["s"].min() * COORDINATE_SCALE, records["s"].max() * COORDINATE_SCALE)
+        doubtful = np.flatnonzero((z < (nodes.max() - below) / COORDINATE_SCALE + 1)
+                                  | (z > (nodes.min() + above) / COORDINATE_SCALE - 1))
+        at = records["s"][doubtful] * COORDINATE_SCALE / ROAD_HEIGHT_STEP - first
+        k = at.astype(np.int64)
+        h = z[doubtful] * COORDINATE_SCALE - (nodes[k] + (at - k) * (nodes[k + 1] - nodes[k]))
+        near = np.ones(len(records), bool)
+        near[doubtful] = (h > -below) & (h < above)
+        return None if near[doubtful].all() else near
+
+    def _heights(self, road, start, end):
+        """Heights of the road at fixed stations from start to end: number of the first, heights."""
+        first = int(np.floor(start / ROAD_HEIGHT_STEP))
+        stations = np.arange(first, int(np.floor(end / ROAD_HEIGHT_STEP)) + 2) * ROAD_HEIGHT_STEP
+        return first, self.frame.track_height(road, stations, self.sensor_height)
