@@ -127,18 +127,9 @@ def _begins(rows, way):
 
 def make_lanes(rows: list[dict[str, Any]], crs: str) -> Lanes:
     """Lanes of the rows of all roads."""
-    def column(name: str, kind: Any) -> np.ndarray:
-        return np.array([row[name] for row in rows], kind)
-
-    def border(side: int, k: int) -> np.ndarray:
-        return np.array([row["about"][side][k] for row in rows], object)
-
-    return Lanes(
-        column("road", int), column("lane", int), column("lane_id", object), column("type", object), column("direction", int), border(0, 0),
-        border(1, 0), border(0, 1), border(1, 1), border(0, 2), border(1, 2), [row["successors"] for row in rows], column("status", object),
-        column("confidence", float), column("station", float), column("end", float),
-        np.concatenate([np.empty((0, 3)), *(row["left"] for row in rows)]), np.concatenate([np.empty((0, 3)), *(row["right"] for row in rows)]),
-        np.append(0, np.cumsum([len(row["left"]) for row in rows], dtype=int)), crs, np.array([row.get("other", "") for row in rows], object))
+    borders = [dict(zip(("left_line", "left_kind", "left_pattern", "right_line", "right_kind", "right_pattern"), (*left[:3], *right[:3])))
+               for left, right in (row["about"] for row in rows)]
+    return Lanes.of_pieces([{**row, **about} for row, about in zip(rows, borders)], crs)
 
 
 # Shoulders: the paved strips between the edge line of the outermost lane and the edge of the pavement.

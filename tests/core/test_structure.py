@@ -26,7 +26,7 @@ NUMBERS = {
     "road": 522,
     "intensity": 49,
     "markings": 439,
-    "driving": 63,
+    "driving": 62,
     "corrections": 11,
     "inventory": 148,
     "export": 166,

@@ -614,7 +614,7 @@ def with_paint_between_tracks(markings: MarkingObjects, lines: PaintedLines) -> 
     if not polygons:
         return markings
     first, last, _, _, offset, width = np.array(spans).T
-    more = replace(markings.take(np.array(like)), outlines=Outlines.of(polygons), station=first, offset=offset, length=last - first, width=width,
+    more = replace(markings[np.array(like)], outlines=Outlines.of(polygons), station=first, offset=offset, length=last - first, width=width,
                    elongation=(last - first) / width, points=np.zeros(len(like)), extent=np.array(spans)[:, :4])
     return _together(markings, more)
 

@@ -160,9 +160,8 @@ def passes_to_features(frame: RoadFrame, crs: str) -> Features:
         if len(rows) < 2:
             continue
         line = shapely.linestrings(np.round(np.c_[one.x, one.y, one.z][rows] + frame.origin, COORDINATE_DECIMALS))
-        timed = frame.has_time
-        layer.add(line, **{"pass": one.number}, road=one.road, direction=one.direction, station_m=float(one.s.min()), end_m=float(one.s.max()),
-                  length_m=float(line.length), begin_s=float(one.time[0]) if timed else None, finish_s=float(one.time[-1]) if timed else None)
+        layer.add(line, **{"pass": one.number}, road=one.road, direction=one.direction, station_m=one.s.min(), end_m=one.s.max(),
+                  length_m=line.length, **(dict(begin_s=one.time[0], finish_s=one.time[-1]) if frame.has_time else {}))
     return layer
 
 
