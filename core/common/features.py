@@ -38,8 +38,6 @@ class Field:
 class Features:
     """A vector layer in memory.
 
-    Attributes
-    ----------
     geometry_type : "PointZ", "LineStringZ", "PolygonZ" or "None" (a table)
     schema : list of Field
     geometries : list of shapely geometries with Z in map coordinates (None in a table)

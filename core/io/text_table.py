@@ -67,8 +67,6 @@ STYLES = (NumberStyle("."), NumberStyle(","), NumberStyle(".", "'"), NumberStyle
 class NumberTable:
     """A table of numbers.
 
-    Attributes
-    ----------
     values : (N, K) float64, NaN where a field is not a number
     preamble : the lines above the numbers, header included, top down
     first_row : the fields of the first row as they are written

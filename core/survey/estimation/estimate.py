@@ -344,10 +344,7 @@ MIN_STANDING_TIME = 2.0  # s of measuring before standing still means anything
 def _refuse_airborne(tracks: list[FirstTrack]) -> None:
     """Refuse a cloud whose points are spread so wide at any time that they were measured from high above.
 
-    Raises
-    ------
-    RoadExtractionError
-        If it is one.
+    Raises RoadExtractionError if it is one.
     """
     reach = float(np.nanmedian(np.concatenate([track.reach for track in tracks])))
     if reach > FARTHEST_MEDIAN:
@@ -360,10 +357,7 @@ def _refuse_airborne(tracks: list[FirstTrack]) -> None:
 def _refuse_clocks_that_overlap(samples: Samples, tracks: list[FirstTrack]) -> None:
     """Refuse points that were measured in two places at the same times: drives whose clocks overlap.
 
-    Raises
-    ------
-    RoadExtractionError
-        If most moments of the survey show two such places.
+    Raises RoadExtractionError if most moments of the survey show two such places.
     """
     apart = np.concatenate([_places_apart(samples.time[drive], samples.place[drive, :2], track) for drive, track in zip(samples.drives, tracks)])
     if len(apart) and np.mean(np.isfinite(apart)) > 0.5:
@@ -407,10 +401,7 @@ def _usual_acceleration(tracks: list[np.ndarray], spacing: float) -> float:
 def _refuse_without_road(tracks: list[FirstTrack]) -> None:
     """Refuse to follow the density of points among which the road under the vehicle is not.
 
-    Raises
-    ------
-    RoadExtractionError
-        If most points lie far from where they are densest, or that place moves as no vehicle does.
+    Raises RoadExtractionError if most points lie far from where they are densest, or that place moves as no vehicle does.
     """
     reach = float(np.nanmedian(np.concatenate([track.reach for track in tracks])))
     sharp = _usual_acceleration([track.foot for track in tracks], WINDOW)
@@ -428,10 +419,7 @@ def _refuse_terrestrial(tracks: list[FirstTrack], places: list[np.ndarray]) -> N
     tracks : FirstTrack of each drive
     places : (N, 2 or more) m, where scanners were seen, in order of time, some of them wrong; none where that is not known
 
-    Raises
-    ------
-    RoadExtractionError
-        If it is one.
+    Raises RoadExtractionError if it is one.
     """
     if places := [place[:, :2] for place in places if len(place)]:
         # a vehicle may stand most of the time, but where it drives, it is seen several times

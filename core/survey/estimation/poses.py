@@ -39,8 +39,6 @@ class DriveKnots:
 class Poses:
     """Cubic B-splines of place, attitude and mirror phases, and the mounting of S scanners.
 
-    Attributes
-    ----------
     drives : DriveKnots of each drive
     control : (K, 6 + S) control values: x, y, z (m), roll (right side down), pitch (nose up), yaw (counter-clockwise from east; radians),
         and of each scanner what its direction angle is ahead of 2 pi rate t (radians)

@@ -54,8 +54,6 @@ MOUNTING_DIRECTIONS = 360      # about the trajectory, for which the mounting of
 class ScanLattice:
     """The mirror phases of a survey.
 
-    Attributes
-    ----------
     mirror_phases : {(pass number, scanner): MirrorPhase}
     without : (pass number, scanner) that have no regular scan lines, and why
     notes : sentences for the user about these
@@ -402,8 +400,6 @@ MAX_PHASE_BIN_GAP = 1.5           # bins between two phases; farther apart, the 
 class MirrorPhase:
     """The turns of one scanner's mirror during one pass; a scan line is a turn.
 
-    Attributes
-    ----------
     frequency : Hz, the mean; negative where the mirror turns clockwise seen in the direction of the road
     time, turns : (K,) seconds and turns of nodes between which the mirror turns evenly; turns increase
     pulse : usual share of a turn between neighbouring points of a line

@@ -230,10 +230,7 @@ NOVATEL = re.compile(r"[#%](?P<name>[A-Z]+A),(?P<head>[^;\n]*);(?P<rest>[^*\n]*)
 def _read_log(path: Path) -> list[TableColumn]:
     """The positions in a log of sentences, as columns with names.
 
-    Raises
-    ------
-    RoadExtractionError
-        If its sentences hold no positions.
+    Raises RoadExtractionError if its sentences hold no positions.
     """
     kept: dict[str, list[list[str]]] = {}
     day = ""
@@ -315,10 +312,7 @@ def _read_track(path: Path) -> list[TableColumn]:
     Of GPX the points of tracks are taken, otherwise those of its route, otherwise its waypoints; of KML the tracks (gx:Track), otherwise the
     lines, otherwise the points.
 
-    Raises
-    ------
-    RoadExtractionError
-        If it is no XML, or holds neither track nor line.
+    Raises RoadExtractionError if it is no XML, or holds neither track nor line.
     """
     reader = _TrackReader()
     try:
