@@ -8,9 +8,9 @@ import numpy as np
 import shapely
 
 from ...survey.frame.road_frame import RoadFrame
+from ..settings import RoadsideSettings
 from .chains import Chain
 from .poles import Pole
-from .settings import RoadsideSettings
 
 SAME_THING = 0.5       # m within which what two roads see is one thing: half of what two rails of a median are apart
 
