@@ -14,10 +14,18 @@ from ..countries.catalogue import country
 from ..curves.robust import MAD_TO_SIGMA
 from .borders import BorderLayers, RoadBorders, Strip
 from .clearance import HIGHEST_VEHICLE, OVERHEAD_INSIDE, VEHICLE_REACH, clear_height, on_vehicles
-from .height_errors import HeightErrors, overlaps_of, solve_height_errors
 from .settings import CrossSectionSettings
-from .straight_edge import noise_of_largest, rut_depths
-from .surface_grid import CROSS_CELL, SLICE_LENGTH, SurfaceGrid, surface_grid
+from .surface_grid import (
+    CROSS_CELL,
+    SLICE_LENGTH,
+    HeightErrors,
+    SurfaceGrid,
+    noise_of_largest,
+    overlaps_of,
+    rut_depths,
+    solve_height_errors,
+    surface_grid,
+)
 
 if TYPE_CHECKING:
     from ..survey.frame.road_frame import RoadFrame

@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..straight_edge import smoothed
-from ..surface_grid import CROSS_CELL, SLICE_LENGTH, SurfaceGrid, surface_grid
+from ..surface_grid import CROSS_CELL, SLICE_LENGTH, SurfaceGrid, smoothed, surface_grid
 from .uprights import TOP_BINS, UPRIGHT_SLICE, Uprights
 
 if TYPE_CHECKING:
