@@ -20,9 +20,8 @@ from .faces import along_faces
 from .gaps import gaps_by_window, judged, pulses_at
 from .ground import GROUND_CELL, local_ground
 from .gutters import find_gutters
-from .poles import find_poles
 from .shared import Roadside, SideEdges, SideLine, told_once
-from .uprights import UPRIGHT_SLICE, Uprights, find_uprights
+from .uprights import UPRIGHT_SLICE, Uprights, find_poles, find_uprights
 from .view import level_views, lines_of_sight
 
 if TYPE_CHECKING:

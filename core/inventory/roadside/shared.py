@@ -10,7 +10,7 @@ import shapely
 from ...survey.frame.road_frame import RoadFrame
 from ..settings import RoadsideSettings
 from .chains import Chain
-from .poles import Pole
+from .uprights import Pole
 
 SAME_THING = 0.5       # m within which what two roads see is one thing: half of what two rails of a median are apart
 

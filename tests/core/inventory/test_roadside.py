@@ -10,8 +10,7 @@ from lanewright.core.inventory.roadside.chains import find_chains
 from lanewright.core.inventory.roadside.divide import things_of
 from lanewright.core.inventory.roadside.find import find_roadside
 from lanewright.core.inventory.roadside.layers import roadside_to_features
-from lanewright.core.inventory.roadside.poles import find_poles
-from lanewright.core.inventory.roadside.uprights import TOP_BINS, Uprights
+from lanewright.core.inventory.roadside.uprights import TOP_BINS, Uprights, find_poles
 from lanewright.core.inventory.settings import RoadsideSettings
 from lanewright.core.report.inventory import roadside_report
 from measured_streets import GROUND, SENSOR, Drive, edges_of, measured_road
