@@ -14,10 +14,8 @@ from ...countries.catalogue import country
 from ..borders import BorderLayers, RoadBorders
 from ..settings import RoadsideSettings
 from ..surface_grid import SLICE_LENGTH
-from .chains import find_chains
-from .divide import things_of
+from .chains import find_chains, gaps_by_window, judged, pulses_at, things_of
 from .faces import along_faces
-from .gaps import gaps_by_window, judged, pulses_at
 from .ground import GROUND_CELL, local_ground
 from .gutters import find_gutters
 from .shared import Roadside, SideEdges, SideLine, told_once

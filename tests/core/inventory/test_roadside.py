@@ -6,8 +6,7 @@ import shapely
 from lanewright.core.common.features import Features
 from lanewright.core.inventory.borders import BorderLayers
 from lanewright.core.inventory.roadside import find as finding
-from lanewright.core.inventory.roadside.chains import find_chains
-from lanewright.core.inventory.roadside.divide import things_of
+from lanewright.core.inventory.roadside.chains import find_chains, things_of
 from lanewright.core.inventory.roadside.find import find_roadside
 from lanewright.core.inventory.roadside.layers import roadside_to_features
 from lanewright.core.inventory.roadside.uprights import TOP_BINS, Uprights, find_poles
