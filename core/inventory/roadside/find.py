@@ -16,11 +16,9 @@ from ..settings import RoadsideSettings
 from ..surface_grid import SLICE_LENGTH
 from .chains import find_chains, gaps_by_window, judged, pulses_at, things_of
 from .faces import along_faces
-from .ground import GROUND_CELL, local_ground
-from .gutters import find_gutters
+from .ground import GROUND_CELL, find_gutters, level_views, lines_of_sight, local_ground
 from .shared import Roadside, SideEdges, SideLine, told_once
 from .uprights import UPRIGHT_SLICE, Uprights, find_poles, find_uprights
-from .view import level_views, lines_of_sight
 
 if TYPE_CHECKING:
     from ...survey.survey import Survey
