@@ -7,10 +7,11 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import shapely
 
+from ...common.features import ROADSIDE, ROADSIDE_OBJECTS, Features
 from ...survey.frame.road_frame import RoadFrame
 from ..settings import RoadsideSettings
-from .chains import Chain
-from .uprights import Pole
+from .chains import Chain, along_the_chain
+from .uprights import FIRST_BIN, HEIGHT_BIN, Pole, Uprights
 
 SAME_THING = 0.5       # m within which what two roads see is one thing: half of what two rails of a median are apart
 
@@ -125,3 +126,99 @@ def _poles(found):
 def _away(found, road, s, d, side):
     """m, median distance of places from the edge of a side of a road, however it is known."""
     return float(np.median(np.abs(d - found.edges[road].of(side, s))))
+
+
+# What is thick and loose, as a hedge, shows uprights on its face and inside it, and may be followed along either: it is told once, by its face.
+
+def along_faces(things: list[tuple[str, Chain]]) -> list[tuple[str, Chain]]:
+    """Things of which those of one kind that run beside each other, nearer than two things stand, are one.
+
+    Parameters
+    ----------
+    things : kinds and chains of one side of a road
+
+    Returns
+    -------
+    The same, in order of station; where two are joined, the uprights nearer to the road are kept
+    """
+    found: list[tuple[str, Chain]] = []
+    for kind, chain in sorted(things, key=lambda thing: int(thing[1].members.slice[0])):
+        twin = next((k for k, (other, before) in enumerate(found) if other == kind and _beside(before, chain)), None)
+        if twin is None:
+            found.append((kind, chain))
+        else:
+            found[twin] = kind, _joined(found[twin][1], chain)
+    return found
+
+
+def _beside(one, other):
+    """Whether two chains run beside each other for a while, nearer than two things stand."""
+    shared = (other.s >= one.s[0]) & (other.s <= one.s[-1])
+    return bool(shared.any()) and float(np.median(np.abs(other.d[shared] - np.interp(other.s[shared], one.s, one.d)))) < SAME_THING
+
+
+def _joined(one, other):
+    """The chain of the uprights of two, without those that stand behind the other's face."""
+    parts = [chain.part(np.flatnonzero(~_behind(chain, face, equal))) for chain, face, equal in ((one, other, False), (other, one, True))]
+    members = Uprights.join([part.members for part in parts])
+    empty = np.concatenate([part.empty for part in parts])
+    # the one nearer to the road of two that are left of a slice
+    order = np.lexsort((one.side * members.d, members.slice))
+    order = order[np.r_[True, np.diff(members.slice[order]) > 0]]
+    members, empty = members[order], empty[order]
+    # an opening of the one that the other fills is none
+    empty = np.minimum(empty, np.diff(members.slice, append=members.slice[-1] + 1) - 1)
+    return Chain(one.road, one.side, members, *along_the_chain(members), empty)
+
+
+def _behind(chain, face, equal):
+    """(N,) bool, which uprights of a chain stand behind the face of another, or on it where `equal`."""
+    d = np.interp(chain.s, face.s, face.d, left=np.nan, right=np.nan)
+    depth = chain.side * (chain.d - d)
+    return (depth >= 0.0 if equal else depth > 0.0) & (depth < SAME_THING)
+
+
+# The roadside as layers: lines along its foot, and points.
+
+DRAWN_TOLERANCE = 0.03   # m to which lines are simplified
+ON_GROUND = (FIRST_BIN + 1) * HEIGHT_BIN  # m: what is seen from here down stands on the ground, for grass hides the rest
+
+
+def roadside_to_features(found: Roadside) -> tuple[Features, Features]:
+    """The layers ROADSIDE (the pieces of lines with Z along the foot, on the ground) and ROADSIDE_OBJECTS (points on the ground)."""
+    lines, points = Features("LineStringZ", ROADSIDE, crs=found.crs), Features("PointZ", ROADSIDE_OBJECTS, crs=found.crs)
+    for number, line in enumerate(found.lines):
+        road, side, top = line.chain.road, line.chain.side, float(np.median(line.chain.top))
+        for status, piece in line.chain.pieces():
+            places = np.stack(found.frame.to_map(road, piece.s, piece.d, piece.ground), axis=1)
+            if len(places) < 2:  # the slice of a single upright
+                continue
+            shape = shapely.linestrings(places[_vertices(piece.s, places, found.settings.interval)])
+            lines.add(shape, road=road, side=_side(side), line=number, kind=line.kind, status=status, station_m=float(piece.s[0]),
+                      end_m=float(piece.s[-1]), offset_m=float(np.median(piece.d)), edge_m=_known(found.edges[road].beyond(side, piece.s, piece.d)),
+                      height_m=top, foot_m=line.foot if line.foot > ON_GROUND else 0.0, length_m=float(shapely.length(shape)))
+    for road, poles in found.poles.items():
+        for pole in poles:
+            x, y, z = found.frame.to_map(road, np.array([pole.s]), np.array([pole.d]), np.array([pole.z]))
+            side = 1 if pole.d > float(found.edges[road].middle(np.array([pole.s]))[0]) else -1
+            points.add(shapely.Point(float(x[0]), float(y[0]), float(z[0])), road=road, side=_side(side), kind=pole.kind, station_m=pole.s,
+                       offset_m=pole.d, edge_m=_known(found.edges[road].beyond(side, np.array([pole.s]), np.array([pole.d]))),
+                       height_m=pole.height, diam_m=pole.diameter)
+    return lines, points
+
+
+def _vertices(s, places, interval):
+    """Indices of the vertices that a line needs in plan and in height, and of one every interval."""
+    needed = np.zeros(len(s), bool)
+    for across in (places[:, :2], np.c_[s, places[:, 2]]):
+        kept = shapely.get_coordinates(shapely.simplify(shapely.linestrings(across), DRAWN_TOLERANCE))
+        needed |= np.isin(across[:, 0] + 1j * across[:, 1], kept[:, 0] + 1j * kept[:, 1])
+    return np.flatnonzero(needed | np.r_[True, np.diff(np.floor(s / interval)) > 0])
+
+
+def _side(side):
+    return "left" if side > 0 else "right"
+
+
+def _known(value):
+    return float(value) if np.isfinite(value) else None
