@@ -8,7 +8,7 @@ from ..survey_input import READING_SETTINGS
 from ..texts import tr
 from .survey_with_borders import add_borders, survey_with_borders
 
-ROADSIDE_OF = "inventory.roadside.settings:RoadsideSettings"
+ROADSIDE_OF = "inventory.settings:RoadsideSettings"
 ABOVE_ROAD = 8.0  # m of height above the road that are read: buildings reach higher than anything that is looked for
 
 ROADSIDE_SETTINGS = (

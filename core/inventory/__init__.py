@@ -8,5 +8,5 @@ from ..lazy import public
 __getattr__, __all__ = public(__name__, {
     "borders": ("BorderLayers",),
     "cross_sections": ("RoadSections", "measure_cross_sections", "sections_to_features"),
-    "settings": ("CrossSectionSettings",),
+    "settings": ("CrossSectionSettings", "RoadsideSettings"),
 })
