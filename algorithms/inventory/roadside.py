@@ -64,7 +64,7 @@ class Roadside(Algorithm):
 
     def work(self, call, progress):
         from ...core.inventory.roadside.find import find_roadside
-        from ...core.inventory.roadside.shared import roadside_to_features
+        from ...core.inventory.roadside.result import roadside_to_features
         from ...core.report.inventory import roadside_report
 
         settings = call.settings(ROADSIDE_SETTINGS)

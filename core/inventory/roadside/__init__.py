@@ -7,5 +7,5 @@ from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
     "find": ("Roadside", "find_roadside"),
-    "shared": ("roadside_to_features",),
+    "result": ("roadside_to_features",),
 })

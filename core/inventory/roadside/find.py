@@ -16,7 +16,7 @@ from ..settings import RoadsideSettings
 from ..surface_grid import SLICE_LENGTH
 from .chains import find_chains, gaps_by_window, judged, pulses_at, things_of
 from .ground import GROUND_CELL, find_gutters, level_views, lines_of_sight, local_ground
-from .shared import Roadside, SideEdges, SideLine, along_faces, told_once
+from .result import Roadside, SideEdges, SideLine, along_faces, told_once
 from .uprights import UPRIGHT_SLICE, Uprights, find_poles, find_uprights
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from lanewright.core.inventory.borders import BorderLayers
 from lanewright.core.inventory.roadside import find as finding
 from lanewright.core.inventory.roadside.chains import find_chains, things_of
 from lanewright.core.inventory.roadside.find import find_roadside
-from lanewright.core.inventory.roadside.shared import roadside_to_features
+from lanewright.core.inventory.roadside.result import roadside_to_features
 from lanewright.core.inventory.roadside.uprights import TOP_BINS, Uprights, find_poles
 from lanewright.core.inventory.settings import RoadsideSettings
 from lanewright.core.report.inventory import roadside_report
