@@ -12,8 +12,7 @@ from ...io.geotiff import IntensityImage
 from ..rough_place import RoughPlace
 from ..source_image import SourceImage
 from .alignment import align
-from .area import paint_about
-from .coarse import find_places
+from .coarse import find_places, paint_about
 from .corners import paint_corners
 from .evidence import corner_scores, nearby_rival, rival_elsewhere
 from .pairing import LEAST_PAIRS, pair_corners
