@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from ...common.progress import Progress
-from .contrast import reduced
 from .patches import find_patches
-from .photo import Photo, SurveyedPaint
+from .photo import Photo, SurveyedPaint, reduced
 from .placement import Placement
 from .robust import robust_placement
 

@@ -14,8 +14,7 @@ from ...io.geotiff import IntensityImage
 from ...lazy import cv2
 from ..rough_place import RoughPlace
 from ..source_image import SourceImage
-from .contrast import reduced
-from .photo import SurveyedPaint, read_paint
+from .photo import SurveyedPaint, read_paint, reduced
 
 _CELLS = (0.64, 0.32)     # m, of the two rounds: the lines of a road, 0.15 m wide, still stand out in cells of half a metre
 _SLACK = 2.0              # cells by which the ends of the photo may be off between two turns or scales that are tried

@@ -7,9 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ...lazy import cv2
-from .contrast import reduced
 from .patches import correlation_maps
-from .photo import Photo, SurveyedPaint
+from .photo import Photo, SurveyedPaint, reduced
 from .placement import Placement
 
 _HALF = 0.8           # m, half the side of the patch about a corner

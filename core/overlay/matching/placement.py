@@ -9,7 +9,7 @@ import numpy as np
 
 from ...lazy import cv2
 from ..polynomial import ImagePolynomial, fit_image_polynomial
-from .contrast import reduced
+from .photo import reduced
 
 if TYPE_CHECKING:
     from .photo import Photo
