@@ -7,8 +7,7 @@ import numpy as np
 from ...common.progress import Progress
 from .patches import find_patches
 from .photo import Photo, SurveyedPaint, reduced
-from .placement import Placement
-from .robust import robust_placement
+from .placement import Placement, robust_placement
 
 # Half the side of a patch, how far it is looked for, and the largest residual of one that is used (m each), with the cell. Large patches
 # hold several markings, so that one dash is not taken for the next; small ones follow the tilt of the camera and its lens.

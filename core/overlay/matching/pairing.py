@@ -8,9 +8,8 @@ import numpy as np
 
 from .patches import find_patches
 from .photo import Photo, SurveyedPaint
-from .placement import Placement
+from .placement import Placement, highest_order, left_out_residuals, robust_placement
 from .proposal import ProposalSettings
-from .robust import highest_order, left_out_residuals, robust_placement
 
 LEAST_PAIRS = 6         # pairs that agree, below which a fit may be chance: twice what turn, scale and shift need
 _LEAST_SHARE = 0.4      # of the corners that look alike, which must agree on one placement
