@@ -14,11 +14,10 @@ from ..source_image import SourceImage
 from .alignment import align
 from .coarse import find_places, paint_about
 from .corners import paint_corners
-from .evidence import corner_scores, nearby_rival, rival_elsewhere
 from .pairing import LEAST_PAIRS, pair_corners
 from .photo import read_photo
 from .placement import Placement
-from .proposal import Proposal, ProposalSettings
+from .proposal import Proposal, ProposalSettings, corner_scores, nearby_rival, rival_elsewhere
 
 _CORNERS = 400          # corners looked for
 _CANDIDATES = 4         # places of the search that are followed up
