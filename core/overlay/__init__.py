@@ -11,8 +11,7 @@ __getattr__, __all__ = public(__name__, {
     "control_point_file": ("read_control_points",),
     "control_points": ("ControlPoints",),
     "georeference": ("GeoreferenceSettings", "Georeferencing", "residual_vectors"),
-    "position_tags": ("PositionTags", "read_position_tags"),
-    "rough_place": ("RoughPlace",),
+    "rough_place": ("PositionTags", "RoughPlace", "read_position_tags"),
     "source_image": ("SourceImage", "open_image"),
     "warp": ("draw_image",),
 })
