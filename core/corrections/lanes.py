@@ -12,9 +12,8 @@ from ..driving.driving_lines import driving_lines_of
 from ..driving.lane_areas import NO_BORDER, follow, make_lanes
 from ..driving.layers import CurveElements, DrivingLines, Lanes
 from ..survey.frame.placement import located
-from .apply import LineKind, apply_corrections
+from .apply import LineKind, apply_corrections, spans_along
 from .corrections import DRAWN, Correction, Corrections
-from .places import spans_along
 
 if TYPE_CHECKING:
     from ..survey.frame.road_frame import RoadFrame
