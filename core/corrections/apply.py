@@ -1,4 +1,4 @@
-"""Corrections applied to lines of any kind."""
+"""Corrections applied to lines of any kind, to road edges and to markings."""
 
 from __future__ import annotations
 

@@ -45,7 +45,7 @@ AVERAGED_SLICES = (1, 2, 5, 10)  # slices that one profile for rut depths is ave
 QUIET_PROFILE = 0.0015       # m of noise under the straight edge at which no more slices are averaged
 MAX_RUT_CORRECTION = 0.005   # m of noise under the straight edge beyond which a rut depth says nothing
 UNCHECKED_ROLL = np.tan(np.radians(0.05))  # m/m: what boresight and navigation of a mapping system leave, where opposite passes do not tell
-CHECKED_ROLL = 0.0003        # m/m: the same where they do, see height_errors.TILT_SIGMA
+CHECKED_ROLL = 0.0003        # m/m: the same where they do, see surface_grid.TILT_SIGMA
 STEEPEST_MIDDLE = 0.15       # m/m that the carriageway may run askew to the driven line
 LEAST_STRETCHED = 0.3        # m along a strip for each m of station, where a bend is tightest
 

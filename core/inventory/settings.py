@@ -1,4 +1,4 @@
-"""Settings of cross-sections and their limits."""
+"""Settings of cross-sections, their limits, and settings of the roadside."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Heights of the road in cells along and across it, apart for every pass and scanner."""
+"""Heights of the road in cells along and across it, apart for every pass and scanner; their errors, and rut depths."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Uprights that repeat along the road at a steady offset and height, as chains."""
+"""Uprights that repeat along the road at a steady offset and height, as chains; what stands in their gaps, and of what kind they are."""
 
 from __future__ import annotations
 

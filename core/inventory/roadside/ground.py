@@ -1,4 +1,4 @@
-"""The ground beside the road: what is left when everything that stands on it is taken away."""
+"""The ground beside the road: what is left when everything that stands on it is taken away; what the scanners saw of it, and gutters."""
 
 from __future__ import annotations
 

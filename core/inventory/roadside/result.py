@@ -1,4 +1,4 @@
-"""What stands between two roads, or where they meet, is seen from both: it is told once, by the road that it stands nearer to."""
+"""The roadside as found: what is seen from two roads, or from two sides, is told once; layers of lines and points."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Upright things in slices across the road: where points stand above each other within a hand's breadth."""
+"""Upright things in slices across the road: where points stand above each other within a hand's breadth; single poles."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where each place of the map lies in the photo, by a polynomial, and the photo drawn onto the map by it."""
+"""Where each place of the map lies in the photo, by a polynomial, the photo drawn onto the map by it, and RANSAC."""
 
 from __future__ import annotations
 

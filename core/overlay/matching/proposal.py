@@ -1,4 +1,4 @@
-"""What is proposed: pairs of places, which of them are accepted, and what is known of the whole."""
+"""What is proposed: pairs of places, which of them are accepted, what is known of the whole, and whether the paint allows another place."""
 
 from __future__ import annotations
 
