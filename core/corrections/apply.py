@@ -366,7 +366,7 @@ def correct_markings(markings: MarkingObjects, corrections: Corrections) -> Mark
             corrections.matched.add(correction.row)
             if correction.action == "delete":
                 keep &= ~about
-    return markings if keep.all() else markings.take(np.flatnonzero(keep))
+    return markings if keep.all() else markings[keep]
 
 
 def _about(correction: Correction, polygons: np.ndarray, middles: np.ndarray) -> np.ndarray:

@@ -9,8 +9,9 @@ import numpy as np
 
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
+from ..driving.layers import Lanes
 from ..io.crs import parse_crs
-from .map_layers import LOCAL_CRS, LaneRows, MapLayers, MapLine, metric_wkt, utm_of, without_repeats
+from .map_layers import LOCAL_CRS, MapLayers, MapLine, metric_wkt, utm_of, without_repeats
 from .xml_tree import XmlElement, read_xml
 
 
@@ -331,19 +332,20 @@ def layers_of_lanelets(whole: LaneletMap, crs: str = "", progress: Progress = Pr
         As `node_places`.
     """
     places, crs = node_places(whole, crs)
-    network, rows = LaneletNetwork(whole, places), LaneRows()
+    network, rows = LaneletNetwork(whole, places), []
     shown = [id for id in network.left if network.driven(id)]
     for count, id in enumerate(shown):
         lanelet = whole.lanelets[id]
         left, right = matched(places[network.left[id]], places[network.right[id]])
         turned = {"left": network.reversed_left[id], "right": network.reversed_right[id]}
         kinds, patterns = zip(*(_border(whole.ways[lanelet.way(role) or 0].tags, turned[role]) for role in turned))
-        rows.add(left, right, road=1, lane=count + 1, lane_id=str(id), direction=1,
-                 type=LANE_TYPE_OF_LANELET.get(lanelet.tags.get("subtype", ""), "driving"),
-                 left_kind=kinds[0], right_kind=kinds[1], left_pattern=patterns[0], right_pattern=patterns[1],
-                 successors=[str(other) for other in network.following(id) if network.driven(other)])
+        rows.append(dict(
+            left=left, right=right, road=1, lane=count + 1, lane_id=str(id), direction=1,
+            type=LANE_TYPE_OF_LANELET.get(lanelet.tags.get("subtype", ""), "driving"),
+            left_kind=kinds[0], right_kind=kinds[1], left_pattern=patterns[0], right_pattern=patterns[1],
+            successors=[str(other) for other in network.following(id) if network.driven(other)]))
         progress.report((count + 1) / len(shown))
-    found = MapLayers(rows.lanes(crs))
+    found = MapLayers(Lanes.of_pieces(rows, crs))
     for way in whole.ways.values():
         points = without_repeats(places[whole.rows(way)]) if len(whole.rows(way)) > 1 else np.empty((0, 3))
         kind = way.tags.get("type", "")

@@ -567,14 +567,9 @@ def _row(number: int, section: RoadSection, part: StripMeasures, limits: Section
     return dict(
         road=section.road, section=number + 1, station_m=section.station, part="lane" if strip.lane else "carriageway",
         lane=strip.lane or None, type=strip.type, direction=strip.direction, offset_m=0.5 * (strip.left + strip.right), width_m=width,
-        borders=strip.borders, crossf_pct=_number(100 * part.crossfall), crossf_sig=_number(100 * part.crossfall_sigma),
-        grade_pct=_number(100 * part.grade), rut_l_mm=_number(1000 * part.ruts[1]), rut_r_mm=_number(1000 * part.ruts[0]),
-        curb_l_m=_number(part.curbs[1]), curb_r_m=_number(part.curbs[0]), clear_m=_number(part.clearance), seen_pct=100 * part.seen,
-        exceeds=", ".join(exceeded(part, width, limits)) or None)
-
-
-def _number(value):
-    return float(value) if np.isfinite(value) else None
+        borders=strip.borders, crossf_pct=100 * part.crossfall, crossf_sig=100 * part.crossfall_sigma, grade_pct=100 * part.grade,
+        rut_l_mm=1000 * part.ruts[1], rut_r_mm=1000 * part.ruts[0], curb_l_m=part.curbs[1], curb_r_m=part.curbs[0], clear_m=part.clearance,
+        seen_pct=100 * part.seen, exceeds=", ".join(exceeded(part, width, limits)) or None)
 
 
 def _line(section, part, frame):

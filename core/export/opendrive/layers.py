@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
 from ...common.progress import Progress
-from ..map_layers import LaneRows, MapLayers, MapLine, plan_length, without_repeats
+from ...driving.layers import Lanes
+from ..map_layers import MapLayers, MapLine, plan_length, without_repeats
 from ..sources import LEAST_CURB
 from .model import DRIVEN_TYPES, LaneNetwork, MapLane, OpenDriveMap, RoadSurface, travel
 
@@ -39,7 +41,8 @@ def layers_of_opendrive(whole: OpenDriveMap, crs: str = "", progress: Progress =
     MapLayers. Every section of a lane is a piece, whose lane_id is "road.lane.section"; lanes of roads in junctions are connectors.
     Sidewalks are no lanes of ours: where one begins there is an edge
     """
-    rows, found, network = LaneRows(), MapLayers(LaneRows().lanes(crs)), LaneNetwork(whole)
+    rows: list[dict[str, Any]] = []
+    found, network = MapLayers(Lanes.of_pieces([], crs)), LaneNetwork(whole)
     numbers, faults = road_numbers(whole), _Faults()
     for count, road in enumerate(whole.roads):
         surface = RoadSurface(road)
@@ -48,7 +51,7 @@ def layers_of_opendrive(whole: OpenDriveMap, crs: str = "", progress: Progress =
             if road.section_end(number) - section.s > SHORTEST_SECTION:
                 _add_section(rows, found.lines, whole, network, surface, number, numbers[road.id], faults)
         progress.report((count + 1) / len(whole.roads))
-    found.lanes = _existing(rows).lanes(crs)
+    found.lanes = Lanes.of_pieces(_existing(rows), crs)
     if whole.problems:
         line, text = whole.problems[0]
         found.notes.append(f"{len(whole.problems)} parts of the file were passed over; the first: line {line}, {text}")
@@ -127,11 +130,12 @@ def _add_section(rows, lines, whole, network, surface, number, road_number, faul
             borders, about = borders[::-1], about[::-1]
         if driven and way < 0:
             borders, about = [border[::-1] for border in borders[::-1]], about[::-1]
-        rows.add(*borders, road=road_number, lane=id, lane_id=lane_name(road.id, id, number), direction=way if driven else 0,
-                 type=("connector" if road.junction != "-1" else "driving") if driven else LANE_TYPE_OF.get(lane.type, "shoulder"),
-                 left_kind=about[0][0], right_kind=about[1][0], left_pattern=about[0][1], right_pattern=about[1][1],
-                 successors=[lane_name(key[0], key[2], key[1]) for key in _following(network, (road.id, number, id))] if driven else [],
-                 station=float(s[0]), end=float(s[-1]))
+        rows.append(dict(
+            left=borders[0], right=borders[1], road=road_number, lane=id, lane_id=lane_name(road.id, id, number), direction=way if driven else 0,
+            type=("connector" if road.junction != "-1" else "driving") if driven else LANE_TYPE_OF.get(lane.type, "shoulder"),
+            left_kind=about[0][0], right_kind=about[1][0], left_pattern=about[0][1], right_pattern=about[1][1],
+            successors=[lane_name(key[0], key[2], key[1]) for key in _following(network, (road.id, number, id))] if driven else [],
+            station=float(s[0]), end=float(s[-1])))
 
 
 def _following(network, key, passed=()):
@@ -157,8 +161,8 @@ def _curb(surface, number, id, s, inner, road_number):
 
 def _existing(rows):
     """Successors that were no lanes of ours are dropped."""
-    known = {row["lane_id"] for row in rows.rows}
-    for row in rows.rows:
+    known = {row["lane_id"] for row in rows}
+    for row in rows:
         row["successors"] = [name for name in row["successors"] if name in known]
     return rows
 

@@ -188,21 +188,21 @@ def roadside_to_features(found: Roadside) -> tuple[Features, Features]:
     """The layers ROADSIDE (the pieces of lines with Z along the foot, on the ground) and ROADSIDE_OBJECTS (points on the ground)."""
     lines, points = Features("LineStringZ", ROADSIDE, crs=found.crs), Features("PointZ", ROADSIDE_OBJECTS, crs=found.crs)
     for number, line in enumerate(found.lines):
-        road, side, top = line.chain.road, line.chain.side, float(np.median(line.chain.top))
+        road, side = line.chain.road, line.chain.side
         for status, piece in line.chain.pieces():
             places = np.stack(found.frame.to_map(road, piece.s, piece.d, piece.ground), axis=1)
             if len(places) < 2:  # the slice of a single upright
                 continue
             shape = shapely.linestrings(places[_vertices(piece.s, places, found.settings.interval)])
-            lines.add(shape, road=road, side=_side(side), line=number, kind=line.kind, status=status, station_m=float(piece.s[0]),
-                      end_m=float(piece.s[-1]), offset_m=float(np.median(piece.d)), edge_m=_known(found.edges[road].beyond(side, piece.s, piece.d)),
-                      height_m=top, foot_m=line.foot if line.foot > ON_GROUND else 0.0, length_m=float(shapely.length(shape)))
+            lines.add(shape, road=road, side=_side(side), line=number, kind=line.kind, status=status, station_m=piece.s[0],
+                      end_m=piece.s[-1], offset_m=np.median(piece.d), edge_m=found.edges[road].beyond(side, piece.s, piece.d),
+                      height_m=np.median(line.chain.top), foot_m=line.foot if line.foot > ON_GROUND else 0.0, length_m=shape.length)
     for road, poles in found.poles.items():
         for pole in poles:
             x, y, z = found.frame.to_map(road, np.array([pole.s]), np.array([pole.d]), np.array([pole.z]))
             side = 1 if pole.d > float(found.edges[road].middle(np.array([pole.s]))[0]) else -1
-            points.add(shapely.Point(float(x[0]), float(y[0]), float(z[0])), road=road, side=_side(side), kind=pole.kind, station_m=pole.s,
-                       offset_m=pole.d, edge_m=_known(found.edges[road].beyond(side, np.array([pole.s]), np.array([pole.d]))),
+            points.add(shapely.Point(x[0], y[0], z[0]), road=road, side=_side(side), kind=pole.kind, station_m=pole.s,
+                       offset_m=pole.d, edge_m=found.edges[road].beyond(side, np.array([pole.s]), np.array([pole.d])),
                        height_m=pole.height, diam_m=pole.diameter)
     return lines, points
 
@@ -218,7 +218,3 @@ def _vertices(s, places, interval):
 
 def _side(side):
     return "left" if side > 0 else "right"
-
-
-def _known(value):
-    return float(value) if np.isfinite(value) else None

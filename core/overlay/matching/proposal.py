@@ -102,9 +102,8 @@ class Proposal:
 
         layer = Features("PointZ", PROPOSED_POINTS, crs=self.crs)
         for k in range(len(self)):
-            layer.add(Point(self.easting[k], self.northing[k], 0.0), point=str(k + 1), accepted=int(self.accepted[k]), role="control",
-                      score=float(self.score[k]), residual=float(self.residual[k]), pixel=float(self.pixel[k]), line=float(self.line[k]),
-                      why=self.why[k])
+            layer.add(Point(self.easting[k], self.northing[k], 0.0), point=k + 1, accepted=self.accepted[k], role="control",
+                      score=self.score[k], residual=self.residual[k], pixel=self.pixel[k], line=self.line[k], why=self.why[k])
         return layer
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.markings.outliers import Neighbours, mean_distances, points_at_place
+from lanewright.core.markings.outliers import Neighbours
 from scipy.spatial.distance import cdist
 
 
@@ -34,13 +34,13 @@ SCENES = {
 def test_distances_are_those_among_all_points(scene):
     units = SCENES[scene]
     expected = among_all(units, 12)
-    distances, farthest, nearest = Neighbours(units, 12).of(np.arange(len(units)))
+    neighbours = Neighbours(units, 12)
+    distances, nearest = neighbours.of(np.arange(len(units)))
     np.testing.assert_allclose(distances, expected.mean(axis=1), rtol=1e-6)
-    np.testing.assert_allclose(farthest, expected[:, -1], rtol=1e-6)
     if len(np.unique(units, axis=0)) == len(units):
         reached = np.sqrt(((units[nearest].astype(float) - units[:, None]) ** 2).sum(axis=2)) * 1e-4
         np.testing.assert_allclose(np.sort(reached, axis=1), expected, rtol=1e-6)
-    np.testing.assert_allclose(mean_distances(units, 12), expected.mean(axis=1), rtol=1e-6)
+    np.testing.assert_array_equal(neighbours.distances(), distances)
 
 
 def test_asking_for_some_points_tells_of_those_and_in_their_order():
@@ -53,21 +53,10 @@ def test_asking_for_some_points_tells_of_those_and_in_their_order():
 
 def test_a_point_by_itself_has_nobody():
     lonely = paint(1, 1.0)
-    distances, farthest, nearest = Neighbours(lonely, 20).of(np.arange(1))
-    assert np.isinf(distances).all() and np.isinf(farthest).all() and nearest.shape == (1, 0)
-    assert np.isinf(mean_distances(lonely, 20)).all()
+    distances, nearest = Neighbours(lonely, 20).of(np.arange(1))
+    assert np.isinf(distances).all() and nearest.shape == (1, 0)
 
 
 def test_no_points_have_no_distances():
-    assert len(mean_distances(np.empty((0, 3), np.int32), 20)) == 0
+    assert len(Neighbours(np.empty((0, 3), np.int32), 20).distances()) == 0
     assert len(Neighbours(paint(30, 1.0), 5).of(np.empty(0, int))[0]) == 0
-
-
-@pytest.mark.parametrize("scene", SCENES)
-def test_points_at_one_place_are_counted(scene):
-    units = SCENES[scene]
-    same = (units[:, None] == units).all(axis=2)
-    count, rank = points_at_place(units)
-    np.testing.assert_array_equal(count, same.sum(axis=1))
-    np.testing.assert_array_equal(rank, np.tril(same, -1).sum(axis=1))
-    assert Neighbours(units, 12).most_at_place == same.sum(axis=1).max()
