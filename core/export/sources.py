@@ -166,8 +166,8 @@ def _check_layers(source):
                                       f"x {low[0] + FARTHEST_LAYER:.0f}, y {low[1] + FARTHEST_LAYER:.0f}. Choose the layers of one survey.")
 
 
-def wrapped(angle: np.ndarray | float) -> np.ndarray | float:
-    """Radians in [-pi, pi)."""
+def wrapped(angle: Any) -> Any:
+    """Radians, a number or an array of them, in [-pi, pi)."""
     return (angle + np.pi) % (2 * np.pi) - np.pi
 
 

@@ -530,7 +530,7 @@ def _painted_shapes(markings: Features | None) -> Iterator[tuple[str, str, np.nd
         across = np.array([-way[1], way[0], 0.0]) / max(float(np.hypot(*way[:2])), 1e-6) * STOP_LINE_HALF
         yield "roadMark", "stop line", np.array([line[0] - across, line[1] - across, line[1] + across, line[0] + across])
     for geometry, row in markings if markings is not None else ():
-        known = next((name for start, name in NAME_OF_CLASS.items() if str(row.get("class")).startswith(start)), None)
+        known = next((name for start, name in NAME_OF_CLASS.items() if str(row.get("class")).startswith(start)), "")
         for part in shapely.get_parts(geometry) if known and geometry is not None and not geometry.is_empty else ():
             yield "roadMark", known, shapely.get_coordinates(shapely.simplify(part, SIMPLER).exterior, include_z=True)[:-1]
 
