@@ -61,7 +61,7 @@ class BoundaryAccuracySettings:
 
 
 @dataclass(frozen=True)
-class SideAccuracy:
+class _SideAccuracy:
     """Rates in intervals, and the lateral and height Errors, metres, over the correct intervals."""
 
     rates: Rates
@@ -70,7 +70,7 @@ class SideAccuracy:
 
 
 @dataclass(frozen=True)
-class BoundaryIntervals:
+class _BoundaryIntervals:
     """A table with one row per interval.
 
     unit : (N,) index of the road or reference line
@@ -103,8 +103,8 @@ class BoundaryIntervals:
 class BoundaryAccuracy:
     """The accuracy of boundary lines.
 
-    by_side : side ("left", "right", "" unknown) to tolerance to SideAccuracy
-    total : tolerance to SideAccuracy
+    by_side : side ("left", "right", "" unknown) to tolerance to _SideAccuracy
+    total : tolerance to _SideAccuracy
     intervals : the table of all intervals
     beyond : metres of result farther from the trajectory than the corridor, not judged
     along : TrajectoryStationing or ReferenceStationing
@@ -112,9 +112,9 @@ class BoundaryAccuracy:
     lateral : (N,) signed deviations of the result's points, metres
     """
 
-    by_side: dict[str, dict[float, SideAccuracy]]
-    total: dict[float, SideAccuracy]
-    intervals: BoundaryIntervals
+    by_side: dict[str, dict[float, _SideAccuracy]]
+    total: dict[float, _SideAccuracy]
+    intervals: _BoundaryIntervals
     beyond: float
     settings: BoundaryAccuracySettings
     along: TrajectoryStationing | ReferenceStationing
@@ -233,7 +233,7 @@ def _judge(keys, groups, nearest, signed, settings, reasons):
     np.maximum.at(largest, rows, np.where(np.isfinite(size), size, -np.inf))
     largest[~np.isfinite(largest)] = NAN
     rise = (result_group.points.z - nearest.z)[inside]
-    return BoundaryIntervals(keys[:, 0], keys[:, 1], keys[:, 2] * step, reference, np.minimum(covered, step), why,
+    return _BoundaryIntervals(keys[:, 0], keys[:, 1], keys[:, 2] * step, reference, np.minimum(covered, step), why,
                              judged & has, hit, false, _mean(rows, signed[inside], count), largest, _mean(rows, rise, count))
 
 
@@ -274,7 +274,7 @@ def _summary(table, result_group, nearest, signed, settings):
             rates = Rates(int(table.hit[rows, k].sum()), int(table.false[rows, k].sum()),
                           int((table.judged & ~table.hit[:, k])[rows].sum()))
             good = np.append(table.hit[:, k] & rows, False)[result_group.interval] & (nearest.distance <= max(tolerance, MAX_ERROR_DISTANCE))
-            return SideAccuracy(rates, Errors.of(signed[good], result_group.points.length[good]),
+            return _SideAccuracy(rates, Errors.of(signed[good], result_group.points.length[good]),
                                 Errors.of(rise[good], result_group.points.length[good]))
 
         total[tolerance] = accuracy(np.ones(len(table.side), bool))

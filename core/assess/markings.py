@@ -41,7 +41,7 @@ class MarkingAccuracySettings:
 
 
 @dataclass(frozen=True)
-class ClassAccuracy:
+class _ClassAccuracy:
     """Counts of cells of one class.
 
     reference : cells of the reference,
@@ -73,14 +73,14 @@ class MarkingAccuracy:
 
     rates : tolerance (cells) to Rates in cells
     objects : Rates in objects, with the tolerance of the settings
-    by_class : class to ClassAccuracy, of all classes in the reference or the result
+    by_class : class to _ClassAccuracy, of all classes in the reference or the result
     reference_cells, reference_found, result_cells, result_right : (N,) judged cells of every object
     blocks : (N, 5) x, y (metres) and numbers of cells hit, missed and false of every block with any, with the tolerance
     """
 
     rates: dict[int, Rates]
     objects: Rates
-    by_class: dict[str, ClassAccuracy]
+    by_class: dict[str, _ClassAccuracy]
     reference_cells: np.ndarray = field(repr=False)
     reference_found: np.ndarray = field(repr=False)
     result_cells: np.ndarray = field(repr=False)
@@ -128,15 +128,15 @@ def assess_markings(result: Sequence[Any], reference: Sequence[Any], settings: M
     counts = _CellCounts(len(result), len(reference), _numbers(result_classes, len(result), classes),
                          _numbers(reference_classes, len(reference), classes), len(classes), settings)
     margin = max(settings.tolerances)
-    burners = PolygonRasteriser(result), PolygonRasteriser(reference)
-    valid: list[PolygonRasteriser | DataMask] = [PolygonRasteriser([area])] if area is not None else []
-    valid += [DataMask(seen)] if seen else []
-    tiles = covering_tiles([*result, *reference], settings.cell_size, margin)
+    burners = _PolygonRasteriser(result), _PolygonRasteriser(reference)
+    valid: list[_PolygonRasteriser | _DataMask] = [_PolygonRasteriser([area])] if area is not None else []
+    valid += [_DataMask(seen)] if seen else []
+    tiles = _covering_tiles([*result, *reference], settings.cell_size, margin)
     shape = (BURN_TILE + 2 * margin,) * 2
     inner = slice(margin, margin + BURN_TILE)
     for number, tile in enumerate(tiles):
         progress.report(number / len(tiles))
-        bounds = tile_bounds(tile, settings.cell_size, margin)
+        bounds = _tile_bounds(tile, settings.cell_size, margin)
         result_ids, reference_ids = (burner.burn(bounds, shape) for burner in burners)
         judged = np.logical_and.reduce([raster.burn(bounds, shape)[inner, inner] > 0 for raster in valid]) if valid else True
         beside = {t: [_dilated(ids > 0, t)[inner, inner] for ids in (result_ids, reference_ids)] for t in settings.tolerances}
@@ -187,7 +187,7 @@ class _CellCounts:
         hit, missed, false = (sum((cut == value).sum(axis=(1, 3)) for value in group)
                               for group in ((HIT, MISSED_BESIDE, FALSE_BESIDE), (MISSED,), (FALSE,)))
         row, column = np.nonzero(hit + missed + false)
-        x0, _, _, y1 = tile_bounds(tile, cell_size)
+        x0, _, _, y1 = _tile_bounds(tile, cell_size)
         size = CHART_BLOCK * cell_size
         self.blocks.append(np.c_[x0 + (column + 0.5) * size, y1 - (row + 0.5) * size,
                                  hit[row, column], missed[row, column], false[row, column]])
@@ -195,7 +195,7 @@ class _CellCounts:
     def accuracy(self, classes, settings):
         result_ids, reference_ids = self.totals.tolist()
         rates = {t: Rates(int(right), result_ids - int(right), reference_ids - int(found), int(found)) for t, (right, found) in self.cells.items()}
-        by_class = {name: ClassAccuracy(*self.by_class[:, number].tolist()) for number, name in enumerate(classes, start=1)}
+        by_class = {name: _ClassAccuracy(*self.by_class[:, number].tolist()) for number, name in enumerate(classes, start=1)}
         objects = [self.reference_cells[1:], self.reference_found[1:], self.result_cells[1:], self.result_right[1:]]
         was_found, was_right = (_outcome(objects[k], objects[k + 1], settings.found_share, "wrong") for k in (0, 2))
         counts = [int((outcome == value).sum()) for outcome in (was_right, was_found) for value in ("correct", "wrong")]
@@ -232,7 +232,7 @@ def _outcome(cells, good, share, otherwise):
 BURN_TILE = 2048  # cells, side of a tile
 
 
-class PolygonRasteriser:
+class _PolygonRasteriser:
     """Rasterises numbered polygons tile by tile: a cell belongs to a polygon if its centre does."""
 
     @gdal_exceptions()
@@ -278,7 +278,7 @@ class PolygonRasteriser:
         return np.frombuffer(raster.ReadRaster(), np.int32).reshape(shape)
 
 
-class DataMask:
+class _DataMask:
     """The cells in which a raster has data: where nothing was scanned, nothing can be judged."""
 
     @gdal_exceptions()
@@ -290,7 +290,7 @@ class DataMask:
 
     @gdal_exceptions()
     def burn(self, bounds: tuple[float, float, float, float], shape: tuple[int, int]) -> np.ndarray:
-        """(rows, columns) bool: whether the raster has a value at the centre of each cell. Parameters as of `PolygonRasteriser.burn`."""
+        """(rows, columns) bool: whether the raster has a value at the centre of each cell. Parameters as of `_PolygonRasteriser.burn`."""
         from osgeo import gdal
 
         size = (bounds[2] - bounds[0]) / shape[1]
@@ -315,7 +315,7 @@ class DataMask:
         return found
 
 
-def covering_tiles(polygons: Sequence[Any], cell_size: float, margin: int) -> list[tuple[int, int]]:
+def _covering_tiles(polygons: Sequence[Any], cell_size: float, margin: int) -> list[tuple[int, int]]:
     """Sorted (column, row) of the tiles, counted from the map's origin, that polygons widened by `margin` cells touch."""
     side = BURN_TILE * cell_size
     low, high = np.full((0, 2), 0), np.full((0, 2), 0)
@@ -328,7 +328,7 @@ def covering_tiles(polygons: Sequence[Any], cell_size: float, margin: int) -> li
     return sorted(found)
 
 
-def tile_bounds(tile: tuple[int, int], cell_size: float, margin: int = 0) -> tuple[float, float, float, float]:
+def _tile_bounds(tile: tuple[int, int], cell_size: float, margin: int = 0) -> tuple[float, float, float, float]:
     """(min x, min y, max x, max y) of a tile with `margin` cells around it."""
     side, more = BURN_TILE * cell_size, margin * cell_size
     return tile[0] * side - more, tile[1] * side - more, (tile[0] + 1) * side + more, (tile[1] + 1) * side + more
@@ -350,12 +350,12 @@ class OutcomeRaster:
     def __init__(self, path: str, polygons: Iterable[Any], cell_size: float, crs: str, margin: int = 0) -> None:
         from osgeo import gdal
 
-        tiles = np.array(covering_tiles(list(polygons), cell_size, margin) or [(0, 0)])
+        tiles = np.array(_covering_tiles(list(polygons), cell_size, margin) or [(0, 0)])
         (self._west, south), (east, self._north) = tiles.min(axis=0), tiles.max(axis=0)
         columns, rows = (east - self._west + 1) * BURN_TILE, (self._north - south + 1) * BURN_TILE
         self._raster = gdal.GetDriverByName("GTiff").Create(
             str(path), int(columns), int(rows), 1, gdal.GDT_Byte, ["TILED=YES", "COMPRESS=DEFLATE", "SPARSE_OK=TRUE", "BIGTIFF=IF_SAFER"])
-        x0, _, _, y1 = tile_bounds((self._west, self._north), cell_size)
+        x0, _, _, y1 = _tile_bounds((self._west, self._north), cell_size)
         place_raster(self._raster, (x0, cell_size, 0.0, y1, 0.0, -cell_size), crs)
         band = self._raster.GetRasterBand(1)
         band.SetNoDataValue(0)

@@ -114,7 +114,7 @@ def _cut(points, along, start, end):
 
 
 @dataclass(frozen=True)
-class NearestPoints(Rows):
+class _NearestPoints(Rows):
     """The nearest points on some lines of N points; distance inf and the rest NaN or -1 if there is none.
 
     distance : (N,) metres
@@ -166,7 +166,7 @@ class SegmentIndex:
         return np.arctan2(step[:, 1], step[:, 0])
 
     def nearest(self, xy: np.ndarray, heading: np.ndarray | None = None, max_angle: float | None = None, reach: float = np.inf,
-                progress: Progress = Progress()) -> NearestPoints:
+                progress: Progress = Progress()) -> _NearestPoints:
         """Nearest points on the lines.
 
         Parameters
@@ -179,7 +179,7 @@ class SegmentIndex:
 
         Returns
         -------
-        NearestPoints
+        _NearestPoints
         """
         if not len(self.a) or not len(xy):
             return _no_nearest_points(len(xy))
@@ -197,7 +197,7 @@ class SegmentIndex:
             else:
                 pairs = self._parallel(xy[some], np.asarray(heading)[some], max_angle, reach)
             parts.append(self._nearest_points(xy[some], *pairs))
-        return NearestPoints.join(parts)
+        return _NearestPoints.join(parts)
 
     def _parallel(self, xy, heading, max_angle, reach):
         """(point, segment) pairs: of the segments within reach that run the same way, the nearest."""
@@ -229,7 +229,7 @@ class SegmentIndex:
 
 
 def _no_nearest_points(count):
-    return NearestPoints(np.full(count, np.inf), np.full(count, np.nan), np.full((count, 2), np.nan), np.full(count, np.nan),
+    return _NearestPoints(np.full(count, np.inf), np.full(count, np.nan), np.full((count, 2), np.nan), np.full(count, np.nan),
                 np.full(count, -1), np.full(count, np.nan))
 
 
@@ -264,11 +264,11 @@ class TrajectoryStationing:
         road, station, offset = self.frame.locate_nearest(*self.frame.to_local(*points.xy.T), corridor=self.corridor)
         return Stations(road, station, np.sign(np.nan_to_num(offset)).astype(int), offset)
 
-    def of_result(self, points: LinePoints, nearest: NearestPoints) -> Stations:
+    def of_result(self, points: LinePoints, nearest: _NearestPoints) -> Stations:
         """Stations of points of the result; `nearest`: their nearest points on the reference."""
         return self.of_reference(points)
 
-    def outward(self, points: LinePoints, nearest: NearestPoints, stations: Stations) -> np.ndarray:
+    def outward(self, points: LinePoints, nearest: _NearestPoints, stations: Stations) -> np.ndarray:
         """(N,) +1 where a point lies farther from the trajectory than its nearest point on the reference, else -1."""
         offset = self.frame.locate_nearest(*self.frame.to_local(*np.nan_to_num(nearest.xy).T), corridor=self.corridor)[2]
         return np.where(np.abs(stations.offset) >= np.abs(np.nan_to_num(offset)), 1.0, -1.0)
@@ -281,8 +281,8 @@ class ReferenceStationing:
     signed = "positive left of the reference line as it is drawn"
 
     def __init__(self, lines: Sequence[shapely.LineString], sides: Sequence[int] | None = None) -> None:
-        """`sides`: 1, -1 or 0 of every line as its layer says; by default inferred by `sides_of`."""
-        self.side = sides_of(lines) if sides is None else np.asarray(sides, int)
+        """`sides`: 1, -1 or 0 of every line as its layer says; by default inferred by `_sides_of`."""
+        self.side = _sides_of(lines) if sides is None else np.asarray(sides, int)
         self.count = len(lines)
         self.length = shapely.length(np.asarray(lines, object)) if self.count else np.empty(0)
 
@@ -290,7 +290,7 @@ class ReferenceStationing:
         """Stations of points of the reference."""
         return Stations(points.line, points.station, self.side[points.line], np.full(len(points), np.nan))
 
-    def of_result(self, points: LinePoints, nearest: NearestPoints) -> Stations:
+    def of_result(self, points: LinePoints, nearest: _NearestPoints) -> Stations:
         """Stations of points of the result; `nearest`: their nearest points on the reference."""
         # what lies beyond the end of a line is not beside it
         beside = (nearest.station > 1e-6) & (nearest.station < self.length[nearest.line] - 1e-6) if self.count else False
@@ -299,12 +299,12 @@ class ReferenceStationing:
         return Stations(np.where(near, nearest.line, self.count + points.line), np.where(near, nearest.station, points.station),
                         side, np.full(len(points), np.nan))
 
-    def outward(self, points: LinePoints, nearest: NearestPoints, stations: Stations) -> np.ndarray:
+    def outward(self, points: LinePoints, nearest: _NearestPoints, stations: Stations) -> np.ndarray:
         """(N,) +1 left of the reference line as drawn, -1 right of it."""
         return nearest.side
 
 
-def sides_of(lines: Sequence[shapely.LineString]) -> np.ndarray:
+def _sides_of(lines: Sequence[shapely.LineString]) -> np.ndarray:
     """(N,) side of every line: 1 left, -1 right or 0 unknown, along the longest line as it is drawn.
 
     The middle of the road is taken halfway between the outermost lines; lines less

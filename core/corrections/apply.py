@@ -79,7 +79,7 @@ def apply_corrections(kind: LineKind, pieces: list[dict[str, Any]], corrections:
     matched: set[int] = set()
     changed = False
     for correction in corrections:
-        spans = spans_along([kind.columns(piece)[:, :2] for piece in pieces], correction, distance_of(correction, kind.reach))
+        spans = spans_along([kind.columns(piece)[:, :2] for piece in pieces], correction, _distance_of(correction, kind.reach))
         if correction.action == "draw" and not correction.on_a_road or correction.action != "draw" and not spans:
             continue
         matched.add(correction.row)
@@ -118,10 +118,10 @@ def _with_heights(kind, correction):
     """(V, 3) the places of a correction with heights."""
     places = correction.places
     if not correction.on_a_road:
-        return np.c_[places[:, :2], heights_for(places, kind.known, np.zeros(len(places)))]
+        return np.c_[places[:, :2], _heights_for(places, kind.known, np.zeros(len(places)))]
     s, _ = located(kind.frame, np.full(len(places), correction.road), places[:, 0], places[:, 1])
     track = kind.frame.track_height(correction.road, np.where(np.isfinite(s), s, correction.station))
-    return np.c_[places[:, :2], heights_for(places, kind.known, track)]
+    return np.c_[places[:, :2], _heights_for(places, kind.known, track)]
 
 
 # Which stretches of lines a correction is about, and lines cut there.
@@ -138,7 +138,7 @@ HEIGHT_NEIGHBOURS = 8  # vertices whose heights are averaged, by the inverse of 
 Span = tuple[int, float, float]   # (number of the line, from, to), metres along it
 
 
-def distance_of(correction: Correction, reach: float) -> float:
+def _distance_of(correction: Correction, reach: float) -> float:
     """m beside a correction within which it is about a line."""
     return max(MOVED_FROM, reach) if correction.action == "move" else reach
 
@@ -228,7 +228,7 @@ def pieces_of(length: float, spans: Sequence[tuple[float, float]]) -> list[tuple
     return [(a, b, along) for a, b, along in [*found, (at, length, False)] if b - a > NO_LENGTH]
 
 
-def heights_for(places: np.ndarray, known: np.ndarray, otherwise: np.ndarray) -> np.ndarray:
+def _heights_for(places: np.ndarray, known: np.ndarray, otherwise: np.ndarray) -> np.ndarray:
     """(N,) z of (N, 3) places: their own where they have one, else that of the map's vertices near them.
 
     Parameters

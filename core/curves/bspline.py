@@ -30,7 +30,7 @@ def _knot_intervals(length: float, bandwidth: float) -> int:
     return max(1, int(np.ceil(length / max(bandwidth, 1.0))))
 
 
-class SplineBasis:
+class _SplineBasis:
     """Uniform cubic B-splines with a roughness penalty, of several lines and bandwidths.
 
     Each pair of a line and a bandwidth is a block. The equations of all blocks are solved as one banded system in which they are independent: most
@@ -294,7 +294,7 @@ def _smoothed(values, reach=4):
 
 def _penalised(lines):
     """[(knots, control points (K, 2), distances (N,) across the curve)] of (x, y, t, bandwidths), line by line, for each bandwidth."""
-    basis = SplineBasis([(t, bandwidths) for _, _, t, bandwidths in lines])
+    basis = _SplineBasis([(t, bandwidths) for _, _, t, bandwidths in lines])
     blocks = len(basis.sizes)
     weight, turn = np.ones(int(basis.sizes.sum())), 0
     middles = [np.array([x.mean(), y.mean()]) for x, y, _, bandwidths in lines for _ in bandwidths]
@@ -351,7 +351,7 @@ def _constant(level):
 
 
 def _smooth(profiles, bandwidth):
-    basis = SplineBasis([(t - t[0], [bandwidth]) for t, _ in profiles])
+    basis = _SplineBasis([(t - t[0], [bandwidth]) for t, _ in profiles])
     levels = [median(values) for _, values in profiles]
     places = np.concatenate([values - level for (_, values), level in zip(profiles, levels)])
     weight, found = np.ones(len(places)), [None] * len(profiles)

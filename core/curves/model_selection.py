@@ -100,7 +100,7 @@ ALIGNMENT_CURVES = ("line", 2, _lines), ("circle", 4, _circles), ("clothoid", 8,
 
 
 def select_each(lines: Sequence[tuple[np.ndarray, np.ndarray]],
-                kinds: Sequence[tuple[str, int, Callable[..., Any]]] = ALIGNMENT_CURVES, max_residual: float = np.inf) -> list[ModelSelection]:
+                kinds: Sequence[tuple[str, int, Callable[..., Any]]] = ALIGNMENT_CURVES, max_residual: float = np.inf) -> list[_ModelSelection]:
     """Select the kind of curve of each of many lines; kinds that cannot change a selection are not fitted.
 
     Parameters
@@ -111,9 +111,9 @@ def select_each(lines: Sequence[tuple[np.ndarray, np.ndarray]],
 
     Returns
     -------
-    list of ModelSelection, one for each line
+    list of _ModelSelection, one for each line
     """
-    choices = [ModelSelection(max_residual) for _ in lines]
+    choices = [_ModelSelection(max_residual) for _ in lines]
     for name, fewest, fit_all in kinds:
         open_ones = [k for k, choice in enumerate(choices) if not choice.decided and len(lines[k][0]) >= fewest
                      and (name != "ellipse" or choice.turn > MIN_ELLIPSE_TURN)]
@@ -123,7 +123,7 @@ def select_each(lines: Sequence[tuple[np.ndarray, np.ndarray]],
     return choices
 
 
-class ModelSelection:
+class _ModelSelection:
     """Selects among fits that are added, simplest first.
 
     The first fit whose BIC is within 6 of the best and whose 95th percentile of the residuals is below `max_residual` metres is `best`.
@@ -165,8 +165,8 @@ class ModelSelection:
 
 
 def select_simplest(fits: Iterable[CurveFit], max_residual: float = np.inf) -> CurveFit | None:
-    """The best of a ModelSelection among fits, simplest first; a lazy iterable is read only as far as needed."""
-    choice = ModelSelection(max_residual)
+    """The best of a _ModelSelection among fits, simplest first; a lazy iterable is read only as far as needed."""
+    choice = _ModelSelection(max_residual)
     for fit in fits:
         choice.add(fit)
         if choice.decided:

@@ -29,7 +29,7 @@ _EXPONENT_SUMS = np.add.outer(_DIAGONAL, _DIAGONAL)
 
 
 @dataclass(frozen=True)
-class AlignmentElement:
+class _AlignmentElement:
     """One element of an alignment.
 
     first, last : arc lengths of its ends along the whole line, metres
@@ -49,7 +49,7 @@ class AlignmentElement:
         return self.last - self.first
 
 
-def segment_line(x: np.ndarray, y: np.ndarray) -> list[AlignmentElement]:
+def segment_line(x: np.ndarray, y: np.ndarray) -> list[_AlignmentElement]:
     """Divide a line into straights, circular arcs and clothoids.
 
     A smoothing spline is fitted first. Relative to it, with its own heading integrated twice added back, a straight is a polynomial of degree 1 of
@@ -62,7 +62,7 @@ def segment_line(x: np.ndarray, y: np.ndarray) -> list[AlignmentElement]:
 
     Returns
     -------
-    list of AlignmentElement, in order, covering the line without gaps
+    list of _AlignmentElement, in order, covering the line without gaps
     """
     (cuts, u, x, y), = _element_cuts([(x, y)])
     return [_element(first, last, kind, u, x, y) for first, last, kind in cuts]
@@ -93,7 +93,7 @@ def _element(first, last, kind, u, x, y):
     makers = {"line": fit_line, "circle": fit_circle, "clothoid": fit_clothoid}
     # the division is of first order; in exact geometry a simpler element may fit as well
     fits = (makers[name](px, py) for name, degree in ELEMENT_DEGREES.items() if degree <= ELEMENT_DEGREES[kind] and len(px) > degree + 1)
-    return AlignmentElement(first, last, select_simplest(fits))
+    return _AlignmentElement(first, last, select_simplest(fits))
 
 
 def _divide(curve, u, e, sigma, length):

@@ -67,12 +67,12 @@ class NoSource:
         return Recipe("execution.phase:NoSource", {})
 
 
-def no_place(item: Any) -> str:
+def _no_place(item: Any) -> str:
     """What messages call an item of which nothing is known."""
     return str(item)
 
 
-def no_size(item: Any) -> float:
+def _no_size(item: Any) -> float:
     """The size of items that are alike."""
     return 0.0
 
@@ -94,8 +94,8 @@ class Phase:
     function: Callable[..., Any]
     source: Any
     arguments: tuple[Any, ...] = ()
-    place: Callable[[Any], str] = field(default=no_place, compare=False)
-    size: Callable[[Any], float] = field(default=no_size, compare=False)
+    place: Callable[[Any], str] = field(default=_no_place, compare=False)
+    size: Callable[[Any], float] = field(default=_no_size, compare=False)
     join: Callable[[list[Any]], Any] | None = field(default=None, compare=False)
     together: int = field(default=1, compare=False)
 

@@ -25,7 +25,7 @@ PACKAGE = "lanewright"
 ROOT = Path(__file__).resolve().parents[2]
 
 
-def import_package(folders: list[str]) -> None:
+def _import_package(folders: list[str]) -> None:
     """Import the checkout that this file lies in, whatever its folder is called; folders that are new go to the end of the search path."""
     sys.path += [folder for folder in folders if folder not in sys.path]
     spec: Any = importlib.util.spec_from_file_location(PACKAGE, ROOT / "__init__.py", submodule_search_locations=[str(ROOT)])
@@ -38,7 +38,7 @@ def main() -> None:
     # what a library prints must not come between the answers
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)
-    import_package(json.loads(sys.stdin.readline()))
+    _import_package(json.loads(sys.stdin.readline()))
     if sys.argv[1] == "--try":
         from lanewright.core.execution.tasks import NEEDED, versions
 

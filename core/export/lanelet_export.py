@@ -37,7 +37,7 @@ class LaneletSettings:
 
 
 @dataclass
-class MadeWay:
+class _MadeWay:
     """nodes : numbers; tags : what it is."""
 
     nodes: tuple[int, ...]
@@ -45,7 +45,7 @@ class MadeWay:
 
 
 @dataclass
-class MadeLanelet:
+class _MadeLanelet:
     """left, right, centre : numbers of ways, centre -1 for none; tags; name : lane_id of the lane that it is a part of, "" for crossings."""
 
     left: int
@@ -63,8 +63,8 @@ class LaneletDraft:
     """
 
     nodes: np.ndarray
-    ways: list[MadeWay] = field(default_factory=list)
-    lanelets: list[MadeLanelet] = field(default_factory=list)
+    ways: list[_MadeWay] = field(default_factory=list)
+    lanelets: list[_MadeLanelet] = field(default_factory=list)
     skipped: dict[str, int] = field(default_factory=dict)
 
 
@@ -135,8 +135,8 @@ class _Drafting:
         ways = [self._way(nodes, kind, pattern, line) for nodes, kind, pattern, line in (
             (left, lanes.left_kind[k], lanes.left_pattern[k], lanes.left_line[k]),
             (right, lanes.right_kind[k], lanes.right_pattern[k], lanes.right_line[k]))]
-        self.draft.ways.append(MadeWay(centre, {"type": "centerline"}))
-        self.draft.lanelets.append(MadeLanelet(ways[0], ways[1], len(self.draft.ways) - 1, tags, lanes.lane_id[k]))
+        self.draft.ways.append(_MadeWay(centre, {"type": "centerline"}))
+        self.draft.lanelets.append(_MadeLanelet(ways[0], ways[1], len(self.draft.ways) - 1, tags, lanes.lane_id[k]))
 
     def _way(self, nodes: tuple[int, ...], kind: str, pattern: str, line: str) -> int:
         """The number of the way along these nodes, which neighbours share; one that says more about it takes precedence."""
@@ -144,7 +144,7 @@ class _Drafting:
         number = self.way_of.get(key)
         if number is None:
             number = self.way_of[key] = len(self.draft.ways)
-            self.draft.ways.append(MadeWay(nodes, {"type": "virtual"}))
+            self.draft.ways.append(_MadeWay(nodes, {"type": "virtual"}))
         way = self.draft.ways[number]
         turned = way.nodes != nodes
         if way.tags["type"] == "virtual":
@@ -172,11 +172,11 @@ class _Drafting:
 
     def _objects(self) -> None:
         for line in stop_lines(self.source.markings):
-            self.draft.ways.append(MadeWay(self._new_nodes(line), {"type": "stop_line", "subtype": "solid"}))
+            self.draft.ways.append(_MadeWay(self._new_nodes(line), {"type": "stop_line", "subtype": "solid"}))
         for left, right in walked_crossings(self.source.markings):
             for side in (left, right):
-                self.draft.ways.append(MadeWay(self._new_nodes(side), {"type": "pedestrian_marking", "subtype": "dashed"}))
-            self.draft.lanelets.append(MadeLanelet(len(self.draft.ways) - 2, len(self.draft.ways) - 1, -1, {
+                self.draft.ways.append(_MadeWay(self._new_nodes(side), {"type": "pedestrian_marking", "subtype": "dashed"}))
+            self.draft.lanelets.append(_MadeLanelet(len(self.draft.ways) - 2, len(self.draft.ways) - 1, -1, {
                 "type": "lanelet", "subtype": "crosswalk", "location": self.settings.location, "one_way": "no", "participant:pedestrian": "yes"}))
 
 

@@ -110,7 +110,7 @@ class LaneletNetwork:
         if len(left) < 2 or len(right) < 2:
             return
         turned_right = not same_way(self.places[left], self.places[right])
-        area = signed_area(self.places[left], self.places[right[::-1] if turned_right else right])
+        area = _signed_area(self.places[left], self.places[right[::-1] if turned_right else right])
         turned = area > 0   # left then lies to the right: the lanelet is driven the other way
         self.left[lanelet.id] = left[::-1] if turned else left
         self.right[lanelet.id] = right[::-1] if turned_right != turned else right
@@ -154,7 +154,7 @@ def same_way(first: np.ndarray, second: np.ndarray) -> bool:
     return bool(along <= against)
 
 
-def signed_area(left: np.ndarray, right: np.ndarray) -> float:
+def _signed_area(left: np.ndarray, right: np.ndarray) -> float:
     """Square metres between two borders drawn the same way; negative where the first lies to the left."""
     x, y = np.concatenate([left, right[::-1]])[:, :2].T
     x, y = x - x[0], y - y[0]
@@ -185,13 +185,13 @@ def read_lanelet2(path: str, progress: Progress = Progress()) -> LaneletMap:
     RoadExtractionError
         If the file is no map of this kind, hostile, or has no lanelet.
     """
-    found = lanelets_of(read_xml(path, "osm", OSM_KIND, progress))
+    found = _lanelets_of(read_xml(path, "osm", OSM_KIND, progress))
     if not found.lanelets:
         raise RoadExtractionError(f"{path} has no relation of type lanelet. Maps of OpenStreetMap have roads without lanes; choose a Lanelet2 map.")
     return found
 
 
-def lanelets_of(root: XmlElement) -> LaneletMap:
+def _lanelets_of(root: XmlElement) -> LaneletMap:
     """The map of the element <osm>."""
     ids, places, local, twice, ways = [], [], [], [], {}
     tags_twice: list[tuple[str, int, str]] = []

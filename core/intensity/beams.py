@@ -36,7 +36,7 @@ ANGLE_SIGNS = ((0, 0), (1, 1), (1, -1), (-1, 1), (-1, -1))  # sign conventions o
 
 
 @dataclass
-class ScannerTurns:
+class _ScannerTurns:
     """Turns of a spinning scanner, numbered in point_source_id; a cloud without such numbers has none.
 
     middle : (65536,) s, the time in the middle of each turn; NaN where the number is no turn
@@ -45,7 +45,7 @@ class ScannerTurns:
     middle: np.ndarray
 
     @classmethod
-    def of(cls, road_points: RoadPoints) -> ScannerTurns:
+    def of(cls, road_points: RoadPoints) -> _ScannerTurns:
         """The turns by which points are numbered."""
         first, last = np.full(SOURCE_IDS, np.inf), np.full(SOURCE_IDS, -np.inf)
         for key in road_points.all_sections():
@@ -77,7 +77,7 @@ class ScannerTurns:
         return cls(middle)
 
     @classmethod
-    def none(cls) -> ScannerTurns:
+    def none(cls) -> _ScannerTurns:
         """No turns."""
         return cls(np.full(SOURCE_IDS, np.nan))
 
@@ -97,17 +97,17 @@ def _may_be_turns(samples):
 
 
 @dataclass
-class ElevationModel:
+class _ElevationModel:
     """How the elevation of a point seen from the scanner is computed.
 
     passes : of the road frame
-    turns : ScannerTurns
+    turns : _ScannerTurns
     by_turn : at the middle of the point's turn, to which its whole turn was moved; else at the point's own time
     signs : of roll and pitch
     """
 
     passes: Sequence[Pass]
-    turns: ScannerTurns
+    turns: _ScannerTurns
     by_turn: bool = False
     signs: tuple[int, int] = (0, 0)
 
@@ -118,8 +118,8 @@ class ElevationModel:
             found[rows] = geometry.elevation_bin(self.signs)
         return found
 
-    def geometries(self, points: Points) -> Iterator[tuple[np.ndarray, BeamGeometry]]:
-        """Yield (indices, BeamGeometry) of the points of each pass, the same for all signs."""
+    def geometries(self, points: Points) -> Iterator[tuple[np.ndarray, _BeamGeometry]]:
+        """Yield (indices, _BeamGeometry) of the points of each pass, the same for all signs."""
         time, number = points.time, points.pass_number
         if self.by_turn:
             middle = self.turns.middle[points.source]
@@ -127,11 +127,11 @@ class ElevationModel:
         for p in self.passes:
             rows = np.flatnonzero((number == p.number) & (time >= p.time[0] - PASS_MARGIN) & (time <= p.time[-1] + PASS_MARGIN))
             if len(rows):
-                yield rows, BeamGeometry.of(p, points[rows], time[rows])
+                yield rows, _BeamGeometry.of(p, points[rows], time[rows])
 
 
 @dataclass(frozen=True)
-class BeamGeometry:
+class _BeamGeometry:
     """Where points lie relative to the vehicle.
 
     reach, rise : (N,) m, horizontally and up
@@ -144,7 +144,7 @@ class BeamGeometry:
     by_pitch: np.ndarray | float
 
     @classmethod
-    def of(cls, p: Pass, points: Points, time: np.ndarray) -> BeamGeometry:
+    def of(cls, p: Pass, points: Points, time: np.ndarray) -> _BeamGeometry:
         """Geometry of the points of a pass.
 
         Parameters
@@ -172,13 +172,13 @@ class BeamGeometry:
 class Beams:
     """Beams of the scanners that have several.
 
-    models : ElevationModel by scanner
+    models : _ElevationModel by scanner
     beam : by scanner (ELEVATION_BINS,) number of the beam at each elevation
     corrections : by scanner (beams,) summands or factors of a beam's intensities
     added : by scanner, whether the correction is added
     """
 
-    models: dict[int, ElevationModel]
+    models: dict[int, _ElevationModel]
     beam: dict[int, np.ndarray]
     corrections: dict[int, np.ndarray]
     added: dict[int, bool]
@@ -195,8 +195,8 @@ class Beams:
         samples = _samples(road_points, frame, scanners)
         if not samples:
             return None
-        turns = ScannerTurns.of(road_points) if _may_be_turns([points for found in samples.values() for points in found]) \
-            else ScannerTurns.none()
+        turns = _ScannerTurns.of(road_points) if _may_be_turns([points for found in samples.values() for points in found]) \
+            else _ScannerTurns.none()
         models = {scanner: model for scanner, found in samples.items() if (model := _sharpest(found, frame.passes, turns)) is not None}
         if not models:
             return None
@@ -284,12 +284,12 @@ def _samples_of_window(road_points, road, s, scanners):
     return found
 
 
-def _sharpest(samples: list[Points], passes: Sequence[Pass], turns: ScannerTurns) -> ElevationModel | None:
-    """The ElevationModel in which points form the clearest rings; None where they do in none."""
+def _sharpest(samples: list[Points], passes: Sequence[Pass], turns: _ScannerTurns) -> _ElevationModel | None:
+    """The _ElevationModel in which points form the clearest rings; None where they do in none."""
     all_signs = ANGLE_SIGNS if any(p.attitude is not None for p in passes) else ANGLE_SIGNS[:1]
     best, sharpest = MIN_SHARPNESS, None
     for by_turn in (False, True) if turns.known else (False,):
-        model = ElevationModel(passes, turns, by_turn)
+        model = _ElevationModel(passes, turns, by_turn)
         geometries = [geometry for points in samples for _, geometry in model.geometries(points)]
         for signs in all_signs:
             found = sharpness(sum((_histogram(geometry.elevation_bin(signs)) for geometry in geometries), np.zeros(ELEVATION_BINS)))

@@ -57,7 +57,7 @@ class ImageSettings:
 
 
 @dataclass
-class WeightedSums:
+class _WeightedSums:
     """Sums of weights and of weighted values on a rectangle of cells.
 
     column, row : of the lattice (eastward, northward) of the north-western cell
@@ -69,7 +69,7 @@ class WeightedSums:
     total: np.ndarray
     weights: np.ndarray
 
-    def add_to(self, other: WeightedSums) -> None:
+    def add_to(self, other: _WeightedSums) -> None:
         """Add the part that lies in another rectangle to the sums there."""
         height, width = self.total.shape
         down, right = other.row - self.row, self.column - other.column
@@ -92,7 +92,7 @@ def _lattice_cell(units: np.ndarray | int, origin: float, cell_size: float) -> A
 
 
 def _interpolation_sums(points: Points, brightness: Callable[[np.ndarray], np.ndarray], origin: np.ndarray, settings: ImageSettings,
-                        step: int = 1) -> WeightedSums:
+                        step: int = 1) -> _WeightedSums:
     """Sums of weights and of weighted values per cell.
 
     Parameters
@@ -104,7 +104,7 @@ def _interpolation_sums(points: Points, brightness: Callable[[np.ndarray], np.nd
 
     Returns
     -------
-    WeightedSums of a rectangle that holds all cells within reach
+    _WeightedSums of a rectangle that holds all cells within reach
 
     Notes
     -----
@@ -139,7 +139,7 @@ def _interpolation_sums(points: Points, brightness: Callable[[np.ndarray], np.nd
             number, east, north, value, weight = (column.take(share) for column in (number, east, north, value, weight))
             far.add(sums, width, number, east, north, value, weight * np.float32(step))
     sums = sums.reshape(height, width)
-    return WeightedSums(left, top, sums.imag, sums.real)
+    return _WeightedSums(left, top, sums.imag, sums.real)
 
 
 def _in_cell(units, origin, cell_size):
@@ -353,7 +353,7 @@ def _interpolate(road_points: RoadPoints, settings: ImageSettings, progress: Pro
     # in the order of the road, so that a tile finds most of its pieces still there
     work = sorted(pieces_of_tile.items(), key=lambda item: (item[1][0], item[0]))
 
-    def sums(pieces: list[PieceKey]) -> Iterator[WeightedSums]:
+    def sums(pieces: list[PieceKey]) -> Iterator[_WeightedSums]:
         executor = road_points.executor
         items = [(piece, steps[piece], limits[piece[0], piece[1] // PIECES_PER_WINDOW]) for piece in pieces]
         together = PIECES_PER_TASK if executor.folder else 1
@@ -433,7 +433,7 @@ def _sampling_step(points: Points, settings: ImageSettings) -> int:
     return max(int(len(points) * settings.cell_size**2 / (RANKING_WINDOW / PIECES_PER_WINDOW * width) / FAR_POINTS_PER_CELL), 1)
 
 
-def sums_of_pieces(road_points: RoadPoints, items: list[tuple[PieceKey, int, tuple[float, float]]], settings: ImageSettings) -> list[WeightedSums]:
+def sums_of_pieces(road_points: RoadPoints, items: list[tuple[PieceKey, int, tuple[float, float]]], settings: ImageSettings) -> list[_WeightedSums]:
     """The phase that interpolates pieces.
 
     Parameters
@@ -459,8 +459,8 @@ def _sums_of_piece(road_points, piece, step, limits, settings):
 
 
 def _with_pieces(work: list[tuple[tuple[int, int], list[PieceKey]]],
-                 sums: Callable[[list[PieceKey]], Iterator[WeightedSums]]) -> Iterator[tuple[tuple[int, int], list[WeightedSums]]]:
-    """Yield (tile, WeightedSums of its pieces) in order; `sums` are those of pieces, in their order.
+                 sums: Callable[[list[PieceKey]], Iterator[_WeightedSums]]) -> Iterator[tuple[tuple[int, int], list[_WeightedSums]]]:
+    """Yield (tile, _WeightedSums of its pieces) in order; `sums` are those of pieces, in their order.
 
     A piece is kept for the tiles that follow soon, and computed again for those that follow late, such as the ones that another road crosses.
     """
@@ -476,7 +476,7 @@ def _with_pieces(work: list[tuple[tuple[int, int], list[PieceKey]]],
             made[tiles[first]].append(piece)
             done[tiles[last]].append(piece)
     results = sums([piece for pieces in made for piece in pieces])
-    kept: dict[PieceKey, WeightedSums] = {}
+    kept: dict[PieceKey, _WeightedSums] = {}
     for k, (tile, pieces) in enumerate(work):
         kept.update((piece, next(results)) for piece in made[k])
         yield tile, [kept[piece] for piece in pieces]
@@ -505,10 +505,10 @@ class _Grid:
         return [(column, row) for column in range((c0 - self.column) // GEOTIFF_TILE, (c1 - self.column) // GEOTIFF_TILE + 1)
                 for row in range((self.row - r1) // GEOTIFF_TILE, (self.row - r0) // GEOTIFF_TILE + 1)]
 
-    def tile(self, column: int, row: int, parts: Iterable[WeightedSums]) -> np.ndarray | None:
+    def tile(self, column: int, row: int, parts: Iterable[_WeightedSums]) -> np.ndarray | None:
         """(height, width) float32 of one tile, from the sums that touch it; None where it has no data."""
         shape = min(GEOTIFF_TILE, self.height - row * GEOTIFF_TILE), min(GEOTIFF_TILE, self.width - column * GEOTIFF_TILE)
-        whole = WeightedSums(self.column + column * GEOTIFF_TILE, self.row - row * GEOTIFF_TILE, *np.zeros((2, *shape), np.float32))
+        whole = _WeightedSums(self.column + column * GEOTIFF_TILE, self.row - row * GEOTIFF_TILE, *np.zeros((2, *shape), np.float32))
         for part in parts:
             part.add_to(whole)
         seen = whole.weights > 0

@@ -51,7 +51,7 @@ LEAST_STRETCHED = 0.3        # m along a strip for each m of station, where a be
 
 
 @dataclass(frozen=True)
-class StripMeasures:
+class _StripMeasures:
     """What was measured of a strip; NaN where it could not be. Left and right are seen along the road.
 
     strip : Strip
@@ -74,7 +74,7 @@ class StripMeasures:
 
 
 @dataclass(frozen=True)
-class RoadSection:
+class _RoadSection:
     """One section.
 
     road, station : where
@@ -88,7 +88,7 @@ class RoadSection:
     heading: float
     d: np.ndarray
     z: np.ndarray
-    parts: list[StripMeasures]
+    parts: list[_StripMeasures]
 
 
 @dataclass
@@ -101,7 +101,7 @@ class RoadSections:
     frame, crs, settings : what they were made with
     """
 
-    sections: list[RoadSection]
+    sections: list[_RoadSection]
     errors: dict[int, HeightErrors]
     frame: RoadFrame
     crs: str
@@ -208,7 +208,7 @@ def _joined(grid: SurfaceGrid, errors: HeightErrors, frame: RoadFrame) -> tuple[
 
 
 def _section(survey, road, s, borders, errors, interval, stretch):
-    """(RoadSection, lanes without ruts); None where the road was not seen."""
+    """(_RoadSection, lanes without ruts); None where the road was not seen."""
     found = _grid(survey, road, s, borders, stretch)
     if found is None:
         return None, 0
@@ -234,12 +234,12 @@ def _section(survey, road, s, borders, errors, interval, stretch):
                                 carriageway.left - BORDER_MARGIN), noise)
             ruts = _median(depths[0]), _median(depths[1])
         across, along = (np.nan, np.nan) if plane is None or seen < MIN_SURFACE_SEEN else _falls(survey, road, s, grid, plane, strip, heading)
-        parts.append(StripMeasures(
+        parts.append(_StripMeasures(
             strip, across, np.nan if plane is None or np.isnan(across) else float(np.hypot(plane.sigma, rolled)), along, ruts,
             _curbs(grid.d, level, strip) if not strip.lane else (np.nan, np.nan), clearance, seen))
     inside = (grid.d > carriageway.right - READ_BESIDE) & (grid.d < carriageway.left + READ_BESIDE)
     z = level[inside] + grid.line(np.array([s]))[0]
-    return RoadSection(road, s, heading, grid.d[inside], z, parts), noisy
+    return _RoadSection(road, s, heading, grid.d[inside], z, parts), noisy
 
 
 @dataclass(frozen=True)
@@ -308,7 +308,7 @@ def _clearances(survey, road, s, interval, profile, strips):
         found = _clear_of(points, above, strips)
         if np.nanmin(found, initial=np.inf) < HIGHEST_VEHICLE:
             points, above = read(start - VEHICLE_REACH, end + VEHICLE_REACH)
-            kept = np.flatnonzero((points.s >= start) & (points.s < end) & ~on_vehicles(points.s, points.d, above))
+            kept = np.flatnonzero((points.s >= start) & (points.s < end) & ~_on_vehicles(points.s, points.d, above))
             found = _clear_of(points[kept], above[kept], strips)
         lowest = np.fmin(lowest, found)
     return lowest
@@ -472,7 +472,7 @@ def clear_height(points: Points, h: np.ndarray, right: float, left: float) -> fl
     return float(lowest[MIN_OVERHEAD_COLUMNS - 1]) if len(lowest) >= MIN_OVERHEAD_COLUMNS else None
 
 
-def on_vehicles(s: np.ndarray, d: np.ndarray, h: np.ndarray) -> np.ndarray:
+def _on_vehicles(s: np.ndarray, d: np.ndarray, h: np.ndarray) -> np.ndarray:
     """Which points belong to what stands or drives on the road.
 
     A vehicle that moves beside the scanner is drawn out, and in places only the upper part of its flank was seen. What hangs together from below
@@ -536,7 +536,7 @@ def sections_to_features(sections: RoadSections) -> tuple[Features, Features]:
     return lines, table
 
 
-def exceeded(part: StripMeasures, width: float, limits: SectionLimits) -> list[str]:
+def exceeded(part: _StripMeasures, width: float, limits: SectionLimits) -> list[str]:
     """Names of the limits that a lane or carriageway does not keep, in a fixed order.
 
     Crossfall and width are judged of driving lanes, the grade and the clearance of everything.
@@ -561,7 +561,7 @@ def _below(value, limit):
     return bool(limit is not None and value < limit)
 
 
-def _row(number: int, section: RoadSection, part: StripMeasures, limits: SectionLimits) -> dict[str, Any]:
+def _row(number: int, section: _RoadSection, part: _StripMeasures, limits: SectionLimits) -> dict[str, Any]:
     strip = part.strip
     width = strip.width / float(np.hypot(1.0, section.heading))
     return dict(

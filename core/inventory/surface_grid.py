@@ -81,10 +81,10 @@ def surface_grid(survey: Survey, road: int, start: float, slices: int, offsets: 
     points = survey.window(road, start, end)
     d = points.d
     near = np.flatnonzero((d >= offsets[0]) & (d < offsets[1]))
-    return grid_of_points(points[near], road, start, slices, offsets, float(first), slope)
+    return _grid_of_points(points[near], road, start, slices, offsets, float(first), slope)
 
 
-def grid_of_points(points: Points, road: int, start: float, slices: int, offsets: tuple[float, float], base: float,
+def _grid_of_points(points: Points, road: int, start: float, slices: int, offsets: tuple[float, float], base: float,
                    slope: float) -> SurfaceGrid:
     """SurfaceGrid of points.
 
@@ -357,7 +357,7 @@ def rut_depths(d: np.ndarray, profiles: np.ndarray, lane: tuple[float, float], c
     for start in range(first, last + 1, max(int(round(EDGE_STEP / CROSS_CELL)), 1)):
         under, heights = d[start:start + count], smooth[:, start:start + count]
         known = np.isfinite(heights)
-        depth = hull_height(under, heights) - heights
+        depth = _hull_height(under, heights) - heights
         depth[(known.mean(axis=1) < MIN_SEEN) | broken[:, start:start + count].any(axis=1)] = np.nan
         for half, own in enumerate((under < middle, under >= middle)):
             if own.any():
@@ -406,7 +406,7 @@ def _bridged(profiles):
     return filled
 
 
-def hull_height(x: np.ndarray, heights: np.ndarray) -> np.ndarray:
+def _hull_height(x: np.ndarray, heights: np.ndarray) -> np.ndarray:
     """(I, K) upper convex hull of I profiles at (K,) x: the lowest of the lines of all slopes that lie on top of a profile.
 
     NaN heights carry nothing. A profile without heights gives -inf.

@@ -272,7 +272,7 @@ MAX_LOCAL = 1e5                 # m: local coordinates, and those without their 
 
 
 @dataclass(frozen=True)
-class MapPlace:
+class _MapPlace:
     """A place of the map on the ground.
 
     longitude, latitude : degrees from Greenwich, of the CRS's own datum
@@ -289,7 +289,7 @@ class MapPlace:
         return abs(self.scale - 1.0) <= MAX_SCALE_ERROR
 
 
-def place_on_ground(crs: Any, x: float, y: float) -> MapPlace:
+def place_on_ground(crs: Any, x: float, y: float) -> _MapPlace:
     """Where a place of the map lies, and the scale there.
 
     The metric of the ground is measured along x, y and their diagonal with geodesics; its eigenvalues are the squared lengths of the axes of
@@ -311,14 +311,14 @@ def place_on_ground(crs: Any, x: float, y: float) -> MapPlace:
     steps = SCALE_STEP * np.array([(0, 0), (1, 0), (0, 1), (1, 1)])
     u, v = (np.asarray(found) * to_radians for found in Transformer.from_crs(crs, datum, always_xy=True).transform(*(steps + (x, y)).T))
     if not np.isfinite([u, v]).all():
-        return MapPlace(np.nan, np.nan, np.nan)
+        return _MapPlace(np.nan, np.nan, np.nan)
     along_x, along_y, diagonal = np.array(crs.get_geod().inv(*([end[0]] * 3 for end in (u, v)), u[1:], v[1:], radians=True)[2]) / SCALE_STEP
     mixed = (diagonal**2 - along_x**2 - along_y**2) / 2
     ground = np.sqrt(np.linalg.eigvalsh([[along_x**2, mixed], [mixed, along_y**2]]).clip(1e-12))
     scale = max(1 / ground, key=lambda one: abs(np.log(one)))
     meridian = datum.prime_meridian
     longitude = np.degrees(u[0]) + meridian.longitude * np.degrees(meridian.unit_conversion_factor)
-    return MapPlace(float((longitude + 180) % 360 - 180), float(np.degrees(v[0])), float(scale))
+    return _MapPlace(float((longitude + 180) % 360 - 180), float(np.degrees(v[0])), float(scale))
 
 
 @lru_cache(maxsize=16)

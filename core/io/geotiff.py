@@ -221,7 +221,7 @@ def filled_tiles(dataset: Any) -> list[tuple[int, int]]:
     return [(column, row) for row, column in sorted(found)]
 
 
-class NewGeoTiff:
+class _NewGeoTiff:
     """The single band of a GeoTIFF that is being written.
 
     Parameters
@@ -281,14 +281,14 @@ class NewGeoTiff:
 
 @contextmanager
 def new_geotiff(path: str | os.PathLike[str], width: int, height: int, geotransform: Any, crs: str, byte: bool = False,
-                nodata: float = NODATA) -> Iterator[NewGeoTiff]:
+                nodata: float = NODATA) -> Iterator[_NewGeoTiff]:
     """A new GeoTIFF with one band: tiled, DEFLATE, without empty tiles. It appears at its path only when all is written.
 
     Of several runs that write the same file each ends well, and the last to end is kept.
 
     Parameters
     ----------
-    path, width, height, geotransform, crs, byte, nodata : as of NewGeoTiff
+    path, width, height, geotransform, crs, byte, nodata : as of _NewGeoTiff
 
     Raises
     ------
@@ -299,7 +299,7 @@ def new_geotiff(path: str | os.PathLike[str], width: int, height: int, geotransf
     unfinished = unfinished_path(target, ".tif")
     image = None
     try:
-        image = NewGeoTiff(unfinished, width, height, geotransform, crs, byte, nodata)
+        image = _NewGeoTiff(unfinished, width, height, geotransform, crs, byte, nodata)
         yield image
         image.close()
         os.replace(unfinished, target)

@@ -38,7 +38,7 @@ VALUE_PATTERN = re.compile(r"\d{1,4}[-/.]\d{1,2}[-/.]\d{1,4}([ T]\d{1,2}:.*)?$|\
 
 
 @dataclass(frozen=True)
-class NumberStyle:
+class _NumberStyle:
     """How numbers are written: the decimal sign, and the sign between groups of three digits, "" for none."""
 
     decimal: str
@@ -59,8 +59,8 @@ class NumberStyle:
         return re.compile(rf"(?<![\d.,])\d{{1,3}}(?:{mark}\d{{3}})+(?:{mark}\d{{3}}|{point}\d+)(?![\d.,])")
 
 
-STYLES = (NumberStyle("."), NumberStyle(","), NumberStyle(".", "'"), NumberStyle(",", "'"), NumberStyle(".", " "), NumberStyle(",", " "),
-          NumberStyle(",", "."), NumberStyle(".", ","))
+STYLES = (_NumberStyle("."), _NumberStyle(","), _NumberStyle(".", "'"), _NumberStyle(",", "'"), _NumberStyle(".", " "), _NumberStyle(",", " "),
+          _NumberStyle(",", "."), _NumberStyle(".", ","))
 
 
 @dataclass(frozen=True)

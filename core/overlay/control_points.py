@@ -106,7 +106,7 @@ def control_points(names: Sequence[Any] | None, rows: Sequence[Sequence[Any]], i
     if not rows:
         raise RoadExtractionError(f"{what} holds no control points. It needs a row for each: pixel, line, easting, northing.")
     rows = _rows_of_image(rows, image, None if names is None else _columns_named(names).get("image"), what)
-    where = guess_columns(rows, image, what) if names is None else find_columns(names, what)
+    where = _guess_columns(rows, image, what) if names is None else _find_columns(names, what)
     table = {key: _numbers(rows, where.get(key)) for key in ("pixel", "line", "easting", "northing", "height")}
     known = np.isfinite([table[key] for key in ("pixel", "line", "easting", "northing")]).all(axis=0)
     if not known.any():
@@ -132,7 +132,7 @@ def _columns_named(names):
     return {key: plain.index(alias) for key, aliases in reversed(COLUMN_ALIASES.items()) for alias in reversed(aliases) if alias in plain}
 
 
-def names_columns(fields: Sequence[str], least: int) -> bool:
+def _names_columns(fields: Sequence[str], least: int) -> bool:
     """Whether so many fields of a line are names of columns, which tells a header from other lines."""
     return len(set(_columns_named(fields)) - {"name", "role", "check", "enable", "image"}) >= least
 
@@ -159,7 +159,7 @@ def _rows_of_image(rows, image, column, what):
         "Give the image under its own name, or the table of this image.")
 
 
-def find_columns(names: Sequence[Any], what: str) -> dict[str, int]:
+def _find_columns(names: Sequence[Any], what: str) -> dict[str, int]:
     """Columns of a table with a header.
 
     Columns named only `x` and `y` are map coordinates, unless other columns have the names of these.
@@ -192,7 +192,7 @@ def find_columns(names: Sequence[Any], what: str) -> dict[str, int]:
     return found
 
 
-def guess_columns(rows: Sequence[Sequence[Any]], image: SourceImage, what: str) -> dict[str, int]:
+def _guess_columns(rows: Sequence[Sequence[Any]], image: SourceImage, what: str) -> dict[str, int]:
     """Columns of a table without a header: two columns lie in the image, and the two beside them do not.
 
     Parameters
@@ -365,7 +365,7 @@ def _lines(path):
             named = named or bare[labelled.end():].strip()
         elif not lines and not named and (CRS_CODE.match(bare) or bare == line.strip() and _is_named_crs(bare)):
             named = bare
-        elif bare and (bare == line.strip() or (not lines and _delimiter([bare]) != " " and names_columns(re.split("[;\t,]", bare), 3))):
+        elif bare and (bare == line.strip() or (not lines and _delimiter([bare]) != " " and _names_columns(re.split("[;\t,]", bare), 3))):
             lines.append(bare)  # a header may be written as a comment
     return lines, named
 
@@ -386,7 +386,7 @@ def _file_text(path):
 def _is_named_crs(line):
     """Whether a line above the table is the name of a CRS and neither a row nor a header."""
     fields = re.split(r"[;\t,\s]+", line)
-    return bool(CRS_NAME.search(line)) and not names_columns(fields, 2) and sum(as_number(field) == as_number(field) for field in fields) < 3
+    return bool(CRS_NAME.search(line)) and not _names_columns(fields, 2) and sum(as_number(field) == as_number(field) for field in fields) < 3
 
 
 def _delimiter(lines):

@@ -40,7 +40,7 @@ def georeferencing_report(found: Georeferencing, drawn: str, departure: float) -
     """
     points, crs = found.points, found.points.crs
     control, check = points.having(CONTROL), points.having(CHECK)
-    picture, magnification = residual_picture(found, drawn)
+    picture, magnification = _residual_picture(found, drawn)
     return html_page(
         "georeferencing", found=found, notes=found.notes, grid=output_grid(found)[1:], crs=horizontal_part(parse_crs(crs)).name if crs else "",
         departure=departure, residuals=picture, magnification=magnification,
@@ -55,7 +55,7 @@ def _largest(vectors):
     return float(np.hypot(*known.T).max()) if len(known) else float("nan")
 
 
-def residual_picture(found: Georeferencing, drawn: str) -> tuple[np.ndarray, float]:
+def _residual_picture(found: Georeferencing, drawn: str) -> tuple[np.ndarray, float]:
     """The drawn image with the residuals as arrows.
 
     Parameters
@@ -134,11 +134,11 @@ def _reduced_copy(path):
 
 def proposed_points_report(found: Proposal) -> str:
     """The report of a Proposal as HTML."""
-    return html_page("proposed_points", found=found, notes=found.notes, cut_outs=pairs_picture(found),
+    return html_page("proposed_points", found=found, notes=found.notes, cut_outs=_pairs_picture(found),
                   rival=None if found.rival is None else np.hypot(found.rival.dx, found.rival.dy))
 
 
-def pairs_picture(found: Proposal) -> np.ndarray:
+def _pairs_picture(found: Proposal) -> np.ndarray:
     """(H, W, 3) uint8, blue, green, red: all pairs of cut-outs in rows."""
     width, height = 2 * CUT_SIDE + 3 * _GAP, CUT_SIDE + _TEXT + 2 * _GAP
     rows = -(-len(found) // PAIRS_PER_ROW)

@@ -32,19 +32,19 @@ def inspection_report(found: Inspection) -> str:
     # seconds beyond a week are no seconds of a week, whatever the header says of them
     start = datetime(1980, 1, 6) + timedelta(seconds=first + 1e9) if first > SECONDS_PER_WEEK else None
     if found.drive is not None:
-        image, low, high = profile_picture(found.drive.profile)
+        image, low, high = _profile_picture(found.drive.profile)
         profile = dict(image=image, low=low, high=high)
     values = np.flatnonzero(found.intensity)
     quantiles = [int(np.searchsorted(np.cumsum(found.intensity) / found.count, q)) for q in (0.01, 0.5, 0.99)]
-    histogram = histogram_picture(found.intensity, quantiles[0], quantiles[2]) if len(values) > 1 else None
+    histogram = _histogram_picture(found.intensity, quantiles[0], quantiles[2]) if len(values) > 1 else None
     return html_page(
-        "inspection", found=found, notes=found.notes, crs_name=_crs_name, size=found.maximum - found.minimum, density=density_picture(found),
+        "inspection", found=found, notes=found.notes, crs_name=_crs_name, size=found.maximum - found.minimum, density=_density_picture(found),
         profile=profile, start=start and f"{start:%Y-%m-%d %H:%M:%S}",
         driven=None if track is None else float(np.hypot(np.diff(track.x), np.diff(track.y)).sum()),
         intensity=dict(lowest=values[0], highest=values[-1], number=len(values), quantiles=quantiles, image=histogram))
 
 
-def density_picture(found: Inspection) -> dict[str, Any]:
+def _density_picture(found: Inspection) -> dict[str, Any]:
     """The density of the points with the trajectory on it: `image` (H, W, 3) uint8, `most` points per m² that it shows, `with_track` or not."""
     density, corner = found.density
     known = np.isfinite(density)
@@ -63,7 +63,7 @@ def density_picture(found: Inspection) -> dict[str, Any]:
     return dict(image=image, most=top, with_track=with_track)
 
 
-def profile_picture(profile: np.ndarray, width: int = 900, height: int = 220) -> tuple[np.ndarray, float, float]:
+def _profile_picture(profile: np.ndarray, width: int = 900, height: int = 220) -> tuple[np.ndarray, float, float]:
     """Heights along the drive.
 
     Parameters
@@ -95,7 +95,7 @@ def profile_picture(profile: np.ndarray, width: int = 900, height: int = 220) ->
     return image, low, high
 
 
-def histogram_picture(counts: np.ndarray, low: int, high: int, width: int = 900, height: int = 220) -> np.ndarray:
+def _histogram_picture(counts: np.ndarray, low: int, high: int, width: int = 900, height: int = 220) -> np.ndarray:
     """(height, width, 3) uint8 picture of the histogram of the values low to high, from the counts (M,) of the values from 0 on."""
     high = max(high, low + 1)
     edges = np.linspace(low, high + 1, min(width // 3, high - low + 1) + 1)

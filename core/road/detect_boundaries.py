@@ -230,7 +230,7 @@ class CurbEvidence:
 
 
 @dataclass
-class EdgeSamples:
+class _EdgeSamples:
     """The edges of one side of a road at N places COMPARISON_STEP apart.
 
     Attributes
@@ -248,7 +248,7 @@ class EdgeSamples:
     scatter: np.ndarray
 
 
-def sample_edges(edges: RoadEdges, frame: RoadFrame, road: int, side: str) -> EdgeSamples:
+def sample_edges(edges: RoadEdges, frame: RoadFrame, road: int, side: str) -> _EdgeSamples:
     """The edges of one side of a road at regular stations.
 
     Parameters
@@ -261,7 +261,7 @@ def sample_edges(edges: RoadEdges, frame: RoadFrame, road: int, side: str) -> Ed
     line = frame.road(road)
     first, last = int(np.floor(line.start / COMPARISON_STEP)), int(np.ceil(line.end / COMPARISON_STEP))
     s = np.arange(first, last + 1) * COMPARISON_STEP
-    samples = EdgeSamples(s, np.full(len(s), np.nan), np.full(len(s), np.nan), np.zeros(len(s), bool), np.full(len(s), np.inf))
+    samples = _EdgeSamples(s, np.full(len(s), np.nan), np.full(len(s), np.nan), np.zeros(len(s), bool), np.full(len(s), np.inf))
     course = edges.course
     for k in np.flatnonzero((edges.road == road) & (edges.side == side) & (edges.status != "inferred") & (edges.part == "bottom")
                             & edges.of_main_curb):

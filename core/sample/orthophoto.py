@@ -163,7 +163,7 @@ def uav_control_points(survey: SampleSurvey) -> Features:
                   pixel=pixel[k] + pointed[0, k], line=line[k] + pointed[1, k], kind=kinds[k])
     return layer
 
-class StreetColours:
+class _StreetColours:
     """Colours of the ground and of the objects on it.
 
     Parameters
@@ -283,7 +283,7 @@ def write_uav_image(survey: SampleSurvey, path: str | os.PathLike[str], progress
 
     progress = progress or Progress()
     scene, camera = seen_from_above(survey)
-    street = StreetColours(scene, camera, survey.settings.seed)
+    street = _StreetColours(scene, camera, survey.settings.seed)
     unfinished = unfinished_path(path, ".tif")
     dataset = None
     try:

@@ -151,7 +151,7 @@ class PointChoice:
         return (*DECODED_LAYERS, *self.intensity.layers)
 
 
-class BlockProjector:
+class _BlockProjector:
     """Turns blocks into compact records in the road frame; safe to use in several threads."""
 
     def __init__(self, frame: RoadFrame, choice: PointChoice):
@@ -339,7 +339,7 @@ class BlockReader:
     def __init__(self, frame: RoadFrame, choice: PointChoice, slots: TimeSlots):
         self.frame, self.choice, self.slots = frame, choice, slots
         self.tracks = VehicleTracks(frame)
-        self._blocks = BlockProjector(frame, choice)
+        self._blocks = _BlockProjector(frame, choice)
 
     def ground(self, drop: float) -> HeightFilter:
         """What is near a road that lies `drop` metres below the trajectory."""

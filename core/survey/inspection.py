@@ -60,7 +60,7 @@ class Inspection:
         (min x, max y) of its corner)
     intensity : (65536,) counts of each value
     scanners : LAS field that tells them apart or None, and its values
-    drive : InspectedDrive: roads, passes, sensor height, height profile; None without a usable trajectory
+    drive : _InspectedDrive: roads, passes, sensor height, height profile; None without a usable trajectory
     near_share, in_time_share : share of points measured near and during the trajectory, None without one
     """
 
@@ -82,7 +82,7 @@ class Inspection:
     near_share: float | None = None
     in_time_share: float | None = None
     trajectory: Trajectory | None = None
-    drive: InspectedDrive | None = None
+    drive: _InspectedDrive | None = None
     notes: list = field(default_factory=list)
 
 
@@ -307,7 +307,7 @@ def _judge_trajectory(found, wkt, has_time, progress):
 
 
 @dataclass(frozen=True)
-class InspectedDrive:
+class _InspectedDrive:
     """Findings about a trajectory; metres and seconds.
 
     roads : length of each road
@@ -324,7 +324,7 @@ class InspectedDrive:
     profile: np.ndarray
 
 
-def _inspect_drive(trajectory: Trajectory, rows: np.ndarray, heights: np.ndarray) -> InspectedDrive:
+def _inspect_drive(trajectory: Trajectory, rows: np.ndarray, heights: np.ndarray) -> _InspectedDrive:
     """Roads, passes and sensor height of a trajectory.
 
     trajectory : Trajectory, cleaned and in the clouds' CRS
@@ -337,7 +337,7 @@ def _inspect_drive(trajectory: Trajectory, rows: np.ndarray, heights: np.ndarray
     drops = trajectory.z[rows] - heights
     height = sensor_height_of(drops)
     profile = _profile(driven, trajectory.z, driven[rows], heights, drops, height)
-    return InspectedDrive([road.length for road in frame.roads], passes,
+    return _InspectedDrive([road.length for road in frame.roads], passes,
                           float(sum(abs(last - first) for *_, first, last, _, _ in passes)), height, profile)
 
 

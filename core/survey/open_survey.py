@@ -78,7 +78,7 @@ def _survey_of_run(executor, read, progress):
     reading = _readers(executor, read[0], progress)
     if reading.folder is None:
         return read_survey(*read, progress)
-    shared = SharedReading(reading, executor, reading.folder / "points", reading.folder / SURVEY_FOLDER)
+    shared = _SharedReading(reading, executor, reading.folder / "points", reading.folder / SURVEY_FOLDER)
     try:
         survey = read_survey(*read, progress, shared)
     except OSError as error:
@@ -110,7 +110,7 @@ def _kept_survey(work, executor, read, progress):
             parts.discard()
             parts = WorkFolder(str(parts.path))
         reading = KeptResults(_readers(executor.executor, files, progress), parts)
-        shared = SharedReading(reading, executor.executor, parts.path / "points", work.begin(name))
+        shared = _SharedReading(reading, executor.executor, parts.path / "points", work.begin(name))
         try:
             survey = read_survey(*read, heard, shared)
         except RoadExtractionError:
@@ -151,7 +151,7 @@ HIGHEST_SENSOR = 5.0         # m above the road: vehicles are up to 4 m high (Di
 
 
 @dataclass(frozen=True)
-class SharedReading:
+class _SharedReading:
     """A survey that is read by workers, or kept.
 
     reading : Executor that reads the files
@@ -167,7 +167,7 @@ class SharedReading:
 
 
 def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: SurveySettings = SurveySettings(),
-                progress: Progress = Progress(), shared: SharedReading | None = None) -> Survey:
+                progress: Progress = Progress(), shared: _SharedReading | None = None) -> Survey:
     """Read point clouds once and project every point into the road frame.
 
     Parameters
@@ -234,9 +234,9 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     if has_time and not feet:   # a scanner that rides three times too high sees three times too far
         _check_clock(survey, progress)
     measured = survey.store
-    mounted = lay_scanners(survey, progress.part(read_at, read_at), shared and shared.points) if has_time and not feet else 0.0
+    mounted = lay_scanners(survey, progress.part(read_at, read_at), shared.points if shared is not None else None) if has_time and not feet else 0.0
     if again:
-        adjust_passes(survey, progress.part(INGEST_PROGRESS, 1.0), shared and shared.points)
+        adjust_passes(survey, progress.part(INGEST_PROGRESS, 1.0), shared.points if shared is not None else None)
     _see_passes(survey, settings.fit_passes, measured, shared, progress)
     # what the user says overrules what lies beside the trajectory
     if across := max(settings.trajectory_sigma or trajectory.sigma_across, float(np.hypot(fitted.sigma, rounding)), mounted):

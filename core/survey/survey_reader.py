@@ -121,8 +121,8 @@ class SurveyReader:
                     done += self._take(*self._read_block(lambda points=points: points))
                     progress.report(done / total)
         self._settle()
-        source = PartsOfFiles(files, self.frame, self.store, self.choice, self.slots, self._drop, np.array(ranges, np.int64).reshape(-1, 3), block)
-        phase = Phase(read_part, source, (), source.place, source.size, join_parts)
+        source = _PartsOfFiles(files, self.frame, self.store, self.choice, self.slots, self._drop, np.array(ranges, np.int64).reshape(-1, 3), block)
+        phase = Phase(_read_part, source, (), source.place, source.size, _join_parts)
         for part in executor.run(phase, source.items(PART_POINTS), progress.part(done / total, 1.0)):
             self._take_part(part)
         self._end()
@@ -196,7 +196,7 @@ PART_POINTS = 1_200_000   # points of a part, about: a second or two of a worker
 
 
 @dataclass(frozen=True)
-class PartOfFiles:
+class _PartOfFiles:
     """What was found in a range of points.
 
     index : where those lie that were kept
@@ -212,7 +212,7 @@ class PartOfFiles:
     places: np.ndarray
 
 
-class PartsOfFiles:
+class _PartsOfFiles:
     """Files whose points are read part by part into the folder of a store; several threads may do so.
 
     Parameters
@@ -236,7 +236,7 @@ class PartsOfFiles:
         """How other processes read the same."""
         store = self.store
         files = [replace(file, path=os.path.abspath(file.path), crs="") for file in self.files]
-        return Recipe("survey.survey_reader:parts_of_files", dict(
+        return Recipe("survey.survey_reader:_parts_of_files", dict(
             files=files, frame=self.reader.frame, columns=[list(column) for column in store.dtype.descr], section_length=store.section_length,
             memory_limit=store.memory_limit, folder=str(store.folder), choice=self.reader.choice, slots=self.reader.slots, drop=self.drop,
             ranges=self.ranges, block=self.block))
@@ -260,13 +260,13 @@ class PartsOfFiles:
         return float(self.ranges[item[0]:item[1], 2].sum())
 
 
-def parts_of_files(columns: list[list[str]], section_length: float, memory_limit: int, folder: str, **others: Any) -> PartsOfFiles:
-    """What `PartsOfFiles.recipe` describes."""
+def _parts_of_files(columns: list[list[str]], section_length: float, memory_limit: int, folder: str, **others: Any) -> _PartsOfFiles:
+    """What `_PartsOfFiles.recipe` describes."""
     store = SectionStore([tuple(column) for column in columns], section_length, memory_limit, folder=Path(folder))
-    return PartsOfFiles(store=store, **others)
+    return _PartsOfFiles(store=store, **others)
 
 
-def read_part(source: PartsOfFiles, item: tuple[int, int]) -> PartOfFiles:
+def _read_part(source: _PartsOfFiles, item: tuple[int, int]) -> _PartOfFiles:
     """The phase of reading: the points of some blocks that lie near the road.
 
     Parameters
@@ -282,17 +282,17 @@ def read_part(source: PartsOfFiles, item: tuple[int, int]) -> PartOfFiles:
                     store.add(part)
         index = store.index()
     sampled = list(zip(*chosen.sampled)) or [[np.empty(0)], [np.empty((0, 3), np.int32)]]
-    return PartOfFiles(index, found, chosen.histogram.counts, *(np.concatenate(column) for column in sampled))
+    return _PartOfFiles(index, found, chosen.histogram.counts, *(np.concatenate(column) for column in sampled))
 
 
-def join_parts(parts: list[PartOfFiles]) -> PartOfFiles:
+def _join_parts(parts: list[_PartOfFiles]) -> _PartOfFiles:
     """One part of several that follow each other."""
     found = BlockSummary()
     drops: dict[int, np.ndarray] = {}
     for part in parts:
         found.join(part.found)
         drops = {number: counts + drops.get(number, 0) for number, counts in part.drops.items()}
-    return PartOfFiles(StoreIndex.join([part.index for part in parts]), found, drops, *(np.concatenate([getattr(part, name) for part in parts])
+    return _PartOfFiles(StoreIndex.join([part.index for part in parts]), found, drops, *(np.concatenate([getattr(part, name) for part in parts])
                                                                                    for name in ("times", "places")))
 
 
@@ -313,7 +313,7 @@ class UnorderedPoints:
 
     def recipe(self, folder: Path) -> Recipe:
         """How other processes open the points."""
-        return Recipe("survey.survey_reader:unordered_points", dict(contents=self.store.contents(), points_folder=str(self.store.folder),
+        return Recipe("survey.survey_reader:_unordered_points", dict(contents=self.store.contents(), points_folder=str(self.store.folder),
                                                                finishing=self.finishing, folder=str(self.folder)))
 
     def put_in_order(self, executor: Executor, place: Callable[[int, float, float], str], progress: Progress) -> None:
@@ -329,19 +329,19 @@ class UnorderedPoints:
         def points(item):
             return self.store.points_between(item[0], item[1] * length, item[2] * length)
 
-        phase = Phase(order_sections, self, (), lambda item: place(item[0], item[1] * length, item[2] * length), points)
+        phase = Phase(_order_sections, self, (), lambda item: place(item[0], item[1] * length, item[2] * length), points)
         found = list(executor.run(phase, self.store.stretches(STRETCH_POINTS, self.store.numbers()), progress))
         self.store.take_over(StoreIndex.join(found), self.folder)
 
 
-def unordered_points(contents: dict[str, Any], points_folder: str, finishing: Finishing | None, folder: str) -> UnorderedPoints:
+def _unordered_points(contents: dict[str, Any], points_folder: str, finishing: Finishing | None, folder: str) -> UnorderedPoints:
     """What `UnorderedPoints.recipe` describes."""
     store = SectionStore.opened(Path(points_folder), **contents)
     store.finish = finishing
     return UnorderedPoints(store, finishing, Path(folder))
 
 
-def order_sections(source: UnorderedPoints, item: Stretch) -> StoreIndex:
+def _order_sections(source: UnorderedPoints, item: Stretch) -> StoreIndex:
     """The phase: the points of some sections, in order, in a file of the folder.
 
     Parameters

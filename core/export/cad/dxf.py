@@ -20,7 +20,7 @@ COLOURS = {"LANE_BORDER": "#808080", "DRIVING_LINE": "#00a0ff", "MARKING_EDGE": 
 
 
 @dataclass(frozen=True)
-class DxfLine:
+class _DxfLine:
     """layer : name; places : (N, 3); closed : whether the last place is joined with the first."""
 
     layer: str
@@ -28,7 +28,7 @@ class DxfLine:
     closed: bool = False
 
 
-def dxf_lines(source: RoadMapSource) -> list[DxfLine]:
+def dxf_lines(source: RoadMapSource) -> list[_DxfLine]:
     """Lane borders, driving lines, marking lines by kind and pattern, road edges by what they are, outlines of markings by class."""
     found = []
     lanes = source.lanes
@@ -38,7 +38,7 @@ def dxf_lines(source: RoadMapSource) -> list[DxfLine]:
             key = min(border.tobytes(), border[::-1].tobytes())
             if key not in seen and np.hypot(*(border[-1] - border[0])[:2]) > 0.01:
                 seen.add(key)
-                found.append(DxfLine(f"LANE_BORDER_{lanes.type[k].upper()}", border))
+                found.append(_DxfLine(f"LANE_BORDER_{lanes.type[k].upper()}", border))
     found += _of(source.driving_lines, lambda row: "DRIVING_LINE" + ("" if row.get("status") in (None, "measured") else f"_{row['status'].upper()}"))
     found += _of(source.marking_lines, lambda row: "_".join(filter(None, ("MARKING", str(row.get("kind") or "line").upper(),
                                                                           str(row.get("pattern") or "").upper().replace("-", "_")))))
@@ -53,27 +53,27 @@ def _edge_layer(row: dict[str, Any]) -> str:
     return f"ROAD_EDGE_{str(what).upper()}" if what else "ROAD_EDGE"
 
 
-def _of(layer: Features | None, name_of: Callable[[dict[str, Any]], str]) -> list[DxfLine]:
+def _of(layer: Features | None, name_of: Callable[[dict[str, Any]], str]) -> list[_DxfLine]:
     found = []
     for geometry, row in layer or ():
         for part in shapely.get_parts(geometry) if geometry is not None else ():
             closed = part.geom_type == "Polygon"
             places = shapely.get_coordinates(part.exterior if closed else part, include_z=True)
-            found.append(DxfLine(name_of(row), places, closed))
+            found.append(_DxfLine(name_of(row), places, closed))
     return found
 
 
-def colour_of(layer: str) -> str:
+def _colour_of(layer: str) -> str:
     """The colour of a layer by the beginning of its name."""
     return next((colour for name, colour in COLOURS.items() if layer.startswith(name)), "#c0c0c0")
 
 
-def write_dxf(lines: list[DxfLine], path: str, crs: str = "") -> None:
+def write_dxf(lines: list[_DxfLine], path: str, crs: str = "") -> None:
     """Write the file by GDAL, in the units of the survey's own CRS.
 
     Parameters
     ----------
-    lines : list of DxfLine
+    lines : list of _DxfLine
     path : of the file
     crs : WKT, metric, of the lines, "" where unknown
 
@@ -97,7 +97,7 @@ def write_dxf(lines: list[DxfLine], path: str, crs: str = "") -> None:
             for x, y, z in units.in_file(line.places):
                 geometry.AddPoint(float(x), float(y), float(z))
             feature.SetField("Layer", line.layer)
-            feature.SetStyleString(f"PEN(c:{colour_of(line.layer)},w:1px)")
+            feature.SetStyleString(f"PEN(c:{_colour_of(line.layer)},w:1px)")
             feature.SetGeometryDirectly(geometry)
             layer.CreateFeature(feature)
             feature = None

@@ -68,7 +68,7 @@ def check_lanelets(whole: LaneletMap, places: np.ndarray, crs: str = "", progres
         check.lanelet(lanelet)
     for relation in whole.others.values():
         check.members(relation)
-    add_rule_findings(whole, check.findings, check.place_of)
+    _add_rule_findings(whole, check.findings, check.place_of)
     progress.report(0.6)
     check.sides()
     check.joints()
@@ -128,7 +128,7 @@ class _LaneletCheck:
         self._tags(way, name, place)
 
     def _tags(self, way, name, place):
-        for text in way_tags(way):
+        for text in _way_tags(way):
             self.findings.add("way tag", name, text, place)
         kind, subtype = way.tags.get("type", ""), way.tags.get("subtype", "")
         if way.id in self.borders and kind in NO_BORDERS:
@@ -179,7 +179,7 @@ class _LaneletCheck:
                 self.findings.add("border missing", name, f"It has {has} as {role}; one way is needed.", place)
         if len(lanelet.members.get("centerline", ())) > 1:
             self.findings.add("centre line", name, f"It has {len(lanelet.members['centerline'])} centre lines.", place)
-        for text in lanelet_tags(tags):
+        for text in _lanelet_tags(tags):
             self.findings.add("lanelet tag", name, text, place)
         if whole and lanelet.id in self.network.left:
             self._shape(lanelet, name, place)
@@ -324,7 +324,7 @@ RULE_ROLES = ("refers", "ref_line", "cancels", "cancel_line", "right_of_way", "y
          "lanelet", "")
 
 
-def way_tags(way: Way) -> Iterator[str]:
+def _way_tags(way: Way) -> Iterator[str]:
     """Sentences on tags of a way whose values no reader knows."""
     for key, value in way.tags.items():
         if key == "lane_change" or key.startswith("lane_change:"):
@@ -334,7 +334,7 @@ def way_tags(way: Way) -> Iterator[str]:
             yield f"{key} is {value!r}."
 
 
-def lanelet_tags(tags: Mapping[str, str]) -> Iterator[str]:
+def _lanelet_tags(tags: Mapping[str, str]) -> Iterator[str]:
     """Sentences on tags of a lanelet that are missing or have values that no reader knows."""
     for key, allowed in (("subtype", LANELET_SUBTYPES), ("location", LOCATIONS), ("one_way", YES_OR_NO)):
         if (key in tags or key == "subtype") and tags.get(key) not in allowed:
@@ -358,7 +358,7 @@ def _participant_tags(tags, walked):
         yield "Nobody may use it."
 
 
-def add_rule_findings(whole: LaneletMap, findings: Findings, place: Callable[[Lanelet], np.ndarray]) -> None:
+def _add_rule_findings(whole: LaneletMap, findings: Findings, place: Callable[[Lanelet], np.ndarray]) -> None:
     """Add what is wrong with relations that are no lanelets: rules of traffic, areas, and lanelets whose type is misspelt."""
     used = {id for lanelet in (*whole.lanelets.values(), *whole.others.values()) for kind, id in lanelet.members.get("regulatory_element", ())
             if kind == "relation"}

@@ -72,7 +72,7 @@ def check_opendrive(whole: OpenDriveMap, crs: str = "", progress: Progress = Pro
         progress.report(0.6 * (count + 1) / len(whole.roads))
     report.statements()
     report.overlaps()
-    check_links(whole, report.findings)
+    _check_links(whole, report.findings)
     progress.report(1.0)
     return report.findings
 
@@ -241,7 +241,7 @@ LEAST_LANE = 0.5            # m: a lane that is narrower where it ends has taper
 END_STEP = 0.05             # m before an end, from which its direction is taken
 
 
-def check_links(whole: OpenDriveMap, findings: Findings) -> None:
+def _check_links(whole: OpenDriveMap, findings: Findings) -> None:
     """Add what is wrong with the links of roads, lanes and junctions, and count the routing network."""
     check = _Links(whole, findings)
     check.junctions()
@@ -484,7 +484,7 @@ ROAD_RECORDS = ((("type",), False), (("planView", "geometry"), True), (("elevati
 LANE_RECORDS = (("width", True), ("border", True), ("roadMark", False), ("height", False), ("speed", False))
 
 
-class Statement(NamedTuple):
+class _Statement(NamedTuple):
     """A fault of FAULTS, what it is about, what was seen, and where: the id of a road, "" for none, and metres along it."""
 
     fault: str
@@ -494,7 +494,7 @@ class Statement(NamedTuple):
     s: float
 
 
-def statements(root: XmlElement) -> Iterator[Statement]:
+def statements(root: XmlElement) -> Iterator[_Statement]:
     """Every statement of a file that the format does not allow.
 
     Parameters
@@ -516,13 +516,13 @@ def _header(header):
     try:
         major, minor = header.number("revMajor"), header.number("revMinor")
     except RoadExtractionError as problem:
-        yield Statement("value", "header", str(problem), "", 0.0)
+        yield _Statement("value", "header", str(problem), "", 0.0)
     else:
         if major != 1 or minor not in MINORS:
-            yield Statement("value", "header", f"The version is {major:g}.{minor:g}; there are 1.0 to 1.{MINORS[-1]}.", "", 0.0)
+            yield _Statement("value", "header", f"The version is {major:g}.{minor:g}; there are 1.0 to 1.{MINORS[-1]}.", "", 0.0)
     south, north, west, east = (_number(header, name, 0.0) for name in ("south", "north", "west", "east"))
     if south > north or west > east:
-        yield Statement("bounds", "header", f"South {south:g} to north {north:g}, west {west:g} to east {east:g}.", "", 0.0)
+        yield _Statement("bounds", "header", f"South {south:g} to north {north:g}, west {west:g} to east {east:g}.", "", 0.0)
 
 
 def _road(road, seen, minor):
@@ -531,7 +531,7 @@ def _road(road, seen, minor):
     for found in (_records(road, length), _plan(road), _of_lanes(lanes), _of_objects(road, length, lanes, seen),
                   (("value", "", text, 0.0) for one in _within(road) for text in _values(one, minor))):
         for fault, what, text, s in found:
-            yield Statement(fault, f"road {id}, {what}" if what else f"road {id}", text, id, s)
+            yield _Statement(fault, f"road {id}, {what}" if what else f"road {id}", text, id, s)
 
 
 # The statements of a road, each (fault, what, text, s).
@@ -622,11 +622,11 @@ def _junction(junction):
     for one in junction.all("connection"):
         what = f"{name}, connection {one.get('id')}"
         if one.get("id") in seen:
-            yield Statement("id twice", what, "There is another connection of this id.", one.get("connectingRoad"), 0.0)
+            yield _Statement("id twice", what, "There is another connection of this id.", one.get("connectingRoad"), 0.0)
         seen.add(one.get("id"))
         links = [(link.get("from"), link.get("to")) for link in one.all("laneLink")]
         if len(set(links)) < len(links):
-            yield Statement("connection", what, "It links the same lanes twice.", one.get("connectingRoad"), 0.0)
+            yield _Statement("connection", what, "It links the same lanes twice.", one.get("connectingRoad"), 0.0)
 
 
 def _order(parent, path, key, length, zero):

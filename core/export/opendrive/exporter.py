@@ -67,7 +67,7 @@ class OpenDriveDraft:
     """
 
     map: OpenDriveMap
-    roads: list[DraftRoad] = field(default_factory=list)
+    roads: list[_DraftRoad] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
 
 
@@ -102,9 +102,9 @@ def draft_opendrive(source: RoadMapSource, settings: OpenDriveSettings = OpenDri
         draft.roads.append(made)
         draft.map.roads.append(made.road)
         progress.report(number / len(strips))
-    draft.notes += link_roads(draft.map, draft.roads)
+    draft.notes += _link_roads(draft.map, draft.roads)
     draft.notes += _said_open_ends(draft.map)
-    add_objects(draft.map, source.markings, origin)
+    _add_objects(draft.map, source.markings, origin)
     return draft
 
 
@@ -164,7 +164,7 @@ class _Drafting:
                 ordinary.append(one)
         return ordinary, inside
 
-    def road(self, strip: list[Slice], number: int, single: bool, directions: dict[int, float]) -> DraftRoad:
+    def road(self, strip: list[Slice], number: int, single: bool, directions: dict[int, float]) -> _DraftRoad:
         tolerance = self.settings.tolerance
         centres = [centre_of(one, self.left_hand) for one in strip]
         shape = shape_of(strip, centres, tolerance / 2)
@@ -186,7 +186,7 @@ class _Drafting:
             self._add_curbs(section.lanes, one, ids)
             section.order = sorted(section.lanes, reverse=True)
         road.data = _shares(status)
-        return DraftRoad(road, strip, numbers, single)
+        return _DraftRoad(road, strip, numbers, single)
 
     def _describe(self, lane: MapLane, cell: Cell) -> None:
         lane.type = TYPE_OF_LANE[self.lanes.type[cell.piece]]
@@ -333,7 +333,7 @@ def _cut_row(one: Slice, at_end: bool) -> int:
 # Links between the roads of an export: lanes of sections, ends of roads, junctions with their connections.
 
 @dataclass
-class DraftRoad:
+class _DraftRoad:
     """A road with the cells that its lanes come from.
 
     road; strip : slices; numbers : lane of every cell of every slice; single : whether it is a way through a junction
@@ -362,7 +362,7 @@ class _Touch(NamedTuple):
     other_lane: int
 
 
-def link_roads(whole: OpenDriveMap, drafts: list[DraftRoad]) -> list[str]:
+def _link_roads(whole: OpenDriveMap, drafts: list[_DraftRoad]) -> list[str]:
     """Fill in the links of lanes and roads, and the junctions.
 
     Returns
@@ -427,7 +427,7 @@ def _end_link(drafts, k, end, touches, junction):
     found = touches[k, end]
     ways = [touch.other for touch in found if touch.other in junction]
     if ways and k not in junction:
-        setattr(drafts[k].road, LINK_AT[end], RoadLink("junction", junction_id(drafts, junction[ways[0]])))
+        setattr(drafts[k].road, LINK_AT[end], RoadLink("junction", _junction_id(drafts, junction[ways[0]])))
         return []
     # a junction lies between this road and those whose ends are linked to it
     found = [touch for touch in found if k in junction or not any(one.other in junction for one in touches.get((touch.other, touch.other_end), ()))]
@@ -448,13 +448,13 @@ def _road_link(drafts, road, end, found):
     return []
 
 
-def junction_id(drafts: list[DraftRoad], number: int) -> str:
+def _junction_id(drafts: list[_DraftRoad], number: int) -> str:
     """The id of a junction: beyond those of the roads, as both share one space in some readers."""
     return str(len(drafts) + 1 + number)
 
 
 def _connections(whole, drafts, touches, junction):
-    found = {number: Junction(junction_id(drafts, number)) for number in sorted(set(junction.values()))}
+    found = {number: Junction(_junction_id(drafts, number)) for number in sorted(set(junction.values()))}
     for k, number in junction.items():
         drafts[k].road.junction = found[number].id
     for (k, end), touched in sorted(touches.items()):
@@ -500,7 +500,7 @@ THINNEST = 0.01        # m of an object's length and width at the least: the for
 NAME_OF_CLASS = {"hatch": "hatched area", "arrow": "arrow", "bicycle": "bicycle symbol", "bus": "word BUS"}
 
 
-def add_objects(whole: OpenDriveMap, markings: Features | None, origin: np.ndarray) -> None:
+def _add_objects(whole: OpenDriveMap, markings: Features | None, origin: np.ndarray) -> None:
     """Give the roads the objects that lie on them.
 
     Parameters

@@ -43,7 +43,7 @@ def layers_of_opendrive(whole: OpenDriveMap, crs: str = "", progress: Progress =
     """
     rows: list[dict[str, Any]] = []
     found, network = MapLayers(Lanes.of_pieces([], crs)), LaneNetwork(whole)
-    numbers, faults = road_numbers(whole), _Faults()
+    numbers, faults = _road_numbers(whole), _Faults()
     for count, road in enumerate(whole.roads):
         surface = RoadSurface(road)
         faults.jumps += [(road.id, *jump) for jump in surface.jumps() if jump[1] > BORDER_JUMP]
@@ -139,10 +139,10 @@ def _lane(network, surface, number, id, s, inner, outer):
     left, right = sides[::-1] if id > 0 else sides
     if driven and way < 0:
         left, right = ((border[::-1], kind, pattern) for border, kind, pattern in (right, left))
-    return {"left": left[0], "right": right[0], "lane": id, "lane_id": lane_name(road.id, id, number), "direction": way * driven,
+    return {"left": left[0], "right": right[0], "lane": id, "lane_id": _lane_name(road.id, id, number), "direction": way * driven,
             "type": ("connector" if road.junction != "-1" else "driving") if driven else LANE_TYPE_OF.get(lanes[id].type, "shoulder"),
             "left_kind": left[1], "right_kind": right[1], "left_pattern": left[2], "right_pattern": right[2],
-            "successors": [lane_name(key[0], key[2], key[1]) for key in _following(network, (road.id, number, id))] if driven else [],
+            "successors": [_lane_name(key[0], key[2], key[1]) for key in _following(network, (road.id, number, id))] if driven else [],
             "station": float(s[0]), "end": float(s[-1])}
 
 
@@ -175,12 +175,12 @@ def _existing(rows):
     return rows
 
 
-def lane_name(road: str, lane: int, section: int) -> str:
+def _lane_name(road: str, lane: int, section: int) -> str:
     """The lane_id of a lane's section; commas part lists of them."""
     return f"{re.sub('[,.]', '_', road)}.{lane}.{section}"
 
 
-def road_numbers(whole: OpenDriveMap) -> dict[str, int]:
+def _road_numbers(whole: OpenDriveMap) -> dict[str, int]:
     """A whole number for every road: its id where all are such, else its place."""
     ids = [road.id for road in whole.roads]
     if all(re.fullmatch(r"\d{1,9}", id) for id in ids):

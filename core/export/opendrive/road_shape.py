@@ -31,7 +31,7 @@ LEAST_CHORD = 1.0        # m of a border's end, along which it goes straight on
 
 
 @dataclass
-class RoadShape:
+class _RoadShape:
     """plan : reference line; s, t, z : for each slice a (borders, n) array of its vertices; starts : (sections + 1,) metres.
     lifts : for each slice (cells, n) metres that its lanes lie above the road, as beyond a curb; z is that of the road
 
@@ -60,7 +60,7 @@ def centre_of(one: Slice, left_hand: bool) -> int:
     return len(ways) if left_hand else 0
 
 
-def shape_of(strip: list[Slice], centres: list[int], tolerance: float) -> RoadShape:
+def shape_of(strip: list[Slice], centres: list[int], tolerance: float) -> _RoadShape:
     """The reference line through the borders at which lane 0 lies, and every vertex in its s and t.
 
     Where lane 0 jumps aside, as where a lane for the opposite traffic begins, the reference line goes on beside it.
@@ -100,7 +100,7 @@ def shape_of(strip: list[Slice], centres: list[int], tolerance: float) -> RoadSh
     z_all, lifts = (list(values) for values in zip(*(one.levels(centre) for one, centre in zip(strip, centres))))
     starts = np.array([0.0, *_cuts(strip, centres, s_all), plan.length])
     courses = [[_course(strip, k, j, (s_all, t_all, z_all), starts[k:k + 2]) for j in range(len(strip[k].cells) + 1)] for k in range(len(strip))]
-    return RoadShape(plan, s_all, t_all, z_all, lifts, starts, courses)
+    return _RoadShape(plan, s_all, t_all, z_all, lifts, starts, courses)
 
 
 def _finer(one, s):
@@ -271,7 +271,7 @@ def _beside(line, place, end):
     return line + normal * (away @ normal[end])
 
 
-def add_lanes(road: MapRoad, shape: RoadShape, strip: list[Slice], centres: list[int], tolerance: float,
+def add_lanes(road: MapRoad, shape: _RoadShape, strip: list[Slice], centres: list[int], tolerance: float,
               directions: dict[int, float]) -> list[list[int]]:
     """Give a road its lane offset and sections with widths.
 
@@ -405,7 +405,7 @@ class _Profile(NamedTuple):
     z: np.ndarray
 
 
-def add_heights(road: MapRoad, shape: RoadShape, tolerance: float) -> None:
+def add_heights(road: MapRoad, shape: _RoadShape, tolerance: float) -> None:
     """Give a road its elevation, and a superelevation where the cross-section is a plane, else its shape.
 
     A superelevation is taken only where its roll moves no border by more than a millimetre: readers differ on whether it does. The shape has
@@ -414,7 +414,7 @@ def add_heights(road: MapRoad, shape: RoadShape, tolerance: float) -> None:
     Parameters
     ----------
     road : MapRoad, whose elevation, superelevation and shape are set
-    shape : RoadShape of the same road
+    shape : _RoadShape of the same road
     tolerance : metres by which a height may be missed
     """
     level = np.concatenate([z.ravel() for z in shape.z])
@@ -441,7 +441,7 @@ def add_heights(road: MapRoad, shape: RoadShape, tolerance: float) -> None:
                 return
 
 
-def heights_above_road(shape: RoadShape, number: int, cell: int) -> np.ndarray:
+def heights_above_road(shape: _RoadShape, number: int, cell: int) -> np.ndarray:
     """(N, 3) metres from the start of a slice's section, heights of the inner and outer border of one of its lanes above the road."""
     lift, s = shape.lifts[number][cell], shape.s[number][cell:cell + 2].mean(0) - shape.starts[number]
     rows = [(0.0, lift[0])]

@@ -37,7 +37,7 @@ def read_opendrive(path: str, progress: Progress = Progress()) -> OpenDriveMap:
         If the file is no OpenDRIVE, hostile, or has no road that can be read.
     """
     root = read_xml(path, "OpenDRIVE", XODR_KIND, progress)
-    found = opendrive_of(root)
+    found = _opendrive_of(root)
     if not found.roads:
         why = f" Line {found.problems[0][0]}: {found.problems[0][1]}" if found.problems else ""
         raise RoadExtractionError(f"{path} has no road that can be read.{why} Choose a file with roads and their geometry.")
@@ -48,7 +48,7 @@ def read_opendrive(path: str, progress: Progress = Progress()) -> OpenDriveMap:
     return found
 
 
-def opendrive_of(root: XmlElement) -> OpenDriveMap:
+def _opendrive_of(root: XmlElement) -> OpenDriveMap:
     """The map of the element <OpenDRIVE>."""
     found = OpenDriveMap(tree=root)
     header = root.find("header")

@@ -131,7 +131,7 @@ def _gaps(uprights, groups, lags):
         before, after = _linked(_middles(uprights, last, -1), starts[order], lags).T
         ends += [last[k] for k in before]
         begins += [first[k] for k in order[after]]
-    return gaps_between(uprights, ends, begins)
+    return _gaps_between(uprights, ends, begins)
 
 
 def _middles(uprights, rows, place):
@@ -222,7 +222,7 @@ class Gaps(Rows):
         return (self.empty < TOLD_GAP) & (self.hidden >= MIN_HIDDEN * (self.last - self.first + 1))
 
 
-def gaps_between(uprights: Uprights, ends: list[np.ndarray], begins: list[np.ndarray]) -> Gaps:
+def _gaps_between(uprights: Uprights, ends: list[np.ndarray], begins: list[np.ndarray]) -> Gaps:
     """Gaps between pieces of lines.
 
     Parameters

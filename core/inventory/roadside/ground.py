@@ -32,7 +32,7 @@ RIM_STEP = 0.3            # m of height within a cell from which it holds a face
 
 
 @dataclass(frozen=True)
-class LocalGround:
+class _LocalGround:
     """Heights of the ground in cells of a stretch of road.
 
     start, origin : m, station and offset of the corner
@@ -53,7 +53,7 @@ class LocalGround:
         return np.where(np.isfinite(both), both, np.where(np.isfinite(low), low, high))
 
 
-def local_ground(s: np.ndarray, d: np.ndarray, h: np.ndarray, start: float, slices: int, offsets: tuple[float, float]) -> LocalGround:
+def local_ground(s: np.ndarray, d: np.ndarray, h: np.ndarray, start: float, slices: int, offsets: tuple[float, float]) -> _LocalGround:
     """The ground under points.
 
     Parameters
@@ -82,14 +82,14 @@ def local_ground(s: np.ndarray, d: np.ndarray, h: np.ndarray, start: float, slic
     low = _let_down(filled, _rims(low) | _rims(filled))
     known = np.isfinite(low)
     if not known.any():
-        return LocalGround(start, offsets[0], low)
+        return _LocalGround(start, offsets[0], low)
     # beyond what is known the ground neither rises nor falls
     level = np.where(known, low, np.inf)
     cells = int(round(STANDING_WIDTH / GROUND_CELL)) | 1
     smooth = median_filter(np.where(known, level, 1e3), size=(3, 1), mode="nearest")
     opened = grey_opening(np.where(smooth > 500.0, level.clip(max=1e3), smooth), size=(1, cells), mode="nearest")
     ground = np.where(known & (opened < 500.0), opened, np.nan)
-    return LocalGround(start, offsets[0], _let_down(ground, smooth - ground > RIM_STEP))
+    return _LocalGround(start, offsets[0], _let_down(ground, smooth - ground > RIM_STEP))
 
 
 def _supported(place, height, count, shape):

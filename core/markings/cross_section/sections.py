@@ -66,7 +66,7 @@ def cross_sections(lines: FrameLines, number: np.ndarray, kind: np.ndarray, patt
     -------
     dict of road number to CrossSections
     """
-    pieces: dict[int, dict[int, list[PieceOfLine]]] = {}
+    pieces: dict[int, dict[int, list[_PieceOfLine]]] = {}
     for k in range(len(lines)):
         check_cancelled()
         road, window = int(lines.road[k]), lines.line(k)
@@ -132,7 +132,7 @@ def _sides_of_islands(course, island):
 
 
 def _piece(s, d, z, kind, pattern, seen, width):
-    """A PieceOfLine of the vertices of a line, None where it bounds no lane."""
+    """A _PieceOfLine of the vertices of a line, None where it bounds no lane."""
     good = np.isfinite(s)
     if not good.all():
         s, d, z = s[good], d[good], z[good]
@@ -145,10 +145,10 @@ def _piece(s, d, z, kind, pattern, seen, width):
         s, d, z = s[rising], d[rising], z[rising]
     if len(s) < 2 or median(np.abs(np.diff(d)) / np.diff(s)) > MAX_LINE_OBLIQUITY:
         return None
-    return PieceOfLine(s, d, z, kind, pattern, seen, width)
+    return _PieceOfLine(s, d, z, kind, pattern, seen, width)
 
 
-def _on_grid(pieces: dict[int, list[PieceOfLine]]) -> CrossSections:
+def _on_grid(pieces: dict[int, list[_PieceOfLine]]) -> CrossSections:
     """CrossSections of the lines of one road, which go on over short gaps."""
     found, gaps = joined(_lines_on_grid(pieces))
     even_doubles(found, lead_over(found, gaps))
@@ -156,7 +156,7 @@ def _on_grid(pieces: dict[int, list[PieceOfLine]]) -> CrossSections:
     return _sections(found)
 
 
-def _sections(lines: GridLines) -> CrossSections:
+def _sections(lines: _GridLines) -> CrossSections:
     tables = lines.tables()
     return CrossSections(lines.s, tables["d"], tables["z"], tables["seen"], [row.kind for row in lines.rows], [row.pattern for row in lines.rows],
                          tables["drawn"], lines.names, tables["number"], tables["width"])
@@ -175,7 +175,7 @@ MISSING = dict(d=np.float64(np.nan), z=np.float64(np.nan), seen=np.bool_(False),
 
 
 @dataclass
-class PieceOfLine:
+class _PieceOfLine:
     """Part of a line with rising stations: s, d, z (N,) metres, how it is drawn, and how broad, metres."""
 
     s: np.ndarray
@@ -187,7 +187,7 @@ class PieceOfLine:
     width: float
 
 
-class GridRow:
+class _GridRow:
     """One line at the stations from `first` on: columns d, z, seen, drawn, number and width as of CrossSections.
 
     begin, end : the first and the last station at which it is
@@ -199,7 +199,7 @@ class GridRow:
         self.begin, self.end = (first + int(known[0]), first + int(known[-1])) if len(known) else (first, first - 1)
 
     @classmethod
-    def empty(cls, kind: str, pattern: str, first: int, size: int) -> GridRow:
+    def empty(cls, kind: str, pattern: str, first: int, size: int) -> _GridRow:
         return cls(kind, pattern, first, {name: np.full(size, missing) for name, missing in MISSING.items()})
 
     def at(self, name: str, stations: np.ndarray) -> np.ndarray:
@@ -226,13 +226,13 @@ class GridRow:
             self.first -= before
 
 
-class GridLines:
+class _GridLines:
     """The lines of one road.
 
-    s : (K,) m, stations; rows : list of GridRow; names : the patterns that `drawn` counts
+    s : (K,) m, stations; rows : list of _GridRow; names : the patterns that `drawn` counts
     """
 
-    def __init__(self, s: np.ndarray, rows: list[GridRow], names: list[str]) -> None:
+    def __init__(self, s: np.ndarray, rows: list[_GridRow], names: list[str]) -> None:
         self.s, self.rows, self.names = s, rows, names
         self._rows_of_block: dict[int, list[int]] = defaultdict(list)
         for k, row in enumerate(rows):
@@ -253,7 +253,7 @@ class GridLines:
         return {name: RowTable(spans, values, MISSING[name]) for name, values in found.items()}
 
 
-def _lines_on_grid(lines: dict[int, list[PieceOfLine]]) -> GridLines:
+def _lines_on_grid(lines: dict[int, list[_PieceOfLine]]) -> _GridLines:
     """Lines of one road, given as their pieces by number, on the stations from their first to their last place."""
     first = np.ceil(min(p.s[0] for pieces in lines.values() for p in pieces) / STATION_STEP)
     last = np.floor(max(p.s[-1] for pieces in lines.values() for p in pieces) / STATION_STEP)
@@ -266,24 +266,24 @@ def _lines_on_grid(lines: dict[int, list[PieceOfLine]]) -> GridLines:
         pieces = sorted(lines[key], key=lambda p: (p.s[0], p.s[-1]))
         longest = max(pieces, key=lambda p: (p.seen, p.s[-1] - p.s[0]))
         rows.append(_row_of(key, pieces, s, names, longest))
-    return GridLines(s, rows, names)
+    return _GridLines(s, rows, names)
 
 
 def _row_of(number, pieces, s, names, longest):
     # pieces of one line touch: a grid station between their ends belongs to the line too
     bounds = np.array([(np.searchsorted(s, p.s[0] - 1e-6), np.searchsorted(s, p.s[-1] + 1e-6, side="right")) for p in pieces])
     first, end = int(bounds[:, 0].min()), int(bounds[:, 1].max())
-    row = GridRow.empty(longest.kind, longest.pattern, first, max(end - first, 0))
+    row = _GridRow.empty(longest.kind, longest.pattern, first, max(end - first, 0))
     for p, (a, b) in zip(pieces, bounds.tolist()):
         inside, at = slice(a - first, b - first), s[a:b]
         for name, value in (("d", np.interp(at, p.s, p.d)), ("z", np.interp(at, p.s, p.z)), ("drawn", names.index(p.pattern)), ("number", number),
                             ("width", p.width)):
             row.columns[name][inside] = value
         row.columns["seen"][inside] |= p.seen
-    return GridRow(row.kind, row.pattern, first, row.columns)
+    return _GridRow(row.kind, row.pattern, first, row.columns)
 
 
-def joined(lines: GridLines) -> tuple[GridLines, list[tuple[int, int, int, bool, bool]]]:
+def joined(lines: _GridLines) -> tuple[_GridLines, list[tuple[int, int, int, bool, bool]]]:
     """Lines that go on as another line after at most a dash gap, in one row: a dashed line turns solid at a junction.
 
     Returns the lines, and of each gap that was closed the row, the stations on both its sides and whether the line is double there.
@@ -312,7 +312,7 @@ def joined(lines: GridLines) -> tuple[GridLines, list[tuple[int, int, int, bool,
         chains[j] += chains.pop(k)
     number = {j: k for k, j in enumerate(sorted(chains))}
     found = [_chained([rows[k] for k in chains[j]]) for j in sorted(chains)]
-    return GridLines(lines.s, found, lines.names), [(number[j], first, last, before, behind) for j, first, last, before, behind in gaps]
+    return _GridLines(lines.s, found, lines.names), [(number[j], first, last, before, behind) for j, first, last, before, behind in gaps]
 
 
 def _chained(rows):
@@ -320,7 +320,7 @@ def _chained(rows):
     head = rows[0]
     if len(rows) == 1:
         return head
-    found = GridRow.empty(head.kind, head.pattern, head.begin, rows[-1].end + 1 - head.begin)
+    found = _GridRow.empty(head.kind, head.pattern, head.begin, rows[-1].end + 1 - head.begin)
     for k, row in enumerate(rows):
         own = slice(row.begin - head.begin, row.end + 1 - head.begin)
         for name, values in found.columns.items():
@@ -332,10 +332,10 @@ def _chained(rows):
                 found.columns[name][gap] = np.interp(gap, [first, last], found.columns[name][[first, last]])
             # a gap of a dashed line is no gap
             found.columns["seen"][gap] = head.pattern.startswith("dash") or row.pattern.startswith("dash")
-    return GridRow(head.kind, head.pattern, head.begin, found.columns)
+    return _GridRow(head.kind, head.pattern, head.begin, found.columns)
 
 
-def lead_over(lines: GridLines, gaps: list[tuple[int, int, int, bool, bool]]) -> set[tuple[int, int]]:
+def lead_over(lines: _GridLines, gaps: list[tuple[int, int, int, bool, bool]]) -> set[tuple[int, int]]:
     """Where a double line goes on as a single one, both of its lines lead over to it: lanes on either side end at that one.
 
     Returns the ends of lines that were led on, as (row, 1 where it ended or -1 where it began).
@@ -373,12 +373,12 @@ def _step_between(row, other, station):
     return {name: row.at(name, at)[0] - other.at(name, at)[0] for name in ("d", "z")}
 
 
-def even_doubles(lines: GridLines, led: set[tuple[int, int]]) -> None:
+def even_doubles(lines: _GridLines, led: set[tuple[int, int]]) -> None:
     """The two lines of a double line begin and end together: the shorter goes on beside the longer, a dash gap at most.
 
     Else a lane would reach for the farther of the two where the nearer is worn away.
     """
-    lines = GridLines(lines.s, lines.rows, lines.names)
+    lines = _GridLines(lines.s, lines.rows, lines.names)
     known = [(row.begin, row.end) for row in lines.rows]
     for k, row in enumerate(lines.rows):
         if "double" not in row.pattern:
@@ -419,12 +419,12 @@ def _ahead(lines, end, step):
     return ahead[(ahead >= 0) & (ahead < len(lines.s))]
 
 
-def lengthen_dashed(lines: GridLines) -> None:
+def lengthen_dashed(lines: _GridLines) -> None:
     """A dashed line goes on by up to one gap where lines on both its sides do.
 
     Where the last dash ends says nothing of where the line does: the next dash is only missed after a gap's length.
     """
-    lines = GridLines(lines.s, lines.rows, lines.names)
+    lines = _GridLines(lines.s, lines.rows, lines.names)
     known = [(row.begin, row.end) for row in lines.rows]
     for k, row in enumerate(lines.rows):
         if not row.pattern.startswith("dash") or row.end == row.begin:

@@ -99,7 +99,7 @@ MIN_SCANNED_SHARE = 0.6    # of a lane's width that must be seen of a lane besid
 
 
 @dataclass
-class StripCosts:
+class _StripCosts:
     """Costs of all strips.
 
     cost : (7, I, M, M) nats, of a strip of one kind between two boundaries; inf where it cannot be
@@ -113,7 +113,7 @@ class StripCosts:
     lane_width: float
 
 
-def strip_costs(candidates: Candidates, evidence: Evidence, weights: EstimateWeights, lane_width: float, first_direction: int) -> StripCosts:
+def strip_costs(candidates: Candidates, evidence: Evidence, weights: EstimateWeights, lane_width: float, first_direction: int) -> _StripCosts:
     """Costs of all strips, the lanes of `first_direction` (1 or -1) being met first from the left."""
     c, w = candidates, weights
     count, size = c.left.shape
@@ -168,7 +168,7 @@ def strip_costs(candidates: Candidates, evidence: Evidence, weights: EstimateWei
                 driven += w.split_stop * _stops_across(evidence.stops, begin - split * each)
             better = driven < cost[kind]
             cost[kind][better], lanes[kind][better], first_lanes[kind][better] = driven[better], number, split
-    return StripCosts(cost, lanes, first_lanes, lane_width)
+    return _StripCosts(cost, lanes, first_lanes, lane_width)
 
 
 def _unused(asphalt, cost, enough=ASPHALT_OF_A_LANE[1]):
@@ -355,7 +355,7 @@ def _misnamed(what, named):
     return (what >= 0) & (named >= 0) & (named != what) & (what != OTHER_LINE)
 
 
-def best_sections(candidates: Candidates, costs: StripCosts, stops: np.ndarray, weights: EstimateWeights, kept: int = KEPT) -> Sections:
+def best_sections(candidates: Candidates, costs: _StripCosts, stops: np.ndarray, weights: EstimateWeights, kept: int = KEPT) -> Sections:
     """The `kept` best cross-sections of each interval; `stops` are those of Evidence."""
     count, size = candidates.left.shape
     kinds = len(STRIPS)

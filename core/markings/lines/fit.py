@@ -76,7 +76,7 @@ class MarkingLineSettings:
 
 
 @dataclass
-class LineShape:
+class _LineShape:
     """A line that can be drawn between two stations.
 
     fit : CurveFit of the curve; residuals belong to the places `s`
@@ -106,7 +106,7 @@ class LineShape:
 
 def fit_line_shapes(lines: list[LinkedLine], spans: list[tuple[float, float]], road: Road, trend: CommonTrend, edges: EdgesBeside,
                     track_height: Callable[[np.ndarray], np.ndarray], settings: MarkingLineSettings,
-                    progress: Progress = Progress()) -> tuple[list[LineShape], int]:
+                    progress: Progress = Progress()) -> tuple[list[_LineShape], int]:
     """The LineShapes of linked lines, fitted together.
 
     Parameters
@@ -120,7 +120,7 @@ def fit_line_shapes(lines: list[LinkedLine], spans: list[tuple[float, float]], r
 
     Returns
     -------
-    list of LineShape, and how many could not take the wanted curve (automatic replaces it there)
+    list of _LineShape, and how many could not take the wanted curve (automatic replaces it there)
     """
     if not lines:
         return [], 0
@@ -150,7 +150,7 @@ def fit_line_shapes(lines: list[LinkedLine], spans: list[tuple[float, float]], r
             fit = CurveFit(fit.curve, e[course.own], fit.parameters)
         rising = np.maximum.accumulate(u)
         keep = np.append(True, np.diff(rising) > 1e-6)
-        found.append(LineShape(fit, course.s[course.own], (course.s[keep], rising[keep]),
+        found.append(_LineShape(fit, course.s[course.own], (course.s[keep], rising[keep]),
                                _height_above(height, track_height)))
     return found, replaced
 
@@ -424,7 +424,7 @@ def _linked(strands, edges, settings):
     return [without_strays(line, trend, edges) for line in lines], trend
 
 
-def _drawn_pieces(one: SelectedLine, shape: LineShape, origin: np.ndarray) -> Iterator[dict[str, Any]]:
+def _drawn_pieces(one: SelectedLine, shape: _LineShape, origin: np.ndarray) -> Iterator[dict[str, Any]]:
     """The pieces of one line that have a length on the map."""
     for piece in one.pieces:
         places = shape.draw(piece.first, piece.last)

@@ -443,7 +443,7 @@ SHORTEST_UNSEEN = 0.5      # m: less is nothing to draw
 UNKNOWN, BARE, FREE = 0, 1, 2
 
 
-class SeenPaint(NamedTuple):
+class _SeenPaint(NamedTuple):
     """What is known of the paint of a line: the spacing of the tracks that it was seen on, m, its brightness and its width, m."""
 
     spacing: float
@@ -534,12 +534,12 @@ def _full_width(markings, own):
 
 
 def _paint_beside(paint, road, course, first, last, width):
-    """SeenPaint of a line about a gap; None where there is none."""
+    """_SeenPaint of a line about a gap; None where there is none."""
     near = paint.window(road, first - BESIDE_GAP, last + BESIDE_GAP)
     on = (near.cluster > 0) & (np.abs(near.d - np.interp(near.s, *course)) <= max(width / 2, MIN_TRACK_GAP / 2))
     if not on.any() or not width:
         return None
-    return SeenPaint(median(near.spacing[on].astype(float)), median(near.value[on].astype(float)), width)
+    return _SeenPaint(median(near.spacing[on].astype(float)), median(near.value[on].astype(float)), width)
 
 
 def _less(first, last, spans):

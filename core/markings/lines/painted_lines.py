@@ -19,7 +19,7 @@ LONG_LISTS = ("knots", "control_x", "control_y")  # parameters of splines
 
 
 @dataclass(frozen=True)
-class FittedPieces:
+class _FittedPieces:
     """What a fit says of P pieces of marking lines.
 
     curve : P Curve in local coordinates; the pieces of one line share one
@@ -58,7 +58,7 @@ class PaintedLines(LayerRows):
     pattern : (P,) str objects, solid, dashed, double-solid, double-dashed; "" where unknown
     status : (P,) str objects, measured or bridged
     course : FrameLines, one per piece
-    fitted : FittedPieces, None for lines that were read from a layer
+    fitted : _FittedPieces, None for lines that were read from a layer
     crs : WKT, "" where unknown
     rmse, width : (P,) metres, of the paint from the curve and of the paint across; NaN where unknown; None where nothing is known
     unseen : P arrays (K, 3), metres: first and last station of stretches of a bridged piece that lie between two tracks of the scan,
@@ -73,7 +73,7 @@ class PaintedLines(LayerRows):
     pattern: np.ndarray = field(metadata=column(unknown=""))
     status: np.ndarray = field(metadata=column(unknown="measured"))
     course: FrameLines
-    fitted: FittedPieces | None = None
+    fitted: _FittedPieces | None = None
     crs: str = ""
     rmse: np.ndarray | None = None
     width: np.ndarray | None = None
@@ -106,7 +106,7 @@ class PaintedLines(LayerRows):
     def derived(self, frame: RoadFrame) -> dict[str, Any]:
         """The road, and what the fit says: `params` holds the numbers of the line's curve in map coordinates as JSON, and the arc lengths
         `from` and `to` of the piece."""
-        lines, fitted, road = self.on_map(frame), cast(FittedPieces, self.fitted), self.course.road
+        lines, fitted, road = self.on_map(frame), cast(_FittedPieces, self.fitted), self.course.road
         numbers: dict[int, str] = {}   # by curve: once for all pieces, since those of long splines are long
         for curve in fitted.curve:
             if id(curve) not in numbers:
@@ -147,7 +147,7 @@ def painted_lines_of(rows: list[dict[str, Any]], frame: RoadFrame, crs: str) -> 
 
     Parameters
     ----------
-    rows : dicts of road, line, kind, pattern, status, and of what FittedPieces holds: curve, arc, places (V, 3), station, end, offset, width, rmse;
+    rows : dicts of road, line, kind, pattern, status, and of what _FittedPieces holds: curve, arc, places (V, 3), station, end, offset, width, rmse;
         and of `unseen`, where it is known
     crs : WKT, "" where unknown
     """
@@ -155,7 +155,7 @@ def painted_lines_of(rows: list[dict[str, Any]], frame: RoadFrame, crs: str) -> 
         return np.array([row[name] for row in rows], kind)
 
     places = [row["places"] for row in rows]
-    fitted = FittedPieces([row["curve"] for row in rows], column("arc", float).reshape(-1, 2), np.concatenate([*places, np.empty((0, 3))]),
+    fitted = _FittedPieces([row["curve"] for row in rows], column("arc", float).reshape(-1, 2), np.concatenate([*places, np.empty((0, 3))]),
                           np.append(0, np.cumsum([len(some) for some in places], dtype=int)),
                           *(column(name, float) for name in ("station", "end", "offset", "width", "rmse")))
     course = lines_in_frame(fitted.linestrings(frame), column("road", int), frame)

@@ -41,7 +41,7 @@ class SelectedLine:
     double: bool
     pieces: list
 
-    def width(self, piece: LinePiece) -> float:
+    def width(self, piece: _LinePiece) -> float:
         """Metres of paint across, of its own strands, or of those of the whole line where it has none."""
         strands = self.line.strands_between(piece.first, piece.last)
         own = [max(min(strand.last, piece.last) - max(strand.first, piece.first), 0.0) for strand in strands]
@@ -110,7 +110,7 @@ def select_lines(lines: list[LinkedLine], trend: CommonTrend, crossed: np.ndarra
             continue
         drawn = _line_pieces(parts[k])
         if single is not None:
-            drawn = [LinePiece(line.first, line.last, "measured", "dashed")]
+            drawn = [_LinePiece(line.first, line.last, "measured", "dashed")]
         drawn = _extended(drawn, parts[k], single, (painted_from, painted_to), partial(_crossed_there, crossed, crossings_there, line.middle),
                           partial(strands.near, level, k), line)
         found.append(SelectedLine(line, bool(double[k]), drawn))
@@ -168,7 +168,7 @@ class _DashesElsewhere:
         self.first, self.last = (np.array([getattr(lines[j], end) for j in self.of]) for end in ("first", "last"))
 
     def alike(self, k):
-        """The DashPattern of a dashed line elsewhere on the road, on whose course and of whose dash length line k is; of several the first one's."""
+        """The _DashPattern of a dashed line elsewhere on the road, on whose course and of whose dash length line k is; of several the first one's."""
         line = self.lines[k]
         if line.painted < MIN_SINGLE_DASH or len(line.strands) > 2:
             return None
@@ -353,7 +353,7 @@ def _extended(drawn, parts, single, painted, crossed, painted_beside, line):
         running = ((neighbours[:, 0] <= limit) & (neighbours[:, 1] > limit + 1.0)).any()
         start = max(limit, painted[0], *beside[beside[:, 1] < line.first + 0.5, 1],
                     *(begun[:0] if running else begun[np.argsort(begun)[:1]]))
-        drawn.insert(0, LinePiece(min(start, line.first), line.first, "measured", "dashed"))
+        drawn.insert(0, _LinePiece(min(start, line.first), line.first, "measured", "dashed"))
     if after:
         limit = line.last + after.gap
         beside, neighbours = crossed(line.last - 1.0, limit + 1.0), painted_beside(line.last - 1.0, limit + 1.0)
@@ -361,7 +361,7 @@ def _extended(drawn, parts, single, painted, crossed, painted_beside, line):
         running = ((neighbours[:, 1] >= limit) & (neighbours[:, 0] < limit - 1.0)).any()
         end = min(limit, painted[1], *beside[beside[:, 0] > line.last - 0.5, 0],
                   *(ended[:0] if running else ended[np.argsort(-ended)[:1]]))
-        drawn.append(LinePiece(line.last, max(end, line.last), "measured", "dashed"))
+        drawn.append(_LinePiece(line.last, max(end, line.last), "measured", "dashed"))
     return merged_pieces(drawn)
 
 
@@ -379,7 +379,7 @@ MAX_SOLID_GAP = 2.5            # m: a longer hole in a solid line is bridged, no
 
 
 @dataclass(frozen=True)
-class DashPattern:
+class _DashPattern:
     """Dashes of one length at one period; metres."""
 
     dash: float
@@ -396,7 +396,7 @@ class Stretch:
 
     first: float
     last: float
-    dashes: DashPattern | None
+    dashes: _DashPattern | None
     intervals: tuple   # (first, last) of each painted interval
 
     @property
@@ -437,7 +437,7 @@ def stretches(line: LinkedLine, longest_dash: float = NEUTRAL.longest_dash) -> l
     spans = _painted_intervals(line)
     long = np.diff(spans, axis=1)[:, 0] > longest_dash
     cuts = np.flatnonzero(np.r_[True, np.diff(long.astype(int)) != 0, True])
-    found: list[tuple[np.ndarray, DashPattern | None]] = []
+    found: list[tuple[np.ndarray, _DashPattern | None]] = []
     for a, b in zip(cuts[:-1], cuts[1:]):
         group = spans[a:b]
         # beside solid stretches a few worn pieces look like dashes by chance
@@ -450,8 +450,8 @@ def stretches(line: LinkedLine, longest_dash: float = NEUTRAL.longest_dash) -> l
             for group, dashes in found]
 
 
-def find_dash_pattern(spans: np.ndarray, beside_solid: bool = False) -> DashPattern | None:
-    """The DashPattern of painted intervals (K, 2), or None where they follow none.
+def find_dash_pattern(spans: np.ndarray, beside_solid: bool = False) -> _DashPattern | None:
+    """The _DashPattern of painted intervals (K, 2), or None where they follow none.
 
     Dashes may be missing: steps between dashes are then whole multiples of the period. Some may be worn at their ends: three of five must have the
     common length. Of three pieces alone all must have it, or their two steps must be equal: by chance one step is soon a multiple of the other. In
@@ -468,7 +468,7 @@ def find_dash_pattern(spans: np.ndarray, beside_solid: bool = False) -> DashPatt
         # two pieces may be alike by chance: they must be as long as dashes are, and equally long
         even = np.ptp(length) <= max(0.4, 0.12 * dash) and DASH_PAIR_LENGTH[0] <= dash <= DASH_PAIR_LENGTH[1] \
             and max(MIN_GAP_PER_DASH * dash, 1.5) <= gap <= 13.0
-        return DashPattern(dash, float(steps[0])) if even else None
+        return _DashPattern(dash, float(steps[0])) if even else None
     period = _period(steps)
     if period is None or period - dash < MIN_GAP_PER_DASH * dash or alike.mean() < 0.55:
         return None
@@ -477,7 +477,7 @@ def find_dash_pattern(spans: np.ndarray, beside_solid: bool = False) -> DashPatt
         steps = np.diff(np.column_stack([spans, spans.mean(axis=1)]), axis=0)
         if beside_solid or np.ptp(steps, axis=0).min() > STEP_TOLERANCE:
             return None
-    return DashPattern(dash, period)
+    return _DashPattern(dash, period)
 
 
 def _period(steps):
@@ -511,7 +511,7 @@ def same_dash_pattern(before: LinkedLine, after: LinkedLine, longest_dash: float
 
 
 @dataclass(frozen=True)
-class LinePiece:
+class _LinePiece:
     """Part of a line of one status and pattern, between two stations."""
 
     first: float
@@ -520,7 +520,7 @@ class LinePiece:
     pattern: str
 
 
-def _line_pieces(parts: list[Stretch]) -> list[LinePiece]:
+def _line_pieces(parts: list[Stretch]) -> list[_LinePiece]:
     """Cut a line of some stretches where its status or pattern changes. A hole longer than the line's own gap, or in a solid line longer than
     2.5 m, is bridged."""
     found = []
@@ -531,26 +531,26 @@ def _line_pieces(parts: list[Stretch]) -> list[LinePiece]:
             other = parts[k - 1]
             between = max(gap, other.dashes.gap * 1.25 + 0.8 if other.dashes else MAX_SOLID_GAP)
             measured = part.first - other.last <= between
-            found.append(LinePiece(other.last, part.first, "measured" if measured else "bridged",
+            found.append(_LinePiece(other.last, part.first, "measured" if measured else "bridged",
                                other.pattern if other.dashes else part.pattern))
         spans = part.intervals
         for j, (first, last) in enumerate(spans):
             if j and first - spans[j - 1][1] > gap:
-                found.append(LinePiece(spans[j - 1][1], first, "bridged", part.pattern))
+                found.append(_LinePiece(spans[j - 1][1], first, "bridged", part.pattern))
             elif j:
-                found.append(LinePiece(spans[j - 1][1], first, "measured", part.pattern))
-            found.append(LinePiece(first, last, "measured", part.pattern))
+                found.append(_LinePiece(spans[j - 1][1], first, "measured", part.pattern))
+            found.append(_LinePiece(first, last, "measured", part.pattern))
     return merged_pieces(found)
 
 
-def merged_pieces(parts: list[LinePiece]) -> list[LinePiece]:
+def merged_pieces(parts: list[_LinePiece]) -> list[_LinePiece]:
     """Pieces with equal neighbours put together; empty ones dropped."""
-    found: list[LinePiece] = []
+    found: list[_LinePiece] = []
     for part in parts:
         if part.last - part.first <= 1e-9:
             continue
         if found and (found[-1].status, found[-1].pattern) == (part.status, part.pattern):
-            found[-1] = LinePiece(found[-1].first, part.last, part.status, part.pattern)
+            found[-1] = _LinePiece(found[-1].first, part.last, part.status, part.pattern)
         else:
             found.append(part)
     return found

@@ -368,13 +368,13 @@ def stripes_of_crossings(source: NoSource, item: tuple[np.ndarray, np.ndarray, n
     return found
 
 
-def parts_of_compounds(source: NoSource, item: tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]) -> list[tuple[np.ndarray, int]]:
+def _parts_of_compounds(source: NoSource, item: tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]) -> list[tuple[np.ndarray, int]]:
     """The phase that divides compound clusters; item : s, d (0.1 mm), spacing (mm) of the points, and the bounds of the clusters."""
     return [parts_of_compound(*columns) for columns in _clusters(item)]
 
 
 def shapes_of_clusters(source: NoSource, item: tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]) -> list[Shape]:
-    """The phase that measures clusters; item : as of `parts_of_compounds`."""
+    """The phase that measures clusters; item : as of `_parts_of_compounds`."""
     return [measure(*columns) for columns in _clusters(item)]
 
 
@@ -436,7 +436,7 @@ class ApartWork:
         """Of each compound cluster, which begins and ends at rows of the columns, the part of every point, and how many parts there are."""
         rows = np.concatenate([np.empty(0, np.intp), *(np.arange(first, end) for first, end in spans)])
         bounds = np.cumsum([0, *(end - first for first, end in spans)])
-        return self._run(parts_of_compounds, lambda a, b: tuple(column[rows[bounds[a]:bounds[b]]] for column in (s, d, spacing)), bounds, progress,
+        return self._run(_parts_of_compounds, lambda a, b: tuple(column[rows[bounds[a]:bounds[b]]] for column in (s, d, spacing)), bounds, progress,
                          alone=True)
 
     def shapes(self, records: Columns, bounds: np.ndarray, progress: Progress) -> list[Shape]:

@@ -33,7 +33,7 @@ MOST_THICK = 0.4            # of the paint may be thicker: bars of words that ar
 LEAST_AGREEMENT = {"bicycle": (0.68, 0.64), "bus": (0.72, 0.66)}   # of the whole figure, and of the third that agrees least
 
 
-class RecognisedFigure(NamedTuple):
+class _RecognisedFigure(NamedTuple):
     """A figure: the numbers of its markings, and its class."""
 
     members: tuple[int, ...]
@@ -45,7 +45,7 @@ Candidate = tuple[tuple[int, ...], np.ndarray, np.ndarray]   # markings that may
 
 def painted_figures(shapes: Sequence[Shape], kinds: Sequence[str], possible: np.ndarray,
                     cells_of: Callable[[tuple[int, ...]], tuple[np.ndarray, np.ndarray]],
-                    look: Callable[[list[list[Candidate]], float, float], Iterable[list[tuple[int, str]]]]) -> list[RecognisedFigure]:
+                    look: Callable[[list[list[Candidate]], float, float], Iterable[list[tuple[int, str]]]]) -> list[_RecognisedFigure]:
     """Bicycles and words among the markings of one road.
 
     Parameters
@@ -58,15 +58,15 @@ def painted_figures(shapes: Sequence[Shape], kinds: Sequence[str], possible: np.
 
     Returns
     -------
-    list of RecognisedFigure, no marking in two of them
+    list of _RecognisedFigure, no marking in two of them
     """
     parts = np.flatnonzero(possible & np.isin(np.array(kinds, object), FIGURE_PARTS))
-    found: list[RecognisedFigure] = []
+    found: list[_RecognisedFigure] = []
     groups = list(_candidates(shapes, kinds, parts))
     for first in range(0, len(groups), GROUPS_AT_ONCE):
         some = [[(members, *cells_of(members)) for members in group] for group in groups[first:first + GROUPS_AT_ONCE]]
         for group, figures in zip(some, look(some, first / len(groups), (first + len(some)) / len(groups))):
-            found += [RecognisedFigure(group[k][0], kind) for k, kind in figures]
+            found += [_RecognisedFigure(group[k][0], kind) for k, kind in figures]
     return found
 
 
@@ -113,7 +113,7 @@ def _figure(cells, reach):
     thick = cv2.morphologyEx(mask.astype(np.uint8), cv2.MORPH_OPEN, cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (THICK_CELLS, THICK_CELLS)))
     if thick.sum() > MOST_THICK * mask.sum():
         return ""
-    image = PaintImage.of(mask, first * CELL_SIZE, CELL_SIZE)
+    image = _PaintImage.of(mask, first * CELL_SIZE, CELL_SIZE)
     best, kind = 0.0, ""
     for symbol in SYMBOLS:
         found, (whole, third) = agreement(image, symbol), LEAST_AGREEMENT[symbol.kind]
@@ -136,7 +136,7 @@ LEAST_AT_FIRST = 0.20      # correlation of a first pose that is worth a closer 
 STEPS = 0.10, 0.05, 0.025  # of the size that it is moved and stretched by, and the same in radians that it is turned by, coarse to fine
 
 
-class PaintImage(NamedTuple):
+class _PaintImage(NamedTuple):
     """Paint of one marking or several.
 
     image : (A, B) float32, painted cells blurred, first axis along the road and second across it
@@ -156,7 +156,7 @@ class PaintImage(NamedTuple):
     total_square: float
 
     @classmethod
-    def of(cls, mask: np.ndarray, corner: np.ndarray, size: float) -> PaintImage:
+    def of(cls, mask: np.ndarray, corner: np.ndarray, size: float) -> _PaintImage:
         """The image of painted cells.
 
         Parameters
@@ -171,7 +171,7 @@ class PaintImage(NamedTuple):
         return cls(image, corner - RIM * size, size, places, right, up, float((image * image).sum()))
 
 
-class Pose(NamedTuple):
+class _Pose(NamedTuple):
     """Where a figure lies.
 
     turn : radians from the first axis of the paint to the way to the right of the figure
@@ -190,10 +190,10 @@ class Agreement(NamedTuple):
 
     whole: float
     worst_third: float
-    pose: Pose
+    pose: _Pose
 
 
-class Figure(NamedTuple):
+class _Figure(NamedTuple):
     """A figure as an image.
 
     image : (rows, columns) float32, blurred, of mean 0 and length 1; the first row is its top
@@ -209,7 +209,7 @@ class Figure(NamedTuple):
 
 
 @cache
-def figures_of(symbol: PaintedSymbol) -> tuple[Figure, ...]:
+def figures_of(symbol: PaintedSymbol) -> tuple[_Figure, ...]:
     """The figure and its mirror image: a bicycle may look either way."""
     return _drawn(symbol, 1.0), _drawn(symbol, -1.0)
 
@@ -230,7 +230,7 @@ def _drawn(symbol, hand):
         cv2.polylines(image, [np.rint(16 * (places - 0.5)).astype(np.int32)], False, 1, thickness, cv2.LINE_8, 4)
     row, column = np.nonzero(image)
     paint = np.stack([column + 0.5 - FIGURE_MARGIN, FIGURE_HEIGHT + FIGURE_MARGIN - row - 0.5]) / scale
-    return Figure(_normed(cv2.GaussianBlur(image.astype(np.float32), (0, 0), FIGURE_BLUR)), paint.std(axis=1), paint.mean(axis=1), size)
+    return _Figure(_normed(cv2.GaussianBlur(image.astype(np.float32), (0, 0), FIGURE_BLUR)), paint.std(axis=1), paint.mean(axis=1), size)
 
 
 def _normed(image):
@@ -238,7 +238,7 @@ def _normed(image):
     return image / max(float(np.linalg.norm(image)), 1e-6)
 
 
-def agreement(cells: PaintImage, symbol: PaintedSymbol) -> Agreement | None:
+def agreement(cells: _PaintImage, symbol: PaintedSymbol) -> Agreement | None:
     """The best agreement of paint with a figure; None where it has not the figure's size in any direction, or is nothing like it."""
     best = None
     for figure in figures_of(symbol):
@@ -257,11 +257,11 @@ def agreement(cells: PaintImage, symbol: PaintedSymbol) -> Agreement | None:
     seen = _seen(cells, figure, pose[None])[0]
     columns = np.array_split(np.arange(figure.image.shape[1]), 3)
     return Agreement(float(whole), min(float((_normed(figure.image[:, some]) * _normed(seen[:, some])).sum()) for some in columns),
-                     Pose(*pose.tolist()))
+                     _Pose(*pose.tolist()))
 
 
-def _poses(cells: PaintImage, figure: Figure) -> np.ndarray:
-    """(P, 5) as Pose, in every direction, in which the paint is spread as the figure's is."""
+def _poses(cells: _PaintImage, figure: _Figure) -> np.ndarray:
+    """(P, 5) as _Pose, in every direction, in which the paint is spread as the figure's is."""
     right, up = _axes(TURNS)
     scale = np.stack([cells.spread_right, cells.spread_up]) / figure.spread[:, None]
     off = (figure.middle - figure.size / 2)[:, None] * scale

@@ -143,7 +143,7 @@ def _local_scatter(contrast: np.ndarray) -> np.ndarray:
 
 
 @dataclass(frozen=True)
-class BrightPiece:
+class _BrightPiece:
     """A connected bright piece of a window.
 
     cells : rows and columns of its cells, (n,) int each
@@ -273,7 +273,7 @@ def _dashes(averages, rim, samples, bright, threshold):
     return _without_artefacts(found, samples, rim.shape)
 
 
-def _bright_pieces(mask: np.ndarray, averages: CellAverages, rim: np.ndarray, threshold: float) -> list[BrightPiece]:
+def _bright_pieces(mask: np.ndarray, averages: CellAverages, rim: np.ndarray, threshold: float) -> list[_BrightPiece]:
     """Connected pieces whose brightest tenth reaches the threshold, spreads above asphalt, away from the road's rim; the smallest are left out."""
     labels, count = ndimage.label(mask, np.ones((3, 3), bool))
     large = np.bincount(labels.ravel(), minlength=count + 1) * CELL_SIZE**2 >= DASH_AREA
@@ -290,7 +290,7 @@ def _bright_pieces(mask: np.ndarray, averages: CellAverages, rim: np.ndarray, th
             continue
         contrast = averages.contrast[row, column]
         top, highest = np.percentile(contrast, [USUAL_PERCENTILE, TOP_PERCENTILE]).tolist()
-        found.append(BrightPiece((row, column), measure(row * CELL_UNITS, column * CELL_UNITS),
+        found.append(_BrightPiece((row, column), measure(row * CELL_UNITS, column * CELL_UNITS),
                            2.0 * CELL_SIZE * ndimage.distance_transform_edt(np.pad(inside, 1)).max(), tilt.mean(axis=1),
                            float(np.median(rim[row, column])), top,
                            _beside(inside & (averages.contrast[box] > HALF_MAXIMUM * highest), box, averages.contrast) / highest, reached))
@@ -309,7 +309,7 @@ def _beside(inside, box, contrast):
     return float(values.mean()) if len(values) else 0.0
 
 
-def _without_artefacts(found: list[BrightPiece], samples: ViewSamples, shape: tuple[int, ...]) -> list[BrightPiece]:
+def _without_artefacts(found: list[_BrightPiece], samples: ViewSamples, shape: tuple[int, ...]) -> list[_BrightPiece]:
     """The pieces that no object covers, and that are brighter than their surroundings in all views together.
 
     The contrast of each view is one observation, weighted by its points; the mean must be 3 of its standard errors above zero.

@@ -84,7 +84,7 @@ def read_paint(image: IntensityImage, box: tuple[float, float, float, float] | N
         pixels = image.read_pixels(first[0], first[1] + row * step, values.shape[1] * step, count * step)
         values[row:row + count] = pixels if step == 1 else _means(pixels, step)
     left, top = image.geotransform[0] + first[0] * cell, image.geotransform[3] - first[1] * cell
-    return SurveyedPaint(paint_contrast(values, cell * step)[0], values, cell * step, left, top)
+    return SurveyedPaint(_paint_contrast(values, cell * step)[0], values, cell * step, left, top)
 
 
 def _means(pixels, step):
@@ -138,7 +138,7 @@ def read_photo(image: SourceImage, size: float, cell: float) -> Photo:
     except RuntimeError as problem:
         raise RoadExtractionError(f"{image.path} cannot be read as an image ({problem}). Export it anew as a TIFF or JPEG.") from problem
     luminance[(seen < 128) | ~np.isfinite(luminance)] = np.nan
-    return Photo(paint_contrast(luminance, size * factor)[0], luminance, factor)
+    return Photo(_paint_contrast(luminance, size * factor)[0], luminance, factor)
 
 
 # Paint against its surroundings, made comparable between a photo and an intensity image.
@@ -149,7 +149,7 @@ _DARKEST = 0.1       # of the range of values, added before the logarithm: black
 _RANGE = (1.0, 99.5)  # percentiles of the values taken for black and white
 
 
-def paint_contrast(values: np.ndarray, pixel_size: float) -> tuple[np.ndarray, np.ndarray]:
+def _paint_contrast(values: np.ndarray, pixel_size: float) -> tuple[np.ndarray, np.ndarray]:
     """How much brighter each pixel is than its surroundings, as a logarithm, so that sun and shadow look alike.
 
     Parameters

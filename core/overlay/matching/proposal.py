@@ -80,7 +80,7 @@ class Proposal:
     order: int
     turn: float
     size: float
-    rival: Rival | None
+    rival: _Rival | None
     notes: list[str] = field(default_factory=list)
 
     def __len__(self) -> int:
@@ -120,7 +120,7 @@ _SIGMAS = 2.0         # and by so many standard deviations of their number (sign
 _UNLIKE = 0.4         # correlation below which a corner is not what lies there
 
 
-class Rival(NamedTuple):
+class _Rival(NamedTuple):
     """Another place that the paint might allow.
 
     Attributes
@@ -159,7 +159,7 @@ def corner_scores(placement: Placement, paint: SurveyedPaint, photo: Photo, x: n
     return np.array([np.nan if one is None else one.max() for one in maps])
 
 
-def nearby_rival(placement: Placement, paint: SurveyedPaint, photo: Photo, x: np.ndarray, y: np.ndarray) -> Rival | None:
+def nearby_rival(placement: Placement, paint: SurveyedPaint, photo: Photo, x: np.ndarray, y: np.ndarray) -> _Rival | None:
     """The shift by some metres that the corners allow best, besides none at all.
 
     Parameters
@@ -168,7 +168,7 @@ def nearby_rival(placement: Placement, paint: SurveyedPaint, photo: Photo, x: np
 
     Returns
     -------
-    Rival, None where no corner lies in the photo
+    _Rival, None where no corner lies in the photo
     """
     near = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * round(_OFF / _CELL) + 1,) * 2)
     maps = [cv2.dilate(one, near) for one in _maps(placement, paint, photo, x, y, _AROUND) if one is not None]
@@ -181,10 +181,10 @@ def nearby_rival(placement: Placement, paint: SurveyedPaint, photo: Photo, x: np
     total[np.hypot(down, across) * _CELL < _SAME] = -1.0
     row, column = divmod(int(total.argmax()), len(total))
     better = votes[:, middle, middle] - votes[:, row, column]
-    return Rival((column - middle) * _CELL, -(row - middle) * _CELL, int((better > _DECISIVE).sum()), int((better < -_DECISIVE).sum()))
+    return _Rival((column - middle) * _CELL, -(row - middle) * _CELL, int((better > _DECISIVE).sum()), int((better < -_DECISIVE).sum()))
 
 
-def rival_elsewhere(best: np.ndarray, other: np.ndarray, shift: tuple[float, float]) -> Rival:
+def rival_elsewhere(best: np.ndarray, other: np.ndarray, shift: tuple[float, float]) -> _Rival:
     """A place against another one that lies too far away to be compared corner by corner: by the corners that look unlike at each.
 
     Parameters
@@ -194,7 +194,7 @@ def rival_elsewhere(best: np.ndarray, other: np.ndarray, shift: tuple[float, flo
     """
     ours, theirs = best[np.isfinite(best)], other[np.isfinite(other)]
     scale = len(theirs) / max(len(ours), 1)
-    return Rival(*shift, float((theirs < _UNLIKE).sum()), scale * float((ours < _UNLIKE).sum()))
+    return _Rival(*shift, float((theirs < _UNLIKE).sum()), scale * float((ours < _UNLIKE).sum()))
 
 
 def _maps(placement, paint, photo, x, y, search):

@@ -53,7 +53,7 @@ def propose_control_points(image: SourceImage, intensity: IntensityImage, rough:
     paint, bounds = paint_about(image, intensity, rough)
     photo = read_photo(image, rough.size, paint.cell)
     progress.report(0.1)
-    x, y = paint_corners(paint.contrast, paint.known, paint.cell, _CORNERS)
+    x, y = _paint_corners(paint.contrast, paint.known, paint.cell, _CORNERS)
     if len(x) < LEAST_PAIRS:
         raise RoadExtractionError(
             f"The intensity image shows {len(x)} corners of paint where {image.path} may lie; {LEAST_PAIRS} are needed. Measure the control "
@@ -61,7 +61,7 @@ def propose_control_points(image: SourceImage, intensity: IntensityImage, rough:
     for sign, part in ((1, progress.part(0.1, 0.5)), (-1, progress.part(0.5, 0.9))):
         tried = _followed(image, photo, paint, bounds, sign, x, y, part)
         for chosen in tried:
-            pairs = pair_corners(chosen.placement, paint, photo, x, y, settings)
+            pairs = _pair_corners(chosen.placement, paint, photo, x, y, settings)
             if pairs is not None:
                 rivals = [rival_elsewhere(chosen.scores, other.scores, _shift(chosen.placement, other.placement, image))
                           for other in tried if other is not chosen]
@@ -81,7 +81,7 @@ def _followed(image, photo, paint, bounds, sign, x, y, progress):
     for place in places[:_CANDIDATES]:
         progress.check_cancelled()
         start = Placement.similarity(place.x, place.y, place.turn, place.size / photo.factor, _middle(image), place.sign)
-        placement = align(start, paint, photo, progress)
+        placement = _align(start, paint, photo, progress)
         if placement is not None and not any(_same(placement, other.placement, x, y) for other in tried):
             tried.append(_Tried(placement, corner_scores(placement, paint, photo, x, y)))
     progress.report(1.0)
@@ -173,7 +173,7 @@ _PAINT = 0.4         # contrast from which it is paint; spots of asphalt and its
 _BORDER = 0.3        # m from where the intensity image ends
 
 
-def paint_corners(paint: np.ndarray, known: np.ndarray, cell: float, count: int) -> tuple[np.ndarray, np.ndarray]:
+def _paint_corners(paint: np.ndarray, known: np.ndarray, cell: float, count: int) -> tuple[np.ndarray, np.ndarray]:
     """Places where paint has edges in two directions, spread over the image.
 
     Parameters
@@ -212,7 +212,7 @@ _LEAST_SCORE = 0.15    # of a patch: shadows and cars spoil many, and which are 
 _MOST_SECOND_OF_PATCHES = 0.8     # share of the best correlation that another place may have
 
 
-def align(placement: Placement, paint: SurveyedPaint, photo: Photo, progress: Progress = Progress()) -> Placement | None:
+def _align(placement: Placement, paint: SurveyedPaint, photo: Photo, progress: Progress = Progress()) -> Placement | None:
     """Follow the photo's distortion from patches of the intensity image that are found in it, in ever smaller ones.
 
     Parameters
@@ -283,7 +283,7 @@ class Pairs(NamedTuple):
     why: np.ndarray
 
 
-def pair_corners(placement: Placement, paint: SurveyedPaint, photo: Photo, x: np.ndarray, y: np.ndarray, settings: ProposalSettings) -> Pairs | None:
+def _pair_corners(placement: Placement, paint: SurveyedPaint, photo: Photo, x: np.ndarray, y: np.ndarray, settings: ProposalSettings) -> Pairs | None:
     """Find corners of paint in a photo that lies on the map to some decimetres.
 
     Parameters

@@ -112,7 +112,7 @@ class PointDecimation:
             if first == begins[-1] or sum(map(len, waiting)) >= JOINED_POINTS:
                 joined = waiting[0] if len(waiting) == 1 else Points(join_columns([part.records for part in waiting], points.records.dtype))
                 waiting = []
-                yield from blocks_of_profiles(joined, start * self.width, self.width)
+                yield from _blocks_of_profiles(joined, start * self.width, self.width)
 
     def mostly_uneven(self, road: int, profile: int) -> bool:
         """Is the ground about a profile uneven nearly everywhere, as a noisy scanner shows it? Decimation would leave little out there."""
@@ -170,7 +170,7 @@ class PointDecimation:
         """Number of points, and for every limit the selected ones: bits in the file, None for all; `strips` are filled in."""
         points = self._window(road, first, first + self._stretch)
         selected, done = {limit: np.ones(len(points), bool) for limit in LEVEL_CELL_LIMITS}, 0
-        for block in blocks_of_profiles(points, first * self.width, self.width):
+        for block in _blocks_of_profiles(points, first * self.width, self.width):
             for number, own, columns in _by_pass(block.records):
                 cells = _PointCells(*columns, self.width, self.spacing)
                 for limit, mask in cells.select().items():
@@ -185,7 +185,7 @@ class PointDecimation:
     def _fill_strip(self, strip: LevelStrip, cells: _PointCells, driven: Pass) -> None:
         """Fill in those profiles of a strip to which the cells belong."""
         middles = (cells.first + np.arange(cells.profiles) + 0.5) * self.width
-        found = find_level_strip(np.floor(driven.at_station(middles)[0] / COORDINATE_SCALE), *cells.grids(), cells.size,
+        found = _find_level_strip(np.floor(driven.at_station(middles)[0] / COORDINATE_SCALE), *cells.grids(), cells.size,
                                  self.min_step / COORDINATE_SCALE)
         own = slice(cells.first - strip.first, cells.first - strip.first + cells.profiles)
         strip.low[own], strip.high[own], strip.height[own] = found
@@ -219,7 +219,7 @@ class LevelGround:
         return Recipe("road.common.decimation:LevelGround", dict(decimation=self.decimation.recipe(folder), across=self.across, along=self.along))
 
 
-def blocks_of_profiles(points: Points, start: float, width: float) -> list[Points]:
+def _blocks_of_profiles(points: Points, start: float, width: float) -> list[Points]:
     """Points along the road cut into blocks of whole profiles, about DECIMATION_BLOCK_POINTS each.
 
     Parameters
@@ -428,7 +428,7 @@ class LevelStrip:
         return self.low[k] * COORDINATE_SCALE, self.high[k] * COORDINATE_SCALE, self.height[k]
 
 
-def find_level_strip(track: np.ndarray, count: np.ndarray, total: np.ndarray, squares: np.ndarray, size: int,
+def _find_level_strip(track: np.ndarray, count: np.ndarray, total: np.ndarray, squares: np.ndarray, size: int,
                      min_height: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """How far the ground about a track is level, profile by profile.
 

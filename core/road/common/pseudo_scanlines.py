@@ -182,7 +182,7 @@ def pseudo_scan_lines(u: np.ndarray, s: np.ndarray, h: np.ndarray, along: np.nda
 
 
 @dataclass
-class ProfileRun:
+class _ProfileRun:
     """Some of the profiles of a section; attributes as of PseudoScanLines, and in addition:
 
     Attributes
@@ -207,7 +207,7 @@ class ProfileRun:
 
 
 def ground_of_profiles(points: Sequence[np.ndarray], inside: np.ndarray, place: np.ndarray, profiles: tuple[int, int],
-                       cells: int, layer_jump: float) -> ProfileRun:
+                       cells: int, layer_jump: float) -> _ProfileRun:
     """The ground of profiles, cell by cell.
 
     Parameters
@@ -233,10 +233,10 @@ def ground_of_profiles(points: Sequence[np.ndarray], inside: np.ndarray, place: 
     many = np.flatnonzero(count >= PROFILE_NOISE_POINTS)
     noise = _profile_noise(owner.take(many) // cells, (top.take(many) - middle.take(many)) / TOP_QUANTILE_SIGMAS, rows)
     held = np.bincount(place, minlength=rows * cells).reshape(rows, cells)
-    return ProfileRun(profiles, order, u, s, along, h, ground, held, low, high, noise, _smooth(h, held, low))
+    return _ProfileRun(profiles, order, u, s, along, h, ground, held, low, high, noise, _smooth(h, held, low))
 
 
-def join_profile_runs(runs: Sequence[ProfileRun], profiles: tuple[int, int], width: float, spacing: float,
+def join_profile_runs(runs: Sequence[_ProfileRun], profiles: tuple[int, int], width: float, spacing: float,
                       origin: float) -> PseudoScanLines:
     """PseudoScanLines of profiles (first, last + 1) from runs that follow one another; profiles of no run are empty."""
     rows, cells = profiles[1] - profiles[0], runs[0].low.shape[1]

@@ -295,12 +295,12 @@ def with_led_on(curbs: Sequence[CurbReturn], runs: Sequence[tuple], decimation: 
     met = known.and_places(*(np.concatenate([np.empty(0), *(getattr(curb.steps, axis) for curb in curbs)]) for axis in "xy"))
     open_ones = np.flatnonzero(~met.within(ends.x + LEAVING_LENGTH * ends.tx, ends.y + LEAVING_LENGTH * ends.ty, 0.5 * LEAVING_LENGTH))
     ends, owner = ends[open_ones], owner[open_ones]
-    phase = Phase(led_steps_of_section, decimation, (road, ends, settings), lambda section: survey.stretch(road, *(k * width for k in section)),
-                  lambda section: survey.store.points_between(road, *(k * width for k in section)), join_led)
+    phase = Phase(_led_steps_of_section, decimation, (road, ends, settings), lambda section: survey.stretch(road, *(k * width for k in section)),
+                  lambda section: survey.store.points_between(road, *(k * width for k in section)), _join_led)
     more: list[CurbReturn] = []
     main_ends = CurbLines([(x, y) for _, (x, y, _) in runs])
     extended = {id(curb): curb for curb in curbs}
-    for number, own in join_led(list(decimation.executor.run(phase, sections, progress))):
+    for number, own in _join_led(list(decimation.executor.run(phase, sections, progress))):
         # inside a tight bend a place may have no station
         own = _until_met(own[np.isfinite(line.locate(own.x, own.y)[0])], met)
         k, at_head = owner[number], ends.uphill[number] < 0
@@ -332,12 +332,12 @@ def _joined(curb, more, before):
                       curb.side, curb.kind)
 
 
-def join_led(parts: Sequence[list[tuple[int, PlanSteps]] | None]) -> list[tuple[int, PlanSteps]]:
-    """The results of `led_steps_of_section` of several sections as one."""
+def _join_led(parts: Sequence[list[tuple[int, PlanSteps]] | None]) -> list[tuple[int, PlanSteps]]:
+    """The results of `_led_steps_of_section` of several sections as one."""
     return [found for part in parts if part is not None for found in part]
 
 
-def led_steps_of_section(decimation: PointDecimation, section: tuple[int, int], road: int, ends: FollowedEnds,
+def _led_steps_of_section(decimation: PointDecimation, section: tuple[int, int], road: int, ends: FollowedEnds,
                          settings: CurbSettings) -> list[tuple[int, PlanSteps]]:
     """The phase of faint curbs: what leads on from the ends in one section of a road.
 

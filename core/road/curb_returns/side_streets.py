@@ -50,7 +50,7 @@ FARTHER_ARCS = np.arange(-0.02, 0.021, 0.02), np.radians(np.arange(-0.3, 0.31, 0
 
 
 @dataclass
-class CurbCourse:
+class _CurbCourse:
     """An arc: shift (m), turn (radians) and bend (1/m), positive uphill; `levels`: bottom (m), grade, height (m), crossfall; from and to (m) it was
     seen; points on either side, and their scatter (m); `spread`: (3, 3) covariance of the arc."""
 
@@ -171,7 +171,7 @@ def _cell_means(t, u, z):
     return tuple(np.bincount(cell, v) / count for v in (t, u, z))
 
 
-def led_beyond(t: np.ndarray, u: np.ndarray, z: np.ndarray, end: CurbEnd) -> CurbCourse | None:
+def led_beyond(t: np.ndarray, u: np.ndarray, z: np.ndarray, end: CurbEnd) -> _CurbCourse | None:
     """How a curb leads on from its end.
 
     Parameters
@@ -209,7 +209,7 @@ def _surest(t, u, z, end, course, stop):
     at = np.linspace(course.start, course.end, 3)
     # arcs by what they are aside at the beginning, in the middle and at the end
     to_arc = np.linalg.inv(np.stack([np.ones(3), at, 0.5 * at * at], axis=1))
-    mean, axes = aside_of_arcs(np.array([course.arc]), at)[0], SPREAD_STEP * np.eye(3)
+    mean, axes = _aside_of_arcs(np.array([course.arc]), at)[0], SPREAD_STEP * np.eye(3)
     for _ in range(SPREAD_ROUNDS):
         aside = mean + SPREAD_GRID @ axes.T
         cost = ground.explained(aside @ to_arc.T)[0]
@@ -261,12 +261,12 @@ def _fitted(t, u, z, end, start, stop, about, arcs):
         return None
     # a slope, however steep, must explain the last points worse
     every = np.ones((1, seen.sum()), bool)
-    slope = cost_of_arcs(levels_of_arcs(design[None, seen][:, :, [0, 1, 3]], z[seen], every, np.full(3, 1e-6), np.zeros(3))[1])[0]
-    step = cost_of_arcs(levels_of_arcs(design[None, seen], z[seen], every, prior, levels)[1])[0]
+    slope = _cost_of_arcs(_levels_of_arcs(design[None, seen][:, :, [0, 1, 3]], z[seen], every, np.full(3, 1e-6), np.zeros(3))[1])[0]
+    step = _cost_of_arcs(_levels_of_arcs(design[None, seen], z[seen], every, prior, levels)[1])[0]
     if slope - step < SIGNIFICANT_SIGMAS**2:
         return None
     residual = z[seen] - design[seen] @ levels
-    return CurbCourse(arc, levels, start, reach, (int(low.sum()), int(high.sum())), float(np.median(np.abs(residual)) / 0.6745))
+    return _CurbCourse(arc, levels, start, reach, (int(low.sum()), int(high.sum())), float(np.median(np.abs(residual)) / 0.6745))
 
 
 def _led(course, end, curb, at_tail, survey, road, line):
@@ -357,7 +357,7 @@ class GroundAboutArc:
     @staticmethod
     def about(t: np.ndarray, u: np.ndarray, z: np.ndarray, end: CurbEnd, start: float, stop: float, arc: Arc) -> GroundAboutArc | None:
         """The points between two distances; None where there are too few."""
-        own = np.flatnonzero((t >= start) & (t < stop) & (np.abs(u - aside_of_arcs(np.array([arc]), t)[0]) < GROUND_HALF_WIDTH))
+        own = np.flatnonzero((t >= start) & (t < stop) & (np.abs(u - _aside_of_arcs(np.array([arc]), t)[0]) < GROUND_HALF_WIDTH))
         if len(own) < 2 * MIN_SIDE_POINTS:
             return None
         prior = np.array([BOTTOM_SIGMA + 0.01 * start, GRADE_SIGMA, RISE_SIGMA, CROSSFALL_SIGMA])**-2.0
@@ -369,16 +369,16 @@ class GroundAboutArc:
         Returns (C,) sums of squares of what both differ from them, in sigmas, (C, 4) levels, their (C, N, 4) design and (C, N) m across.
         """
         t, z, end = self.t, self.z, self.end
-        v = self.u - aside_of_arcs(arcs, t)
+        v = self.u - _aside_of_arcs(arcs, t)
         on_level = np.abs(v) > CURB_HALF_WIDTH
         design = np.stack([np.ones_like(v), np.broadcast_to(t, v.shape), (v > 0).astype(float), v], axis=2)
-        levels, residual = levels_of_arcs(design, z, on_level, self.prior, np.array([0.0, 0.0, end.height, 0.0]))
+        levels, residual = _levels_of_arcs(design, z, on_level, self.prior, np.array([0.0, 0.0, end.height, 0.0]))
         low, height = residual + design[:, :, 2] * levels[:, 2:3] / POINT_HEIGHT_SIGMA, levels[:, 2:3] / POINT_HEIGHT_SIGMA
         # the curb itself is as high as either level, or anywhere between them
         residual = np.where(on_level, residual, low - np.clip(low, 0.0, np.maximum(height, 0.0)))
         at, aside, _ = end.trail
-        off = (aside - aside_of_arcs(arcs, at)) / PLACE_SIGMA
-        return cost_of_arcs(residual) + (off**2).mean(axis=1) * min(len(at), LEAST_STEPS) + (arcs[:, 2] / ARC_BEND_SIGMA)**2, levels, design, v
+        off = (aside - _aside_of_arcs(arcs, at)) / PLACE_SIGMA
+        return _cost_of_arcs(residual) + (off**2).mean(axis=1) * min(len(at), LEAST_STEPS) + (arcs[:, 2] / ARC_BEND_SIGMA)**2, levels, design, v
 
     def foot(self, arc: np.ndarray) -> float:
         """How far uphill from an arc, m, the foot of the curb is that leans where the points on it are; 0 where there are few."""
@@ -392,12 +392,12 @@ class GroundAboutArc:
         return float(v.mean() - (v @ off) / (off @ off + face.sum() * FACE_PRIOR) * rise.mean())
 
 
-def aside_of_arcs(arcs: np.ndarray, t: np.ndarray) -> np.ndarray:
+def _aside_of_arcs(arcs: np.ndarray, t: np.ndarray) -> np.ndarray:
     """(C, N) m uphill, of (C, 3) arcs at (N,) m along."""
     return arcs[:, :1] + arcs[:, 1:2] * t + 0.5 * arcs[:, 2:] * t * t
 
 
-def levels_of_arcs(design: np.ndarray, z: np.ndarray, used: np.ndarray, prior: np.ndarray,
+def _levels_of_arcs(design: np.ndarray, z: np.ndarray, used: np.ndarray, prior: np.ndarray,
                    expected: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """(C, P) parameters of each of C designs (C, N, P), and (C, N) sigmas that heights differ from them; `used` : (C, N) bool."""
     weight = used.astype(float)
@@ -410,6 +410,6 @@ def levels_of_arcs(design: np.ndarray, z: np.ndarray, used: np.ndarray, prior: n
     return found, residual
 
 
-def cost_of_arcs(residual: np.ndarray) -> np.ndarray:
+def _cost_of_arcs(residual: np.ndarray) -> np.ndarray:
     """(C,) sums of squares of (C, N) differences in sigmas, cut off."""
     return np.minimum(residual**2, MAX_RESIDUAL**2).sum(axis=1)

@@ -96,7 +96,7 @@ def _measured(raster, points, x, y, nx, ny, half, min_height, max_height):
     """The steps, and (M,) bool: which places proved to be steps; `points` are the raster's by cell."""
     proved, place, found = np.zeros(len(x), bool), np.arange(len(x)), []
     for turn in range(MEASURING_ROUNDS):
-        seen, steps = seen_at(raster, points, x, y, nx, ny, half, min_height, max_height)
+        seen, steps = _seen_at(raster, points, x, y, nx, ny, half, min_height, max_height)
         # a step of another direction or place is measured again, across its own direction and from its own place
         settled = seen["good"] & ((np.abs(seen["skew"]) <= REMEASURE_SKEW) & (np.abs(seen["u"]) <= REMEASURE_OFFSET) | (turn == MEASURING_ROUNDS - 1))
         proved[place[settled]] = True
@@ -108,7 +108,7 @@ def _measured(raster, points, x, y, nx, ny, half, min_height, max_height):
     return PlanSteps.join(found), proved
 
 
-def seen_at(raster: GroundRaster, points: tuple[np.ndarray, ...], x: np.ndarray, y: np.ndarray, nx: np.ndarray, ny: np.ndarray, half: float,
+def _seen_at(raster: GroundRaster, points: tuple[np.ndarray, ...], x: np.ndarray, y: np.ndarray, nx: np.ndarray, ny: np.ndarray, half: float,
             min_height: float, max_height: float) -> tuple[dict[str, np.ndarray], PlanSteps]:
     """What the points about each place show across a direction.
 
@@ -130,7 +130,7 @@ def seen_at(raster: GroundRaster, points: tuple[np.ndarray, ...], x: np.ndarray,
 
 def steps_of_points(about: tuple[np.ndarray, ...], x: np.ndarray, y: np.ndarray, nx: np.ndarray, ny: np.ndarray, noise: float,
                     min_height: float, max_height: float, graded: bool = False) -> tuple[dict[str, np.ndarray], PlanSteps]:
-    """`seen_at` of points that are known: `about` is the result of `points_about`; `noise` in m; `graded` as of StepPatches."""
+    """`_seen_at` of points that are known: `about` is the result of `points_about`; `noise` in m; `graded` as of StepPatches."""
     owner, u, v, h = about
     seen = StepPatches(owner, u, v, h, np.full(len(x), noise), min_height, max_height, graded=graded).corners()
     # the tangent is the uphill direction turned to the left
@@ -166,7 +166,7 @@ def _rotated(nx, ny, skew):
 
 def points_about(raster: GroundRaster, points: tuple[np.ndarray, ...], x: np.ndarray, y: np.ndarray, nx: np.ndarray, ny: np.ndarray,
                  half: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Ground points near each place: owner, m uphill, m along, height; the parameters are those of `seen_at`."""
+    """Ground points near each place: owner, m uphill, m along, height; the parameters are those of `_seen_at`."""
     px, py, ph, starts = points
     rows, columns = raster.low.shape
     reach = int(np.ceil(np.hypot(PATCH_HALF_WIDTH, half) / PLAN_CELL))

@@ -208,7 +208,7 @@ END_LENGTH = 5.0        # m from its end at which the uncertainty of a line's en
 
 
 @dataclass(frozen=True)
-class EdgeUncertainty:
+class _EdgeUncertainty:
     """The shares of an edge's uncertainty.
 
     foot : m, of a curb's foot, however many points are on it
@@ -229,12 +229,12 @@ class EdgeUncertainty:
     bridge: float = 2e-5
 
 
-MAIN_EDGE = EdgeUncertainty(foot=0.0014, spacing=0.10, scatter=1.2, end=0.0015, gap=0.0005)
-CURB_RETURN = EdgeUncertainty(foot=0.0075, spacing=0.0, scatter=1.5, end=0.006, gap=0.0005)   # found in plan, from fewer points
+MAIN_EDGE = _EdgeUncertainty(foot=0.0014, spacing=0.10, scatter=1.2, end=0.0015, gap=0.0005)
+CURB_RETURN = _EdgeUncertainty(foot=0.0075, spacing=0.0, scatter=1.5, end=0.006, gap=0.0005)   # found in plan, from fewer points
 
 
 def edge_sigma(at: np.ndarray, places: np.ndarray, residual: np.ndarray, support: np.ndarray | None = None,
-               shares: EdgeUncertainty = MAIN_EDGE, passes: np.ndarray | float = 0.0,
+               shares: _EdgeUncertainty = MAIN_EDGE, passes: np.ndarray | float = 0.0,
                shared: np.ndarray | float = 0.0) -> np.ndarray:
     """One sigma across an edge at places along it.
 
@@ -244,7 +244,7 @@ def edge_sigma(at: np.ndarray, places: np.ndarray, residual: np.ndarray, support
     places : (N,) m along the line of all its curb points, rising
     residual : (N,) m, distances of the curb points from the line
     support : (N,) laser points of each; below 1, or None, where that is unknown
-    shares : EdgeUncertainty
+    shares : _EdgeUncertainty
     passes : m, one sigma of the middle of the passes, see `RoadFrame.pass_sigma`; one for all or (K,)
     shared : m, one sigma that neighbouring curb points share, as those of a line that was fitted as a whole: they do not scatter about
         it; one for all or (K,)

@@ -72,7 +72,7 @@ class Planes(Rows):
         return np.hypot(self.coefficients[:, 1], self.coefficients[:, 2])
 
 
-def fit_planes(v: np.ndarray, p: np.ndarray, q: np.ndarray, count: np.ndarray, distance: float,
+def _fit_planes(v: np.ndarray, p: np.ndarray, q: np.ndarray, count: np.ndarray, distance: float,
                tolerance: np.ndarray | float = 0.0) -> Planes:
     """A plane through each of M sets of points, by RANSAC and least squares.
 
@@ -284,7 +284,7 @@ class _VertexSet:
 def _planes(part, which, most, coordinates, scatter, settings):
     """Planes of one class of some candidates, their samples, and whether enough of these are inliers."""
     index, number = part.evenly(which, most)
-    planes = fit_planes(*(values.take(index) for values in coordinates), number, settings.ransac_distance, INLIER_SIGMAS * scatter[which])
+    planes = _fit_planes(*(values.take(index) for values in coordinates), number, settings.ransac_distance, INLIER_SIGMAS * scatter[which])
     return planes, index, (planes.inliers >= MIN_PLANE_INLIERS) & (planes.inliers >= MIN_INLIER_SHARE * planes.points)
 
 

@@ -74,7 +74,7 @@ def write_scanlines(survey: Survey, settings: ScanlineSettings = ScanlineSetting
         for lines in all_scanlines(survey, road, settings, lattice, part):
             count += len(lines)
             if layer is not None and len(lines):
-                add_to_layer(spool, lines, survey.frame, road, settings.interval, layer.simplify)
+                _add_to_layer(spool, lines, survey.frame, road, settings.interval, layer.simplify)
             if points is not None:
                 points.add(lines, survey.frame, road)
     short = count - len(spool) if layer is not None else 0
@@ -83,7 +83,7 @@ def write_scanlines(survey: Survey, settings: ScanlineSettings = ScanlineSetting
     return spool, count
 
 
-def add_to_layer(spool: LineSpool, lines: Scanlines, frame: RoadFrame, road: int, interval: float, simplify: float) -> None:
+def _add_to_layer(spool: LineSpool, lines: Scanlines, frame: RoadFrame, road: int, interval: float, simplify: float) -> None:
     """Append scanlines of a road to a LineSpool.
 
     Parameters
@@ -224,7 +224,7 @@ class LineSpool:
         columns : by field name, (L,) values or one for all
         """
         if len(first) > 1:
-            self._file.write(lines_as_wkb(coordinates, first).tobytes())
+            self._file.write(_lines_as_wkb(coordinates, first).tobytes())
             rows = {name: np.broadcast_to(values, len(first) - 1) for name, values in columns.items()}
             self._chunks.append((np.diff(first), rows))
 
@@ -245,7 +245,7 @@ class LineSpool:
                 yield bytes(data[first:end]), dict(zip(names, values))
 
 
-def lines_as_wkb(coordinates: np.ndarray, first: np.ndarray) -> np.ndarray:
+def _lines_as_wkb(coordinates: np.ndarray, first: np.ndarray) -> np.ndarray:
     """The ISO WKB of L lines, one after the other.
 
     Parameters

@@ -136,12 +136,12 @@ def all_scanlines(survey: Survey, road: int, settings: ScanlineSettings = Scanli
     interval = settings.interval
     sections = fixed_sections(int(np.floor(start / interval)), int(np.ceil(end / interval)) + 1, interval)
 
-    phase = Phase(scanlines_of_section, survey, (road, settings, lattice), lambda section: survey.stretch(road, *section),
+    phase = Phase(_scanlines_of_section, survey, (road, settings, lattice), lambda section: survey.stretch(road, *section),
                   lambda section: survey.store.points_between(road, *section), Scanlines.join)
     yield from survey.executor.run(phase, [(a * interval, b * interval) for a, b in sections], progress)
 
 
-def scanlines_of_section(survey: Survey, section: tuple[float, float], road: int, settings: ScanlineSettings, lattice: ScanLattice) -> Scanlines:
+def _scanlines_of_section(survey: Survey, section: tuple[float, float], road: int, settings: ScanlineSettings, lattice: ScanLattice) -> Scanlines:
     """The phase of normalized scanlines: those of one section, (start, end) in metres of station, of a road; else as in `scanlines_of`."""
     return scanlines_of(survey, road, *section, settings, lattice)
 

@@ -271,7 +271,7 @@ CELLS_BETWEEN_QUESTIONS = 100_000   # followed until Cancel is asked for: some 5
 
 
 @dataclass
-class RoadHeight:
+class _RoadHeight:
     """The height of a road on a grid of R rows and C columns.
 
     Attributes
@@ -286,7 +286,7 @@ class RoadHeight:
     noise: float
 
 
-def follow_road(cells: GroundCells, prior: np.ndarray) -> RoadHeight | None:
+def follow_road(cells: GroundCells, prior: np.ndarray) -> _RoadHeight | None:
     """Follow the road outward from the reference line, column by column.
 
     Each column is predicted from the height and the tilt of the one before it. Cells near the prediction belong to the
@@ -300,7 +300,7 @@ def follow_road(cells: GroundCells, prior: np.ndarray) -> RoadHeight | None:
 
     Returns
     -------
-    RoadHeight, or None where no ground was measured near the track
+    _RoadHeight, or None where no ground was measured near the track
     """
     offsets = cells.offsets
     track = np.abs(offsets) < TRACK_HALF_WIDTH
@@ -317,7 +317,7 @@ def follow_road(cells: GroundCells, prior: np.ndarray) -> RoadHeight | None:
     both = min(middle, len(offsets) - middle)
     columns = np.stack([middle + np.arange(both), middle - 1 - np.arange(both)], axis=1)
     _walk(cells, base, columns, start, noise, height, ground)
-    return RoadHeight(height, ground, noise)
+    return _RoadHeight(height, ground, noise)
 
 
 def _running_median(values, reach):
@@ -376,14 +376,14 @@ def _bell(sigma):
     return weights / weights.sum()
 
 
-def smooth_road(road: RoadHeight, cells: GroundCells) -> np.ndarray:
+def smooth_road(road: _RoadHeight, cells: GroundCells) -> np.ndarray:
     """The height of the road smoothed over the cells that show ground; elsewhere as it was followed.
 
     Following lags behind on a crowned road. A mean over 5 rows and 3 columns, weighted by points, does not.
 
     Parameters
     ----------
-    road : RoadHeight
+    road : _RoadHeight
     cells : GroundCells of the same grid
 
     Returns

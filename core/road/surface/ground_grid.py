@@ -80,7 +80,7 @@ class SurfaceProfiles:
         SurfaceProfiles
         """
         first_row, rows = int(round(start / PROFILE_ROW)), int(round(length / PROFILE_ROW))
-        cells = ground_cells(points, first_row, rows, reach, road_height, PROFILE_ROW, PROFILE_COLUMN,
+        cells = _ground_cells(points, first_row, rows, reach, road_height, PROFILE_ROW, PROFILE_COLUMN,
                              lambda seen: np.abs(ahead(seen)) <= FARTHEST_AHEAD)
         above = cells.height - road_height(cells.stations)[:, None]
         return cls(cells.stations, cells.offsets, *(v.astype(np.float32) for v in (above, cells.rough, cells.brightness, cells.scatter, cells.count)))
@@ -151,12 +151,12 @@ def known_median(values: np.ndarray, axis: int) -> np.ndarray:
     return np.squeeze(0.5 * (low + high), axis)
 
 
-def ground_columns(reach: float, column_size: float) -> int:
+def _ground_columns(reach: float, column_size: float) -> int:
     """Columns of ground cells on either side of the reference line, as far as it is looked at, m."""
     return int(np.ceil(reach / column_size))
 
 
-def ground_cells(points: Points, first_row: int, rows: int, reach: float, road_height: Callable[[np.ndarray], np.ndarray],
+def _ground_cells(points: Points, first_row: int, rows: int, reach: float, road_height: Callable[[np.ndarray], np.ndarray],
                  row_size: float = ROW_LENGTH, column_size: float = COLUMN_WIDTH,
                  bright: Callable[[Points], np.ndarray] | None = None) -> GroundCells:
     """The ground cells of a window of the road.
@@ -174,7 +174,7 @@ def ground_cells(points: Points, first_row: int, rows: int, reach: float, road_h
     -------
     GroundCells
     """
-    half = ground_columns(reach, column_size)
+    half = _ground_columns(reach, column_size)
     columns = 2 * half
     prior = road_height((first_row + np.arange(rows) + 0.5) * row_size)
     index, cell = _near_ground(points.records, first_row, rows, half, prior, row_size, column_size)
@@ -402,7 +402,7 @@ class MeasuredGround:
         profiles : SurfaceProfiles of the windows where they are wanted; None where they are wanted nowhere
         """
         self._measure(road, rows, profiled, progress)
-        half = ground_columns(CORRIDOR, COLUMN_WIDTH)
+        half = _ground_columns(CORRIDOR, COLUMN_WIDTH)
         cells = np.empty((len(CELL_NAMES), WINDOW_ROWS * len(rows), 2 * half), np.float32)
         for place, row in enumerate(rows):
             self._read(0, road, row, cells[:, WINDOW_ROWS * place:WINDOW_ROWS * (place + 1)])
@@ -411,7 +411,7 @@ class MeasuredGround:
         wanted = [row for row, want in zip(rows, profiled) if want]
         if not wanted:
             return ground, None
-        half = ground_columns(CORRIDOR, PROFILE_COLUMN)
+        half = _ground_columns(CORRIDOR, PROFILE_COLUMN)
         profiles = np.empty((len(SurfaceProfiles.NAMES), PROFILES_PER_WINDOW * len(wanted), 2 * half), np.float32)
         for place, row in enumerate(wanted):
             self._read(1, road, row, profiles[:, PROFILES_PER_WINDOW * place:PROFILES_PER_WINDOW * (place + 1)])
@@ -464,7 +464,7 @@ def ground_of_windows(survey: Survey, windows: Sequence[Wanted], road: int) -> t
             profiles.append(SurfaceProfiles.of(points, row * ROW_LENGTH, WINDOW_ROWS * ROW_LENGTH, CORRIDOR, height,
                                                lambda seen: ahead_of_vehicle(survey, seen, seen.s)))
         if with_cells:
-            cells.append(ground_cells(points, row, WINDOW_ROWS, CORRIDOR, height))
+            cells.append(_ground_cells(points, row, WINDOW_ROWS, CORRIDOR, height))
     return _stacked(cells, CELL_NAMES), _stacked(profiles, SurfaceProfiles.NAMES)
 
 

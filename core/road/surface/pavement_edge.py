@@ -29,7 +29,7 @@ LARGEST_WIDENING_COST = 3.0    # m of misses that any change must save: a street
 
 
 @dataclass(frozen=True)
-class PooledProfiles:
+class _PooledProfiles:
     """The ground across the road every ROWS_PER_STEP rows of SurfaceProfiles: medians of the cells of POOLED_ROWS rows.
 
     stations : (Q,) m; height, rough, brightness : (Q, K)
@@ -41,7 +41,7 @@ class PooledProfiles:
     brightness: np.ndarray
 
     @classmethod
-    def of(cls, rows: SurfaceProfiles) -> PooledProfiles:
+    def of(cls, rows: SurfaceProfiles) -> _PooledProfiles:
         """Those of P rows."""
         return cls(rows.stations[::ROWS_PER_STEP], *(_pooled(values) for values in (rows.height, rows.rough, rows.brightness)))
 
@@ -59,7 +59,7 @@ def _pooled(values):
 
 
 @dataclass(frozen=True)
-class GrownLimit:
+class _GrownLimit:
     """The limit of a road on a side without an edge, on R rows.
 
     offset : (R,) m, of the edge of the pavement
@@ -77,7 +77,7 @@ class GrownLimit:
 
 
 def grown_limit(profiles: SurfaceProfiles, cells: GroundCells, height: np.ndarray, prior: np.ndarray, sign: int | float, track: np.ndarray,
-                max_width: float) -> GrownLimit:
+                max_width: float) -> _GrownLimit:
     """The limit of the road on a side without an edge.
 
     Every profile is searched outward from the track. The ground changes where, over 0.4 m, it is off the height of the
@@ -97,20 +97,20 @@ def grown_limit(profiles: SurfaceProfiles, cells: GroundCells, height: np.ndarra
 
     Returns
     -------
-    GrownLimit
+    _GrownLimit
     """
     stations = cells.stations
     nowhere = np.zeros(len(stations), bool)
     rows = profiles.side(sign)
     above = by_rows(lambda some: rows.height[some] - _rise(height, prior, cells, rows.stations[some], sign * rows.offsets), len(rows.stations))
     rows = replace(rows, height=above)
-    pooled = PooledProfiles.of(rows)
+    pooled = _PooledProfiles.of(rows)
     beside = sign * np.interp(pooled.stations, stations, track)
     halves = HalfProfiles(rows.offsets, pooled.height, pooled.rough)
     changes = halves.changes(beside, max_width)
     known = np.flatnonzero(changes >= 0)
     if not len(known):
-        return GrownLimit(track + sign * max_width, np.full(len(track), np.inf), nowhere, nowhere, ~nowhere)
+        return _GrownLimit(track + sign * max_width, np.full(len(track), np.inf), nowhere, nowhere, ~nowhere)
     # at the last cell, nothing beyond it was looked for
     blind = np.pad(halves.blind(), ((0, 0), (0, 1)))[np.arange(len(changes)), changes]
     changes = np.interp(pooled.stations, pooled.stations[known], _agreed(changes[known], blind[known], len(rows.offsets)))
@@ -120,7 +120,7 @@ def grown_limit(profiles: SurfaceProfiles, cells: GroundCells, height: np.ndarra
     outward = np.interp(stations, rows.stations, rows.offsets[0] + (found.cell - 0.5) * PROFILE_COLUMN)
     row = np.clip(np.searchsorted(rows.stations + 0.5 * PROFILE_ROW, stations), 0, len(rows.stations) - 1)
     farthest = sign * track + max_width
-    return GrownLimit(sign * np.minimum(outward, farthest), found.gap[row] * PROFILE_COLUMN / np.sqrt(12.0), found.shown[row] & (outward < farthest),
+    return _GrownLimit(sign * np.minimum(outward, farthest), found.gap[row] * PROFILE_COLUMN / np.sqrt(12.0), found.shown[row] & (outward < farthest),
                       found.likely[row] & (outward < farthest), found.hidden[row])
 
 
@@ -163,7 +163,7 @@ class Carriageway:
     right, left : (R,) m, offsets of its limits; NaN in rows without road
     right_bounded, left_bounded : (R,) bool, rows in which a measured or bridged edge is the limit
     tolerance : m above or below the height
-    grown : {side: GrownLimit} of the sides on which edges are missing
+    grown : {side: _GrownLimit} of the sides on which edges are missing
     """
 
     cells: GroundCells
@@ -174,7 +174,7 @@ class Carriageway:
     right_bounded: np.ndarray
     left_bounded: np.ndarray
     tolerance: float
-    grown: dict[str, GrownLimit] = field(default_factory=dict)
+    grown: dict[str, _GrownLimit] = field(default_factory=dict)
 
 
 def edge_offsets(edges: RoadEdges | None, road: int, stations: np.ndarray) -> dict[str, tuple[np.ndarray, np.ndarray]]:

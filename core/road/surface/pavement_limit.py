@@ -51,7 +51,7 @@ LIMIT_SHIFT_COST, LARGEST_LIMIT_SHIFT_COST = 5.0, 60.0  # that a change of the l
 
 
 @dataclass(frozen=True)
-class PavementLimits:
+class _PavementLimits:
     """Where the pavement ends on P rows of one side.
 
     cell : (P,) cells, not necessarily whole
@@ -68,7 +68,7 @@ class PavementLimits:
     hidden: np.ndarray
 
 
-def pavement_limits(rows: SurfaceProfiles, change: np.ndarray) -> PavementLimits:
+def pavement_limits(rows: SurfaceProfiles, change: np.ndarray) -> _PavementLimits:
     """Where the pavement ends near the change of ground.
 
     Parameters
@@ -78,7 +78,7 @@ def pavement_limits(rows: SurfaceProfiles, change: np.ndarray) -> PavementLimits
 
     Returns
     -------
-    PavementLimits
+    _PavementLimits
     """
     whole = np.rint(change).astype(np.int64)
     # cells along the edge, so that rows can be averaged where it bends away from the reference line
@@ -112,7 +112,7 @@ def pavement_limits(rows: SurfaceProfiles, change: np.ndarray) -> PavementLimits
     shown = likely & (costs_inside <= -SHOWN_COST) & (costs_outside >= SHOWN_COST * usual)
     place, gap = _between_known(limit + ROAD_CELLS, weight)
     place = place + _mixed(limit + ROAD_CELLS, off, weight)
-    return PavementLimits(place - ROAD_CELLS - INNER_CELLS + change, gap, shown, likely, hidden)
+    return _PavementLimits(place - ROAD_CELLS - INNER_CELLS + change, gap, shown, likely, hidden)
 
 
 def _between_known(limit, weight):

@@ -60,14 +60,14 @@ def with_pavement_edges(survey: Survey, edges: RoadEdges, settings: EdgeSettings
     for k, road in enumerate(roads):
         carriageway = find_carriageway(survey, road, edges, surface, progress.part(k / len(roads), (k + 1) / len(roads)), ground)
         if carriageway is not None:
-            pieces += pavement_pieces(survey.frame, road, carriageway, edges, settings.max_gap, len(pieces))
+            pieces += _pavement_pieces(survey.frame, road, carriageway, edges, settings.max_gap, len(pieces))
     if pieces:
         length = {status: sum(piece.length for piece in pieces if piece.status == status) for status in ("measured", "bridged")}
         progress.info(f"Edges of the pavement without a curb: {length['measured']:.0f} m measured, {length['bridged']:.0f} m bridged.")
     return edges.and_pieces(pieces, survey.frame)
 
 
-def pavement_pieces(frame: RoadFrame, road: int, carriageway: Carriageway, edges: RoadEdges, max_gap: float, chain: int = 0) -> list[EdgePiece]:
+def _pavement_pieces(frame: RoadFrame, road: int, carriageway: Carriageway, edges: RoadEdges, max_gap: float, chain: int = 0) -> list[EdgePiece]:
     """Edges of the pavement of one road.
 
     Parameters

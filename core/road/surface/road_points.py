@@ -65,7 +65,7 @@ def _squares(*points):
     return *found, shape
 
 @dataclass(frozen=True)
-class SurfaceOfSection:
+class _SurfaceOfSection:
     """The points of the road surface in one section.
 
     Attributes
@@ -105,7 +105,7 @@ def surface_about(carriageway: Carriageway, stretch: Stretch, section_length: fl
     return replace(carriageway, cells=here, grown={}, **rows)
 
 
-def surface_points(survey: Survey, item: tuple[Stretch, Carriageway]) -> list[SurfaceOfSection]:
+def surface_points(survey: Survey, item: tuple[Stretch, Carriageway]) -> list[_SurfaceOfSection]:
     """The phase that selects the points of the road surface, section by section.
 
     Parameters
@@ -132,11 +132,11 @@ def _points_of_section(survey, road, number, carriageway):
     rows, first_row, count = found.surface[own], carriageway.cells.first_row, len(carriageway.height)
     row = np.floor(stations.take(rows) * COORDINATE_SCALE / ROW_LENGTH).astype(np.int64) - first_row
     per_row = np.bincount(np.clip(row, 0, count - 1), minlength=count)
-    return SurfaceOfSection(number, packed_mask(rows - first), found.half_width[own], beneath[own].astype(np.uint8), first_row, per_row)
+    return _SurfaceOfSection(number, packed_mask(rows - first), found.half_width[own], beneath[own].astype(np.uint8), first_row, per_row)
 
 
 @dataclass(frozen=True)
-class OnRoad:
+class _OnRoad:
     """Points of a window by their index.
 
     Attributes
@@ -151,7 +151,7 @@ class OnRoad:
     above: np.ndarray
 
 
-def points_on_road(points: Points, carriageway: Carriageway) -> OnRoad:
+def points_on_road(points: Points, carriageway: Carriageway) -> _OnRoad:
     """The points of a window that lie on the road or stand above it.
 
     Limits are interpolated linearly between the middles of rows; beside a row without road those of the nearer row are
@@ -164,7 +164,7 @@ def points_on_road(points: Points, carriageway: Carriageway) -> OnRoad:
 
     Returns
     -------
-    OnRoad
+    _OnRoad
 
     Notes
     -----
@@ -173,13 +173,13 @@ def points_on_road(points: Points, carriageway: Carriageway) -> OnRoad:
     """
     records = points.records
     if not len(records):
-        return OnRoad(np.empty(0, np.intp), np.empty(0, np.uint16), np.empty(0, np.intp))
+        return _OnRoad(np.empty(0, np.intp), np.empty(0, np.uint16), np.empty(0, np.intp))
     here = _SurfaceTables(carriageway, records["s"], records["d"])
     parts = []
     for first in range(0, len(records), GROUND_POINTS_PER_BATCH):
         found = here.points(*(records[name][first:first + GROUND_POINTS_PER_BATCH] for name in ("s", "d", "z")))
         parts.append((found[0] + first, found[1], found[2] + first))
-    return OnRoad(*(np.concatenate(part) for part in zip(*parts)))
+    return _OnRoad(*(np.concatenate(part) for part in zip(*parts)))
 
 
 class _SurfaceTables:

@@ -17,7 +17,7 @@ _LOOKUP = 0.125      # m, cells of the table of nearest vertices: with this spac
 _RAMP = 1.0          # m from full to lowered curb
 
 
-class Terrain:
+class _Terrain:
     """Heights on a grid, bilinear between its nodes.
 
     Parameters
@@ -87,11 +87,11 @@ class Surface:
 
 
 class Ground:
-    """Terrain, edges of the carriageway and what lies beyond them.
+    """_Terrain, edges of the carriageway and what lies beyond them.
 
     Parameters
     ----------
-    terrain : Terrain
+    terrain : _Terrain
     rings : (K, 2) m, local vertices of each edge, closed, the carriageway on the left
     heights : (K,) m, of the curb at the vertices of each ring
     profiles : strips beyond the edges, each a Side whose first border is 0
@@ -99,7 +99,7 @@ class Ground:
     area : polygon, m, outside of which the ground is the terrain, more or less
     """
 
-    def __init__(self, terrain: Terrain, rings: Sequence[np.ndarray], heights: Sequence[np.ndarray], profiles: Sequence[Side],
+    def __init__(self, terrain: _Terrain, rings: Sequence[np.ndarray], heights: Sequence[np.ndarray], profiles: Sequence[Side],
                  profile_at: Sequence[np.ndarray], area: shapely.Polygon):
         self.terrain, self.rings, self.heights, self.profiles, self.profile_at = terrain, rings, heights, profiles, profile_at
         self._from = np.concatenate(rings)
@@ -199,9 +199,9 @@ class Ground:
         return self.at(x, y).z
 
 
-def terrain_over(bounds: tuple[float, float, float, float], height: Callable[[np.ndarray], np.ndarray], cell: float = 0.5) -> Terrain:
-    """The Terrain of a function of (N, 2) places within (west, south, east, north), m."""
+def terrain_over(bounds: tuple[float, float, float, float], height: Callable[[np.ndarray], np.ndarray], cell: float = 0.5) -> _Terrain:
+    """The _Terrain of a function of (N, 2) places within (west, south, east, north), m."""
     west, south, east, north = bounds
     x, y = np.arange(west, east + cell, cell), np.arange(south, north + cell, cell)
     places = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
-    return Terrain((west, south), cell, height(places).reshape(len(y), len(x)))
+    return _Terrain((west, south), cell, height(places).reshape(len(y), len(x)))

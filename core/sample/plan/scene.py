@@ -167,7 +167,7 @@ class PlanScene:
 
     def truth(self, origin: Sequence[float], crs: str) -> Truth:
         """The true layers, in map coordinates."""
-        return truth_of_plan(self, origin, crs)
+        return _truth_of_plan(self, origin, crs)
 
 
 # The truth of a plan, as layers in map coordinates.
@@ -176,7 +176,7 @@ _FACE = 0.025    # m across the face of a curb
 _LEAST = 4       # vertices of an edge that is worth a line
 
 
-def truth_of_plan(scene: PlanScene, origin: Sequence[float], crs: str) -> Truth:
+def _truth_of_plan(scene: PlanScene, origin: Sequence[float], crs: str) -> Truth:
     """The true layers of a plan, as far as it is surveyed.
 
     Parameters

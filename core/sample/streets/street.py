@@ -180,7 +180,7 @@ class Scene:
 
     def truth(self, origin: Sequence[float], crs: str) -> Truth:
         """The true layers, in map coordinates."""
-        return truth_of_street(self, origin, crs)
+        return _truth_of_street(self, origin, crs)
 
 
 # The intersection of pulses with the ground of a simulated street.
@@ -342,7 +342,7 @@ class _Rays:
 _DROPPED = 0.05   # m: lower curbs are of the kind "dropped"
 
 
-def truth_of_street(scene: Scene, origin: Sequence[float], crs: str) -> Truth:
+def _truth_of_street(scene: Scene, origin: Sequence[float], crs: str) -> Truth:
     """The true layers of a street.
 
     Parameters

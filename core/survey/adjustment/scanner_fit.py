@@ -43,7 +43,7 @@ SAID_M = 0.005           # m; less is not named in the warning
 
 
 @dataclass(frozen=True)
-class ScannerOffsets:
+class _ScannerOffsets:
     """Moves of a scanner onto the first one, on the right and the left of the vehicle.
 
     scanner : its number
@@ -171,7 +171,7 @@ def _moved(frame, moves, records):
     return records.with_columns(**moved)
 
 
-def _scanner_offsets(survey: Any, windows: int = SCANNER_WINDOWS) -> list[ScannerOffsets]:
+def _scanner_offsets(survey: Any, windows: int = SCANNER_WINDOWS) -> list[_ScannerOffsets]:
     """How far the scanners of a survey lie beside the first one.
 
     survey : Survey with times
@@ -236,7 +236,7 @@ def _side_evidence(first, other, side):
 
 
 def _offsets(number, evidence):
-    """ScannerOffsets of the evidence of windows."""
+    """_ScannerOffsets of the evidence of windows."""
     beside, moves, sigma, far = np.zeros((len(SIDES), 3)), np.full((len(SIDES), 3), np.nan), np.full((len(SIDES), 3), np.inf), False
     for side in range(len(SIDES)):
         seen = [one[side] for one in evidence]
@@ -248,7 +248,7 @@ def _offsets(number, evidence):
             left_out, _, still = zip(*(_moves_of(seen[:k] + seen[k + 1:]) for k in range(len(seen))))
             sigma[side] = _jackknife(left_out)
             far |= at_limit and 2 * sum(still) > len(seen)
-    return ScannerOffsets(number, beside, moves, sigma, far)
+    return _ScannerOffsets(number, beside, moves, sigma, far)
 
 
 def _moves_of(seen):

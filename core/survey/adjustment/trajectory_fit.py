@@ -27,7 +27,7 @@ from .adjust import AGREEMENT_PLAN
 
 
 @dataclass(frozen=True)
-class FittedTrajectory:
+class _FittedTrajectory:
     """A trajectory as the scanners were carried.
 
     trajectory : the one given where everything fits
@@ -41,7 +41,7 @@ class FittedTrajectory:
 
 
 def fitted_trajectory(files: Sequence[CloudHeader], trajectory: Trajectory, scanner_field: str | None = "automatic",
-                      progress: Progress = Progress()) -> FittedTrajectory:
+                      progress: Progress = Progress()) -> _FittedTrajectory:
     """The trajectory as the scanners were carried, where the one given is not.
 
     Parameters
@@ -56,15 +56,15 @@ def fitted_trajectory(files: Sequence[CloudHeader], trajectory: Trajectory, scan
         progress.warn(warning)
     given = shape.trajectory if shape.said else trajectory
     if not trajectory.has_time or not all(file.has_time for file in files if file.count):
-        return FittedTrajectory(given, shape.sigma, False)
+        return _FittedTrajectory(given, shape.sigma, False)
     sample = read_places(files, scanner_field)
     mountings = _near(scanner_mountings(sample, shape.trajectory))
     if mountings and _other_heights(sample, shape.trajectory, mountings, progress):
-        return FittedTrajectory(given, float(np.hypot(shape.sigma, SIGMA_OF_OTHER_HEIGHTS)), True)
+        return _FittedTrajectory(given, float(np.hypot(shape.sigma, SIGMA_OF_OTHER_HEIGHTS)), True)
     if not (mountings := _met(mountings)):
-        return FittedTrajectory(given, shape.sigma, False)
+        return _FittedTrajectory(given, shape.sigma, False)
     moved = _carried(sample, shape.trajectory, mountings, progress)
-    return FittedTrajectory(given if moved is shape.trajectory else moved, shape.sigma, True)
+    return _FittedTrajectory(given if moved is shape.trajectory else moved, shape.sigma, True)
 
 
 def _carried(sample, trajectory, mountings, progress):
@@ -105,7 +105,7 @@ def _other_heights(sample, trajectory, mountings, progress):
     return False
 
 
-def _at_height(trajectory: Trajectory, mountings: Sequence[Mounting], progress: Progress) -> Trajectory:
+def _at_height(trajectory: Trajectory, mountings: Sequence[_Mounting], progress: Progress) -> Trajectory:
     """The trajectory moved to the height of the scanners where it runs below the road or higher than vehicles are; else the same."""
     at, lever = _places(mountings)
     above_road = -float(np.mean([one.ground for one in mountings]))
@@ -123,7 +123,7 @@ def _at_height(trajectory: Trajectory, mountings: Sequence[Mounting], progress: 
     return replace(trajectory, z=trajectory.z + metres)
 
 
-def _on_way(trajectory: Trajectory, mountings: Sequence[Mounting], progress: Progress) -> Trajectory:
+def _on_way(trajectory: Trajectory, mountings: Sequence[_Mounting], progress: Progress) -> Trajectory:
     """The trajectory moved to the way of the scanners where no vehicle is so wide; else the same."""
     if not mountings:
         return trajectory
@@ -187,7 +187,7 @@ def _moved_aside(trajectory, mountings, at, beside):
 # as a lever arm that no vehicle has; coordinates that are stretched, as heights in feet, as rays that do not meet.
 
 @dataclass(frozen=True)
-class Mounting:
+class _Mounting:
     """A scanner in the frame of the vehicle, whose origin is the trajectory.
 
     scanner : its number
@@ -267,8 +267,8 @@ def _first_returns(block):
     return time[own], place, raw["point_source_id"][own].astype(np.int64), channel[own].astype(np.int64)
 
 
-def scanner_mountings(sample: _Sample, trajectory: Trajectory, stretch: float = 1.0) -> list[Mounting]:
-    """The Mounting of every scanner whose mirror is seen to turn.
+def scanner_mountings(sample: _Sample, trajectory: Trajectory, stretch: float = 1.0) -> list[_Mounting]:
+    """The _Mounting of every scanner whose mirror is seen to turn.
 
     Parameters
     ----------
@@ -312,7 +312,7 @@ def _vehicle_angles(trajectory: Trajectory, stretch: float = 1.0) -> tuple[np.nd
 
 
 def _mounting_of(number, time, place):
-    """The Mounting of one scanner from the points that it saw, (N,) s and (N, 3) m in the frame of the vehicle; None where they do not show it."""
+    """The _Mounting of one scanner from the points that it saw, (N,) s and (N, 3) m in the frame of the vehicle; None where they do not show it."""
     if len(time) < MIN_WINDOWS * MIN_TURNS_POINTS:
         return None
     _, window = np.unique(np.floor(time / TURNS_WINDOW), return_inverse=True)
@@ -337,7 +337,7 @@ def _mounting_of(number, time, place):
     lever = middle + u[:, None] * across + v[:, None] * upright
     away = place - lever[window]
     below = away[(np.hypot(*away.T[:2]) < EXPECTED_HEIGHT) & good[window], 2]
-    return Mounting(number, middles[good], lever[good], float(np.median(below)) if len(below) else np.nan, misfit)
+    return _Mounting(number, middles[good], lever[good], float(np.median(below)) if len(below) else np.nan, misfit)
 
 
 def _scan_plane(place, window, size):
@@ -393,7 +393,7 @@ def _resected_places(a, b, since, window, middles, rate):
     return u, v, good, float(np.median(misfit[good])) if good.any() else np.inf
 
 
-def _usual_lever(mountings: Sequence[Mounting]) -> np.ndarray:
+def _usual_lever(mountings: Sequence[_Mounting]) -> np.ndarray:
     """(3,) m ahead, left and up of the middle of the scanners from the trajectory."""
     return np.mean([np.median(one.lever, axis=0) for one in mountings], axis=0)
 

@@ -106,9 +106,9 @@ def _adjust_poses(poses: Poses, guess: Poses, crossfall: np.ndarray, returns: Re
 
 
 def _equations(poses, guess, crossfall, returns, noise, progress):
-    """BandedEquations at the poses, and (K, S) misfits, what of them the times' rounding explains, and counts of each interval and scanner."""
+    """_BandedEquations at the poses, and (K, S) misfits, what of them the times' rounding explains, and counts of each interval and scanner."""
     knots, columns = poses.control.shape
-    equations = BandedEquations(knots, columns, MOUNTING * poses.scanners)
+    equations = _BandedEquations(knots, columns, MOUNTING * poses.scanners)
     total, count, known = (np.zeros((knots, poses.scanners)) for _ in range(3))
     turned = 2 * np.pi * np.abs(poses.rate) * returns.tick / np.sqrt(12.0)
     cuts = np.searchsorted(returns.interval, np.arange(0, knots + BLOCK_INTERVALS, BLOCK_INTERVALS))
@@ -281,7 +281,7 @@ MOUNTING = 5          # unknowns of a scanner's mounting: turn, lean and lever
 
 
 @dataclass
-class Misfits:
+class _Misfits:
     """Of N returns: off the scan plane and, within it, off the ray.
 
     off : (2, N) m
@@ -297,8 +297,8 @@ class Misfits:
 
 
 def misfits(poses: Poses, interval: np.ndarray, share: np.ndarray, time: np.ndarray, place: np.ndarray, scanner: np.ndarray,
-            noise: tuple[np.ndarray, np.ndarray] | None = None) -> Misfits:
-    """The Misfits of returns.
+            noise: tuple[np.ndarray, np.ndarray] | None = None) -> _Misfits:
+    """The _Misfits of returns.
 
     Parameters
     ----------
@@ -342,12 +342,12 @@ def misfits(poses: Poses, interval: np.ndarray, share: np.ndarray, time: np.ndar
         for j in range(3):
             by_mounting[k, rows, first + 2 + j] = -side[:, j]
     by_pose[1, rows, POSE + scanner] = -(along * cos + above * sin)
-    return Misfits(off, by_pose, by_mounting, reach)
+    return _Misfits(off, by_pose, by_mounting, reach)
 
 
 # Normal equations of splines with a few common unknowns: a band along time with a border.
 
-class BandedEquations:
+class _BandedEquations:
     """Sums of the normal equations; control values of one drive only meet those up to three knots away.
 
     Parameters

@@ -16,7 +16,7 @@ POSE = 6             # columns before the phases
 
 
 @dataclass(frozen=True)
-class DriveKnots:
+class _DriveKnots:
     """The knots of one drive among all: control values first .. first + count - 1, the first interval begins at `start` (s)."""
 
     start: float
@@ -39,7 +39,7 @@ class DriveKnots:
 class Poses:
     """Cubic B-splines of place, attitude and mirror phases, and the mounting of S scanners.
 
-    drives : DriveKnots of each drive
+    drives : _DriveKnots of each drive
     control : (K, 6 + S) control values: x, y, z (m), roll (right side down), pitch (nose up), yaw (counter-clockwise from east; radians),
         and of each scanner what its direction angle is ahead of 2 pi rate t (radians)
     rate : (S,) Hz
@@ -48,7 +48,7 @@ class Poses:
     lever : (S, 3) m ahead, left and up from the place of the pose; their mean is 0
     """
 
-    drives: tuple[DriveKnots, ...]
+    drives: tuple[_DriveKnots, ...]
     control: np.ndarray
     rate: np.ndarray
     turn: np.ndarray
@@ -120,7 +120,7 @@ RESECTION_ROUNDS = 3
 
 
 @dataclass
-class Fixes:
+class _Fixes:
     """Places of one scanner in windows of one drive; only windows with a good one.
 
     time : (W,) s, middles
@@ -159,7 +159,7 @@ def _rotation_rate_of(runs: list[tuple[np.ndarray, np.ndarray, FirstTrack]]) -> 
     return abs(rate) if peak >= MIN_ROTATION_PEAK else None
 
 
-def _fixes_of(time: np.ndarray, place: np.ndarray, track: FirstTrack, rate: float) -> Fixes:
+def _fixes_of(time: np.ndarray, place: np.ndarray, track: FirstTrack, rate: float) -> _Fixes:
     """The places of one scanner in the windows of one drive.
 
     time : (N,) s, ascending
@@ -190,7 +190,7 @@ def _fixes_of(time: np.ndarray, place: np.ndarray, track: FirstTrack, rate: floa
     good &= (v > HEIGHT_RANGE_ABOVE[0]) & (v < HEIGHT_RANGE_ABOVE[1])
     if good.any():
         good &= misfit <= MAX_WORSE * np.median(misfit[good])
-    return Fixes(track.time[good], found[good], phase[good], yaw[good], misfit[good])
+    return _Fixes(track.time[good], found[good], phase[good], yaw[good], misfit[good])
 
 
 def _line_directions(place, window, size):
@@ -258,7 +258,7 @@ class Spinning:
 
     number: int
     rate: float
-    fixes: list[Fixes]
+    fixes: list[_Fixes]
 
 
 def spinning_scanners(samples: Samples, tracks: list[FirstTrack]) -> list[Spinning]:
@@ -280,7 +280,7 @@ def spinning_scanners(samples: Samples, tracks: list[FirstTrack]) -> list[Spinni
     return found
 
 
-EMPTY = Fixes(np.empty(0), np.empty((0, 3)), np.empty(0), np.empty(0), np.empty(0))
+EMPTY = _Fixes(np.empty(0), np.empty((0, 3)), np.empty(0), np.empty(0), np.empty(0))
 
 
 def _quality(fixes):
@@ -315,7 +315,7 @@ def first_poses(samples: Samples, tracks: list[FirstTrack], scanners: list[Spinn
     for number, (drive, track) in enumerate(zip(samples.drives, tracks)):
         start = float(samples.time[drive.start]) - KNOT_SPACING / 2
         count = int(np.ceil((samples.time[drive.stop - 1] - start) / KNOT_SPACING)) + 4
-        knots = DriveKnots(start, first, count)
+        knots = _DriveKnots(start, first, count)
         values = np.zeros((count, POSE + len(scanners)))
         values[:, :3] = _places(track, [one.fixes[number] for one in scanners], lever, knots.middles)
         values[:, YAW] = headings_of(values[:, :2], track.at(knots.middles)[1])

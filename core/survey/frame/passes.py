@@ -29,7 +29,7 @@ MAX_TICKS = 20_000_000     # entries of a lookup table at most
 
 
 @dataclass(frozen=True)
-class DrivenPath:
+class _DrivenPath:
     """A stretch of the trajectory.
 
     first, last : trajectory rows, `last` exclusive
@@ -104,7 +104,7 @@ def moving_rows(x: np.ndarray, y: np.ndarray, step: float = STANDSTILL_RADIUS) -
     return np.array(keep)
 
 
-def split_into_passes(trajectory: Trajectory) -> list[DrivenPath]:
+def split_into_passes(trajectory: Trajectory) -> list[_DrivenPath]:
     """Split the trajectory where it pauses, turns back, crosses itself or returns to its own track.
 
     Pieces longer than MAX_ROAD_LENGTH are split into equal parts.
@@ -115,7 +115,7 @@ def split_into_passes(trajectory: Trajectory) -> list[DrivenPath]:
 
     Returns
     -------
-    list of DrivenPath in driving order
+    list of _DrivenPath in driving order
     """
     pieces = []
     for first, last in _split_at_pauses(trajectory):
@@ -151,7 +151,7 @@ def _split_at_returns(trajectory, first, last):
     cuts = _split_long_pieces(_drop_short_pieces(cuts, driven), driven)
     starts = [(0, 0)] + [(row, after) for row, _, after in cuts]
     ends = [(row + 1, before + 1) for row, before, _ in cuts] + [(count, count)]
-    return [DrivenPath(first + a, first + b, float(driven[b - 1] - driven[a]), first + line_a, first + line_b)
+    return [_DrivenPath(first + a, first + b, float(driven[b - 1] - driven[a]), first + line_a, first + line_b)
             for (a, line_a), (b, line_b) in zip(starts, ends) if b - a > 1]
 
 

@@ -28,7 +28,7 @@ CLOSED_FORM_BEND = 0.55          # of the radius of a bend, to its inner side: v
 BEND_STRETCH = (0.4, 2.5)    # limits of the ratio of along-track distance to station difference in a bend
 
 
-class LineLookup:
+class _LineLookup:
     """The reference line of a road in tables by node.
 
     Lengths are in nodes (NODE_SPACING metres). `bend` is the offset of a point times the curvature of the line.
@@ -210,7 +210,7 @@ class RoadProjection:
         self.frame, self.corridor = frame, corridor
         self.starts = np.array([p.time[0] for p in frame.passes])
         self.ends = np.array([p.time[-1] for p in frame.passes])
-        self._lines = [LineLookup(road) for road in frame.roads]
+        self._lines = [_LineLookup(road) for road in frame.roads]
         self._scratch = ScratchBuffers()
         self._ticks = [_PassClock(p, frame.road(p.road)) for p in frame.passes]
 

@@ -90,11 +90,11 @@ class HeaderFields:
         """(3,) map coordinates."""
         return np.frombuffer(self.head, "<f8", 6, 179)[::2]
 
-    def records(self, file: BinaryIO, size: int) -> Iterator[Record]:
+    def records(self, file: BinaryIO, size: int) -> Iterator[_Record]:
         """The variable length records before the points of a file of so many bytes, the last as far as it is there."""
         at = self.header_size
         for _ in range(self.vlrs):
-            record = Record.read(file, at, VLR_HEADER_SIZE, size)
+            record = _Record.read(file, at, VLR_HEADER_SIZE, size)
             if record is None:
                 return
             yield record
@@ -107,7 +107,7 @@ class HeaderFields:
 
 
 @dataclass(frozen=True)
-class Compression:
+class _Compression:
     """How the points of a file are compressed, as the LASzip record says.
 
     data : the record
@@ -137,7 +137,7 @@ class Compression:
 
 
 @dataclass(frozen=True)
-class Record:
+class _Record:
     """A variable length record.
 
     at : byte of the file at which it begins
@@ -152,7 +152,7 @@ class Record:
     data: bytes
 
     @classmethod
-    def read(cls, file: BinaryIO, at: int, head_size: int, size: int) -> Record | None:
+    def read(cls, file: BinaryIO, at: int, head_size: int, size: int) -> _Record | None:
         """That at a byte of a file of so many bytes; None where there is none."""
         if at + head_size > size:
             return None
@@ -190,12 +190,12 @@ class Record:
         return self.user == EXTRA_BYTES_USER and self.number == EXTRA_BYTES_RECORD
 
     @property
-    def compression(self) -> Compression | None:
+    def compression(self) -> _Compression | None:
         """What it says of compressed points; None where it is another record, or too short."""
         laszip = self.user == LASZIP_USER and self.number == LASZIP_RECORD and len(self.data) >= 34
-        return Compression(self.data) if laszip and len(self.data) >= 34 + 6 * struct.unpack_from("<H", self.data, 32)[0] else None
+        return _Compression(self.data) if laszip and len(self.data) >= 34 + 6 * struct.unpack_from("<H", self.data, 32)[0] else None
 
-    def mended(self) -> Record:
+    def mended(self) -> _Record:
         """The same with a user and a CRS that laspy can decode; itself where nothing is wrong."""
         head = self.head[:2] + _decodable(self.head[2:18]) + self.head[18:]
         data = _decodable(self.data) if self.user == CRS_USER and self.number in CRS_TEXTS else self.data
@@ -215,12 +215,12 @@ def _base_size(point_format: int) -> int | None:
     return PointFormat(point_format).size if point_format in supported_point_formats() else None
 
 
-def _extra_bytes_described(records: list[Record]) -> int:
+def _extra_bytes_described(records: list[_Record]) -> int:
     """Bytes that the records which name extra bytes describe together."""
     return sum(_size(entry) or 0 for record in records if record.describes_extra_bytes for entry in _entries(record))
 
 
-def _readable_extra_bytes(record: Record, point_format: int, room: int) -> Record:
+def _readable_extra_bytes(record: _Record, point_format: int, room: int) -> _Record:
     """A record of extra bytes that describes no more than there is room for, in names that a table can have; itself where nothing is wrong.
 
     record : which describes extra bytes
@@ -291,7 +291,7 @@ COUNT_AT, LONG_COUNT_AT, RECORD_SIZE_AT, POINTS_AT, EVLR_COUNT_AT = 107, 247, 10
 
 
 @dataclass(frozen=True)
-class MendedHeader:
+class _MendedHeader:
     """What is read in place of some bytes of a file, and what to tell of it.
 
     patches : (first byte, bytes)
@@ -301,15 +301,15 @@ class MendedHeader:
     patches: tuple[tuple[int, bytes], ...] = ()
     notes: tuple[str, ...] = ()
 
-    def with_count(self, fields: HeaderFields, count: int, note: str = "") -> MendedHeader:
+    def with_count(self, fields: HeaderFields, count: int, note: str = "") -> _MendedHeader:
         """The same with another number of points."""
         patches = [(COUNT_AT, struct.pack("<I", count if count < 2**32 else 0))]
         if fields.has_long_count:
             patches.append((LONG_COUNT_AT, struct.pack("<Q", count)))
-        return MendedHeader((*self.patches, *patches), (*self.notes, *([note] if note else [])))
+        return _MendedHeader((*self.patches, *patches), (*self.notes, *([note] if note else [])))
 
 
-class MendedFile(io.FileIO):
+class _MendedFile(io.FileIO):
     """A file that is read with some bytes replaced."""
 
     def __init__(self, path: str | os.PathLike[str], patches: Sequence[tuple[int, bytes]]):
@@ -328,12 +328,12 @@ class MendedFile(io.FileIO):
         return count
 
 
-def opened(path: str | os.PathLike[str], mended: MendedHeader) -> io.BufferedReader:
+def opened(path: str | os.PathLike[str], mended: _MendedHeader) -> io.BufferedReader:
     """A file open for reading as it was mended."""
-    return io.BufferedReader(MendedFile(path, mended.patches)) if mended.patches else open(path, "rb")  # noqa: SIM115
+    return io.BufferedReader(_MendedFile(path, mended.patches)) if mended.patches else open(path, "rb")  # noqa: SIM115
 
 
-def mend(path: str | os.PathLike[str]) -> MendedHeader:
+def mend(path: str | os.PathLike[str]) -> _MendedHeader:
     """What a file says of itself against what is in it; the points in compressed chunks are not counted here.
 
     Parameters
@@ -342,13 +342,13 @@ def mend(path: str | os.PathLike[str]) -> MendedHeader:
 
     Returns
     -------
-    MendedHeader; without patches where nothing is wrong, or nothing is sure
+    _MendedHeader; without patches where nothing is wrong, or nothing is sure
     """
     size = os.path.getsize(path)
     with open(path, "rb") as file:
         stated = HeaderFields.read(file)
         if stated is None or not stated.header_size <= size:
-            return MendedHeader()
+            return _MendedHeader()
         patches: list[tuple[int, bytes]] = []
         notes: list[str] = []
         records, extended = list(stated.records(file, size)), list(_extended(file, stated, size))
@@ -364,7 +364,7 @@ def mend(path: str | os.PathLike[str]) -> MendedHeader:
             patches.append((RECORD_SIZE_AT, struct.pack("<H", fields.record_size)))
             notes.append(f"its header states {stated.record_size} bytes per point, and there are {fields.record_size}")
         patches += _mended_records(records, fields) + [patch for record in extended for patch in record.patches()]
-        found = MendedHeader(tuple(patches), tuple(notes))
+        found = _MendedHeader(tuple(patches), tuple(notes))
         if fields.compressed:
             return found
         count = _points_in_las(file, fields, size)
@@ -383,7 +383,7 @@ def _extended(file, fields, size):
     """The extended records behind the points that lie in the file."""
     at = fields.first_evlr
     for _ in range(fields.evlrs):
-        record = Record.read(file, at, EVLR_HEADER_SIZE, size) if at >= fields.header_size else None
+        record = _Record.read(file, at, EVLR_HEADER_SIZE, size) if at >= fields.header_size else None
         if record is None or at + EVLR_HEADER_SIZE + record.length > size:
             return
         yield record
@@ -484,7 +484,7 @@ MAX_LOOKS = 1000             # chunks whose first point is looked at
 LAYERS_OF_ITEM = {10: 9, 11: 1, 12: 2, 13: 1}  # POINT14, RGB14, RGBNIR14, WAVEPACKET14; BYTE14 has one layer for each byte
 
 
-def find_damage(path: str | os.PathLike[str], mended: MendedHeader | None = None) -> str:
+def find_damage(path: str | os.PathLike[str], mended: _MendedHeader | None = None) -> str:
     """What is wrong with the lengths in a file's header.
 
     Parameters
@@ -521,7 +521,7 @@ def find_damage(path: str | os.PathLike[str], mended: MendedHeader | None = None
         return _chunk_table_damage(file, fields.points_at, size, compression)
 
 
-def with_points_of_chunks(path: str | os.PathLike[str], mended: MendedHeader) -> MendedHeader:
+def with_points_of_chunks(path: str | os.PathLike[str], mended: _MendedHeader) -> _MendedHeader:
     """The header of an undamaged file, with as many points as its chunks hold where it is compressed.
 
     Chunks of point formats 6 and above, and those of all sizes, state their points. Of the others each but the last is full, and how many
@@ -538,7 +538,7 @@ def with_points_of_chunks(path: str | os.PathLike[str], mended: MendedHeader) ->
     return mended.with_count(fields, count, "" if count in fields.counts else _count_note(fields.count, count))
 
 
-def places_here_and_there(path: str | os.PathLike[str], mended: MendedHeader) -> np.ndarray:
+def places_here_and_there(path: str | os.PathLike[str], mended: _MendedHeader) -> np.ndarray:
     """Coordinates of points all over an undamaged file, without decoding it.
 
     Returns
@@ -625,7 +625,7 @@ def chunks_of(path: str | os.PathLike[str]) -> tuple[bytes, int, list[tuple[int,
 
 
 def _chunks(file):
-    """(Compression, first byte, [(points, bytes)] of each chunk) of an open file."""
+    """(_Compression, first byte, [(points, bytes)] of each chunk) of an open file."""
     import lazrs
 
     compression, points_at = _compression(file), HeaderFields.read(file).points_at
@@ -634,7 +634,7 @@ def _chunks(file):
 
 
 def _compression(file):
-    """The Compression of the points of an open LAS or LAZ file; None where they are not compressed, or the record of it is missing."""
+    """The _Compression of the points of an open LAS or LAZ file; None where they are not compressed, or the record of it is missing."""
     fields = HeaderFields.read(file)
     records = fields.records(file, os.fstat(file.fileno()).st_size) if fields.compressed else ()
     return next((record.compression for record in records if record.at < fields.points_at and record.compression is not None), None)

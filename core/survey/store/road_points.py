@@ -52,7 +52,7 @@ class RoadPoints:
         overlay = self.store.shared() if isinstance(self.store, ColumnOverlay) else None
         subset: Any = self.store.points if isinstance(self.store, ColumnOverlay) else self.store
         arguments = dict(survey=self.survey.recipe(folder), subset=subset.shared(), corrected=overlay)
-        return Recipe("survey.store.road_points:shared_road_points", arguments)
+        return Recipe("survey.store.road_points:_shared_road_points", arguments)
 
     @classmethod
     def empty_like(cls, other: RoadPoints | None = None, origin: Any = None, crs: str = "") -> RoadPoints:
@@ -108,7 +108,7 @@ class RoadPoints:
         return Points(np.asarray(join_columns(parts, self.store.dtype)))
 
 
-def shared_road_points(survey: Any, subset: dict[str, Any], corrected: dict[str, Any] | None) -> RoadPoints:
+def _shared_road_points(survey: Any, subset: dict[str, Any], corrected: dict[str, Any] | None) -> RoadPoints:
     """What `RoadPoints.recipe` describes."""
     points = RoadPoints.subset_of(survey)
     store: Any = points.store

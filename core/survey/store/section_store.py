@@ -73,7 +73,7 @@ class SectionStore:
         self.memory_limit = memory_limit
         self.finish, self.folder = finish, folder
         self._buffers = ScratchBuffers()
-        self._sections: dict[tuple[int, int], StoredSection] = {}
+        self._sections: dict[tuple[int, int], _StoredSection] = {}
         self._cache: OrderedDict[tuple[int, int], Columns] = OrderedDict()   # the spilled sections read last
         self._cache_bytes, self._cache_limit = 0, cache_limit
         self._lock = threading.Lock()       # sections are read by several threads
@@ -126,7 +126,7 @@ class SectionStore:
             self._spill_beyond_limit()
 
     def _add_part(self, key, records, in_order):
-        section = self._sections.setdefault(key, StoredSection(self.dtype, in_order))
+        section = self._sections.setdefault(key, _StoredSection(self.dtype, in_order))
         section.in_order = in_order and not section.parts
         section.parts.append(records)
         self._drop_from_cache(key)
@@ -345,7 +345,7 @@ class SectionStore:
     def adopt(self, index: StoreIndex, folder: Path) -> None:
         """Add the points that others wrote to files of a folder."""
         for key, in_order, stored in index.stored(folder, self.dtype):
-            section = self._sections.setdefault(key, StoredSection(self.dtype, in_order))
+            section = self._sections.setdefault(key, _StoredSection(self.dtype, in_order))
             section.in_order = in_order and not section.parts
             section.parts.append(stored)
             self._drop_from_cache(key)
@@ -391,7 +391,7 @@ def _unit_at(station):
 
 # The points of one section of a store, before and after they are sorted.
 
-class StoredSection:
+class _StoredSection:
     """The points of one section: some parts in memory, others in files; one part once they are sorted.
 
     Points are moved column by column, since a column that was just read is still in the processor's cache.

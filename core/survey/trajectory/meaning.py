@@ -44,7 +44,7 @@ TOLD_CLOCKS = {"gps": "GPS", "utc": "UTC"}          # words of Columns that say 
 
 
 @dataclass(frozen=True)
-class Meaning:
+class _Meaning:
     """place : {role: index of a column}; notes : sentences for the user; clock : "GPS" or "UTC" where the user said so"""
 
     place: Mapping[str, int]
@@ -52,7 +52,7 @@ class Meaning:
     clock: str = ""
 
 
-def meaning_of(columns: Sequence[TableColumn], label: str, given: Sequence[str] = ()) -> Meaning:
+def meaning_of(columns: Sequence[TableColumn], label: str, given: Sequence[str] = ()) -> _Meaning:
     """The roles of named columns.
 
     Parameters
@@ -63,7 +63,7 @@ def meaning_of(columns: Sequence[TableColumn], label: str, given: Sequence[str] 
 
     Returns
     -------
-    Meaning; geodetic coordinates are preferred to earth-centred ones, numbers to clock times, and the usual names to others
+    _Meaning; geodetic coordinates are preferred to earth-centred ones, numbers to clock times, and the usual names to others
     """
     named = candidates_by_role([column.title for column in columns])
     notes: list[str] = []
@@ -83,7 +83,7 @@ def meaning_of(columns: Sequence[TableColumn], label: str, given: Sequence[str] 
     if len(heights) > 1 and "z" in place and len({_sea_level(columns[k].title) for k in heights}) > 1:
         others = [columns[k].title for k in heights[1:]]
         notes.append(f"{label} has several heights; {listed([columns[heights[0]].title])} is used, not {listed(others)}.")
-    return Meaning(place, tuple(notes))
+    return _Meaning(place, tuple(notes))
 
 
 def _sea_level(title):
@@ -112,7 +112,7 @@ def _earth_centred(x, y, z):
     return bool(EARTH_RADIUS[0] < away < EARTH_RADIUS[1] and np.median(np.abs(z[good])) > HIGHEST_ROAD)
 
 
-def values_by_role(columns: Sequence[TableColumn], meaning: Meaning, label: str, notes: list[str], doubts: list[str]) -> dict[str, np.ndarray]:
+def values_by_role(columns: Sequence[TableColumn], meaning: _Meaning, label: str, notes: list[str], doubts: list[str]) -> dict[str, np.ndarray]:
     """The values of a trajectory: seconds, metres, degrees; roll, pitch and heading in the unit of their columns.
 
     Parameters
@@ -407,7 +407,7 @@ def columns_of_table(path: str | os.PathLike[str], columns: str = "", rows: int 
     if is_record(Path(path)):
         raise RoadExtractionError(f"{path} is a log or a track, whose columns are known. Leave Columns empty.")
     found, unmatched = titled_columns(read_number_table(path))
-    problem, meaning = "", Meaning({})
+    problem, meaning = "", _Meaning({})
     try:
         meaning = meaning_of_table(found, unmatched, Path(path), columns)
     except RoadExtractionError as refused:
@@ -420,8 +420,8 @@ def columns_of_table(path: str | os.PathLike[str], columns: str = "", rows: int 
                         np.array(shown, object).T, problem)
 
 
-def meaning_of_table(columns: Sequence[TableColumn], unmatched: Sequence[str] | None, path: Path, assigned: str = "") -> Meaning:
-    """The Meaning of the columns of a file: as assigned, otherwise by the names above them, otherwise by their numbers.
+def meaning_of_table(columns: Sequence[TableColumn], unmatched: Sequence[str] | None, path: Path, assigned: str = "") -> _Meaning:
+    """The _Meaning of the columns of a file: as assigned, otherwise by the names above them, otherwise by their numbers.
 
     Parameters
     ----------
@@ -436,7 +436,7 @@ def meaning_of_table(columns: Sequence[TableColumn], unmatched: Sequence[str] | 
     """
     if assigned.strip():
         clock = next((TOLD_CLOCKS[word] for word in _words(assigned) if word in TOLD_CLOCKS), "")
-        return Meaning(assigned_columns(assigned, len(columns), path), clock=clock)
+        return _Meaning(assigned_columns(assigned, len(columns), path), clock=clock)
     if any(column.title for column in columns):
         return meaning_of(columns, path.name)
     clocks = [k for k, column in enumerate(columns) if column.holds_texts and hold_times(column.written()[:CHECKED_ROWS])]
@@ -455,7 +455,7 @@ def meaning_of_table(columns: Sequence[TableColumn], unmatched: Sequence[str] | 
     if clocks and "time" not in place:
         place["time"] = clocks[0]
     listing = ", ".join(f"{role} in column {place[role] + 1}" for role in (*ROLES, "lon", "lat") if role in place)
-    return Meaning(place, (f"{path.name} has no line of names; recognised by the numbers: {listing}.",))
+    return _Meaning(place, (f"{path.name} has no line of names; recognised by the numbers: {listing}.",))
 
 
 def time_system_by_size(time: np.ndarray) -> str:
@@ -471,7 +471,7 @@ def time_system_by_size(time: np.ndarray) -> str:
 
 
 @dataclass(frozen=True)
-class TrajectoryFacts:
+class _TrajectoryFacts:
     """positions : number; length, low, high : m; seconds, speed (m/s, median) : NaN without time; system : as `time_system_by_size`"""
 
     positions: int
@@ -483,13 +483,13 @@ class TrajectoryFacts:
     system: str
 
 
-def facts_of(trajectory: Trajectory) -> TrajectoryFacts:
+def facts_of(trajectory: Trajectory) -> _TrajectoryFacts:
     """Length, duration, speed and heights of a Trajectory, in metres also where it is in degrees."""
     x, y = rough_metres(trajectory.x, trajectory.y, trajectory.crs)
     step = np.hypot(np.diff(x), np.diff(y))
     seconds = np.diff(trajectory.time) if trajectory.has_time else np.full(len(step), np.nan)
     moving = np.isfinite(step) & (seconds > 0)
-    return TrajectoryFacts(len(trajectory), float(np.nansum(step)), float(np.nanmin(trajectory.z)), float(np.nanmax(trajectory.z)),
+    return _TrajectoryFacts(len(trajectory), float(np.nansum(step)), float(np.nanmin(trajectory.z)), float(np.nanmax(trajectory.z)),
                            float(np.nanmax(trajectory.time) - np.nanmin(trajectory.time)) if trajectory.has_time else np.nan,
                            float(np.median(step[moving] / seconds[moving])) if moving.any() else np.nan,
                            time_system_by_size(trajectory.time) if trajectory.has_time else "")

@@ -38,7 +38,7 @@ MAX_NOISE = float(VEHICLE_JERK * (NOISE_TIME / (2 * np.pi)) ** 3 / np.sqrt(2.0))
 
 
 @dataclass(frozen=True)
-class TrackShape:
+class _TrackShape:
     """What is found of a trajectory's shape, and what was done.
 
     trajectory : Trajectory with curved bends, or smoothed
@@ -51,7 +51,7 @@ class TrackShape:
     said: tuple[str, ...] = ()
 
 
-def shaped_trajectory(trajectory: Trajectory) -> TrackShape:
+def shaped_trajectory(trajectory: Trajectory) -> _TrackShape:
     """A trajectory without noise that no vehicle can have caused, and with curves where its vertices are too far apart for its bends.
 
     Parameters
@@ -60,26 +60,26 @@ def shaped_trajectory(trajectory: Trajectory) -> TrackShape:
     """
     smooth = _smoothed_track(trajectory)
     curved = _curved_track(smooth.trajectory)
-    return TrackShape(curved.trajectory, float(np.hypot(smooth.sigma, curved.sigma)), smooth.said + curved.said)
+    return _TrackShape(curved.trajectory, float(np.hypot(smooth.sigma, curved.sigma)), smooth.said + curved.said)
 
 
-def _smoothed_track(trajectory: Trajectory) -> TrackShape:
+def _smoothed_track(trajectory: Trajectory) -> _TrackShape:
     """A trajectory without the noise that no vehicle can have caused; as it is where there is none.
 
     trajectory : Trajectory, cleaned
     """
     if not trajectory.has_time:
-        return TrackShape(trajectory)
+        return _TrackShape(trajectory)
     pieces = [piece for piece in _pieces(trajectory) if _even(trajectory.time[piece])]
     noisy = [(piece, one) for piece in pieces if (one := _noise(trajectory, piece)) > MAX_NOISE]
     if not noisy:
-        return TrackShape(trajectory)
+        return _TrackShape(trajectory)
     columns = {name: getattr(trajectory, name).copy() for name in "xyz"}
     left = max(one * _smooth(columns, piece, _step(trajectory.time[piece])) for piece, one in noisy)
     rows = sum(piece.stop - piece.start for piece, _ in noisy)
     worst, share = max(one for _, one in noisy), 100.0 * rows / len(trajectory)
     first = trajectory.time[noisy[0][0].start]
-    return TrackShape(
+    return _TrackShape(
         replace(trajectory, **columns), left,
         (f"The positions of the trajectory scatter by {100 * worst:.0f} cm from row to row, as those of an unfiltered receiver "
         f"({share:.0f} % of the rows, from {first:.1f} s on); no vehicle shakes so. They were smoothed over {SMOOTH_TIME:g} s, and the way driven "
@@ -94,7 +94,7 @@ def _smooth(columns, piece, step):
     return float(np.sqrt(_cubic_leverage(rows)))
 
 
-def _curved_track(trajectory: Trajectory) -> TrackShape:
+def _curved_track(trajectory: Trajectory) -> _TrackShape:
     """A trajectory with curves through its vertices where they are too far apart for its bends; as it is where they are not.
 
     trajectory : Trajectory, cleaned
@@ -118,12 +118,12 @@ def _curved_track(trajectory: Trajectory) -> TrackShape:
         sigma = max(sigma, off, float(sagitta[sharp].max(initial=0.0)) / 2)
         found.append(curved)
     if not worst[0]:
-        return TrackShape(trajectory)
+        return _TrackShape(trajectory)
     names = ("time", "x", "y", "z", "roll", "pitch", "heading")
     joined = replace(trajectory, **{name: np.concatenate([getattr(rows, name) for rows in found]) for name in names})
     place = f"x {trajectory.x[worst[2]]:.0f}, y {trajectory.y[worst[2]]:.0f}"
     done = "Curves were laid through them" + (f", which is a guess in {unsafe} sharp turns" if unsafe else "")
-    return TrackShape(
+    return _TrackShape(
         joined, sigma,
         (f"The vertices of the trajectory lie up to {worst[1]:.0f} m apart in bends, which straight lines between them miss by up to "
          f"{worst[0]:.2f} m (near {place}). {done}; the way driven is known to about {max(100 * sigma, 1):.0f} cm. Export the trajectory with ten "

@@ -205,7 +205,7 @@ CHUNK = 1 << 16            # bytes handed to the parser at once
 MOST_TEXT = 200            # characters of a coordinate or time that are kept
 
 
-class Sentence(NamedTuple):
+class _Sentence(NamedTuple):
     """Where a sentence has its values: {what: place among its fields}; rank: which is used where a log has several, the least first."""
 
     rank: int
@@ -215,12 +215,12 @@ class Sentence(NamedTuple):
 # NMEA 0183: fields behind the name of the sentence. NovAtel (OEM7 Commands and Logs Reference): fields behind the semicolon, and of
 # the header before it the week and the seconds. Heights of NMEA and BESTPOS are above mean sea level; "geoid" leads to the ellipsoid.
 SENTENCES = {
-    "GGA": Sentence(0, {"clock": 1, "lat": 2, "lat_side": 3, "lon": 4, "lon_side": 5, "quality": 6, "z": 9, "geoid": 11}),
-    "GNS": Sentence(1, {"clock": 1, "lat": 2, "lat_side": 3, "lon": 4, "lon_side": 5, "z": 9, "geoid": 10}),
-    **{name: Sentence(0, {"week": 0, "seconds": 1, "lat": 2, "lon": 3, "z": 4, "roll": 8, "pitch": 9, "heading": 10})
+    "GGA": _Sentence(0, {"clock": 1, "lat": 2, "lat_side": 3, "lon": 4, "lon_side": 5, "quality": 6, "z": 9, "geoid": 11}),
+    "GNS": _Sentence(1, {"clock": 1, "lat": 2, "lat_side": 3, "lon": 4, "lon_side": 5, "z": 9, "geoid": 10}),
+    **{name: _Sentence(0, {"week": 0, "seconds": 1, "lat": 2, "lon": 3, "z": 4, "roll": 8, "pitch": 9, "heading": 10})
        for name in ("INSPVAA", "INSPVASA")},
-    "INSPVAXA": Sentence(0, {"status": 0, "lat": 2, "lon": 3, "z": 4, "geoid": 5, "roll": 9, "pitch": 10, "heading": 11}),
-    **{name: Sentence(1, {"status": 0, "lat": 2, "lon": 3, "z": 4, "geoid": 5}) for name in ("BESTPOSA", "BESTGNSSPOSA", "INSPOSA")},
+    "INSPVAXA": _Sentence(0, {"status": 0, "lat": 2, "lon": 3, "z": 4, "geoid": 5, "roll": 9, "pitch": 10, "heading": 11}),
+    **{name: _Sentence(1, {"status": 0, "lat": 2, "lon": 3, "z": 4, "geoid": 5}) for name in ("BESTPOSA", "BESTGNSSPOSA", "INSPOSA")},
 }
 NO_SOLUTION = ("INSUFFICIENT_OBS", "NO_CONVERGENCE", "INS_INACTIVE", "INS_ALIGNING", "COLD_START")
 NMEA = re.compile(r"\$(?:G[A-Z]|BD|QZ)(?P<name>GGA|GNS|RMC|ZDA),(?P<rest>[^*\s]*)")
