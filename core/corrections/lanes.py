@@ -11,9 +11,8 @@ from ..curves.model_selection import fit_curve
 from ..driving.lane_areas import NO_BORDER, follow, make_lanes
 from ..driving.layers import CurveElements, DrivingLines, Lanes
 from ..survey.frame.placement import located
-from .apply import LineKind, apply_corrections
+from .apply import LineKind, apply_corrections, spans_along
 from .corrections import DRAWN, Correction, Corrections
-from .places import spans_along
 
 if TYPE_CHECKING:
     from ..survey.frame.road_frame import RoadFrame

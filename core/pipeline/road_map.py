@@ -19,10 +19,9 @@ from ..common.features import Features
 from ..common.layer_rows import LayerRows
 from ..common.parallel import trim_heap
 from ..common.progress import Progress
+from ..corrections.apply import correct_edges, correct_marking_lines, correct_markings
 from ..corrections.corrections import Corrections, corrections_from_features
-from ..corrections.edges import correct_edges
 from ..corrections.lanes import correct_lanes
-from ..corrections.markings import correct_marking_lines, correct_markings
 from ..countries.catalogue import country
 from ..driving.driving_lines import DrivingSettings, make_driving_lines
 from ..execution.choice import ExecutionSettings

@@ -29,7 +29,7 @@ NUMBERS = {
     "driving": 62,
     "corrections": 11,
     "inventory": 148,
-    "export": 166,
+    "export": 161,
     "assess": 32,
     "overlay": 79,
     "sample": 150,
