@@ -50,7 +50,7 @@ def cluster_of(address: str, insecure: bool, work: WorkFolder | None, progress: 
     Raises
     ------
     RoadExtractionError
-        If the cluster cannot be used: see `client_of`, `_check_versions` and `check_workers`.
+        If the cluster cannot be used: see `client_of`, `_check_versions` and `_check_workers`.
     """
     client = client_of(address, insecure)
     cluster = None
@@ -61,7 +61,7 @@ def cluster_of(address: str, insecure: bool, work: WorkFolder | None, progress: 
             cluster = Cluster(client, work.path if work else None, sum(workers.values()))
         except OSError as error:
             raise (work.error(error) if work else _disk_error(tempfile.gettempdir(), error)) from error
-        check_workers(client, cluster.folder, BEAT, work is not None, progress)
+        _check_workers(client, cluster.folder, BEAT, work is not None, progress)
     except BaseException:
         (cluster or client).close()
         raise
@@ -456,7 +456,7 @@ def _check_versions(client: Any) -> None:
     # functions of the standard library, which every worker has
     _compare("Python", client.run(platform.python_version, on_error="return"), own["python"], _minor)
     for name in EQUAL:
-        # the plugin is no installed package; what it consists of is compared by `check_workers`
+        # the plugin is no installed package; what it consists of is compared by `_check_workers`
         _compare(name, client.run(importlib.metadata.version, name, on_error="return"), own[name])
 
 
@@ -473,7 +473,7 @@ def _minor(version):
     return version.split(".")[:2]
 
 
-def check_workers(client: Any, folder: Path, word: str, named: bool, progress: Progress) -> None:
+def _check_workers(client: Any, folder: Path, word: str, named: bool, progress: Progress) -> None:
     """See that every worker has our code and sees our folder, and warn of what slows the work down.
 
     Parameters

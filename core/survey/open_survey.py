@@ -234,9 +234,9 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     if has_time and not feet:   # a scanner that rides three times too high sees three times too far
         _check_clock(survey, progress)
     measured = survey.store
-    mounted = lay_scanners(survey, progress.part(read_at, read_at), shared.points if shared is not None else None) if has_time and not feet else 0.0
+    mounted = lay_scanners(survey, progress.part(read_at, read_at), shared.points if shared else None) if has_time and not feet else 0.0
     if again:
-        adjust_passes(survey, progress.part(INGEST_PROGRESS, 1.0), shared.points if shared is not None else None)
+        adjust_passes(survey, progress.part(INGEST_PROGRESS, 1.0), shared.points if shared else None)
     _see_passes(survey, settings.fit_passes, measured, shared, progress)
     # what the user says overrules what lies beside the trajectory
     if across := max(settings.trajectory_sigma or trajectory.sigma_across, float(np.hypot(fitted.sigma, rounding)), mounted):

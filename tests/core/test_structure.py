@@ -153,6 +153,19 @@ def test_the_core_never_imports_qgis():
             assert not any(name.split(".")[0] == "qgis" for name in names), path
 
 
+def test_public_names_are_used_outside_their_file():
+    """What one file alone uses begins with an underscore: a reader may change it without looking farther."""
+    code = [path for folder in ("core", "algorithms", "library", "processing_provider", "desktop", "tests", "tools")
+            for path in (CORE.parent / folder).rglob("*.py") if "__pycache__" not in path.parts]
+    words = {path: set(re.findall(r"\w+", path.read_text(encoding="utf-8"))) for path in code}
+    users = defaultdict(set)
+    for path, inside in words.items():
+        for word in inside:
+            users[word].add(path)
+    assert not [f"{'/'.join(name_of(path))}.py: {node.name}" for path in MODULES for node in tree_of(path).body
+                if isinstance(node, (ast.ClassDef, ast.FunctionDef)) and not node.name.startswith("_") and users[node.name] == {path}]
+
+
 def public(path):
     """(qualified name, node) of public functions and methods."""
     for node in tree_of(path).body:

@@ -353,7 +353,7 @@ def combs_of_windows(source: NoSource, item: tuple[np.ndarray, np.ndarray]) -> l
     return found
 
 
-def stripes_of_crossings(source: NoSource, item: tuple[np.ndarray, np.ndarray, np.ndarray, list[tuple[Any, ...]]]) -> list[list[tuple[Any, ...]]]:
+def _zebra_stripes(source: NoSource, item: tuple[np.ndarray, np.ndarray, np.ndarray, list[tuple[Any, ...]]]) -> list[list[tuple[Any, ...]]]:
     """The phase that finds the stripes of crossings.
 
     Parameters
@@ -427,7 +427,7 @@ class ApartWork:
         """The stripes of each crossing, their spots by number among those of the crossing; places, way : as of `zebra_stripes`."""
         bounds = np.cumsum([0, *(len(own) for own, _ in crossings)])
         rows = np.concatenate([np.empty(0, np.intp), *(own for own, _ in crossings)])
-        found = self._run(stripes_of_crossings, lambda a, b: tuple(values[rows[bounds[a]:bounds[b]]] for values in (places, way)), bounds, progress,
+        found = self._run(_zebra_stripes, lambda a, b: tuple(values[rows[bounds[a]:bounds[b]]] for values in (places, way)), bounds, progress,
                           alone=True, looks=[tuple(comb) for _, comb in crossings])
         return [[Stripe(*stripe) for stripe in some] for some in found]
 

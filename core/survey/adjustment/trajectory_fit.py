@@ -90,7 +90,7 @@ def _other_heights(sample, trajectory, mountings, progress):
         for stretch, said in ((FOOT, "in feet where x and y are in metres"), (1.0 / FOOT, "in metres where x and y are in feet")):
             other = scanner_mountings(sample, trajectory, stretch)
             if len(other) >= len(mountings) and len(_met(other)) == len(other):
-                up, height = float(_usual_lever(other)[0][2]), float(np.median(trajectory.z))
+                up, height = float(_usual_lever(other)[2]), float(np.median(trajectory.z))
                 # from a trajectory that is stretched alike the scanners lie where they ride on the vehicle
                 alone = abs(up) > max(VEHICLE_HEIGHT, abs(up - (1.0 - stretch) * height))
                 of = "the cloud alone" if alone else "cloud and trajectory"
