@@ -107,8 +107,8 @@ def _trajectories(folder):
 
 
 def _images(folder):
-    from lanewright.core.overlay.control_point_file import read_control_points
-    from lanewright.core.overlay.position_tags import read_position_tags
+    from lanewright.core.overlay.control_points import read_control_points
+    from lanewright.core.overlay.rough_place import read_position_tags
     from lanewright.core.overlay.source_image import SourceImage, open_image
     from osgeo import gdal
 

@@ -72,10 +72,9 @@ class AssessMarkings(Algorithm):
             self.add_number(name, label)
 
     def work(self, call, progress):
-        from ...core.assess.burn import OutcomeRaster
         from ...core.assess.inputs import check_marking_reference, check_overlap, classes_of, common_crs, in_crs, marking_polygons
         from ...core.assess.layers import marking_layer
-        from ...core.assess.markings import assess_markings
+        from ...core.assess.markings import OutcomeRaster, assess_markings
 
         settings = call.settings(MARKING_SETTINGS, tolerances=tolerances(call))
         warnings = []

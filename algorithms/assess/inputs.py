@@ -88,8 +88,7 @@ def painted_of(call, name, progress):
     """(AssessedLayer of polygons and lines, whether it was a raster) of a vector or raster layer."""
     import shapely
 
-    from ...core.assess.inputs import AssessedLayer
-    from ...core.assess.raster_polygons import polygons_of_raster
+    from ...core.assess.inputs import AssessedLayer, polygons_of_raster
     from ...core.io.crs import in_metres
 
     source, path, crs = call.painted(name)

@@ -73,9 +73,8 @@ class DrivingLines(Algorithm):
 
     def work(self, call, progress):
         from ...core.driving.driving_lines import make_driving_lines
-        from ...core.driving.layers import curve_elements_to_features, driving_lines_to_features, lanes_to_features
-        from ...core.markings.lines.painted_lines import lines_from_features
-        from ...core.markings.objects.marking_objects import markings_from_features
+        from ...core.markings.lines.painted_lines import PaintedLines
+        from ...core.markings.objects.marking_objects import MarkingObjects
         from ...core.road.edges.road_edges import RoadEdges
 
         marking_lines = call.features("MARKING_LINES", MARKING_LINES, "LineStringZ")
@@ -85,10 +84,10 @@ class DrivingLines(Algorithm):
         layers = {"MARKING_LINES": marking_lines, "MARKINGS": markings, "ROAD_EDGES": edges}
         frame = frame_of(call, marking_lines.crs, progress, road_points, layers)
         lines, elements, lanes = make_driving_lines(
-            lines_from_features(marking_lines, frame), frame, call.settings(DRIVING_SETTINGS), progress.part(0.3, 1.0),
-            markings=None if markings is None else markings_from_features(markings, frame),
+            PaintedLines.from_features(marking_lines, frame), frame, call.settings(DRIVING_SETTINGS), progress.part(0.3, 1.0),
+            markings=None if markings is None else MarkingObjects.from_features(markings, frame),
             edges=None if edges is None else RoadEdges.from_features(edges, frame).densified(frame), road_points=road_points,
         )
-        call.layer("DRIVING_LINES", driving_lines_to_features(lines, frame))
-        call.layer("LANES", lanes_to_features(lanes, frame.origin))
-        call.layer("CURVE_ELEMENTS", curve_elements_to_features(elements, frame))
+        call.layer("DRIVING_LINES", lines.to_features(frame))
+        call.layer("LANES", lanes.to_features(frame))
+        call.layer("CURVE_ELEMENTS", elements.to_features(frame))

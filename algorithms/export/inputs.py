@@ -73,11 +73,11 @@ def road_map_source(call, progress):
     """The layers given, checked, as RoadMapSource."""
     from dataclasses import replace
 
-    from ...core.driving.layers import lanes_from_features
+    from ...core.driving.layers import Lanes
     from ...core.export.sources import RoadMapSource, checked
 
     source = RoadMapSource(
-        lanes_from_features(call.features("LANES", LANES, "PolygonZ")), call.features("DRIVING_LINES", LINE_FIELDS, "LineStringZ"),
+        Lanes.from_features(call.features("LANES", LANES, "PolygonZ")), call.features("DRIVING_LINES", LINE_FIELDS, "LineStringZ"),
         call.features("MARKING_LINES", MARKING_LINE_FIELDS, "LineStringZ"), call.features("ROAD_EDGES", EDGE_FIELDS, "LineStringZ"),
         call.features("MARKINGS", MARKING_FIELDS, "PolygonZ"))
     source = checked(source)

@@ -72,8 +72,7 @@ class CrossSections(Algorithm):
         self.add_number("LEAST_CLEARANCE", tr("Least clearance (m)"))
 
     def work(self, call, progress):
-        from ...core.inventory.cross_sections import measure_cross_sections
-        from ...core.inventory.section_layer import sections_to_features
+        from ...core.inventory.cross_sections import measure_cross_sections, sections_to_features
         from ...core.report.inventory import cross_section_report
 
         settings = call.settings(SECTION_SETTINGS)

@@ -41,11 +41,10 @@ class ClusterMarkings(Algorithm):
 
     def work(self, call, progress):
         from ...core.markings.objects.cluster import cluster_markings
-        from ...core.markings.objects.marking_objects import markings_to_features
         from ...core.survey.road_points_las import write_road_points
 
         points = paint_of(call, "MARKING_POINTS", progress.part(0.0, 0.2))
         frame = frame_of(call, points.crs, progress, points)
         markings, clustered = cluster_markings(points, frame, call.settings(CLUSTER_SETTINGS), progress.part(0.2, 0.9))
         write_road_points(clustered, call.new_file("CLUSTERED_POINTS"), progress.part(0.9, 1.0))
-        call.layer("MARKINGS", markings_to_features(markings, frame))
+        call.layer("MARKINGS", markings.to_features(frame))

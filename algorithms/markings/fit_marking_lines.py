@@ -62,19 +62,18 @@ class FitMarkingLines(Algorithm):
 
     def work(self, call, progress):
         from ...core.markings.lines.fit import fit_marking_lines, named_by_lines
-        from ...core.markings.lines.painted_lines import lines_to_features
-        from ...core.markings.objects.marking_objects import markings_from_features, with_kinds_of
+        from ...core.markings.objects.marking_objects import MarkingObjects, with_kinds_of
         from ...core.road.edges.road_edges import RoadEdges
 
         layer = call.features("MARKINGS", MARKINGS, "PolygonZ")
         points = paint_of(call, "CLUSTERED_POINTS", progress.part(0.0, 0.2))
         frame = frame_of(call, points.crs, progress, points, {"MARKINGS": layer})
-        markings = markings_from_features(layer, frame)
+        markings = MarkingObjects.from_features(layer, frame)
         edges = call.features("ROAD_EDGES", ROAD_EDGES, "LineStringZ")
         check_layers_on_roads(call, {"ROAD_EDGES": edges}, frame, progress)
         road_points = road_points_of(call, "ROAD_POINTS", progress.part(0.2, 0.3)) if call.cloud("ROAD_POINTS") else None
         lines = fit_marking_lines(points, markings, frame, call.settings(LINE_SETTINGS), progress.part(0.3, 1.0),
                                   edges=None if edges is None else RoadEdges.from_features(edges, frame).densified(frame), road_points=road_points)
-        call.layer("MARKING_LINES", lines_to_features(lines, frame))
+        call.layer("MARKING_LINES", lines.to_features(frame))
         if call.wants("NAMED_MARKINGS"):
-            call.layer("NAMED_MARKINGS", with_kinds_of(layer, named_by_lines(markings, lines)))
+            call.layer("NAMED_MARKINGS", with_kinds_of(layer, named_by_lines(markings, lines), frame))

@@ -118,7 +118,7 @@ class GeoreferenceImage(Algorithm):
 def _control_points(call, image, progress):
     """From the layer or the file, whichever was given."""
     from ...core.io.crs import horizontal_part, parse_crs, same_crs
-    from ...core.overlay.control_point_file import read_control_points
+    from ...core.overlay.control_points import read_control_points
 
     given = call.crs()
     path = call.file("GCP_FILE")

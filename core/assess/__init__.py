@@ -10,12 +10,10 @@ from ..lazy import public
 
 __getattr__, __all__ = public(__name__, {
     "boundaries": ("BoundaryAccuracy", "BoundaryAccuracySettings", "assess_boundaries"),
-    "burn": ("OutcomeRaster",),
     "curvature": ("curvature_along", "marking_curvature"),
     "driving_lines": ("LineAccuracy", "LineAccuracySettings", "LineMatch", "compare_lines", "match_lines"),
-    "inputs": ("AssessedLayer",),
+    "inputs": ("AssessedLayer", "polygons_of_raster"),
     "layers": ("boundary_layer", "driving_line_layer", "marking_layer"),
-    "markings": ("MarkingAccuracy", "MarkingAccuracySettings", "assess_markings"),
+    "markings": ("MarkingAccuracy", "MarkingAccuracySettings", "OutcomeRaster", "assess_markings"),
     "metrics": ("Rates", "f1_of"),
-    "raster_polygons": ("polygons_of_raster",),
 })

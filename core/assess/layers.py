@@ -25,14 +25,12 @@ def boundary_layer(accuracy: BoundaryAccuracy, crs: str, progress: Progress = Pr
     for number, (outcome, row, geometry) in enumerate(interval_lines(accuracy, settings.tolerance)):
         if number % ROWS_PER_REPORT == 0:
             progress.report(row / len(table.unit))
-        largest, lateral = table.largest[row], table.lateral[row]
         measured = outcome in ("correct", "false") and table.judged[row]
+        errors = dict(lateral_m=table.lateral[row], max_m=table.largest[row], height_m=table.height[row]) if measured else {}
         layer.add(
             geometry, outcome=outcome, why=_why_interval(table, row, outcome, k, settings), side=SIDE_NAMES[int(table.side[row])] or None,
-            road=int(table.unit[row]), station_m=float(table.station[row]), end_m=float(table.station[row] + step),
-            covered_m=float(table.covered[row]), lateral_m=float(lateral) if measured else None,
-            max_m=float(largest) if measured else None, height_m=float(table.height[row]) if measured else None,
-            length_m=float(geometry.length))
+            road=table.unit[row], station_m=table.station[row], end_m=table.station[row] + step, covered_m=table.covered[row],
+            length_m=geometry.length, **errors)
     layer.geometries = _multi(layer.geometries)
     return layer
 
@@ -64,9 +62,9 @@ def driving_line_layer(match: LineMatch, settings: LineAccuracySettings, crs: st
         distance = (match.to_result if outcome == "missed" else match.to_reference)[rows]
         near = distance[distance <= MAX_MATCH_DISTANCE]
         layer.add(
-            geometry, outcome=outcome, why=_why_piece(outcome, distance, settings), line=int(owner),
-            station_m=float(points.station[first] - points.length[first] / 2), end_m=float(points.station[last] + points.length[last] / 2),
-            length_m=float(geometry.length), lateral_m=float(near.mean()) if len(near) else None, max_m=float(near.max()) if len(near) else None)
+            geometry, outcome=outcome, why=_why_piece(outcome, distance, settings), line=owner,
+            station_m=points.station[first] - points.length[first] / 2, end_m=points.station[last] + points.length[last] / 2,
+            length_m=geometry.length, **(dict(lateral_m=near.mean(), max_m=near.max()) if len(near) else {}))
     layer.geometries = _multi(layer.geometries)
     return layer
 
@@ -107,9 +105,8 @@ def marking_layer(accuracy: MarkingAccuracy, result: Sequence[Any], reference: S
             if outcome == left_out or polygon is None:
                 continue
             share = 100.0 * good[k] / cells[k] if cells[k] else None
-            layer.add(polygon, outcome=str(outcome), why=_why_object(outcome, source, share), source=source,
-                      **{"class": None if classes is None or classes[k] is None else str(classes[k])},
-                      share_pct=share, area_m2=float(cells[k] * size))
+            layer.add(polygon, outcome=outcome, why=_why_object(outcome, source, share), source=source, share_pct=share, area_m2=cells[k] * size,
+                      **{"class": None if classes is None else classes[k]})
     layer.geometries = _with_z(layer.geometries) if len(layer) else []
     return layer
 

@@ -307,6 +307,4 @@ class Rows:
         return cls(*map(np.concatenate, zip(*(part.columns() for part in parts))))
 
 
-@cache
-def _names_of(kind: type) -> tuple[str, ...]:
-    return tuple(one.name for one in fields(kind) if one.default is MISSING)
+_names_of: Callable[[type], tuple[str, ...]] = cache(lambda kind: tuple(one.name for one in fields(kind) if one.default is MISSING))

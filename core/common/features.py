@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import cached_property
+from math import isfinite
 from typing import Any
 
 
@@ -27,13 +29,15 @@ class Field:
     needed: bool = True
     on_map: bool = False
 
+    def value(self, value: Any) -> Any:
+        """A value as a row holds it: a Python number or text of the field's type, None (NULL) for a number that is NaN or infinite."""
+        return None if value is None or self.type is not str and not isfinite(value) else self.type(value)
+
 
 @dataclass
 class Features:
     """A vector layer in memory.
 
-    Attributes
-    ----------
     geometry_type : "PointZ", "LineStringZ", "PolygonZ" or "None" (a table)
     schema : list of Field
     geometries : list of shapely geometries with Z in map coordinates (None in a table)
@@ -50,9 +54,13 @@ class Features:
     description: str = ""
 
     def add(self, geometry: Any, **row: Any) -> None:
-        """Append a feature with its field values."""
+        """Append a feature with its field values, numpy's or Python's, see `Field.value`."""
         self.geometries.append(geometry)
-        self.rows.append(row)
+        self.rows.append({name: self._fields[name].value(value) if name in self._fields else value for name, value in row.items()})
+
+    @cached_property
+    def _fields(self) -> dict[str, Field]:
+        return {one.name: one for one in self.schema}
 
     def __len__(self) -> int:
         return len(self.rows)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, fields, replace
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
 from functools import cache
 from typing import Any, ClassVar, TypeVar
 
@@ -18,36 +18,51 @@ _KEY = "column"
 
 @dataclass(frozen=True)
 class _Column:
-    """What `column` says. unknown : the value that stands for NULL; kind : of the array."""
+    """What `column` says, with the Field of the layer. kind : of the array; always_known : no value stands for NULL."""
 
-    field: str
+    field: Field
     unknown: Any
     kind: type
+    always_known: bool
+
+    def array(self, values: Sequence[Any]) -> np.ndarray:
+        """The array of values of which None is unknown."""
+        return np.array([self.unknown if value is None else str(value) if self.kind is object else value for value in values], self.kind)
+
+    def written(self, values: Any) -> list[Any]:
+        """The values of an array as the layer holds them."""
+        listed = np.asarray(values, self.kind).tolist()
+        if self.always_known:
+            return [self.field.value(value) for value in listed]
+        return [None if value == "" or value != value or isinstance(value, int) and value < 0 else value for value in listed]
 
 
-def column(field_name: str = "", unknown: Any = None) -> Any:
-    """An attribute of LayerRows that is a field of the layer.
+def column(name: str = "", unknown: Any = None) -> dict[str, Any]:
+    """The metadata of an attribute of LayerRows that is a field of the layer, for `dataclasses.field`.
 
     Parameters
     ----------
-    field_name : of the layer, "" for that of the attribute
-    unknown : what the attribute holds where the layer has NULL or no such field; None for NaN, -1 or "" by the type of the field
+    name : of the field, "" for that of the attribute
+    unknown : what the attribute holds where a layer that is read has NULL, an empty text or no such field, and then every value of the attribute
+        is written as it is, but NaN; None for NaN, -1 or "" by the type of the field, which are written as NULL, as is any whole number below 0
     """
-    return field(metadata={_KEY: (field_name, unknown)})
+    return {_KEY: (name, unknown)}
 
 
-@cache
-def _columns(kind: type[LayerRows]) -> dict[str, _Column]:
+def _columns_of(kind: type[LayerRows]) -> dict[str, _Column]:
     """The columns of a layer by attribute."""
-    types = {one.name: one.type for one in kind.SCHEMA}
-    found = {}
+    schema, found = {one.name: one for one in kind.SCHEMA}, {}
     for one in fields(kind):  # type: ignore[arg-type]
         if _KEY in one.metadata:
             name, unknown = one.metadata[_KEY]
-            name = name or one.name
-            array, usual = {int: (int, -1), float: (float, np.nan), str: (object, "")}[types[name]]
-            found[one.name] = _Column(name, usual if unknown is None else unknown, array)
+            usual = {int: -1, float: np.nan, str: ""}[schema[name or one.name].type]
+            known = unknown is not None
+            unknown = unknown if known else usual
+            found[one.name] = _Column(schema[name or one.name], unknown, object if isinstance(unknown, str) else type(unknown), known)
     return found
+
+
+_columns: Callable[[type], dict[str, _Column]] = cache(_columns_of)
 
 
 class LayerRows(Rows):
@@ -64,22 +79,27 @@ class LayerRows(Rows):
         """Shapely geometries with Z in map coordinates, one each, as the layer holds them. `frame` : RoadFrame."""
         raise NotImplementedError
 
-    def derived(self, frame: Any) -> dict[str, np.ndarray]:
-        """Fields of the layer that follow from other attributes: name to array."""
+    def derived(self, frame: Any) -> dict[str, Any]:
+        """Fields of the layer that follow from other attributes: name to values, of which None, NaN and what is infinite become NULL."""
         return {}
 
-    def to_features(self, frame: Any) -> Features:
-        """The layer in map coordinates, in the same order; NaN, "" and whole numbers below 0 become NULL. `frame` : RoadFrame."""
-        arrays = {one.field: getattr(self, name) for name, one in _columns(type(self)).items()}
-        arrays.update(self.derived(frame))
-        rows = [{name: _written(value) for name, value in zip(arrays, row)} for row in zip(*(values.tolist() for values in arrays.values()))]
+    def to_features(self, frame: Any = None) -> Features:
+        """The layer in map coordinates, in the same order. `frame` : RoadFrame."""
+        columns = {one.field.name: one.written(getattr(self, name)) for name, one in _columns(type(self)).items()}
+        derived = self.derived(frame)
+        columns.update({one.name: [one.value(value) for value in derived[one.name]] for one in self.SCHEMA if one.name in derived})
+        rows = [dict(zip(columns, row)) for row in zip(*columns.values())]
         return Features(self.GEOMETRY_TYPE, list(self.SCHEMA), list(self.on_map(frame)), rows, self.crs)
 
     @classmethod
     def read_columns(cls, rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
         """Arrays by attribute of rows of the layer, whose fields may be missing."""
-        return {name: np.array([one.unknown if row.get(one.field) is None else row[one.field] for row in rows], one.kind)
-                for name, one in _columns(cls).items()}
+        return {name: one.array([None if (value := row.get(one.field.name)) == "" else value for row in rows]) for name, one in _columns(cls).items()}
+
+    @classmethod
+    def gathered(cls, things: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+        """Arrays by attribute of things of which each is a dict of attribute to value; what is missing is unknown."""
+        return {name: one.array([thing.get(name) for thing in things]) for name, one in _columns(cls).items()}
 
     @classmethod
     def array_of(cls, name: str, values: Any) -> np.ndarray:
@@ -91,14 +111,9 @@ class LayerRows(Rows):
     def filled(cls: type[AnyLayerRows], count: int, crs: str = "", **values: Any) -> AnyLayerRows:
         """`count` entries: of each attribute an array, or a value that all share; what is not given is unknown."""
         values = {**{name: one.unknown for name, one in _columns(cls).items()}, **values}
-        return cls(*(np.array(np.broadcast_to(cls.array_of(name, values.get(name, np.nan)), count)) for name in cls.names()), crs=crs)
+        return cls(*(np.array(np.broadcast_to(cls.array_of(name, values.get(name, np.nan)), count)) for name in cls.names()), crs=crs)  # type: ignore[call-arg]
 
     @classmethod
     def join(cls: type[AnyLayerRows], parts: Sequence[AnyLayerRows], crs: str = "") -> AnyLayerRows:
         """The entries of all parts, one after the other; there may be no part."""
         return replace(super().join([cls.filled(0), *parts]), crs=crs)  # type: ignore[type-var]
-
-
-def _written(value: Any) -> Any:
-    """A value for the field of a layer: None (NULL) for what arrays hold as unknown."""
-    return None if value == "" or value != value or isinstance(value, int) and value < 0 else value

@@ -144,10 +144,6 @@ class InBackground(Generic[Result]):
     def result(self, progress: Progress = Progress()) -> Result:
         """What the function returns, as soon as it does; what it had to say is said now, in its order.
 
-        Parameters
-        ----------
-        progress : Progress
-
         Raises
         ------
         Cancelled

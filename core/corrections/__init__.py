@@ -7,8 +7,7 @@ A correction is matched by its place in the road frame of the run, never by the 
 from ..lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "corrections": ("ACTIONS", "TARGETS", "Correction", "Corrections", "corrections_from_features", "taken_reading"),
-    "edges": ("correct_edges",),
+    "apply": ("correct_edges", "correct_marking_lines", "correct_markings"),
+    "corrections": ("ACTIONS", "Correction", "Corrections", "TARGETS", "corrections_from_features", "taken_reading"),
     "lanes": ("correct_lanes",),
-    "markings": ("correct_marking_lines", "correct_markings"),
 })

@@ -1,16 +1,23 @@
-"""Corrections applied to lines of any kind."""
+"""Corrections applied to lines of any kind, to road edges and to markings."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
+from dataclasses import fields
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import shapely
+from scipy.spatial import cKDTree
 
+from ..common.arrays import mask_runs
+from ..curves.model_selection import fit_curve
+from ..markings.lines.painted_lines import PaintedLines, painted_lines_of, pieces_of_lines
+from ..markings.objects.marking_objects import MarkingObjects
+from ..road.edges.road_edges import EdgePiece, RoadEdges, joined_pieces
 from ..survey.frame.placement import located
-from .corrections import ACCEPTED, Correction
-from .places import cut, distance_of, heights_for, pieces_of, spans_along
+from .corrections import ACCEPTED, DRAWN, Correction, Corrections
 
 if TYPE_CHECKING:
     from ..survey.frame.road_frame import RoadFrame
@@ -115,3 +122,277 @@ def _with_heights(kind, correction):
     s, _ = located(kind.frame, np.full(len(places), correction.road), places[:, 0], places[:, 1])
     track = kind.frame.track_height(correction.road, np.where(np.isfinite(s), s, correction.station))
     return np.c_[places[:, :2], heights_for(places, kind.known, track)]
+
+
+# Which stretches of lines a correction is about, and lines cut there.
+
+STEP = 0.25            # m between the places at which a line is compared with a correction
+SHORTEST = 1.0         # m of a line along a correction that counts: a line that only crosses it does not
+SHORTEST_REST = 0.5    # m: a shorter rest of a line goes with the stretch that is cut from it
+NO_LENGTH = 1e-3      # m
+ALONG = 0.5            # share of its length by which a stretch advances along the correction: one that crosses it does not
+MOVED_FROM = 2.0       # m beside its new place at most that a line is moved from; half of a lane is more than that
+NEAR_VERTICES = 10.0    # m within which the map's own vertices tell the height of what was drawn
+HEIGHT_NEIGHBOURS = 8  # vertices whose heights are averaged, by the inverse of their distance
+
+Span = tuple[int, float, float]   # (number of the line, from, to), metres along it
+
+
+def distance_of(correction: Correction, reach: float) -> float:
+    """m beside a correction within which it is about a line."""
+    return max(MOVED_FROM, reach) if correction.action == "move" else reach
+
+
+def spans_along(lines: Sequence[np.ndarray], correction: Correction, reach: float) -> list[Span]:
+    """The stretches of lines that a correction is about.
+
+    Of lines beside each other it is the nearest. A point is about the whole of the nearest line.
+
+    Parameters
+    ----------
+    lines : (V, 2 or more) each, local x, y, ...
+    correction : Correction
+    reach : m beside it
+
+    Returns
+    -------
+    list of Span
+    """
+    places = correction.places[:, :2]
+    low, high = places.min(0) - reach, places.max(0) + reach
+    near = [k for k, line in enumerate(lines) if len(line) > 1 and (line[:, :2].max(0) >= low).all() and (line[:, :2].min(0) <= high).all()]
+    if len(places) == 1:
+        found = [(float(shapely.distance(shapely.linestrings(lines[k][:, :2]), shapely.points(places[0]))), k) for k in near]
+        best = min(found, default=(np.inf, -1))
+        return [(best[1], 0.0, _arcs(lines[best[1]])[-1])] if best[0] <= reach else []
+    stretches = sorted(stretch for k in near for stretch in _beside(lines[k][:, :2], k, places, reach))
+    taken: list[tuple[float, float]] = []
+    spans = []
+    for _, k, a, b, first, last in stretches:
+        if sum(max(min(last, v) - max(first, u), 0.0) for u, v in taken) < (last - first) / 2:
+            taken.append((first, last))
+            spans.append((k, a, b))
+    return spans
+
+
+def _beside(line, number, places, reach):
+    """(mean distance, number, from, to, first, last along the correction) of each stretch of a line beside a correction."""
+    arcs = _arcs(line)
+    at = np.unique(np.r_[np.arange(0.0, arcs[-1], STEP), arcs[-1]])
+    xy = np.c_[np.interp(at, arcs, line[:, 0]), np.interp(at, arcs, line[:, 1])]
+    course = shapely.linestrings(places)
+    u = shapely.line_locate_point(course, shapely.points(xy))
+    away = shapely.distance(course, shapely.points(xy))
+    head, tail = _excess(xy, places[0], places[1]), _excess(xy, places[-1], places[-2])
+    inside = (away <= reach) & ~((u <= 0) & (head > STEP)) & ~((u >= course.length) & (tail > STEP))
+    least = min(SHORTEST, course.length / 2)
+    for i, j in mask_runs(inside):
+        a, b = at[i], at[j - 1]
+        first, last = u[i:j].min(), u[i:j].max()
+        if b - a < least and b - a < arcs[-1] / 2 or last - first < ALONG * (b - a) or b <= a:
+            continue
+        a, b = 0.0 if a < SHORTEST_REST else a, arcs[-1] if arcs[-1] - b < SHORTEST_REST else b
+        yield float(away[i:j].mean()), number, float(a), float(b), float(first), float(last)
+
+
+def _excess(xy, end, inner):
+    """(N,) m by which places lie beyond the end of a line, along its last part."""
+    way = end - inner
+    return (xy - end) @ way / max(np.hypot(*way), 1e-9)
+
+
+def _arcs(line):
+    return np.append(0.0, np.cumsum(np.hypot(*np.diff(line[:, :2], axis=0).T)))
+
+
+def cut(columns: np.ndarray, start: float, end: float) -> np.ndarray:
+    """(K, C) the rows of (V, C) columns, of which the first two are x and y, from one place along them to another.
+
+    Columns are interpolated at both ends, given in metres along the line.
+    """
+    arcs = _arcs(columns)
+    inside = (arcs > start + 1e-6) & (arcs < end - 1e-6)
+    at = np.r_[start, arcs[inside], end]
+    ends = np.array([[np.interp(place, arcs, column) for column in columns.T] for place in (at[0], at[-1])])
+    return np.concatenate([ends[:1], columns[inside], ends[1:]])
+
+
+def pieces_of(length: float, spans: Sequence[tuple[float, float]]) -> list[tuple[float, float, bool]]:
+    """(from, to, whether it is a span) of a line that is cut where spans begin and end, in order."""
+    found, at = [], 0.0
+    for a, b in sorted(spans):
+        a, b = max(a, at), max(b, at)
+        found += [(at, a, False), (a, b, True)]
+        at = b
+    # sums of lengths differ in their last digits
+    return [(a, b, along) for a, b, along in [*found, (at, length, False)] if b - a > NO_LENGTH]
+
+
+def heights_for(places: np.ndarray, known: np.ndarray, otherwise: np.ndarray) -> np.ndarray:
+    """(N,) z of (N, 3) places: their own where they have one, else that of the map's vertices near them.
+
+    Parameters
+    ----------
+    places : (N, 3) local metres, z NaN where there is none
+    known : (K, 3) vertices of the map
+    otherwise : (N,) z where there is no vertex near
+    """
+    z, known = places[:, 2].copy(), known[np.isfinite(known).all(1)]
+    lacking = np.flatnonzero(~np.isfinite(z))
+    if not len(lacking):
+        return z
+    z[lacking] = otherwise[lacking]
+    if len(known):
+        count = min(HEIGHT_NEIGHBOURS, len(known))
+        away, row = cKDTree(known[:, :2]).query(places[lacking, :2], count, distance_upper_bound=NEAR_VERTICES)
+        away, row = away.reshape(len(lacking), count), row.reshape(len(lacking), count)
+        weight = np.where(np.isfinite(away), 1.0 / np.maximum(away, 0.05), 0.0)
+        total = weight.sum(1)
+        near = total > 0
+        heights = np.append(known[:, 2], 0.0)[np.minimum(row, len(known))]
+        z[lacking[near]] = (weight * heights).sum(1)[near] / total[near]
+    return z
+
+
+# Road edges as an analyst corrected them.
+
+class _Edges(LineKind):
+    """Pieces hold what EdgePiece holds."""
+
+    def columns(self, piece):
+        return piece["local"]
+
+    def with_columns(self, piece, columns):
+        return dict(piece, local=columns, length=float(np.hypot(*np.diff(columns[:, :2], axis=0).T).sum()))
+
+    def drawn(self, correction, places, like, pieces):
+        free = max((piece["chain"] for piece in pieces), default=0) + 1
+        blank = dict(road=correction.road, side="left" if correction.offset > 0 else "right", chain=free, station=correction.station,
+                     end=correction.station, length=0.0)
+        # the two methods say nothing of a place that they did not find
+        piece = dict(blank if like is None else like, status=DRAWN, agree=np.nan, rmse=np.nan, sigma=np.nan)
+        return self.with_columns(self.with_stations(piece, places), places)
+
+
+def correct_edges(edges: RoadEdges, frame: RoadFrame, corrections: Corrections) -> RoadEdges:
+    """Road edges with the corrections of the target edge; those that something was found for are noted in `corrections`.
+
+    Parameters
+    ----------
+    edges : RoadEdges
+    frame : RoadFrame
+    corrections : Corrections
+
+    Returns
+    -------
+    RoadEdges; the same object where there is nothing to correct
+    """
+    wanted = corrections.of("edge")
+    if not wanted:
+        return edges
+    places = np.c_[edges.course.x, edges.course.y, edges.course.z]
+    kind = _Edges(frame, places)
+    pieces, matched, changed = apply_corrections(kind, [_piece_of(edges, k, places) for k in range(len(edges))], wanted)
+    corrections.matched |= matched
+    if not changed:
+        return edges
+    return joined_pieces([EdgePiece(**{name: value for name, value in piece.items() if name != "local"}, vertices=piece["local"] + frame.origin)
+                          for piece in pieces], frame, edges.crs)
+
+
+def _piece_of(edges: RoadEdges, k: int, places: np.ndarray) -> dict[str, Any]:
+    """A row of RoadEdges as the fields of EdgePiece, with local vertices."""
+    names = [one.name for one in fields(EdgePiece) if one.name not in ("vertices", "road")]
+    values = {name: getattr(edges, name)[k] for name in names}
+    return dict({name: value.item() if hasattr(value, "item") else value for name, value in values.items()}, road=int(edges.road[k]),
+                local=places[edges.course.line(k)])
+
+
+# Markings and marking lines as an analyst corrected them.
+
+USUAL_PATTERN = "solid"
+
+
+class _Lines(LineKind):
+    """Pieces hold what `pieces_of_lines` gives; of two lines beside each other, such as a double line, the nearer one is meant."""
+
+    def columns(self, piece):
+        return piece["places"]
+
+    def with_columns(self, piece, columns):
+        arc, _ = piece["curve"].project(columns[[0, -1], 0], columns[[0, -1], 1])
+        return dict(piece, places=columns, arc=arc)
+
+    def taken(self, piece, correction):
+        return dict(self.accepted(piece), kind=correction.kind)
+
+    def drawn(self, correction, places, like, pieces):
+        fit = fit_curve(places[:, 0], places[:, 1])
+        free = max((piece["line"] for piece in pieces), default=0) + 1
+        widths = [piece["width"] for piece in pieces if np.isfinite(piece["width"])]
+        blank = dict(road=correction.road, line=free, kind="", pattern=USUAL_PATTERN, station=correction.station, end=correction.station,
+                     width=float(np.median(widths)) if widths else np.nan)
+        said = {name: value for name, value in (("kind", correction.kind), ("pattern", correction.pattern)) if value}
+        u, _ = fit.curve.project(places[[0, -1], 0], places[[0, -1], 1])
+        piece = dict(blank if like is None else like, **said, status=DRAWN, curve=fit.curve, arc=u, rmse=np.nan,
+                     offset=correction.offset, places=places)
+        return self.with_stations(piece, places)
+
+
+def correct_markings(markings: MarkingObjects, corrections: Corrections) -> MarkingObjects:
+    """Markings less those that were deleted: lines are then not made of them either.
+
+    A correction is about the markings whose middle lies within 0.5 m of its line, or of which its point lies within 0.5 m.
+    Corrections that something was found for are noted; to accept a marking changes nothing of it.
+
+    Parameters
+    ----------
+    markings : MarkingObjects
+    corrections : Corrections
+
+    Returns
+    -------
+    MarkingObjects; the same object where nothing was deleted
+    """
+    wanted = [one for one in corrections.of("marking") if one.action in ("accept", "delete")]
+    if not wanted or not len(markings):
+        return markings
+    polygons = markings.outlines.polygons()
+    middles = shapely.point_on_surface(polygons)
+    keep = np.ones(len(markings), bool)
+    for correction in wanted:
+        about = _about(correction, polygons, middles)
+        if about.any():
+            corrections.matched.add(correction.row)
+            if correction.action == "delete":
+                keep &= ~about
+    return markings if keep.all() else markings[keep]
+
+
+def _about(correction: Correction, polygons: np.ndarray, middles: np.ndarray) -> np.ndarray:
+    if len(correction.places) == 1:
+        return shapely.distance(polygons, shapely.points(correction.places[0, :2])) <= LineKind.reach
+    return shapely.distance(middles, shapely.linestrings(correction.places[:, :2])) <= LineKind.reach
+
+
+def correct_marking_lines(lines: PaintedLines, frame: RoadFrame, corrections: Corrections, known: np.ndarray) -> PaintedLines:
+    """Marking lines with the corrections of the target marking; those that something was found for are noted in `corrections`.
+
+    Parameters
+    ----------
+    lines : PaintedLines with `fitted`
+    frame : RoadFrame
+    corrections : Corrections
+    known : (K, 3) further local places whose heights are known, as the vertices of road edges
+
+    Returns
+    -------
+    PaintedLines, lines that were drawn with no `kind` unless the correction says one; the same object where there is nothing to correct
+    """
+    wanted = corrections.of("marking")
+    if not wanted or lines.fitted is None:
+        return lines
+    kind = _Lines(frame, np.concatenate([lines.fitted.vertices, known]))
+    pieces, matched, changed = apply_corrections(kind, pieces_of_lines(lines), wanted)
+    corrections.matched |= matched
+    return painted_lines_of(pieces, frame, lines.crs) if changed else lines

@@ -8,13 +8,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..curves.model_selection import fit_curve
-from ..driving.driving_lines import driving_lines_of
 from ..driving.lane_areas import NO_BORDER, follow, make_lanes
 from ..driving.layers import CurveElements, DrivingLines, Lanes
 from ..survey.frame.placement import located
-from .apply import LineKind, apply_corrections
+from .apply import LineKind, apply_corrections, spans_along
 from .corrections import DRAWN, Correction, Corrections
-from .places import spans_along
 
 if TYPE_CHECKING:
     from ..survey.frame.road_frame import RoadFrame
@@ -27,7 +25,7 @@ MOST_LOST = 0.5    # share of a curve that may be taken away before its elements
 
 
 class _DrivingLines(LineKind):
-    """Pieces hold what `driving_lines_of` takes."""
+    """Pieces hold what `DrivingLines.of_pieces` takes."""
 
     reach = LANE_REACH
 
@@ -119,7 +117,7 @@ def correct_lanes(lines: DrivingLines, elements: CurveElements, lanes: Lanes, fr
     areas, of_lanes, lanes_changed = apply_corrections(_Lanes(frame, known, rows), _rows_of_lanes(lanes), wanted)
     corrections.matched |= of_lines | of_lanes
     if lines_changed:
-        lines, elements = driving_lines_of(rows, lines.crs), _remaining(elements, before, rows)
+        lines, elements = DrivingLines.of_pieces(rows, lines.crs), _remaining(elements, before, rows)
     return lines, elements, _lanes_of(areas, frame, lanes.crs) if lanes_changed else lanes
 
 

@@ -22,9 +22,8 @@ END_TOLERANCE = 1e-6      # m; farther beyond an end, a tabulated curve is strai
 class Curve:
     """A plane curve as a function of arc length u: 0 at its start, `length` at its end.
 
-    `at`, `heading` and `curvature` extrapolate beyond both ends as the curve itself
-    does (an arc stays an arc); a polynomial and a B-spline continue straight.
-    Curvature is positive where the curve turns left; offsets are positive to the left.
+    `at`, `heading` and `curvature` extrapolate beyond both ends as the curve itself does (an arc stays an arc); a polynomial and a B-spline
+    continue straight. Curvature is positive where the curve turns left; offsets are positive to the left.
     """
 
     kind: str = ""  # one of CURVES but "automatic"
@@ -100,8 +99,7 @@ class Curve:
 class TabulatedCurve(Curve):
     """A curve of a parameter t, with a table of arc lengths.
 
-    Subclasses define `_span` (t at start and end), `_place`, `_slope` and `_bend` (position and its first
-    and second derivative by t, (N, 2)).
+    Subclasses define `_span` (t at start and end), `_place`, `_slope` and `_bend` (position and its first and second derivative by t, (N, 2)).
     """
 
     def _span(self) -> tuple[float, float]:

@@ -25,7 +25,7 @@ MAX_PROFILE_REWEIGHTINGS = 6    # and of a profile
 WEIGHT_TOLERANCE = 1e-6         # a smaller change of the weights moves the curve by less than a micrometre
 
 
-def knot_intervals(length: float, bandwidth: float) -> int:
+def _knot_intervals(length: float, bandwidth: float) -> int:
     """Number of knot intervals of a line of some length, metres: one per bandwidth, at least 1 m long."""
     return max(1, int(np.ceil(length / max(bandwidth, 1.0))))
 
@@ -33,9 +33,8 @@ def knot_intervals(length: float, bandwidth: float) -> int:
 class SplineBasis:
     """Uniform cubic B-splines with a roughness penalty, of several lines and bandwidths.
 
-    Each pair of a line and a bandwidth is a block. The equations of all blocks are solved as one
-    banded system in which they are independent: most lines have a few hundred points, for which the
-    overhead of a numpy call exceeds its work.
+    Each pair of a line and a bandwidth is a block. The equations of all blocks are solved as one banded system in which they are independent: most
+    lines have a few hundred points, for which the overhead of a numpy call exceeds its work.
 
     Parameters
     ----------
@@ -45,7 +44,7 @@ class SplineBasis:
     def __init__(self, lines: Sequence[tuple[np.ndarray, Sequence[float]]]) -> None:
         each = [(t, b) for t, bandwidths in lines for b in bandwidths]
         lengths = np.array([float(t[-1]) for t, _ in each])
-        pieces = np.array([knot_intervals(length, b) for length, (_, b) in zip(lengths.tolist(), each)])
+        pieces = np.array([_knot_intervals(length, b) for length, (_, b) in zip(lengths.tolist(), each)])
         steps = lengths / pieces
         self.knots = [step * np.arange(-SPLINE_DEGREE, count + SPLINE_DEGREE + 1) for step, count in zip(steps, pieces.tolist())]
         self.counts, self.sizes = pieces + SPLINE_DEGREE, np.array([len(t) for t, _ in each])
@@ -273,7 +272,7 @@ class _SplineSelection:
 
 def _effective_parameters(length, bandwidth):
     """The effective number of parameters of a coordinate."""
-    return min(3 + length / (3 * bandwidth), knot_intervals(length, bandwidth) + SPLINE_DEGREE)
+    return min(3 + length / (3 * bandwidth), _knot_intervals(length, bandwidth) + SPLINE_DEGREE)
 
 
 def _chord_lengths(x, y):

@@ -90,9 +90,8 @@ class Clothoid(Curve):
 def fit_clothoid(x: np.ndarray, y: np.ndarray) -> CurveFit:
     """Fit a clothoid by robust orthogonal least squares.
 
-    The start is a parabola through the headings of chords between bins of points
-    (theta is a parabola of u on a clothoid); the unknowns are those at the middle,
-    where they are correlated least.
+    The start is a parabola through the headings of chords between bins of points (theta is a parabola of u on a clothoid); the unknowns are those
+    at the middle, where they are correlated least.
 
     Parameters
     ----------

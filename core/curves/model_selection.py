@@ -25,9 +25,8 @@ BIC_MARGIN = 6.0  # a simpler curve is selected if its BIC is within this of the
 def fit_curve(x: np.ndarray, y: np.ndarray, curve: str = "automatic", degree: int = 2) -> CurveFit:
     """Fit a curve of one kind, or select the simplest acceptable kind.
 
-    "automatic" fits line, circle, clothoid, ellipse and B-spline and selects the
-    simplest whose BIC is within 6 of the best and whose 95th percentile of the
-    residuals is below 5 cm. It never selects a polynomial, which is not an element of road design.
+    "automatic" fits line, circle, clothoid, ellipse and B-spline and selects the simplest whose BIC is within 6 of the best and whose 95th
+    percentile of the residuals is below 5 cm. It never selects a polynomial, which is not an element of road design.
 
     Parameters
     ----------
@@ -127,8 +126,7 @@ def select_each(lines: Sequence[tuple[np.ndarray, np.ndarray]],
 class ModelSelection:
     """Selects among fits that are added, simplest first.
 
-    The first fit whose BIC is within 6 of the best and whose 95th percentile of the residuals is
-    below `max_residual` metres is `best`.
+    The first fit whose BIC is within 6 of the best and whose 95th percentile of the residuals is below `max_residual` metres is `best`.
 
     found : list of CurveFit added so far
     decided : whether no further fit can change the selection

@@ -133,14 +133,13 @@ def batches(counts: Sequence[int] | np.ndarray, max_points: int = FIT_POINTS_PER
 def fit_batch(lines: Sequence[tuple[np.ndarray, np.ndarray]], problem_of: Callable[..., Any], max_misfit: float = np.inf) -> list[Any]:
     """Fit curves of one kind to many lines.
 
-    Each curve is fitted to a subsample of its line first, which takes most of the steps,
-    then to all points, unless its misfit is too large.
+    Each curve is fitted to a subsample of its line first, which takes most of the steps, then to all points, unless its misfit is too large.
 
     Parameters
     ----------
     lines : list of (x, y), each (N,) metres, ordered along the line
-    problem_of : makes a problem for `minimise_batch` from PointGroups, x and y; it also has `start()`, (L, P), `scale`, `fit`,
-        and `with_points(points, x, y, lines, state)`: the same unknowns for more points of some of its lines
+    problem_of : makes a problem for `_minimise_batch` from PointGroups, x and y; it also has `start()`, (L, P), `scale`, `fit`, and
+        `with_points(points, x, y, lines, state)`: the same unknowns for more points of some of its lines
     max_misfit : metres; a curve from which a twentieth of the points lie farther is not refined with all points
 
     Returns
@@ -156,7 +155,7 @@ def fit_batch(lines: Sequence[tuple[np.ndarray, np.ndarray]], problem_of: Callab
         rows = whole.subsampled(COARSE_POINTS)
         problem = problem_of(PointGroups(np.minimum(whole.counts, COARSE_POINTS)), x[rows], y[rows])
         tolerance = np.where(whole.counts <= COARSE_POINTS, FIT_TOLERANCE, COARSE_FIT_TOLERANCE)
-        solved = minimise_batch(problem, problem.start(), problem.scale, tolerance, max_misfit)
+        solved = _minimise_batch(problem, problem.start(), problem.scale, tolerance, max_misfit)
         _store_fits(found, numbers, np.flatnonzero(whole.counts <= COARSE_POINTS), problem, lines, *solved)
         long = np.flatnonzero(whole.counts > COARSE_POINTS)
         for a, b in batches(whole.counts[long]):
@@ -175,7 +174,7 @@ def _refine(found, numbers, problem, lines, unknown, max_misfit):
     left = np.flatnonzero(~missed)
     if len(left):
         problem = problem.subset(left, np.flatnonzero(~missed[problem.groups.owner]))
-        _store_fits(found, numbers[left], np.arange(len(left)), problem, lines, *minimise_batch(problem, unknown[left], problem.scale))
+        _store_fits(found, numbers[left], np.arange(len(left)), problem, lines, *_minimise_batch(problem, unknown[left], problem.scale))
 
 
 def _store_fits(found, numbers, which, problem, lines, unknown, residuals, state):
@@ -185,19 +184,18 @@ def _store_fits(found, numbers, which, problem, lines, unknown, residuals, state
         found[numbers[k]] = problem.fit(k, unknown[k], x, y, residuals[own], tuple(values[own] for values in state))
 
 
-def minimise_batch(problem: Any, start: np.ndarray, scale: np.ndarray, tolerance: float | np.ndarray = FIT_TOLERANCE,
-                   max_misfit: float = np.inf) -> tuple[np.ndarray, np.ndarray, tuple[np.ndarray, ...]]:
+def _minimise_batch(problem: Any, start: np.ndarray, scale: np.ndarray, tolerance: float | np.ndarray = FIT_TOLERANCE,
+                    max_misfit: float = np.inf) -> tuple[np.ndarray, np.ndarray, tuple[np.ndarray, ...]]:
     """Parameters of each line that minimise the soft L1 loss of its residuals, by Levenberg-Marquardt.
 
-    Plain least squares comes first; where the curve cannot follow the points, no residual
-    is an outlier, so the scale of soft L1 grows with that misfit. The result of a line does
-    not depend on the other lines.
+    Plain least squares comes first; where the curve cannot follow the points, no residual is an outlier, so the scale of soft L1 grows with that
+    misfit. The result of a line does not depend on the other lines.
 
     Parameters
     ----------
-    problem : has `points` (PointGroups of L lines); `evaluate(unknown, state)`, which returns (N,) residuals and the new
-        state, a tuple of (N,) arrays; `jacobian(unknown, state)`, (P, N); `subset(lines, rows)`, the problem of some lines,
-        whose points are `rows`; and the initial `state`
+    problem : has `points` (PointGroups of L lines); `evaluate(unknown, state)`, which returns (N,) residuals and the new state, a tuple of (N,)
+        arrays; `jacobian(unknown, state)`, (P, N); `subset(lines, rows)`, the problem of some lines, whose points are `rows`; and the initial
+        `state`
     start : (L, P) initial parameters
     scale : (L, P) the size of a sensible step in each parameter
     tolerance : (L,) or one; the share of such a step below which the fit has converged
@@ -285,21 +283,21 @@ def _cost(problem, residuals, f_scale):
 
 def minimise(residuals: Callable[[np.ndarray], np.ndarray], jacobian: Callable[[np.ndarray], np.ndarray], start: Sequence[float] | np.ndarray,
              scale: Sequence[float] | np.ndarray, max_misfit: float = np.inf) -> np.ndarray:
-    """`minimise_batch` of one curve.
+    """`_minimise_batch` of one curve.
 
     Parameters
     ----------
     residuals, jacobian : functions of the parameters (P,) that return (N,) and (N, P)
     start : (P,) initial parameters
     scale : (P,) the size of a sensible step in each parameter
-    max_misfit : metres, as in `minimise_batch`
+    max_misfit : metres, as in `_minimise_batch`
 
     Returns
     -------
     (P,) parameters
     """
     problem = _SingleCurve(residuals, jacobian, start)
-    return minimise_batch(problem, problem.first[None, :], np.asarray(scale, float)[None, :], max_misfit=max_misfit)[0][0]
+    return _minimise_batch(problem, problem.first[None, :], np.asarray(scale, float)[None, :], max_misfit=max_misfit)[0][0]
 
 
 class _SingleCurve:

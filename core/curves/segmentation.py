@@ -52,12 +52,9 @@ class AlignmentElement:
 def segment_line(x: np.ndarray, y: np.ndarray) -> list[AlignmentElement]:
     """Divide a line into straights, circular arcs and clothoids.
 
-    A smoothing spline is fitted first. Relative to it, with its own heading
-    integrated twice added back, a straight is a polynomial of degree 1 of arc length,
-    an arc of degree 2 and a clothoid of degree 3 (to first order in the few
-    centimetres of residual). The best of all divisions at nodes 4 m apart is found by
-    dynamic programming with a BIC cost per element. Each element is then fitted to
-    its own points in exact geometry.
+    A smoothing spline is fitted first. Relative to it, with its own heading integrated twice added back, a straight is a polynomial of degree 1 of
+    arc length, an arc of degree 2 and a clothoid of degree 3 (to first order in the few centimetres of residual). The best of all divisions at
+    nodes 4 m apart is found by dynamic programming with a BIC cost per element. Each element is then fitted to its own points in exact geometry.
 
     Parameters
     ----------
@@ -140,8 +137,7 @@ def _divide(curve, u, e, sigma, length):
 class _Costs:
     """What elements cost that began at some nodes, by kind: residual sums over sigma^2 of polynomials of degree 1 to 3.
 
-    Less the line's own bend, which arc and clothoid can take up and a straight cannot, the
-    shape stays small and sums keep their digits.
+    Less the line's own bend, which arc and clothoid can take up and a straight cannot, the shape stays small and sums keep their digits.
     """
 
     def __init__(self, curve, u, e, nodes, sigma):

@@ -29,9 +29,8 @@ def fit_line(x: np.ndarray, y: np.ndarray) -> CurveFit:
 def fit_circle(x: np.ndarray, y: np.ndarray) -> CurveFit:
     """Fit a circle: Taubin's algebraic fit as start, then the geometric distance, robustly.
 
-    The unknowns are heading, offset and curvature at the points' middle, so that a
-    nearly straight line is as easy as a tight bend. Kasa's simpler fit is not used:
-    it is biased towards small radii on short arcs.
+    The unknowns are heading, offset and curvature at the points' middle, so that a nearly straight line is as easy as a tight bend. Kasa's simpler
+    fit is not used: it is biased towards small radii on short arcs.
 
     Parameters
     ----------
@@ -103,8 +102,7 @@ def _taubin(groups, x, y):
 def chords(groups: PointGroups, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The line through the centroids of the two halves of ordered points.
 
-    Unlike the principal axis it keeps the order of the points, and it does not
-    turn where an arc is nearly half a circle.
+    Unlike the principal axis it keeps the order of the points, and it does not turn where an arc is nearly half a circle.
 
     Parameters
     ----------
@@ -416,10 +414,8 @@ class Polynomial(TabulatedCurve):
 def fit_polynomial(x: np.ndarray, y: np.ndarray, degree: int = 2) -> CurveFit:
     """Fit a polynomial to the distances across the chord, by robust linear least squares.
 
-    The residual minimised is measured across the chord, as in the driving-line
-    thesis (its Eq. 3.17 with the normal equations put right); the one reported is
-    orthogonal. A parabola is not a circle: for R = 140 m it misses by 3 cm over
-    80 m and by 57 cm over 160 m.
+    The residual minimised is measured across the chord, as in the driving-line thesis (its Eq. 3.17 with the normal equations put right); the one
+    reported is orthogonal. A parabola is not a circle: for R = 140 m it misses by 3 cm over 80 m and by 57 cm over 160 m.
 
     Parameters
     ----------

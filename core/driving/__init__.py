@@ -10,7 +10,6 @@ __getattr__, __all__ = public(__name__, {
     "alignment": ("circular_curve_elements", "design_check"),
     "driving_lines": ("make_driving_lines",),
     "layers": (
-        "CurveElements", "DrivingLines", "LANE_TYPES", "Lanes", "curve_elements_to_features", "driving_lines_to_features",
-        "lanes_from_features", "lanes_to_features"),
+        "CurveElements", "DrivingLines", "LANE_TYPES", "Lanes"),
     "settings": ("DrivingSettings",),
 })

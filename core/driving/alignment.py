@@ -48,10 +48,9 @@ class Element:
 def lane_elements(tracks: list[LaneTrack], s: np.ndarray, road: Road) -> list[list[Element]]:
     """Arcs and straights of every lane.
 
-    Lanes of a road run parallel, so that their bends are concentric: what they have
-    in common (the mean of their offsets, each less its own) is divided into elements
-    once, with all of their evidence, and each lane's elements are the parallels. A
-    lane that is not parallel to the others is divided alone.
+    Lanes of a road run parallel, so that their bends are concentric: what they have in common (the mean of their offsets, each less its own) is
+    divided into elements once, with all of their evidence, and each lane's elements are the parallels. A lane that is not parallel to the others is
+    divided alone.
 
     Parameters
     ----------
@@ -196,9 +195,8 @@ def _divided(axes):
 def _without_steps(axes, found):
     """Divisions in which no transition is a staircase of short arcs.
 
-    A short arc and its neighbour make way for one clothoid where that keeps within
-    2 cm of the places: on the road an arc this short, with no straight around it, is
-    half a transition.
+    A short arc and its neighbour make way for one clothoid where that keeps within 2 cm of the places: on the road an arc this short, with no
+    straight around it, is half a transition.
     """
     found = [list(elements) for elements in found]
     # of each pair of neighbours the clothoid in place of both, and how far it misses their places
@@ -289,8 +287,7 @@ def lane_courses(tracks: list[LaneTrack], s: np.ndarray, road: Road, elements: l
     ----------
     tracks : list of LaneTrack
     s : (K,) grid stations
-    elements : Elements of each lane; on them the course is the arc or straight itself, so
-        that lanes of one bend are concentric
+    elements : Elements of each lane; on them the course is the arc or straight itself, so that lanes of one bend are concentric
 
     Returns
     -------
@@ -368,11 +365,11 @@ def without_short_status(status: np.ndarray) -> np.ndarray:
 def track_pieces(track: LaneTrack, s: np.ndarray) -> list[tuple[int, float, float]]:
     """(status, start station, end station) of the pieces of a lane, cut where its status changes and where doubt begins or ends; ends touch."""
     kinds = len(LANE_STATUS)
-    found = status_pieces(without_short_status(track.status + kinds * track.in_doubt()), track.first, s)
+    found = _status_pieces(without_short_status(track.status + kinds * track.in_doubt()), track.first, s)
     return [(code % kinds, start, end) for code, start, end in found]
 
 
-def status_pieces(status: np.ndarray, first: int, s: np.ndarray) -> list[tuple[int, float, float]]:
+def _status_pieces(status: np.ndarray, first: int, s: np.ndarray) -> list[tuple[int, float, float]]:
     """(status, start station, end station) of the pieces of a lane; ends touch."""
     cuts = np.r_[0, np.flatnonzero(np.diff(status)) + 1, len(status)]
     bounds = s[first + cuts[:-1]]

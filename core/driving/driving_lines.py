@@ -74,7 +74,7 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
         s = one.lines.s
         passes = frame.passes_sigma(number, s)
         tracks = [replace(track, confidence=track.confidence * share_within(passes[track.first:track.last + 1]))
-                  for track in road_lanes(one, settings, estimates.lane_width)]
+                  for track in _road_lanes(one, settings, estimates.lane_width)]
         part.report(0.25)
         alignment = lane_elements(tracks, s, frame.roads[number])
         part.report(0.5)
@@ -94,18 +94,13 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
         lanes[number] = RoadLanes(s, tracks, heights)
         part.report(1.0)
     areas += connectors_between_roads(lanes, frame, areas)
-    lines = driving_lines_of(rows, marking_lines.crs)
+    lines = DrivingLines.of_pieces(rows, marking_lines.crs)
     _report_lengths(lines, estimates.side, progress)
     return lines, _curve_elements(arcs, marking_lines.crs, settings.country), make_lanes(areas, marking_lines.crs)
 
 
-def road_lanes(road: EstimatedRoad, settings: DrivingSettings, lane_width: float) -> list[LaneTrack]:
-    """The lanes of one road as a list of LaneTrack, by first station, then from right to left.
-
-    Parameters
-    ----------
-    lane_width : metres, of lanes beside which only one line is painted
-    """
+def _road_lanes(road: EstimatedRoad, settings: DrivingSettings, lane_width: float) -> list[LaneTrack]:
+    """The lanes of one road as a list of LaneTrack, by first station, then from right to left; `lane_width` where only one line is painted."""
     tracks = estimated_lanes(road.boundaries, road.estimate, lane_width, settings.line_distance)
     tracks = connect(tracks, road.lines, settings.max_bridge, settings.max_inferred, _shown(road.boundaries))
     known = [track.without_doubtful_ends() for track in laid_out(tracks)]
@@ -182,25 +177,9 @@ def _lane_curves(way: int, elements: list[Element]) -> Iterator[dict[str, Any]]:
             yield dict(arc=arc, complete=element.complete, rmse=element.rmse, station=element.start, end=element.end)
 
 
-def _column(rows: list[dict[str, Any]], name: str, kind: Any) -> np.ndarray:
-    return np.array([row[name] for row in rows], kind)
-
-
-def driving_lines_of(rows: list[dict[str, Any]], crs: str) -> DrivingLines:
-    """DrivingLines of one row a piece: dicts of the columns of DrivingLines, `curve`, and `places` (V, 3) in the direction of travel."""
-    places = [row["places"] for row in rows]
-    return DrivingLines(
-        _column(rows, "road", int), _column(rows, "lane", int), _column(rows, "pattern", object), _column(rows, "direction", int),
-        _column(rows, "source", object), _column(rows, "status", object), _column(rows, "confidence", float), [row["curve"] for row in rows],
-        _column(rows, "rmse", float), _column(rows, "station", float), _column(rows, "end", float), _column(rows, "offset", float),
-        _column(rows, "width", float), _column(rows, "sigma", float), np.concatenate([*places, np.empty((0, 3))]),
-        np.append(0, np.cumsum([len(some) for some in places], dtype=int)), crs, np.array([row.get("other", "") for row in rows], object))
-
-
 def _curve_elements(rows: list[dict[str, Any]], crs: str, country_name: str) -> CurveElements:
-    return CurveElements(
-        _column(rows, "road", int), _column(rows, "lane", int), _column(rows, "station", float), _column(rows, "end", float),
-        [row["arc"] for row in rows], _column(rows, "complete", bool), _column(rows, "rmse", float), crs, country_name)
+    return CurveElements(**CurveElements.gathered(rows), arc=[row["arc"] for row in rows],
+                         complete=np.array([row["complete"] for row in rows], bool), crs=crs, country=country_name)
 
 
 def _report_lengths(lines: DrivingLines, side: str, progress: Progress) -> None:

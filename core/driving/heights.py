@@ -25,21 +25,9 @@ HEIGHT_WINDOW = 20.0                  # m of road points in memory at a time
 HEIGHT_POINTS = 500_000               # road points that a worker process looks at, about: 30 ms of its time
 
 
-def road_heights(road_points: RoadPoints, road: int, s: np.ndarray, tracks: list[LaneTrack],
-                 progress: Progress = Progress()) -> list[np.ndarray]:
-    """Median height of road points within 0.3 m of the places along lanes.
-
-    Parameters
-    ----------
-    road_points : RoadPoints; every point is read once for all lanes
-    road : number
-    s : (K,) grid stations
-    tracks : list of LaneTrack
-
-    Returns
-    -------
-    list of (N,) z, NaN where there are fewer than 3 points, one array per track
-    """
+def _road_heights(road_points: RoadPoints, road: int, s: np.ndarray, tracks: list[LaneTrack],
+                  progress: Progress = Progress()) -> list[np.ndarray]:
+    """Median height of road points within 0.3 m of the places along lanes: (N,) z for each track, NaN where there are fewer than 3 points."""
     found, spans = [np.full(len(track), np.nan) for track in tracks], spans_of(tracks)
     size, length = int(HEIGHT_WINDOW / STATION_STEP), road_points.store.section_length
     windows, places = [], []
@@ -159,7 +147,7 @@ class _Near:
         return found, count
 
 
-def line_heights(lines: CrossSections, first: int, d: np.ndarray) -> np.ndarray:
+def _line_heights(lines: CrossSections, first: int, d: np.ndarray) -> np.ndarray:
     """(N,) height between the marking lines (or beside them) at offsets d from grid station `first` on."""
     spans, end = lines.d.spans, first + len(d)
     # the nearest line on either side, and its height
@@ -178,7 +166,7 @@ def line_heights(lines: CrossSections, first: int, d: np.ndarray) -> np.ndarray:
     return np.where(np.isfinite(a) & np.isfinite(b), between, np.where(np.isfinite(a), za, np.where(np.isfinite(b), zb, np.nan)))
 
 
-def smooth_heights(z: np.ndarray) -> np.ndarray:
+def _smooth_heights(z: np.ndarray) -> np.ndarray:
     """Gaps closed along the lane, stray medians taken out, the rest smoothed; NaN only if all is."""
     known = np.isfinite(z)
     if not known.any():
@@ -197,16 +185,16 @@ def smooth_heights(z: np.ndarray) -> np.ndarray:
 def lane_heights(lines: CrossSections, road_points: RoadPoints | None, road: int, tracks: list[LaneTrack],
                  progress: Progress = Progress()) -> list[np.ndarray]:
     """Local z along every lane, (N,) each: from road points where there are any, else from the marking lines beside it."""
-    measured = road_heights(road_points, road, lines.s, tracks, progress) if road_points is not None else [None] * len(tracks)
-    return [_height(z, line_heights(lines, track.first, track.d)) for z, track in zip(measured, tracks)]
+    measured = _road_heights(road_points, road, lines.s, tracks, progress) if road_points is not None else [None] * len(tracks)
+    return [_height(z, _line_heights(lines, track.first, track.d)) for z, track in zip(measured, tracks)]
 
 
 def _height(measured, painted):
     if measured is None:
-        return smooth_heights(painted)
+        return _smooth_heights(painted)
     both = np.isfinite(measured) & np.isfinite(painted)
     # where the road was not scanned the lines' height serves, shifted to what the road says nearby
     if both.any():
         rows = np.arange(len(measured))
         painted = painted + np.interp(rows, rows[both], (measured - painted)[both])
-    return smooth_heights(np.where(np.isfinite(measured), measured, painted))
+    return _smooth_heights(np.where(np.isfinite(measured), measured, painted))

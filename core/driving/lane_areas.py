@@ -41,7 +41,7 @@ def lane_areas(road: EstimatedRoad, curbs: CrossSections | None, tracks: list[La
             part = slice(*np.searchsorted(road.lines.s[track.first:track.last + 1], [start, end + STATION_STEP / 2]))
             if part.stop - part.start >= 2:
                 rows.append(_area(road, curbs, track, part, z, frame, number) | dict(lane=lane, status=LANE_STATUS[code]))
-    rows += connectors_on_road(road.lines.s, tracks, heights, frame, number)
+    rows += _connectors_on_road(road.lines.s, tracks, heights, frame, number)
     if pavement is not None:
         lanes = max((row["lane"] for row in rows), default=0)
         borders = [_sides(road, track, slice(0, len(track)), z, frame, number) for track, z in zip(tracks, heights)]
@@ -127,18 +127,9 @@ def _begins(rows, way):
 
 def make_lanes(rows: list[dict[str, Any]], crs: str) -> Lanes:
     """Lanes of the rows of all roads."""
-    def column(name: str, kind: Any) -> np.ndarray:
-        return np.array([row[name] for row in rows], kind)
-
-    def border(side: int, k: int) -> np.ndarray:
-        return np.array([row["about"][side][k] for row in rows], object)
-
-    return Lanes(
-        column("road", int), column("lane", int), column("lane_id", object), column("type", object), column("direction", int), border(0, 0),
-        border(1, 0), border(0, 1), border(1, 1), border(0, 2), border(1, 2), [row["successors"] for row in rows], column("status", object),
-        column("confidence", float), column("station", float), column("end", float),
-        np.concatenate([np.empty((0, 3)), *(row["left"] for row in rows)]), np.concatenate([np.empty((0, 3)), *(row["right"] for row in rows)]),
-        np.append(0, np.cumsum([len(row["left"]) for row in rows], dtype=int)), crs, np.array([row.get("other", "") for row in rows], object))
+    borders = [dict(zip(("left_line", "left_kind", "left_pattern", "right_line", "right_kind", "right_pattern"), (*left[:3], *right[:3])))
+               for left, right in (row["about"] for row in rows)]
+    return Lanes.of_pieces([{**row, **about} for row, about in zip(rows, borders)], crs)
 
 
 # Shoulders: the paved strips between the edge line of the outermost lane and the edge of the pavement.
@@ -236,19 +227,8 @@ CONNECTOR_CONFIDENCE = 0.5            # where the way is known from the drive al
 DRIVEN_ON = 2.0                       # s between two passes of one drive at most: it went on without a stop between them
 
 
-def connectors_on_road(s: np.ndarray, tracks: list[LaneTrack], heights: list[np.ndarray], frame: RoadFrame, number: int) -> list[dict[str, Any]]:
-    """Areas along the drive from the end of a lane to the beginning of the next one of its direction on the same road.
-
-    Parameters
-    ----------
-    s : (K,) metres, stations of the grid
-    tracks : list of LaneTrack; heights : local z along each of them
-    frame : RoadFrame; number : of the road
-
-    Returns
-    -------
-    rows of Lanes, numbered on from the lanes
-    """
+def _connectors_on_road(s: np.ndarray, tracks: list[LaneTrack], heights: list[np.ndarray], frame: RoadFrame, number: int) -> list[dict[str, Any]]:
+    """Rows of Lanes along the drive from the end of a lane to the beginning of the next one of its direction on the same road."""
     driven, directions = driven_offsets(frame, number, s)
     rows, lane = [], len(tracks)
     for way in (1, -1):

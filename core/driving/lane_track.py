@@ -208,10 +208,9 @@ def _between(a, b, d, width):
 def connect(tracks: list[LaneTrack], lines: CrossSections, most_bridged: float, most_inferred: float, shown: np.ndarray) -> list[LaneTrack]:
     """Join lanes end to start, one to one.
 
-    Without a gap they are joined where they meet; across a gap where one lane faces
-    exactly one other: never across a split or merge. Where a measured line or another
-    lane leads through the gap its course is followed (inferred, or as the other lane
-    was found), elsewhere the gap is bridged.
+    Without a gap they are joined where they meet; across a gap where one lane faces exactly one other: never across a split or merge. Where a
+    measured line or another lane leads through the gap its course is followed (inferred, or as the other lane was found), elsewhere the gap is
+    bridged.
 
     Parameters
     ----------

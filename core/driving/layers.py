@@ -1,9 +1,10 @@
-"""Lanes, driving lines and curve elements as arrays, and their layers in map coordinates."""
+"""Lanes as areas between two borders with what follows each, driving lines and curve elements, which stages hand each other, and their layers."""
 
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ import shapely
 
 from ..common.errors import RoadExtractionError
 from ..common.features import CURVE_ELEMENTS, DRIVING_LINES, LANES, Features
+from ..common.layer_rows import LayerRows, column
 from ..countries.catalogue import country
 from ..countries.neutral import NEUTRAL
 from ..curves.base import Arc, Curve
@@ -18,11 +20,10 @@ from ..survey.frame.road_frame import RoadFrame
 from .alignment import element_row
 
 LANE_TYPES = ("driving", "shoulder", "parking", "bicycle", "hatched", "median", "connector")
-LEVEL_ORIGIN = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True)
-class Lanes:
+class Lanes(LayerRows):
     """Lanes in P pieces. Left and right are seen in the direction of travel, along the road where nobody drives.
 
     road, lane : (P,) int; lanes of a road are numbered from 1
@@ -43,34 +44,41 @@ class Lanes:
     other : (P,) str objects, the second reading as JSON, as of DrivingLines
     """
 
-    road: np.ndarray
-    lane: np.ndarray
-    lane_id: np.ndarray
-    type: np.ndarray
-    direction: np.ndarray
-    left_line: np.ndarray
-    right_line: np.ndarray
-    left_kind: np.ndarray
-    right_kind: np.ndarray
-    left_pattern: np.ndarray
-    right_pattern: np.ndarray
+    GEOMETRY_TYPE, SCHEMA = "PolygonZ", LANES
+
+    road: np.ndarray = field(metadata=column(unknown=1))
+    lane: np.ndarray = field(metadata=column(unknown=0))
+    lane_id: np.ndarray = field(metadata=column(unknown=""))
+    type: np.ndarray = field(metadata=column(unknown="driving"))
+    direction: np.ndarray = field(metadata=column(unknown=1))
+    left_line: np.ndarray = field(metadata=column(unknown="none"))
+    right_line: np.ndarray = field(metadata=column(unknown="none"))
+    left_kind: np.ndarray = field(metadata=column(unknown="none"))
+    right_kind: np.ndarray = field(metadata=column(unknown="none"))
+    left_pattern: np.ndarray = field(metadata=column("left_patt", unknown=""))
+    right_pattern: np.ndarray = field(metadata=column("right_patt", unknown=""))
     successors: list[tuple[str, ...]]
-    status: np.ndarray
-    confidence: np.ndarray
-    station: np.ndarray
-    end: np.ndarray
+    status: np.ndarray = field(metadata=column(unknown="measured"))
+    confidence: np.ndarray = field(metadata=column(unknown=1.0))
+    station: np.ndarray = field(metadata=column("station_m", unknown=0.0))
+    end: np.ndarray = field(metadata=column("end_m", unknown=0.0))
     left: np.ndarray
     right: np.ndarray
     start: np.ndarray
     crs: str = ""
-    other: np.ndarray = None  # type: ignore[assignment]  # filled on construction
+    other: np.ndarray = field(default=None, metadata=column())  # type: ignore[arg-type]  # filled on construction
 
     def __post_init__(self) -> None:
         if self.other is None:
             object.__setattr__(self, "other", np.full(len(self.road), "", object))
 
-    def __len__(self) -> int:
-        return len(self.road)
+    @staticmethod
+    def of_pieces(pieces: Sequence[Mapping[str, Any]], crs: str = "") -> Lanes:
+        """Lanes of one dict a piece: its values by attribute, `left` and `right` (n, 3) in the direction of travel; what is missing has the
+        default of the layer: a driving lane along the road, borders of no kind, no successors, measured."""
+        left, right = (np.concatenate([np.empty((0, 3)), *(piece[side] for piece in pieces)]) for side in ("left", "right"))
+        return Lanes(**Lanes.gathered(pieces), successors=[tuple(piece.get("successors", ())) for piece in pieces], left=left, right=right,
+                     start=np.append(0, np.cumsum([len(piece["left"]) for piece in pieces], dtype=int)), crs=crs)
 
     def borders(self, piece: int) -> tuple[np.ndarray, np.ndarray]:
         """(left, right) of one piece, each (n, 3), in the direction of travel."""
@@ -90,73 +98,51 @@ class Lanes:
         return np.array([np.hypot(*np.diff(middle[a:b], axis=0).T).sum() for a, b in zip(self.start[:-1], self.start[1:])])
 
 
-def lanes_to_features(lanes: Lanes, origin: Any = LEVEL_ORIGIN) -> Features:
-    """The layer LANES in map coordinates.
-
-    Parameters
-    ----------
-    origin : (3,) metres added to local coordinates, as RoadFrame.origin
-
-    Returns
-    -------
-    Features LANES, polygons with Z, one row a piece, in the same order. The ring runs along the left border and back along the
-    right one, with a vertex of each for every place along the lane
-    """
-    layer = Features("PolygonZ", LANES, crs=lanes.crs)
-    widths, lengths = lanes.width, lanes.length
-    for k in range(len(lanes)):
-        left, right = lanes.borders(k)
+    def on_map(self, frame: RoadFrame | None) -> list[Any]:
+        """P polygons with Z in map coordinates, in which lanes are where there is no frame. The ring runs along the left border and back along
+        the right one, with a vertex of each for every place along the lane."""
+        origin = np.zeros(3) if frame is None else np.asarray(frame.origin)
         # closed here, so that a lane that begins in a point keeps the vertices of both borders
-        layer.add(
-            shapely.Polygon(np.concatenate([left, right[::-1], left[:1]]) + np.asarray(origin)), road=int(lanes.road[k]), lane=int(lanes.lane[k]),
-            lane_id=lanes.lane_id[k], type=lanes.type[k], direction=int(lanes.direction[k]), left_line=lanes.left_line[k],
-            right_line=lanes.right_line[k], left_kind=lanes.left_kind[k], right_kind=lanes.right_kind[k], left_patt=lanes.left_pattern[k],
-            right_patt=lanes.right_pattern[k], successors=",".join(lanes.successors[k]), status=lanes.status[k],
-            confidence=float(lanes.confidence[k]), other=lanes.other[k] or None,
-            station_m=float(lanes.station[k]), end_m=float(lanes.end[k]), width_m=float(widths[k]),
-            length_m=float(lengths[k]))
-    return layer
+        return [shapely.Polygon(np.concatenate([left, right[::-1], left[:1]]) + origin) for left, right in map(self.borders, range(len(self)))]
 
+    def derived(self, frame: RoadFrame | None) -> dict[str, Any]:
+        """The successors as one text, the width and the length."""
+        return dict(successors=map(",".join, self.successors), width_m=self.width, length_m=self.length)
 
-def lanes_from_features(features: Features, origin: Any = LEVEL_ORIGIN) -> Lanes:
-    """Read the layer LANES.
+    @staticmethod
+    def from_features(features: Features, frame: RoadFrame | None = None) -> Lanes:
+        """Read the layer LANES.
 
-    Parameters
-    ----------
-    features : Features of polygons in map coordinates whose ring runs along the left border and back along the right one. `lane_id` is
-        needed; other fields have defaults: a driving lane along the road, borders of no kind, no successors, measured
-    origin : (3,) metres taken from map coordinates, as RoadFrame.origin
+        Parameters
+        ----------
+        features : Features of polygons in map coordinates whose ring runs along the left border and back along the right one. `lane_id` is
+            needed; other fields have the defaults of `of_pieces`
+        frame : RoadFrame whose origin is taken from map coordinates; None for lanes in map coordinates
 
-    Returns
-    -------
-    Lanes; rows without geometry are left out
+        Returns
+        -------
+        Lanes; rows without geometry are left out
 
-    Raises
-    ------
-    RoadExtractionError
-        If a polygon has no two borders of the same number of vertices, a lane_id is missing or there twice, or a type is unknown.
-    """
-    rows, rings = [], []
-    for geometry, row in features:
-        if geometry is None or geometry.is_empty:
-            continue
-        name = str(row.get("lane_id") or "")
-        if not name:
-            raise RoadExtractionError("A lane has no lane_id. The layer of lanes made by Driving lines or Road map is needed, with all its fields.")
-        rows.append(row)
-        rings.append(_ring(geometry, name) - np.asarray(origin))
-    names = _texts(rows, "lane_id")
-    _check_names(names, _texts(rows, "type", "driving"))
-    halves = [len(ring) // 2 for ring in rings]
-    return Lanes(
-        _numbers(rows, "road", int, 1), _numbers(rows, "lane", int, 0), names, _texts(rows, "type", "driving"), _numbers(rows, "direction", int, 1),
-        _texts(rows, "left_line", "none"), _texts(rows, "right_line", "none"), _texts(rows, "left_kind", "none"), _texts(rows, "right_kind", "none"),
-        _texts(rows, "left_patt"), _texts(rows, "right_patt"),
-        [tuple(part.strip() for part in str(row.get("successors") or "").split(",") if part.strip()) for row in rows],
-        _texts(rows, "status", "measured"), _numbers(rows, "confidence", float, 1.0), _numbers(rows, "station_m", float, 0.0),
-        _numbers(rows, "end_m", float, 0.0), np.concatenate([np.empty((0, 3)), *(ring[:n] for ring, n in zip(rings, halves))]),
-        np.concatenate([np.empty((0, 3)), *(ring[n:][::-1] for ring, n in zip(rings, halves))]), np.append(0, np.cumsum(halves, dtype=int)),
-        features.crs, _texts(rows, "other"))
+        Raises
+        ------
+        RoadExtractionError
+            If a polygon has no two borders of the same number of vertices, a lane_id is missing or there twice, or a type is unknown.
+        """
+        origin, rows, borders = np.zeros(3) if frame is None else np.asarray(frame.origin), [], []
+        for geometry, row in features:
+            if geometry is None or geometry.is_empty:
+                continue
+            name = str(row.get("lane_id") or "")
+            if not name:
+                raise RoadExtractionError(
+                    "A lane has no lane_id. The layer of lanes made by Driving lines or Road map is needed, with all its fields.")
+            ring = _ring(geometry, name) - origin
+            rows.append(row)
+            borders.append(dict(left=ring[:len(ring) // 2], right=ring[len(ring) // 2:][::-1],
+                                successors=[part.strip() for part in str(row.get("successors") or "").split(",") if part.strip()]))
+        columns = Lanes.read_columns(rows)
+        _check_names(columns["lane_id"], columns["type"])
+        return replace(Lanes.of_pieces(borders, features.crs), **columns)
 
 
 def _ring(geometry: Any, name: str) -> np.ndarray:
@@ -182,21 +168,11 @@ def _check_names(names: np.ndarray, types: np.ndarray) -> None:
         raise RoadExtractionError(f"The type {unknown[0]!r} of a lane is not known; it must be one of {', '.join(LANE_TYPES)}.")
 
 
-def _texts(rows: list[dict[str, Any]], name: str, missing: str = "") -> np.ndarray:
-    return np.array([missing if row.get(name) in (None, "") else str(row[name]) for row in rows], object)
-
-
-def _numbers(rows: list[dict[str, Any]], name: str, kind: type, missing: float) -> np.ndarray:
-    return np.array([missing if row.get(name) is None else row[name] for row in rows], kind)
-
-
-# Driving lines and curve elements as arrays, and their layers in map coordinates.
-
 LONG_LIST = 4   # numbers: longer parameters of splines are written to 0.1 mm
 
 
 @dataclass(frozen=True)
-class DrivingLines:
+class DrivingLines(LayerRows):
     """Driving lines in P pieces, each of one lane and status.
 
     road, lane : (P,) int; lanes of a road are numbered from 1
@@ -216,31 +192,55 @@ class DrivingLines:
     other : (P,) str objects, the second reading as JSON, see `LaneTrack.said`; "" where there is none
     """
 
-    road: np.ndarray
-    lane: np.ndarray
-    pattern: np.ndarray
-    direction: np.ndarray
-    source: np.ndarray
-    status: np.ndarray
-    confidence: np.ndarray
+    GEOMETRY_TYPE, SCHEMA = "LineStringZ", DRIVING_LINES
+
+    road: np.ndarray = field(metadata=column(unknown=-1))
+    lane: np.ndarray = field(metadata=column(unknown=-1))
+    pattern: np.ndarray = field(metadata=column(unknown=""))
+    direction: np.ndarray = field(metadata=column(unknown=1))
+    source: np.ndarray = field(metadata=column(unknown=""))
+    status: np.ndarray = field(metadata=column(unknown=""))
+    confidence: np.ndarray = field(metadata=column())
     curve: list[Curve]
-    rmse: np.ndarray
-    station: np.ndarray
-    end: np.ndarray
-    offset: np.ndarray
-    width: np.ndarray
-    sigma: np.ndarray
+    rmse: np.ndarray = field(metadata=column("rmse_m"))
+    station: np.ndarray = field(metadata=column("station_m"))
+    end: np.ndarray = field(metadata=column("end_m"))
+    offset: np.ndarray = field(metadata=column("offset_m"))
+    width: np.ndarray = field(metadata=column("width_m"))
+    sigma: np.ndarray = field(metadata=column("sigma_m"))
     vertices: np.ndarray
     start: np.ndarray
     crs: str = ""
-    other: np.ndarray = None  # type: ignore[assignment]  # filled on construction
+    other: np.ndarray = field(default=None, metadata=column())  # type: ignore[arg-type]  # filled on construction
 
     def __post_init__(self) -> None:
         if self.other is None:
             object.__setattr__(self, "other", np.full(len(self.road), "", object))
 
-    def __len__(self) -> int:
-        return len(self.road)
+    @staticmethod
+    def of_pieces(pieces: Sequence[Mapping[str, Any]], crs: str) -> DrivingLines:
+        """DrivingLines of one dict a piece: its values by attribute, and `places` (n, 3) in the direction of travel."""
+        places = [piece["places"] for piece in pieces]
+        return DrivingLines(
+            **DrivingLines.gathered(pieces), curve=[piece["curve"] for piece in pieces], vertices=np.concatenate([*places, np.empty((0, 3))]),
+            start=np.append(0, np.cumsum([len(some) for some in places], dtype=int)), crs=crs)
+
+    def on_map(self, frame: RoadFrame) -> list[Any]:
+        """P lines with Z in map coordinates."""
+        return [shapely.linestrings(places) for places in self._map_places(frame)]
+
+    def _map_places(self, frame: RoadFrame) -> list[np.ndarray]:
+        return [self.vertices[a:b] + frame.origin for a, b in zip(self.start[:-1], self.start[1:])]
+
+    def derived(self, frame: RoadFrame) -> dict[str, Any]:
+        """What the curve says, its numbers in map coordinates as JSON in `params`; the length; and the uncertainty to 0.1 mm."""
+        functions: dict[int, str] = {}   # of curves by identity: those of long splines are long, and many pieces share one
+        for curve in self.curve:
+            if id(curve) not in functions:
+                functions[id(curve)] = _function(curve.moved(*frame.origin[:2]))
+        return dict(kind=["lane"] * len(self), curve=[curve.kind for curve in self.curve], radius_m=[curve.radius for curve in self.curve],
+                    sigma_m=[round(sigma, 4) for sigma in self.sigma.tolist()], length_m=map(_length, self._map_places(frame)),
+                    params=[functions[id(curve)] for curve in self.curve])
 
     @property
     def length(self) -> np.ndarray:
@@ -249,7 +249,7 @@ class DrivingLines:
 
 
 @dataclass(frozen=True)
-class CurveElements:
+class CurveElements(LayerRows):
     """C circular curves of lanes.
 
     road, lane : (C,) int
@@ -261,44 +261,27 @@ class CurveElements:
     country : whose design code they are checked against
     """
 
-    road: np.ndarray
-    lane: np.ndarray
-    station: np.ndarray
-    end: np.ndarray
+    GEOMETRY_TYPE, SCHEMA = "None", CURVE_ELEMENTS
+
+    road: np.ndarray = field(metadata=column(unknown=-1))
+    lane: np.ndarray = field(metadata=column(unknown=-1))
+    station: np.ndarray = field(metadata=column("station_m"))
+    end: np.ndarray = field(metadata=column("end_m"))
     arc: list[Arc]
     complete: np.ndarray
-    rmse: np.ndarray
+    rmse: np.ndarray = field(metadata=column("rmse_m"))
     crs: str = ""
     country: str = NEUTRAL.name
 
-    def __len__(self) -> int:
-        return len(self.road)
+    def on_map(self, frame: RoadFrame) -> list[None]:
+        """A table has no geometries."""
+        return [None] * len(self)
 
-
-def driving_lines_to_features(lines: DrivingLines, frame: RoadFrame) -> Features:
-    """The layer DRIVING_LINES in map coordinates.
-
-    Parameters
-    ----------
-    frame : RoadFrame, whose origin is added to local coordinates
-
-    Returns
-    -------
-    Features DRIVING_LINES, one row a piece, in the same order; `params` holds the curve in map coordinates as JSON
-    """
-    layer = Features("LineStringZ", DRIVING_LINES, crs=lines.crs)
-    functions: dict[int, str] = {}   # of curves by identity: those of long splines are long, and many pieces share one
-    for k, curve in enumerate(lines.curve):
-        if id(curve) not in functions:
-            functions[id(curve)] = _function(curve.moved(*frame.origin[:2]))
-        places = lines.vertices[lines.start[k]:lines.start[k + 1]] + frame.origin
-        layer.add(shapely.linestrings(places), road=int(lines.road[k]), lane=int(lines.lane[k]), kind="lane", pattern=lines.pattern[k],
-                  direction=int(lines.direction[k]), source=lines.source[k], status=lines.status[k], confidence=float(lines.confidence[k]),
-                  other=lines.other[k] or None, curve=curve.kind,
-                  radius_m=float(curve.radius) if np.isfinite(curve.radius) else None, rmse_m=float(lines.rmse[k]),
-                  sigma_m=round(float(lines.sigma[k]), 4), station_m=float(lines.station[k]), end_m=float(lines.end[k]),
-                  offset_m=float(lines.offset[k]), length_m=_length(places), width_m=float(lines.width[k]), params=functions[id(curve)])
-    return layer
+    def derived(self, frame: RoadFrame) -> dict[str, Any]:
+        """The elements of each curve; PC, PI and PT are in map coordinates."""
+        rows = [element_row(arc, complete, rmse, frame.origin, country(self.country))
+                for arc, complete, rmse in zip(self.arc, self.complete.tolist(), self.rmse.tolist())]
+        return {name: [row[name] for row in rows] for name in (rows[0] if rows else ())}
 
 
 def _length(places: np.ndarray) -> float:
@@ -309,22 +292,3 @@ def _function(curve: Curve) -> str:
     """The numbers of a curve as JSON, those of long splines to 0.1 mm."""
     return json.dumps({name: [round(v, 4) for v in value] if isinstance(value, list) and len(value) > LONG_LIST else value
                        for name, value in curve.params().items()})
-
-
-def curve_elements_to_features(elements: CurveElements, frame: RoadFrame) -> Features:
-    """The table CURVE_ELEMENTS; PC, PI and PT are in map coordinates.
-
-    Parameters
-    ----------
-    frame : RoadFrame, whose origin is added to local coordinates
-
-    Returns
-    -------
-    Features CURVE_ELEMENTS without geometry, one row a curve
-    """
-    table = Features("None", CURVE_ELEMENTS, crs=elements.crs)
-    for k, arc in enumerate(elements.arc):
-        table.add(None, road=int(elements.road[k]), lane=int(elements.lane[k]), station_m=float(elements.station[k]),
-                  end_m=float(elements.end[k]), **element_row(arc, bool(elements.complete[k]), float(elements.rmse[k]), frame.origin,
-                                                        country(elements.country)))
-    return table

@@ -22,8 +22,6 @@ MOST_AUTOMATIC_WORKERS = 8   # each takes some hundred MB
 class ExecutionSettings:
     """Who does the work.
 
-    Attributes
-    ----------
     workers : worker processes; 0 for threads of this process or, for a large survey, up to one process per processor core
     work_folder : folder in which the points that were read and the results of phases are kept for later runs; "" for none
     scheduler : address of a running Dask scheduler whose workers do the work instead; "" for none
@@ -70,7 +68,6 @@ def executor_for(points: int, settings: ExecutionSettings = ExecutionSettings(),
     Parameters
     ----------
     points : of the files
-    settings : ExecutionSettings
     progress : is told who does the work, where that are not threads as usual
     cluster : result of `cluster_for`
     """

@@ -50,13 +50,13 @@ def cluster_of(address: str, insecure: bool, work: WorkFolder | None, progress: 
     Raises
     ------
     RoadExtractionError
-        If the cluster cannot be used: see `client_of`, `check_versions` and `check_workers`.
+        If the cluster cannot be used: see `client_of`, `_check_versions` and `check_workers`.
     """
     client = client_of(address, insecure)
     cluster = None
     try:
         workers = wait_for_workers(client, progress)
-        check_versions(client)
+        _check_versions(client)
         try:
             cluster = Cluster(client, work.path if work else None, sum(workers.values()))
         except OSError as error:
@@ -276,7 +276,7 @@ class _Work:
         """Refuse to wait for workers that all pause, and go on doing so."""
         if time.monotonic() - self.heard < PAUSED_TIME:
             return
-        paused = all_paused(self.client)
+        paused = _all_paused(self.client)
         if paused and self.paused:
             raise RoadExtractionError(f"All workers of the cluster pause during {self.phase.function.__name__}, since their memory is nearly full. "
                                       "Start them with a higher --memory-limit.")
@@ -444,7 +444,7 @@ def own_versions() -> dict[str, str]:
     return found
 
 
-def check_versions(client: Any) -> None:
+def _check_versions(client: Any) -> None:
     """Refuse workers whose Python or packages are others than ours.
 
     Raises
@@ -513,7 +513,7 @@ def check_workers(client: Any, folder: Path, word: str, named: bool, progress: P
                       "DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES=1.")
 
 
-def all_paused(client: Any) -> bool:
+def _all_paused(client: Any) -> bool:
     """Whether every worker pauses because its memory is nearly full."""
     try:
         found = client.scheduler_info(n_workers=-1)

@@ -117,7 +117,6 @@ class Executor(Protocol):
         Parameters
         ----------
         phase, items : the work
-        progress : Progress
         keep : a file for every item, which the executor may write the result to as soon as it is computed; it stays
 
         Raises

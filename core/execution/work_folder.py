@@ -135,7 +135,6 @@ class KeptResults:
     Parameters
     ----------
     executor : Executor that does the rest
-    work : WorkFolder
     """
 
     def __init__(self, executor: Executor, work: WorkFolder):

@@ -10,7 +10,7 @@ import numpy as np
 import shapely
 
 from ..driving.layers import Lanes
-from .sources import SAME_LEVEL, RoadMapSource, is_stated
+from .sources import SAME_LEVEL, RoadMapSource, is_stated, wrapped
 
 MOST_TURNED = 2.5        # rad: who turns more drives back on the arm that he came from
 LEAST_TURNED = 0.5       # rad from which a way leaves the outermost lane of its arm on that side
@@ -60,26 +60,37 @@ def with_inferred_ways(source: RoadMapSource) -> RoadMapSource:
 
 def _junctions(lanes):
     """Lists of _Way whose areas touch."""
+    ways = _ways(lanes)
+    areas = [_area(*lanes.borders(way.row)) for way in ways]
+    group = list(range(len(ways)))
+    for a in range(len(ways)):
+        for b in range(a):
+            if group[a] != group[b] and _touch(areas[a], areas[b]):
+                group = [group[b] if one == group[a] else one for one in group]
+    return [[ways[k] for k in np.flatnonzero(np.array(group) == number)] for number in sorted(set(group)) if group.count(number) > 1]
+
+
+def _touch(one, other):
+    return abs(one[1] - other[1]) < SAME_LEVEL and one[0].intersects(other[0])
+
+
+def _ways(lanes):
+    """Every connector between two lanes that are driven."""
     row_of = {name: k for k, name in enumerate(lanes.lane_id)}
     before = {name: k for k, names in enumerate(lanes.successors) if lanes.type[k] == "driving" for name in names}
     ways = [_Way(k, before[lanes.lane_id[k]], row_of[lanes.successors[k][0]]) for k in range(len(lanes))
             if lanes.type[k] == "connector" and lanes.lane_id[k] in before and len(lanes.successors[k]) == 1]
-    ways = [way for way in ways if lanes.type[way.exit] == "driving"]
-    borders = [lanes.borders(way.row) for way in ways]
-    areas = [shapely.make_valid(shapely.Polygon(np.concatenate([left, right[::-1]])[:, :2])) for left, right in borders]
-    height = [float(left[:, 2].mean()) for left, _ in borders]
-    group = list(range(len(ways)))
-    for a in range(len(ways)):
-        for b in range(a):
-            if group[a] != group[b] and abs(height[a] - height[b]) < SAME_LEVEL and areas[a].intersects(areas[b]):
-                group = [group[b] if one == group[a] else one for one in group]
-    found = [[way for way, own in zip(ways, group) if own == number] for number in sorted(set(group))]
-    return [one for one in found if len(one) > 1]
+    return [way for way in ways if lanes.type[way.exit] == "driving"]
+
+
+def _area(left, right):
+    """(polygon between two borders, metres of height)."""
+    return shapely.make_valid(shapely.Polygon(np.concatenate([left, right[::-1]])[:, :2])), float(left[:, 2].mean())
 
 
 def _missing_way(lanes, group, entry, exit):
     """(row that is left, row that is entered, left border, right border) of the way between two arms; None where there is one, or can be none."""
-    turn = _wrapped(_heading(lanes, exit, 0) - _heading(lanes, entry, -1))
+    turn = wrapped(_heading(lanes, exit, 0) - _heading(lanes, entry, -1))
     entries, exits = _arm(lanes, entry, -1), _arm(lanes, exit, 0)
     if abs(turn) > MOST_TURNED or _is_led_to(lanes, entries, exits):
         return None
@@ -99,7 +110,7 @@ def _arm(lanes, row, end):
     found = []
     for k in np.flatnonzero((lanes.type == "driving") & (lanes.road == lanes.road[row]) & (lanes.direction == lanes.direction[row])).tolist():
         away = _place(lanes, k, end) - place
-        if abs(away @ along) < ARM_DEPTH and abs(away @ across) < ARM_WIDTH and abs(_wrapped(_heading(lanes, k, end) - heading)) < HEADED_ALIKE:
+        if abs(away @ along) < ARM_DEPTH and abs(away @ across) < ARM_WIDTH and abs(wrapped(_heading(lanes, k, end) - heading)) < HEADED_ALIKE:
             found.append((float(away @ across), k))
     return [k for _, k in sorted(found)]
 
@@ -123,7 +134,7 @@ def _joined(first, last):
     middles = [(left + right)[:, :2] / 2 for left, right in (first, last)]
     headings = [np.unwrap(np.arctan2(*np.gradient(middle, axis=0).T[::-1])) for middle in middles]
     apart = np.hypot(*(middles[0][:, None] - middles[1][None]).transpose(2, 0, 1))
-    together = (apart < RUN_TOGETHER) & (np.abs(_wrapped(headings[0][:, None] - headings[1][None])) < HEADED_ALIKE)
+    together = (apart < RUN_TOGETHER) & (np.abs(wrapped(headings[0][:, None] - headings[1][None])) < HEADED_ALIKE)
     rows = np.flatnonzero(together.any(1))
     if not len(rows):
         return None
@@ -176,7 +187,7 @@ def _is_drivable(left, right):
     for border in (left, right):
         line = shapely.linestrings(border[:, :2])
         steps = np.diff(border[:, :2], axis=0)
-        turns = np.abs(_wrapped(np.diff(np.arctan2(steps[:, 1], steps[:, 0]))))
+        turns = np.abs(wrapped(np.diff(np.arctan2(steps[:, 1], steps[:, 0]))))
         room = (np.hypot(*steps[:-1].T) + np.hypot(*steps[1:].T)) / 2
         if not line.is_simple or (turns > room / NARROWEST_TURN + 0.1).any():
             return False
@@ -212,7 +223,3 @@ def _heading(lanes, row, end):
     reach = min(len(middle) - 1, 4)
     way = middle[-1] - middle[-1 - reach] if end else middle[reach] - middle[0]
     return float(np.arctan2(way[1], way[0]))
-
-
-def _wrapped(angle):
-    return (angle + np.pi) % (2 * np.pi) - np.pi

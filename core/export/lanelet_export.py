@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from html import escape
 
 import numpy as np
-import shapely
 
 from ..common.errors import RoadExtractionError
 from ..common.setting import check_limits, setting
 from ..io.crs import as_in_file, horizontal_part, parse_crs
 from .map_layers import LOCAL_CRS
+from .shared_borders import cuts_beside, numbered
 from .sources import LEAST_CURB, NearestValues, RoadMapSource, is_stated, sigma_of_lanes, stop_lines, walked_crossings
 
-SAME_PLACE = 0.001      # m: vertices nearer than this are one node
-SAME_RISE = 0.1         # m in height
+SAME_RISE = 0.1         # m in height between vertices at one place that are one node
 HIGH_CURB = 0.10        # m: lower ones can be driven over, as the format means by `low`
 THICK_LINE = 0.18       # m of paint from which a line is thick: above the narrow and below the broad lines of most countries
 NEAREST_EDGE = 0.5      # m from a border within which a road edge tells its height
@@ -92,8 +90,9 @@ class _Drafting:
     def __init__(self, source: RoadMapSource, settings: LaneletSettings) -> None:
         self.source, self.settings, self.lanes = source, settings, source.lanes
         lanes = source.lanes
-        every, numbers = _numbered(np.concatenate([lanes.left, lanes.right]), LEAST_CURB if is_stated(lanes) else SAME_RISE)
-        self.draft = LaneletDraft(every)
+        places = np.concatenate([lanes.left, lanes.right])
+        numbers, first = numbered(places, LEAST_CURB if is_stated(lanes) else SAME_RISE)
+        self.draft = LaneletDraft(places[first])
         self.left, self.right = numbers[:len(lanes.left)], numbers[len(lanes.left):]
         self.way_of: dict[tuple[int, ...], int] = {}
         # beside a double line the bounds meet in its middle, and the line to drive on stays between the stripes
@@ -107,7 +106,7 @@ class _Drafting:
         for k in range(len(lanes)):
             if lanes.type[k] not in SUBTYPE_OF_LANE:
                 self.draft.skipped[lanes.type[k]] = self.draft.skipped.get(lanes.type[k], 0) + 1
-        cuts = self._cuts(used)
+        cuts = cuts_beside(lanes, self.left, self.right, np.repeat(np.isin(np.arange(len(lanes)), used), np.diff(lanes.start)))
         for k in used:
             first = lanes.start[k]
             at = [first, *(row for row in range(first + 1, lanes.start[k + 1] - 1) if self.left[row] in cuts or self.right[row] in cuts),
@@ -116,20 +115,6 @@ class _Drafting:
                 self._lanelet(k, slice(a, b + 1))
         self._objects()
         return self.draft
-
-    def _cuts(self, used: Sequence[int]) -> set[int]:
-        """Nodes at which every lane beside them is cut."""
-        lanes = self.lanes
-        ends = [row for k in used for row in (lanes.start[k], lanes.start[k + 1] - 1)]
-        cuts = {int(side[row]) for row in ends for side in (self.left, self.right)}
-        while True:
-            known = np.isin(self.left, list(cuts)), np.isin(self.right, list(cuts))
-            rows = np.flatnonzero(known[0] ^ known[1])
-            rows = rows[np.isin(np.searchsorted(lanes.start, rows, side="right") - 1, used)]
-            more = {int(side[row]) for row in rows for side in (self.left, self.right)} - cuts
-            if not more:
-                return cuts
-            cuts |= more
 
     def _lanelet(self, k: int, rows: slice) -> None:
         lanes = self.lanes
@@ -175,18 +160,10 @@ class _Drafting:
             tags = {"type": "curbstone", "subtype": "low" if height < HIGH_CURB else "high"}
             return tags | ({} if np.isnan(height) else {"height": f"{height:.2f}"})
         if pattern in SUBTYPE_OF_PATTERN:
-            width = self._paint_width(line)
+            width = self.source.paint_width(line)
             return {"type": "line_thick" if width > THICK_LINE else "line_thin", "subtype": SUBTYPE_OF_PATTERN[pattern]} | (
                 {} if np.isnan(width) else {"width": f"{width:.2f}"})
         return {"type": "road_border"} if kind in ("edge", "pavement") else {"type": "virtual"}
-
-    def _paint_width(self, line):
-        """Metres of a border's paint; NaN where unknown."""
-        layer = self.source.marking_lines
-        if layer is None or not line.startswith("line "):
-            return np.nan
-        widths = [float(row["width_m"]) for row in layer.rows if str(row.get("line")) == line[5:] and row.get("width_m") is not None]
-        return float(np.median(widths)) if widths else np.nan
 
     def _new_nodes(self, places: np.ndarray) -> tuple[int, ...]:
         first = len(self.draft.nodes)
@@ -201,17 +178,6 @@ class _Drafting:
                 self.draft.ways.append(MadeWay(self._new_nodes(side), {"type": "pedestrian_marking", "subtype": "dashed"}))
             self.draft.lanelets.append(MadeLanelet(len(self.draft.ways) - 2, len(self.draft.ways) - 1, -1, {
                 "type": "lanelet", "subtype": "crosswalk", "location": self.settings.location, "one_way": "no", "participant:pedestrian": "yes"}))
-
-
-def _numbered(places: np.ndarray, rise: float) -> tuple[np.ndarray, np.ndarray]:
-    """((N, 3) places, each once; (V,) number of each of V vertices): vertices nearer than SAME_PLACE, and `rise` in height, are one."""
-    points = shapely.points(places[:, :2])
-    near = shapely.STRtree(points).query(points, predicate="dwithin", distance=SAME_PLACE)
-    near = near[:, np.abs(places[near[0], 2] - places[near[1], 2]) < rise]
-    first = np.arange(len(places))
-    np.minimum.at(first, near[0], near[1])
-    every, numbers = np.unique(first, return_inverse=True)
-    return places[every], numbers
 
 
 def _without_repeats(nodes: np.ndarray) -> tuple[int, ...]:
@@ -282,10 +248,9 @@ def lanelet2_text(draft: LaneletDraft, degrees: Degrees, local: bool = False) ->
     local : also write the tags local_x and local_y, metres within a square of 100 km, as Autoware reads them
     """
     lines = ['<?xml version="1.0" encoding="UTF-8"?>', '<osm version="0.6" generator="Lanewright" upload="false">']
-    local = local or degrees.local
-    if local:
+    if local := local or degrees.local:
         lines.append('  <MetaInfo format_version="1" map_version="1"/>')
-    used = sorted({node for way in draft.ways for node in way.nodes})
+    used = sorted(set().union(*(way.nodes for way in draft.ways)))
     ids = {node: k for k, node in enumerate(used, start=1)}
     square = np.floor(draft.nodes[used, :2].min(0) / SQUARE) * SQUARE if used and not degrees.local else np.zeros(2)
     for node in used:
@@ -297,15 +262,19 @@ def lanelet2_text(draft: LaneletDraft, degrees: Degrees, local: bool = False) ->
         lines.append(f'  <node id="{ids[node]}" visible="true" version="1" lat="{lat:.11f}" lon="{lon:.11f}">{_tags(tags)}</node>')
     first_way = len(used) + 1
     for number, way in enumerate(draft.ways):
-        places = "".join(f'<nd ref="{ids[node]}"/>' for node in way.nodes)
+        places = "".join(map('<nd ref="{}"/>'.format, map(ids.__getitem__, way.nodes)))
         lines.append(f'  <way id="{first_way + number}" visible="true" version="1">{places}{_tags(way.tags)}</way>')
     first_lanelet = first_way + len(draft.ways)
     for number, lanelet in enumerate(draft.lanelets):
-        members = "".join(f'<member type="way" ref="{first_way + member}" role="{role}"/>' for role, member in (
-            ("left", lanelet.left), ("right", lanelet.right), ("centerline", lanelet.centre)) if member >= 0)
-        tags = lanelet.tags | ({"lanewright:lane_id": lanelet.name} if lanelet.name else {})
-        lines.append(f'  <relation id="{first_lanelet + number}" visible="true" version="1">{members}{_tags(tags)}</relation>')
+        lines.append(f'  <relation id="{first_lanelet + number}" visible="true" version="1">{_content(lanelet, first_way)}</relation>')
     return "\n".join([*lines, "</osm>", ""])
+
+
+def _content(lanelet, first_way):
+    """The members and tags of a lanelet."""
+    tags = lanelet.tags | ({"lanewright:lane_id": lanelet.name} if lanelet.name else {})
+    members = {"left": lanelet.left, "right": lanelet.right, "centerline": lanelet.centre}
+    return "".join(f'<member type="way" ref="{first_way + member}" role="{role}"/>' for role, member in members.items() if member >= 0) + _tags(tags)
 
 
 def _tags(tags):

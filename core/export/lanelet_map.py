@@ -9,8 +9,9 @@ import numpy as np
 
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
+from ..driving.layers import Lanes
 from ..io.crs import parse_crs
-from .map_layers import LOCAL_CRS, LaneRows, MapLayers, MapLine, metric_wkt, utm_of, without_repeats
+from .map_layers import LOCAL_CRS, MapLayers, MapLine, metric_wkt, utm_of, without_repeats
 from .xml_tree import XmlElement, read_xml
 
 
@@ -105,10 +106,7 @@ class LaneletNetwork:
 
     def _place(self, lanelet: Lanelet) -> None:
         ids = lanelet.way("left"), lanelet.way("right")
-        ways = [self.whole.ways.get(id) if id is not None else None for id in ids]
-        if ways[0] is None or ways[1] is None:
-            return
-        left, right = (self.whole.rows(way) for way in ways if way is not None)
+        left, right = (self.whole.rows(self.whole.ways[id]) if id in self.whole.ways else np.empty(0, int) for id in ids)
         if len(left) < 2 or len(right) < 2:
             return
         turned_right = not same_way(self.places[left], self.places[right])
@@ -204,30 +202,40 @@ def lanelets_of(root: XmlElement) -> LaneletMap:
         if element.tag not in ("node", "way", "relation") or element.get("action") == "delete":
             continue
         id, tags = _id(element, "id"), _tags(element)
-        if element.children and len(tags) < (count := sum(child.tag == "tag" for child in element.children)):
-            keys = [child.get("k") for child in element.all("tag")]
-            tags_twice += [(element.tag, id, key) for key in tags if keys.count(key) > 1][:count]
+        tags_twice += [(element.tag, id, key) for key in _repeated_tags(element, tags)]
         if (element.tag, id) in seen:
             twice.append((element.tag, id, element.line))
             continue
         seen.add((element.tag, id))
         if element.tag == "node":
             ids.append(id)
-            # maps in local coordinates leave latitude and longitude out, or empty
-            lon, lat = (element.number(name, np.nan) if element.get(name) else np.nan for name in ("lon", "lat"))
-            places.append((lon, lat, _tag_number(tags, "ele", element)))
+            places.append((_degrees(element, "lon"), _degrees(element, "lat"), _tag_number(tags, "ele", element)))
             local.append((_tag_number(tags, "local_x", element), _tag_number(tags, "local_y", element)))
         elif element.tag == "way":
             ways[id] = Way(id, [_id(child, "ref") for child in element.all("nd")], tags, element.line)
         else:
-            members: dict[str, list[tuple[str, int]]] = {}
-            for child in element.all("member"):
-                members.setdefault(child.get("role"), []).append((child.get("type"), _id(child, "ref")))
-            (lanelets if tags.get("type") == "lanelet" else others)[id] = Lanelet(id, tags, members, element.line)
+            (lanelets if tags.get("type") == "lanelet" else others)[id] = Lanelet(id, tags, _members(element), element.line)
     places_array = np.array(places, float).reshape(-1, 3)
     _check_degrees(places_array, ids)
     return LaneletMap(np.array(ids, np.int64), places_array[:, :2], places_array[:, 2], np.array(local, float).reshape(-1, 2), ways, lanelets,
                       others, twice, tags_twice)
+
+
+def _repeated_tags(element, tags):
+    keys = [child.get("k") for child in element.all("tag")] if element.children else []
+    return [key for key in tags if keys.count(key) > 1] if len(keys) > len(tags) else []
+
+
+def _degrees(element, name):
+    """NaN where there are none: maps in local coordinates leave latitude and longitude out, or empty."""
+    return element.number(name, np.nan) if element.get(name) else np.nan
+
+
+def _members(element):
+    members: dict[str, list[tuple[str, int]]] = {}
+    for child in element.all("member"):
+        members.setdefault(child.get("role"), []).append((child.get("type"), _id(child, "ref")))
+    return members
 
 
 def _id(element, name):
@@ -266,6 +274,7 @@ def _check_degrees(places, ids):
 
 PATTERN_OF_WAY = {"solid": "solid", "dashed": "dashed", "solid_solid": "double-solid",
                   "dashed_dashed": "double-dashed", "solid_dashed": "solid-dashed", "dashed_solid": "dashed-solid"}
+PAINTED_WAYS = ("line_thin", "line_thick")
 EDGE_WAYS = ("curbstone", "road_border", "guard_rail", "wall", "fence")
 NO_LAND = 1.0   # degrees from latitude and longitude 0
 LANE_TYPE_OF_LANELET = {"bicycle_lane": "bicycle", "emergency_lane": "shoulder", "parking": "parking", "road_shoulder": "shoulder"}
@@ -331,26 +340,20 @@ def layers_of_lanelets(whole: LaneletMap, crs: str = "", progress: Progress = Pr
         As `node_places`.
     """
     places, crs = node_places(whole, crs)
-    network, rows = LaneletNetwork(whole, places), LaneRows()
+    network, rows = LaneletNetwork(whole, places), []
     shown = [id for id in network.left if network.driven(id)]
     for count, id in enumerate(shown):
         lanelet = whole.lanelets[id]
         left, right = matched(places[network.left[id]], places[network.right[id]])
         turned = {"left": network.reversed_left[id], "right": network.reversed_right[id]}
         kinds, patterns = zip(*(_border(whole.ways[lanelet.way(role) or 0].tags, turned[role]) for role in turned))
-        rows.add(left, right, road=1, lane=count + 1, lane_id=str(id), direction=1,
-                 type=LANE_TYPE_OF_LANELET.get(lanelet.tags.get("subtype", ""), "driving"),
-                 left_kind=kinds[0], right_kind=kinds[1], left_pattern=patterns[0], right_pattern=patterns[1],
-                 successors=[str(other) for other in network.following(id) if network.driven(other)])
+        rows.append(dict(
+            left=left, right=right, road=1, lane=count + 1, lane_id=str(id), direction=1,
+            type=LANE_TYPE_OF_LANELET.get(lanelet.tags.get("subtype", ""), "driving"),
+            left_kind=kinds[0], right_kind=kinds[1], left_pattern=patterns[0], right_pattern=patterns[1],
+            successors=[str(other) for other in network.following(id) if network.driven(other)]))
         progress.report((count + 1) / len(shown))
-    found = MapLayers(rows.lanes(crs))
-    for way in whole.ways.values():
-        points = without_repeats(places[whole.rows(way)]) if len(whole.rows(way)) > 1 else np.empty((0, 3))
-        kind = way.tags.get("type", "")
-        if len(points) > 1 and (kind in ("line_thin", "line_thick") or kind in EDGE_WAYS):
-            pattern = PATTERN_OF_WAY.get(way.tags.get("subtype", ""), "")
-            found.lines.append(MapLine(1, "edge" if kind in EDGE_WAYS else "marking", "lane", pattern, points,
-                                       edge="curb" if kind == "curbstone" else "pavement"))
+    found = MapLayers(Lanes.of_pieces(rows, crs), list(_lines(whole, places)))
     if not crs:
         found.notes.append("The map has local coordinates: its place on the earth is not known, and the layers have no CRS.")
     left_out = len(whole.lanelets) - len(network.left)
@@ -359,6 +362,16 @@ def layers_of_lanelets(whole: LaneletMap, crs: str = "", progress: Progress = Pr
     if len(whole.heights) and not np.isfinite(whole.heights).all():
         found.notes.append(f"{int((~np.isfinite(whole.heights)).sum())} nodes have no height (ele); theirs is 0.")
     return found
+
+
+def _lines(whole, places):
+    """The painted borders and edges among the ways of a map."""
+    for way in whole.ways.values():
+        kind = way.tags.get("type", "")
+        points = without_repeats(places[whole.rows(way)]) if kind in (*PAINTED_WAYS, *EDGE_WAYS) and len(whole.rows(way)) > 1 else ()
+        if len(points) > 1:
+            pattern = PATTERN_OF_WAY.get(way.tags.get("subtype", ""), "")
+            yield MapLine(1, "edge" if kind in EDGE_WAYS else "marking", "lane", pattern, points, edge="curb" if kind == "curbstone" else "pavement")
 
 
 def matched(left: np.ndarray, right: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -378,5 +391,5 @@ def _border(tags, turned):
     """(kind, pattern) of a way, seen in the direction of travel."""
     named = tags.get("type", "")
     kind = {"curbstone": "curb", "road_border": "pavement"}.get(named, "edge" if named in EDGE_WAYS else "lane")
-    pattern = PATTERN_OF_WAY.get(tags.get("subtype", ""), "") if tags.get("type") in ("line_thin", "line_thick") else ""
+    pattern = PATTERN_OF_WAY.get(tags.get("subtype", ""), "") if named in PAINTED_WAYS else ""
     return kind, "-".join(pattern.split("-")[::-1]) if turned and "-" in pattern and not pattern.startswith("double") else pattern

@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 
 from ..common.errors import RoadExtractionError
 from ..common.features import DRIVING_LINES, MARKING_LINES, ROAD_EDGES, Features
-from ..driving.layers import Lanes, lanes_to_features
+from ..driving.layers import Lanes
 from ..io.crs import check_metric, horizontal_part, parse_crs, plane_wkt, same_crs
 
 STATUS_OF_MAPS = "measured"
@@ -52,7 +52,7 @@ class MapLayers:
 
     def lane_areas(self) -> Features:
         """The layer LANES."""
-        return lanes_to_features(self.lanes)
+        return self.lanes.to_features()
 
     def driving_lines(self) -> Features:
         """The middles of driven lanes, as DRIVING_LINES."""
@@ -64,10 +64,9 @@ class MapLayers:
             middle = without_repeats((left + right) / 2)
             if len(middle) < 2:
                 continue
-            layer.add(shapely.linestrings(middle), road=int(lanes.road[k]), lane=int(lanes.lane[k]), kind="lane",
-                      pattern=f"{lanes.left_pattern[k] or 'none'}|{lanes.right_pattern[k] or 'none'}", direction=int(lanes.direction[k]),
-                      source="pair", status=lanes.status[k], station_m=float(lanes.station[k]), end_m=float(lanes.end[k]),
-                      length_m=plan_length(middle), width_m=float(widths[k]))
+            layer.add(shapely.linestrings(middle), road=lanes.road[k], lane=lanes.lane[k], kind="lane", direction=lanes.direction[k],
+                      pattern=f"{lanes.left_pattern[k] or 'none'}|{lanes.right_pattern[k] or 'none'}", source="pair", status=lanes.status[k],
+                      station_m=lanes.station[k], end_m=lanes.end[k], length_m=plan_length(middle), width_m=widths[k])
         return layer
 
     def marking_lines(self) -> Features:
@@ -75,8 +74,7 @@ class MapLayers:
         layer = Features("LineStringZ", MARKING_LINES, crs=self.lanes.crs)
         for number, line in enumerate((line for line in self.lines if line.what == "marking"), start=1):
             layer.add(shapely.linestrings(line.points), road=line.road, line=number, kind=line.kind, pattern=line.pattern, status=STATUS_OF_MAPS,
-                      station_m=0.0, end_m=plan_length(line.points), length_m=plan_length(line.points),
-                      width_m=None if np.isnan(line.width) else line.width)
+                      station_m=0.0, end_m=plan_length(line.points), length_m=plan_length(line.points), width_m=line.width)
         return layer
 
     def road_edges(self) -> Features:
@@ -85,7 +83,7 @@ class MapLayers:
         for number, line in enumerate((line for line in self.lines if line.what == "edge"), start=1):
             layer.add(shapely.linestrings(line.points), road=line.road, side=line.side or None, status=STATUS_OF_MAPS, station_m=0.0,
                       end_m=plan_length(line.points), part="bottom", length_m=plan_length(line.points), kind="main", edge=line.edge, chain=number,
-                      height_m=None if np.isnan(line.height) else line.height)
+                      height_m=line.height)
         return layer
 
 
@@ -98,32 +96,6 @@ def without_repeats(points: np.ndarray, nearest: float = 1e-4) -> np.ndarray:
     """The points of a line without those that lie within a tenth of a millimetre of the one before."""
     keep = np.append(True, np.hypot(*np.diff(points[:, :2], axis=0).T) > nearest)
     return points[keep]
-
-
-@dataclass
-class LaneRows:
-    """Lanes as they are found, one after the other; `lanes` joins them."""
-
-    rows: list[dict] = field(default_factory=list)
-
-    def add(self, left: np.ndarray, right: np.ndarray, **values: object) -> None:
-        """One piece: (n, 3) borders in the direction of travel, and its values by the names of Lanes; what is missing has the default."""
-        self.rows.append({"left": left, "right": right, **values})
-
-    def lanes(self, crs: str = "") -> Lanes:
-        """All pieces as Lanes."""
-        def column(name, kind, missing):
-            return np.array([row.get(name, missing) for row in self.rows], kind)
-
-        none = np.empty((0, 3))
-        return Lanes(
-            column("road", int, 1), column("lane", int, 0), column("lane_id", object, ""), column("type", object, "driving"),
-            column("direction", int, 1), column("left_line", object, "none"), column("right_line", object, "none"),
-            column("left_kind", object, "none"), column("right_kind", object, "none"), column("left_pattern", object, ""),
-            column("right_pattern", object, ""), [tuple(row.get("successors", ())) for row in self.rows], column("status", object, STATUS_OF_MAPS),
-            column("confidence", float, 1.0), column("station", float, 0.0), column("end", float, 0.0),
-            np.concatenate([none, *(row["left"] for row in self.rows)]), np.concatenate([none, *(row["right"] for row in self.rows)]),
-            np.append(0, np.cumsum([len(row["left"]) for row in self.rows], dtype=int)), crs)
 
 
 # The CRS of a map from elsewhere.

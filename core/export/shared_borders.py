@@ -62,18 +62,24 @@ def meet_lanes(lanes: Lanes) -> Lanes:
     row_of = {name: k for k, name in enumerate(lanes.lane_id)}
     left, right = lanes.left.copy(), lanes.right.copy()
     most = MOST_MET if is_stated(lanes) else WIDEST_DOUBLE
+    for one, other, at_end in _joints(lanes, row_of):
+        rows = np.arange(lanes.start[one], lanes.start[one + 1])
+        here, there = (rows[-1], lanes.start[other]) if at_end else (rows[0], lanes.start[other + 1] - 1)
+        for side in (left, right):
+            away = side[there] - side[here]
+            beside = np.hypot(*away[:2])
+            if SAME_VERTEX < beside < most or beside < SAME_VERTEX and away[2]:
+                side[rows] += _fading(side[rows], at_end)[:, None] * away
+    return replace(lanes, left=left, right=right)
+
+
+def _joints(lanes, row_of):
+    """(connector, lane that it joins, whether that follows it)."""
     for k, names in enumerate(lanes.successors):
         for j in (row_of[name] for name in names if name in row_of):
             for one, other, at_end in ((k, j, True), (j, k, False)):
-                if lanes.type[one] != "connector" or lanes.type[other] == "connector":
-                    continue
-                rows = np.arange(lanes.start[one], lanes.start[one + 1])
-                here, there = (rows[-1], lanes.start[other]) if at_end else (rows[0], lanes.start[other + 1] - 1)
-                for side in (left, right):
-                    away = side[there] - side[here]
-                    if SAME_VERTEX < np.hypot(*away[:2]) < most or SAME_VERTEX > np.hypot(*away[:2]) and away[2]:
-                        side[rows] += _fading(side[rows], at_end)[:, None] * away
-    return replace(lanes, left=left, right=right)
+                if lanes.type[one] == "connector" != lanes.type[other]:
+                    yield one, other, at_end
 
 
 def _fading(line, at_end):
@@ -131,14 +137,31 @@ def _typical(gaps):
     return found if found > LEAST_STRIPE_GAP else 0.0
 
 
-def numbered(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """((V,) number of each of (V, 3) vertices' place, (N,) a vertex of each place): vertices nearer than SAME_VERTEX are at one place."""
+def numbered(rows: np.ndarray, rise: float = SAME_ROAD_RISE) -> tuple[np.ndarray, np.ndarray]:
+    """((V,) number of each of (V, 3) vertices' place, (N,) a vertex of each place): nearer than SAME_VERTEX, and `rise` in height, are one."""
     near = cKDTree(rows[:, :2]).query_pairs(SAME_VERTEX, output_type="ndarray")
-    near = near[np.abs(rows[near[:, 0], 2] - rows[near[:, 1], 2]) < SAME_ROAD_RISE] if len(near) else near.reshape(0, 2)
+    near = near[np.abs(rows[near[:, 0], 2] - rows[near[:, 1], 2]) < rise] if len(near) else near.reshape(0, 2)
     first = np.arange(len(rows))
     np.minimum.at(first, near[:, 1], near[:, 0])
     first, nodes = np.unique(first, return_inverse=True)
     return nodes, first
+
+
+def cuts_beside(lanes: Lanes, left: np.ndarray, right: np.ndarray, among: np.ndarray) -> set[int]:
+    """Numbers of the places at which every lane beside them is cut, as one of them begins, ends or is cut there.
+
+    left, right : (V,) numbers of the places of the vertices of borders; among : (V,) bool, of the lanes that count
+    """
+    rows = np.concatenate([lanes.start[:-1], lanes.start[1:] - 1]).astype(int)
+    rows = rows[among[rows]]
+    cuts = set(left[rows].tolist()) | set(right[rows].tolist())
+    while True:
+        known = np.array(sorted(cuts))
+        one_sided = np.flatnonzero((np.isin(left, known) ^ np.isin(right, known)) & among)
+        more = (set(left[one_sided].tolist()) | set(right[one_sided].tolist())) - cuts
+        if not more:
+            return cuts
+        cuts |= more
 
 
 def _levels(lanes, nodes, rows):

@@ -52,6 +52,12 @@ class RoadMapSource:
         moved = ((self.lanes.left + self.lanes.right) / 2 - self.middles)[:, :2]
         return self.middles[np.hypot(*moved.T) > LEAST_LED, :2]
 
+    def paint_width(self, line: str) -> float:
+        """Metres of the paint of a border, by the name of its line in Lanes; NaN where unknown."""
+        rows = self.marking_lines.rows if self.marking_lines is not None and line.startswith("line ") else ()
+        widths = [float(row["width_m"]) for row in rows if str(row.get("line")) == line[5:] and row.get("width_m") is not None]
+        return float(np.median(widths)) if widths else np.nan
+
     def others(self) -> Iterator[tuple[str, Features]]:
         """(what messages call it, layer) of the layers beside the lanes that there are."""
         for label, layer in (("Driving lines", self.driving_lines), ("Marking lines", self.marking_lines), ("Road edges", self.road_edges),
@@ -91,6 +97,12 @@ def checked(source: RoadMapSource) -> RoadMapSource:
     if not is_stated(lanes):   # where a map from elsewhere has two roads at one place, it means both
         _check_places(lanes)
     _check_layers(source)
+    return _linked(source)
+
+
+def _linked(source):
+    """The source without successors that are not there, with a note for each kind of them."""
+    lanes = source.lanes
     known = set(lanes.lane_id)
     lost = sum(name not in known for names in lanes.successors for name in names)
     notes = list(source.notes)
@@ -131,9 +143,9 @@ def _check_places(lanes):
     rows = np.flatnonzero(lanes.type == "driving")
     if not len(rows):
         return
-    rings = [np.concatenate([left, right[::-1]])[:, :2] for left, right in (lanes.borders(k) for k in rows)]
-    shapes = shapely.make_valid(np.array([shapely.Polygon(ring) for ring in rings], object))
-    height = np.array([lanes.borders(k)[0][:, 2].mean() for k in rows])
+    borders = [lanes.borders(k) for k in rows]
+    shapes = shapely.make_valid(np.array([shapely.Polygon(np.concatenate([left, right[::-1]])[:, :2]) for left, right in borders], object))
+    height = np.array([left[:, 2].mean() for left, _ in borders])
     for first, second in shapely.STRtree(shapes).query(shapes, predicate="intersects").T:
         a, b = rows[first], rows[second]
         if first >= second or lanes.road[a] == lanes.road[b] or abs(height[first] - height[second]) > SAME_LEVEL:
@@ -152,6 +164,11 @@ def _check_layers(source):
         if west > high[0] or east < low[0] or south > high[1] or north < low[1]:
             raise RoadExtractionError(f"{label} do not lie where the lanes are: they begin at x {west:.0f}, y {south:.0f}, the lanes at "
                                       f"x {low[0] + FARTHEST_LAYER:.0f}, y {low[1] + FARTHEST_LAYER:.0f}. Choose the layers of one survey.")
+
+
+def wrapped(angle: Any) -> Any:
+    """Radians, a number or an array of them, in [-pi, pi)."""
+    return (angle + np.pi) % (2 * np.pi) - np.pi
 
 
 class NearestValues:

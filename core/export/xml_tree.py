@@ -53,9 +53,10 @@ class XmlElement:
             self.children = [child]
         return child
 
-    def all(self, tag: str) -> Iterator[XmlElement]:
-        """The children of a name."""
-        return (child for child in self.children if child.tag == tag)
+    def all(self, *path: str) -> Iterator[XmlElement]:
+        """The children of a name; of several names, those of the last one in the first child of the others."""
+        parent, tag = self.find(*path[:-1]), path[-1]
+        return (child for child in (parent.children if parent is not None else ()) if child.tag == tag)
 
     def find(self, *path: str) -> XmlElement | None:
         """The first child of a name, its first child of the next name and so on; None where there is none."""

@@ -22,11 +22,9 @@ ACROSS_TRACK, FROM_VEHICLE = 0, 1    # kinds of distance: across the vehicle's t
 class VehicleDistances:
     """Distances of points from the vehicle during the time in which the points were measured.
 
-    On a road the place relative to the vehicle stands for range and incidence
-    together: the height of the sensor ties one to the other. A mirror scanner,
-    even one yawed by 45 degrees, meets each distance across the road once per
-    turn, at one range. A spinning scanner with many beams meets it at many ranges, but
-    there the horizontal distance from the scanner determines the range.
+    On a road the place relative to the vehicle stands for range and incidence together: the height of the sensor ties one to the other. A mirror
+    scanner, even one yawed by 45 degrees, meets each distance across the road once per turn, at one range. A spinning scanner with many beams meets
+    it at many ranges, but there the horizontal distance from the scanner determines the range.
 
     Parameters
     ----------
@@ -135,10 +133,8 @@ LEVEL_OF_COUNT = np.clip(np.rint(np.log2(np.arange(2**16) + 1.0) * LEVELS_PER_DO
 def asphalt_statistics(values: np.ndarray) -> tuple[float, float]:
     """Median and lower spread of asphalt, among values of asphalt and paint.
 
-    Paint is at the bright end, so values brighter than three spreads above the median
-    are left out; so are those four standard deviations below it, of dark repairs and
-    water. How much that is, the 30 % quantile tells, which they move less than the
-    lower spread. Three rounds are enough.
+    Paint is at the bright end, so values brighter than three spreads above the median are left out; so are those four standard deviations below it,
+    of dark repairs and water. How much that is, the 30 % quantile tells, which they move less than the lower spread. Three rounds are enough.
 
     Parameters
     ----------
@@ -162,7 +158,7 @@ def asphalt_statistics(values: np.ndarray) -> tuple[float, float]:
     return median, spread
 
 
-def distance_bin(distances: np.ndarray) -> np.ndarray:
+def _distance_bin(distances: np.ndarray) -> np.ndarray:
     """(N,) int32 bin of (N,) int32 signed distances, units of 0.1 mm."""
     number = distances + np.int32(MAX_DISTANCE / COORDINATE_SCALE)
     number //= np.int32(DISTANCE_BIN / COORDINATE_SCALE)
@@ -222,7 +218,7 @@ class IntensityHistograms:
         level, scanners = to_level(intensity), self.counts.shape[1]
         found = []
         for kind, row in zip(kinds, distances):
-            number = distance_bin(row)
+            number = _distance_bin(row)
             first, bins = int(number.min()), int(np.ptp(number)) + 1
             number -= first
             if scanners > 1:
@@ -378,9 +374,8 @@ class AsphaltTable:
 def is_logarithmic(median: np.ndarray, sigma: np.ndarray, weight: np.ndarray) -> bool:
     """Whether intensities are on a logarithmic scale: asphalt's spread stays the same while its level falls with distance.
 
-    On a linear scale the spread falls with the level, on a logarithmic one it
-    does not: the slope of log(spread) over log(level) is 1 or 0. A scale whose
-    level hardly falls is taken as linear; there both corrections do the same. Our own rule.
+    On a linear scale the spread falls with the level, on a logarithmic one it does not: the slope of log(spread) over log(level) is 1 or 0. A scale
+    whose level hardly falls is taken as linear; there both corrections do the same. Our own rule.
 
     Parameters
     ----------

@@ -1,9 +1,7 @@
 """The beams of a spinning scanner, separated by their elevation angle, and brought to one brightness.
 
-Each laser of such a scanner has its own gain and threshold, so that asphalt
-looks like a pattern of bright and dark arcs. Relative to the scanner a laser
-always points at the same elevation: its points form a ring, and the asphalt of
-each ring shows how bright the laser makes asphalt.
+Each laser of such a scanner has its own gain and threshold, so that asphalt looks like a pattern of bright and dark arcs. Relative to the scanner a
+laser always points at the same elevation: its points form a ring, and the asphalt of each ring shows how bright the laser makes asphalt.
 """
 
 from __future__ import annotations

@@ -117,8 +117,7 @@ MAX_SHARE_WITHOUT_VEHICLE = 0.2   # of the points, whose vehicle position is unk
 class IntensitySettings:
     """How intensity is corrected.
 
-    scale : "automatic" decides between linear and logarithmic by the spread
-        of asphalt; "linear" multiplies, "logarithmic" adds
+    scale : "automatic" decides between linear and logarithmic by the spread of asphalt; "linear" multiplies, "logarithmic" adds
     """
 
     scale: str = "automatic"
@@ -134,10 +133,9 @@ class IntensityReport:
 
     scale : "linear", "logarithmic", or "" where nothing was corrected
     reference : the intensity that asphalt was brought to
-    scanners : a dict per scanner: scanner, points, nearest and farthest (m from the track), asphalt_before,
-        asphalt_after (medians over the distances), fall_before, fall_after (highest
-        over lowest asphalt), spread_before, spread_after (coefficient of variation of
-        asphalt over the distances, %)
+    scanners : a dict per scanner: scanner, points, nearest and farthest (m from the track), asphalt_before, asphalt_after (medians over the
+        distances), fall_before, fall_after (highest over lowest asphalt), spread_before, spread_after (coefficient of variation of asphalt over the
+        distances, %)
     between_before, between_after : highest over lowest scanner's asphalt
     spread_before, spread_after : coefficient of variation of asphalt over distances and scanners, %
     beams : how many beams of spinning scanners were equalised, 0 where there are none

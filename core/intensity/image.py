@@ -81,29 +81,18 @@ class WeightedSums:
             other.weights[place] += self.weights[r0:r1, c0:c1]
 
 
-def reach_of(settings: ImageSettings) -> int:
+def _reach_of(settings: ImageSettings) -> int:
     """Cells that a point reaches beyond its own."""
     return int(np.ceil(settings.radius_cells))
 
 
-def lattice_cell(units: np.ndarray | int, origin: float, cell_size: float) -> Any:
-    """Column or row of the lattice in which coordinates lie.
-
-    Parameters
-    ----------
-    units : (N,) or one, integers of 0.1 mm from `origin`
-    origin : map coordinate, m
-    cell_size : m
-
-    Returns
-    -------
-    whole float64 of the shape of `units`
-    """
+def _lattice_cell(units: np.ndarray | int, origin: float, cell_size: float) -> Any:
+    """Column or row of the lattice in which coordinates lie, whole float64; `units` of 0.1 mm from `origin`, m."""
     return np.floor((units * COORDINATE_SCALE + origin) / cell_size)
 
 
-def interpolation_sums(points: Points, brightness: Callable[[np.ndarray], np.ndarray], origin: np.ndarray, settings: ImageSettings,
-                       step: int = 1) -> WeightedSums:
+def _interpolation_sums(points: Points, brightness: Callable[[np.ndarray], np.ndarray], origin: np.ndarray, settings: ImageSettings,
+                        step: int = 1) -> WeightedSums:
     """Sums of weights and of weighted values per cell.
 
     Parameters
@@ -119,14 +108,13 @@ def interpolation_sums(points: Points, brightness: Callable[[np.ndarray], np.nda
 
     Notes
     -----
-    Points are taken in blocks and sorted by cell. What the points of one cell add to
-    its neighbours is then one row of a matrix product. Weights and sums are in single
-    precision, far finer than intensities are. A cell and a half away or farther, weights are
-    so small that a share of the points gives the same result.
+    Points are taken in blocks and sorted by cell. What the points of one cell add to its neighbours is then one row of a matrix product. Weights
+    and sums are in single precision, far finer than intensities are. A cell and a half away or farther, weights are so small that a share of the
+    points gives the same result.
     """
     x, y, values = points.records["x"], points.records["y"], points.value
-    reach, cell = reach_of(settings), settings.cell_size
-    (left, right), (bottom, top) = ([int(lattice_cell(int(end), o, cell)) for end in (c.min(), c.max())]
+    reach, cell = _reach_of(settings), settings.cell_size
+    (left, right), (bottom, top) = ([int(_lattice_cell(int(end), o, cell)) for end in (c.min(), c.max())]
                                     for c, o in ((x, origin[0]), (y, origin[1])))
     left, top = left - reach, top + reach
     width, height = right + reach + 1 - left, top - (bottom - reach) + 1
@@ -167,7 +155,7 @@ def _in_cell(units, origin, cell_size):
 def _kernels(settings: ImageSettings) -> list[_Kernel]:
     """The thread's own kernels: of all cells around a point, of the nearest nine, and of those beyond."""
     if getattr(_thread, "settings", None) != settings:
-        radius, reach = settings.radius_cells, reach_of(settings)
+        radius, reach = settings.radius_cells, _reach_of(settings)
         offsets = [(right, up) for up in range(-reach, reach + 1) for right in range(-reach, reach + 1)
                    if np.hypot(max(abs(right) - 0.5, 0), max(abs(up) - 0.5, 0)) < radius]
         near = [offset for offset in offsets if max(map(abs, offset)) <= 1]
@@ -413,7 +401,7 @@ def windows_of_image(road_points: RoadPoints, windows: Sequence[tuple[int, int]]
 
 def _look_at(road_points, road, number, settings):
     """What `windows_of_image` returns of one window."""
-    reach = reach_of(settings)
+    reach = _reach_of(settings)
     extents: dict[PieceKey, Extent] = {}
     steps: dict[PieceKey, int] = {}
     values = []
@@ -421,7 +409,7 @@ def _look_at(road_points, road, number, settings):
         points = _points_of(road_points, (road, piece))
         if len(points):
             steps[road, piece] = _sampling_step(points, settings)
-            (c0, c1), (r0, r1) = ([int(lattice_cell(int(end), o, settings.cell_size)) for end in (c.min(), c.max())]
+            (c0, c1), (r0, r1) = ([int(_lattice_cell(int(end), o, settings.cell_size)) for end in (c.min(), c.max())]
                                   for c, o in ((points.records[name], o) for name, o in zip("xy", road_points.origin)))
             extents[road, piece] = c0 - reach, c1 + reach, r0 - reach, r1 + reach
             values.append(points[::max(steps[road, piece], len(points) // MAX_RANKED_POINTS)].value)
@@ -467,15 +455,14 @@ def _sums_of_piece(road_points, piece, step, limits, settings):
         found += np.float32(1.0 - settings.beta)
         return found
 
-    return interpolation_sums(_points_of(road_points, piece), brightness, road_points.origin, settings, step)
+    return _interpolation_sums(_points_of(road_points, piece), brightness, road_points.origin, settings, step)
 
 
 def _with_pieces(work: list[tuple[tuple[int, int], list[PieceKey]]],
                  sums: Callable[[list[PieceKey]], Iterator[WeightedSums]]) -> Iterator[tuple[tuple[int, int], list[WeightedSums]]]:
     """Yield (tile, WeightedSums of its pieces) in order; `sums` are those of pieces, in their order.
 
-    A piece is kept for the tiles that follow soon, and computed again for those that
-    follow late, such as the ones that another road crosses.
+    A piece is kept for the tiles that follow soon, and computed again for those that follow late, such as the ones that another road crosses.
     """
     uses: dict[PieceKey, list[int]] = {}
     for k, (_, pieces) in enumerate(work):

@@ -117,7 +117,7 @@ class TiledImage(IntensityImage):
         for tile in self._tiles.values():
             place, packing = cast(StoredColumn, tile.values)[:2]
             rows.append((tile.column, tile.row, *tile.shape, place, packing.least, sum(packing.widths)))
-        return Recipe("intensity.tiled_image:shared_image", dict(
+        return Recipe("intensity.tiled_image:_shared_image", dict(
             file=str(self._file.path) if self._file else "", tiles=np.array(rows, np.int64).reshape(-1, 7),
             geotransform=[float(number) for number in self.geotransform], width=int(self.width), height=int(self.height), crs=self.crs))
 
@@ -191,7 +191,7 @@ class TiledImage(IntensityImage):
             self._file = None
 
 
-def shared_image(file: str, tiles: np.ndarray, geotransform: list[float], width: int, height: int, crs: str) -> TiledImage:
+def _shared_image(file: str, tiles: np.ndarray, geotransform: list[float], width: int, height: int, crs: str) -> TiledImage:
     """What `TiledImage.recipe` describes: of each tile first column and row, shape, first byte, least value and bytes of a packed value."""
     image, pixels = TiledImage(tuple(geotransform), width, height, crs), ColumnFile(Path(file))
     for column, row, high, wide, place, least, nbytes in tiles.tolist():

@@ -7,7 +7,6 @@ from ..lazy import public
 
 __getattr__, __all__ = public(__name__, {
     "borders": ("BorderLayers",),
-    "cross_sections": ("measure_cross_sections", "RoadSections"),
-    "section_layer": ("sections_to_features",),
-    "settings": ("CrossSectionSettings",),
+    "cross_sections": ("RoadSections", "measure_cross_sections", "sections_to_features"),
+    "settings": ("CrossSectionSettings", "RoadsideSettings"),
 })

@@ -9,7 +9,7 @@ import numpy as np
 import shapely
 
 from ..countries.model import Country
-from ..driving.layers import lanes_from_features
+from ..driving.layers import Lanes
 from ..survey.frame.placement import FrameLines, line_parts, lines_in_frame
 
 if TYPE_CHECKING:
@@ -201,7 +201,7 @@ def _pieces(features, frame, wanted=lambda row: True):
 
 def _lane_borders(features, frame):
     """Both borders of every lane: lines 2 k and 2 k + 1 belong to row k."""
-    lanes = lanes_from_features(features)
+    lanes = Lanes.from_features(features)
     shapes = [shapely.linestrings(border) for k in range(len(lanes)) for border in lanes.borders(k)]
     rows = [dict(lane=lanes.lane[k], type=lanes.type[k], direction=lanes.direction[k]) for k in range(len(lanes))]
     return _Pieces(lines_in_frame(shapes, np.repeat(lanes.road, 2), frame), rows)

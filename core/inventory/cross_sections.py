@@ -3,25 +3,36 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import shapely
 
 from ..common.errors import RoadExtractionError
+from ..common.features import CROSS_SECTIONS, Features
 from ..common.parallel import ordered_map
 from ..common.progress import Progress
 from ..countries.catalogue import country
+from ..countries.model import SectionLimits
 from ..curves.robust import MAD_TO_SIGMA
 from .borders import BorderLayers, RoadBorders, Strip
-from .clearance import HIGHEST_VEHICLE, OVERHEAD_INSIDE, VEHICLE_REACH, clear_height, on_vehicles
-from .height_errors import HeightErrors, overlaps_of, solve_height_errors
 from .settings import CrossSectionSettings
-from .straight_edge import noise_of_largest, rut_depths
-from .surface_grid import CROSS_CELL, SLICE_LENGTH, SurfaceGrid, surface_grid
+from .surface_grid import (
+    CROSS_CELL,
+    SLICE_LENGTH,
+    HeightErrors,
+    SurfaceGrid,
+    noise_of_largest,
+    overlaps_of,
+    rut_depths,
+    solve_height_errors,
+    surface_grid,
+)
 
 if TYPE_CHECKING:
     from ..survey.frame.road_frame import RoadFrame
     from ..survey.open_survey import Survey
+    from ..survey.store.records import Points
 
 STRETCH = 10.0               # m of road about a section from which grade and ruts are measured; shorter where the interval is
 READ_BESIDE = 1.0                 # m beyond the borders that are read too, for the curbs' tops
@@ -34,7 +45,7 @@ AVERAGED_SLICES = (1, 2, 5, 10)  # slices that one profile for rut depths is ave
 QUIET_PROFILE = 0.0015       # m of noise under the straight edge at which no more slices are averaged
 MAX_RUT_CORRECTION = 0.005   # m of noise under the straight edge beyond which a rut depth says nothing
 UNCHECKED_ROLL = np.tan(np.radians(0.05))  # m/m: what boresight and navigation of a mapping system leave, where opposite passes do not tell
-CHECKED_ROLL = 0.0003        # m/m: the same where they do, see height_errors.TILT_SIGMA
+CHECKED_ROLL = 0.0003        # m/m: the same where they do, see surface_grid.TILT_SIGMA
 STEEPEST_MIDDLE = 0.15       # m/m that the carriageway may run askew to the driven line
 LEAST_STRETCHED = 0.3        # m along a strip for each m of station, where a bend is tightest
 
@@ -398,3 +409,176 @@ def _median(values):
     """Median without NaN; NaN where there is nothing else."""
     known = values[np.isfinite(values)]
     return float(np.median(known)) if len(known) else np.nan
+
+
+# The height that is free above a strip of road.
+
+LOWEST_OVERHEAD = 2.3     # m: nothing hangs lower over a carriageway, and most vehicles end below it
+CLEARANCE_CELL = 0.25     # m, of the columns that are looked through
+STANDS_FROM = 0.35        # m above the road: a column with points from here to LOWEST_OVERHEAD stands on the road
+STANDING_REACH = 4        # columns about a standing one that belong to the same thing, as a lorry's roof to its flank
+MIN_OVERHEAD_POINTS = 4   # of a column within OVERHEAD_DEPTH of its lowest point, so that ghosts and birds do not count
+OVERHEAD_DEPTH = 0.15     # m
+MIN_OVERHEAD_COLUMNS = 2  # that must agree
+OVERHEAD_INSIDE = 0.15             # m by which the strip is narrowed: a pole beside the road is not above it
+HIGHEST_VEHICLE = 4.5     # m: 4.0 to 4.3 m are allowed (EU directive 96/53/EC, Japan, China, United States), and loads lie a little higher
+BROADEST_VEHICLE = 3.2    # m: 2.6 m are allowed, and mirrors stand out
+VEHICLE_REACH = 25.0      # m along the road over which what drives may be seen, drawn out by its own motion
+VEHICLE_CELL = 0.25       # m, of the cells that tell what hangs together
+LINKED_CELLS = 2, 1, 1    # cells along, across and up by which the points of one thing may lie apart, on either side
+
+
+def clear_height(points: Points, h: np.ndarray, right: float, left: float) -> float | None:
+    """Height of the lowest thing above a strip.
+
+    Parameters
+    ----------
+    points : (N,) Points of a stretch of road
+    h : (N,) m, heights above the surface
+    right, left : m, offsets of the strip's borders
+
+    Returns
+    -------
+    m; None where nothing was seen above it
+    """
+    d = points.d
+    near = np.flatnonzero((d > right + OVERHEAD_INSIDE) & (d < left - OVERHEAD_INSIDE) & (h > STANDS_FROM))
+    if not len(near):
+        return None
+    s, d, h = points.s[near], d[near], h[near]
+    i, j = (np.floor(v / CLEARANCE_CELL).astype(np.int64) for v in (s - s.min(), d - right))
+    shape = int(i.max()) + 1, int(j.max()) + 1
+    standing = np.zeros(shape, bool)
+    low = h < LOWEST_OVERHEAD
+    standing[i[low], j[low]] = True
+    reach = np.ones((2 * STANDING_REACH + 1,) * 2)
+    if standing.any():
+        from scipy.ndimage import binary_dilation
+
+        standing = binary_dilation(standing, reach)
+    free = ~low & ~standing[i, j]
+    if not free.any():
+        return None
+    place, h = (i * shape[1] + j)[free], h[free]
+    order = np.lexsort((h, place))
+    place, h = place[order], h[order]
+    first = np.flatnonzero(np.r_[True, np.diff(place) > 0])
+    last = np.r_[first[1:], len(place)] - 1
+    needed = first + MIN_OVERHEAD_POINTS - 1
+    lowest = h[first]
+    solid = needed <= last
+    solid[solid] = h[needed[solid]] - lowest[solid] < OVERHEAD_DEPTH
+    lowest = np.sort(lowest[solid])
+    return float(lowest[MIN_OVERHEAD_COLUMNS - 1]) if len(lowest) >= MIN_OVERHEAD_COLUMNS else None
+
+
+def on_vehicles(s: np.ndarray, d: np.ndarray, h: np.ndarray) -> np.ndarray:
+    """Which points belong to what stands or drives on the road.
+
+    A vehicle that moves beside the scanner is drawn out, and in places only the upper part of its flank was seen. What hangs together from below
+    LOWEST_OVERHEAD and is neither higher nor broader than vehicles may be is taken for one; a deck on a pier is not, for it is broader.
+
+    Parameters
+    ----------
+    s, d, h : (N,) m, stations, offsets within the carriageway, and heights above its surface, VEHICLE_REACH beyond the stretch that is asked for
+
+    Returns
+    -------
+    (N,) bool
+    """
+    from scipy.ndimage import binary_dilation, find_objects, label
+
+    found = np.zeros(len(s), bool)
+    standing = np.flatnonzero(h > STANDS_FROM)
+    if not len(standing):
+        return found
+    s, d, h = s[standing], d[standing], h[standing]
+    cells = tuple(np.floor((v - v.min()) / VEHICLE_CELL).astype(np.int64) for v in (s, d, h))
+    filled = np.zeros([int(c.max()) + 1 for c in cells], bool)
+    filled[cells] = True
+    groups, count = label(binary_dilation(filled, np.ones([2 * reach + 1 for reach in LINKED_CELLS])), np.ones((3, 3, 3)))
+    group = groups[cells]
+    lowest, highest = np.full(count + 1, np.inf), np.full(count + 1, -np.inf)
+    np.minimum.at(lowest, group, h)
+    np.maximum.at(highest, group, h)
+    breadth = np.array([0.0, *((across.stop - across.start - 2 * LINKED_CELLS[1]) * VEHICLE_CELL for _, across, _ in find_objects(groups))])
+    vehicle = (lowest < LOWEST_OVERHEAD) & (highest < HIGHEST_VEHICLE) & (breadth < BROADEST_VEHICLE)
+    found[standing] = vehicle[group]
+    return found
+
+
+# Cross-sections as a layer of lines, one for every lane and carriageway, and as a table.
+
+LINE_TOLERANCE = 0.003   # m of height to which the drawn profile is simplified
+MIN_SECTION_VERTICES = 2
+
+
+def sections_to_features(sections: RoadSections) -> tuple[Features, Features]:
+    """The layer CROSS_SECTIONS, and its rows as a table.
+
+    Parameters
+    ----------
+    sections : RoadSections
+
+    Returns
+    -------
+    lines : Features of lines with Z from the left border to the right one, one row for every carriageway and lane of every section;
+        a strip whose surface was not seen is drawn straight between the heights known
+    table : the same rows without geometry
+    """
+    lines, table = Features("LineStringZ", CROSS_SECTIONS, crs=sections.crs), Features("None", CROSS_SECTIONS, crs=sections.crs)
+    limits = sections.settings.limits()
+    for number, section in enumerate(sections.sections):
+        for part in section.parts:
+            row = _row(number, section, part, limits)
+            lines.add(_line(section, part, sections.frame), **row)
+            table.add(None, **row)
+    return lines, table
+
+
+def exceeded(part: StripMeasures, width: float, limits: SectionLimits) -> list[str]:
+    """Names of the limits that a lane or carriageway does not keep, in a fixed order.
+
+    Crossfall and width are judged of driving lanes, the grade and the clearance of everything.
+    """
+    driven = part.strip.lane > 0 and part.strip.type == "driving"
+    fall = abs(100 * part.crossfall)
+    checks = (
+        ("rut", driven and _above(1000 * np.fmax(*part.ruts), limits.max_rut)),
+        ("crossfall", driven and (_above(fall, limits.max_crossfall) or _below(fall, limits.min_crossfall))),
+        ("grade", _above(abs(100 * part.grade), limits.max_grade)),
+        ("width", driven and part.strip.borders != "track" and _below(width, limits.min_width)),
+        ("clearance", _below(part.clearance, limits.min_clearance)),
+    )
+    return [name for name, over in checks if over]
+
+
+def _above(value, limit):
+    return bool(limit is not None and value > limit)
+
+
+def _below(value, limit):
+    return bool(limit is not None and value < limit)
+
+
+def _row(number: int, section: RoadSection, part: StripMeasures, limits: SectionLimits) -> dict[str, Any]:
+    strip = part.strip
+    width = strip.width / float(np.hypot(1.0, section.heading))
+    return dict(
+        road=section.road, section=number + 1, station_m=section.station, part="lane" if strip.lane else "carriageway",
+        lane=strip.lane or None, type=strip.type, direction=strip.direction, offset_m=0.5 * (strip.left + strip.right), width_m=width,
+        borders=strip.borders, crossf_pct=100 * part.crossfall, crossf_sig=100 * part.crossfall_sigma, grade_pct=100 * part.grade,
+        rut_l_mm=1000 * part.ruts[1], rut_r_mm=1000 * part.ruts[0], curb_l_m=part.curbs[1], curb_r_m=part.curbs[0], clear_m=part.clearance,
+        seen_pct=100 * part.seen, exceeds=", ".join(exceeded(part, width, limits)) or None)
+
+
+def _line(section, part, frame):
+    """The measured profile between the borders of a strip, from left to right."""
+    known = np.isfinite(section.z)
+    inside = known & (section.d > part.strip.right) & (section.d < part.strip.left)
+    d = np.r_[part.strip.right, section.d[inside], part.strip.left]
+    z = np.interp(d, section.d[known], section.z[known])
+    if len(d) > MIN_SECTION_VERTICES:
+        d, z = shapely.get_coordinates(shapely.simplify(shapely.linestrings(np.c_[d, z]), LINE_TOLERANCE)).T
+    places = frame.to_map(section.road, np.full(len(d), section.station), d, z)
+    return shapely.linestrings(np.stack(places, axis=1)[::-1])

@@ -67,8 +67,6 @@ STYLES = (NumberStyle("."), NumberStyle(","), NumberStyle(".", "'"), NumberStyle
 class NumberTable:
     """A table of numbers.
 
-    Attributes
-    ----------
     values : (N, K) float64, NaN where a field is not a number
     preamble : the lines above the numbers, header included, top down
     first_row : the fields of the first row as they are written
@@ -98,10 +96,6 @@ def read_number_table(path: str | os.PathLike[str]) -> NumberTable:
     Parameters
     ----------
     path : of the file, in UTF-8, UTF-16 or an encoding that shares the characters of ASCII
-
-    Returns
-    -------
-    NumberTable
 
     Raises
     ------

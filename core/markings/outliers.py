@@ -62,9 +62,6 @@ def remove_outliers(points: RoadPoints, settings: OutlierSettings = OutlierSetti
 
     Parameters
     ----------
-    points : RoadPoints
-    settings : OutlierSettings
-    progress : Progress
     executor : who looks at windows
 
     Returns
@@ -125,9 +122,7 @@ def kept_of_windows(source: NoSource, windows: Sequence[tuple[int, Sequence[np.n
 
     Parameters
     ----------
-    source : NoSource
     windows : number of each and the columns s, d, x, y, z (0.1 mm) of its points and those about it
-    settings : OutlierSettings
 
     Returns
     -------

@@ -104,7 +104,7 @@ class PieceOfRoad:
 
 def cells_of_road(road_points: RoadPoints, road: int, first: int, last: int, step: int = 1) -> list[PieceOfRoad]:
     """[PieceOfRoad] of the rows from `first` to before `last`."""
-    return [PieceOfRoad.of(points, begin, end, step) for begin, end, points in road_pieces(road_points, road, first, last)]
+    return [PieceOfRoad.of(points, begin, end, step) for begin, end, points in _road_pieces(road_points, road, first, last)]
 
 
 @dataclass(frozen=True)
@@ -141,7 +141,7 @@ class RoadCells:
         return cls(RoadGrid(first, last, low + begin, low + end), np.ascontiguousarray(occupied[:, begin:end]), half_width)
 
 
-def road_pieces(road_points: RoadPoints, road: int, first: int, last: int) -> Iterator[tuple[int, int, Points]]:
+def _road_pieces(road_points: RoadPoints, road: int, first: int, last: int) -> Iterator[tuple[int, int, Points]]:
     """Yield (first row, end, Points) of the rows of cells from `first` to before `last`, in order; those without points are left out."""
     cuts = [first, *range((first // ROWS_PER_PIECE + 1) * ROWS_PER_PIECE, last, ROWS_PER_PIECE), last]
     for begin, end in zip(cuts[:-1], cuts[1:]):
@@ -215,9 +215,8 @@ def components(cells: np.ndarray, places: np.ndarray, size: tuple[float, float],
 
     Notes
     -----
-    Exact, and without measuring every pair: where places of cells that touch are
-    near enough wherever they lie, an image of the cells gives the patches that
-    are connected, and pairs are measured between patches only.
+    Exact, and without measuring every pair: where places of cells that touch are near enough wherever they lie, an image of the cells gives the
+    patches that are connected, and pairs are measured between patches only.
     """
     if not len(cells):
         return np.empty(0, np.int32)

@@ -8,11 +8,9 @@ In: an image and ground control points. Out: a polynomial, its residuals, and th
 from ..lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "control_point_file": ("read_control_points",),
-    "control_points": ("ControlPoints",),
+    "control_points": ("ControlPoints", "read_control_points"),
     "georeference": ("GeoreferenceSettings", "Georeferencing", "residual_vectors"),
-    "position_tags": ("PositionTags", "read_position_tags"),
-    "rough_place": ("RoughPlace",),
+    "rough_place": ("PositionTags", "RoughPlace", "read_position_tags"),
     "source_image": ("SourceImage", "open_image"),
     "warp": ("draw_image",),
 })

@@ -181,9 +181,9 @@ def residual_vectors(found: Georeferencing) -> Features:
     for k in range(len(points)):
         end = np.array([points.easting[k], points.northing[k]])
         start = end - errors[k]
-        layer.add(LineString([(*start, heights[k]), (*end, heights[k])]), point=points.names[k], role=str(points.roles[k]),
-                  pixel=float(points.pixel[k]), line=float(points.line[k]), dx_m=float(errors[k, 0]), dy_m=float(errors[k, 1]),
-                  resid_m=float(np.hypot(*errors[k])), loo_m=float(np.hypot(*found.left_out[k])), leverage=float(leverage[k]))
+        layer.add(LineString([(*start, heights[k]), (*end, heights[k])]), point=points.names[k], role=points.roles[k],
+                  pixel=points.pixel[k], line=points.line[k], dx_m=errors[k, 0], dy_m=errors[k, 1], resid_m=np.hypot(*errors[k]),
+                  loo_m=np.hypot(*found.left_out[k]), leverage=leverage[k])
     return layer
 
 

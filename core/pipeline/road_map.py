@@ -19,22 +19,18 @@ from ..common.features import Features
 from ..common.layer_rows import LayerRows
 from ..common.parallel import trim_heap
 from ..common.progress import Progress
+from ..corrections.apply import correct_edges, correct_marking_lines, correct_markings
 from ..corrections.corrections import Corrections, corrections_from_features
-from ..corrections.edges import correct_edges
 from ..corrections.lanes import correct_lanes
-from ..corrections.markings import correct_marking_lines, correct_markings
 from ..countries.catalogue import country
 from ..driving.driving_lines import DrivingSettings, make_driving_lines
-from ..driving.layers import curve_elements_to_features, driving_lines_to_features, lanes_to_features
 from ..execution.choice import ExecutionSettings
 from ..intensity.correction import IntensitySettings, correct_intensity
 from ..intensity.image import ImageSettings, check_fits, make_intensity_image
 from ..io.crs import check_projected
 from ..io.geotiff import IntensityImage
 from ..markings.lines.fit import MarkingLineSettings, fit_marking_lines, named_by_estimate, named_by_lines
-from ..markings.lines.painted_lines import lines_to_features
 from ..markings.objects.cluster import ClusterSettings, cluster_markings
-from ..markings.objects.marking_objects import markings_to_features
 from ..markings.outliers import OutlierSettings, remove_outliers
 from ..markings.paint.extract import extract_markings
 from ..markings.paint.settings import MarkingSettings
@@ -256,7 +252,7 @@ def _paint(result, image_path, settings, stages, executor):
         lines = named_by_estimate(corrected, frame, country(settings.lines.country).usual_lane, markings, edges, result.road_points, clustered,
                                   taken=taken)
     markings = named_by_lines(markings, lines)
-    result.markings, result.marking_lines = markings_to_features(markings, frame), lines_to_features(lines, frame)
+    result.markings, result.marking_lines = markings.to_features(frame), lines.to_features(frame)
     paint = Points(columns_of_roads(clustered.store, clustered.roads()))
     result.marking_curvature = marking_curvature(paint, result.marking_lines.geometries, frame.origin)
     driving, elements, lanes = stages.run(
@@ -265,8 +261,8 @@ def _paint(result, image_path, settings, stages, executor):
     executor.release()
     driving, elements, lanes = correct_lanes(driving, elements, lanes, frame, result.corrections,
                                              settings.driving.lane_width or country(settings.driving.country).usual_lane, known)
-    result.driving_lines, result.curve_elements = driving_lines_to_features(driving, frame), curve_elements_to_features(elements, frame)
-    result.lanes = lanes_to_features(lanes, frame.origin)
+    result.driving_lines, result.curve_elements = driving.to_features(frame), elements.to_features(frame)
+    result.lanes = lanes.to_features(frame)
     if not len(result.markings):
         result.without_paint = "No paint was found on this road, so there are no marking lines and no driving lines."
         stages.progress.warn(result.without_paint)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..overlay.position_tags import FULL_FRAME_DIAGONAL
+from ..overlay.rough_place import FULL_FRAME_DIAGONAL
 from .camera import GROUND_PIXEL, Camera
 
 FOCAL_LENGTH = 24.0          # mm, converted to 35 mm film: a wide-angle lens, as drones carry

@@ -159,8 +159,8 @@ def uav_control_points(survey: SampleSurvey) -> Features:
     checks = set(order[[k < len(x) - len(laid) for k in order]][::_EVERY_CHECK].tolist())
     for number, k in enumerate(order, 1):
         place = np.array([x[k] + surveyed[0, k], y[k] + surveyed[1, k], z[k]]) + origin
-        layer.add(Point(place), point=str(number), role="check" if k in checks else "control",
-                  pixel=float(pixel[k] + pointed[0, k]), line=float(line[k] + pointed[1, k]), kind=kinds[k])
+        layer.add(Point(place), point=number, role="check" if k in checks else "control",
+                  pixel=pixel[k] + pointed[0, k], line=line[k] + pointed[1, k], kind=kinds[k])
     return layer
 
 class StreetColours:

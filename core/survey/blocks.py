@@ -11,17 +11,16 @@ import numpy as np
 
 from ..common.parallel import ScratchBuffers
 from .frame.projection import POINTS_PER_PROJECTION, RoadProjection
+from .frame.road_frame import RoadFrame
 from .las.point_fields import EVER, IntensitySource, LasAxis, flagged, times_by_value, valid_points
 from .las.samples import TimeSlots
 from .store.columns import Columns
 from .store.records import COORDINATE_SCALE, SURVEY_POINT, beside_road, fill_units, point_dtype, road_of, to_units
+from .store.section_store import PartitionedPoints, SectionStore
 from .trajectory.time_systems import SECONDS_PER_WEEK
 
 if TYPE_CHECKING:
     import laspy
-
-    from .frame.road_frame import RoadFrame
-    from .store.section_store import PartitionedPoints, SectionStore
 
 DECODED_LAYERS = ("z", "intensity", "point_source_id", "gps_time", "flags", "classification")  # LAZ layers that are decoded
 KEPT_ABOVE_ROAD, KEPT_BELOW_ROAD = 3.5, 4.0  # m: vehicles that hide a curb above the road, ditches below it
@@ -89,7 +88,6 @@ class HeightFilter:
 
     Parameters
     ----------
-    frame : RoadFrame
     drop : metres from the trajectory down to the road
     above : metres above the road up to which points are kept
     """
@@ -154,13 +152,7 @@ class PointChoice:
 
 
 class BlockProjector:
-    """Turns blocks into compact records in the road frame; safe to use in several threads.
-
-    Parameters
-    ----------
-    frame : RoadFrame
-    choice : PointChoice
-    """
+    """Turns blocks into compact records in the road frame; safe to use in several threads."""
 
     def __init__(self, frame: RoadFrame, choice: PointChoice):
         self.frame, self.choice, self.corridor, self.has_time = frame, choice, choice.corridor, choice.has_time
@@ -341,8 +333,6 @@ class BlockReader:
 
     Parameters
     ----------
-    frame : RoadFrame
-    choice : PointChoice
     slots : TimeSlots of the points that are sampled
     """
 
@@ -408,12 +398,7 @@ HEIGHT_PEAK_REACH = 0.5           # m either side of the peak that belong to the
 
 
 class VehicleTracks:
-    """The tracks of the vehicle in the road frame, to find the points that lie on them.
-
-    Parameters
-    ----------
-    frame : RoadFrame
-    """
+    """The tracks of the vehicle in the road frame, to find the points that lie on them."""
 
     def __init__(self, frame: RoadFrame):
         self.frame = frame
@@ -431,7 +416,6 @@ class VehicleTracks:
         Parameters
         ----------
         road : number
-        points : Columns
         own : (N,) bool, points to use; all by default
 
         Yields

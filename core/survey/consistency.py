@@ -9,18 +9,15 @@ as a road on which its vehicle cannot have driven.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..common.errors import RoadExtractionError
+from ..common.features import Features
 from .adjustment.trajectory_fit import LOWEST_SENSOR
 from .estimation.poses import HEIGHT_RANGE_ABOVE
-
-if TYPE_CHECKING:
-    from ..common.features import Features
-    from .frame.road_frame import RoadFrame
-    from .store.road_points import RoadPoints
+from .frame.road_frame import RoadFrame
+from .store.road_points import RoadPoints
 
 STATION_TOLERANCE = 1.0    # m: far more than rounding, far less than the shift of another drive
 OFFSET_TOLERANCE = 1.0     # m: more than passes are moved by onto each other, less than a trajectory is moved by to its scanners (HALF_VEHICLE)
@@ -35,7 +32,6 @@ def check_features_on_roads(features: Features, frame: RoadFrame, label: str) ->
     Parameters
     ----------
     features : Features with the fields `road` and `station_m`, and maybe `offset_m`
-    frame : RoadFrame
     label : name of the input, as at the beginning of a sentence
 
     Raises
@@ -67,7 +63,6 @@ def keep_near_roads(features: Features, frame: RoadFrame, label: str) -> str:
     Parameters
     ----------
     features : Features in map coordinates, which are changed: points and polygons go whole, of lines the vertices far away
-    frame : RoadFrame
     label : name of the input, as at the beginning of a sentence
 
     Returns
@@ -107,8 +102,6 @@ def check_road_points_on_roads(road_points: RoadPoints, frame: RoadFrame, label:
 
     Parameters
     ----------
-    road_points : RoadPoints
-    frame : RoadFrame
     label : name of the input, as at the beginning of a sentence
 
     Raises

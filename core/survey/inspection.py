@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -23,14 +23,11 @@ from .las.point_fields import INTENSITY_SOURCES, ScannerCensus, intensity_source
 from .las.reader import POINTS_PER_BLOCK, read_blocks, read_headers
 from .las.samples import PER_METRE, coarse_coordinates, distinct_rows, may_overlap, sample_files, without_copies
 from .open_survey import match_clocks
+from .store.records import Points
+from .store.road_points import RoadPoints
 from .store.section_store import STRETCH_POINTS, Stretch
-from .survey import SurveySettings
+from .survey import Survey, SurveySettings
 from .trajectory.trajectory import Trajectory, clean_trajectory, reproject_trajectory
-
-if TYPE_CHECKING:
-    from .store.records import Points
-    from .store.road_points import RoadPoints
-    from .survey import Survey
 
 NEAR_TRAJECTORY = 25.0        # m: points within this distance count as measured from the trajectory
 SAMPLING_INTERVAL = 50       # the distance to the trajectory is measured for every 50th point
@@ -97,9 +94,7 @@ def inspect_survey(paths: Sequence[str | Path], trajectory: Trajectory | None = 
     ----------
     paths : LAS, LAZ or COPC files
     trajectory : Trajectory in any known CRS and time system, or None
-    settings : InspectionSettings
     crs : WKT for clouds that carry none
-    progress : Progress
 
     Returns
     -------
@@ -197,7 +192,7 @@ class _Counter:
         if self.sampled:
             found.near_share = self.near / self.sampled
         if self.near:
-            found.drive = inspect_drive(self.trajectory, *(np.concatenate(parts) for parts in zip(*self.on_track)))
+            found.drive = _inspect_drive(self.trajectory, *(np.concatenate(parts) for parts in zip(*self.on_track)))
         if self.copy_samples:
             time, place = (np.concatenate(column) for column in zip(*self.copy_samples))
             if share := 1 - len(distinct_rows(time, place)) / max(len(time), 1):
@@ -329,17 +324,11 @@ class InspectedDrive:
     profile: np.ndarray
 
 
-def inspect_drive(trajectory: Trajectory, rows: np.ndarray, heights: np.ndarray) -> InspectedDrive:
+def _inspect_drive(trajectory: Trajectory, rows: np.ndarray, heights: np.ndarray) -> InspectedDrive:
     """Roads, passes and sensor height of a trajectory.
 
-    Parameters
-    ----------
     trajectory : Trajectory, cleaned and in the clouds' CRS
     rows, heights : (N,) of points on the track of the vehicle: the nearest trajectory row and the map height in m
-
-    Returns
-    -------
-    InspectedDrive
     """
     frame = build_frame(trajectory)
     passes = [(p.number, p.road, p.direction, *(p.span if p.direction > 0 else p.span[::-1]), float(p.time[0]), float(p.time[-1]))
@@ -395,11 +384,6 @@ def cube_density(sections: Iterable[Any], points_of: Callable[[Any], Points] = l
     ----------
     sections : one entry per section of road
     points_of : function of an entry that returns its Points
-    progress : Progress
-
-    Returns
-    -------
-    CubeDensity
     """
     return _density_of_parts(ordered_map(lambda section: _counted(points_of(section))[0], sections, progress))
 
@@ -410,7 +394,6 @@ def cube_densities(road_points: RoadPoints, progress: Progress = Progress()) -> 
     Parameters
     ----------
     road_points : RoadPoints of a survey, `RoadPoints.subset_of`
-    progress : Progress
     """
     survey: Survey = road_points.survey
     length: float = survey.store.section_length
@@ -482,7 +465,6 @@ def write_density(found: Inspection, path: str | Path) -> None:
 
     Parameters
     ----------
-    found : Inspection
     path : of the .tif
     """
     from osgeo import gdal

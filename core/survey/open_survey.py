@@ -7,7 +7,6 @@ import shutil
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -23,7 +22,7 @@ from .adjustment.scanner_fit import lay_scanners
 from .adjustment.trajectory_fit import LOWEST_SENSOR, fitted_trajectory
 from .blocks import PointChoice, unwrap_week
 from .frame.road import CORRIDOR
-from .frame.road_frame import build_frame
+from .frame.road_frame import RoadFrame, build_frame
 from .frame.row_table import SigmaAlong
 from .las.parallel_reader import ParallelCloudReader
 from .las.point_fields import check_coloured, intensity_source_of, without_intensity
@@ -36,11 +35,7 @@ from .survey import SURVEY_FOLDER, Survey, SurveySettings, survey_in_folder
 from .survey_reader import SurveyReader
 from .trajectory.meaning import EARTH_RADIUS
 from .trajectory.time_systems import align_time, wrapped_week
-from .trajectory.trajectory import refuse_standstill, reproject_trajectory
-
-if TYPE_CHECKING:
-    from .frame.road_frame import RoadFrame
-    from .trajectory.trajectory import Trajectory
+from .trajectory.trajectory import Trajectory, refuse_standstill, reproject_trajectory
 
 
 def open_survey(paths: Sequence[str | Path], trajectory: Trajectory, settings: SurveySettings = SurveySettings(),
@@ -179,13 +174,7 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     ----------
     files : headers of LAS, LAZ or COPC files in any order
     trajectory : Trajectory in any CRS and time system
-    settings : SurveySettings
-    progress : Progress
     shared : who reads, where the points are to lie in a folder; None for threads of this process and its memory
-
-    Returns
-    -------
-    Survey
 
     Raises
     ------
@@ -195,12 +184,7 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     """
     if settings.intensity_from == "rgb":
         check_coloured(files)
-    crs = check_projected(files, settings.crs, trajectory.crs)
-    if note := crs_note(files, settings.crs, crs):
-        progress.warn(note)
-    if not (units := as_in_file(crs)[1]).metric:
-        progress.info(f"The survey is in {crs_name(crs)}. It is worked on in metres (x and y times {units.across:.9g}, heights times "
-                      f"{units.up:.9g}), and the results are written in its own CRS.")
+    crs = _metric_crs(files, trajectory, settings, progress)
     trajectory = reproject_trajectory(trajectory, crs)
     refuse_standstill(trajectory)
     trajectory, time_note, has_time, week_ends = match_clocks(files, trajectory, settings, progress)
@@ -208,18 +192,7 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
         progress.info(time_note)
     fitted = fitted_trajectory(files, trajectory, settings.scanner_field, progress)
     trajectory = fitted.trajectory
-    frame = build_frame(trajectory)
-    frame.crs = crs
-    frame.has_time = has_time
-    for note in frame.notes:
-        progress.info(note)
-    for doubt in trajectory.doubts:
-        progress.warn(doubt)
-    if not has_time and len(frame.passes) > len(frame.roads):
-        progress.warn(f"The trajectory drives {len(frame.passes)} times over {len(frame.roads)} road(s), and as {_without_time(files, trajectory)} "
-                      "the passes are mixed: whatever they differ by blurs the map. Export points and trajectory with their time, or process "
-                      "the files of each drive with its own part of the trajectory.")
-    _check_extent(files, frame, crs, trajectory.crs)
+    frame = _frame_of(files, trajectory, crs, has_time, progress)
     samples = sample_files(files)
     intensity, intensity_note = intensity_source_of(samples, settings.intensity_from)
     coarse_note, rounding = coarse_coordinates(samples)
@@ -236,30 +209,10 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     else:
         shared.points.mkdir(exist_ok=True)
         reader.read_in_parts(files, settings.block, shared.reading, progress.part(0.0, PARTS_PROGRESS * read_at))
-    total = sum(file.count for file in files)
-    if not store.count:
-        raise RoadExtractionError(_no_overlap(files, frame, reader, settings.corridor))
-    if reader.excluded:
-        progress.info(f"{reader.excluded:,} of {total:,} points were left out: they are withheld or classified as noise (LAS classes 7 and 18).")
-    if reader.unplaced_time:
-        progress.warn(f"{reader.unplaced_time:,} of {total:,} points were left out: their gps_time is missing or lies outside the "
-                      "trajectory's.")
-    if reader.uneven:
-        progress.warn("The trajectory does not keep to one height above the road: half of the points under the vehicle lie more than "
-                      f"{reader.uneven[0]:.2f} m off {reader.uneven[1]:.2f} m below it, and curbs are missed for that. Its heights may be in feet "
-                      "where the cloud's are in metres, or not be those that the cloud was made with: export both anew from one solution.")
+    _say_left_out(files, frame, reader, settings, progress)
     height = float(np.mean(list(reader.heights.values())))
-    if abs(height) < LOWEST_SENSOR:
-        raise RoadExtractionError(
-            f"The trajectory lies {height:.2f} m above the road; a scanner rides at least {LOWEST_SENSOR} m above it. "
-            "It seems to be a line on the road, such as a driving line of a map, and not where the scanner was: choose the "
-            "trajectory that the navigation system recorded. If it is that of the vehicle's wheels, add the height of the scanner to its heights.")
-    if feet := unit_note(height, crs):
-        progress.warn(feet)
-    elif not fitted.seen and not reader.uneven and not 0.0 < height < HIGHEST_SENSOR:
-        progress.warn(f"The trajectory lies {abs(height):.1f} m {'above' if height > 0 else 'below'} the road; scanners ride up to "
-                      f"{HIGHEST_SENSOR:g} m above it. Heights of cloud and trajectory seem to be of two kinds (above the ellipsoid and above sea "
-                      "level), in feet, or upside down. Export both anew with one kind of heights in metres.")
+    feet = _check_height(height, crs, fitted.seen or reader.uneven, progress)
+    total = sum(file.count for file in files)
     scanner_field, scanners = reader.census.choose(settings.scanner_field)
     survey = Survey(files, frame, store, crs, reader.heights, scanner_field, scanners,
                     reader.brightest > reader.darkest, has_time,
@@ -279,19 +232,12 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
         shared.ordered.mkdir(exist_ok=True)
         survey.put_in_order(shared.ordered, shared.ordering, progress.part(PARTS_PROGRESS * read_at, read_at))
     if has_time and not feet:   # a scanner that rides three times too high sees three times too far
-        check_clock(survey, progress)
+        _check_clock(survey, progress)
     measured = survey.store
-    mounted = lay_scanners(survey, progress.part(read_at, read_at), None if shared is None else shared.points) if has_time and not feet else 0.0
+    mounted = lay_scanners(survey, progress.part(read_at, read_at), shared.points if shared else None) if has_time and not feet else 0.0
     if again:
-        adjust_passes(survey, progress.part(INGEST_PROGRESS, 1.0), None if shared is None else shared.points)
-    if shared is not None and survey.store is not measured:
-        for file in shared.ordered.iterdir():
-            file.unlink()
-        survey.put_in_order(shared.ordered, shared.ordering, progress.part(1.0, 1.0))
-    for said in said_of_levels(survey.frame) if len(frame.roads) > 1 else ():
-        progress.warn(said)
-    if settings.fit_passes and has_time and len(frame.roads) > 1:
-        compare_carriageways(survey, progress.part(1.0, 1.0))
+        adjust_passes(survey, progress.part(INGEST_PROGRESS, 1.0), shared.points if shared else None)
+    _see_passes(survey, settings.fit_passes, measured, shared, progress)
     # what the user says overrules what lies beside the trajectory
     if across := max(settings.trajectory_sigma or trajectory.sigma_across, float(np.hypot(fitted.sigma, rounding)), mounted):
         # what passes differ by is part of the same error
@@ -302,6 +248,79 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     return survey
 
 
+def _metric_crs(files, trajectory, settings, progress):
+    """WKT of the survey's CRS in metres, and a word on what is not as the files say."""
+    crs = check_projected(files, settings.crs, trajectory.crs)
+    if note := crs_note(files, settings.crs, crs):
+        progress.warn(note)
+    if not (units := as_in_file(crs)[1]).metric:
+        progress.info(f"The survey is in {crs_name(crs)}. It is worked on in metres (x and y times {units.across:.9g}, heights times "
+                      f"{units.up:.9g}), and the results are written in its own CRS.")
+    return crs
+
+
+def _frame_of(files, trajectory, crs, has_time, progress):
+    """The road frame of a trajectory, which the clouds must lie at."""
+    frame = build_frame(trajectory)
+    frame.crs = crs
+    frame.has_time = has_time
+    for note in frame.notes:
+        progress.info(note)
+    for doubt in trajectory.doubts:
+        progress.warn(doubt)
+    if not has_time and len(frame.passes) > len(frame.roads):
+        progress.warn(f"The trajectory drives {len(frame.passes)} times over {len(frame.roads)} road(s), and as {_without_time(files, trajectory)} "
+                      "the passes are mixed: whatever they differ by blurs the map. Export points and trajectory with their time, or process "
+                      "the files of each drive with its own part of the trajectory.")
+    _check_extent(files, frame, crs, trajectory.crs)
+    return frame
+
+
+def _say_left_out(files, frame, reader, settings, progress):
+    """Refuse clouds that do not lie at the road, and tell of points that were not taken and of heights that change."""
+    total = sum(file.count for file in files)
+    if not reader.store.count:
+        raise RoadExtractionError(_no_overlap(files, frame, reader, settings.corridor))
+    if reader.excluded:
+        progress.info(f"{reader.excluded:,} of {total:,} points were left out: they are withheld or classified as noise (LAS classes 7 and 18).")
+    if reader.unplaced_time:
+        progress.warn(f"{reader.unplaced_time:,} of {total:,} points were left out: their gps_time is missing or lies outside the "
+                      "trajectory's.")
+    if reader.uneven:
+        progress.warn("The trajectory does not keep to one height above the road: half of the points under the vehicle lie more than "
+                      f"{reader.uneven[0]:.2f} m off {reader.uneven[1]:.2f} m below it, and curbs are missed for that. Its heights may be in feet "
+                      "where the cloud's are in metres, or not be those that the cloud was made with: export both anew from one solution.")
+
+
+def _check_height(height, crs, explained, progress):
+    """Refuse or doubt a trajectory by its height above the road, m; a word where that is in feet, otherwise ""."""
+    if abs(height) < LOWEST_SENSOR:
+        raise RoadExtractionError(
+            f"The trajectory lies {height:.2f} m above the road; a scanner rides at least {LOWEST_SENSOR} m above it. "
+            "It seems to be a line on the road, such as a driving line of a map, and not where the scanner was: choose the "
+            "trajectory that the navigation system recorded. If it is that of the vehicle's wheels, add the height of the scanner to its heights.")
+    if feet := unit_note(height, crs):
+        progress.warn(feet)
+    elif not explained and not 0.0 < height < HIGHEST_SENSOR:
+        progress.warn(f"The trajectory lies {abs(height):.1f} m {'above' if height > 0 else 'below'} the road; scanners ride up to "
+                      f"{HIGHEST_SENSOR:g} m above it. Heights of cloud and trajectory seem to be of two kinds (above the ellipsoid and above sea "
+                      "level), in feet, or upside down. Export both anew with one kind of heights in metres.")
+    return feet
+
+
+def _see_passes(survey, fit_passes, measured, shared, progress):
+    """Put points that were moved since they were measured in order, and tell where roads and carriageways do not fit each other."""
+    if shared is not None and survey.store is not measured:
+        for file in shared.ordered.iterdir():
+            file.unlink()
+        survey.put_in_order(shared.ordered, shared.ordering, progress.part(1.0, 1.0))
+    if len(survey.frame.roads) > 1:
+        for said in said_of_levels(survey.frame):
+            progress.warn(said)
+        if fit_passes and survey.has_time:
+            compare_carriageways(survey, progress.part(1.0, 1.0))
+
+
 def section_length(files: list[CloudHeader], frame: RoadFrame) -> float:
     """Metres of station in a section of the store: the longest of SECTION_LENGTHS that holds up to SECTION_POINTS, or the shortest.
 
@@ -310,7 +329,6 @@ def section_length(files: list[CloudHeader], frame: RoadFrame) -> float:
     Parameters
     ----------
     files : headers of the clouds
-    frame : RoadFrame
     """
     density = sum(file.count for file in files) / max(sum(road.length for road in frame.roads), 1.0)
     return max((length for length in SECTION_LENGTHS if length * density <= SECTION_POINTS), default=SECTION_LENGTH)
@@ -350,9 +368,7 @@ def match_clocks(files: list[CloudHeader], trajectory: Trajectory, settings: Sur
     Parameters
     ----------
     files : headers of the clouds
-    trajectory : Trajectory
     settings : SurveySettings, of which `time` is used
-    progress : Progress
 
     Returns
     -------
@@ -478,11 +494,9 @@ CLOCK_SECTIONS, CLOCK_POINTS_PER_SECTION = 20, 5000  # sampled, evenly over the 
 MIN_CLOCK_POINTS = 500         # sampled points that a judgement needs
 
 
-def check_clock(survey: Survey, progress: Progress = Progress()) -> None:
+def _check_clock(survey: Survey, progress: Progress = Progress()) -> None:
     """Warn if points were measured at times at which the vehicle was elsewhere.
 
-    Parameters
-    ----------
     survey : Survey with times
     progress : receives the warning
     """

@@ -122,9 +122,7 @@ def write_road_points(road_points: RoadPoints, path: str | Path, progress: Progr
 
     Parameters
     ----------
-    road_points : RoadPoints
     path : of the file, .laz or .las
-    progress : Progress
 
     Raises
     ------
@@ -205,11 +203,6 @@ def read_road_points(path: str | Path, progress: Progress = Progress()) -> RoadP
     Parameters
     ----------
     path : of the file
-    progress : Progress
-
-    Returns
-    -------
-    RoadPoints
 
     Raises
     ------

@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -29,6 +29,7 @@ from .blocks import (
     PointChoice,
     estimate_sensor_height,
 )
+from .estimation.interleaved import ScannerSplitter
 from .frame.road_frame import RoadFrame
 from .las.parallel_reader import ParallelCloudReader
 from .las.point_fields import ScannerCensus, numbers_by_value
@@ -38,9 +39,6 @@ from .store.columns import Columns
 from .store.records import COORDINATE_SCALE, road_of
 from .store.section_store import STRETCH_POINTS, SectionStore, Stretch
 from .store.spill_file import StoreIndex, close_parts
-
-if TYPE_CHECKING:
-    from .estimation.interleaved import ScannerSplitter
 
 MAX_WAITING_POINTS = 4_000_000  # points held back at most until the height of the road is known
 HEIGHT_SAMPLES = 5_000     # points on the own track from which the rough height is estimated
@@ -54,9 +52,7 @@ class SurveyReader:
 
     Parameters
     ----------
-    frame : RoadFrame
     store : SectionStore that the points are added to
-    choice : PointChoice
 
     Attributes, complete after `read` or `read_in_parts`
     ----------------------------------------------------
@@ -222,9 +218,7 @@ class PartsOfFiles:
     Parameters
     ----------
     files : CloudHeaders
-    frame : RoadFrame
     store : SectionStore, of which dtype, section length, memory limit and folder count
-    choice : PointChoice
     slots : TimeSlots of the points that are sampled
     drop : m from the trajectory down to the road, about
     ranges : (B, 3) number of a file, index of the first point and points of every block
@@ -277,7 +271,6 @@ def read_part(source: PartsOfFiles, item: tuple[int, int]) -> PartOfFiles:
 
     Parameters
     ----------
-    source : PartsOfFiles
     item : (first, last + 1) numbers of blocks
     """
     chosen, found = source.reader.chosen(source.drop), BlockSummary()
@@ -330,7 +323,6 @@ class UnorderedPoints:
         ----------
         executor : who does it
         place : names the stretch of a road between two stations (m)
-        progress : Progress
         """
         length = self.store.section_length
 
@@ -354,7 +346,6 @@ def order_sections(source: UnorderedPoints, item: Stretch) -> StoreIndex:
 
     Parameters
     ----------
-    source : UnorderedPoints
     item : Stretch of its road
     """
     try:

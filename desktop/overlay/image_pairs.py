@@ -11,9 +11,8 @@ from qgis.PyQt.QtGui import QImage, QPainter, QPen, QPixmap
 
 from ...core.io.geotiff import IntensityImage
 from ...core.overlay.control_points import REQUIRED_COLUMNS
-from ...core.overlay.matching.pairing import AWAY, REPEATS, WEAK
-from ...core.overlay.matching.propose import AMBIGUOUS
-from ...core.overlay.matching.robust import highest_order, left_out_residuals
+from ...core.overlay.matching.placement import highest_order, left_out_residuals
+from ...core.overlay.matching.propose import AMBIGUOUS, AWAY, REPEATS, WEAK
 from ...core.overlay.pair_cutouts import pair_cutouts
 from ...core.overlay.source_image import open_image
 from ...processing_provider.texts import tr

@@ -73,10 +73,9 @@ def test_what_is_no_map_is_refused_by_the_check(tmp_path):
 
 
 def lane_layer(folder, lanes, name="lanes.gpkg"):
-    from lanewright.core.driving.layers import lanes_to_features
     from lanewright.library.layer_files import write_layer
 
-    write_layer(str(folder / name), "", lanes_to_features(lanes), lambda: None)
+    write_layer(str(folder / name), "", lanes.to_features(), lambda: None)
     return folder / name
 
 
@@ -131,10 +130,9 @@ def test_a_name_that_belongs_to_another_format_is_refused(tmp_path):
 def spoilt_layer(folder, what):
     """A layer of lanes that is none, and other layers."""
     from lanewright.core.common.features import LANES, ROAD_EDGES, Features
-    from lanewright.core.driving.layers import lanes_to_features
     from lanewright.library.layer_files import write_layer
 
-    lanes = lanes_to_features(made_lanes.street())
+    lanes = made_lanes.street().to_features()
     others = {}
     if what == "no field":
         lanes = Features("PolygonZ", tuple(field for field in LANES if field.name != "successors"), lanes.geometries, lanes.rows, lanes.crs)

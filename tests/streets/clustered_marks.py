@@ -1,7 +1,6 @@
 """Marks painted on a straight street, and the markings found in their points."""
 
 from lanewright.core.markings.objects.cluster import cluster_markings
-from lanewright.core.markings.objects.marking_objects import markings_to_features
 from painted_streets import drive, paint, road_points
 
 FRAME = drive()
@@ -10,7 +9,7 @@ FRAME = drive()
 def layer_of(points, frame):
     """The layer of the markings in some points, and the clustered points."""
     markings, clustered = cluster_markings(points, frame)
-    return markings_to_features(markings, frame), clustered
+    return markings.to_features(frame), clustered
 
 
 def markings_of(marks, frame=FRAME, **kind):

@@ -5,8 +5,7 @@ import shapely
 from lanewright.core.common.features import MARKINGS, ROAD_EDGES, Features
 from lanewright.core.common.progress import Progress
 from lanewright.core.markings.lines.fit import MarkingLineSettings, fit_marking_lines
-from lanewright.core.markings.lines.painted_lines import lines_to_features
-from lanewright.core.markings.objects.marking_objects import markings_from_features
+from lanewright.core.markings.objects.marking_objects import MarkingObjects
 from lanewright.core.road.edges.road_edges import RoadEdges
 from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.store.records import ROAD_POINT, to_units
@@ -78,7 +77,7 @@ class ClusteredStreet:
 
     def lines(self, settings=MarkingLineSettings(), progress=Progress(), edges=None):
         """The layer of the marking lines found."""
-        return lines_to_features(self.painted_lines(settings, progress, edges), self.frame)
+        return self.painted_lines(settings, progress, edges).to_features(self.frame)
 
     def painted_lines(self, settings=MarkingLineSettings(), progress=Progress(), edges=None):
         """The marking lines found."""
@@ -103,7 +102,7 @@ class ClusteredStreet:
             outline = shapely.force_3d(shapely.convex_hull(shapely.multipoints(place[mine])), UP)
             markings.add(outline, road=0, cluster=k + 1, station_m=float(station[mine].min()),
                          offset_m=float(np.median(offset[mine])), **row)
-        return fit_marking_lines(points, markings_from_features(markings, self.frame), self.frame, settings, progress, edges)
+        return fit_marking_lines(points, MarkingObjects.from_features(markings, self.frame), self.frame, settings, progress, edges)
 
     def distance(self, geometry, offset):
         """(M,) distances in plan of a drawn line's vertices to the axis' parallel."""

@@ -18,7 +18,6 @@ from lanewright.core.markings.lines.fit import fit_marking_lines
 from lanewright.core.markings.objects import cluster as phases
 from lanewright.core.markings.objects import grouping as linking
 from lanewright.core.markings.objects.cluster import cluster_markings
-from lanewright.core.markings.objects.marking_objects import markings_to_features
 from lanewright.core.markings.outliers import remove_outliers
 from lanewright.core.markings.paint import extract as extraction
 from lanewright.core.markings.paint import extract as scatter
@@ -72,7 +71,7 @@ def found_by(sample, executor=None, work=None, progress=Progress()):
             driving, _, lanes = make_driving_lines(lines, survey.frame, progress=progress, markings=markings, edges=edges, road_points=road_points)
             lined = lines.course.x.tobytes(), lines.kind.tolist(), driving.vertices.tobytes(), driving.sigma.tobytes(), lanes.left.tobytes()
             clusters = [clustered.section(*key).cluster.tobytes() for key in clustered.all_sections()]
-            drawn = [shapely.to_wkb(one) for one in markings_to_features(markings, survey.frame).geometries], markings.kind.tolist()
+            drawn = [shapely.to_wkb(one) for one in markings.to_features(survey.frame).geometries], markings.kind.tolist()
             painted = [(key, np.array(paint.section(*key).records).tobytes()) for key in paint.all_sections()]
             corrected = [road_points.section(*key).corrected.tobytes() for key in road_points.all_sections()]
             return selected, corrected, surface.area.tobytes(), surface.status.tolist(), density, report, pixels, painted, clusters, drawn, lined

@@ -3,9 +3,8 @@
 import numpy as np
 from lanewright.core.common.features import MARKING_LINES, Features
 from lanewright.core.driving.driving_lines import DrivingSettings, make_driving_lines
-from lanewright.core.driving.layers import curve_elements_to_features, driving_lines_to_features
-from lanewright.core.markings.lines.painted_lines import lines_from_features
-from lanewright.core.markings.objects.marking_objects import markings_from_features
+from lanewright.core.markings.lines.painted_lines import PaintedLines
+from lanewright.core.markings.objects.marking_objects import MarkingObjects
 from lanewright.core.road.edges.road_edges import RoadEdges
 from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.trajectory.trajectory import Trajectory
@@ -68,9 +67,10 @@ class Street:
 def driving_layers(lines, frame, settings=DrivingSettings(), markings=None, edges=None, road_points=None):
     """The layers of driving lines and curve elements made from layers."""
     found, elements, _ = make_driving_lines(
-        lines_from_features(lines, frame), frame, settings, markings=None if markings is None else markings_from_features(markings, frame),
+        PaintedLines.from_features(lines, frame), frame, settings,
+        markings=None if markings is None else MarkingObjects.from_features(markings, frame),
         edges=None if edges is None else RoadEdges.from_features(edges, frame), road_points=road_points)
-    return driving_lines_to_features(found, frame), curve_elements_to_features(elements, frame)
+    return found.to_features(frame), elements.to_features(frame)
 
 
 def middle(street, found):

@@ -3,7 +3,7 @@
 import numpy as np
 from lanewright.core.curves.base import Arc
 from lanewright.core.curves.clothoid import Clothoid
-from lanewright.core.export.map_layers import LaneRows
+from lanewright.core.driving.layers import Lanes
 
 CRS = "EPSG:25832"
 ORIGIN = np.array([602000.0, 5792000.0, 70.0])
@@ -41,7 +41,7 @@ class LaneScene:
     """Collects pieces of lanes; `lanes()` links those whose ends meet."""
 
     def __init__(self):
-        self.rows = LaneRows()
+        self.rows = []
 
     def add(self, axis, left, right, first=0.0, last=None, lane=1, piece=1, road=1, direction=1, step=1.0, **values):
         """A piece between two offsets (numbers or functions of s) of an axis."""
@@ -55,14 +55,14 @@ class LaneScene:
     def piece(self, left, right, lane=1, piece=1, road=1, direction=1, **values):
         """A piece between two lines in the direction of travel."""
         given = {"left_kind": "lane", "right_kind": "edge", "left_pattern": "dashed", "right_pattern": "solid", "confidence": 0.99, **values}
-        self.rows.add(left, right, road=road, lane=lane, lane_id=f"{road}.{lane}.{piece}", direction=direction, **given)
+        self.rows.append(dict(left=left, right=right, road=road, lane=lane, lane_id=f"{road}.{lane}.{piece}", direction=direction, **given))
 
     def lanes(self):
-        for row in self.rows.rows:
+        for row in self.rows:
             end = np.concatenate([row["left"][-1], row["right"][-1]])
-            row["successors"] = [other["lane_id"] for other in self.rows.rows if other is not row and row["direction"] and other["direction"]
+            row["successors"] = [other["lane_id"] for other in self.rows if other is not row and row["direction"] and other["direction"]
                                  and np.abs(np.concatenate([other["left"][0], other["right"][0]]) - end).max() < 1e-6]
-        return self.rows.lanes(CRS)
+        return Lanes.of_pieces(self.rows, CRS)
 
 
 def street(pieces=((60.0, 0.0, 0.0),), side="right", width=3.5, cut=None, **axis):

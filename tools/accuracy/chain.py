@@ -4,13 +4,11 @@ import time
 from dataclasses import replace
 
 from lanewright.core.driving.driving_lines import make_driving_lines
-from lanewright.core.driving.layers import driving_lines_to_features
 from lanewright.core.intensity.correction import correct_intensity
 from lanewright.core.intensity.image import write_intensity_image
 from lanewright.core.io.geotiff import IntensityImage
 from lanewright.core.markings.lines.fit import fit_marking_lines, named_by_lines
 from lanewright.core.markings.objects.cluster import cluster_markings
-from lanewright.core.markings.objects.marking_objects import markings_to_features
 from lanewright.core.markings.outliers import remove_outliers
 from lanewright.core.markings.paint.extract import extract_markings
 from lanewright.core.pipeline.road_map import RoadMapSettings
@@ -65,20 +63,20 @@ def _outliers(w, settings):
 
 def _clusters(w, settings):
     w.marking_objects, w.clustered = cluster_markings(w.kept, w.frame, settings.clusters)
-    w.markings = markings_to_features(w.marking_objects, w.frame)
+    w.markings = w.marking_objects.to_features(w.frame)
 
 
 def _lines(w, settings):
     w.lines = fit_marking_lines(w.clustered, w.marking_objects, w.frame, settings.lines, edges=w.edges.densified(w.frame),
                                 road_points=w.bright)
     w.marking_objects = named_by_lines(w.marking_objects, w.lines)
-    w.markings = markings_to_features(w.marking_objects, w.frame)
+    w.markings = w.marking_objects.to_features(w.frame)
 
 
 def _driving(w, settings):
     lines, *_ = make_driving_lines(w.lines, w.frame, settings.driving, markings=w.marking_objects,
                                   edges=w.edges.densified(w.frame), road_points=w.bright)
-    w.driving = driving_lines_to_features(lines, w.frame)
+    w.driving = lines.to_features(w.frame)
 
 
 STAGES = dict(curbs=_curbs, edges=_edges, surface=_surface, intensity=_intensity, image=_image, markings=_markings,

@@ -2,8 +2,8 @@
 
 from lanewright.core.assess.boundaries import BoundaryAccuracySettings, assess_boundaries
 from lanewright.core.assess.driving_lines import compare_lines
+from lanewright.core.assess.inputs import polygons_of_raster
 from lanewright.core.assess.markings import assess_markings
-from lanewright.core.assess.raster_polygons import polygons_of_raster
 
 BUFFERS = (0.05, 0.10, 0.15, 0.20)   # m, half-widths
 TOLERANCES = (0.05, 0.10, 0.20)      # m

@@ -2,7 +2,7 @@
 
 from lanewright.core.inventory.borders import BorderLayers
 from lanewright.core.inventory.roadside.find import find_roadside
-from lanewright.core.inventory.roadside.layers import roadside_to_features
+from lanewright.core.inventory.roadside.result import roadside_to_features
 from lanewright.core.survey.open_survey import SurveySettings, open_survey
 from lanewright.core.survey.trajectory.reader import read_trajectory
 

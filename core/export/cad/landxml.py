@@ -45,11 +45,7 @@ def landxml_text(alignments: Sequence[Alignment], crs: str = "", name: str = "Ro
     else:
         root.add("Units").add("Metric", areaUnit="squareMeter", linearUnit="meter", volumeUnit="cubicMeter", temperatureUnit="celsius",
                               pressureUnit="milliBars", angularUnit="decimal degrees", directionUnit="decimal degrees")
-    known = horizontal_part(parse_crs(crs))
-    if known is not None:
-        authority = known.to_authority()
-        code = authority[1] if authority and authority[0] == "EPSG" else None
-        root.add("CoordinateSystem", desc=known.name, epsgCode=code, ogcWktCode=known.to_wkt())
+    _add_crs(root, horizontal_part(parse_crs(crs)))
     root.add("Project", name=name)
     root.add("Application", name="Lanewright")
     group = root.add("Alignments", name=name)
@@ -65,6 +61,13 @@ def landxml_text(alignments: Sequence[Alignment], crs: str = "", name: str = "Ro
         for station, height in one.profile:
             profile.add("PVI", f"{station:.4f} {height:.4f}")
     return xml_text(root)
+
+
+def _add_crs(root, known):
+    if known is not None:
+        authority = known.to_authority()
+        code = authority[1] if authority and authority[0] == "EPSG" else None
+        root.add("CoordinateSystem", desc=known.name, epsgCode=code, ogcWktCode=known.to_wkt())
 
 
 def _place(point: np.ndarray) -> str:
@@ -191,17 +194,15 @@ def alignments_of(source: RoadMapSource, tolerance: float) -> list[Alignment]:
 
 def _driven(source):
     """(name, (N, 3) places) of every driving line, its pieces joined."""
-    layer = source.driving_lines
+    layer, lanes = source.driving_lines, source.lanes
     if layer is None or not len(layer):
-        lanes = source.lanes
-        for k in range(len(lanes)):
-            if lanes.type[k] in ("driving", "connector"):
-                yield f"Lane {lanes.lane_id[k]}", sum(lanes.borders(k)) / 2
+        for k in np.flatnonzero(np.isin(lanes.type.astype(str), ("driving", "connector"))):
+            yield f"Lane {lanes.lane_id[k]}", sum(lanes.borders(k)) / 2
         return
     lines: dict[tuple[int, int], list[np.ndarray]] = {}
     for geometry, row in layer:
-        if geometry is not None:
-            lines.setdefault((row.get("road") or 0, row.get("lane") or 0), []).append(shapely.get_coordinates(geometry, include_z=True))
+        pieces = lines.setdefault((row.get("road") or 0, row.get("lane") or 0), [])
+        pieces += [] if geometry is None else [shapely.get_coordinates(geometry, include_z=True)]
     for (road, lane), pieces in sorted(lines.items()):
         for number, places in enumerate(_joined(pieces), start=1):
             yield f"Lane {road}.{lane}" + (f" part {number}" if number > 1 else ""), places

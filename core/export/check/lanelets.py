@@ -7,6 +7,7 @@ Lanelet2, documents LaneletAndAreaTagging, LinestringTagging and RegulatoryEleme
 
 from __future__ import annotations
 
+import re
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping
 
@@ -34,7 +35,7 @@ WAY_TYPES = ("line_thin", "line_thick", "curbstone", "virtual", "road_border", "
              "zebra_marking", "zebra", "bike_marking", "keepout", "arrow", "symbol", "traffic_sign", "traffic_light", "light_bulbs", "gate", "door",
              "trajectory", "rail", "pole", "post", "building", "centerline", "pedestrian_path", "jersey_barrier", "marking", "zig-zag", "structure")
 LINE_SUBTYPES = ("solid", "solid_solid", "dashed", "dashed_solid", "solid_dashed", "dashed_dashed", "hatched")
-CURB_SUBTYPES = ("high", "low", "lowered", "rolled")
+SUBTYPES = {"line_thin": LINE_SUBTYPES, "line_thick": LINE_SUBTYPES, "curbstone": ("high", "low", "lowered", "rolled")}   # type of a way -> its own
 LANELET_SUBTYPES = ("road", "highway", "play_street", "emergency_lane", "bus_lane", "bicycle_lane", "exit", "walkway", "shared_walkway", "crosswalk",
                     "stairs", "road_shoulder", "parking", "pedestrian_lane")
 LOCATIONS = ("urban", "nonurban", "private")
@@ -124,17 +125,18 @@ class _LaneletCheck:
                                                          "lie at one place.", self.places[rows[near[0]]])
         if way.id in self.borders and len(rows) > 2:
             self._spikes(name, rows)
+        self._tags(way, name, place)
+
+    def _tags(self, way, name, place):
         for text in way_tags(way):
             self.findings.add("way tag", name, text, place)
         kind, subtype = way.tags.get("type", ""), way.tags.get("subtype", "")
         if way.id in self.borders and kind in NO_BORDERS:
             self.findings.add("way type", name, f"It is the border of a lanelet and a {kind}.", place)
-        if way.id in self.borders or kind:
-            allowed = LINE_SUBTYPES if kind in ("line_thin", "line_thick") else CURB_SUBTYPES if kind == "curbstone" else ()
-            if kind not in WAY_TYPES:
-                self.findings.add("way type", name, f"The type is {kind!r}.", place)
-            elif allowed and subtype not in allowed:
-                self.findings.add("way subtype", name, f"The subtype of the {kind} is {subtype!r}.", place)
+        if kind not in WAY_TYPES and (kind or way.id in self.borders):
+            self.findings.add("way type", name, f"The type is {kind!r}.", place)
+        elif subtype not in SUBTYPES.get(kind, (subtype,)):
+            self.findings.add("way subtype", name, f"The subtype of the {kind} is {subtype!r}.", place)
 
     def _spikes(self, name: str, rows: np.ndarray) -> None:
         """Nodes that a border leaves and comes back from."""
@@ -177,13 +179,8 @@ class _LaneletCheck:
                 self.findings.add("border missing", name, f"It has {has} as {role}; one way is needed.", place)
         if len(lanelet.members.get("centerline", ())) > 1:
             self.findings.add("centre line", name, f"It has {len(lanelet.members['centerline'])} centre lines.", place)
-        for key, allowed, needed in (("subtype", LANELET_SUBTYPES, True), ("location", LOCATIONS, False), ("one_way", YES_OR_NO, False)):
-            if (needed or key in tags) and tags.get(key) not in allowed:
-                self.findings.add("lanelet tag", name, f"{key} is {tags.get(key, '')!r}.", place)
-        for text in participant_tags(tags, tags.get("subtype") in WALKED):
+        for text in lanelet_tags(tags):
             self.findings.add("lanelet tag", name, text, place)
-        if "speed_limit" in tags and not _is_speed(tags["speed_limit"]):
-            self.findings.add("lanelet tag", name, f"speed_limit is {tags['speed_limit']!r}.", place)
         if whole and lanelet.id in self.network.left:
             self._shape(lanelet, name, place)
 
@@ -199,6 +196,9 @@ class _LaneletCheck:
         width = shapely.distance(shapely.line_interpolate_point(left, along, normalized=True), right)
         if self.network.driven(lanelet.id) and (np.median(width) < LEAST_LANE_WIDTH or np.median(width) > MOST_LANE_WIDTH):
             self.findings.add("lane width", name, f"It is {np.median(width):.2f} m wide.", place)
+        self._centre(lanelet, name, place, left, right)
+
+    def _centre(self, lanelet, name, place, left, right):
         centre = lanelet.way("centerline")
         rows = self.whole.rows(self.whole.ways[centre]) if centre in self.whole.ways else np.empty(0, int)
         if len(rows) > 1:
@@ -233,10 +233,11 @@ class _LaneletCheck:
                 self.findings.add("head on", f"lanelets {id} and {other}", "Both begin or end where they meet: one of them has left and right "
                                                                            "swapped.", self.places[self.network.ends(id)[1][0]])
         ids = [id for id in self.network.left if self.network.driven(id)]
-        if not ids:
-            return
-        starts = np.array([[self.places[row, :2] for row in self.network.ends(id)[0]] for id in ids])
-        stops = np.array([[self.places[row, :2] for row in self.network.ends(id)[1]] for id in ids])
+        if ids:
+            self._not_joined(ids)
+
+    def _not_joined(self, ids):
+        starts, stops = self.places[np.array([self.network.ends(id) for id in ids]).transpose(1, 0, 2), :2]
         first, last = (np.array([self._heading(id, at) for id in ids]) for at in (0, -1))
         tree = shapely.STRtree(shapely.points(starts.mean(1)))
         pairs = tree.query(shapely.buffer(shapely.points(stops.mean(1)), JOIN_DISTANCE), predicate="intersects").T
@@ -268,10 +269,12 @@ class _LaneletCheck:
                 self.findings.add("two at one place", f"lanelets {between[key]} and {id}", "They have the same borders.",
                                   self.place_of(self.whole.lanelets[id]))
             between.setdefault(key, id)
-        ways = [self.whole.ways[id] for id in sorted(self.borders) if id in self.whole.ways and len(self.whole.rows(self.whole.ways[id])) > 1]
+        ways = [way for id in sorted(self.borders) if (way := self.whole.ways.get(id)) is not None and len(self.whole.rows(way)) > 1]
+        if ways:
+            self._twice(ways)
+
+    def _twice(self, ways):
         lines = [shapely.linestrings(self.places[self.whole.rows(way)][:, :2]) for way in ways]
-        if not lines:
-            return
         tree = shapely.STRtree(shapely.buffer(np.array(lines, object), TWIN_DISTANCE))
         for k, j in tree.query(lines, predicate="within").T:
             if k == j or not self._one_height(ways[k], ways[j]):
@@ -303,7 +306,9 @@ def _is_speed(text: str) -> bool:
 
 # Tags, rules of traffic and areas, held against what the format knows.
 
-YES_OR_NO = ("yes", "no", "true", "false", "1", "0")
+YES, NO = {"yes", "true", "1"}, {"no", "false", "0"}
+YES_OR_NO = YES | NO
+MOTOR = re.compile("vehicle(?!:emergency$)")   # participants who have no way where others walk
 NO_BORDERS = ("stop_line", "traffic_sign", "traffic_light", "light_bulbs", "arrow", "symbol", "pole", "post", "centerline", "trajectory", "building")
 VEHICLES = ("bus", "car", "car:electric", "car:combustion", "truck", "motorcycle", "taxi", "emergency")
 KNOWN_PARTICIPANTS = ("vehicle", *(f"vehicle:{kind}" for kind in VEHICLES), "bicycle", "pedestrian", "train")
@@ -329,7 +334,17 @@ def way_tags(way: Way) -> Iterator[str]:
             yield f"{key} is {value!r}."
 
 
-def participant_tags(tags: Mapping[str, str], walked: bool) -> Iterator[str]:
+def lanelet_tags(tags: Mapping[str, str]) -> Iterator[str]:
+    """Sentences on tags of a lanelet that are missing or have values that no reader knows."""
+    for key, allowed in (("subtype", LANELET_SUBTYPES), ("location", LOCATIONS), ("one_way", YES_OR_NO)):
+        if (key in tags or key == "subtype") and tags.get(key) not in allowed:
+            yield f"{key} is {tags.get(key, '')!r}."
+    yield from _participant_tags(tags, tags.get("subtype") in WALKED)
+    if not _is_speed(tags.get("speed_limit", "1")):
+        yield f"speed_limit is {tags['speed_limit']!r}."
+
+
+def _participant_tags(tags, walked):
     """Sentences on who may use a lanelet; `walked`: whether it is made for those on foot."""
     found = {key[len("participant:"):]: value for key, value in tags.items() if key.startswith("participant:")}
     for name, value in found.items():
@@ -337,9 +352,9 @@ def participant_tags(tags: Mapping[str, str], walked: bool) -> Iterator[str]:
             yield f"The participant {name!r} is not known."
         if value not in YES_OR_NO:
             yield f"participant:{name} is {value!r}."
-        if walked and name.startswith("vehicle") and name != "vehicle:emergency" and value in ("yes", "true", "1"):
+        if walked and MOTOR.match(name) and value in YES:
             yield f"Its subtype is {tags.get('subtype')!r}, and vehicles may use it."
-    if found and not walked and all(value in ("no", "false", "0") for value in found.values()):
+    if not walked and set() < set(found.values()) <= NO:
         yield "Nobody may use it."
 
 
@@ -365,8 +380,9 @@ def _rule(relation, used):
         yield f"The subtype is {subtype!r}."
         return
     roles, tags = RULES[subtype]
-    if roles and not any(relation.members.get(role) for role in roles) and not any(tag in relation.tags for tag in tags):
-        yield f"A {subtype} needs {' or '.join((*(f'a member {role}' for role in roles), *(f'a tag {tag}' for tag in tags)))}."
+    named = {role for role, members in relation.members.items() if members}
+    if roles and not named.intersection(roles) and not relation.tags.keys() & {*tags}:
+        yield f"A {subtype} needs {' or '.join([*map('a member {}'.format, roles), *map('a tag {}'.format, tags)])}."
     for role in relation.members:
         if role not in RULE_ROLES:
             yield f"The role {role!r} is not known."

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import Counter, defaultdict
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
@@ -14,7 +15,7 @@ from ...common.progress import Progress
 from ...common.setting import check_limits, setting
 from ..shared_borders import with_driven_middles
 from ..sources import NearestValues, RoadMapSource, sigma_of_lanes, stop_lines, walked_crossings
-from .model import OPEN_END, Connection, Junction, LaneNetwork, MapLane, MapRoad, OpenDriveMap, RoadLink, RoadMark, travel
+from .model import OPEN_END, STEP, Connection, Junction, LaneNetwork, MapLane, MapRoad, OpenDriveMap, RoadLink, RoadMark, travel
 from .road_shape import add_heights, add_lanes, centre_of, heights_above_road, shape_of
 from .strips import (
     Cell,
@@ -29,6 +30,7 @@ from .strips import (
     strips_of,
 )
 
+LINK_AT = {"start": "predecessor", "end": "successor"}   # an end of a road -> its link there
 ROUND_ORIGIN = 100.0      # m: the false origin is a multiple of it
 MIDDLES_SHARE = 0.5       # of the tolerance by which borders are moved to their driving lines
 CURVES_SHARE = 0.4        # of it by which widths may miss the moved borders: what is left is for corners, where two roads meet
@@ -132,40 +134,35 @@ class _Drafting:
     def strips(self) -> list[tuple[list[Slice], bool]]:
         """(slices of a road, whether it is a way through a junction), ordinary roads first."""
         mark_junctions(self.slices, self.lanes)
+        ordinary, inside = self._parted()
+        known = {id(cell) for one in inside for cell in one.cells} | {id(cell) for cell in self.cells if is_connector(cell, self.lanes)}
+        ordinary, between = _between_junctions(ordinary, known)
+        inside += between
+        lost = sum(len(one.cells) for one in inside if not one.driven)
+        if lost:
+            self.notes.append(f"{lost} pieces that nobody drives lie within junctions, where OpenDRIVE has no place for them.")
+        return _ordinary_roads(ordinary) + _ways_through([part for one in inside for part in one.ways()] + self.connectors)
+
+    def _parted(self) -> tuple[list[Slice], list[Slice]]:
+        """(slices of ordinary roads, slices within junctions): ways through a junction are cut off from the slices in which they begin or end."""
         ordinary, inside = [], []
         for one in self.slices:
             if one.at_start and one.at_end and one.length < LONGEST_JUNCTION:
                 inside.append(one)
                 continue
             for at_end in (False, True):
-                row = _cut_row(one, at_end) if (one.at_end if at_end else one.at_start) else 0
-                if row:
-                    first, last = one.split(row)
-                    part, one = (last, first) if at_end else (first, last)
-                    inside.append(part)
-                elif one.at_end if at_end else one.at_start:   # too short for a way and a road
+                if not (one.at_end if at_end else one.at_start):
+                    continue
+                row = _cut_row(one, at_end)
+                if not row:   # too short for a way and a road
                     inside.append(one)
                     break
+                first, last = one.split(row)
+                part, one = (last, first) if at_end else (first, last)
+                inside.append(part)
             else:
                 ordinary.append(one)
-        ordinary, between = _between_junctions(ordinary, {id(cell) for one in inside for cell in one.cells}
-                                               | {id(cell) for cell in self.cells if is_connector(cell, self.lanes)})
-        inside += between
-        owner = {id(cell): one for one in ordinary for cell in one.cells}
-        breaks = {(id(one), id(owner[id(other)])) for one in ordinary for cell in one.cells for other in cell.after if id(other) in owner
-                  and any(id(near) not in owner for near in cell.after + other.before)}
-        found = [([one.turned() for one in strip[::-1]] if _against(strip) else strip, False) for strip in strips_of(ordinary, breaks)]
-        parts = [part for one in inside for part in one.ways()] + self.connectors
-        lost = sum(len(one.cells) for one in inside if not any(cell.direction for cell in one.cells))
-        if lost:
-            self.notes.append(f"{lost} pieces that nobody drives lie within junctions, where OpenDRIVE has no place for them.")
-        # all run with their traffic
-        parts = [one.turned() if any(cell.direction < 0 for cell in one.cells) else one for one in parts]
-        part_of = {id(cell): one for one in parts for cell in one.cells if cell.direction}
-        for way in end_to_end([cell for one in parts for cell in one.cells if cell.direction]):
-            # what comes from nowhere or leads nowhere is no way through
-            found.append(([part_of[id(cell)] for cell in way], bool(way[0].before) and bool(way[-1].after)))
-        return found
+        return ordinary, inside
 
     def road(self, strip: list[Slice], number: int, single: bool, directions: dict[int, float]) -> DraftRoad:
         tolerance = self.settings.tolerance
@@ -188,8 +185,7 @@ class _Drafting:
             section.lanes[apart].marks = [self._mark_between(one, centre, apart)]
             self._add_curbs(section.lanes, one, ids)
             section.order = sorted(section.lanes, reverse=True)
-        if set(status) != {"measured"}:
-            road.data = {f"lanewright:{name}_m": f"{metres:.1f}" for name, metres in sorted(status.items())}
+        road.data = _shares(status)
         return DraftRoad(road, strip, numbers, single)
 
     def _describe(self, lane: MapLane, cell: Cell) -> None:
@@ -213,28 +209,26 @@ class _Drafting:
         if kind == "curb":
             return RoadMark(0.0, "curb" if not pattern else MARK_OF_PATTERN.get(pattern, "none"))
         name = MARK_OF_PATTERN.get(pattern, "edge" if kind == "pavement" else "none")
-        mark = RoadMark(0.0, name, "white" if name not in ("none", "edge") else "standard", self._paint_width(line))
+        width = self.source.paint_width(line)
+        mark = RoadMark(0.0, name, "white" if name not in ("none", "edge") else "standard", RoadMark.width if np.isnan(width) else round(width, 3))
         if "broken" in name:
             mark.dash, mark.gap = self.settings.dash
         return mark
 
     def _mark_between(self, one: Slice, number: int, lane: int) -> RoadMark:
         """The mark of a border of a slice, which is the outer one of `lane`: of two stripes where each of the lanes beside it has its own."""
-        left = self._mark(one.cells[number - 1], False) if number else None
-        right = self._mark(one.cells[number], True) if number < len(one.cells) else None
+        left, right = (self._mark(cells[0], is_left) if cells else None
+                       for cells, is_left in ((one.cells[:number][-1:], False), (one.cells[number:], True)))
         own, other = (right, left) if lane >= 0 else (left, right)
-        painted = [mark for mark in (own, other) if mark is not None and mark.type != "none"]
+        painted = [mark for mark in filter(None, (own, other)) if mark.type != "none"]
         if not painted:
-            return own or other or RoadMark(0.0, "none")
+            return next(filter(None, (own, other)), RoadMark(0.0, "none"))
         mark = next((mark for mark in painted if " " in mark.type), painted[0])
-        gap = self._gap(one.cells[number - 1], False) if number else 0.0
-        if gap and left is not None and right is not None and len(painted) == 2:
+        if len(painted) == 2 and (gap := self._gap(one.cells[number - 1], False)):
             lines = self._about(one.cells[number - 1], False)[2], self._about(one.cells[number], True)[2]
-            if " " not in mark.type and "curb" not in (left.type, right.type) and lines[0] != lines[1]:
-                # named from the middle of the road outwards, at lane 0 from left to right
-                mark.type = f"{right.type} {left.type}" if lane > 0 else f"{left.type} {right.type}"
-                mark.dash, mark.gap = next(((one.dash, one.gap) for one in painted if one.dash), (0.0, 0.0))
-            mark.apart = round(gap, 3) if " " in mark.type else 0.0
+            if lines[0] != lines[1]:
+                _make_double(mark, left, right, lane)
+            mark.apart = round(gap, 3) * (" " in mark.type)
         return mark
 
     def _gap(self, cell: Cell, left: bool) -> float:
@@ -242,12 +236,6 @@ class _Drafting:
         if self.source.gaps is None:
             return 0.0
         return float(self.source.gaps[cell.piece, 0 if left == (cell.direction >= 0) else 1])
-
-    def _paint_width(self, line: str) -> float:
-        layer = self.source.marking_lines
-        rows = layer.rows if layer is not None and line.startswith("line ") else ()
-        widths = [float(row["width_m"]) for row in rows if str(row.get("line")) == line[5:] and row.get("width_m") is not None]
-        return round(float(np.median(widths)), 3) if widths else RoadMark(0.0, "none").width
 
     def _add_curbs(self, lanes: dict[int, MapLane], one: Slice, ids: list[int]) -> None:
         for cell, id, border, left in ((one.cells[0], ids[0], one.cells[0].left, True), (one.cells[-1], ids[-1], one.cells[-1].right, False)):
@@ -281,9 +269,7 @@ def _between_junctions(slices, inside):
     """(slices, those of them that are too short for a road and lie between ways through junctions)."""
     found = []
     while True:
-        more = [one for one in slices if one.length < SHORTEST_WAY and all(
-            others and all(id(other) in inside for other in others)
-            for others in ([other for cell in one.cells for other in cell.before], [other for cell in one.cells for other in cell.after]))]
+        more = [one for one in slices if one.length < SHORTEST_WAY and _lies_within(one, inside)]
         if not more:
             return slices, found
         found += more
@@ -291,10 +277,46 @@ def _between_junctions(slices, inside):
         slices = [one for one in slices if not any(one is other for other in more)]
 
 
-def _against(strip):
-    """Whether a road is driven against its direction alone."""
+def _lies_within(one, inside):
+    """Whether a slice touches cells at both ends, and only those of these ids."""
+    return all(others and inside.issuperset(map(id, others)) for others in (one.beyond(False), one.beyond(True)))
+
+
+def _ordinary_roads(slices):
+    """(slices of a road, False) of the roads between junctions; a road is driven along its direction, but for those with both."""
+    owner = {id(cell): one for one in slices for cell in one.cells}
+    breaks = {(id(one), id(owner[id(other)])) for one in slices for cell in one.cells for other in cell.after if id(other) in owner
+              and any(id(near) not in owner for near in cell.after + other.before)}
+    return [(_along_traffic(strip), False) for strip in strips_of(slices, breaks)]
+
+
+def _ways_through(parts):
+    """(slices of a road, whether it is a way through a junction) of single lanes, all along their traffic."""
+    parts = [one for part in parts for one in _along_traffic([part])]
+    part_of = {id(cell): one for one in parts for cell in one.driven}
+    # what comes from nowhere or leads nowhere is no way through
+    return [([part_of[id(cell)] for cell in way], bool(way[0].before and way[-1].after))
+            for way in end_to_end([cell for one in parts for cell in one.driven])]
+
+
+def _along_traffic(strip):
+    """The slices of a road that is driven against its direction alone turned round."""
     ways = {cell.direction for one in strip for cell in one.cells}
-    return -1 in ways and 1 not in ways
+    return [one.turned() for one in strip[::-1]] if -1 in ways and 1 not in ways else strip
+
+
+def _make_double(mark, left, right, lane):
+    """Name a mark by the stripes left and right of a border, the outer one of `lane`, where it is not double and neither is a curb."""
+    if " " not in mark.type and "curb" not in (left.type, right.type):
+        # named from the middle of the road outwards, at lane 0 from left to right
+        mark.type = f"{right.type} {left.type}" if lane > 0 else f"{left.type} {right.type}"
+        dashed = next((one for one in ((right, left) if lane >= 0 else (left, right)) if one.dash), RoadMark(0.0, "none"))
+        mark.dash, mark.gap = dashed.dash, dashed.gap
+
+
+def _shares(status):
+    """What userData says of the metres of each status, where not all is measured."""
+    return {} if set(status) == {"measured"} else {f"lanewright:{name}_m": f"{metres:.1f}" for name, metres in sorted(status.items())}
 
 
 def _cut_row(one: Slice, at_end: bool) -> int:
@@ -347,18 +369,15 @@ def link_roads(whole: OpenDriveMap, drafts: list[DraftRoad]) -> list[str]:
     -------
     list of sentences on what OpenDRIVE cannot say
     """
-    place = {id(cell): _Place(k, j, number) for k, draft in enumerate(drafts) for j, (one, ids) in enumerate(zip(draft.strip, draft.numbers))
-             for cell, number in zip(one.cells, ids)}
+    places = [(cell, _Place(k, j, number)) for k, draft in enumerate(drafts) for j, (one, ids) in enumerate(zip(draft.strip, draft.numbers))
+              for cell, number in zip(one.cells, ids)]
+    place = {id(cell): here for cell, here in places}
     touches: dict[tuple[int, str], list[_Touch]] = defaultdict(list)
-    for draft in drafts:
-        for one in draft.strip:
-            for cell in one.cells:
-                here = place[id(cell)]
-                for end, others in (("end", cell.after), ("start", cell.before)):
-                    for other in others:
-                        there = place.get(id(other))
-                        if there is not None:
-                            _link(drafts, touches, here, end, there, "start" if any(cell is back for back in other.before) else "end")
+    for cell, here in places:
+        for end, others in (("end", cell.after), ("start", cell.before)):
+            for other in others:
+                if id(other) in place:
+                    _link(drafts, touches, here, end, place[id(other)], _end_towards(other, cell))
     junction = _clusters(drafts, touches)
     notes = []
     for k, end in touches:
@@ -367,15 +386,19 @@ def link_roads(whole: OpenDriveMap, drafts: list[DraftRoad]) -> list[str]:
     return sorted(set(notes))
 
 
+def _end_towards(cell, other):
+    """The end of a cell at which another one is, as "start" or "end"."""
+    return "start" if any(other is back for back in cell.before) else "end"
+
+
 def _link(drafts, touches, here, end, there, other_end):
     """One touch: of lanes of neighbouring sections at once, of ends of roads for later."""
     sections = drafts[here.draft].road.sections
-    beyond = here.section + (1 if end == "end" else -1)
+    beyond = here.section + STEP[end]
     if here.draft == there.draft and there.section == beyond:
         lane = sections[here.section].lanes[here.lane]
-        known = lane.successors if end == "end" else lane.predecessors
-        if there.lane not in known:
-            known.append(there.lane)
+        if there.lane not in lane.links(end):
+            lane.links(end).append(there.lane)
     elif not 0 <= beyond < len(sections):
         touch = _Touch(here.lane, there.draft, other_end, there.lane)
         if touch not in touches[here.draft, end]:
@@ -402,24 +425,24 @@ def _clusters(drafts, touches):
 def _end_link(drafts, k, end, touches, junction):
     """Link one end of a road; sentences on what cannot be linked."""
     found = touches[k, end]
-    road = drafts[k].road
-    name = "successor" if end == "end" else "predecessor"
-    if k not in junction and any(touch.other in junction for touch in found):
-        setattr(road, name, RoadLink("junction", junction_id(drafts, junction[next(t.other for t in found if t.other in junction)])))
+    ways = [touch.other for touch in found if touch.other in junction]
+    if ways and k not in junction:
+        setattr(drafts[k].road, LINK_AT[end], RoadLink("junction", junction_id(drafts, junction[ways[0]])))
         return []
     # a junction lies between this road and those whose ends are linked to it
     found = [touch for touch in found if k in junction or not any(one.other in junction for one in touches.get((touch.other, touch.other_end), ()))]
-    if not found:
-        return []
-    # of several roads the one with the most lanes is kept: OpenDRIVE has one link an end
-    ends = sorted({(touch.other, touch.other_end) for touch in found}, key=lambda way: (-sum(touch[1:3] == way for touch in found), way))
+    return _road_link(drafts, drafts[k].road, end, found) if found else []
+
+
+def _road_link(drafts, road, end, found):
+    """Link one end of a road to the road of its touches with the most lanes there: OpenDRIVE has one link an end."""
+    lanes = Counter((touch.other, touch.other_end) for touch in found)
+    ends = sorted(lanes, key=lambda way: (-lanes[way], way))
     other, other_end = ends[0]
-    setattr(road, name, RoadLink("road", drafts[other].road.id, other_end))
-    section = road.sections[-1 if end == "end" else 0]
+    setattr(road, LINK_AT[end], RoadLink("road", drafts[other].road.id, other_end))
     for touch in found:
         if (touch.other, touch.other_end) == ends[0]:
-            lane = section.lanes[touch.lane]
-            (lane.successors if end == "end" else lane.predecessors).append(touch.other_lane)
+            road.lanes_at(end)[touch.lane].links(end).append(touch.other_lane)
     if len(ends) > 1:
         return [f"Road {road.id} touches {len(ends)} roads at its {end} without a connector; it is linked to road {drafts[other].road.id} alone."]
     return []
@@ -438,23 +461,33 @@ def _connections(whole, drafts, touches, junction):
         road = drafts[k].road
         if k in junction:
             continue
-        lanes = defaultdict(list)
-        for touch in touched:
-            # only what drives out of the road at this end is incoming traffic of the junction
-            if touch.other in junction and (travel(road, touch.lane) > 0) == (end == "end"):
-                lanes[touch.other, touch.other_end].append((touch.lane, touch.other_lane))
+        lanes = _incoming(road, end, touched, junction)
         for (other, other_end), links in sorted(lanes.items()):
             connections = found[junction[other]].connections
             connections.append(Connection(str(len(connections)), road.id, drafts[other].road.id, other_end, links))
     whole.junctions = [one for one in found.values() if one.connections]
     known = {one.id for one in whole.junctions}
     for draft in drafts:
-        for name in ("predecessor", "successor"):
-            link = getattr(draft.road, name)
-            if link is not None and link.element == "junction" and link.id not in known:
-                setattr(draft.road, name, None)
-        if draft.road.junction not in known:
-            draft.road.junction = "-1"
+        _forget_junctions(draft.road, known)
+
+
+def _incoming(road, end, touched, junction):
+    """{(way through a junction, its end): (lane, lane) pairs} of what drives out of a road at its end, which is incoming traffic of the junction."""
+    lanes = defaultdict(list)
+    for touch in touched:
+        if touch.other in junction and (travel(road, touch.lane) > 0) == (end == "end"):
+            lanes[touch.other, touch.other_end].append((touch.lane, touch.other_lane))
+    return lanes
+
+
+def _forget_junctions(road, known):
+    """Drop what a road says of junctions that are not known, as nothing connects there."""
+    for end, name in LINK_AT.items():
+        link = road.link(end)
+        if link is not None and link.element == "junction" and link.id not in known:
+            setattr(road, name, None)
+    if road.junction not in known:
+        road.junction = "-1"
 
 
 # Crossings, stop lines, arrows, bicycle symbols, the word BUS and hatched areas as objects of the roads that they lie on.
@@ -464,8 +497,7 @@ FARTHEST = 25.0        # m from a reference line
 SIMPLER = 0.02         # m by which an outline may be straightened
 STOP_LINE_HALF = 0.15  # m, half of the breadth of a stop line whose outline is not known
 THINNEST = 0.01        # m of an object's length and width at the least: the format has none of 0
-NAME_OF_CLASS = {"hatch": ("roadMark", "hatched area"), "arrow": ("roadMark", "arrow"), "bicycle": ("roadMark", "bicycle symbol"),
-                 "bus": ("roadMark", "word BUS")}
+NAME_OF_CLASS = {"hatch": "hatched area", "arrow": "arrow", "bicycle": "bicycle symbol", "bus": "word BUS"}
 
 
 def add_objects(whole: OpenDriveMap, markings: Features | None, origin: np.ndarray) -> None:
@@ -477,18 +509,7 @@ def add_objects(whole: OpenDriveMap, markings: Features | None, origin: np.ndarr
     markings : the layer MARKINGS in map coordinates, or None
     origin : (3,) metres of the file's false origin
     """
-    shapes: list[tuple[str, str, np.ndarray]] = []
-    for left, right in walked_crossings(markings):
-        shapes.append(("crosswalk", "zebra crossing", np.concatenate([left, right[::-1]])))
-    for line in stop_lines(markings):
-        way = line[1] - line[0]
-        across = np.array([-way[1], way[0], 0.0]) / max(float(np.hypot(*way[:2])), 1e-6) * STOP_LINE_HALF
-        shapes.append(("roadMark", "stop line", np.array([line[0] - across, line[1] - across, line[1] + across, line[0] + across])))
-    for geometry, row in markings if markings is not None else ():
-        known = NAME_OF_CLASS.get(next((name for name in NAME_OF_CLASS if str(row.get("class")).startswith(name)), ""))
-        if known is not None and geometry is not None and not geometry.is_empty:
-            shapes += [(*known, shapely.get_coordinates(shapely.simplify(part, SIMPLER).exterior, include_z=True)[:-1])
-                       for part in shapely.get_parts(geometry)]
+    shapes = list(_painted_shapes(markings))
     if not shapes:
         return
     roads = [road for road in whole.roads if road.junction == "-1"] or whole.roads
@@ -498,6 +519,20 @@ def add_objects(whole: OpenDriveMap, markings: Features | None, origin: np.ndarr
         near = tree.query_nearest(shapely.Point(local[:, :2].mean(0)), max_distance=FARTHEST, all_matches=False)
         if len(near):
             roads[owner[near[0]]].objects.append(_object(number, kind, name, local, roads[owner[near[0]]], float(station[near[0]])))
+
+
+def _painted_shapes(markings: Features | None) -> Iterator[tuple[str, str, np.ndarray]]:
+    """(kind, name, (N, 3) corners) of every object."""
+    for left, right in walked_crossings(markings):
+        yield "crosswalk", "zebra crossing", np.concatenate([left, right[::-1]])
+    for line in stop_lines(markings):
+        way = line[1] - line[0]
+        across = np.array([-way[1], way[0], 0.0]) / max(float(np.hypot(*way[:2])), 1e-6) * STOP_LINE_HALF
+        yield "roadMark", "stop line", np.array([line[0] - across, line[1] - across, line[1] + across, line[0] + across])
+    for geometry, row in markings if markings is not None else ():
+        known = next((name for start, name in NAME_OF_CLASS.items() if str(row.get("class")).startswith(start)), "")
+        for part in shapely.get_parts(geometry) if known and geometry is not None and not geometry.is_empty else ():
+            yield "roadMark", known, shapely.get_coordinates(shapely.simplify(part, SIMPLER).exterior, include_z=True)[:-1]
 
 
 def _places(roads: list[MapRoad]) -> tuple[shapely.STRtree, np.ndarray, np.ndarray]:

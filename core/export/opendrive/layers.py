@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
 from ...common.progress import Progress
-from ..map_layers import LaneRows, MapLayers, MapLine, plan_length, without_repeats
+from ...driving.layers import Lanes
+from ..map_layers import MapLayers, MapLine, plan_length, without_repeats
 from ..sources import LEAST_CURB
 from .model import DRIVEN_TYPES, LaneNetwork, MapLane, OpenDriveMap, RoadSurface, travel
 
@@ -39,7 +41,8 @@ def layers_of_opendrive(whole: OpenDriveMap, crs: str = "", progress: Progress =
     MapLayers. Every section of a lane is a piece, whose lane_id is "road.lane.section"; lanes of roads in junctions are connectors.
     Sidewalks are no lanes of ours: where one begins there is an edge
     """
-    rows, found, network = LaneRows(), MapLayers(LaneRows().lanes(crs)), LaneNetwork(whole)
+    rows: list[dict[str, Any]] = []
+    found, network = MapLayers(Lanes.of_pieces([], crs)), LaneNetwork(whole)
     numbers, faults = road_numbers(whole), _Faults()
     for count, road in enumerate(whole.roads):
         surface = RoadSurface(road)
@@ -48,7 +51,7 @@ def layers_of_opendrive(whole: OpenDriveMap, crs: str = "", progress: Progress =
             if road.section_end(number) - section.s > SHORTEST_SECTION:
                 _add_section(rows, found.lines, whole, network, surface, number, numbers[road.id], faults)
         progress.report((count + 1) / len(whole.roads))
-    found.lanes = _existing(rows).lanes(crs)
+    found.lanes = Lanes.of_pieces(_existing(rows), crs)
     if whole.problems:
         line, text = whole.problems[0]
         found.notes.append(f"{len(whole.problems)} parts of the file were passed over; the first: line {line}, {text}")
@@ -107,7 +110,6 @@ def _add_section(rows, lines, whole, network, surface, number, road_number, faul
         if id == 0:
             lines += _painted(road_number, lane, section.s, s, whole.placed(surface.places(s, offsets[0])), "centre")
             continue
-        inside = surface.inside(number, id)
         (inner, _), (outer, fold) = (surface.without_folds(s, points) for points in surface.borders(number, id, s, offsets))
         inner, outer = whole.placed(inner), whole.placed(outer)
         if fold is not None:
@@ -115,23 +117,33 @@ def _add_section(rows, lines, whole, network, surface, number, road_number, faul
         if not lane.border and len(lane.width) and (least := lane.width.least(float(s[-1]) - section.s))[0] < NEGATIVE_WIDTH:
             faults.negative.append((road.id, id, least[0], section.s + least[1]))
         lines += _painted(road_number, lane, section.s, s, outer, _kind(section.lanes, id))
-        if _kind(section.lanes, id) == "pavement" and plan_length(outer) > LEAST_WIDTH:
-            lines.append(MapLine(road_number, "edge", "main", "", without_repeats(outer), side="left" if id > 0 else "right", edge="pavement"))
-        if _edge(section.lanes, id) and plan_length(inner) > LEAST_WIDTH:
-            lines.append(_curb(surface, number, id, s, inner, road_number))
-        if lane.type in NO_LANES or np.abs(offsets[id] - offsets[inside]).max() < LEAST_WIDTH:
-            continue
-        way, driven = travel(road, id), lane.type in DRIVEN_TYPES
-        borders, about = [inner, outer], [(_kind(section.lanes, one), _pattern(section.lanes, one)) for one in (inside, id)]
-        if id > 0:
-            borders, about = borders[::-1], about[::-1]
-        if driven and way < 0:
-            borders, about = [border[::-1] for border in borders[::-1]], about[::-1]
-        rows.add(*borders, road=road_number, lane=id, lane_id=lane_name(road.id, id, number), direction=way if driven else 0,
-                 type=("connector" if road.junction != "-1" else "driving") if driven else LANE_TYPE_OF.get(lane.type, "shoulder"),
-                 left_kind=about[0][0], right_kind=about[1][0], left_pattern=about[0][1], right_pattern=about[1][1],
-                 successors=[lane_name(key[0], key[2], key[1]) for key in _following(network, (road.id, number, id))] if driven else [],
-                 station=float(s[0]), end=float(s[-1]))
+        lines += _edges(surface, number, id, s, inner, outer, road_number)
+        if lane.type not in NO_LANES and np.abs(offsets[id] - offsets[surface.inside(number, id)]).max() >= LEAST_WIDTH:
+            rows.append({**_lane(network, surface, number, id, s, inner, outer), "road": road_number})
+
+
+def _edges(surface, number, id, s, inner, outer, road_number):
+    """The edges of the road at the borders of a lane."""
+    lanes = surface.road.sections[number].lanes
+    if _kind(lanes, id) == "pavement" and plan_length(outer) > LEAST_WIDTH:
+        yield MapLine(road_number, "edge", "main", "", without_repeats(outer), side="left" if id > 0 else "right", edge="pavement")
+    if _edge(lanes, id) and plan_length(inner) > LEAST_WIDTH:
+        yield _curb(surface, number, id, s, inner, road_number)
+
+
+def _lane(network, surface, number, id, s, inner, outer):
+    """The values of a lane, its borders in the direction of travel."""
+    road, lanes = surface.road, surface.road.sections[number].lanes
+    way, driven = travel(road, id), lanes[id].type in DRIVEN_TYPES
+    sides = [(border, _kind(lanes, one), _pattern(lanes, one)) for border, one in ((inner, surface.inside(number, id)), (outer, id))]
+    left, right = sides[::-1] if id > 0 else sides
+    if driven and way < 0:
+        left, right = ((border[::-1], kind, pattern) for border, kind, pattern in (right, left))
+    return {"left": left[0], "right": right[0], "lane": id, "lane_id": lane_name(road.id, id, number), "direction": way * driven,
+            "type": ("connector" if road.junction != "-1" else "driving") if driven else LANE_TYPE_OF.get(lanes[id].type, "shoulder"),
+            "left_kind": left[1], "right_kind": right[1], "left_pattern": left[2], "right_pattern": right[2],
+            "successors": [lane_name(key[0], key[2], key[1]) for key in _following(network, (road.id, number, id))] if driven else [],
+            "station": float(s[0]), "end": float(s[-1])}
 
 
 def _following(network, key, passed=()):
@@ -157,8 +169,8 @@ def _curb(surface, number, id, s, inner, road_number):
 
 def _existing(rows):
     """Successors that were no lanes of ours are dropped."""
-    known = {row["lane_id"] for row in rows.rows}
-    for row in rows.rows:
+    known = {row["lane_id"] for row in rows}
+    for row in rows:
         row["successors"] = [name for name in row["successors"] if name in known]
     return rows
 

@@ -56,6 +56,10 @@ class MapLane:
     border: bool = False    # `width` holds the distance of its outer border from the reference line instead
     data: dict[str, str] = field(default_factory=dict)
 
+    def links(self, end: str) -> list[int]:
+        """Numbers of the lanes that its "start" or "end" is linked to."""
+        return self.predecessors if end == "start" else self.successors
+
 
 @dataclass
 class LaneSection:
@@ -98,6 +102,10 @@ class MapRoad:
     def section_end(self, number: int) -> float:
         """Metres at which a section ends."""
         return self.sections[number + 1].s if number + 1 < len(self.sections) else self.length
+
+    def lanes_at(self, end: str) -> dict[int, MapLane]:
+        """The lanes by number at its "start" or "end"."""
+        return self.sections[0 if end == "start" else -1].lanes if self.sections else {}
 
     def link(self, end: str) -> RoadLink | None:
         """What its "start" or "end" touches."""
@@ -157,6 +165,7 @@ class OpenDriveMap:
 # Which lane follows which on a map of OpenDRIVE.
 
 LaneKey = tuple[str, int, int]   # road, number of the section, lane
+STEP, OTHER_END = {"start": -1, "end": 1}, {"start": "end", "end": "start"}   # from section to section beyond an end of a lane
 
 
 class LaneNetwork:
@@ -180,10 +189,10 @@ class LaneNetwork:
     def touching(self, key: LaneKey, end: str) -> list[tuple[LaneKey, str]]:
         """(lane, which of its ends) of all lanes that a lane's end is linked to, whether they exist or not."""
         road, lane = self.roads[key[0]], self.lane(key)
-        numbers = [] if lane is None else lane.successors if end == "end" else lane.predecessors
-        inside = key[1] + (1 if end == "end" else -1)
-        if 0 <= inside < len(road.sections):
-            return [((road.id, inside, number), "start" if end == "end" else "end") for number in numbers]
+        numbers = lane.links(end) if lane is not None else []
+        beyond = key[1] + STEP[end]
+        if 0 <= beyond < len(road.sections):
+            return [((road.id, beyond, number), OTHER_END[end]) for number in numbers]
         link = road.link(end)
         if link is None:
             return []
@@ -206,28 +215,24 @@ class LaneNetwork:
 
         touched : as above; roads that leave a junction are named by its connecting roads alone
         """
-        road, lane = self.roads[key[0]], self.lane(key)
-        if lane is None or lane.type not in DRIVEN_TYPES:
-            return False
-        touching = self.touching(key, end)
-        if any((known := self.lane(other)) is not None and known.type in DRIVEN_TYPES for other, _ in touching):
-            return False
-        if not touching and (key, end) in touched:
+        road, touching = self.roads[key[0]], self.touching(key, end)
+        if not self.driven(key) or any(self.driven(other) for other, _ in touching) or not touching and (key, end) in touched:
             return False
         link = road.link(end)
-        return 0 <= key[1] + (1 if end == "end" else -1) < len(road.sections) or link is not None and (
+        return 0 <= key[1] + STEP[end] < len(road.sections) or link is not None and (
             link.element == "junction" and link.id in self.junctions or link.id in self.roads)
 
     def following(self, key: LaneKey) -> list[LaneKey]:
         """The driven lanes that a driven lane leads to, in the direction of travel."""
         end = "end" if travel(self.roads[key[0]], key[2]) > 0 else "start"
-        found = []
-        for other, there in self.touching(key, end):
-            lane = self.lane(other)
-            # what ends where ours ends is no way on
-            if lane is not None and lane.type in DRIVEN_TYPES and there == ("start" if travel(self.roads[other[0]], other[2]) > 0 else "end"):
-                found.append(other)
-        return found
+        # what ends where ours ends is no way on
+        return [other for other, there in self.touching(key, end)
+                if self.driven(other) and there == ("start" if travel(self.roads[other[0]], other[2]) > 0 else "end")]
+
+    def driven(self, key: LaneKey) -> bool:
+        """Whether there is a lane of a key, and vehicles use it."""
+        lane = self.lane(key)
+        return lane is not None and lane.type in DRIVEN_TYPES
 
 
 def travel(road: MapRoad, id: int) -> int:
@@ -273,10 +278,12 @@ class RoadSurface:
         knots = np.append(knots[keep], last) if last > first else knots[[0, -1]]
         if number + 1 < len(road.sections):   # the functions of the next section begin at its end
             knots[-1] = max(knots[-1] - BEFORE_END, knots[-2])
-        lanes = road.sections[number].lanes.values()
-        steps = [_steps(lane.width) for lane in lanes] + [_steps(lane.heights) for lane in lanes]
+        steps = [_steps(values) for lane in road.sections[number].lanes.values() for values in (lane.width, lane.heights)]
         cuts = np.concatenate([self._cuts, *(s + first - 2 * LEAST_STEP for s in steps)])
-        knots = np.unique(np.append(knots, cuts[(cuts > knots[0] + STEP_RUN) & (cuts < knots[-1] - STEP_RUN)]))
+        return self._bending(number, np.unique(np.append(knots, cuts[(cuts > knots[0] + STEP_RUN) & (cuts < knots[-1] - STEP_RUN)])))
+
+    def _bending(self, number, knots):
+        """(N,) metres of s, with more between them where a border bends."""
         for _ in range(BENDING_ROUNDS):
             middles = (knots[:-1] + knots[1:]) / 2
             ends, inner = (np.stack(list(self.offsets(number, s).values())) for s in (knots, middles))
@@ -329,14 +336,14 @@ class RoadSurface:
         """(s, metres, lane) of every gap or kink of the reference line, with the jump of the farthest border there and its lane, and of every step
         of a width or height."""
         road, found = self.road, []
+        starts = [section.s for section in road.sections]
         for s, gap, turn in road.plan.jumps(GAP, KINK):
-            number = max((k for k, section in enumerate(road.sections) if section.s <= s), default=-1)
+            number = int(np.searchsorted(starts, s, side="right")) - 1
             if number >= 0:
                 farthest, lane = max((abs(float(t[0])), id) for id, t in self.offsets(number, np.array([s])).items())
                 found.append((s, gap + 2 * farthest * float(np.sin(turn / 2)), lane))
-        starts = [section.s for section in road.sections]   # where lanes begin lane 0 may lie elsewhere
-        found += [(s, size, 0) for cubics in (road.elevation, road.lane_offset) for s, size in zip(*cubics.steps())
-                  if cubics is road.elevation or s not in starts]
+        found += [(s, size, 0) for s, size in zip(*road.elevation.steps())]
+        found += [(s, size, 0) for s, size in zip(*road.lane_offset.steps()) if s not in starts]   # where lanes begin lane 0 may lie elsewhere
         return found + [(section.s + s, size, lane.id) for section in road.sections for lane in section.lanes.values()
                         for s, size in zip(*lane.width.steps())]
 

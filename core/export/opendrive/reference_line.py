@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...curves.clothoid import GAUSS_RULES, gauss_rule
+from ..sources import wrapped
 from .geometry import STRAIGHT_BEND, PlanElement, PlanView
 
 LEAST_PIECE = 1.0       # m of an element: shorter ones follow noise
@@ -57,7 +58,7 @@ def fit_reference(points: np.ndarray, tolerance: float, ends: tuple[float | None
     """
     points = np.asarray(points, float)
     fit, after = _Fit(points, tolerance, ends, turn_tolerance), None
-    if ends[1] is not None and abs(_wrapped(fit.natural_heading(fit.last) - ends[1])) > turn_tolerance:
+    if ends[1] is not None and abs(wrapped(fit.natural_heading(fit.last) - ends[1])) > turn_tolerance:
         # a road that turns at its end does so along the longest element that leads there, which is found from the end backwards
         back = _Fit(points[::-1], tolerance, (ends[1] + np.pi, None), turn_tolerance)
         last = back.farthest(0, back.pose(0), back.last)
@@ -174,8 +175,8 @@ class _Fit:
     def _arc(self, pose, there):
         end = self.pose(there)
         dx, dy = end.x - pose.x, end.y - pose.y
-        angle = _wrapped(np.arctan2(dy, dx) - pose.heading)
-        if abs(angle) > MOST_ANGLE or abs(_wrapped(pose.heading + 2 * angle - end.heading)) > self._turn(there):
+        angle = wrapped(np.arctan2(dy, dx) - pose.heading)
+        if abs(angle) > MOST_ANGLE or abs(wrapped(pose.heading + 2 * angle - end.heading)) > self._turn(there):
             return None
         chord = float(np.hypot(dx, dy))
         bend = 2 * float(np.sin(angle)) / max(chord, 1e-9)
@@ -187,7 +188,7 @@ class _Fit:
     def _line(self, pose, there):
         end = self.pose(there)
         length = (end.x - pose.x) * np.cos(pose.heading) + (end.y - pose.y) * np.sin(pose.heading)
-        if length <= 0 or abs(_wrapped(pose.heading - end.heading)) > self._turn(there):
+        if length <= 0 or abs(wrapped(pose.heading - end.heading)) > self._turn(there):
             return None
         element = PlanElement(0.0, *pose, float(length))
         return element, _Pose(*element.end())
@@ -273,7 +274,7 @@ class _Fit:
         heading = float(np.arctan2(way[1], way[0]))
         for k, given in ((0, self.ends[0]), (self.last, self.ends[1])):
             if k in (first, last) and given is not None:
-                if abs(_wrapped(given - heading)) > self.turn_tolerance:
+                if abs(wrapped(given - heading)) > self.turn_tolerance:
                     return False
         places = [middle + way * ((self.points[k] - middle) @ way) for k in (first, last)]
         for k, place in zip((first, last), places):
@@ -294,7 +295,7 @@ def _spiral_between(start, end):
     """The spiral from one pose to another, None where it would turn too far."""
     dx, dy = end.x - start.x, end.y - start.y
     chord, way = float(np.hypot(dx, dy)), float(np.arctan2(dy, dx))
-    first, last = _wrapped(start.heading - way), _wrapped(end.heading - way)
+    first, last = wrapped(start.heading - way), wrapped(end.heading - way)
     if chord < 1e-6 or max(abs(first), abs(last)) > MOST_ANGLE:
         return None
     turn, change = last - first, 3 * (first + last)
@@ -329,16 +330,12 @@ def _in_order(elements):
     s = 0.0
     for one in elements:
         before = found[-1] if found else None
-        if before is not None and before.kind == one.kind == "line" and abs(_wrapped(before.heading - one.heading)) < 1e-9:
+        if before is not None and before.kind == one.kind == "line" and abs(wrapped(before.heading - one.heading)) < 1e-9:
             found[-1] = PlanElement(before.s, before.x, before.y, before.heading, before.length + one.length)
         else:
             found.append(PlanElement(s, one.x, one.y, one.heading, one.length, one.kind, one.values))
         s += one.length
     return tuple(found)
-
-
-def _wrapped(angle):
-    return (angle + np.pi) % (2 * np.pi) - np.pi
 
 
 def polynomial_reference(points: np.ndarray) -> PlanView:

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from dataclasses import dataclass, field
 
 import numpy as np
-import shapely
 
 from ...driving.layers import Lanes
+from ..shared_borders import SAME_VERTEX, cuts_beside, numbered
 from ..sources import LEAST_CURB
 
-SAME_VERTEX = 0.001      # m in plan between vertices that are one
-SAME_VERTEX_RISE = 0.3   # m in height: a border between road and curb has two
 SLOPE_REACH = 1.5        # m along a border before and after a place from which its direction there is taken
 MOST_TURN = 0.3          # rad from before to after it: more is a corner, which is kept
 
@@ -33,6 +31,10 @@ class Cell:
     direction: int
     before: list[Cell] = field(default_factory=list, repr=False)
     after: list[Cell] = field(default_factory=list, repr=False)
+
+    def beyond(self, at_end: bool) -> list[Cell]:
+        """The cells that touch its start or its end."""
+        return self.after if at_end else self.before
 
     @property
     def length(self) -> float:
@@ -55,6 +57,19 @@ class Slice:
     def length(self) -> float:
         """Metres of its longest cell."""
         return max(cell.length for cell in self.cells)
+
+    @property
+    def driven(self) -> list[Cell]:
+        """Those of its cells that have a direction of travel."""
+        return [cell for cell in self.cells if cell.direction]
+
+    def beyond(self, at_end: bool) -> list[Cell]:
+        """The cells that touch its start or its end."""
+        return [other for cell in self.cells for other in cell.beyond(at_end)]
+
+    def mark(self, at_start: bool) -> None:
+        """Note that ways through a junction begin or end within the slice, at its start or its end."""
+        self.at_start, self.at_end = self.at_start or at_start, self.at_end or not at_start
 
     def borders(self) -> list[np.ndarray]:
         """(n, 3) each, from left to right, one more than cells."""
@@ -113,27 +128,22 @@ def cut_into_cells(lanes: Lanes) -> list[Cell]:
     -------
     list of Cell, linked along the road. Lanes driven against the road are turned round; connectors run with their traffic
     """
-    numbers = _numbered(np.concatenate([lanes.left, lanes.right]))
+    numbers, _ = numbered(np.concatenate([lanes.left, lanes.right]))
     left, right = numbers[:len(lanes.left)], numbers[len(lanes.left):]
     ordinary = np.repeat(lanes.type != "connector", np.diff(lanes.start))
-    cuts = _cuts(lanes, left, right, ordinary)
+    cuts = cuts_beside(lanes, left, right, ordinary)
     cells, first_of, last_of = [], {}, {}
     for k in range(len(lanes)):
         a, b = lanes.start[k], lanes.start[k + 1] - 1
-        inner = [row for row in range(a + 1, b) if left[row] in cuts or right[row] in cuts] if ordinary[a] else []
-        at = [a]
-        for row in inner:   # where both borders stand still there is nothing to cut off
-            if all((left[row], right[row]) != (left[end], right[end]) for end in (at[-1], b)):
-                at.append(row)
-        at.append(b)
+        at = [*_rows_to_cut(a, b, left, right, cuts), b] if ordinary[a] else [a, b]
         made = []
         for first, last in zip(at[:-1], at[1:]):
             rows = slice(first, last + 1)
             sides = [(lanes.left[rows], tuple(left[rows])), (lanes.right[rows], tuple(right[rows]))]
-            against = lanes.direction[k] < 0 and ordinary[a]
-            if against:
+            direction = int(lanes.direction[k]) if ordinary[a] else 1
+            if direction < 0:
                 sides = [(line[::-1], nodes[::-1]) for line, nodes in sides[::-1]]
-            made.append(Cell(k, sides[0][0], sides[1][0], sides[0][1], sides[1][1], int(lanes.direction[k]) if ordinary[a] else 1))
+            made.append(Cell(k, sides[0][0], sides[1][0], sides[0][1], sides[1][1], direction))
         for one, following in zip(made[:-1], made[1:]):
             _link(one, following)
         first_of[lanes.lane_id[k]], last_of[lanes.lane_id[k]] = made[0], made[-1]
@@ -143,6 +153,15 @@ def cut_into_cells(lanes: Lanes) -> list[Cell]:
             _link(last_of[lanes.lane_id[k]], first_of[name])
     _link_undriven(cells)
     return cells
+
+
+def _rows_to_cut(a, b, left, right, cuts):
+    """The row a, and those before b at which a lane is cut: where both borders stand still there is nothing to cut off."""
+    at = [a]
+    for row in range(a + 1, b):
+        if (left[row] in cuts or right[row] in cuts) and all((left[row], right[row]) != (left[end], right[end]) for end in (at[-1], b)):
+            at.append(row)
+    return at
 
 
 def is_connector(cell: Cell, lanes: Lanes) -> bool:
@@ -168,30 +187,6 @@ def _link_undriven(cells):
             other.before.append(cell)
 
 
-def _cuts(lanes, left, right, ordinary):
-    """Nodes at which every lane beside them is cut."""
-    rows = np.concatenate([lanes.start[:-1], lanes.start[1:] - 1]).astype(int)
-    rows = rows[ordinary[rows]]
-    cuts = set(left[rows].tolist()) | set(right[rows].tolist())
-    while True:
-        known = np.array(sorted(cuts))
-        one_sided = np.flatnonzero((np.isin(left, known) ^ np.isin(right, known)) & ordinary)
-        more = (set(left[one_sided].tolist()) | set(right[one_sided].tolist())) - cuts
-        if not more:
-            return cuts
-        cuts |= more
-
-
-def _numbered(places: np.ndarray) -> np.ndarray:
-    """(V,) a number for each of V vertices, the same where they are at one place."""
-    points = shapely.points(places[:, :2])
-    near = shapely.STRtree(points).query(points, predicate="dwithin", distance=SAME_VERTEX)
-    near = near[:, np.abs(places[near[0], 2] - places[near[1], 2]) < SAME_VERTEX_RISE]
-    first = np.arange(len(places))
-    np.minimum.at(first, near[0], near[1])
-    return np.unique(first, return_inverse=True)[1]
-
-
 def slices_of(cells: list[Cell], lanes: Lanes) -> list[Slice]:
     """Cells that share a border side by side; connectors stand alone and are not among them."""
     ordinary = [cell for cell in cells if not is_connector(cell, lanes)]
@@ -211,10 +206,10 @@ def slices_of(cells: list[Cell], lanes: Lanes) -> list[Slice]:
 
 def connector_slices(cells: list[Cell], slices: list[Slice], lanes: Lanes) -> tuple[list[Slice], list[Slice]]:
     """(a slice for every connector with what nobody drives beside it, the slices that are left)."""
-    undriven = [one for one in slices if not any(cell.direction for cell in one.cells)]
+    undriven = [one for one in slices if not one.driven]
     by_left = {one.cells[0].left_nodes: one for one in undriven}
     by_right = {one.cells[-1].right_nodes: one for one in undriven}
-    found, used = [], set()
+    used = set()
 
     def beside(same, turned, nodes):
         for one, against in ((same.get(nodes), False), (turned.get(nodes[::-1]), True)):
@@ -223,9 +218,8 @@ def connector_slices(cells: list[Cell], slices: list[Slice], lanes: Lanes) -> tu
                 return (one.turned() if against else one).cells
         return []
 
-    for cell in cells:
-        if is_connector(cell, lanes):
-            found.append(Slice([*beside(by_right, by_left, cell.left_nodes), cell, *beside(by_left, by_right, cell.right_nodes)]))
+    found = [Slice([*beside(by_right, by_left, cell.left_nodes), cell, *beside(by_left, by_right, cell.right_nodes)])
+             for cell in cells if is_connector(cell, lanes)]
     return found, [one for one in slices if id(one) not in used]
 
 
@@ -264,34 +258,35 @@ def mark_junctions(slices: list[Slice], lanes: Lanes) -> None:
 
     Where lanes beside each other go on in lanes that are no longer beside each other, there is a junction too: a road has one successor.
     """
-    owner = {id(cell): k for k, one in enumerate(slices) for cell in one.cells}
+    _mark_partings(slices)
     for one in slices:
         for at_end in (False, True):
-            ends = {(owner[id(other)], any(cell is back for back in other.before)) for cell in one.cells if cell.direction
-                    for other in (cell.after if at_end else cell.before) if id(other) in owner}
-            if len(ends) > 1:
-                for number, at_start in ends:
-                    if at_start:
-                        slices[number].at_start = True
-                    else:
-                        slices[number].at_end = True
+            # a connector that this slice touches lies beyond its end: beside the slices beyond
+            touching = {id(other) for other in one.beyond(at_end)}
+            if any(is_connector(other, lanes) for other in one.beyond(at_end)):
+                for beyond in slices:
+                    if not touching.isdisjoint(map(id, beyond.cells)):
+                        beyond.mark(at_end)
+
+
+def _mark_partings(slices):
+    owner = _owners(slices)
     for one in slices:
         for at_end in (False, True):
-            touching = [other for cell in one.cells for other in (cell.after if at_end else cell.before)]
-            # a connector that this slice touches lies beyond its end: beside the slice beyond
-            if any(is_connector(other, lanes) for other in touching):
-                _mark_through(slices, one, at_end)
+            ends = _ends_beyond(one, at_end, owner)
+            for number, at_start in ends if len(ends) > 1 else ():
+                slices[number].mark(at_start)
 
 
-def _mark_through(slices, one, at_end):
-    """The slices that follow any lane of a slice at the end where a junction begins."""
-    touching = [other for cell in one.cells for other in (cell.after if at_end else cell.before)]
-    for beyond in slices:
-        if any(other is known for other in touching for known in beyond.cells):
-            if at_end:
-                beyond.at_start = True
-            else:
-                beyond.at_end = True
+def _owners(slices):
+    """{id of a cell: number of its slice}."""
+    return {id(cell): k for k, one in enumerate(slices) for cell in one.cells}
+
+
+def _ends_beyond(one, at_end, owner):
+    """{(number of a slice, whether at its start)} that the driven cells of a slice touch at one end."""
+    return {(owner[id(other)], any(cell is back for back in other.before)) for cell in one.driven for other in cell.beyond(at_end)
+            if id(other) in owner}
 
 
 def strips_of(slices: list[Slice], breaks: set[tuple[int, int]]) -> list[list[Slice]]:
@@ -306,17 +301,16 @@ def strips_of(slices: list[Slice], breaks: set[tuple[int, int]]) -> list[list[Sl
     -------
     list of lists of Slice, in order along the road
     """
-    owner = {id(cell): k for k, one in enumerate(slices) for cell in one.cells}
-    after, before = defaultdict(set), defaultdict(set)
-    for k, one in enumerate(slices):
-        for cell in one.cells:
-            for other in cell.after:
-                j = owner.get(id(other))
-                if j is not None and other.direction * cell.direction >= 0:
-                    after[k].add(j)
-                    before[j].add(k)
-    follows = {k: next(iter(after[k])) for k in range(len(slices))
-               if len(after[k]) == 1 and len(before[next(iter(after[k]))]) == 1 and (id(slices[k]), id(slices[next(iter(after[k]))])) not in breaks}
+    owner = _owners(slices)
+    pairs = {(k, owner[id(other)]) for k, one in enumerate(slices) for cell in one.cells for other in cell.after
+             if id(other) in owner and other.direction * cell.direction >= 0}
+    after, before = (Counter(pair[side] for pair in pairs) for side in (0, 1))
+    follows = {k: j for k, j in pairs if after[k] == before[j] == 1 and (id(slices[k]), id(slices[j])) not in breaks}
+    return _chained(slices, follows)
+
+
+def _chained(slices, follows):
+    """Slices end to end, by {number of a slice: number of the next}."""
     leads = set(follows.values())
     found, used = [], set()
     for k in [k for k in range(len(slices)) if k not in leads] + list(range(len(slices))):
@@ -333,24 +327,22 @@ def strips_of(slices: list[Slice], breaks: set[tuple[int, int]]) -> list[list[Sl
 
 def end_to_end(cells: list[Cell]) -> list[list[Cell]]:
     """Single lanes, all in the direction of travel, that follow each other without a fork."""
-    known = {id(cell) for cell in cells}
-
-    def beyond(cell: Cell, ahead: bool) -> Cell | None:
-        others = cell.after if ahead else cell.before
-        if len(others) != 1 or id(others[0]) not in known or others[0] is cell:
-            return None
-        back = others[0].before if ahead else others[0].after
-        return others[0] if len(back) == 1 and back[0] is cell else None
-
-    found, used = [], set()
+    found, free = [], {id(cell) for cell in cells}
     for cell in cells:
-        if id(cell) in used:
+        if id(cell) not in free:
             continue
         row = [cell]
-        used.add(id(cell))
+        free.remove(id(cell))
         for ahead in (True, False):
-            while (other := beyond(row[-1] if ahead else row[0], ahead)) is not None and id(other) not in used:
-                used.add(id(other))
+            while (other := _only_one(row[-1] if ahead else row[0], ahead)) is not None and id(other) in free:
+                free.remove(id(other))
                 row.insert(len(row) if ahead else 0, other)
         found.append(row)
     return found
+
+
+def _only_one(cell: Cell, ahead: bool) -> Cell | None:
+    """The cell that one cell touches ahead or behind, where both touch no other there."""
+    others = cell.beyond(ahead)
+    back = others[0].beyond(not ahead) if len(others) == 1 and others[0] is not cell else []
+    return others[0] if len(back) == 1 and back[0] is cell else None

@@ -10,6 +10,10 @@ from ..xml_tree import XmlElement, read_xml, xml_text
 from .geometry import Cubics, PlanElement, PlanView
 from .model import Connection, Junction, LaneSection, MapLane, MapRoad, OpenDriveMap, RoadLink, RoadMark
 
+# kind of a geometry -> attributes of its values
+GEOMETRIES = {"line": (), "arc": ("curvature",), "spiral": ("curvStart", "curvEnd"), "poly3": tuple("abcd"),
+              "paramPoly3": ("aU", "bU", "cU", "dU", "aV", "bV", "cV", "dV")}
+SHAPE = ("s", "t", "a", "b", "c", "d")
 XODR_KIND = "an OpenDRIVE file"
 MARK_WIDTH = 0.12    # m, where a road mark has none
 LONGEST_ROAD, LONGEST_MAP = 200_000.0, 1_000_000.0   # m of one road, and of all: more is no map but a file that shall fill the memory
@@ -70,42 +74,30 @@ def opendrive_of(root: XmlElement) -> OpenDriveMap:
 
 
 def _road_of(element, problems):
-    plan = element.find("planView")
-    elements = sorted((_geometry(child) for child in (plan.all("geometry") if plan is not None else ())), key=lambda one: one.s)
+    elements = sorted((_geometry(child) for child in element.all("planView", "geometry")), key=lambda one: one.s)
     if not elements:
         raise RoadExtractionError("it has no geometry.")
     if sum(abs(one.length) for one in elements) > LONGEST_ROAD:
         raise RoadExtractionError(f"it is longer than {LONGEST_ROAD / 1000:g} km.")
-    profile, lateral, lanes = element.find("elevationProfile"), element.find("lateralProfile"), element.find("lanes")
     road = MapRoad(
         element.get("id"), element.number("length", sum(one.length for one in elements)), PlanView(tuple(elements)), element.get("name"),
         element.get("junction", "-1"),
         element.get("rule", "RHT"), _link(element.find("link", "predecessor")), _link(element.find("link", "successor")),
-        _cubics(profile, "elevation"), _cubics(lateral, "superelevation"), _shape(lateral), _cubics(lanes, "laneOffset"))
-    for child in lanes.all("laneSection") if lanes is not None else ():
-        road.sections.append(_section_of(child))
-    road.sections.sort(key=lambda section: section.s)
+        _cubics(element, "elevationProfile", "elevation"), _cubics(element, "lateralProfile", "superelevation"),
+        np.array(_rows_of(element, SHAPE, "lateralProfile", "shape")).reshape(-1, len(SHAPE)), _cubics(element, "lanes", "laneOffset"))
+    road.sections = sorted((_section_of(child) for child in element.all("lanes", "laneSection")), key=lambda section: section.s)
     if not road.sections:
         problems.append((element.line, f"road {road.id} has no lane section."))
-    objects = element.find("objects")
-    road.objects = [_object(child) for child in (objects.all("object") if objects is not None else ())]
+    road.objects = [_object(child) for child in element.all("objects", "object")]
     return road
 
 
 def _geometry(element):
     place = [element.number(name) for name in ("s", "x", "y", "hdg", "length")]
     for child in element.children:
-        if child.tag == "line":
-            return PlanElement(*place)
-        if child.tag == "arc":
-            return PlanElement(*place, "arc", (child.number("curvature"),))
-        if child.tag == "spiral":
-            return PlanElement(*place, "spiral", (child.number("curvStart"), child.number("curvEnd")))
-        if child.tag == "poly3":
-            return PlanElement(*place, "poly3", tuple(child.number(name) for name in "abcd"))
-        if child.tag == "paramPoly3":
-            values = tuple(child.number(name + axis) for axis in "UV" for name in "abcd")
-            return PlanElement(*place, "paramPoly3", values, child.get("pRange", "normalized") == "normalized")
+        if child.tag in GEOMETRIES:
+            values = tuple(child.number(name) for name in GEOMETRIES[child.tag])
+            return PlanElement(*place, child.tag, values, child.tag == "paramPoly3" and child.get("pRange", "normalized") == "normalized")
     raise RoadExtractionError(f"line {element.line}: a geometry is none of line, arc, spiral, poly3 and paramPoly3.")
 
 
@@ -115,21 +107,19 @@ def _link(element):
     return RoadLink(element.get("elementType"), element.get("elementId"), element.get("contactPoint"))
 
 
-def _cubics(parent, tag, start="s"):
-    rows = [[child.number(start), *(child.number(name) for name in "abcd")] for child in (parent.all(tag) if parent is not None else ())]
+def _rows_of(element, names, *path):
+    return [[child.number(name) for name in names] for child in element.all(*path)]
+
+
+def _cubics(element, *path, start="s"):
+    rows = _rows_of(element, (start, *"abcd"), *path)
     return Cubics(np.array(sorted(rows, key=lambda row: row[0]), float).reshape(-1, 5))
-
-
-def _shape(parent):
-    rows = [[child.number(name) for name in ("s", "t", "a", "b", "c", "d")] for child in (parent.all("shape") if parent is not None else ())]
-    return np.array(rows, float).reshape(-1, 6)
 
 
 def _section_of(element):
     section = LaneSection(element.number("s"))
     for side in ("left", "center", "right"):
-        group = element.find(side)
-        for child in group.all("lane") if group is not None else ():
+        for child in element.all(side, "lane"):
             lane = _lane_of(child)
             section.order.append(lane.id)
             section.lanes[lane.id] = lane
@@ -138,9 +128,9 @@ def _section_of(element):
 
 def _lane_of(element):
     number = element.number("id")
-    lane = MapLane(int(number), element.get("type"), _cubics(element, "width", "sOffset"))
+    lane = MapLane(int(number), element.get("type"), _cubics(element, "width", start="sOffset"))
     if not len(lane.width) and element.find("border") is not None:
-        lane.width, lane.border = _cubics(element, "border", "sOffset"), True
+        lane.width, lane.border = _cubics(element, "border", start="sOffset"), True
     lane.marks = sorted((_mark(child) for child in element.all("roadMark")), key=lambda mark: mark.s)
     link = element.find("link")
     for child in link.children if link is not None else ():
@@ -155,8 +145,7 @@ def _lane_of(element):
 def _mark(element):
     mark = RoadMark(element.number("sOffset", 0.0), element.get("type", "none"), element.get("color", "standard"),
                     element.number("width", MARK_WIDTH), element.get("weight", "standard"))
-    kind = element.find("type")
-    lines = list(kind.all("line")) if kind is not None else []
+    lines = list(element.all("type", "line"))
     dashed = next((line for line in lines if line.number("space", 0.0)), None)
     if dashed is not None:
         mark.dash, mark.gap = dashed.number("length", 0.0), dashed.number("space", 0.0)
@@ -217,44 +206,34 @@ def opendrive_text(whole: OpenDriveMap, vendor: str = "Lanewright") -> str:
 
 def _road_element(road: MapRoad, minor: int) -> XmlElement:
     element = XmlElement("road", {"name": road.name, "length": float(road.length), "id": road.id, "junction": road.junction, "rule": road.rule})
-    if road.predecessor or road.successor:
-        link = element.add("link")
-        for name, target in (("predecessor", road.predecessor), ("successor", road.successor)):
-            if target is not None:
-                link.add(name, elementType=target.element, elementId=target.id, contactPoint=target.contact or None)
+    targets = [(name, target) for name, target in (("predecessor", road.predecessor), ("successor", road.successor)) if target is not None]
+    link = element.add("link") if targets else element
+    for name, target in targets:
+        link.add(name, elementType=target.element, elementId=target.id, contactPoint=target.contact or None)
     element.append(_plan(road.plan.elements))
     _rows(element.add("elevationProfile"), "elevation", road.elevation)
     lateral = element.add("lateralProfile")
     if np.abs(road.superelevation.rows[:, 1:]).max(initial=0.0) > 0:
         _rows(lateral, "superelevation", road.superelevation)
-    for s, t, a, b, c, d in road.shape:
-        lateral.add("shape", s=s, t=t, a=a, b=b, c=c, d=d)
+    for row in road.shape:
+        lateral.append(XmlElement("shape", dict(zip(SHAPE, row))))
     lanes = element.add("lanes")
     _rows(lanes, "laneOffset", road.lane_offset)
     for section in road.sections:
         lanes.append(_section_element(section))
-    if road.objects:
-        objects = element.add("objects")
-        for item in road.objects:
-            _add_object(objects, item, minor)
-    for code, value in road.data.items():
-        element.add("userData", code=code, value=value)
-    return element
+    objects = element.add("objects") if road.objects else element
+    for item in road.objects:
+        _add_object(objects, item, minor)
+    return _with_data(element, road.data)
 
 
 def _plan(elements: tuple[PlanElement, ...]) -> XmlElement:
     plan = XmlElement("planView")
     for one in elements:
         child = plan.add("geometry", s=one.s, x=one.x, y=one.y, hdg=one.heading, length=one.length)
-        if one.kind == "line":
-            child.add("line")
-        elif one.kind == "arc":
-            child.add("arc", curvature=one.values[0])
-        elif one.kind == "spiral":
-            child.add("spiral", curvStart=one.values[0], curvEnd=one.values[1])
-        else:
-            names = [name + axis for axis in "UV" for name in "abcd"]
-            child.append(XmlElement("paramPoly3", dict(zip(names, one.values)) | {"pRange": "normalized" if one.normalized else "arcLength"}))
+        shape = child.append(XmlElement(one.kind, dict(zip(GEOMETRIES[one.kind], one.values))))
+        if one.kind == "paramPoly3":
+            shape.attributes["pRange"] = "normalized" if one.normalized else "arcLength"
     return plan
 
 
@@ -285,7 +264,11 @@ def _lane_element(lane: MapLane) -> XmlElement:
         _add_mark(element, mark)
     for s, inner, outer in lane.heights:
         element.add("height", sOffset=s, inner=inner, outer=outer)
-    for code, value in lane.data.items():
+    return _with_data(element, lane.data)
+
+
+def _with_data(element: XmlElement, data: dict[str, str]) -> XmlElement:
+    for code, value in data.items():
         element.add("userData", code=code, value=value)
     return element
 

@@ -7,6 +7,5 @@ from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
     "find": ("Roadside", "find_roadside"),
-    "layers": ("roadside_to_features",),
-    "settings": ("RoadsideSettings",),
+    "result": ("roadside_to_features",),
 })

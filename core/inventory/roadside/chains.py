@@ -1,16 +1,15 @@
-"""Uprights that repeat along the road at a steady offset and height, as chains."""
+"""Uprights that repeat along the road at a steady offset and height, as chains; what stands in their gaps, and of what kind they are."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.ndimage import median_filter
 
-from ...common.arrays import linked_groups, members_of
-from .gaps import END_UPRIGHTS, TOLD_GAP, Gaps, gaps_between
-from .uprights import UPRIGHT_SLICE, Uprights
+from ...common.arrays import Rows, linked_groups, members_of
+from .uprights import BEHIND, FIRST_BIN, HEIGHT_BIN, SIGHT_MARGIN, TALL, TOP_BIN, UPRIGHT_SLICE, Uprights
 
 STEADY_OFFSET, STEADY_PER_SLICE = 0.30, 0.02   # m across from one slice to a later one, and more for each slice between
 HEWN, STEADY_TALL = 1.8, 1.00           # m: what is higher may be rock, which is hewn, not built; m across from one slice to the next
@@ -181,3 +180,273 @@ def _linked(ends, begins, lags):
         taken_next[one], taken_before[other] = True, True
         pairs.append(np.c_[one, other])
     return np.concatenate(pairs)
+
+
+# What was seen in the gaps of a line beside the road: a vehicle hides what stands behind it, through a gate one sees what lies beyond.
+
+TOLD_GAP = 3             # slices (1.5 m) without an upright of a gap that is told; shorter ones belong to the line
+END_UPRIGHTS = 3         # at the end of a piece, whose median offset and heights count
+MIN_PASSED = 3           # pulses seen through a slice of a gap, from which it may be open
+EXPECTED, FEWER = 10.0, 0.25  # pulses that would have met the thing there, from which it is open where at most this share did
+MIN_STOPPED = 3          # pulses that something before it stopped, from which a slice is hidden
+MIN_HIDDEN = 0.8         # share of the slices of a gap that are hidden, where no opening is
+SIGHT_REACH = 12.0       # m along the road from a gap of points whose line of sight may pass it: planes of scanners are turned by 45 degrees
+
+
+@dataclass
+class Gaps(Rows):
+    """G gaps between two uprights of what may be one line.
+
+    before, after : (G,) int, rows of the uprights
+    first, last : (G,) int, the first and the last slice without one
+    d, low, high : (G, 2) m, offset and heights of the lower and upper end of the line before and after the gap; local z, or above the road
+    share : (G,) share of the pulses that reach the line which it stops
+    empty : (G,) number of slices that show what lies beyond
+    hidden : (G,) number of slices that something before the line hides
+    """
+
+    before: np.ndarray
+    after: np.ndarray
+    first: np.ndarray
+    last: np.ndarray
+    d: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+    share: np.ndarray
+    empty: np.ndarray
+    hidden: np.ndarray
+
+    @property
+    def covered(self) -> np.ndarray:
+        """(G,) bool, whether the gap is hidden, as far as one can tell."""
+        return (self.empty < TOLD_GAP) & (self.hidden >= MIN_HIDDEN * (self.last - self.first + 1))
+
+
+def gaps_between(uprights: Uprights, ends: list[np.ndarray], begins: list[np.ndarray]) -> Gaps:
+    """Gaps between pieces of lines.
+
+    Parameters
+    ----------
+    uprights : Uprights
+    ends, begins : G times rows of the last uprights before a gap, and of the first after it, in order
+    """
+    sides = [[_end(uprights[rows]) for rows in some] for some in (ends, begins)]
+    d, low, high, points, behind = np.array(sides, float).reshape(2, len(ends), 5).transpose(2, 1, 0)
+    before, after = (np.array([rows[k] for rows in some], np.int64) for some, k in ((ends, -1), (begins, 0)))
+    points, behind = points.sum(axis=1), behind.sum(axis=1)
+    none = np.zeros(len(ends), np.int64)
+    return Gaps(before, after, uprights.slice[before] + 1, uprights.slice[after] - 1, d, low, high, points / np.maximum(points + behind, 1.0),
+                none, none)
+
+
+def _end(uprights):
+    top = float(np.median(uprights.ground + uprights.top))
+    low = float(np.median(uprights.ground)) + FIRST_BIN * HEIGHT_BIN
+    return float(np.median(uprights.d)), low, top - SIGHT_MARGIN, uprights.points.sum(), uprights.behind.sum()
+
+
+def gaps_by_window(gaps: Gaps, length: float) -> dict[int, list[int]]:
+    """Rows of the gaps of which the points of windows may tell, by the number of the window, of a length in m, counted from station 0."""
+    first, last = (gaps.first - 1) * UPRIGHT_SLICE - SIGHT_REACH, (gaps.last + 2) * UPRIGHT_SLICE + SIGHT_REACH
+    found: dict[int, list[int]] = {}
+    for k, (a, b) in enumerate(zip(first // length, last // length)):
+        for window in range(int(a), int(b) + 1):
+            found.setdefault(window, []).append(k)
+    return found
+
+
+def pulses_at(gaps: Gaps, side: int, s: np.ndarray, d: np.ndarray, h: np.ndarray, across: np.ndarray, up: np.ndarray) -> np.ndarray:
+    """Pulses that reached the places of gaps, or would have.
+
+    Parameters
+    ----------
+    gaps : Gaps, of one side of a road
+    side : 1 left, -1 right
+    s, d, h : (N,) m, station (rising), offset and height of points of that side, which count as those of the gaps
+    across : (2, N) m from the point to the scanner, ahead and left along the road
+    up : (N,) m that the scanner is higher above the road
+
+    Returns
+    -------
+    (3, K) pulses that passed each slice of all gaps, one after the other, that met something there, and that something before it stopped
+    """
+    length = gaps.last - gaps.first + 1
+    start = np.cumsum(length) - length
+    counts = np.zeros((3, int(length.sum())), np.int64)
+    for k in range(len(gaps)):
+        s0, s1 = (gaps.first[k] - 0.5) * UPRIGHT_SLICE, (gaps.last[k] + 1.5) * UPRIGHT_SLICE
+        near = slice(*np.searchsorted(s, (s0 - SIGHT_REACH, s1 + SIGHT_REACH)))
+        ds, dd = s1 - s0, float(gaps.d[k, 1] - gaps.d[k, 0])
+        ahead, left = across[:, near]
+        away = (s[near] - s0) * dd - (d[near] - gaps.d[k, 0]) * ds
+        with np.errstate(divide="ignore", invalid="ignore"):
+            part = -away / (ahead * dd - left * ds)   # of the way from the point to the scanner, where it crosses the line
+        place = s[near] + part * ahead
+        row = np.floor(place / UPRIGHT_SLICE)
+        share = (place - s0) / ds
+        height = h[near] + part * up[near]
+        low, high = (ends[k, 0] + share * (ends[k, 1] - ends[k, 0]) for ends in (gaps.low, gaps.high))
+        there = (row >= gaps.first[k]) & (row <= gaps.last[k]) & (height > low) & (height < high)
+        beyond = -side * away / np.hypot(ds, dd)
+        for kind, of in enumerate(((beyond > BEHIND[0]) & (part < 1.0), np.abs(beyond) <= BEHIND[0], (beyond < -BEHIND[0]) & (part < 0.0))):
+            slices = row[there & of].astype(np.int64) - gaps.first[k]
+            counts[kind, start[k]:start[k] + length[k]] += np.bincount(slices, minlength=length[k])
+    return counts
+
+
+def judged(gaps: Gaps, parts: Iterable[tuple[list[int], np.ndarray]]) -> Gaps:
+    """Gaps with what pulses tell of them.
+
+    Parameters
+    ----------
+    gaps : Gaps
+    parts : rows of some of the gaps and their pulses as `pulses_at` counts them
+    """
+    length = gaps.last - gaps.first + 1
+    owner = np.repeat(np.arange(len(gaps)), length)
+    start = np.cumsum(length) - length
+    passed, met, stopped = counts = np.zeros((3, len(owner)), np.int64)
+    for rows, some in parts:
+        counts[:, np.concatenate([start[k] + np.arange(length[k]) for k in rows])] += some
+    odds = np.clip(gaps.share, 0.05, 0.95)[owner]
+    expected = passed * odds / (1.0 - odds)
+    empty = (passed >= MIN_PASSED) & (expected >= EXPECTED) & (met < FEWER * expected)
+    hidden = ~empty & (stopped >= MIN_STOPPED)
+    return replace(gaps, empty=np.bincount(owner[empty], minlength=len(gaps)), hidden=np.bincount(owner[hidden], minlength=len(gaps)))
+
+
+# What a line beside the road is, told by its section.
+
+BUILDING_TOP, LOW_ROCK = 4.2, 0.25  # m: what rises higher is a building; share of a rock face, whose top goes up and down, that does not
+RAIL_TOP = 0.55, 1.15        # m: tops of guard rails, with tolerance for the ground (EN 1317 systems: 0.70 to 1.00 m)
+BEAM = 0.20, 0.40            # m below the top: to the first a beam fills everything, before the second it ends (EN 1317: 0.31 m, W beam)
+BEAM_GAP = 0.35              # of the points of the beam, what fewer remain in a free bin below it: posts
+FREE_BELOW = 0.45            # share of the height that is free below ropes or pipes of a rail
+BARRIER_TOP = 0.6, 1.35      # m: tops of concrete barriers
+MIN_BATTER = 0.08            # m per m by which the face of a barrier leans back
+BARRIER_DEPTH = 0.30         # m of thickness of its face at most
+OPEN_HEDGE = 1.0             # points seen behind, for each on it, from which a rough thing is no hedge
+OPEN_FENCE = 0.45                  # points seen behind, for each on it, from which it is a fence whatever its section
+SEEN_THROUGH = 0.12          # the same, from which a thin thing is no wall
+SEEN_THROUGH_TALL = 0.3      # the same of what is TALL: rock stands back here and there
+SCATTERED = 8.0                # the same, from which there is nothing but scattered points
+THICK_HEDGE, ROUGH_HEDGE = 0.08, 0.015  # m of thickness, and across from one point to the next higher one, from which a solid line is a hedge:
+#                              the face of a wall is plane, that of a fence on a wall is plane and thick
+THIN_LINE = 0.20                  # m of thickness of rails and fences at most
+MAX_BATTER = 0.35            # m per m: more is an embankment
+MIN_UPRIGHT_POINTS = 5, 3    # on an upright, median; on one of a straight line
+STRAIGHT_LINE = 0.02         # m of roughness of such a line
+MAX_WOBBLE = 0.06            # m, of everything that is built
+STEADY_TOP, STEADY_SHARE = 0.30, 0.75  # m of change of the top over a car's half length, kept by this share: cars go up and down more
+CAR_HALF = 4                 # slices
+MAX_EMPTY = 0.08             # share of a line's length that is open in short gaps: a row of cars has as many of them as cars
+LEAST_MEASURED = 0.3         # share of its length that was measured
+
+
+def kind_of(chain: Chain) -> str | None:
+    """guard_rail, barrier, wall, fence or hedge; None for what is none of them, or may be none: buildings, rows of parked cars, embankments."""
+    members = chain.members
+    top = float(np.median(chain.top))
+    tall = top > TALL
+    batter, thickness = float(np.median(members.batter)), float(np.median(members.thickness))
+    through = float(members.behind.sum() / max(members.points.sum(), 1.0))
+    if np.median(members.points) < MIN_UPRIGHT_POINTS[chain.roughness < STRAIGHT_LINE] or members.above_view.mean() > 0.5:
+        return None
+    if _is_row(chain):
+        return None
+    if np.quantile(chain.top, LOW_ROCK) > BUILDING_TOP or abs(batter) > MAX_BATTER or through > SCATTERED or not tall and _restless(members.top):
+        return None
+    if tall:
+        return "wall" if through < SEEN_THROUGH_TALL else None
+    built = chain.wobble < MAX_WOBBLE
+    # the beams of a rail are straight: in a bend its line has a kink at every post or so
+    if (built or chain.roughness < MAX_WOBBLE) and thickness < THIN_LINE and RAIL_TOP[0] < top < RAIL_TOP[1] and _is_rail(members, top, through):
+        return "guard_rail"
+    if built and BARRIER_TOP[0] < top < BARRIER_TOP[1] and batter > MIN_BATTER and thickness < BARRIER_DEPTH and through < SEEN_THROUGH:
+        return "barrier"
+    if thickness > THICK_HEDGE and np.median(members.rough) > ROUGH_HEDGE and through < OPEN_HEDGE:
+        return "hedge"
+    if not built or through > OPEN_FENCE and thickness > THIN_LINE:
+        return None
+    return "fence" if through > SEEN_THROUGH else "wall"
+
+
+def _is_rail(members, top, through):
+    """Whether there is a beam with free height below, above the ground or another beam, or ropes that leave much of the height free."""
+    points = members.below_top.sum(axis=0)
+    beam, end = (int(round(depth / TOP_BIN)) for depth in BEAM)
+    # a W beam has a fold that few pulses reach: every tenth of a metre counts, not every bin
+    filled = points[:beam].reshape(-1, 2).mean(axis=1)
+    is_beam = filled.min() > 0.5 * filled.mean() and points[end - 2:end].mean() < BEAM_GAP * filled.mean()
+    return is_beam or through > OPEN_FENCE and float(np.median(members.foot)) > FREE_BELOW * top
+
+
+def _is_row(chain):
+    """Whether short gaps again and again show what lies beyond, as between parked cars, or most of it is hidden."""
+    slices = chain.members.slice[-1] - chain.members.slice[0] + 1
+    short = chain.empty[:-1] < TOLD_GAP
+    return chain.empty[:-1][short].sum() > MAX_EMPTY * slices or len(chain.members) < LEAST_MEASURED * slices
+
+
+def _restless(tops):
+    """Whether the top goes up and down as bonnets and roofs do."""
+    if len(tops) <= CAR_HALF:
+        return False
+    return float(np.quantile(np.abs(tops[CAR_HALF:] - tops[:-CAR_HALF]), STEADY_SHARE)) > STEADY_TOP
+
+
+# A chain of uprights divided where one thing ends and the next begins in line with it: garden walls, fences and hedges follow one another.
+
+TOP_CHANGE, THICKNESS_CHANGE, THROUGH_CHANGE = 0.15, 0.05, 0.15  # m, m and share of pulses by which the sections of two things differ at least
+THICKEST, HIGHEST = 0.5, 3.0     # m: what is thicker or higher counts as this, for single uprights hold a crown or a window
+
+
+def things_of(chain: Chain, min_length: float) -> list[tuple[str, Chain]]:
+    """The things of a chain with their kinds; what is none of the kinds is left out.
+
+    The chain is halved where height, thickness and what is seen through it change most, as long as both parts are long enough and differ by more
+    than their own scatter; neighbours of one kind are one thing all the same.
+
+    Parameters
+    ----------
+    chain : Chain
+    min_length : m along the road of a thing
+    """
+    cuts = [0, *_cuts(_sections(chain), chain.members.slice, 0, len(chain.members), min_length), len(chain.members)]
+    kinds = [kind_of(chain.part(np.arange(a, b))) for a, b in zip(cuts[:-1], cuts[1:])]
+    first = np.flatnonzero([k == 0 or kind != kinds[k - 1] for k, kind in enumerate(kinds)])
+    found = []
+    for k, after in zip(first, [*first[1:], len(kinds)]):
+        whole = chain.part(np.arange(cuts[k], cuts[after]))
+        # joined again, a row of cars shows that it is one
+        kind = kind_of(whole) if after - k > 1 else kinds[k]
+        if kind is not None:
+            found.append((kind, whole))
+    return found
+
+
+def _sections(chain):
+    """(N, 3) what tells things apart, in units of what their sections differ by at least."""
+    members = chain.members
+    through = members.behind / np.maximum(members.behind + members.points, 1.0)
+    return np.c_[np.minimum(members.top, HIGHEST) / TOP_CHANGE, np.minimum(members.thickness, THICKEST) / THICKNESS_CHANGE, through / THROUGH_CHANGE]
+
+
+def _cuts(sections, slices, first, last, min_length):
+    """Where the members from `first` to `last` are divided, rising."""
+    least = int(np.ceil(min_length / UPRIGHT_SLICE))
+    at = np.arange(first + 1, last)
+    at = at[(slices[at - 1] - slices[first] + 1 >= least) & (slices[last - 1] - slices[at] + 1 >= least)]
+    if not len(at):
+        return []
+    own = sections[first:last]
+    sums, squares = (np.vstack([np.zeros(own.shape[1]), np.cumsum(values, axis=0)]) for values in (own, own**2))
+    left, right = (at - first)[:, None], (last - at)[:, None]
+    before, after = sums[at - first] / left, (sums[-1] - sums[at - first]) / right
+    gain = ((after - before) ** 2 * left * right / (left + right)).sum(axis=1)
+    k = int(gain.argmax())
+    scatter = np.sqrt(np.maximum(squares[-1] - before[k] ** 2 * left[k] - after[k] ** 2 * right[k], 0.0) / len(own))
+    if not (np.abs(after[k] - before[k]) > np.maximum(1.0, scatter)).any():
+        return []
+    cut = int(at[k])
+    return [*_cuts(sections, slices, first, cut, min_length), cut, *_cuts(sections, slices, cut, last, min_length)]

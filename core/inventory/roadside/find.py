@@ -12,18 +12,12 @@ from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ...countries.catalogue import country
 from ..borders import BorderLayers, RoadBorders
+from ..settings import RoadsideSettings
 from ..surface_grid import SLICE_LENGTH
-from .chains import find_chains
-from .divide import things_of
-from .faces import along_faces
-from .gaps import gaps_by_window, judged, pulses_at
-from .ground import GROUND_CELL, local_ground
-from .gutters import find_gutters
-from .poles import find_poles
-from .settings import RoadsideSettings
-from .shared import Roadside, SideEdges, SideLine, told_once
-from .uprights import UPRIGHT_SLICE, Uprights, find_uprights
-from .view import level_views, lines_of_sight
+from .chains import find_chains, gaps_by_window, judged, pulses_at, things_of
+from .ground import GROUND_CELL, find_gutters, level_views, lines_of_sight, local_ground
+from .result import Roadside, SideEdges, SideLine, along_faces, told_once
+from .uprights import UPRIGHT_SLICE, Uprights, find_poles, find_uprights
 
 if TYPE_CHECKING:
     from ...survey.survey import Survey

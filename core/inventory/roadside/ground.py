@@ -1,14 +1,23 @@
-"""The ground beside the road: what is left when everything that stands on it is taken away."""
+"""The ground beside the road: what is left when everything that stands on it is taken away; what the scanners saw of it, and gutters."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.ndimage import grey_opening, median_filter, minimum_filter1d
 
 from ...common.arrays import order_by
 from ...road.common.pseudo_scanlines import lowest_layers
+from ...survey.blocks import DEFAULT_SENSOR_HEIGHT
+from ..surface_grid import CROSS_CELL, SLICE_LENGTH, SurfaceGrid, smoothed, surface_grid
+from .uprights import TOP_BINS, UPRIGHT_SLICE, Uprights
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from ...survey.open_survey import Survey
 
 GROUND_SLICE, GROUND_CELL = 1.0, 0.20   # m along and across
 STANDING_WIDTH = 2.5      # m: narrower humps of the lowest layer stand on the ground (parked cars, hedges)
@@ -152,3 +161,136 @@ def _rims(low):
     rim = up[before] & unseen[after] | down[last] & unseen[before]
     standing = rim & known[first] & ((last - first + 1) * GROUND_CELL < STANDING_WIDTH)
     return standing[group].reshape(rows, columns + 1)[:, 1:]
+
+
+# What the scanners could see: lines of sight, and whether their view ends a little above and below the horizon, as that of a many-beam head does.
+
+VIEW_SAMPLE_LENGTH, VIEW_SAMPLES = 4.0, 25   # m of road, and number, of the windows of each road in which the highest view is looked for
+LEAST_RANGE = 3.0          # m from the scanner: nearer, a centimetre turns the line of sight too much
+HIGHEST_SHARE = 0.999      # of the lines of sight by their slope: single points astray lie above, and as few below the steepest
+LEVEL_VIEW = 0.10          # m per m: heads of many beams see up to 0.03 (+2 degrees, Velodyne HDL-64E), and the vehicle tilts; mirrors see all round
+STEEPEST_VIEW = 0.70       # m per m down: such heads see 0.46 (-25 degrees) or 0.58 (-30), mirrors 0.9 and more beside the vehicle
+
+
+def lines_of_sight(survey: Survey, road: int, number: int, s: np.ndarray, d: np.ndarray, h: np.ndarray,
+                   time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Horizontal vectors from points of a pass to the scanner, and how much higher the scanner is.
+
+    Parameters
+    ----------
+    survey : Survey
+    road, number : of the road and of the pass
+    s, d, h : (N,) m, station, offset, and height above the road
+    time : (N,) s
+
+    Returns
+    -------
+    (2, N) m ahead and left along the road, and (N,) m
+    """
+    driven, line = survey.frame.passes[number], survey.frame.road(road)
+    x, y = line.to_map(s, d)
+    eye_x, eye_y = driven.at(time, "x", "y") if survey.frame.has_time else line.to_map(s, driven.at_station(s)[0])
+    heading = line.heading(s)
+    ahead, left = np.cos(heading), np.sin(heading)
+    dx, dy = eye_x - x, eye_y - y
+    return np.stack([dx * ahead + dy * left, dy * ahead - dx * left]), survey.sensor_height.get(number, DEFAULT_SENSOR_HEIGHT) - h
+
+
+def level_views(survey: Survey) -> dict[int, float]:
+    """The passes whose scanner sees hardly higher than it rides, so that it does not show how high anything is that is as high.
+
+    In open country nothing stands that a mirror could see above it. That its view ends is told by the ground beside the vehicle, which only a
+    mirror sees; without times, which tell where the scanner was, nothing high is taken for a view that ends.
+
+    Parameters
+    ----------
+    survey : Survey
+
+    Returns
+    -------
+    {number of the pass: m above the road, height of its scanner}
+    """
+    slopes: dict[int, list[np.ndarray]] = {}
+    far: dict[int, list[np.ndarray]] = {}
+    for road in survey.store.roads():
+        first, last = survey.store.span(road)
+        for start in np.linspace(first, max(last - VIEW_SAMPLE_LENGTH, first), VIEW_SAMPLES):
+            points = survey.window(road, start, start + VIEW_SAMPLE_LENGTH)
+            h = points.z - survey.road_height(road, points.s)
+            for number in np.unique(points.pass_number).tolist():
+                own = points.pass_number == number
+                across, up = lines_of_sight(survey, road, number, points.s[own], points.d[own], h[own], points.time[own])
+                away = np.hypot(*across)
+                slope = -up / np.maximum(away, 1e-3)
+                slopes.setdefault(number, []).append(slope)
+                far.setdefault(number, []).append(slope[away > LEAST_RANGE])
+    return {number: float(survey.sensor_height.get(number, DEFAULT_SENSOR_HEIGHT)) for number in slopes if _is_level(
+        np.concatenate(far[number]), np.concatenate(slopes[number]), survey.frame.has_time)}
+
+
+def _is_level(far, all_slopes, has_time):
+    """Whether slopes of lines of sight to what is far, and to everything, end a little above and below the horizon."""
+    if not len(far) or np.quantile(far, HIGHEST_SHARE) >= LEVEL_VIEW:
+        return False
+    return not has_time or np.quantile(all_slopes, 1.0 - HIGHEST_SHARE) > -STEEPEST_VIEW
+
+
+# Gutters: the lines of lowest points beside the carriageway's edge, where water runs.
+
+GUTTER_INSIDE, GUTTER_OUTSIDE = 0.80, 0.15  # m from the edge, within which the lowest point is looked for
+OUTER_RISE, OUTER_REACH = 0.02, 0.40        # m that the ground rises outward of a gutter, and within how many
+INNER_RISE, INNER_REACH = 0.008, 0.50       # m that the road rises inward of it: 1.6 % fall towards the gutter
+READ_BEYOND = 0.60                          # m beyond the edge that are read
+
+
+def find_gutters(survey: Survey, road: int, start: float, slices: int, side: int, edge: Callable[[np.ndarray], np.ndarray]) -> Uprights:
+    """The lowest points of one side of a stretch of road, where water runs along its edge.
+
+    Parameters
+    ----------
+    survey, road : where
+    start, slices : m, station of the first slice, and their number
+    side : 1 left, -1 right
+    edge : function of stations that gives the offset of the edge of that side
+
+    Returns
+    -------
+    Uprights whose `top` is how deep the gutter lies below its outer side; one for each UPRIGHT_SLICE
+    """
+    s = start + (np.arange(slices) + 0.5) * SLICE_LENGTH
+    at = edge(s)
+    ends = np.array([at - side * (GUTTER_INSIDE + INNER_REACH), at + side * READ_BEYOND])
+    grid = surface_grid(survey, road, start, slices, (float(np.floor(ends.min() / CROSS_CELL) * CROSS_CELL), float(ends.max())))
+    if not len(grid.groups):
+        return Uprights.none()
+    profile = smoothed(_mean(grid))
+    u = side * (grid.d - at[:, None])
+    looked = (u > -GUTTER_INSIDE) & (u < GUTTER_OUTSIDE) & np.isfinite(profile)
+    lowest = np.where(looked, profile, np.inf)
+    j = np.argmin(lowest, axis=1)
+    rows = np.arange(slices)
+    low, place = lowest[rows, j], u[rows, j]
+    beyond = u - place[:, None]
+    outer, inner = (_highest(profile, (beyond * way > 0) & (beyond * way < reach)) for way, reach in ((1, OUTER_REACH), (-1, INNER_REACH)))
+    # water stays where the ground rises outward from the lowest point on: a verge that falls on is none
+    falls_on = np.where((beyond > 0) & (beyond < OUTER_REACH) & np.isfinite(profile), profile, np.inf).min(axis=1) < low
+    found = np.flatnonzero(np.isfinite(low) & (outer - low > OUTER_RISE) & (inner - low > INNER_RISE) & ~falls_on)
+    # a slice of the surface holds several of those along which lines are followed
+    times = int(round(SLICE_LENGTH / UPRIGHT_SLICE))
+    found = np.repeat(found, times)
+    number = np.floor(s[found] / SLICE_LENGTH).astype(np.int64) * times + np.tile(np.arange(times), len(found) // times)
+    zero = np.zeros(len(found))
+    return Uprights(number, grid.d[j[found]], low[found] + grid.line(s[found]), (outer - low)[found], zero, np.zeros((len(found), TOP_BINS)),
+                    zero, zero, zero + 1.0, zero, zero > 0, zero)
+
+
+def _mean(grid: SurfaceGrid) -> np.ndarray:
+    """(I, J) heights of all passes and scanners together, by their numbers of points; NaN where there are none."""
+    count = np.where(np.isfinite(grid.height), grid.count, 0)
+    total = (np.nan_to_num(grid.height) * count).sum(axis=0)
+    n = count.sum(axis=0)
+    return np.where(n > 0, total / np.maximum(n, 1), np.nan)
+
+
+def _highest(profile, where):
+    return np.where(where & np.isfinite(profile), profile, -np.inf).max(axis=1)

@@ -70,7 +70,6 @@ def driven_offsets(frame: RoadFrame, road: int, s: np.ndarray) -> tuple[np.ndarr
 
     Parameters
     ----------
-    road : number of the road
     s : (K,) metres, stations
 
     Returns
@@ -90,10 +89,7 @@ def driven_offsets(frame: RoadFrame, road: int, s: np.ndarray) -> tuple[np.ndarr
 def other_carriageway(frame: RoadFrame, road: int, s: np.ndarray) -> np.ndarray:
     """(K,) bool, whether another road of the survey was driven the other way beside this one: the two are carriageways of one road.
 
-    Parameters
-    ----------
-    road : number of the road
-    s : (K,) metres, stations
+    `s` are (K,) stations in metres.
     """
     found = np.zeros(len(s), bool)
     ways = {p.direction for p in frame.passes_of(road)}
@@ -123,7 +119,6 @@ def surface_coverage(points: RoadPoints, road: int, s: np.ndarray) -> tuple[np.n
 
     Parameters
     ----------
-    road : number of the road
     s : (K,) metres, stations of a grid with steps of STATION_STEP
 
     Returns
@@ -253,7 +248,6 @@ def evidence_of(candidates: Candidates, s: np.ndarray, driven: np.ndarray, direc
     covered, hatched : (K, BINS) bool, or None
     arrows : (A, 3) as `arrows_of` gives them, or None
     markings : MarkingObjects, of which stop lines count; or None
-    road : number of the road
     divided : (K,) bool as `other_carriageway` gives it, or None
     """
     size = np.diff(np.r_[candidates.first, candidates.last[-1] + 1])
@@ -334,7 +328,6 @@ def borders_of_hatching(markings: MarkingObjects, frame: RoadFrame, road: int, s
 
     Parameters
     ----------
-    road : number of the road
     s : (K,) metres, stations
 
     Returns
@@ -481,7 +474,6 @@ def rows_of_bays(markings: MarkingObjects, road: int, s: np.ndarray, driven: np.
 
     Parameters
     ----------
-    road : number of the road
     s : (K,) metres, stations, increasing
     driven : (P, K) metres, offset of every pass at these, NaN where it did not drive
 

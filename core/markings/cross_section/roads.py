@@ -82,7 +82,6 @@ def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_widt
     width_asked : whether `usual_width` is the user's own
     taken : second readings that an analyst took
     """
-    known: dict[int, tuple[Boundaries, Candidates, Evidence]] = {}
     drives = {number: driven_offsets(frame, number, of_road.s) for number, of_road in lines.items()}
     arrows = {number: arrows_of(markings, frame, number) for number in lines} if markings is not None else {}
     # lanes lead as they were driven; which of them lead alike arrows tell even then
@@ -94,21 +93,23 @@ def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_widt
         weights = replace(weights, width_sigma=weights.width_sigma_asked, other_width=0.0, odd_width=weights.odd_width_asked)
     if side != "automatic":
         weights = replace(weights, driven_against=weights.driven_against_asked)
-    for number, of_road in lines.items():
-        driven = drives[number]
-        likely = _likely_ends(of_road, usual_width)
-        covered, ends = _surface(road_points, paint, number, of_road.s, likely)
+
+    def known_of(number: int, of_road: CrossSections) -> tuple[Boundaries, Candidates, Evidence]:
+        s, driven, likely = of_road.s, drives[number], _likely_ends(of_road, usual_width)
+        covered, ends = _surface(road_points, paint, number, s, likely)
         open_ends = likely if ends is None else np.where(np.isnan(ends).all(1, keepdims=True), likely, np.nan)
-        hatched, borders = _closed_areas(markings, frame, number, of_road.s, driven[0])
-        boundaries = gather_boundaries(of_road, (curbs or {}).get(number), ends, open_ends,
-                                       np.abs(frame.road(number).curvature(of_road.s)) > 1 / WIDENED_RADIUS,
-                                       borders,
-                                       (pavement or {}).get(number), dash_lengths(of_road, markings, number))
+        hatched, borders = _closed_areas(markings, frame, number, s, driven[0])
+        bends = np.abs(frame.road(number).curvature(s)) > 1 / WIDENED_RADIUS
+        boundaries = gather_boundaries(of_road, (curbs or {}).get(number), ends, open_ends, bends, borders, (pavement or {}).get(number),
+                                       dash_lengths(of_road, markings, number))
         candidates = boundary_candidates(boundaries, weights)
-        progress.report(0.4 * (len(known) + 1) / len(lines))
-        evidence = evidence_of(
-            candidates, of_road.s, *driven, covered, hatched, arrows.get(number), markings, number, other_carriageway(frame, number, of_road.s))
-        known[number] = boundaries, candidates, replace(evidence, taken=_taken_on(taken, number, candidates, of_road.s))
+        evidence = evidence_of(candidates, s, *driven, covered, hatched, arrows.get(number), markings, number, other_carriageway(frame, number, s))
+        return boundaries, candidates, replace(evidence, taken=_taken_on(taken, number, candidates, s))
+
+    known = {}
+    for k, (number, of_road) in enumerate(lines.items()):
+        known[number] = known_of(number, of_road)
+        progress.report(0.4 * (k + 1) / len(lines))
     sides = {"right": (-1,), "left": (1,)}.get(side, (-1, 1))
     found = dict(zip(sides, ordered_map(lambda first: _estimates(known, first, usual_width, weights), sides, progress.part(0.4, 0.7))))
     total, unnamed, once = ({first: sum(getattr(one, name) for one in of_roads.values()) + (weights.left_hand if first > 0 else 0.0)
@@ -221,10 +222,6 @@ def arrows_of(markings: MarkingObjects, frame: RoadFrame, road: int) -> np.ndarr
 
     An arrow begins with a bare shaft and soon is broad behind its tip, so it points to the end at which less of it is a single stroke. That
     is read from the painted outline alone. Shorter arrows than a lane of a road has belong to cycle paths or are none.
-
-    Parameters
-    ----------
-    road : number of the road
 
     Returns
     -------

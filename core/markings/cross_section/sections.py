@@ -18,8 +18,6 @@ from ...survey.frame.row_table import BLOCK, RowSpans, RowTable
 if TYPE_CHECKING:
     from ..lines.painted_lines import PaintedLines
 
-__all__ = ["STATION_STEP", "CrossSections", "cross_sections", "sections_of_edges", "sections_of_lines", "sections_of_pavement"]
-
 MAX_LINE_OBLIQUITY = np.tan(np.radians(25.0))  # a line that runs more across the road than this bounds no lane
 CLOSED_ISLAND = 1.0                            # m between the ends of a line round an island that closes
 
@@ -152,7 +150,7 @@ def _piece(s, d, z, kind, pattern, seen, width):
 
 def _on_grid(pieces: dict[int, list[PieceOfLine]]) -> CrossSections:
     """CrossSections of the lines of one road, which go on over short gaps."""
-    found, gaps = joined(lines_on_grid(pieces))
+    found, gaps = joined(_lines_on_grid(pieces))
     even_doubles(found, lead_over(found, gaps))
     lengthen_dashed(found)
     return _sections(found)
@@ -255,7 +253,7 @@ class GridLines:
         return {name: RowTable(spans, values, MISSING[name]) for name, values in found.items()}
 
 
-def lines_on_grid(lines: dict[int, list[PieceOfLine]]) -> GridLines:
+def _lines_on_grid(lines: dict[int, list[PieceOfLine]]) -> GridLines:
     """Lines of one road, given as their pieces by number, on the stations from their first to their last place."""
     first = np.ceil(min(p.s[0] for pieces in lines.values() for p in pieces) / STATION_STEP)
     last = np.floor(max(p.s[-1] for pieces in lines.values() for p in pieces) / STATION_STEP)
@@ -424,8 +422,7 @@ def _ahead(lines, end, step):
 def lengthen_dashed(lines: GridLines) -> None:
     """A dashed line goes on by up to one gap where lines on both its sides do.
 
-    Where the last dash ends says nothing of where the line does: the next dash is only
-    missed after a gap's length.
+    Where the last dash ends says nothing of where the line does: the next dash is only missed after a gap's length.
     """
     lines = GridLines(lines.s, lines.rows, lines.names)
     known = [(row.begin, row.end) for row in lines.rows]

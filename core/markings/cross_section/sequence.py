@@ -165,7 +165,7 @@ def strip_costs(candidates: Candidates, evidence: Evidence, weights: EstimateWei
             driven = total + scale * (unpainted + _driven_cost(evidence, inside, begin, each, number, split, first_direction, w)) \
                 + _arrow_cost(arrows, each, number, split, first_direction, begin, w)
             if kind in TWO_WAY:
-                driven += w.split_stop * stops_across(evidence.stops, begin - split * each)
+                driven += w.split_stop * _stops_across(evidence.stops, begin - split * each)
             better = driven < cost[kind]
             cost[kind][better], lanes[kind][better], first_lanes[kind][better] = driven[better], number, split
     return StripCosts(cost, lanes, first_lanes, lane_width)
@@ -258,7 +258,7 @@ def _arrow_cost(arrows, each, count, split, first_direction, d_left, w):
     return cost
 
 
-def stops_across(stops: np.ndarray, divider: np.ndarray) -> np.ndarray:
+def _stops_across(stops: np.ndarray, divider: np.ndarray) -> np.ndarray:
     """(I, ...) how many stop lines, as in Evidence, cross the border between the two directions, which lies at `divider`, (I, ...) m."""
     number = np.zeros(divider.shape)
     for interval, low, high in stops:
@@ -393,7 +393,7 @@ def _boundary_costs(c, stops, w):
     """(I, M, 7, 7) nats of a boundary between a strip on its left and one on its right."""
     scale = c.observations(w)[:, None]
     table = w.boundary[c.made_of]
-    stopped = stops_across(stops, (c.left + c.right) / 2)
+    stopped = _stops_across(stops, (c.left + c.right) / 2)
     for share, costs in ((c.short, np.array(w.short_dashed)), (c.wide, w.wide_line[c.made_of.clip(SOLID, DASHED)])):
         share = np.nan_to_num(share)[..., None]
         table = np.where(share > 0, (1 - share) * table + share * costs, table)
@@ -458,19 +458,13 @@ def transitions(candidates: Candidates, sections: Sections, known: np.ndarray, l
         check_cancelled()
         some = known[first:first + INTERVALS_AT_ONCE + 1]
         own = slice(first, first + len(some) - 1)
-        costs = _transition_costs(*occupancy(candidates.take(some), sections.take(some), lane_width), weights)
+        costs = _transition_costs(*_occupancy(candidates.take(some), sections.take(some), lane_width), weights)
         found[own] = sum(cost * share[own, None, None] for cost, share in zip(costs, left))
     return found
 
 
-def occupancy(candidates: Candidates, sections: Sections, lane_width: float) -> tuple[np.ndarray, np.ndarray]:
-    """What lies where across the road.
-
-    Returns
-    -------
-    area : (2, I, K, B) whether lanes of the first and of the second direction lie at a place across
-    divider : (I, K, B) whether a border between two lanes lies there
-    """
+def _occupancy(candidates: Candidates, sections: Sections, lane_width: float) -> tuple[np.ndarray, np.ndarray]:
+    """Where lanes of the first and of the second direction lie, (2, I, K, B) bool, and borders between two lanes, (I, K, B) bool."""
     count, kept, size = sections.strip.shape
     bins = int(2 * FAR / PLACE)
     area, divider = np.zeros((2, count, kept, bins + 1)), np.zeros((count, kept, bins), bool)

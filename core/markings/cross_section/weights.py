@@ -21,8 +21,8 @@ def _costs(*shares: float) -> tuple[float, ...]:
 class EstimateWeights:
     """Costs in nats (-log of a probability); those of what goes on along the road are for `correlation` metres of it.
 
-    The probabilities are shares as road authorities paint and build (the dash and line rules of the catalogue of countries);
-    where those say nothing they are our own estimates, rounded.
+    The probabilities are shares as road authorities paint and build (the dash and line rules of the catalogue of countries); where those say
+    nothing they are our own estimates, rounded.
 
     correlation : metres of road that count as one observation: what neighbouring metres show is not independent
     laid_out : metres of road that are laid out alike: of how sure lanes are they say no more than `correlation` does; chosen with `calibration`
@@ -30,16 +30,15 @@ class EstimateWeights:
     wide_solid, wide_dashed : the same of wide lines: in all countries at hand they part special lanes (bus, exit, cycle) from others of the same
         direction, or mark the edge, and the directions are parted by a usual line or by two (RMS part A; MUTCD 3B.01 and 3B.04; GB 5768.3;
         Instruction interministerielle, art. 113)
-    short_dashed : the same of dashes of usual breadth shorter than those between lanes: they mark an edge that may be crossed, as before a bus
-        bay, a lay-by, a strip for cycles or a side street, and no country at hand parts lanes by them (RMS part A; MUTCD 3B.08; catalogue of
-        countries)
+    short_dashed : the same of dashes of usual breadth shorter than those between lanes: they mark an edge that may be crossed, as before a bus bay,
+        a lay-by, a strip for cycles or a side street, and no country at hand parts lanes by them (RMS part A; MUTCD 3B.08; catalogue of countries)
     curb, surface : the same of boundaries that are a curb, also of an island, or where the road surface ends without one, seen as an edge or not
     open_end : the same where nothing is known beyond the outermost line
     hatching : the same of boundaries that are the border of a hatched area
     named : of a line that separates something else than its layer says
     stroke, long_line : m of paint that strokes of symbols have too, and that make a line sure
-    lane_through_paint, lane_through_curb, lane_through_hatching, lane_through_surface : of a seen line, curb, border of a hatched area or end
-        of the surface inside a lane
+    lane_through_paint, lane_through_curb, lane_through_hatching, lane_through_surface : of a seen line, curb, border of a hatched area or end of
+        the surface inside a lane
     paint_in_rest : of a seen line inside a strip where nobody drives
     width_sigma, width_sigma_asked : m, scatter of lane widths on one road, and about the width that the user named
     other_width : share of lanes as wide as lanes are elsewhere; odd_width, odd_width_asked : share of lanes of any other width up to `widest_odd`
@@ -60,17 +59,17 @@ class EstimateWeights:
     change : of a metre across that becomes lane, or ceases to be one; turn : that changes its direction
     divider_change : of a border between lanes that begins or ends
     lanes_remembered, directions_remembered : m without any line, as over a junction, that leave a third of what was known before
-    one_way : of one, two, three, four lanes and more that all lead one way; uneven : of directions whose numbers of lanes differ by two and
-        more; two_and_one : of two lanes one way and one the other; two_way_carriageway : of two directions on one of two carriageways
+    one_way : of one, two, three, four lanes and more that all lead one way; uneven : of directions whose numbers of lanes differ by two and more;
+        two_and_one : of two lanes one way and one the other; two_way_carriageway : of two directions on one of two carriageways
     dashed_between_many : of dashes between the directions of a road of more than two lanes
     left_hand : of traffic on the left, against traffic on the right
     calibration : slope and offset of the curve by which probable lanes are right, over the log odds; fitted to 13 km of lanes of 32 simulated
         streets of two simulators, and checked on others (docs/accuracy.md)
     repeats : metres of road beyond which what two readings of it differ by is seen again, not once more; tuned: what a vehicle that keeps half a
-        metre beside the middle of a lane of 7 m shows on 120 m of road must say no more on a kilometre, and the longest blocks between
-        crossings of the simulated streets have 200 m
-    doubt, most_in_doubt : nats by which a second reading of a lane or line may be less probable to be said beside the first, and the most
-        that the confidence of the first is then: two readings of which either may be right, and all others
+        metre beside the middle of a lane of 7 m shows on 120 m of road must say no more on a kilometre, and the longest blocks between crossings of
+        the simulated streets have 200 m
+    doubt, most_in_doubt : nats by which a second reading of a lane or line may be less probable to be said beside the first, and the most that the
+        confidence of the first is then: two readings of which either may be right, and all others
     not_taken : of a cross-section without the lanes of a reading that an analyst took, against any evidence
     calibration_of_direction : slope of the same curve for the direction of a lane; fitted to 7 km of lanes of 20 simulated streets, on some of
         which the lines leave open which way a lane leads

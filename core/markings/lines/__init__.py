@@ -8,5 +8,5 @@ from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
     "fit": ("MarkingLineSettings", "fit_marking_lines", "named_by_lines"),
-    "painted_lines": ("PaintedLines", "lines_from_features", "lines_to_features"),
+    "painted_lines": ("PaintedLines",),
 })

@@ -364,9 +364,8 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
 
     Returns
     -------
-    PaintedLines with `fitted`: a line that is partly bridged, or changes between dashed and
-    solid, comes in touching pieces with one `line` number. Every piece is drawn on the
-    line's one curve.
+    PaintedLines with `fitted`: a line that is partly bridged, or changes between dashed and solid, comes in touching pieces with one `line` number.
+    Every piece is drawn on the line's one curve.
 
     Raises
     ------

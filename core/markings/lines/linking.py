@@ -51,7 +51,7 @@ class _End:
         return self.d + trust * self.slope * (s - self.s)
 
 
-def line_ends(lines: list[LinkedLine], trend: CommonTrend, at_start: bool, reach: float = END_WINDOW) -> list[_End]:
+def _line_ends(lines: list[LinkedLine], trend: CommonTrend, at_start: bool, reach: float = END_WINDOW) -> list[_End]:
     """The `_End` at the start or the end of every line, from its last `reach` metres of station."""
     if not lines:
         return []
@@ -81,12 +81,9 @@ def line_ends(lines: list[LinkedLine], trend: CommonTrend, at_start: bool, reach
     return found
 
 
-def lateral_mismatch(before: _End, after: _End) -> float:
-    """Metres across by which the end of one line misses the start of the next, at the middle of the gap.
-
-    The better of two views counts: the lines go on as they pointed, or parallel to
-    the others (a short dash hardly knows its own slope).
-    """
+def _lateral_mismatch(before: _End, after: _End) -> float:
+    """Metres across by which the end of one line misses the start of the next, at the middle of the gap: the smaller of two, if lines go on as
+    they pointed, and if they go on parallel to the others (a short dash hardly knows its own slope)."""
     middle = (before.s + after.s) / 2
     return min(abs(before.offset_at(middle, trust) - after.offset_at(middle, trust))
                for trust in (0.0, _trust(before, after)))
@@ -98,7 +95,7 @@ def _miss(before: _End, after: _End, trend: CommonTrend, edges: EdgesBeside, end
     The better of two views counts again: the distance of their tips, where they lead straight, or where they are painted, as along a taper
     on which they bend; that view is of gaps, and says nothing of pieces that touch.
     """
-    miss = lateral_mismatch(before, after)
+    miss = _lateral_mismatch(before, after)
     s = np.array([before.s, after.s])
     d = np.array([before.d, after.d]) + trend.at(s)
     edge = edges.between((s[0], d[0]), (s[1], d[1]))
@@ -130,7 +127,7 @@ def link_lines(lines: list[LinkedLine], trend: CommonTrend, edges: EdgesBeside, 
     -------
     list of LinkedLine
     """
-    starts, ends = (line_ends(lines, trend, at_start) for at_start in (True, False))
+    starts, ends = (_line_ends(lines, trend, at_start) for at_start in (True, False))
     by_start = np.argsort([e.s for e in starts], kind="stable")
     stations = np.array([starts[k].s for k in by_start])
     twin_ends, twin_starts = (twin_offsets(lines, trend, tips, at_start) for tips, at_start in ((ends, False), (starts, True)))
@@ -233,12 +230,11 @@ def link_over_long_gaps(lines: list[LinkedLine], trend: CommonTrend, edges: Edge
                         same_dash_pattern: Callable[[LinkedLine, LinkedLine], bool], allowed: float = 0.25) -> list[LinkedLine]:
     """Link over longer gaps, up to `max_bridge`, where something carries over.
 
-    Either both sides have one dash pattern and the gap is a whole multiple of
-    it (`same_dash_pattern(before, after)`), or another line runs on beside the gap
-    without one, so that the road does not end there.
+    Either both sides have one dash pattern and the gap is a whole multiple of it (`same_dash_pattern(before, after)`), or another line runs on
+    beside the gap without one, so that the road does not end there.
     """
     while True:
-        ends, starts = (line_ends(lines, trend, at_start, 3 * END_WINDOW) for at_start in (False, True))
+        ends, starts = (_line_ends(lines, trend, at_start, 3 * END_WINDOW) for at_start in (False, True))
         by_start = np.argsort([e.s for e in starts], kind="stable")
         stations = np.array([starts[k].s for k in by_start])
         pairs = []
@@ -618,7 +614,7 @@ def with_paint_between_tracks(markings: MarkingObjects, lines: PaintedLines) -> 
     if not polygons:
         return markings
     first, last, _, _, offset, width = np.array(spans).T
-    more = replace(markings.take(np.array(like)), outlines=Outlines.of(polygons), station=first, offset=offset, length=last - first, width=width,
+    more = replace(markings[np.array(like)], outlines=Outlines.of(polygons), station=first, offset=offset, length=last - first, width=width,
                    elongation=(last - first) / width, points=np.zeros(len(like)), extent=np.array(spans)[:, :4])
     return _together(markings, more)
 

@@ -1,15 +1,16 @@
-"""Marking lines as arrays, and their conversion from and to the layer MARKING_LINES."""
+"""Marking lines as arrays, which stages hand each other and which the layer MARKING_LINES holds."""
 
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, field
+from typing import Any, cast
 
 import numpy as np
 import shapely
 
 from ...common.features import MARKING_LINES, Features
+from ...common.layer_rows import LayerRows, column
 from ...curves.base import Curve
 from ...survey.frame.placement import FrameLines, line_parts, lines_in_frame
 from ...survey.frame.road_frame import RoadFrame
@@ -49,7 +50,7 @@ class FittedPieces:
 
 
 @dataclass(frozen=True)
-class PaintedLines:
+class PaintedLines(LayerRows):
     """Marking lines in P pieces, each of one status and pattern.
 
     line : (P,) int, number of the line; its pieces share it
@@ -65,10 +66,12 @@ class PaintedLines:
     other : (P,) str objects, the second reading of `kind` as JSON, "" where there is none; None where it was not looked for
     """
 
-    line: np.ndarray
-    kind: np.ndarray
-    pattern: np.ndarray
-    status: np.ndarray
+    GEOMETRY_TYPE, SCHEMA = "LineStringZ", MARKING_LINES
+
+    line: np.ndarray = field(metadata=column(unknown=-1))
+    kind: np.ndarray = field(metadata=column(unknown=""))
+    pattern: np.ndarray = field(metadata=column(unknown=""))
+    status: np.ndarray = field(metadata=column(unknown="measured"))
     course: FrameLines
     fitted: FittedPieces | None = None
     crs: str = ""
@@ -76,9 +79,6 @@ class PaintedLines:
     width: np.ndarray | None = None
     unseen: list[np.ndarray] | None = None
     other: np.ndarray | None = None
-
-    def __len__(self) -> int:
-        return len(self.line)
 
     def scatter(self) -> dict[int, float]:
         """RMS distance of the paint from the curve of every line where it is known, metres, by the line's number."""
@@ -91,79 +91,55 @@ class PaintedLines:
         return dict(zip(number.tolist(), np.sqrt(square).tolist()))
 
 
-def lines_to_features(lines: PaintedLines, frame: RoadFrame) -> Features:
-    """The layer MARKING_LINES: fitted lines in map coordinates with their fields.
+    def on_map(self, frame: RoadFrame) -> np.ndarray:
+        """(P,) fitted lines with Z in map coordinates.
 
-    Parameters
-    ----------
-    lines : PaintedLines with `fitted`
-    frame : RoadFrame, whose origin is added to local coordinates
+        Raises
+        ------
+        ValueError
+            If the lines were not fitted but read from a layer.
+        """
+        if self.fitted is None:
+            raise ValueError("Lines that were read from a layer have no fitted curves to write.")
+        return self.fitted.linestrings(frame)
 
-    Returns
-    -------
-    Features MARKING_LINES, one row a piece, in the same order. `params` holds the
-    numbers of the line's curve in map coordinates as JSON, and the arc lengths `from` and `to` of the piece
+    def derived(self, frame: RoadFrame) -> dict[str, Any]:
+        """The road, and what the fit says: `params` holds the numbers of the line's curve in map coordinates as JSON, and the arc lengths
+        `from` and `to` of the piece."""
+        lines, fitted, road = self.on_map(frame), cast(FittedPieces, self.fitted), self.course.road
+        numbers: dict[int, str] = {}   # by curve: once for all pieces, since those of long splines are long
+        for curve in fitted.curve:
+            if id(curve) not in numbers:
+                numbers[id(curve)] = json.dumps(_rounded(curve.moved(*frame.origin[:2]).params()))[:-1]
+        return dict(
+            road=road, other=[None] * len(self) if self.other is None else [text or None for text in self.other],
+            curve=[curve.kind for curve in fitted.curve], radius_m=[curve.radius if curve.kind == "circle" else None for curve in fitted.curve],
+            rmse_m=fitted.rmse, station_m=fitted.station, end_m=fitted.end, offset_m=fitted.offset, length_m=shapely.length(lines),
+            width_m=fitted.width, pass_sig_m=[frame.passes_sigma(number, np.array(ends), np.nan).mean()
+                                              for number, *ends in zip(road.tolist(), fitted.station, fitted.end)],
+            params=[f'{numbers[id(curve)]}, {json.dumps({"from": round(first, 4), "to": round(last, 4)})[1:]}'
+                    for curve, (first, last) in zip(fitted.curve, fitted.arc.tolist())])
 
-    Raises
-    ------
-    ValueError
-        If the lines were not fitted but read from a layer.
-    """
-    fitted = lines.fitted
-    if fitted is None:
-        raise ValueError("Lines that were read from a layer have no fitted curves to write.")
-    layer = Features("LineStringZ", MARKING_LINES, crs=lines.crs)
-    curves: dict[int, tuple[Curve, str]] = {}
-    for k, geometry in enumerate(fitted.linestrings(frame)):
-        key = id(fitted.curve[k])
-        if key not in curves:
-            moved = fitted.curve[k].moved(*frame.origin[:2])
-            curves[key] = moved, json.dumps(_rounded(moved.params()))[:-1]  # once for all pieces: those of long splines are long
-        curve, numbers = curves[key]
-        first, last = fitted.arc[k].tolist()
-        layer.add(
-            geometry, road=int(lines.course.road[k]), line=int(lines.line[k]), kind=lines.kind[k], pattern=lines.pattern[k],
-            status=lines.status[k], other=None if lines.other is None else lines.other[k] or None,
-            curve=curve.kind, radius_m=float(curve.radius) if curve.kind == "circle" else None,
-            rmse_m=_known(fitted.rmse[k]), station_m=float(fitted.station[k]), end_m=float(fitted.end[k]),
-            offset_m=_known(fitted.offset[k]), length_m=float(geometry.length), width_m=float(fitted.width[k]),
-            pass_sig_m=_known(frame.passes_sigma(int(lines.course.road[k]), np.array([fitted.station[k], fitted.end[k]]), np.nan).mean()),
-            params=f'{numbers}, {json.dumps({"from": round(first, 4), "to": round(last, 4)})[1:]}')
-    return layer
+    @staticmethod
+    def from_features(features: Features, frame: RoadFrame) -> PaintedLines:
+        """The lines of a layer MARKING_LINES in map coordinates, one piece a LineString; rows without geometry are left out.
 
-
-def _known(value: float) -> float | None:
-    return None if np.isnan(value) else float(value)
+        `road`, `line`, `kind`, `pattern`, `status` and `width_m` are used where they are, so that lines drawn by hand serve as well.
+        """
+        parts, row_of = line_parts(features.geometries)
+        rows = [features.rows[k] for k in row_of]
+        columns = PaintedLines.read_columns(rows)
+        # rows without a number are lines of their own, numbered behind the others
+        free, line = np.array([row.get("line") is None for row in rows], bool), columns["line"]
+        columns["line"] = np.where(free, line[~free].max(initial=0) + 1 + np.array(row_of, int), line)
+        road = [-1 if row.get("road") is None else int(row["road"]) for row in rows]
+        rmse, width = (np.array([np.nan if row.get(name) is None else float(row[name]) for row in rows]) for name in ("rmse_m", "width_m"))
+        return PaintedLines(**columns, course=lines_in_frame(parts, road, frame), crs=features.crs, rmse=rmse, width=width)
 
 
 def _rounded(numbers: dict[str, Any]) -> dict[str, Any]:
     """Long lists to 0.1 mm: a spline of a long road stays readable."""
     return {key: [round(v, 4) for v in value] if key in LONG_LISTS else value for key, value in numbers.items()}
-
-
-def lines_from_features(features: Features, frame: RoadFrame) -> PaintedLines:
-    """Read the layer MARKING_LINES.
-
-    Parameters
-    ----------
-    features : Features with lines in map coordinates; `road`, `line`, `kind`, `pattern`, `status` and `width_m` are used where they are, so
-        that lines drawn by hand serve as well
-
-    Returns
-    -------
-    PaintedLines, one piece a LineString; rows without geometry are left out
-    """
-    parts, row_of = line_parts(features.geometries)
-    rows = [features.rows[k] for k in row_of]
-    # rows without a number are lines of their own, numbered behind the others
-    numbers = [None if row.get("line") is None else int(row["line"]) for row in rows]
-    free = max((number for number in numbers if number is not None), default=0) + 1
-    line = np.array([free + k if number is None else number for number, k in zip(numbers, row_of)], int)
-    road = [-1 if row.get("road") is None else int(row["road"]) for row in rows]
-    kind, pattern, status = (np.array([str(row.get(name) or missing) for row in rows], object)
-                             for name, missing in (("kind", ""), ("pattern", ""), ("status", "measured")))
-    rmse, width = (np.array([np.nan if row.get(name) is None else float(row[name]) for row in rows]) for name in ("rmse_m", "width_m"))
-    return PaintedLines(line, kind, pattern, status, lines_in_frame(parts, road, frame), crs=features.crs, rmse=rmse, width=width)
 
 
 def painted_lines_of(rows: list[dict[str, Any]], frame: RoadFrame, crs: str) -> PaintedLines:

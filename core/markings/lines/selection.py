@@ -73,10 +73,8 @@ def select_lines(lines: list[LinkedLine], trend: CommonTrend, crossed: np.ndarra
                  longest_dash: float = NEUTRAL.longest_dash) -> list[SelectedLine]:
     """The lines worth drawing.
 
-    A line needs paint: `min_paint` metres of it, or two dashes of a pattern, or one dash
-    on the course and of the length of a dashed line elsewhere on the road. What runs
-    close beside a much longer line is that line's frayed edge; what frames a hatched
-    area belongs to that area.
+    A line needs paint: `min_paint` metres of it, or two dashes of a pattern, or one dash on the course and of the length of a dashed line elsewhere
+    on the road. What runs close beside a much longer line is that line's frayed edge; what frames a hatched area belongs to that area.
 
     Parameters
     ----------
@@ -96,7 +94,7 @@ def select_lines(lines: list[LinkedLine], trend: CommonTrend, crossed: np.ndarra
     crossings_there = StretchLookup(crossed[:, 0], crossed[:, 1])
     parts = [_without_pairs_at_crossings(stretches(line, longest_dash), line, crossed, crossings_there) for line in lines]
     level = np.array([_level(line, trend) for line in lines])
-    patterns = [_dash_patterns(stretch) for stretch in parts]
+    patterns = [[part.dashes for part in stretch if part.dashes] for stretch in parts]
     painted_to = max(line.last for line in lines)
     painted_from = min(line.first for line in lines)
     frayed, double = _beside(lines, beside, trend, longest_dash)
@@ -110,7 +108,7 @@ def select_lines(lines: list[LinkedLine], trend: CommonTrend, crossed: np.ndarra
             single = dashes.alike(k)
         if frayed[k] or outside[k] or _frames_hatching(line, bars) or not (line.painted >= min_paint or patterns[k] or single):
             continue
-        drawn = line_pieces(parts[k])
+        drawn = _line_pieces(parts[k])
         if single is not None:
             drawn = [LinePiece(line.first, line.last, "measured", "dashed")]
         drawn = _extended(drawn, parts[k], single, (painted_from, painted_to), partial(_crossed_there, crossed, crossings_there, line.middle),
@@ -156,10 +154,6 @@ class _StrandsBeside:
 def _level(line, trend):
     s, d, *_ = line.places()
     return median(d - trend.at(s))
-
-
-def _dash_patterns(parts):
-    return [part.dashes for part in parts if part.dashes]
 
 
 class _DashesElsewhere:
@@ -234,8 +228,7 @@ def _painted_there(line, other):
 def _beyond_the_edge(lines, beside, level):
     """(N,) whether a fragment lies farther out than a long line that bounds the road there: gutter, verge or yard.
 
-    With less than a lane's room between the two, what is much shorter than the edge
-    line is no line of its own; farther out, what is short.
+    With less than a lane's room between the two, what is much shorter than the edge line is no line of its own; farther out, what is short.
     """
     result = np.zeros(len(lines), bool)
     bounds = {j for j, line in enumerate(lines)
@@ -411,7 +404,7 @@ class Stretch:
         return "dashed" if self.dashes else "solid"
 
 
-def painted_intervals(line: LinkedLine) -> np.ndarray:
+def _painted_intervals(line: LinkedLine) -> np.ndarray:
     """(K, 2) stations between which a line is painted, holes of wear closed."""
     spans = [span for strand in line.strands for span in _painted(strand)]
     found = [list(spans[0])]
@@ -441,7 +434,7 @@ def stretches(line: LinkedLine, longest_dash: float = NEUTRAL.longest_dash) -> l
 
     longest_dash : metres, longer paint is solid line; of the catalogue of countries
     """
-    spans = painted_intervals(line)
+    spans = _painted_intervals(line)
     long = np.diff(spans, axis=1)[:, 0] > longest_dash
     cuts = np.flatnonzero(np.r_[True, np.diff(long.astype(int)) != 0, True])
     found: list[tuple[np.ndarray, DashPattern | None]] = []
@@ -460,11 +453,9 @@ def stretches(line: LinkedLine, longest_dash: float = NEUTRAL.longest_dash) -> l
 def find_dash_pattern(spans: np.ndarray, beside_solid: bool = False) -> DashPattern | None:
     """The DashPattern of painted intervals (K, 2), or None where they follow none.
 
-    Dashes may be missing: steps between dashes are then whole multiples of the
-    period. Some may be worn at their ends: three of five must have the common length.
-    Of three pieces alone all must have it, or their two steps must be equal: by chance
-    one step is soon a multiple of the other. In a line that is solid elsewhere (`beside_solid`)
-    all must have it: there three pieces are what wear left of it, and equal steps chance.
+    Dashes may be missing: steps between dashes are then whole multiples of the period. Some may be worn at their ends: three of five must have the
+    common length. Of three pieces alone all must have it, or their two steps must be equal: by chance one step is soon a multiple of the other. In
+    a line that is solid elsewhere (`beside_solid`) all must have it: there three pieces are what wear left of it, and equal steps chance.
     """
     if len(spans) < 2:
         return None
@@ -529,12 +520,9 @@ class LinePiece:
     pattern: str
 
 
-def line_pieces(parts: list[Stretch]) -> list[LinePiece]:
-    """Cut a line of some stretches where its status or pattern changes.
-
-    A regular gap between dashes is part of the dashed line; a hole longer than the
-    line's own gap, or in a solid line longer than 2.5 m, is bridged.
-    """
+def _line_pieces(parts: list[Stretch]) -> list[LinePiece]:
+    """Cut a line of some stretches where its status or pattern changes. A hole longer than the line's own gap, or in a solid line longer than
+    2.5 m, is bridged."""
     found = []
     for k, part in enumerate(parts):
         gap = part.dashes.gap * 1.25 + 0.8 if part.dashes else MAX_SOLID_GAP

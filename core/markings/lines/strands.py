@@ -134,9 +134,8 @@ class LinkedLine:
 def line_paint(records: Columns, markings: MarkingObjects, road: int) -> tuple[Columns, np.ndarray]:
     """The points that may belong to a painted line.
 
-    Those of markings of use keep; of other long markings (a line that touches a stop
-    line or a hatched area is clustered with it) those places where the marking is
-    no wider across than a double line.
+    Those of markings of use keep; of other long markings (a line that touches a stop line or a hatched area is clustered with it) those places
+    where the marking is no wider across than a double line.
 
     Parameters
     ----------
@@ -205,7 +204,8 @@ def trace_strands(records: Columns, rank: np.ndarray) -> list[Strand]:
         return []
     across, bins = records["d"], records["s"] // RUN_BIN_UNITS
     order = order_by(across, bins)
-    run = _without_thin(_runs(bins[order], across[order]))
+    run = _runs(bins[order], across[order])
+    run = np.where((np.bincount(run) >= MIN_POINTS_PER_RUN)[run], run, np.int32(-1))   # runs of too few points are none
     inside = np.flatnonzero(run >= 0)
     check_cancelled()
     if not len(inside):
@@ -267,11 +267,6 @@ def _part_hazy_doubles(bins, across, starts):
             gap = int(np.argmax(np.diff(edges)))
             cuts.append(starts[k] + int(np.searchsorted(values, edges[gap], "right")))
     return np.unique(np.r_[starts, cuts]).astype(np.int64)
-
-
-def _without_thin(run):
-    """-1 for the points of runs of too few points."""
-    return np.where((np.bincount(run) >= MIN_POINTS_PER_RUN)[run], run, np.int32(-1))
 
 
 def _middle_and_width(across, starts):

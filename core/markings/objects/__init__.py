@@ -8,5 +8,5 @@ from ...lazy import public
 __getattr__, __all__ = public(__name__, {
     "classify": ("ClassSettings", "classify_markings"),
     "cluster": ("ClusterSettings", "cluster_markings"),
-    "marking_objects": ("MarkingObjects", "Outlines", "markings_from_features", "markings_to_features", "with_kinds_of"),
+    "marking_objects": ("MarkingObjects", "Outlines", "with_kinds_of"),
 })

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import repeat
 
 import numpy as np
 
@@ -142,30 +143,31 @@ def classify_markings(shapes: list[Shape], half_widths: Sequence[float], setting
     line |= _dashes_in_rows(shapes, column, clearance, settings)
     line &= ~zigzag
     outside = _beyond_the_edge_line(column, line, clearance)
-    found = []
     doubles = _has_partner(column, line)
-    blocks = np.broadcast_to(blocks, len(shapes))
     covered_feet = (np.broadcast_to(covered, len(shapes)) > MIN_COVERED_SHARE) & ~(line & (column["length"] > MAX_CAR_LENGTH))
-    for k, shape in enumerate(shapes):
-        no_paint = _speck(shape) and not (line[k] and shape.length >= MIN_ROW_OF_POINTS) or outside[k] or covered_feet[k] \
-            or curb[k] or _round_cover(shape) and not blocks[k]
-        if zigzag[k] and clearance[k] >= -settings.margin and not covered_feet[k]:
-            kind = "zigzag"
-        elif clearance[k] < -settings.margin or no_paint or _gutter(shape, clearance[k], line[k]):
-            kind = NOT_PAINT
-        elif blocks[k]:
-            kind = "give_way"
-        elif line[k]:
-            kind = _line_kind(shape, clearance[k], doubles[k])
-        else:
-            kind = _other_kind(shape)
-        found.append((kind, "keep" if kind in LINE_KINDS else "other"))
+    refused = outside | covered_feet | curb
+    kinds = [_kind(*of_one) for of_one in zip(shapes, clearance, line, zigzag, np.broadcast_to(blocks, len(shapes)), doubles, covered_feet, refused,
+                                              repeat(settings.margin))]
+    found = [(kind, "keep" if kind in LINE_KINDS else "other") for kind in kinds]
     for looked_like in (_outlines, _tips):
         for k in looked_like(column, [kind for kind, _ in found]):
             found[k] = "hatch", "other"
     for k in _single_bars(column, [kind for kind, _ in found]):
         found[k] = NOT_PAINT if clearance[k] < CURB_CORNER_CLEARANCE and shapes[k].length < MAX_CURB_CORNER_LENGTH else "symbol", "other"
     return found
+
+
+def _kind(shape, clearance, line, zigzag, block, double, covered_feet, refused, margin):
+    """The class of a cluster by itself; `refused` is what lies where no paint is, `margin` the m that paint may lie beyond the road's edge."""
+    if zigzag and clearance >= -margin and not covered_feet:
+        return "zigzag"
+    if clearance < -margin or refused or _gutter(shape, clearance, line):
+        return NOT_PAINT
+    if _speck(shape) and not (line and shape.length >= MIN_ROW_OF_POINTS) or _round_cover(shape) and not block:
+        return NOT_PAINT
+    if block:
+        return "give_way"
+    return _line_kind(shape, clearance, double) if line else _other_kind(shape)
 
 
 def columns_of(shapes: Sequence[Shape]) -> dict[str, np.ndarray]:

@@ -64,8 +64,7 @@ def cluster_markings(marking_points: RoadPoints, frame: RoadFrame, settings: Clu
 
     Returns
     -------
-    markings : MarkingObjects, one polygon a marking; one that wear or a shadow cut apart has
-        several, with one `cluster` number
+    markings : MarkingObjects, one polygon a marking; one that wear or a shadow cut apart has several, with one `cluster` number
     clustered : RoadPoints with `cluster`, the number of the marking; 0 on what is no marking
     """
     clustered = replace(marking_points, store=marking_points.store.with_column("cluster"), has_cluster=True)
@@ -166,9 +165,12 @@ def _rectangle(records, bounds):
 
 def _with_rows_divided(records, labels):
     """Labels of clusters, rows of the blocks of give-way lines divided into these."""
+    if not len(labels):
+        return labels
     order = order_by(labels)
-    starts = np.flatnonzero(np.r_[True, np.diff(labels[order]) != 0]) if len(labels) else np.empty(0, np.int64)
-    along, across = (_ranges(records[name].take(order), starts) for name in "sd")
+    starts = np.flatnonzero(np.r_[True, np.diff(labels[order]) != 0])
+    along, across = ((np.maximum.reduceat(values, starts).astype(np.int64) - np.minimum.reduceat(values, starts)) * COORDINATE_SCALE
+                     for values in (records[name].take(order) for name in "sd"))
     labels, following = labels.copy(), int(labels.max(initial=-1)) + 1
     for k in np.flatnonzero((along >= ROW_OF_BLOCKS[0]) & (along <= ROW_OF_BLOCKS[1]) & (across >= BLOCK_SIZE[0])
                             & (across <= BLOCK_SIZE[1] + MAX_ROW_SLOPE * along)).tolist():
@@ -178,11 +180,6 @@ def _with_rows_divided(records, labels):
             labels[own] = following + blocks[member]
             following += int(blocks.max()) + 1
     return labels
-
-
-def _ranges(values, starts):
-    return (np.maximum.reduceat(values, starts).astype(np.int64) - np.minimum.reduceat(values, starts)) * COORDINATE_SCALE \
-        if len(starts) else np.empty(0)
 
 
 def _markings(pieces, blocks, settings, has_corrected, progress):
@@ -313,11 +310,8 @@ def _outlines(markings, records, road, work, progress):
     unknown = [marking for marking in markings if marking.outline is None]
     looks = [(marking.shape, marking.kind in STRIP_KINDS) for marking in unknown]
     drawn = iter(work.outlines(records, [marking.rows for marking in unknown], looks, road, progress))
-    return [next(drawn) if marking.outline is None else [lifted(marking.outline, _places(marking.records))] for marking in markings]
-
-
-def _places(records):
-    return np.stack([records["x"], records["y"], records["z"]], axis=1) * COORDINATE_SCALE
+    return [next(drawn) if marking.outline is None
+            else [lifted(marking.outline, np.stack([marking.records[name] for name in "xyz"], axis=1) * COORDINATE_SCALE)] for marking in markings]
 
 
 def _row(marking, number, line, frame):

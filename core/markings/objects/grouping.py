@@ -37,7 +37,6 @@ def connected_points(marking_points: RoadPoints, road: int, distance: float, pro
     Parameters
     ----------
     marking_points : RoadPoints on paint
-    road : number of the road
     distance : m, by which points of one marking are joined
     executor : who links the points of windows
 
@@ -48,10 +47,8 @@ def connected_points(marking_points: RoadPoints, road: int, distance: float, pro
 
     Notes
     -----
-    Points of one 4 cm cell are one member, at their mean place: points of dense
-    paint would otherwise have hundreds of neighbours each. Cells are fixed
-    in station, and windows are joined through the cells they share, so neither
-    window nor section length shows in the result.
+    Points of one 4 cm cell are one member, at their mean place: points of dense paint would otherwise have hundreds of neighbours each. Cells are
+    fixed in station, and windows are joined through the cells they share, so neither window nor section length shows in the result.
     """
     records = columns_of_roads(marking_points.store, [road], PAINT_COLUMNS)
     labels, links = [], []
@@ -114,23 +111,13 @@ def links_of_windows(source: NoSource, item: list[tuple[Any, ...]], distance: fl
     """
     found: list[tuple[np.ndarray, ...]] = []
     for *columns, end in item:
-        cells, member, component = components_of_points(dict(zip(LINKING_COLUMNS, columns)), distance)
+        cells, member, component = _components_of_points(dict(zip(LINKING_COLUMNS, columns)), distance)
         found.append((cells, component, cells[:, 0] >= end, member[columns[0] // CELL_UNITS < end]))
     return found
 
 
-def components_of_points(records: Columns | Mapping[str, np.ndarray], distance: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Connected components of some points.
-
-    Parameters
-    ----------
-    records : N points of one road
-    distance : m, by which points of one marking are joined
-
-    Returns
-    -------
-    (K, 2) int occupied cells, (N,) int the cell of each point, (K,) int the component of each cell
-    """
+def _components_of_points(records: Columns | Mapping[str, np.ndarray], distance: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(K, 2) int occupied cells, (N,) int the cell of each point, (K,) int the component of each cell; points are joined by `distance`, m."""
     cells, member = occupied(records["s"] // CELL_UNITS, records["d"] // CELL_UNITS)
     size = np.bincount(member, minlength=len(cells))
     # sums of integers are the same in any order
@@ -295,7 +282,7 @@ def _told_by(road, parts):
 
 
 def _clusters(records, distance):
-    _, member, component = components_of_points(records, distance)
+    _, member, component = _components_of_points(records, distance)
     return component[member].astype(np.int64)
 
 

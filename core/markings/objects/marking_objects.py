@@ -1,15 +1,16 @@
-"""Markings as arrays, and their conversion from and to the layer MARKINGS."""
+"""Markings as arrays, which stages hand each other and which the layer MARKINGS holds."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 import shapely
 
 from ...common.features import MARKINGS, Features
+from ...common.layer_rows import LayerRows, column
 from ...survey.frame.placement import located
 from ...survey.frame.road_frame import RoadFrame
 
@@ -44,6 +45,10 @@ class Outlines:
     def __len__(self) -> int:
         return len(self.marking_start) - 1
 
+    def __getitem__(self, rows: np.ndarray) -> Outlines:
+        """Those of some of the markings, by a mask or their numbers."""
+        return Outlines.of(self.polygons()[rows])
+
     @property
     def owner(self) -> np.ndarray:
         """(V,) int, the marking of each vertex."""
@@ -64,7 +69,7 @@ class Outlines:
 
 
 @dataclass(frozen=True)
-class MarkingObjects:
+class MarkingObjects(LayerRows):
     """M markings in the road frame. A marking that wear or a shadow cut into parts has several elements of one `cluster`.
 
     road : (M,) int, number of the road; -1 where unknown
@@ -81,37 +86,41 @@ class MarkingObjects:
     crs : WKT, "" where unknown
     """
 
-    road: np.ndarray
-    cluster: np.ndarray
-    kind: np.ndarray
+    GEOMETRY_TYPE, SCHEMA = "PolygonZ", MARKINGS
+
+    road: np.ndarray = field(metadata=column(unknown=-1))
+    cluster: np.ndarray = field(metadata=column(unknown=-1))
+    kind: np.ndarray = field(metadata=column("class", unknown=""))
     keep: np.ndarray
-    station: np.ndarray
-    offset: np.ndarray
-    length: np.ndarray
-    width: np.ndarray
-    elongation: np.ndarray
-    scan_distance: np.ndarray
-    points: np.ndarray
+    station: np.ndarray = field(metadata=column("station_m"))
+    offset: np.ndarray = field(metadata=column("offset_m"))
+    length: np.ndarray = field(metadata=column("length_m"))
+    width: np.ndarray = field(metadata=column("width_m"))
+    elongation: np.ndarray = field(metadata=column())
+    scan_distance: np.ndarray = field(metadata=column("scan_m"))
+    points: np.ndarray = field(metadata=column(unknown=np.nan))
     extent: np.ndarray
     outlines: Outlines
     crs: str = ""
-
-    def __len__(self) -> int:
-        return len(self.road)
 
     def with_kinds(self, kind: np.ndarray) -> MarkingObjects:
         """The same markings with other classes, (M,) str objects."""
         return replace(self, kind=kind)
 
-    def take(self, rows: np.ndarray) -> MarkingObjects:
-        """Some of the markings, by their numbers."""
-        own = [one.name for one in fields(self) if one.name not in ("outlines", "crs")]
-        return replace(self, **{name: getattr(self, name)[rows] for name in own}, outlines=Outlines.of(self.outlines.polygons()[rows]))
+    def on_map(self, frame: RoadFrame) -> np.ndarray:
+        """(M,) polygons with Z in map coordinates."""
+        return self.outlines.polygons(frame.origin)
 
+    def derived(self, frame: RoadFrame) -> dict[str, Any]:
+        """What it may be part of, and its area."""
+        return dict(use=np.where(self.keep, "keep", "other"), area_m2=shapely.area(self.on_map(frame)))
 
-# Fields of the layer that hold one number each, by the attribute of MarkingObjects
-NUMBER_FIELDS = dict(station="station_m", offset="offset_m", length="length_m", width="width_m", elongation="elongation",
-               scan_distance="scan_m", points="points")
+    @staticmethod
+    def from_features(features: Features, frame: RoadFrame) -> MarkingObjects:
+        """The markings of a layer MARKINGS, polygons in map coordinates, one element a row in the same order; fields may be missing."""
+        local = [None if shape is None else shapely.transform(shape, lambda places: places - frame.origin[:places.shape[1]], include_z=shape.has_z)
+                 for shape in features.geometries]
+        return make_marking_objects(features.rows, local, frame, features.crs)
 
 
 def make_marking_objects(rows: Sequence[dict[str, Any]], polygons: Sequence[Any], frame: RoadFrame, crs: str = "") -> MarkingObjects:
@@ -123,13 +132,9 @@ def make_marking_objects(rows: Sequence[dict[str, Any]], polygons: Sequence[Any]
     polygons : M shapely polygons or multipolygons in local coordinates, None where there is none
     crs : WKT
     """
-    def column(name: str, missing: Any, kind: Any) -> np.ndarray:
-        return np.array([missing if row.get(name) is None else row[name] for row in rows], kind)
-
-    road, outlines = column("road", -1, int), Outlines.of(polygons)
-    numbers = {attribute: column(name, np.nan, float) for attribute, name in NUMBER_FIELDS.items()}
-    return MarkingObjects(road=road, cluster=column("cluster", -1, int), kind=column("class", "", object),
-                          keep=column("use", "", object) == "keep", extent=_extents(outlines, road, frame), outlines=outlines, crs=crs, **numbers)
+    columns, outlines = MarkingObjects.read_columns(rows), Outlines.of(polygons)
+    keep = np.array([row.get("use") == "keep" for row in rows], bool)
+    return MarkingObjects(**columns, keep=keep, extent=_extents(outlines, columns["road"], frame), outlines=outlines, crs=crs)
 
 
 def _extents(outlines: Outlines, road: np.ndarray, frame: RoadFrame) -> np.ndarray:
@@ -145,65 +150,11 @@ def _extents(outlines: Outlines, road: np.ndarray, frame: RoadFrame) -> np.ndarr
     return found
 
 
-def markings_to_features(markings: MarkingObjects, frame: RoadFrame) -> Features:
-    """The layer MARKINGS: polygons in map coordinates with their fields.
-
-    Parameters
-    ----------
-    frame : RoadFrame, whose origin is added to local coordinates
-
-    Returns
-    -------
-    Features MARKINGS, one row an element, in the same order
-    """
-    shapes = markings.outlines.polygons(frame.origin)
-    return Features("PolygonZ", MARKINGS, list(shapes), _rows(markings, shapes), markings.crs)
-
-
-def _rows(markings, shapes):
-    """The fields of markings, of which the polygons are given, too."""
-    numbers = {name: getattr(markings, attribute).tolist() for attribute, name in NUMBER_FIELDS.items()}
-    rows = [dict(road=road, cluster=cluster, use="keep" if keep else "other", area_m2=area, **{"class": kind})
-            for road, cluster, keep, kind, area in zip(markings.road.tolist(), markings.cluster.tolist(), markings.keep.tolist(),
-                                                       markings.kind.tolist(), shapely.area(shapes).tolist())]
-    for k, row in enumerate(rows):
-        row.update((name, None if np.isnan(values[k]) else values[k]) for name, values in numbers.items())
-        row["points"] = None if row["points"] is None else int(row["points"])
-    return rows
-
-
-def markings_from_features(features: Features, frame: RoadFrame) -> MarkingObjects:
-    """Read the layer MARKINGS.
-
-    Parameters
-    ----------
-    features : Features with polygons in map coordinates; fields may be missing
-
-    Returns
-    -------
-    MarkingObjects, one element a row, in the same order
-    """
-    local = [None if shape is None else shapely.transform(shape, lambda places: places - frame.origin[:places.shape[1]], include_z=shape.has_z)
-             for shape in features.geometries]
-    return make_marking_objects(features.rows, local, frame, features.crs)
-
-
-def with_kinds_of(features: Features, markings: MarkingObjects) -> Features:
+def with_kinds_of(features: Features, markings: MarkingObjects, frame: RoadFrame) -> Features:
     """A layer MARKINGS with the classes of the MarkingObjects read from it; geometries and all other fields stay as they are.
 
     Markings behind those that were read, which their lines have added, come behind them.
     """
     rows = [row if (row.get("class") or "") == kind else {**row, "class": kind} for row, kind in zip(features.rows, markings.kind.tolist())]
-    shapes = list(features.geometries)
-    if len(markings) > len(rows):
-        more = markings.take(np.arange(len(rows), len(markings)))
-        added = more.outlines.polygons(_origin(shapes, markings.outlines))
-        shapes, rows = shapes + list(added), rows + _rows(more, added)
-    return Features(features.geometry_type, features.schema, shapes, rows, features.crs)
-
-
-def _origin(shapes, outlines):
-    """What lies between the outlines of markings and the map that they were read from: whole metres."""
-    k = int(np.flatnonzero(np.diff(outlines.marking_start))[0])
-    vertex = outlines.vertices[outlines.ring_start[outlines.polygon_start[outlines.marking_start[k]]]]
-    return np.rint(shapely.get_coordinates(shapes[k], include_z=True)[0] - vertex)
+    more = markings[len(rows):].to_features(frame)
+    return Features(features.geometry_type, features.schema, [*features.geometries, *more.geometries], rows + more.rows, features.crs)

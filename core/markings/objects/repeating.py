@@ -148,10 +148,6 @@ def _least_spread(places):
     return float(np.sqrt(max((xx + yy) / 2 - np.hypot((xx - yy) / 2, xy), 0.0)))
 
 
-def _across(places, heading):
-    return places @ np.array([-np.sin(heading), np.cos(heading)])
-
-
 def _mean_phase(across, pitches):
     """(H, P) complex, the mean phase of spots for every pitch; across : (N, H) m, where they lie across each direction."""
     turn = (2 * np.pi / pitches)[:, None, None] * across
@@ -213,7 +209,7 @@ def _clear(across, pitches):
 
 def _numbered(own, comb):
     """Number of the stripe nearest to each spot, how far off its middle the spot lies, and where along it."""
-    across = _across(own, comb.heading) - comb.phase
+    across = own @ np.array([-np.sin(comb.heading), np.cos(comb.heading)]) - comb.phase
     number = np.rint(across / comb.pitch).astype(np.int64)
     return number, across - number * comb.pitch, own @ np.array([np.cos(comb.heading), np.sin(comb.heading)])
 
@@ -516,7 +512,7 @@ def give_way_blocks(filled: np.ndarray, sides: np.ndarray, middle: np.ndarray) -
     (N,) bool
     """
     squares = np.flatnonzero(filled)
-    rows = [squares[row] for row in rows_of_blocks(sides[squares], middle[squares])]
+    rows = [squares[row] for row in _rows_of_blocks(sides[squares], middle[squares])]
     result = np.zeros(len(filled), bool)
     if not rows:
         return result
@@ -590,25 +586,14 @@ def blocks_of_strip(cells: np.ndarray) -> np.ndarray | None:
     for k in range(2):
         np.minimum.at(low[k], number[rows], places[rows, k])
         np.maximum.at(high[k], number[rows], places[rows, k])
-    found = rows_of_blocks((high - low + 1).T * CELL_SIZE, (low + high).T / 2 * CELL_SIZE)
+    found = _rows_of_blocks((high - low + 1).T * CELL_SIZE, (low + high).T / 2 * CELL_SIZE)
     # those at the ends may be cut off
     return number if sum(map(len, found)) >= max(len(apart) - 1, MIN_BLOCKS_IN_ROW) else None
 
 
-def rows_of_blocks(sides: np.ndarray, middle: np.ndarray) -> list[np.ndarray]:
-    """Filled squares that stand in rows: the blocks of give-way lines.
-
-    A single square may be a manhole cover. Three of one size at an even pitch in a line were painted.
-
-    Parameters
-    ----------
-    sides : (N, 2) m along the road and across it of filled pieces
-    middle : (N, 2) m, their middles
-
-    Returns
-    -------
-    list of ascending int arrays, the pieces of each row
-    """
+def _rows_of_blocks(sides: np.ndarray, middle: np.ndarray) -> list[np.ndarray]:
+    """Ascending numbers of filled squares that stand in a row, for each row: three of one size at an even pitch were painted, one may be a
+    manhole cover. `sides` and `middle` are (N, 2) m."""
     pairs, of_pair, apart = _pairs_of_squares(sides, middle)
     links = (of_pair.max(axis=1) <= MAX_BLOCK_RATIO * of_pair.min(axis=1)) \
         & (apart >= BLOCK_SPACING[0] * of_pair.mean(axis=1)) & (apart <= BLOCK_SPACING[1] * of_pair.mean(axis=1))

@@ -91,8 +91,7 @@ def measure(s: np.ndarray, d: np.ndarray, spacing: np.ndarray | None = None) -> 
 
     Notes
     -----
-    Width is the 95 % range across the local tangent, scaled to the full range of
-    evenly spread points: a principal axis would call every bend wide.
+    Width is the 95 % range across the local tangent, scaled to the full range of evenly spread points: a principal axis would call every bend wide.
     """
     cells, member = occupied(s // CELL_UNITS, d // CELL_UNITS)
     apart = 0.0
@@ -114,7 +113,7 @@ def measure(s: np.ndarray, d: np.ndarray, spacing: np.ndarray | None = None) -> 
         length = np.ptp(along) * COORDINATE_SCALE
         across = d * c - s * n
         begin = finish = median(d) * COORDINATE_SCALE
-    width = full_width(across) * COORDINATE_SCALE
+    width = _full_width(across) * COORDINATE_SCALE
     sides = float(length), width
     if max(s1 - s0, d1 - d0) * COORDINATE_SCALE <= SMALL_MARKING_SIZE:
         sides = smallest_rectangle(cells)
@@ -164,7 +163,7 @@ def _askew(s, d):
     return found[0], found[1]
 
 
-def full_width(across: np.ndarray) -> float:
+def _full_width(across: np.ndarray) -> float:
     """Full width of evenly spread values from their 95 % range."""
     low, high = percentiles(across, ((100 - WIDTH_PERCENT) / 2, (100 + WIDTH_PERCENT) / 2))
     return (high - low) / (WIDTH_PERCENT / 100)
@@ -400,7 +399,7 @@ def _without_small_holes(mask):
     return mask
 
 
-def cell_outline(mask: np.ndarray, first: np.ndarray) -> shapely.Geometry:
+def _cell_outline(mask: np.ndarray, first: np.ndarray) -> shapely.Geometry:
     """Shapely polygon or multipolygon in (s, d) of the cells that are on, its staircase smoothed."""
     edges = np.diff(np.pad(mask, ((1, 1), (0, 0))).astype(np.int8), axis=0)
     column, start = np.nonzero(edges.T == 1)
@@ -427,7 +426,7 @@ def drawn_outline(columns: Sequence[np.ndarray], shape: Shape, strip: bool, road
     strip : whether it is drawn as an even strip, else cell by cell
     """
     s, d, x, y, z, spacing = columns
-    drawn = band(s, d, shape) if strip else cell_outline(*painted_cells(s * COORDINATE_SCALE, d * COORDINATE_SCALE, spacing))
+    drawn = band(s, d, shape) if strip else _cell_outline(*painted_cells(s * COORDINATE_SCALE, d * COORDINATE_SCALE, spacing))
     places = np.stack([x, y, z], axis=1) * COORDINATE_SCALE
     return [to_local(part, road, places) for part in parts(drawn)]
 

@@ -273,9 +273,8 @@ def join_fragments(shapes: Sequence[Shape], max_width: float) -> np.ndarray:
 
     Notes
     -----
-    Narrow pieces along the road are joined where one begins up to 0.9 m after the end of
-    another on the same line, farther where tracks of the scan cross it askew; pieces of a bar across the road over 0.3 m where their
-    front and rear are the same.
+    Narrow pieces along the road are joined where one begins up to 0.9 m after the end of another on the same line, farther where tracks of the scan
+    cross it askew; pieces of a bar across the road over 0.3 m where their front and rear are the same.
     """
     if len(shapes) < 2:
         return np.arange(len(shapes))
@@ -286,7 +285,7 @@ def join_fragments(shapes: Sequence[Shape], max_width: float) -> np.ndarray:
 
 def _along(shapes, max_width):
     """(P, 2) narrow pieces, the second of which goes on where the first ends."""
-    narrow = np.array([k for k, shape in enumerate(shapes) if _narrow(shape, max_width)], np.int64)
+    narrow = np.array([k for k, shape in enumerate(shapes) if shape.width <= max_width and shape.along or shape.d1 - shape.d0 <= max_width], np.int64)
     if len(narrow) < 2:
         return np.empty((0, 2), np.int64)
     begins = np.array([(shapes[k].s0, shapes[k].begin) for k in narrow])
@@ -316,10 +315,6 @@ def _unseen_gaps(shapes, narrow):
     gap = first[b] - last[a]
     unseen = (a != b) & (gap >= 0) & (gap <= MAX_UNSEEN_GAP) & (sideways[a, 1] | sideways[b, 0])
     return sparse[np.column_stack([a, b])[unseen & (np.abs(offset[a] - offset[b]) <= MAX_UNSEEN_OFFSET)]]
-
-
-def _narrow(shape, max_width):
-    return shape.width <= max_width and shape.along or shape.d1 - shape.d0 <= max_width
 
 
 def _bars(column):
@@ -393,7 +388,7 @@ def complete_bar(parts: np.ndarray, bar: np.ndarray, turned: np.ndarray, along: 
 
 
 def bar_with_lines(cells: np.ndarray) -> tuple[np.ndarray, int]:
-    """Cut a bar from the lines that end at it or cross it, if that is all there is.
+    """Cut a bar from the lines that end at it or cross it, if that is all there is. The head of an arrow is no bar: it is longer or has a tip.
 
     Parameters
     ----------
@@ -403,10 +398,6 @@ def bar_with_lines(cells: np.ndarray) -> tuple[np.ndarray, int]:
     -------
     parts : (K,) int, the part of every cell, numbered from 0
     count : how many there are; 1 for anything else
-
-    Notes
-    -----
-    The head of an arrow is no bar: it is longer or has a tip.
     """
     whole = np.zeros(len(cells), np.int64), 1
     if not len(cells):

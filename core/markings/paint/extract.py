@@ -241,24 +241,18 @@ def scatter_of_windows(road_points: RoadPoints,
     Returns
     -------
     count : (scanners,) points of each scanner in a window
-    squares : of `scatter_in_squares`, None where they are not asked for
+    squares : of `_scatter_in_squares`, None where they are not asked for
     """
     found = []
     for road, window, sampled in windows:
         points = points_of_rows(road_points, road, window * THRESHOLD_WINDOW, (window + 1) * THRESHOLD_WINDOW)
-        found.append((np.bincount(points.scanner), scatter_in_squares(points) if sampled else None))
+        found.append((np.bincount(points.scanner), _scatter_in_squares(points) if sampled else None))
     return found
 
 
-def scatter_in_squares(points: Points) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Scatter of single points on asphalt in squares of 1 m measured by one scanner from one distance.
-
-    It is that of the raw intensities, from the lower half of a square, which holds no paint.
-
-    Returns
-    -------
-    scanner, count, scatter : (squares,) the scatter as a share of asphalt's level; squares with few points or without intensity are left out
-    """
+def _scatter_in_squares(points: Points) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Scanner, number of points and scatter as a share of asphalt's level, each (squares,), of squares of 1 m measured by one scanner from one
+    distance: from raw intensities of the lower half of a square, which holds no paint. Squares with few points or without intensity are left out."""
     if not len(points):
         return np.empty(0, np.uint8), np.empty(0, int), np.empty(0)
     points = points[::max(len(points) // MAX_SCATTER_POINTS, 1)]
@@ -281,7 +275,7 @@ def scatter_in_squares(points: Points) -> tuple[np.ndarray, np.ndarray, np.ndarr
 
 
 def _shares(squares):
-    """{scanner: median scatter} of the results of `scatter_in_squares` in several windows."""
+    """{scanner: median scatter} of the results of `_scatter_in_squares` in several windows."""
     if not squares:
         return {}
     scanner, count, scatter = (np.concatenate(parts) for parts in zip(*squares))

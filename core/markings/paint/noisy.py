@@ -65,8 +65,7 @@ class CellAverages:
     contrast : (rows, columns) float32 brightness above `ground`
     ground : (rows, columns) brightness of asphalt in the half metre around
     spread : (rows, columns) scatter of asphalt's contrast there, a standard deviation
-    slope : (2, rows, columns) along and across the road against the ground around, metres per metre: small on a road, large on
-        the face of a curb
+    slope : (2, rows, columns) along and across the road against the ground around, metres per metre: small on a road, large on the face of a curb
     """
 
     contrast: np.ndarray
@@ -95,14 +94,14 @@ class CellAverages:
         # paint, rails and drains are no ground: cells beside them are compared with asphalt
         contrast = spot - around
         with np.errstate(invalid="ignore"):
-            scatter = local_scatter(contrast)
+            scatter = _local_scatter(contrast)
             plain = (contrast > -GROUND_CONTRAST * scatter) & (contrast < paint * scatter)
         asphalt = _gaussian_mean(count * plain, total * plain, GROUND_SIGMA)
         around = np.where(np.isfinite(asphalt), asphalt, around)
         contrast = (spot - around).astype(np.float32)
         tilts = [np.gradient(_gaussian_mean(count, risen, sigma), CELL_SIZE) for sigma in (SLOPE_SIGMA, GROUND_SLOPE_SIGMA)]
         slope = np.stack([near - about for near, about in zip(*tilts)]).astype(np.float32)
-        return cls(contrast, around, local_scatter(contrast), slope)
+        return cls(contrast, around, _local_scatter(contrast), slope)
 
     @property
     def z(self) -> np.ndarray:
@@ -117,19 +116,10 @@ def _gaussian_mean(count, total, sigma):
         return np.where(near > MIN_DENSITY, near_total / near, np.nan)
 
 
-def local_scatter(contrast: np.ndarray) -> np.ndarray:
-    """Scatter of asphalt's contrast in the metres around each cell, a standard deviation.
+def _local_scatter(contrast: np.ndarray) -> np.ndarray:
+    """Scatter of asphalt's contrast in the metres around each cell, a standard deviation, float32; NaN where nothing is known.
 
-    It is estimated from values a little below the median: paint lies above them,
-    rails, covers and seams below.
-
-    Parameters
-    ----------
-    contrast : (rows, columns) float, NaN where nothing is known
-
-    Returns
-    -------
-    (rows, columns) float32; that of the whole window where too little is known nearby, NaN where nothing is known
+    It is estimated from values a little below the median: paint lies above them, rails, covers and seams below.
     """
     rows, columns = (-(-n // SCATTER_BLOCK) for n in contrast.shape)
     padded = np.full((rows * SCATTER_BLOCK, columns * SCATTER_BLOCK), np.nan, np.float32)
@@ -190,11 +180,6 @@ class BrightPiece:
         thin = self.shape.width <= FAINT_LINE_WIDTH and self.shape.elongation >= FAINT_LINE_ELONGATION
         return self.is_elongated and thin and self.shape.length >= FAINT_LINE_LENGTH and self.fading >= -MAX_FADING
 
-    @property
-    def may_be_dash(self) -> bool:
-        """Whether it is long and narrow enough for a dash in a row."""
-        return self.shape.length >= DASH_LENGTH and self.shape.width <= DASH_WIDTH
-
 
 @dataclass(frozen=True)
 class ViewSamples:
@@ -233,50 +218,48 @@ def views(points: Points, frame: RoadFrame) -> np.ndarray | None:
 
 
 def noisy_paint_cells(averages: CellAverages, rim: np.ndarray, samples: ViewSamples, threshold: float) -> np.ndarray:
-    """Cells of paint.
+    """(rows, columns) bool, cells of paint; `rim` is their distance from the rim of the road, m, and `threshold` the spreads that paint reaches."""
+    # holes that noise left in strokes are closed
+    mask = ndimage.binary_closing(_stroke_cells(averages, rim, samples, threshold), np.ones((3, 3), bool), iterations=2)
+    for piece in _dashes_of_rows(averages, rim, samples, threshold):
+        mask[piece.cells] = True
+    return mask
 
-    Parameters
-    ----------
-    averages : CellAverages of a window of the road
-    rim : (rows, columns) metres from the rim of the road
-    samples : ViewSamples of the window
-    threshold : spreads above asphalt that paint reaches
 
-    Returns
-    -------
-    (rows, columns) bool
-    """
+def _stroke_cells(averages, rim, samples, threshold):
+    """Cells of clear strokes and of thin straight lines, which may be fainter."""
     z, contrast = averages.z, averages.contrast
     with np.errstate(invalid="ignore"):
         bright, faint = z > PIECE_BRIGHTNESS * threshold, z > PIECE_BRIGHTNESS * FAINT_LINE * threshold
     mask = np.zeros(rim.shape, bool)
-    strokes = [piece for piece in bright_pieces(bright, averages, rim, threshold) if piece.is_elongated
+    strokes = [piece for piece in _bright_pieces(bright, averages, rim, threshold) if piece.is_elongated
                and (piece.z >= CLEAR_BRIGHTNESS * threshold or piece.shape.length >= CLEAR_LENGTH)]
-    lines = [piece for piece in bright_pieces(faint, averages, rim, FAINT_LINE * threshold) if piece.is_line]
+    lines = [piece for piece in _bright_pieces(faint, averages, rim, FAINT_LINE * threshold) if piece.is_line]
     # a stroke may be the clear part of a line
     for piece in (piece for some in (strokes, lines)
-                  for piece in without_artefacts([one for one in some if np.hypot(*one.slope) < MAX_SLOPE], samples, rim.shape)):
+                  for piece in _without_artefacts([one for one in some if np.hypot(*one.slope) < MAX_SLOPE], samples, rim.shape)):
         row, column = piece.cells
         # beside a broad stroke the average is darker than asphalt
         inner = contrast[row, column] > HALF_MAXIMUM * piece.top * (1.0 + min(piece.fading, 0.0))
         mask[row[inner], column[inner]] = True
-    # holes that noise left in strokes
-    mask = ndimage.binary_closing(mask, np.ones((3, 3), bool), iterations=2)
-    dashes = _dashes(averages, rim, samples, bright, FAINT_DASH * threshold)
+    return mask
+
+
+def _dashes_of_rows(averages, rim, samples, threshold):
+    """Pieces that follow on each other as dashes do, and fainter ones where these rows lead."""
+    with np.errstate(invalid="ignore"):
+        dashes = _dashes(averages, rim, samples, averages.z > PIECE_BRIGHTNESS * threshold, FAINT_DASH * threshold)
     rows = []
     for row in rows_of_dashes([piece.shape for piece in dashes]):
         clear = sum(dashes[k].z >= threshold for k in row)
         if clear >= max(MIN_DASHES_IN_ROW, len(row) / 2) and np.hypot(*np.mean([dashes[k].slope for k in row], axis=0)) < MAX_SLOPE:
             rows.append([dashes[k] for k in row])
-    # fainter ones where these rows lead
-    if rows:
-        with np.errstate(invalid="ignore"):
-            worn = _dashes(averages, rim, samples, z > PIECE_BRIGHTNESS * WORN_DASH * threshold, WORN_DASH * threshold)
-        shapes = [piece.shape for piece in worn]
-        rows = [row + [worn[k] for k in dashes_beyond([piece.shape for piece in row], shapes)] for row in rows]
-    for piece in (piece for row in rows for piece in row):
-        mask[piece.cells] = True
-    return mask
+    if not rows:
+        return []
+    with np.errstate(invalid="ignore"):
+        worn = _dashes(averages, rim, samples, averages.z > PIECE_BRIGHTNESS * WORN_DASH * threshold, WORN_DASH * threshold)
+    shapes = [piece.shape for piece in worn]
+    return [piece for row in rows for piece in row + [worn[k] for k in dashes_beyond([piece.shape for piece in row], shapes)]]
 
 
 def _dashes(averages, rim, samples, bright, threshold):
@@ -285,21 +268,13 @@ def _dashes(averages, rim, samples, bright, threshold):
     tops = ndimage.maximum_filter(np.where(bright, contrast, 0.0), 2 * HALF_MAXIMUM_REACH + 1)
     with np.errstate(invalid="ignore"):
         cut = bright & (contrast > HALF_MAXIMUM * tops)
-    found = [piece for piece in bright_pieces(cut, averages, rim, threshold)
-             if piece.may_be_dash and np.hypot(*piece.slope) < DASH_SLOPE_FACTOR * MAX_SLOPE]
-    return without_artefacts(found, samples, rim.shape)
+    found = [piece for piece in _bright_pieces(cut, averages, rim, threshold)
+             if piece.shape.length >= DASH_LENGTH and piece.shape.width <= DASH_WIDTH and np.hypot(*piece.slope) < DASH_SLOPE_FACTOR * MAX_SLOPE]
+    return _without_artefacts(found, samples, rim.shape)
 
 
-def bright_pieces(mask: np.ndarray, averages: CellAverages, rim: np.ndarray, threshold: float) -> list[BrightPiece]:
-    """Connected pieces that reach the threshold away from the road's rim; the smallest are left out.
-
-    Parameters
-    ----------
-    mask : (rows, columns) bool, bright cells
-    averages : CellAverages of the window
-    rim : (rows, columns) metres from the rim of the road
-    threshold : spreads above asphalt that the brightest tenth of a piece reaches
-    """
+def _bright_pieces(mask: np.ndarray, averages: CellAverages, rim: np.ndarray, threshold: float) -> list[BrightPiece]:
+    """Connected pieces whose brightest tenth reaches the threshold, spreads above asphalt, away from the road's rim; the smallest are left out."""
     labels, count = ndimage.label(mask, np.ones((3, 3), bool))
     large = np.bincount(labels.ravel(), minlength=count + 1) * CELL_SIZE**2 >= DASH_AREA
     z, found = averages.z, []
@@ -334,17 +309,10 @@ def _beside(inside, box, contrast):
     return float(values.mean()) if len(values) else 0.0
 
 
-def without_artefacts(found: list[BrightPiece], samples: ViewSamples, shape: tuple[int, ...]) -> list[BrightPiece]:
+def _without_artefacts(found: list[BrightPiece], samples: ViewSamples, shape: tuple[int, ...]) -> list[BrightPiece]:
     """The pieces that no object covers, and that are brighter than their surroundings in all views together.
 
-    The contrast of each view is one observation, weighted by its points; the
-    mean must be 3 of its standard errors above zero.
-
-    Parameters
-    ----------
-    found : pieces of a window
-    samples : ViewSamples of the window
-    shape : (rows, columns) of the window
+    The contrast of each view is one observation, weighted by its points; the mean must be 3 of its standard errors above zero.
     """
     if not found:
         return found
@@ -438,7 +406,7 @@ def faint_lines(brightness: np.ndarray, scanned: np.ndarray, rim: np.ndarray, fo
     beside = np.fmax(beside, np.where(np.isfinite(beside), np.fmax(*(_mean_of_columns(sums, steps) for steps in beyond)), np.nan))
     above = stroke - beside
     with np.errstate(invalid="ignore"):
-        clear &= above > CLEAR_SIGMAS * local_scatter(above)
+        clear &= above > CLEAR_SIGMAS * _local_scatter(above)
     above = np.where(clear, above, 0.0).astype(np.float32)
     # the middle of the stroke
     ridge = clear & (rim > LEAST_RIM) & (above >= cv2.dilate(above, np.ones((1, 2 * STROKE_REACH + 1), np.uint8)))

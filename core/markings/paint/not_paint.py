@@ -47,9 +47,8 @@ def track_spacing(occupied: np.ndarray) -> np.ndarray:
 def morphology(mask: np.ndarray, seen: np.ndarray, settings: MarkingSettings) -> np.ndarray:
     """Close gaps along the road, then remove runs that are short both along and across it.
 
-    A stop line is short along the road and a lane line across it: a cell stays
-    where either run through it is long enough. The remains of a worn line between
-    two such runs stay, too. Where points lie far apart, cells between two bright ones that no point was near are no gap.
+    A stop line is short along the road and a lane line across it: a cell stays where either run through it is long enough. The remains of a worn
+    line between two such runs stay, too. Where points lie far apart, cells between two bright ones that no point was near are no gap.
 
     Parameters
     ----------
@@ -64,7 +63,7 @@ def morphology(mask: np.ndarray, seen: np.ndarray, settings: MarkingSettings) ->
     length = int(round(settings.shortest / CELL_SIZE))
     closed = fill_gaps(mask, int(round(settings.close / CELL_SIZE)), 0)
     along, across = (closed | _unseen_gaps(mask, seen, limit, axis) for axis, limit in enumerate((MAX_GAP_ON_TRACK, MAX_TRACK_GAP)))
-    long = mask & (long_runs(along, length, 0) | long_runs(across, length, 1))
+    long = mask & (_long_runs(along, length, 0) | _long_runs(across, length, 1))
     return mask & (long | _between(long, mask)) if long.any() else long
 
 
@@ -103,19 +102,8 @@ def _met_since(ends, breaks):
     return met.astype(bool)
 
 
-def long_runs(mask: np.ndarray, length: int, axis: int) -> np.ndarray:
-    """The cells that lie in runs of a minimum length along an axis.
-
-    Parameters
-    ----------
-    mask : (rows, columns) bool
-    length : cells
-    axis : 0 along the road, 1 across it
-
-    Returns
-    -------
-    (rows, columns) bool, a subset of `mask`
-    """
+def _long_runs(mask: np.ndarray, length: int, axis: int) -> np.ndarray:
+    """The cells of a mask that lie in runs of a minimum length, cells, along an axis: 0 along the road, 1 across it."""
     if length < 2:
         return mask.copy()
     size, behind = ((1, length), (0, length - 1)) if axis == 0 else ((length, 1), (length - 1, 0))

@@ -32,19 +32,13 @@ MIN_CHAIN_SHARE = 0.6   # of the profiles along a chain: must have the peak
 
 
 def points_on_peaks(road_points: RoadPoints, road: int, settings: PeakSettings, progress: Progress) -> Iterator[Columns]:
-    """Yield the records of one road's points that lie on painted lines, window by window.
-
-    Parameters
-    ----------
-    road_points : RoadPoints, corrected or not
-    road : its number
+    """Yield the records of one road's points that lie on painted lines, window by window; points corrected or not.
 
     Notes
     -----
-    Profile-based after Chen et al. (2009) as summarised in the driving-line thesis:
-    I(d) of each profile is smoothed by a running median of 5; peaks of a minimum prominence
-    and of the width of a line are linked along the road. The numbers, and the rule that
-    a chain needs a peak in three of five of its profiles, are our own: they leave a road without paint empty.
+    Profile-based after Chen et al. (2009) as summarised in the driving-line thesis: I(d) of each profile is smoothed by a running median of 5;
+    peaks of a minimum prominence and of the width of a line are linked along the road. The numbers, and the rule that a chain needs a peak in
+    three of five of its profiles, are our own: they leave a road without paint empty.
     """
     profile = int(round(settings.profile_length / COORDINATE_SCALE))
     count = max(1, int(round(PEAK_WINDOW / settings.profile_length)))
@@ -176,20 +170,13 @@ HISTOGRAM_RANGE = 6.0, 60.0     # spreads below and above the median of asphalt:
 
 
 def points_in_segments(road_points: RoadPoints, road: int, settings: SegmentSettings, progress: Progress) -> Iterator[Columns]:
-    """Yield the records of one road's points that are paint, segment row by segment row.
-
-    Parameters
-    ----------
-    road_points : RoadPoints, corrected or not
-    road : its number
+    """Yield the records of one road's points that are paint, segment row by segment row; points corrected or not.
 
     Notes
     -----
-    Point-based after Yu et al. (2015) without its learned part (small
-    markings), as summarised in the driving-line thesis: Otsu's threshold per segment
-    across the road, then a threshold after Otsu on the counts of neighbours. Our own
-    are the sizes, the rule that leaves a segment without paint empty, and the rule
-    that half of the neighbours usual inside of paint are enough, as its rim has no more.
+    Point-based after Yu et al. (2015) without its learned part (small markings), as summarised in the driving-line thesis: Otsu's threshold per
+    segment across the road, then a threshold after Otsu on the counts of neighbours. Our own are the sizes, the rule that leaves a segment without
+    paint empty, and the rule that half of the neighbours usual inside of paint are enough, as its rim has no more.
     """
     length = int(round(settings.length / COORDINATE_SCALE))
     start, end = road_points.store.span(road)

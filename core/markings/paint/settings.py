@@ -63,10 +63,9 @@ class MarkingSettings:
 
     "spreads" are those of asphalt below its median.
 
-    method : "multi-threshold" on the intensity image; "intensity-peaks" of profiles across
-        the road; "point-segments", thresholds on the points and their density
-    separation : spreads of asphalt between the mean of paint and the mean of
-        asphalt, below which a bin has no paint
+    method : "multi-threshold" on the intensity image; "intensity-peaks" of profiles across the road; "point-segments", thresholds on the points and
+        their density
+    separation : spreads of asphalt between the mean of paint and the mean of asphalt, below which a bin has no paint
     lowest, highest : limits of the threshold in spreads above the median of asphalt
     alone : spreads, the threshold where neither a bin nor its neighbours have two materials
     faint : spreads, the threshold on averages of noisy points, where the shape must be that of paint, too

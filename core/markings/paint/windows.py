@@ -239,7 +239,7 @@ class WindowExtractor:
     def _pixels(self, mask, grid):
         """Local x, y of the centres of the image's pixels that lie in painted cells of the window itself."""
         own = mask[WINDOW_HALO:WINDOW_HALO + THRESHOLD_WINDOW]
-        return painted_pixels(own, (grid.first + WINDOW_HALO, grid.low), self.image, self.frame.origin, self.frame.road(self.road))
+        return _painted_pixels(own, (grid.first + WINDOW_HALO, grid.low), self.image, self.frame.origin, self.frame.road(self.road))
 
     def _from_thresholds(self, window: int) -> Paint:
         """Paint by thresholds on the image."""
@@ -378,46 +378,24 @@ def marking_mask(path: str | PathLike, image: IntensityRaster, origin: np.ndarra
         yield burn
 
 
-def pixel_centres(image: IntensityRaster, x: np.ndarray, y: np.ndarray, origin: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The pixels that local places lie in.
-
-    Parameters
-    ----------
-    x, y : (N,) local coordinates, m
-    origin : map coordinates that local ones leave out, m
-
-    Returns
-    -------
-    x, y : (M,) local centres of the pixels, each once
-    first : (M,) index of a place in each pixel
-    """
+def _pixel_centres(image: IntensityRaster, x: np.ndarray, y: np.ndarray, origin: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Local x, y (M,) of the centres of the pixels that places lie in, each once, and the (M,) index of a place in each pixel."""
     column, row = (np.floor(c).astype(np.int64) for c in image.pixel_of(x, y, origin))
     _, first = np.unique(row * (image.width + 1) + column, return_index=True)
     left, size, _, top, _, _ = image.geotransform
     return (left - origin[0]) + (column[first] + 0.5) * size, (top - origin[1]) - (row[first] + 0.5) * size, first
 
 
-def painted_pixels(cells: np.ndarray, first: tuple[int, int], image: IntensityRaster, origin: np.ndarray,
-                   road: Road) -> tuple[np.ndarray, np.ndarray]:
-    """The image's pixels whose centres lie in painted cells of a road.
-
-    Parameters
-    ----------
-    cells : (A, B) bool in (s, d), 4 cm each
-    first : cell numbers of cells[0, 0]: it begins at first * 4 cm
-    origin : map coordinates that local ones leave out, m
-
-    Returns
-    -------
-    x, y : (M,) local centres of the pixels
-    """
+def _painted_pixels(cells: np.ndarray, first: tuple[int, int], image: IntensityRaster, origin: np.ndarray,
+                    road: Road) -> tuple[np.ndarray, np.ndarray]:
+    """Local x, y (M,) of the image's pixels whose centres lie in painted cells of a road, of which the first begins at `first` * 4 cm."""
     row, column = np.nonzero(cells)
     # four places a cell: pixels may be smaller than cells and rotated against them
     quarter = np.array([[-0.25, -0.25], [-0.25, 0.25], [0.25, -0.25], [0.25, 0.25]]) * CELL_SIZE
     s = ((first[0] + row + 0.5)[:, None] * CELL_SIZE + quarter[:, 0]).ravel()
     d = ((first[1] + column + 0.5)[:, None] * CELL_SIZE + quarter[:, 1]).ravel()
     x, y = road.to_map(s, d)
-    x, y, near = pixel_centres(image, x, y, origin)
+    x, y, near = _pixel_centres(image, x, y, origin)
     s, d = road.locate(x, y, s[near], np.inf)
     known = np.isfinite(s)
     x, y, s, d = x[known], y[known], s[known], d[known]
@@ -445,4 +423,4 @@ def burn_points(burn: Burn, points: RoadPoints, image: IntensityRaster, frame: R
                 continue
             cells, corner = painted_cells(found["s"] * COORDINATE_SCALE, found["d"] * COORDINATE_SCALE)
             top, bottom = max(first - corner[0], 0), max(last - corner[0], 0)
-            burn(*painted_pixels(cells[top:bottom], (corner[0] + top, corner[1]), image, frame.origin, frame.road(road)))
+            burn(*_painted_pixels(cells[top:bottom], (corner[0] + top, corner[1]), image, frame.origin, frame.road(road)))

@@ -9,17 +9,14 @@ import numpy as np
 from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
 from ...io.geotiff import IntensityImage
+from ...lazy import cv2
 from ..rough_place import RoughPlace
 from ..source_image import SourceImage
-from .alignment import align
-from .area import paint_about
-from .coarse import find_places
-from .corners import paint_corners
-from .evidence import corner_scores, nearby_rival, rival_elsewhere
-from .pairing import LEAST_PAIRS, pair_corners
-from .photo import read_photo
-from .placement import Placement
-from .proposal import Proposal, ProposalSettings
+from .coarse import find_places, paint_about
+from .patches import find_patches
+from .photo import Photo, SurveyedPaint, read_photo, reduced
+from .placement import Placement, highest_order, left_out_residuals, robust_placement
+from .proposal import Proposal, ProposalSettings, corner_scores, nearby_rival, rival_elsewhere
 
 _CORNERS = 400          # corners looked for
 _CANDIDATES = 4         # places of the search that are followed up
@@ -164,3 +161,162 @@ def _range(rough, bounds):
     where = f"within {rough.reach:.0f} m of where {rough.source} put it" if np.isfinite(rough.reach) else "everywhere"
     turns = "in all directions" if rough.turn_range >= np.pi else f"turned by up to {np.degrees(rough.turn_range):.0f}°"
     return f"{where}, {turns}, with pixels of {bounds.sizes[0]:.3f} to {bounds.sizes[1]:.3f} m"
+
+
+# Corners of paint in the intensity image: ends of dashes, corners of arrows, bars and stop lines.
+
+_SMOOTHING = 0.05    # m, standard deviation: the noise of single cells has corners too
+_WINDOW = 0.5        # m, over which the directions of edges are collected
+_APART = 1.0         # m between two corners
+_LEAST = 0.08        # of the strongest corner's measure
+_PAINT = 0.4         # contrast from which it is paint; spots of asphalt and its repairs have less
+_BORDER = 0.3        # m from where the intensity image ends
+
+
+def paint_corners(paint: np.ndarray, known: np.ndarray, cell: float, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Places where paint has edges in two directions, spread over the image.
+
+    Parameters
+    ----------
+    paint : (H, W) contrast, its corner at local 0, 0
+    known : (H, W) bool
+    cell : m
+    count : most corners
+
+    Returns
+    -------
+    x, y : (N,) m, local, the strongest first
+
+    References
+    ----------
+    .. [1] Shi and Tomasi (1994), Good features to track, CVPR: the smaller eigenvalue of the structure tensor.
+    """
+    if not known.any():
+        return np.empty(0), np.empty(0)
+    smooth = cv2.GaussianBlur(np.maximum(paint - _PAINT, 0.0), (0, 0), _SMOOTHING / cell)
+    border = 2 * round(_BORDER / cell) + 1
+    inside = cv2.erode(known.astype(np.uint8), np.ones((border, border), np.uint8), borderType=cv2.BORDER_CONSTANT, borderValue=0)
+    found = cv2.goodFeaturesToTrack(smooth, count, _LEAST, _APART / cell, mask=inside, blockSize=2 * round(_WINDOW / cell / 2) + 1)
+    if found is None:
+        return np.empty(0), np.empty(0)
+    column, row = found[:, 0].T.astype(float)
+    return (column + 0.5) * cell, -(row + 0.5) * cell
+
+
+# From a place that is right to about a metre to one that is right to a decimetre, over the whole photo.
+
+# Half the side of a patch, how far it is looked for, and the largest residual of one that is used (m each), with the cell. Large patches
+# hold several markings, so that one dash is not taken for the next; small ones follow the tilt of the camera and its lens.
+_ALIGNING_ROUNDS = ((10.0, 2.5, 0.6, 0.16), (5.0, 1.0, 0.25, 0.08), (3.0, 0.6, 0.15, 0.08))
+_LEAST_SCORE = 0.15    # of a patch: shadows and cars spoil many, and which are right shows in that they agree
+_MOST_SECOND_OF_PATCHES = 0.8     # share of the best correlation that another place may have
+
+
+def align(placement: Placement, paint: SurveyedPaint, photo: Photo, progress: Progress = Progress()) -> Placement | None:
+    """Follow the photo's distortion from patches of the intensity image that are found in it, in ever smaller ones.
+
+    Parameters
+    ----------
+    placement : Placement, right to some metres
+    paint : SurveyedPaint
+    photo : Photo
+    progress : Progress
+
+    Returns
+    -------
+    Placement of order 2, or 1 where few patches hold paint; None where they do not agree
+    """
+    for half, search, tolerance, cell in _ALIGNING_ROUNDS:
+        progress.check_cancelled()
+        factor = max(1, round(cell / paint.cell))
+        small = reduced(paint.contrast, factor)
+        now = paint.cell * factor
+        drawn = placement.sign * placement.drawn(photo.contrast, photo, now, small.shape, reduction=placement.reduction(photo, now))
+        height, width = (n * now for n in small.shape)
+        x, y = (axis.ravel() for axis in np.meshgrid(np.arange(half / 2, width, half), -np.arange(half / 2, height, half)))
+        found = find_patches(small, drawn, now, x, y, half, search)
+        found = found.where((found.score > _LEAST_SCORE) & (found.second < _MOST_SECOND_OF_PATCHES))
+        fitted = robust_placement(placement, found.x, found.y, np.column_stack([found.dx, found.dy]), tolerance, found.score, 2)
+        if fitted is None:
+            return None
+        placement = fitted[0]
+    return placement
+
+
+# Corners of paint paired: found in the photo by their surroundings, and judged by what the others say.
+
+LEAST_PAIRS = 6         # pairs that agree, below which a fit may be chance: twice what turn, scale and shift need
+_LEAST_SHARE = 0.4      # of the corners that look alike, which must agree on one placement
+_PATCH = 0.8            # m, half the side of the cut-out that is compared: a dash's end, an arrow's corner
+_ROUNDS = ((0.40, 1.5), (0.25, 1.0))  # m within which a corner is looked for, and how many tolerances a pair may be off
+_MOST_SECOND = 0.9      # share of the best correlation that another place in the window may have
+_LISTED_SCORE = 0.3     # correlation below which a corner is not worth showing
+_SIGMAS = 3.0           # robust standard deviations of the residuals from which a pair is false
+_FINEST = 0.03          # m: residuals below a cell of the image do not make a pair false
+_MEDIAN_LENGTH = 1.1774  # median length of errors of two coordinates, in their standard deviation (Rayleigh)
+
+WEAK, REPEATS, AWAY = "looks different", "repeats nearby", "does not fit the others"
+
+
+class Pairs(NamedTuple):
+    """N corners of paint and where the image has them.
+
+    Attributes
+    ----------
+    placement : Placement that those that agree were fitted to
+    order : of the polynomial that the residuals belong to
+    x, y : (N,) m, local
+    pixel, line : (N,)
+    score : (N,) correlation of the two cut-outs
+    residual : (N,) m, from where the pairs that agree place it, each without itself
+    why : (N,) texts, why a pair is false or doubtful; "" for a sound one
+    """
+
+    placement: Placement
+    order: int
+    x: np.ndarray
+    y: np.ndarray
+    pixel: np.ndarray
+    line: np.ndarray
+    score: np.ndarray
+    residual: np.ndarray
+    why: np.ndarray
+
+
+def pair_corners(placement: Placement, paint: SurveyedPaint, photo: Photo, x: np.ndarray, y: np.ndarray, settings: ProposalSettings) -> Pairs | None:
+    """Find corners of paint in a photo that lies on the map to some decimetres.
+
+    Parameters
+    ----------
+    placement : Placement of the photo
+    paint : SurveyedPaint
+    photo : Photo
+    x, y : (M,) m, corners of paint, local
+    settings : ProposalSettings
+
+    Returns
+    -------
+    Pairs; None where too few agree on one placement
+    """
+    for search, times in _ROUNDS:
+        drawn = placement.sign * placement.drawn(photo.contrast, photo, paint.cell, paint.contrast.shape,
+                                                 reduction=placement.reduction(photo, paint.cell))
+        found = find_patches(paint.contrast, drawn, paint.cell, x, y, _PATCH, search)
+        found = found.where(found.score > _LISTED_SCORE)
+        alike = (found.score >= settings.min_score) & (found.second <= _MOST_SECOND)
+        moved = np.column_stack([found.dx, found.dy])
+        fitted = robust_placement(placement, found.x[alike], found.y[alike], moved[alike], times * settings.tolerance, found.score[alike], 2)
+        if fitted is None or fitted[1].sum() < max(LEAST_PAIRS, _LEAST_SHARE * alike.sum()):
+            return None
+        pixel, line = placement.pixels(found.x + found.dx, found.y + found.dy)
+        placement = fitted[0]
+        used = np.zeros(len(found.x), dtype=bool)
+        used[np.flatnonzero(alike)[fitted[1]]] = True
+    order = highest_order(found.x[used], found.y[used], 2)
+    if order == 0:
+        return None
+    residual = left_out_residuals(found.x, found.y, pixel, line, used, order)
+    spread = float(np.median(residual[used])) / _MEDIAN_LENGTH
+    fits = residual <= min(settings.tolerance, max(_SIGMAS * spread, _FINEST))
+    why = np.select([found.score < settings.min_score, found.second > _MOST_SECOND, ~fits | ~used], [WEAK, REPEATS, AWAY], "")
+    return Pairs(placement, order, found.x, found.y, pixel, line, found.score, residual, why)

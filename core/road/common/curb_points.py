@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -39,20 +39,20 @@ class CurbPoints(LayerRows):
 
     GEOMETRY_TYPE, SCHEMA = "PointZ", CURB_POINTS
 
-    road: np.ndarray = column()
-    nearest_pass: np.ndarray = column(NEAREST_PASS.name)
-    side: np.ndarray = column()
-    status: np.ndarray = column()
-    part: np.ndarray = column(unknown="bottom")
-    kind: np.ndarray = column(unknown="main")
-    station: np.ndarray = column("station_m")
-    offset: np.ndarray = column("offset_m")
-    height: np.ndarray = column("height_m")
-    chain: np.ndarray = column()
-    along: np.ndarray = column("along_m")
-    residual: np.ndarray = column("residual_m")
-    sigma: np.ndarray = column(SIGMA.name)
-    support: np.ndarray = column()
+    road: np.ndarray = field(metadata=column())
+    nearest_pass: np.ndarray = field(metadata=column(NEAREST_PASS.name))
+    side: np.ndarray = field(metadata=column())
+    status: np.ndarray = field(metadata=column())
+    part: np.ndarray = field(metadata=column(unknown="bottom"))
+    kind: np.ndarray = field(metadata=column(unknown="main"))
+    station: np.ndarray = field(metadata=column("station_m"))
+    offset: np.ndarray = field(metadata=column("offset_m"))
+    height: np.ndarray = field(metadata=column("height_m"))
+    chain: np.ndarray = field(metadata=column())
+    along: np.ndarray = field(metadata=column("along_m"))
+    residual: np.ndarray = field(metadata=column("residual_m"))
+    sigma: np.ndarray = field(metadata=column(SIGMA.name))
+    support: np.ndarray = field(metadata=column())
     x: np.ndarray
     y: np.ndarray
     z: np.ndarray
@@ -104,9 +104,7 @@ def curb_points_at(frame: RoadFrame, road: int, places: Sequence[np.ndarray], ro
     CurbPoints; places, stations and offsets to 0.1 mm, as the layer holds them
     """
     count = len(places[0])
-    unknown = CurbPoints.filled(1)
-    given: dict[str, Any] = {name: [row.get(name, getattr(unknown, name)[0]) for row in rows] for name in {key for row in rows for key in row}}
-    given.update({**columns, "road": road})
+    given = {**(CurbPoints.gathered(rows) if len(rows) else {}), **columns, "road": road}
     given.update({name: np.round(np.asarray(given[name], float), COORDINATE_DECIMALS) for name in ("station", "offset")})
     given["nearest_pass"] = frame.nearest_pass(road, given["station"], given["offset"]) if count else -1
     given.update(zip("xyz", as_written(frame, *places)))

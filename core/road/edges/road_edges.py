@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -88,20 +88,20 @@ class RoadEdges(LayerRows):
     GEOMETRY_TYPE, SCHEMA = "LineStringZ", ROAD_EDGES
 
     edge: np.ndarray
-    nearest_pass: np.ndarray = column(NEAREST_PASS.name)
-    side: np.ndarray = column()
-    status: np.ndarray = column(unknown="measured")
-    part: np.ndarray = column(unknown="bottom")
-    kind: np.ndarray = column(unknown="main")
-    what: np.ndarray = column("edge", unknown="curb")
-    chain: np.ndarray = column()
-    station: np.ndarray = column("station_m")
-    end: np.ndarray = column("end_m")
-    height: np.ndarray = column("height_m")
-    length: np.ndarray = column("length_m")
-    rmse: np.ndarray = column("rmse_m")
-    agree: np.ndarray = column("agree_cm")
-    sigma: np.ndarray = column(SIGMA.name)
+    nearest_pass: np.ndarray = field(metadata=column(NEAREST_PASS.name))
+    side: np.ndarray = field(metadata=column())
+    status: np.ndarray = field(metadata=column(unknown="measured"))
+    part: np.ndarray = field(metadata=column(unknown="bottom"))
+    kind: np.ndarray = field(metadata=column(unknown="main"))
+    what: np.ndarray = field(metadata=column("edge", unknown="curb"))
+    chain: np.ndarray = field(metadata=column())
+    station: np.ndarray = field(metadata=column("station_m"))
+    end: np.ndarray = field(metadata=column("end_m"))
+    height: np.ndarray = field(metadata=column("height_m"))
+    length: np.ndarray = field(metadata=column("length_m"))
+    rmse: np.ndarray = field(metadata=column("rmse_m"))
+    agree: np.ndarray = field(metadata=column("agree_cm"))
+    sigma: np.ndarray = field(metadata=column(SIGMA.name))
     course: FrameLines
     crs: str = ""
 
@@ -126,7 +126,8 @@ class RoadEdges(LayerRows):
             return self
         more = joined_pieces(pieces, frame, self.crs)
         more = replace(more, chain=more.chain + max(self.chain.max(initial=-1), -1) + 1)
-        return replace(RoadEdges(*map(_joined, self.columns(), more.columns()), crs=self.crs), edge=np.arange(len(self) + len(more)))
+        whole = replace(self, **{name: _joined(getattr(self, name), getattr(more, name)) for name in self.names()})
+        return replace(whole, edge=np.arange(len(whole)))
 
     def on_map(self, frame: RoadFrame) -> np.ndarray:
         """(E,) shapely lines with Z in map coordinates, as the layer holds them."""
@@ -137,7 +138,7 @@ class RoadEdges(LayerRows):
 
     def derived(self, frame: RoadFrame) -> dict[str, np.ndarray]:
         """The road, which the course knows."""
-        return {"road": self.road}
+        return {"road": np.where(self.road < 0, None, self.road)}  # type: ignore[call-overload]
 
     @staticmethod
     def from_features(features: Features, frame: RoadFrame) -> RoadEdges:

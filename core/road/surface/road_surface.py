@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -35,12 +35,12 @@ class SurfaceOutlines(LayerRows):
 
     GEOMETRY_TYPE, SCHEMA = "PolygonZ", ROAD_SURFACE
 
-    road: np.ndarray = column()
-    status: np.ndarray = column()
-    station: np.ndarray = column("station_m")
-    end: np.ndarray = column("end_m")
-    area: np.ndarray = column("area_m2")
-    points: np.ndarray = column()
+    road: np.ndarray = field(metadata=column())
+    status: np.ndarray = field(metadata=column())
+    station: np.ndarray = field(metadata=column("station_m"))
+    end: np.ndarray = field(metadata=column("end_m"))
+    area: np.ndarray = field(metadata=column("area_m2"))
+    points: np.ndarray = field(metadata=column())
     outline: np.ndarray
     crs: str = ""
     thin: str = ""
@@ -48,8 +48,9 @@ class SurfaceOutlines(LayerRows):
     @staticmethod
     def of_rows(rows: Sequence[Sequence[Any]], crs: str = "", thin: str = "") -> SurfaceOutlines:
         """Stretches from their values in the order of the attributes."""
-        columns = zip(*rows) if rows else [()] * len(SurfaceOutlines.names())
-        return SurfaceOutlines(*map(SurfaceOutlines.array_of, SurfaceOutlines.names(), columns), crs=crs, thin=thin)
+        names = SurfaceOutlines.names()
+        columns: dict[str, Any] = dict(zip(names, map(SurfaceOutlines.array_of, names, zip(*rows) if rows else [()] * len(names))))
+        return SurfaceOutlines(**columns, crs=crs, thin=thin)
 
     def on_map(self, frame: RoadFrame) -> np.ndarray:
         """(S,) shapely polygons with Z in map coordinates."""

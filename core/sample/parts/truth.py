@@ -59,23 +59,23 @@ class TruePlaces(NamedTuple):
         markings, surface, lanes = (Features("PolygonZ", schema, crs=crs) for schema in (TRUE_MARKINGS, TRUE_SURFACE, TRUE_LANES))
         for places, fields in self.boundaries:
             line = LineString(places)
-            boundaries.add(line, road=1, length_m=float(line.length), **fields)
+            boundaries.add(line, road=1, length_m=line.length, **fields)
         for places, fields in self.markings:
             markings.add(Polygon(places), road=1, **fields)
         for places, bend, fields in self.driving_lines:
             line = LineString(places[::fields["direction"]])
-            driving_lines.add(line, radius_m=1.0 / bend if bend > STRAIGHT else None, length_m=float(line.length), **fields)
+            driving_lines.add(line, radius_m=1.0 / bend if bend > STRAIGHT else None, length_m=line.length, **fields)
         for ring, holes in self.surface:
             polygon = Polygon(ring, holes)
-            surface.add(polygon, road=1, area_m2=float(polygon.area))
+            surface.add(polygon, road=1, area_m2=polygon.area)
         for left, right, fields in self.lanes:
             around = [left, right[::-1]] if fields["direction"] > 0 else [right[::-1], left]
-            lanes.add(Polygon(np.concatenate(around)), type="driving", width_m=float(np.median(np.hypot(*(left - right)[:, :2].T))),
-                      length_m=float(LineString((left + right) / 2).length), **fields)
+            lanes.add(Polygon(np.concatenate(around)), type="driving", width_m=np.median(np.hypot(*(left - right)[:, :2].T)),
+                      length_m=LineString((left + right) / 2).length, **fields)
         roadside = Features("LineStringZ", TRUE_ROADSIDE, crs=crs)
         for places, fields in self.roadside:
             line = LineString(places)
-            roadside.add(line, road=1, length_m=float(line.length), **fields)
+            roadside.add(line, road=1, length_m=line.length, **fields)
         return Truth(boundaries, markings, driving_lines, surface, lanes, roadside)
 
 

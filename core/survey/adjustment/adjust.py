@@ -11,7 +11,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
@@ -20,8 +20,10 @@ from scipy.sparse.linalg import spsolve
 
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
-from ..frame.passes import LEVEL_SEPARATION
+from ..frame.passes import LEVEL_SEPARATION, Pass
+from ..frame.road_frame import RoadFrame
 from ..frame.row_table import SigmaAlong
+from ..store.columns import Columns
 from ..store.records import COORDINATE_SCALE, to_units
 from ..store.section_store import SectionStore
 from .register import (
@@ -36,11 +38,6 @@ from .register import (
     pass_offsets,
     sigma_of_passes,
 )
-
-if TYPE_CHECKING:
-    from ..frame.passes import Pass
-    from ..frame.road_frame import RoadFrame
-    from ..store.columns import Columns
 
 MOVED_COLUMNS = "x", "y", "z", "s", "d"
 AGREEMENT_PLAN, AGREEMENT_HEIGHT = 0.020, 0.007    # m: a road stays as measured if nine tenths of its offsets are less
@@ -60,7 +57,6 @@ def adjust_passes(survey: Any, progress: Progress = Progress(), folder: Path | N
     Parameters
     ----------
     survey : Survey with times; its store and frame are replaced where passes are moved
-    progress : Progress
     folder : of the moved points that are not kept in memory; None for a temporary file
     """
     roads = [road for road in survey.store.roads() if len(survey.frame.passes_of(road)) > 1]
@@ -209,7 +205,6 @@ def replace_points(survey: Any, moved: Callable[[Columns], Columns], progress: P
     ----------
     survey : Survey
     moved : gives the Columns of a section with other coordinates
-    progress : Progress
     folder : of the moved points that are not kept in memory; None for a temporary file
     """
     before = survey.store
@@ -244,7 +239,6 @@ def continued_corrections(frame: RoadFrame, moves: PassCorrections, compared: li
 
     Parameters
     ----------
-    frame : RoadFrame
     moves : PassCorrections of the passes that were compared
     compared : PassOffsets of all roads; passes that were found to lie as the others do are not moved
     """
@@ -323,7 +317,7 @@ def remaining_places(offsets: list[PassOffsets], corrections: dict[int, tuple[np
             rest = np.hypot(rest, np.maximum(left, _evened_out(pair.stations, applied)))
         for station, metres in (*zip(pair.stations[rest > MAX_REMAINING], rest[rest > MAX_REMAINING]), *((station, np.inf) for station in pair.far)):
             places[float(station)] = max(places.get(float(station), 0.0), float(metres))
-    return stretches_of(places)
+    return _stretches_of(places)
 
 
 def places_of_one_drive(passes: list[Pass], offsets: list[PassOffsets], corrections: PassCorrections) -> list[tuple[float, float, float]]:
@@ -351,7 +345,7 @@ def places_of_one_drive(passes: list[Pass], offsets: list[PassOffsets], correcti
         moved = np.hypot(*corrections.metres(p.number, stations)[:2])
         for station, metres in zip(*(values[(away > POOLING_SIGMA) & (moved > MAX_REMAINING)].tolist() for values in (stations, moved))):
             places[station] = max(places.get(station, 0.0), metres)
-    return stretches_of(places)
+    return _stretches_of(places)
 
 
 def _evened_out(stations, applied):
@@ -363,7 +357,7 @@ def _evened_out(stations, applied):
     return found
 
 
-def stretches_of(places: dict[float, float]) -> list[tuple[float, float, float]]:
+def _stretches_of(places: dict[float, float]) -> list[tuple[float, float, float]]:
     """[(start, end, largest metres)] of {middle of a window: metres}, windows that touch in one; infinite ones apart from the others."""
     found: list[tuple[float, float, float]] = []
     for station, metres in sorted(places.items()):
@@ -399,11 +393,11 @@ def said_of_one_drive(road: int, places: list[tuple[float, float, float]]) -> st
     """The warning about places where one drive alone was moved; "" where there is none."""
     if not places:
         return ""
-    return (f"Road {road}: one drive alone shows what lies at {named_places(places, 'by up to {:.1f} cm')}. It was moved there as where it last "
+    return (f"Road {road}: one drive alone shows what lies at {_named_places(places, 'by up to {:.1f} cm')}. It was moved there as where it last "
             "lay beside the others, and nothing shows how well that fits: measure a control point there if these centimetres matter.")
 
 
-def named_places(places: list[tuple[float, float, float]], size: str) -> str:
+def _named_places(places: list[tuple[float, float, float]], size: str) -> str:
     """Places by station with what is said of their metres in cm, those beyond MOST_NAMED as a number."""
     return ", ".join(f"{start:.0f} to {end:.0f} m ({size.format(100 * metres)})" for start, end, metres in places[:MOST_NAMED]) + _further(places)
 
@@ -458,7 +452,7 @@ def compare_carriageways(survey: Any, progress: Progress = Progress()) -> None:
     for pair in roads_beside(survey.frame):
         up = ordered_map(partial(_height_apart, survey, pair), range(len(pair.stations)))
         found = pair._replace(up=np.array(list(up)))
-        said, warns = said_of_carriageways(found)
+        said, warns = _said_of_carriageways(found)
         (progress.warn if warns else progress.info)(said)
 
 
@@ -538,7 +532,7 @@ def _flat_cells(along, across, z):
     return numbers[flat], (np.add.reduceat(z, first) / np.diff(np.append(first, len(z))))[flat]
 
 
-def said_of_carriageways(pair: Beside) -> tuple[str, bool]:
+def _said_of_carriageways(pair: Beside) -> tuple[str, bool]:
     """What is said of two roads beside each other, and whether it is a warning."""
     known = np.isfinite(pair.up)
     far = known & (np.abs(pair.up) > MAX_HEIGHT_APART)
@@ -546,7 +540,7 @@ def said_of_carriageways(pair: Beside) -> tuple[str, bool]:
              f"{pair.stations.max() + CORRECTION_STEP / 2:.0f} m, and no drive measured both")
     if far.any():
         return (f"{where}. Their drives differ in height at "
-                f"{named_places(stretches_of(dict(zip(pair.stations[far].tolist(), np.abs(pair.up[far]).tolist()))), 'by up to {:.1f} cm')}. "
+                f"{_named_places(_stretches_of(dict(zip(pair.stations[far].tolist(), np.abs(pair.up[far]).tolist()))), 'by up to {:.1f} cm')}. "
                 "They stay as they were measured, and nothing that both see shows how far they lie apart across: adjust the trajectories of the "
                 "drives to each other, or measure control points on both, if these centimetres matter.", True)
     if not known.any():

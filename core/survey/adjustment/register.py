@@ -16,19 +16,17 @@ import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft
 from scipy.ndimage import gaussian_filter1d, maximum_filter1d, median_filter, minimum_filter1d
 
-from ...common.features import PASS_SIGMA
+from ...common.features import PASS_SIGMA, Features
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ...curves.robust import MAD_TO_SIGMA
 from ...lazy import cv2
 from ..frame.row_table import SigmaAlong
+from ..store.columns import Columns
 from ..store.records import COORDINATE_SCALE, to_units
 
 if TYPE_CHECKING:
     import laspy
-
-    from ...common.features import Features
-    from ..store.columns import Columns
 
 
 # Corrections of passes that were adjusted to each other; stored with the points, so that measured coordinates can be restored.
@@ -246,7 +244,6 @@ def pass_offsets(survey: Any, road: int, progress: Progress = Progress()) -> lis
     ----------
     survey : Survey with times
     road : number
-    progress : Progress
 
     Returns
     -------

@@ -75,7 +75,7 @@ def lay_scanners(survey: Any, progress: Progress = Progress(), folder: Path | No
     """
     if len(survey.scanners) < 2 or _agree_at_a_look(survey):
         return 0.0
-    offsets = scanner_offsets(survey, SCANNER_WINDOWS)
+    offsets = _scanner_offsets(survey, SCANNER_WINDOWS)
     if not any(map(_apart, offsets)):
         return 0.0
     moves = _shares(offsets)
@@ -171,11 +171,9 @@ def _moved(frame, moves, records):
     return records.with_columns(**moved)
 
 
-def scanner_offsets(survey: Any, windows: int = SCANNER_WINDOWS) -> list[ScannerOffsets]:
+def _scanner_offsets(survey: Any, windows: int = SCANNER_WINDOWS) -> list[ScannerOffsets]:
     """How far the scanners of a survey lie beside the first one.
 
-    Parameters
-    ----------
     survey : Survey with times
     windows : how many windows of road are looked at
     """

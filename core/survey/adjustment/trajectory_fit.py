@@ -76,7 +76,7 @@ def _carried(sample, trajectory, mountings, progress):
 
 def _near(mountings):
     """Those of the mountings that lie within reach of the trajectory."""
-    return [one for one in mountings if np.hypot(*usual_lever([one])[:2]) < CORRIDOR]
+    return [one for one in mountings if np.hypot(*_usual_lever([one])[:2]) < CORRIDOR]
 
 
 def _met(mountings):
@@ -90,7 +90,7 @@ def _other_heights(sample, trajectory, mountings, progress):
         for stretch, said in ((FOOT, "in feet where x and y are in metres"), (1.0 / FOOT, "in metres where x and y are in feet")):
             other = scanner_mountings(sample, trajectory, stretch)
             if len(other) >= len(mountings) and len(_met(other)) == len(other):
-                up, height = float(usual_lever(other)[0][2]), float(np.median(trajectory.z))
+                up, height = float(_usual_lever(other)[2]), float(np.median(trajectory.z))
                 # from a trajectory that is stretched alike the scanners lie where they ride on the vehicle
                 alone = abs(up) > max(VEHICLE_HEIGHT, abs(up - (1.0 - stretch) * height))
                 of = "the cloud alone" if alone else "cloud and trajectory"
@@ -143,7 +143,7 @@ def _on_way(trajectory: Trajectory, mountings: Sequence[Mounting], progress: Pro
 def _windows(mountings):
     """(W,) s of the windows of all scanners, in order, and (W, 3) m from the trajectory to the middle of the scanners then."""
     time = np.concatenate([one.time for one in mountings])
-    lever = np.concatenate([one.lever - np.median(one.lever, axis=0) for one in mountings]) + usual_lever(mountings)
+    lever = np.concatenate([one.lever - np.median(one.lever, axis=0) for one in mountings]) + _usual_lever(mountings)
     order = np.argsort(time, kind="stable")
     return time[order], lever[order]
 
@@ -163,7 +163,7 @@ def _moved_aside(trajectory, mountings, at, beside):
     neither fits, as with several drives of which one is wrong, the trajectory is moved to the left evenly between the places.
     """
     time, lever = _windows(mountings)
-    yaw = vehicle_angles(trajectory)[2]
+    yaw = _vehicle_angles(trajectory)[2]
     here = np.interp(time, trajectory.time, yaw)
     cos, sin, one, none = np.cos(here), np.sin(here), np.ones(len(here)), np.zeros(len(here))
     measured = np.r_[lever[:, 0], lever[:, 1]]
@@ -295,16 +295,13 @@ def _in_vehicle_frame(sample, trajectory, stretch):
     time, place = sample.time[rows], sample.place[rows]
     away = place - np.stack([np.interp(time, trajectory.time, getattr(trajectory, name)) for name in "xyz"], axis=1)
     away[:, 2] *= stretch
-    axes = vehicle_axes(*(np.interp(time, trajectory.time, angle) for angle in vehicle_angles(trajectory, stretch)))
+    axes = vehicle_axes(*(np.interp(time, trajectory.time, angle) for angle in _vehicle_angles(trajectory, stretch)))
     return time, np.stack([(axis * away).sum(axis=1) for axis in axes], axis=1), sample.scanner[rows]
 
 
-def vehicle_angles(trajectory: Trajectory, stretch: float = 1.0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _vehicle_angles(trajectory: Trajectory, stretch: float = 1.0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """(N,) roll, pitch and yaw (counter-clockwise from east) in radians; from the way driven where the trajectory has none.
 
-    Parameters
-    ----------
-    trajectory : Trajectory
     stretch : by which heights are multiplied before
     """
     attitude = trajectory.attitude()
@@ -396,15 +393,15 @@ def _resected_places(a, b, since, window, middles, rate):
     return u, v, good, float(np.median(misfit[good])) if good.any() else np.inf
 
 
-def usual_lever(mountings: Sequence[Mounting]) -> np.ndarray:
+def _usual_lever(mountings: Sequence[Mounting]) -> np.ndarray:
     """(3,) m ahead, left and up of the middle of the scanners from the trajectory."""
     return np.mean([np.median(one.lever, axis=0) for one in mountings], axis=0)
 
 
 # The numbers by which a survey is told to fit itself, each with where it comes from.
 #
-# source : a standard or the law derived : follows from another number or from how the thing is built weight : our own estimate, rounded; beside it
-# what it stands for cost : decides how long the work takes, not what it says
+# source: a standard or the law; derived: follows from another number or from how the thing is built; weight: our own estimate, rounded, with what
+# it stands for beside it; cost: decides how long the work takes, not what it says
 
 # Vehicles
 HALF_VEHICLE = 1.275     # source: m; no vehicle on the road is wider than 2.55 m (Directive 96/53/EC), so no scanner rides farther beside its middle

@@ -77,17 +77,14 @@ class Adjusted:
     mounting_sigma: np.ndarray
 
 
-def adjust_poses(poses: Poses, guess: Poses, crossfall: np.ndarray, returns: Returns, noise: np.ndarray, progress: Progress = Progress()) -> Adjusted:
+def _adjust_poses(poses: Poses, guess: Poses, crossfall: np.ndarray, returns: Returns, noise: np.ndarray,
+                  progress: Progress = Progress()) -> Adjusted:
     """Adjust poses and mountings to the returns by Gauss-Newton steps with robust weights.
 
-    Parameters
-    ----------
     poses : Poses near the truth: within a metre, mirror phases within half a radian
     guess : Poses with the mounting that the unknown one scatters about
     crossfall : (K,) radians of the road under the vehicle at every interval, positive where it rises to the left
-    returns : Returns
     noise : (K, S) m, how far returns of each interval and scanner may lie off their rays to begin with
-    progress : Progress
     """
     for number in range(ADJUSTMENT_ROUNDS):
         equations, misfit, by_rounding, count = _equations(poses, guess, crossfall, returns, noise, progress)
@@ -214,8 +211,6 @@ def grown_poses(poses: Poses, known: np.ndarray, returns: Returns, progress: Pro
     ----------
     poses : Poses to start from
     known : (K, S) bool, intervals of each scanner where they are near the truth
-    returns : Returns
-    progress : Progress
 
     Returns
     -------
@@ -229,19 +224,19 @@ def grown_poses(poses: Poses, known: np.ndarray, returns: Returns, progress: Pro
     some = returns[np.arange(0, len(returns.interval), GROWTH_STRIDE)]
     for number in range(MAX_GROWTHS):
         part = progress.part(number / (MAX_GROWTHS + 2), (number + 1) / (MAX_GROWTHS + 2))
-        found = adjust_poses(poses, guess, crossfall, some[known[some.interval, some.scanner]], noise, part)
+        found = _adjust_poses(poses, guess, crossfall, some[known[some.interval, some.scanner]], noise, part)
         limit = max(MAX_RAY_MISFIT, MAX_TIMES_USUAL * found.usual)
         with np.errstate(invalid="ignore"):
             good = known & (found.misfit <= limit)
         fresh = _reached(found.poses, good) & held & ~good & (tries < MAX_TRIES)
-        poses = carried_on(found.poses, good)
-        crossfall = crossfall_of(poses, some[good[some.interval, some.scanner]])
+        poses = _carried_on(found.poses, good)
+        crossfall = _crossfall_of(poses, some[good[some.interval, some.scanner]])
         noise = np.where(good, found.noise, FIRST_NOISE)
         if not fresh.any():
             break
         tries += fresh
         known = good | fresh
-    return adjust_poses(poses, guess, crossfall, returns[good[returns.interval, returns.scanner]], noise,
+    return _adjust_poses(poses, guess, crossfall, returns[good[returns.interval, returns.scanner]], noise,
                         progress.part(MAX_GROWTHS / (MAX_GROWTHS + 2), 1.0))
 
 
@@ -257,12 +252,9 @@ def _reached(poses, good):
     return reached
 
 
-def carried_on(poses: Poses, good: np.ndarray) -> Poses:
+def _carried_on(poses: Poses, good: np.ndarray) -> Poses:
     """The poses with values where no interval is good replaced by smooth continuation.
 
-    Parameters
-    ----------
-    poses : Poses
     good : (K, S) bool of intervals
     """
     control = poses.control.copy()
@@ -310,7 +302,6 @@ def misfits(poses: Poses, interval: np.ndarray, share: np.ndarray, time: np.ndar
 
     Parameters
     ----------
-    poses : Poses
     interval, share : (N,) place in the splines
     time : (N,) s
     place : (N, 3) m
@@ -478,17 +469,10 @@ MIN_RETURNS, MIN_SPREAD = 50, 0.3   # and m across (standard deviation), or noth
 MAX_CROSSFALL = 0.1      # roads are no steeper across
 
 
-def crossfall_of(poses: Poses, returns: Returns) -> np.ndarray:
+def _crossfall_of(poses: Poses, returns: Returns) -> np.ndarray:
     """Crossfall under the vehicle.
 
-    Parameters
-    ----------
-    poses : Poses
-    returns : Returns
-
-    Returns
-    -------
-    (K,) radians at the start of every interval, positive where the road rises to the left; 0 where it is not seen
+    Returns: (K,) radians at the start of every interval, positive where the road rises to the left; 0 where it is not seen
     """
     found = np.zeros(len(poses.control))
     for drive in poses.drives:

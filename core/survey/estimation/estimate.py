@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.ndimage import median_filter
@@ -32,10 +31,7 @@ from .samples import (
     ridge_of,
     rounding_of,
 )
-from .turning_head import HEAD_HEIGHT, HEAD_HEIGHT_SIGMA, head_heights, turning_heads
-
-if TYPE_CHECKING:
-    from .turning_head import HeadTrack
+from .turning_head import HEAD_HEIGHT, HEAD_HEIGHT_SIGMA, HeadTrack, head_heights, turning_heads
 
 ROW_SPACING = 0.02         # s between the positions written: a third of a metre on a motorway
 MAX_SIGMA = 0.15           # m: a position that is known less well is not written; errors of twice that happen
@@ -96,7 +92,6 @@ def estimate_trajectory(paths: Sequence[str | Path], crs: str = "", scanner_fiel
     paths : LAS, LAZ or COPC files in any order
     crs : WKT for clouds that carry none
     scanner_field : "automatic", "scanner_channel" or "point_source_id"
-    progress : Progress
 
     Returns
     -------
@@ -128,15 +123,15 @@ def _estimated(files, scanner_field, wkt, progress):
     for number, drive in enumerate(samples.drives):
         tracks.append(first_track(samples.time[drive], samples.place[drive]))
         progress.report(READ + (TRACKED - READ) * (number + 1) / len(samples.drives))
-    refuse_clocks_that_overlap(samples, tracks)
-    refuse_airborne(tracks)
+    _refuse_clocks_that_overlap(samples, tracks)
+    _refuse_airborne(tracks)
     heads = turning_heads(samples, tracks)
     if heads is not None:
-        refuse_terrestrial(tracks, [head.place for head in heads])
+        _refuse_terrestrial(tracks, [head.place for head in heads])
         refuse_handheld(tracks, [], heads)
         return _of_heads(samples, tracks, heads, wkt)
     scanners = spinning_scanners(samples, tracks)
-    refuse_terrestrial(tracks, [fixes.place for one in scanners for fixes in one.fixes])
+    _refuse_terrestrial(tracks, [fixes.place for one in scanners for fixes in one.fixes])
     return _of_mirrors(samples, tracks, scanners, wkt, progress.part(TRACKED, 1.0))
 
 
@@ -158,7 +153,7 @@ def _of_mirrors(samples, tracks, scanners, wkt, progress):
         return _of_rays(samples, tracks, scanners, found, wkt)
     refuse_handheld(tracks, [])
     if found is None or not _could_be_driven(found):
-        refuse_without_road(tracks)
+        _refuse_without_road(tracks)
         return _by_density(samples, tracks, wkt)
     # tilted heads of many beams turn, too, and the mean of their beams is nearly the ray of a mirror
     result = _of_rays(samples, tracks, scanners, found, wkt)
@@ -171,7 +166,7 @@ def _of_mirrors(samples, tracks, scanners, wkt, progress):
 def _could_be_driven(found):
     """Whether a vehicle can have moved as the poses say."""
     tracks = [found.poses.control[drive.first:drive.first + drive.count, :2] for drive in found.poses.drives]
-    return usual_acceleration(tracks, KNOT_SPACING) <= MAX_ACCELERATION
+    return _usual_acceleration(tracks, KNOT_SPACING) <= MAX_ACCELERATION
 
 
 def _all_take_part(samples, scanners):
@@ -192,7 +187,6 @@ def separated(samples: Samples, tracks: list[FirstTrack], progress: Progress = P
     ----------
     samples : Samples, whose own numbers of scanners do not count
     tracks : FirstTrack of each drive
-    progress : Progress
 
     Returns
     -------
@@ -227,7 +221,6 @@ def splitter_of(samples: Samples, progress: Progress = Progress()) -> ScannerSpl
     Parameters
     ----------
     samples : Samples of one scanner, as it seems
-    progress : Progress
     """
     if not samples.drives:
         return None
@@ -348,13 +341,10 @@ STEADY_PLACES = 7        # of some tenths of a second together: fewer than half 
 MIN_STANDING_TIME = 2.0  # s of measuring before standing still means anything
 
 
-def refuse_airborne(tracks: list[FirstTrack]) -> None:
+def _refuse_airborne(tracks: list[FirstTrack]) -> None:
     """Refuse a cloud whose points are spread so wide at any time that they were measured from high above.
 
-    Raises
-    ------
-    RoadExtractionError
-        If it is one.
+    Raises RoadExtractionError if it is one.
     """
     reach = float(np.nanmedian(np.concatenate([track.reach for track in tracks])))
     if reach > FARTHEST_MEDIAN:
@@ -364,13 +354,10 @@ def refuse_airborne(tracks: list[FirstTrack]) -> None:
             "the road alone.")
 
 
-def refuse_clocks_that_overlap(samples: Samples, tracks: list[FirstTrack]) -> None:
+def _refuse_clocks_that_overlap(samples: Samples, tracks: list[FirstTrack]) -> None:
     """Refuse points that were measured in two places at the same times: drives whose clocks overlap.
 
-    Raises
-    ------
-    RoadExtractionError
-        If most moments of the survey show two such places.
+    Raises RoadExtractionError if most moments of the survey show two such places.
     """
     apart = np.concatenate([_places_apart(samples.time[drive], samples.place[drive, :2], track) for drive, track in zip(samples.drives, tracks)])
     if len(apart) and np.mean(np.isfinite(apart)) > 0.5:
@@ -402,27 +389,22 @@ def _places_apart(time, flat, track):
     return np.where(two, between, np.nan)[held >= MIN_WINDOW_SAMPLES]
 
 
-def usual_acceleration(tracks: list[np.ndarray], spacing: float) -> float:
+def _usual_acceleration(tracks: list[np.ndarray], spacing: float) -> float:
     """m/s^2 that nine tenths of the tracks keep below.
 
-    Parameters
-    ----------
     tracks : (N, 2 or more) m each, at times `spacing` (s) apart
     """
     bends = np.concatenate([np.hypot(*np.diff(track[:, :2], 2, axis=0).T) for track in tracks])
     return float(np.quantile(bends, DRIVABLE_SHARE)) / spacing**2 if len(bends) else 0.0
 
 
-def refuse_without_road(tracks: list[FirstTrack]) -> None:
+def _refuse_without_road(tracks: list[FirstTrack]) -> None:
     """Refuse to follow the density of points among which the road under the vehicle is not.
 
-    Raises
-    ------
-    RoadExtractionError
-        If most points lie far from where they are densest, or that place moves as no vehicle does.
+    Raises RoadExtractionError if most points lie far from where they are densest, or that place moves as no vehicle does.
     """
     reach = float(np.nanmedian(np.concatenate([track.reach for track in tracks])))
-    sharp = usual_acceleration([track.foot for track in tracks], WINDOW)
+    sharp = _usual_acceleration([track.foot for track in tracks], WINDOW)
     if reach > MAX_ROAD_REACH or sharp > MAX_ACCELERATION:
         raise RoadExtractionError(
             "No mirror is seen to turn in the points' times, and their density does not show the way either: half of the points lie more than "
@@ -431,18 +413,13 @@ def refuse_without_road(tracks: list[FirstTrack]) -> None:
             "writes it, or a trajectory.")
 
 
-def refuse_terrestrial(tracks: list[FirstTrack], places: list[np.ndarray]) -> None:
+def _refuse_terrestrial(tracks: list[FirstTrack], places: list[np.ndarray]) -> None:
     """Refuse a cloud that was measured from one place.
 
-    Parameters
-    ----------
     tracks : FirstTrack of each drive
     places : (N, 2 or more) m, where scanners were seen, in order of time, some of them wrong; none where that is not known
 
-    Raises
-    ------
-    RoadExtractionError
-        If it is one.
+    Raises RoadExtractionError if it is one.
     """
     if places := [place[:, :2] for place in places if len(place)]:
         # a vehicle may stand most of the time, but where it drives, it is seen several times

@@ -39,7 +39,6 @@ def steps_of(place: np.ndarray, track: FirstTrack, time: np.ndarray) -> tuple[np
     Parameters
     ----------
     place : (N, 3) m, in order of time
-    track : FirstTrack
     time : (N,) s
 
     Returns
@@ -124,7 +123,7 @@ class ScannerSplitter:
         """(N,) uint8 number of the scanner on whose ray a point lies nearest; (N,) s and (N, 3) map coordinates."""
         since = np.asarray(time, float) - self.start
         interval, share = self._places(since)
-        off = [ray_distance(self.poses, interval, share, since, place - self.origin, number) for number in range(self.poses.scanners)]
+        off = [_ray_distance(self.poses, interval, share, since, place - self.origin, number) for number in range(self.poses.scanners)]
         return np.argmin(np.stack(off), axis=0).astype(np.uint8)
 
     def _places(self, since):
@@ -135,7 +134,7 @@ class ScannerSplitter:
         return interval, np.clip(share, 0.0, 1.0)
 
 
-def ray_distance(poses: Poses, interval: np.ndarray, share: np.ndarray, time: np.ndarray, place: np.ndarray, number: int) -> np.ndarray:
+def _ray_distance(poses: Poses, interval: np.ndarray, share: np.ndarray, time: np.ndarray, place: np.ndarray, number: int) -> np.ndarray:
     """(N,) m by which points lie off the rays of one scanner; inf behind it."""
     found = misfits(poses, interval, share, time, place, np.full(len(time), number))
     return np.where(found.range > MIN_RANGE, np.abs(found.off).max(axis=0), np.inf)

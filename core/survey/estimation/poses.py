@@ -39,8 +39,6 @@ class DriveKnots:
 class Poses:
     """Cubic B-splines of place, attitude and mirror phases, and the mounting of S scanners.
 
-    Attributes
-    ----------
     drives : DriveKnots of each drive
     control : (K, 6 + S) control values: x, y, z (m), roll (right side down), pitch (nose up), yaw (counter-clockwise from east; radians),
         and of each scanner what its direction angle is ahead of 2 pi rate t (radians)
@@ -139,11 +137,9 @@ class Fixes:
     misfit: np.ndarray
 
 
-def rotation_rate_of(runs: list[tuple[np.ndarray, np.ndarray, FirstTrack]]) -> float | None:
+def _rotation_rate_of(runs: list[tuple[np.ndarray, np.ndarray, FirstTrack]]) -> float | None:
     """The rate at which one scanner's mirror turns, Hz; None where its points show none.
 
-    Parameters
-    ----------
     runs : per drive (N,) times, (N, 3) places and the drive's FirstTrack
     """
     spectra = []
@@ -163,11 +159,9 @@ def rotation_rate_of(runs: list[tuple[np.ndarray, np.ndarray, FirstTrack]]) -> f
     return abs(rate) if peak >= MIN_ROTATION_PEAK else None
 
 
-def fixes_of(time: np.ndarray, place: np.ndarray, track: FirstTrack, rate: float) -> Fixes:
+def _fixes_of(time: np.ndarray, place: np.ndarray, track: FirstTrack, rate: float) -> Fixes:
     """The places of one scanner in the windows of one drive.
 
-    Parameters
-    ----------
     time : (N,) s, ascending
     place : (N, 3) m
     track : FirstTrack of the drive, against which the vehicle's motion within a window is removed
@@ -275,11 +269,11 @@ def spinning_scanners(samples: Samples, tracks: list[FirstTrack]) -> list[Spinni
         for drive, track in zip(samples.drives, tracks):
             own = drive.start + np.flatnonzero(samples.scanner[drive] == number)
             runs.append((samples.time[own], samples.place[own], track))
-        rate = rotation_rate_of([run for run in runs if len(run[0])])
+        rate = _rotation_rate_of([run for run in runs if len(run[0])])
         if rate is None:
             continue
         # seen from either side a mirror turns either way: the true way gives more windows that make sense, and a smaller misfit
-        both = [Spinning(number, sign * rate, [fixes_of(*run, sign * rate) if len(run[0]) else EMPTY for run in runs]) for sign in (1, -1)]
+        both = [Spinning(number, sign * rate, [_fixes_of(*run, sign * rate) if len(run[0]) else EMPTY for run in runs]) for sign in (1, -1)]
         best = max(both, key=lambda one: _quality(one.fixes))
         if sum(len(fixes.time) for fixes in best.fixes) >= MIN_FIXES:
             found.append(_with_true_rate(best))
@@ -312,7 +306,6 @@ def first_poses(samples: Samples, tracks: list[FirstTrack], scanners: list[Spinn
 
     Parameters
     ----------
-    samples : Samples
     tracks : FirstTrack of each drive
     scanners : those that spin; they are numbered anew in this order
     """

@@ -35,8 +35,6 @@ COLUMN_OF_FIELD = {"point_source_id": 0, "scanner_channel": 1}
 class Samples:
     """Points in order of time.
 
-    Attributes
-    ----------
     time : (N,) seconds since `start`, of the drives; zeros without time
     place : (N, 3) metres from `origin`
     scanner : (N,) numbers of the scanners from 0
@@ -73,7 +71,6 @@ def read_samples(files: Sequence[CloudHeader], scanner_field: str = "automatic",
     ----------
     files : headers of the clouds
     scanner_field : "automatic", "scanner_channel" or "point_source_id"
-    progress : Progress
 
     Raises
     ------

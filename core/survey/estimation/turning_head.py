@@ -61,23 +61,21 @@ def turning_heads(samples: Samples, tracks: list[FirstTrack]) -> list[HeadTrack]
     samples : Samples with times
     tracks : FirstTrack of each drive
     """
-    rate = turning_rate(samples, tracks)
+    rate = _turning_rate(samples, tracks)
     if rate is None:
         return None
     heads = []
     for drive, track in zip(samples.drives, tracks):
-        head = head_track(samples.time[drive], samples.place[drive], track, rate)
+        head = _head_track(samples.time[drive], samples.place[drive], track, rate)
         if head is None or len(head.time) < 2 or head.noise > MAX_BEARING_NOISE:
             return None
         heads.append(head)
     return heads
 
 
-def turning_rate(samples: Samples, tracks: list[FirstTrack]) -> float | None:
+def _turning_rate(samples: Samples, tracks: list[FirstTrack]) -> float | None:
     """Turns per second of a head, negative where it turns clockwise; None where bearings do not turn steadily.
 
-    Parameters
-    ----------
     samples : Samples with times
     tracks : FirstTrack of each drive
     """
@@ -96,19 +94,14 @@ def turning_rate(samples: Samples, tracks: list[FirstTrack]) -> float | None:
     return float(rates[coherence.argmax()]) if coherence.max() >= MIN_COHERENCE else None
 
 
-def head_track(time: np.ndarray, place: np.ndarray, track: FirstTrack, rate: float) -> HeadTrack | None:
+def _head_track(time: np.ndarray, place: np.ndarray, track: FirstTrack, rate: float) -> HeadTrack | None:
     """The places of the head in one drive.
 
-    Parameters
-    ----------
     time : (N,) s, ascending
     place : (N, 3) m
     track : FirstTrack of the drive
-    rate : turns per second, of `turning_rate`
-
-    Returns
-    -------
-    HeadTrack; None where no whole turn was seen
+    rate : turns per second, of `_turning_rate`
+    Returns: HeadTrack; None where no whole turn was seen
     """
     time, flat, turn = _turns(time, place[:, :2], 1.0 / abs(rate))
     if not len(time):
@@ -217,7 +210,7 @@ def head_heights(samples: Samples, tracks: list[FirstTrack], heads: list[HeadTra
     share = max(sum(drive.stop - drive.start for drive in samples.drives) // MAX_HEIGHT_POINTS, 1)
     for drive, track, head in zip(samples.drives, tracks, heads):
         turn, away, z = _seen_from(samples.time[drive], samples.place[drive], head, share)
-        plane = ground_planes(turn, away, z, track.at(head.time)[0][:, 2])
+        plane = _ground_planes(turn, away, z, track.at(head.time)[0][:, 2])
         ground.append(plane[:, 0])
         reach = np.hypot(*away.T)
         above = z - plane[turn, 0] - (plane[turn, 1:] * away).sum(axis=1)
@@ -244,17 +237,12 @@ def _seen_from(time, place, head, share):
     return turn, place[rows, :2] - head.place[turn] - head.speed[turn] * since[:, None], place[rows, 2]
 
 
-def ground_planes(turn: np.ndarray, away: np.ndarray, z: np.ndarray, first: np.ndarray) -> np.ndarray:
+def _ground_planes(turn: np.ndarray, away: np.ndarray, z: np.ndarray, first: np.ndarray) -> np.ndarray:
     """The road about every turn as a plane, by robust least squares from a first height.
 
-    Parameters
-    ----------
     turn : (N,) int; away : (N, 2) m from the head; z : (N,) m
     first : (T,) m, heights to begin with
-
-    Returns
-    -------
-    (T, 3) height beneath the head and slopes to the east and north; level at the first height where few points are
+    Returns: (T, 3) height beneath the head and slopes to the east and north; level at the first height where few points are
     """
     near = np.hypot(*away.T) < PLANE_REACH
     turn, z = turn[near], z[near]

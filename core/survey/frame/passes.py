@@ -8,13 +8,11 @@ from __future__ import annotations
 from bisect import bisect_left
 from dataclasses import dataclass, field, fields
 from math import hypot
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.spatial import cKDTree
 
-if TYPE_CHECKING:
-    from ..trajectory.trajectory import Trajectory
+from ..trajectory.trajectory import Trajectory
 
 TRACK_STEP = 2.0           # m between the positions that are compared
 SAME_CARRIAGEWAY = 12.0    # m: parallel tracks closer than this run on the same carriageway

@@ -25,7 +25,6 @@ def located(frame: RoadFrame, road: np.ndarray, x: np.ndarray, y: np.ndarray) ->
 
     Parameters
     ----------
-    frame : RoadFrame
     road : (V,) int, number of the road of each place; numbers that the frame does not have are allowed
     x, y : (V,) local metres
 
@@ -117,12 +116,7 @@ def lines_in_frame(lines: Sequence[Any] | np.ndarray, road: Sequence[int] | np.n
     ----------
     lines : L shapely LineStrings in map coordinates
     road : (L,) int, number of the road of each; where the frame has no such road, the one that most vertices are nearest to
-    frame : RoadFrame
     spacing : m between vertices at most; None for the vertices of the lines as they are
-
-    Returns
-    -------
-    FrameLines
     """
     shapes = np.asarray(lines, object) if len(lines) else np.empty(0, object)
     if spacing is not None and len(shapes):
@@ -154,7 +148,6 @@ def passes_to_features(frame: RoadFrame, crs: str) -> Features:
 
     Parameters
     ----------
-    frame : RoadFrame
     crs : WKT, "" where unknown
 
     Returns
@@ -167,9 +160,8 @@ def passes_to_features(frame: RoadFrame, crs: str) -> Features:
         if len(rows) < 2:
             continue
         line = shapely.linestrings(np.round(np.c_[one.x, one.y, one.z][rows] + frame.origin, COORDINATE_DECIMALS))
-        timed = frame.has_time
-        layer.add(line, **{"pass": one.number}, road=one.road, direction=one.direction, station_m=float(one.s.min()), end_m=float(one.s.max()),
-                  length_m=float(line.length), begin_s=float(one.time[0]) if timed else None, finish_s=float(one.time[-1]) if timed else None)
+        layer.add(line, **{"pass": one.number}, road=one.road, direction=one.direction, station_m=one.s.min(), end_m=one.s.max(),
+                  length_m=line.length, **(dict(begin_s=one.time[0], finish_s=one.time[-1]) if frame.has_time else {}))
     return layer
 
 

@@ -8,19 +8,14 @@ than 0.01 mm and needs half the memory bandwidth of double precision.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...common.parallel import ScratchBuffers
 from ..store.records import COORDINATE_SCALE, to_units
-from .passes import MAX_TICKS, TIME_TICK
-from .road import NODE_SPACING
-
-if TYPE_CHECKING:
-    from .passes import Pass
-    from .road import Road
-    from .road_frame import RoadFrame
+from .passes import MAX_TICKS, TIME_TICK, Pass
+from .road import NODE_SPACING, Road
+from .road_frame import RoadFrame
 
 Buffers = Callable[..., np.ndarray]   # what `ScratchBuffers.of` returns
 
@@ -37,10 +32,6 @@ class LineLookup:
     """The reference line of a road in tables by node.
 
     Lengths are in nodes (NODE_SPACING metres). `bend` is the offset of a point times the curvature of the line.
-
-    Parameters
-    ----------
-    road : Road
     """
 
     def __init__(self, road: Road):
@@ -212,7 +203,6 @@ class RoadProjection:
 
     Parameters
     ----------
-    frame : RoadFrame
     corridor : metres either side
     """
 

@@ -141,10 +141,6 @@ def build_frame(trajectory: Trajectory) -> RoadFrame:
     ----------
     trajectory : Trajectory in a projected CRS in metres
 
-    Returns
-    -------
-    RoadFrame
-
     Raises
     ------
     RoadExtractionError

@@ -89,7 +89,6 @@ class RowTable:
 
     Parameters
     ----------
-    spans : RowSpans
     values : (V,) of the stations that the rows are kept for, row after row
     missing : what stands elsewhere, one value or (R,) of them
     """

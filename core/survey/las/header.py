@@ -197,8 +197,8 @@ class Record:
 
     def mended(self) -> Record:
         """The same with a user and a CRS that laspy can decode; itself where nothing is wrong."""
-        head = self.head[:2] + decodable(self.head[2:18]) + self.head[18:]
-        data = decodable(self.data) if self.user == CRS_USER and self.number in CRS_TEXTS else self.data
+        head = self.head[:2] + _decodable(self.head[2:18]) + self.head[18:]
+        data = _decodable(self.data) if self.user == CRS_USER and self.number in CRS_TEXTS else self.data
         return self if (head, data) == (self.head, self.data) else replace(self, head=head, data=data)
 
     def patches(self) -> Iterator[tuple[int, bytes]]:
@@ -208,23 +208,21 @@ class Record:
             yield self.at, mended.head + mended.data
 
 
-def base_size(point_format: int) -> int | None:
+def _base_size(point_format: int) -> int | None:
     """Bytes of a point without extra bytes; None for a format that laspy does not know."""
     from laspy import PointFormat, supported_point_formats
 
     return PointFormat(point_format).size if point_format in supported_point_formats() else None
 
 
-def extra_bytes_described(records: list[Record]) -> int:
+def _extra_bytes_described(records: list[Record]) -> int:
     """Bytes that the records which name extra bytes describe together."""
     return sum(_size(entry) or 0 for record in records if record.describes_extra_bytes for entry in _entries(record))
 
 
-def readable_extra_bytes(record: Record, point_format: int, room: int) -> Record:
+def _readable_extra_bytes(record: Record, point_format: int, room: int) -> Record:
     """A record of extra bytes that describes no more than there is room for, in names that a table can have; itself where nothing is wrong.
 
-    Parameters
-    ----------
     record : which describes extra bytes
     point_format : whose own fields have their names already
     room : extra bytes of a point
@@ -242,7 +240,7 @@ def readable_extra_bytes(record: Record, point_format: int, room: int) -> Record
         name = _name(entry[4:36], taken, number)
         taken.add(name)
         same = name.encode() == entry[4:36].split(b"\0")[0]
-        kept.append(entry[:4] + (entry[4:36] if same else name.encode()[:32].ljust(32, b"\0")) + entry[36:160] + decodable(entry[160:]))
+        kept.append(entry[:4] + (entry[4:36] if same else name.encode()[:32].ljust(32, b"\0")) + entry[36:160] + _decodable(entry[160:]))
     data = b"".join(kept)
     return record if data == record.data and record.length == len(data) else replace(record, data=data, length=len(data))
 
@@ -262,14 +260,14 @@ def _size(entry):
 
 def _name(text, taken, number):
     """A name in UTF-8 that no other field has."""
-    name = decodable(text.split(b"\0")[0]).decode() or "extra"
+    name = _decodable(text.split(b"\0")[0]).decode() or "extra"
     unique, again = name, number
     while unique in taken:
         unique, again = f"{name.encode()[:MAX_NAME].decode(errors='ignore')}_{again}", again + 1
     return unique
 
 
-def decodable(text: bytes) -> bytes:
+def _decodable(text: bytes) -> bytes:
     """The same bytes where they are UTF-8 up to the first zero, else with question marks for those beyond ASCII."""
     try:
         text.split(b"\0")[0].decode()
@@ -372,10 +370,10 @@ def mend(path: str | os.PathLike[str]) -> MendedHeader:
         count = _points_in_las(file, fields, size)
         if count == fields.count:
             return found
-        return found.with_count(fields, count, "" if count in fields.counts else count_note(fields.count, count))
+        return found.with_count(fields, count, "" if count in fields.counts else _count_note(fields.count, count))
 
 
-def count_note(stated: int, there: int) -> str:
+def _count_note(stated: int, there: int) -> str:
     """The end of a sentence about a file whose header states another number of points than there are."""
     return f"its header states {stated:,} points, and {there:,} are there: those were read" + (
         ". If it was copied or downloaded, compare its length with the original's" if there < stated else "")
@@ -394,10 +392,10 @@ def _extended(file, fields, size):
 
 def _lengths(fields, records, size):
     """The fields with the place and the length of the points by which they fill the file."""
-    base = base_size(fields.point_format)
+    base = _base_size(fields.point_format)
     if base is None:
         return fields
-    described = base + extra_bytes_described(records)
+    described = base + _extra_bytes_described(records)
     if fields.compressed:
         # the decoder cannot do without the record that says of what its points consist
         point_size = next((record.compression.point_size for record in records if record.compression is not None), 0)
@@ -419,10 +417,10 @@ def _lengths(fields, records, size):
 
 def _mended_records(records, fields):
     """The patch of the records before the points, where any cannot be read as it is."""
-    base = base_size(fields.point_format)
+    base = _base_size(fields.point_format)
     mended = [record.mended() for record in records]
     if base is not None:
-        mended = [readable_extra_bytes(record, fields.point_format, fields.record_size - base) if record.describes_extra_bytes else record
+        mended = [_readable_extra_bytes(record, fields.point_format, fields.record_size - base) if record.describes_extra_bytes else record
                   for record in mended]
     if all(record is before for record, before in zip(mended, records)):
         return []
@@ -446,11 +444,11 @@ def _points_in_las(file, fields, size):
 
 def _are_points(file, fields, first, end, rest):
     """Whether the records from `first` to before `end`, behind those that the header states, are points of the same survey."""
-    behind = sampled_places(file, fields, first, end)
+    behind = _sampled_places(file, fields, first, end)
     if not len(behind) or not behind.any(axis=1).mean() > 0.5:   # zeros that fill up a block
         return False
     if first:
-        inside = np.abs(behind - np.median(sampled_places(file, fields, 0, first), axis=0)) <= NEAR_STATED
+        inside = np.abs(behind - np.median(_sampled_places(file, fields, 0, first), axis=0)) <= NEAR_STATED
     else:
         low, high = fields.minimum, fields.maximum
         if not (np.isfinite([low, high]).all() and (low < high).any()):
@@ -460,7 +458,7 @@ def _are_points(file, fields, first, end, rest):
     return bool(inside.all(axis=1).mean() > 0.5)
 
 
-def sampled_places(file: BinaryIO, fields: HeaderFields, first: int, end: int) -> np.ndarray:
+def _sampled_places(file: BinaryIO, fields: HeaderFields, first: int, end: int) -> np.ndarray:
     """(N, 3) coordinates, as they are stored, of up to SAMPLED_RECORDS points of an uncompressed file from `first` to before `end`."""
     found = []
     for row in np.unique(np.linspace(first, end - 1, min(SAMPLED_RECORDS, max(end - first, 0))).astype(np.int64)).tolist():
@@ -507,7 +505,7 @@ def find_damage(path: str | os.PathLike[str], mended: MendedHeader | None = None
             return f"its header states that the points begin at byte {fields.points_at:,} of {size:,}"
         if fields.vlrs * VLR_HEADER_SIZE > fields.points_at - fields.header_size:
             return f"its header states {fields.vlrs:,} variable length records, more than fit before the points"
-        least = base_size(fields.point_format)
+        least = _base_size(fields.point_format)
         if least is not None and fields.record_size < least:
             return f"its header states {fields.record_size} bytes per point, and points of format {fields.point_format} have {least}"
         if not fields.compressed:
@@ -537,7 +535,7 @@ def with_points_of_chunks(path: str | os.PathLike[str], mended: MendedHeader) ->
         count = _points_of(file, compression, begin, table, fields)
     if count == fields.count:
         return mended
-    return mended.with_count(fields, count, "" if count in fields.counts else count_note(fields.count, count))
+    return mended.with_count(fields, count, "" if count in fields.counts else _count_note(fields.count, count))
 
 
 def places_here_and_there(path: str | os.PathLike[str], mended: MendedHeader) -> np.ndarray:
@@ -552,7 +550,7 @@ def places_here_and_there(path: str | os.PathLike[str], mended: MendedHeader) ->
         if fields is None or not fields.count:
             return np.empty((0, 3))
         if not fields.compressed:
-            places = sampled_places(file, fields, 0, fields.count)
+            places = _sampled_places(file, fields, 0, fields.count)
         else:
             _, begin, table = _chunks(file)
             at = begin + np.cumsum([0] + [length for points, length in table if points and length])[:-1]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import laspy
 import numpy as np
@@ -13,9 +13,7 @@ import numpy as np
 from ...common.errors import RoadExtractionError
 from ..store.records import COORDINATE_SCALE, MAX_XY_32_BIT, fill_units
 from .reader import CloudHeader, read_blocks
-
-if TYPE_CHECKING:
-    from .samples import FileSample
+from .samples import FileSample
 
 MAX_SCANNERS = 8
 MIN_INTERLEAVED_SHARE = 0.8   # of the points: their values must overlap in time if the values identify scanners
@@ -329,10 +327,8 @@ def _has_colours(file):
     return bool(values.min() < values.max())
 
 
-# Points that whoever made the cloud marked as none of the survey: withheld ones and noise.
-#
-# References ---------- ASPRS, LAS specification 1.4 R15: a withheld point "should not be included in processing (synonymous with Deleted)"; table
-# 17, classes 7 (low point, noise) and 18 (high noise).
+# Points that whoever made the cloud marked as none of the survey: withheld ones, which "should not be included in processing (synonymous with
+# Deleted)", and noise, classes 7 and 18 (ASPRS, LAS specification 1.4 R15, table 17).
 
 NOISE_CLASSES = 7, 18
 

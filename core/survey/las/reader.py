@@ -33,8 +33,6 @@ ReadResult = TypeVar("ReadResult")
 class CloudHeader:
     """The header of one LAS, LAZ or COPC file.
 
-    Attributes
-    ----------
     path : of the file
     version : such as "1.4"
     point_format : number of the ASPRS point data record format

@@ -147,7 +147,6 @@ def points_near(paths: Iterable[str | os.PathLike[str]], x: float, y: float, rad
     paths : of point clouds; those whose bounds lie elsewhere are not opened beyond their header
     x, y : map coordinates of the middle
     radius : m, half the side of the square
-    progress : Progress
 
     Returns
     -------

@@ -54,8 +54,6 @@ MOUNTING_DIRECTIONS = 360      # about the trajectory, for which the mounting of
 class ScanLattice:
     """The mirror phases of a survey.
 
-    Attributes
-    ----------
     mirror_phases : {(pass number, scanner): MirrorPhase}
     without : (pass number, scanner) that have no regular scan lines, and why
     notes : sentences for the user about these
@@ -74,10 +72,6 @@ def find_lattice(survey: Any, rotation_frequency: float = 0.0, progress: Progres
     survey : Survey
     rotation_frequency : Hz, turns of the mirror per second; 0 = from the data
     progress : receives progress, and messages about what was found
-
-    Returns
-    -------
-    ScanLattice
     """
     lattice = ScanLattice()
     if not survey.has_time:
@@ -307,7 +301,7 @@ def _mirror_phases(survey, road, rotations, samples, progress):
     found = {}
     for key, (frequency, peak, origin) in rotations.items():
         b = bins[key]
-        mirror = mirror_phase_from_phasors(frequency, b.since, b.phasor, b.count, b.length, b.start, peak=peak, origin=origin)
+        mirror = _mirror_phase_from_phasors(frequency, b.since, b.phasor, b.count, b.length, b.start, peak=peak, origin=origin)
         if mirror is not None:
             found[key] = replace(mirror, **_line_properties(samples[key], mirror))
     return found
@@ -331,7 +325,7 @@ def _mounting(windows, frequency):
         time, seen = w.time[some], w.phasor[some]
         bins = _PhasorBins(w, length)
         first, count, since, phasor = bins.sums_of(time - bins.start, seen * np.exp(-2j * np.pi * frequency * (time - bins.start)))
-        mirror = mirror_phase_from_phasors(frequency, since, phasor, count, length, bins.start)
+        mirror = _mirror_phase_from_phasors(frequency, since, phasor, count, length, bins.start)
         if mirror is not None:
             ahead = np.exp(2j * np.pi * np.sign(frequency) * mirror.turns_at(time)) * np.conj(seen)
             direction = _direction_number(seen)
@@ -406,8 +400,6 @@ MAX_PHASE_BIN_GAP = 1.5           # bins between two phases; farther apart, the 
 class MirrorPhase:
     """The turns of one scanner's mirror during one pass; a scan line is a turn.
 
-    Attributes
-    ----------
     frequency : Hz, the mean; negative where the mirror turns clockwise seen in the direction of the road
     time, turns : (K,) seconds and turns of nodes between which the mirror turns evenly; turns increase
     pulse : usual share of a turn between neighbouring points of a line
@@ -468,22 +460,17 @@ def _interpolate(x, nodes, values, rate):
     return found + first * before + last * behind
 
 
-def mirror_phase_from_phasors(frequency: float, time: np.ndarray, phasor: np.ndarray, count: np.ndarray, bin_length: float,
+def _mirror_phase_from_phasors(frequency: float, time: np.ndarray, phasor: np.ndarray, count: np.ndarray, bin_length: float,
                               start: float = 0.0, **fields: Any) -> MirrorPhase | None:
     """The mirror phase of a pass from the mean phase of its bins.
 
-    Parameters
-    ----------
     frequency : Hz, signed, near the truth
     time : (B,) seconds since the start, sums over the points of each bin
     phasor : (B,) complex, sums of exp(i (angle - 2 pi frequency t)) over the points of each bin
     count : (B,) points
     bin_length, start : seconds
     fields : further attributes of the MirrorPhase
-
-    Returns
-    -------
-    MirrorPhase, or None where no bin has a phase
+    Returns: MirrorPhase, or None where no bin has a phase
     """
     usable = np.flatnonzero((count >= MIN_PHASE_BIN_POINTS) & (np.abs(phasor) >= MIN_PHASE_COHERENCE * count))
     if not len(usable):
@@ -545,16 +532,16 @@ def rotation_spectrum(time: np.ndarray, phasor: np.ndarray) -> np.ndarray:
 
     Returns
     -------
-    (SPECTRUM_SIZE,) float64, 0 to 1, in the order of `spectrum_frequencies`
+    (SPECTRUM_SIZE,) float64, 0 to 1, in the order of `_spectrum_frequencies`
     """
     cell = ((time - time.min()) / SPECTRUM_CELL).astype(np.int64)
     size = int(cell.max()) + 1
     total = np.bincount(cell, phasor.real, size) + 1j * np.bincount(cell, phasor.imag, size)
     # averaging over a cell attenuates high frequencies by sinc
-    return np.abs(np.fft.fft(total, SPECTRUM_SIZE)) / len(time) / np.sinc(spectrum_frequencies() * SPECTRUM_CELL)
+    return np.abs(np.fft.fft(total, SPECTRUM_SIZE)) / len(time) / np.sinc(_spectrum_frequencies() * SPECTRUM_CELL)
 
 
-def spectrum_frequencies() -> np.ndarray:
+def _spectrum_frequencies() -> np.ndarray:
     """(SPECTRUM_SIZE,) frequencies of a spectrum, Hz."""
     return np.fft.fftfreq(SPECTRUM_SIZE, SPECTRUM_CELL)
 
@@ -574,7 +561,7 @@ def strongest_rotation(spectra: Sequence[np.ndarray], given: float = 0.0, signed
     peak : median of the windows' peaks, 0 to 1; 0 where the opposite rotation fits nearly as well, as for
         scanners that spin about the vertical
     """
-    f = spectrum_frequencies()
+    f = _spectrum_frequencies()
     allowed = (np.abs(f) >= MIN_ROTATION) & (np.abs(f) <= MAX_ROTATION)
     if given:
         allowed &= np.abs(np.abs(f) - given) <= ROTATION_TOLERANCE * given + 0.25

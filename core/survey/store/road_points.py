@@ -23,8 +23,6 @@ if TYPE_CHECKING:
 class RoadPoints:
     """Road points by section, and the properties that later stages need.
 
-    Attributes
-    ----------
     store : SectionStore of ROAD_POINT records
     origin : (3,) whole numbers, map coordinates in metres that were subtracted from x, y, z
     crs : WKT, "" where unknown

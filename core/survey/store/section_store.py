@@ -35,8 +35,6 @@ Stretch = tuple[int, int, int]   # number of a road, first and last + 1 number o
 class PartitionedPoints:
     """Points of one road, partitioned by section.
 
-    Attributes
-    ----------
     road : number
     records : (N,) Columns, section by section
     first : number of the first section

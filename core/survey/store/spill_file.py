@@ -36,8 +36,6 @@ MAX_FREE_RANGES = 64     # free ranges of the file that are remembered; of more,
 class Packing(NamedTuple):
     """How a column was packed: the bits of its values less `least`, split into parts; all lowest parts come first.
 
-    Attributes
-    ----------
     dtype : of the column
     size : values
     least : the least value, as an integer of the column's bits
@@ -135,8 +133,6 @@ def _values_at(part, rows):
 class StoredColumn(NamedTuple):
     """A column in a file.
 
-    Attributes
-    ----------
     place : first byte
     packing : how it is packed
     file : that holds it
@@ -362,8 +358,6 @@ Key = tuple[int, int]   # numbers of a road and of a section of it
 class StoreIndex:
     """Parts of sections in files of one folder. The parts of one section follow each other in the order in which they were added.
 
-    Attributes
-    ----------
     files : names of the files
     parts : (K, 5) int64: road, section, number of the file, points, whether they are all points of the section, in canonical order
     places, least : (K, C) int64, first byte and least value of each of the C columns of the store

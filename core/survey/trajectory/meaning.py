@@ -12,7 +12,7 @@ import numpy as np
 
 from ...common.errors import RoadExtractionError
 from ...io.text_table import read_number_table
-from .columns import LONGEST_NAME, MIN_MAP_COORDINATE, ROLES, Unit, candidates_by_role, columns_from_numbers, listed, rough_metres
+from .columns import LONGEST_NAME, ROLES, Unit, candidates_by_role, listed
 from .table_columns import CHECKED_ROWS, TableColumn, first_row, is_record, titled_columns, with_week
 from .time_systems import (
     ADJUSTED_OFFSET,
@@ -32,6 +32,7 @@ from .time_systems import (
     whole_seconds,
 )
 from .trajectory import Trajectory
+from .unnamed_columns import MIN_MAP_COORDINATE, columns_from_numbers, rough_metres
 
 EARTH_RADIUS = 6.33e6, 6.42e6    # m from the centre of the earth to its surface, with mountains
 HIGHEST_ROAD = 9000.0            # m: a third coordinate beyond it is no height

@@ -14,10 +14,11 @@ import numpy as np
 from ...common.errors import RoadExtractionError
 from ...io.crs import horizontal_part, parse_crs
 from ...io.text_table import SAMPLE_BYTES, finite_or_nan, read_number_table
-from .columns import HEADING_TOLERANCE, angle_between, driven_course, geographic_unit, listed, rough_metres, stated_angle_unit
+from .columns import listed, stated_angle_unit
 from .meaning import meaning_of, meaning_of_table, values_by_role
 from .table_columns import columns_of_record, columns_of_rows, is_record, titled_columns
 from .trajectory import MAX_VEHICLE_SPEED, Trajectory, lengths_in_metres, reproject_trajectory
+from .unnamed_columns import HEADING_TOLERANCE, angle_between, driven_course, geographic_unit, rough_metres
 
 SBET_DOUBLES = 17  # time, lat, lon, height, 3 velocities, roll, pitch, heading, wander angle, 6 more
 WGS84 = "EPSG:4326"
@@ -342,7 +343,7 @@ def _read_sbet(path, crs):
     columns = dict(time=rows[:, 0], x=np.degrees(rows[:, 2]), y=np.degrees(rows[:, 1]), z=rows[:, 3],
                    roll=rows[:, 7], pitch=rows[:, 8], heading=true_heading)
     trajectory = trajectory_from_columns(columns, crs or WGS84, "radians", path.name, notes)
-    sigma, remark = accuracy_across(path, rows[:, 0], columns["x"], columns["y"])
+    sigma, remark = _accuracy_across(path, rows[:, 0], columns["x"], columns["y"])
     remarks = tuple(note for note in (*trajectory.notes, remark) if note and "radians" not in note)
     return replace(trajectory, notes=remarks, sigma_across=sigma)
 
@@ -353,18 +354,13 @@ SMRMSG_DOUBLES = 10   # time, RMS north, east, down (m), of three velocities (m/
 WORST = 100.0         # m: a position that is known worse than this is none, and the file another one
 
 
-def accuracy_across(sbet: Path, time: np.ndarray, x: np.ndarray, y: np.ndarray) -> tuple[float, str]:
+def _accuracy_across(sbet: Path, time: np.ndarray, x: np.ndarray, y: np.ndarray) -> tuple[float, str]:
     """One sigma of a trajectory across its way, from the file beside it.
 
-    Parameters
-    ----------
     sbet : path of the SBET
     time : (N,) s, as it stands in the SBET
     x, y : (N,) longitude and latitude, degrees
-
-    Returns
-    -------
-    sigma : m, the root of the mean square over the way driven, so that waiting does not count; 0 where nothing is known
+    Returns: sigma : m, the root of the mean square over the way driven, so that waiting does not count; 0 where nothing is known
     note : a sentence on it, "" where there is no such file
     """
     try:

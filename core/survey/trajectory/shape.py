@@ -18,8 +18,8 @@ from scipy.interpolate import CubicHermiteSpline, CubicSpline
 from scipy.signal import savgol_filter
 
 from ...curves.robust import MAD_TO_SIGMA
-from .columns import HEADING_TOLERANCE, angle_between
 from .trajectory import Trajectory
+from .unnamed_columns import HEADING_TOLERANCE, angle_between
 
 GAP_FACTOR, SHORTEST_PAUSE = 3.0, 1.0     # weight: times the usual step of time, and s, beyond which the vehicle is not interpolated
 MAX_SAGITTA = 0.05      # weight: m; bends are curved that straight lines between vertices miss by more
@@ -58,16 +58,14 @@ def shaped_trajectory(trajectory: Trajectory) -> TrackShape:
     ----------
     trajectory : Trajectory, cleaned
     """
-    smooth = smoothed_track(trajectory)
-    curved = curved_track(smooth.trajectory)
+    smooth = _smoothed_track(trajectory)
+    curved = _curved_track(smooth.trajectory)
     return TrackShape(curved.trajectory, float(np.hypot(smooth.sigma, curved.sigma)), smooth.said + curved.said)
 
 
-def smoothed_track(trajectory: Trajectory) -> TrackShape:
+def _smoothed_track(trajectory: Trajectory) -> TrackShape:
     """A trajectory without the noise that no vehicle can have caused; as it is where there is none.
 
-    Parameters
-    ----------
     trajectory : Trajectory, cleaned
     """
     if not trajectory.has_time:
@@ -96,11 +94,9 @@ def _smooth(columns, piece, step):
     return float(np.sqrt(_cubic_leverage(rows)))
 
 
-def curved_track(trajectory: Trajectory) -> TrackShape:
+def _curved_track(trajectory: Trajectory) -> TrackShape:
     """A trajectory with curves through its vertices where they are too far apart for its bends; as it is where they are not.
 
-    Parameters
-    ----------
     trajectory : Trajectory, cleaned
     """
     found, worst, sigma, unsafe = [], (0.0, 0.0, 0), 0.0, 0

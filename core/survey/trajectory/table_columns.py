@@ -227,13 +227,10 @@ NMEA = re.compile(r"\$(?:G[A-Z]|BD|QZ)(?P<name>GGA|GNS|RMC|ZDA),(?P<rest>[^*\s]*
 NOVATEL = re.compile(r"[#%](?P<name>[A-Z]+A),(?P<head>[^;\n]*);(?P<rest>[^*\n]*)")
 
 
-def read_log(path: Path) -> list[TableColumn]:
+def _read_log(path: Path) -> list[TableColumn]:
     """The positions in a log of sentences, as columns with names.
 
-    Raises
-    ------
-    RoadExtractionError
-        If its sentences hold no positions.
+    Raises RoadExtractionError if its sentences hold no positions.
     """
     kept: dict[str, list[list[str]]] = {}
     day = ""
@@ -309,16 +306,13 @@ def _gps_column(rows, number):
     return TableColumn("GPS time", with_week(seconds, week), Unit("seconds"), first=str(seconds[0]))
 
 
-def read_track(path: Path) -> list[TableColumn]:
+def _read_track(path: Path) -> list[TableColumn]:
     """The positions of a GPX or KML file, as columns with names.
 
     Of GPX the points of tracks are taken, otherwise those of its route, otherwise its waypoints; of KML the tracks (gx:Track), otherwise the
     lines, otherwise the points.
 
-    Raises
-    ------
-    RoadExtractionError
-        If it is no XML, or holds neither track nor line.
+    Raises RoadExtractionError if it is no XML, or holds neither track nor line.
     """
     reader = _TrackReader()
     try:
@@ -401,4 +395,4 @@ def is_record(path: Path) -> bool:
 
 def columns_of_record(path: Path) -> list[TableColumn]:
     """The positions of a track or of a log of sentences, as columns with names; RoadExtractionError where it holds none."""
-    return read_track(path) if path.suffix.lower() in TRACK_ENDINGS else read_log(path)
+    return _read_track(path) if path.suffix.lower() in TRACK_ENDINGS else _read_log(path)

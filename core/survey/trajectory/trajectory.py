@@ -23,8 +23,6 @@ MIN_ORIGIN_DISTANCE = 1000.0  # m: a drive whose positions are all farther from 
 class Trajectory:
     """Positions of the vehicle in driving order.
 
-    Attributes
-    ----------
     time : (N,) seconds, strictly increasing once cleaned; the index of the position where the source has no time
     x, y, z : (N,) map coordinates, metres
     roll, pitch, heading : (N,) degrees (heading clockwise from grid north), NaN where unknown, which is the default
@@ -201,7 +199,6 @@ def reproject_trajectory(trajectory: Trajectory, target_wkt: str) -> Trajectory:
 
     Parameters
     ----------
-    trajectory : Trajectory
     target_wkt : WKT or "EPSG:n", projected; "" where unknown
 
     Returns

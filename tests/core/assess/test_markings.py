@@ -2,9 +2,8 @@
 
 import numpy as np
 import pytest
-from lanewright.core.assess.inputs import widened_lines
+from lanewright.core.assess.inputs import polygons_of_raster, widened_lines
 from lanewright.core.assess.markings import FALSE, FALSE_BESIDE, HIT, MISSED, MarkingAccuracySettings, assess_markings
-from lanewright.core.assess.raster_polygons import polygons_of_raster
 from lanewright.core.common.errors import Cancelled, RoadExtractionError
 from lanewright.core.common.progress import Progress
 from osgeo import gdal

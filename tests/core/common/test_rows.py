@@ -1,6 +1,6 @@
 """Things of one kind kept as columns."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import shapely
@@ -41,10 +41,10 @@ TREES = [Field("road", int), Field("kind", str), Field("girth_m", float), Field(
 class Trees(LayerRows):
     GEOMETRY_TYPE, SCHEMA = "PointZ", TREES
 
-    road: np.ndarray = column()
-    species: np.ndarray = column("kind", unknown="oak")
-    girth: np.ndarray = column("girth_m")
-    age: np.ndarray = column()
+    road: np.ndarray = field(metadata=column())
+    species: np.ndarray = field(metadata=column("kind", unknown="oak"))
+    girth: np.ndarray = field(metadata=column("girth_m"))
+    age: np.ndarray = field(metadata=column())
     x: np.ndarray
     crs: str = ""
 
@@ -52,7 +52,7 @@ class Trees(LayerRows):
         return shapely.points(self.x + frame, 0.0, 0.0)
 
     def derived(self, frame):
-        return {"tall": np.where(self.girth > 2, "yes", "").astype(object)}
+        return {"tall": np.where(self.girth > 2, "yes", None)}
 
 
 def test_what_is_not_known_of_trees_is_null_in_their_layer_and_comes_back_as_it_was():

@@ -14,8 +14,8 @@ from lanewright.core.corrections import (
     corrections_from_features,
 )
 from lanewright.core.driving.driving_lines import make_driving_lines
-from lanewright.core.markings.lines.painted_lines import lines_from_features, lines_to_features
-from lanewright.core.markings.objects.marking_objects import markings_from_features
+from lanewright.core.markings.lines.painted_lines import PaintedLines
+from lanewright.core.markings.objects.marking_objects import MarkingObjects
 from lanewright.core.road.edges.road_edges import RoadEdges
 from lined_streets import EAST, HEIGHT, NORTH, Street
 from shapely.geometry import LineString, Point
@@ -174,7 +174,7 @@ def painted():
 def corrected_lines(street, lines, *rows):
     corrections = corrections_from_features(layer_of(*rows), street.frame)
     found = correct_marking_lines(lines, street.frame, corrections, NOTHING)
-    return lines_to_features(found, street.frame), corrections
+    return found.to_features(street.frame), corrections
 
 
 def on_street(street, first, last, offset):
@@ -183,7 +183,7 @@ def on_street(street, first, last, offset):
 
 def test_a_deleted_line_is_gone_along_the_correction_and_its_rest_lies_on_the_same_curve():
     street, lines = painted()
-    before = lines_to_features(lines, street.frame)
+    before = lines.to_features(street.frame)
     found, corrections = corrected_lines(street, lines, ("delete", "marking", on_street(street, 40.0, 70.0, 3.4)))
     pieces = [(round(row["station_m"]), round(row["end_m"])) for row in found.rows if row["offset_m"] > 4]
     assert sorted(pieces) == [(1, 40), (70, 118)] and not corrections.unmatched
@@ -207,7 +207,7 @@ def test_markings_that_are_deleted_make_no_lines():
     layer = Features("PolygonZ", [])
     for number, offset in enumerate((0.0, 3.0)):
         layer.add(shapely.force_3d(along(20, 23, offset).buffer(0.08), HEIGHT), road=0, cluster=number, use="keep", **{"class": "lane"})
-    markings = markings_from_features(layer, street.frame)
+    markings = MarkingObjects.from_features(layer, street.frame)
     corrections = corrections_from_features(layer_of(("delete", "marking", along(10, 40, 0.1)), ("accept", "marking", along(10, 40, 3.0))),
                                             street.frame)
     assert correct_markings(markings, corrections).cluster.tolist() == [1]
@@ -220,7 +220,7 @@ def test_markings_that_are_deleted_make_no_lines():
 def two_way():
     street = Street(length=120.0, vehicle=-1.75)
     street.paint(3.5, kind="edge").paint(0.0, pattern="dashed").paint(-3.5, kind="edge")
-    return street, make_driving_lines(lines_from_features(street.lines, street.frame), street.frame)
+    return street, make_driving_lines(PaintedLines.from_features(street.lines, street.frame), street.frame)
 
 
 def corrected_lanes(street, made, *rows):

@@ -9,9 +9,8 @@ from lanewright.core.common.features import CORRECTIONS, Features
 from lanewright.core.corrections import correct_lanes, correct_marking_lines, corrections_from_features, taken_reading
 from lanewright.core.curves.model_selection import fit_curve
 from lanewright.core.driving.driving_lines import make_driving_lines
-from lanewright.core.driving.layers import driving_lines_to_features, lanes_to_features
 from lanewright.core.markings.lines.fit import named_by_estimate
-from lanewright.core.markings.lines.painted_lines import lines_from_features, lines_to_features, painted_lines_of
+from lanewright.core.markings.lines.painted_lines import PaintedLines, painted_lines_of
 from lined_streets import Street
 
 NOTHING = np.empty((0, 3))
@@ -20,9 +19,10 @@ NOTHING = np.empty((0, 3))
 def run(street, corrections=None):
     """The layers of driving lines and lanes, and the corrections, of a run."""
     wanted = corrections_from_features(Features("any", CORRECTIONS) if corrections is None else corrections, street.frame)
-    lines, elements, lanes = make_driving_lines(lines_from_features(street.lines, street.frame), street.frame, taken=wanted.taken(street.frame))
+    lines, elements, lanes = make_driving_lines(
+        PaintedLines.from_features(street.lines, street.frame), street.frame, taken=wanted.taken(street.frame))
     lines, _, lanes = correct_lanes(lines, elements, lanes, street.frame, wanted, 3.5, NOTHING)
-    return driving_lines_to_features(lines, street.frame), lanes_to_features(lanes, street.frame.origin), wanted
+    return lines.to_features(street.frame), lanes.to_features(street.frame), wanted
 
 
 def take(lines, which):
@@ -92,7 +92,7 @@ def test_a_piece_without_a_second_reading_has_none_to_take():
 def named(street, lines=None):
     """The marking lines of a street with the kinds that its estimate gives them, as a run fits and names them."""
     if lines is None:
-        read = lines_from_features(street.lines, street.frame)
+        read = PaintedLines.from_features(street.lines, street.frame)
         lines = painted_lines_of([
             dict(road=0, line=int(read.line[k]), kind="", pattern=read.pattern[k], status="measured", curve=fit.curve,
                  arc=np.ravel(fit.curve.project(places[[0, -1], 0], places[[0, -1], 1])[0]), places=places, station=5.0, end=95.0, offset=0.0,
@@ -106,7 +106,7 @@ def test_dashes_may_part_lanes_of_one_direction_and_that_is_taken():
     street = Street(length=100.0, vehicle=-1.75).paint(3.5, kind="").paint(0.0, kind="", pattern="dashed").paint(-3.5, kind="")
     lines = named(street)
     assert lines.kind.tolist() == ["edge", "centre", "edge"]
-    layer = lines_to_features(lines, street.frame)
+    layer = lines.to_features(street.frame)
     assert [row["other"] is None for row in layer.rows] == [True, False, True]
     assert json.loads(layer.rows[1]["other"])["kind"] == "lane"
     corrections = Features("any", CORRECTIONS)

@@ -5,7 +5,7 @@ import pytest
 from drives import ahead, bend, chain, drive, joined
 from lanewright.core.common.features import MARKING_LINES, Features
 from lanewright.core.driving.driving_lines import make_driving_lines
-from lanewright.core.markings.lines.painted_lines import lines_from_features
+from lanewright.core.markings.lines.painted_lines import PaintedLines
 from lanewright.core.survey.frame.road_frame import build_frame
 from shapely.geometry import LineString
 
@@ -26,7 +26,7 @@ def turned():
         kind, pattern = ("lane", "dashed") if offset == 1.75 else ("edge", "solid")
         places = np.c_[x, y, np.full(len(s), 100.0)]
         lines.add(LineString(places), road=int(k >= len(main)), kind=kind, pattern=pattern, status="measured", line=k + 1)
-    return make_driving_lines(lines_from_features(lines, frame), frame)[2]
+    return make_driving_lines(PaintedLines.from_features(lines, frame), frame)[2]
 
 
 def row_of(lanes, name):

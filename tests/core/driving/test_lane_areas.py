@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 from lanewright.core.driving.driving_lines import DrivingSettings, make_driving_lines
-from lanewright.core.markings.lines.painted_lines import lines_from_features
+from lanewright.core.markings.lines.painted_lines import PaintedLines
 from lined_streets import Street
 
 
 def lanes_of(street, **settings):
-    return make_driving_lines(lines_from_features(street.lines, street.frame), street.frame, DrivingSettings(**settings))[2]
+    return make_driving_lines(PaintedLines.from_features(street.lines, street.frame), street.frame, DrivingSettings(**settings))[2]
 
 
 def two_way(length=120.0, gap=None):

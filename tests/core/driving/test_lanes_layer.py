@@ -1,13 +1,16 @@
 """Lanes keep their borders, links and order through their layer."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 import shapely
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.features import LANES, Features
-from lanewright.core.driving.layers import Lanes, lanes_from_features, lanes_to_features
+from lanewright.core.driving.layers import Lanes
 
 ORIGIN = np.array([500000.0, 5800000.0, 40.0])
+FRAME = SimpleNamespace(origin=ORIGIN)
 
 
 def texts(*values):
@@ -35,7 +38,7 @@ def two_way_street(length=40.0, half_width=3.5):
 
 def test_lanes_come_back_from_their_layer_as_they_were():
     lanes = two_way_street()
-    again = lanes_from_features(lanes_to_features(lanes, ORIGIN), ORIGIN)
+    again = Lanes.from_features(lanes.to_features(FRAME), FRAME)
     for name in ("left", "right", "confidence", "station", "end"):
         np.testing.assert_allclose(getattr(again, name), getattr(lanes, name), atol=1e-8)
     for name in ("road", "lane", "lane_id", "type", "direction", "left_line", "right_line", "left_kind", "right_kind", "left_pattern",
@@ -45,7 +48,7 @@ def test_lanes_come_back_from_their_layer_as_they_were():
 
 
 def test_the_ring_begins_at_the_left_border_in_the_direction_of_travel():
-    layer = lanes_to_features(two_way_street(), ORIGIN)
+    layer = two_way_street().to_features(FRAME)
     against = layer.geometries[2]
     first = np.array(against.exterior.coords[0]) - ORIGIN
     np.testing.assert_allclose(first, [40.0, 0.0, 0.8], atol=1e-8)   # driven to the west, the centre line lies to its left
@@ -53,7 +56,7 @@ def test_the_ring_begins_at_the_left_border_in_the_direction_of_travel():
 
 
 def test_the_layer_tells_width_and_length_in_its_fields():
-    layer = lanes_to_features(two_way_street(), ORIGIN)
+    layer = two_way_street().to_features(FRAME)
     assert layer.column("width_m") == pytest.approx([3.5, 3.5, 3.5, 1.5])
     assert layer.column("length_m") == pytest.approx([20.0, 20.0, 40.0, 40.0])
     assert set(layer.rows[0]) == {field.name for field in LANES}
@@ -61,21 +64,21 @@ def test_the_layer_tells_width_and_length_in_its_fields():
 
 
 def test_no_lanes_make_an_empty_layer_and_back():
-    empty = lanes_from_features(Features("PolygonZ", LANES))
-    assert len(empty) == 0 and len(empty.width) == 0 and len(lanes_to_features(empty)) == 0
+    empty = Lanes.from_features(Features("PolygonZ", LANES))
+    assert len(empty) == 0 and len(empty.width) == 0 and len(empty.to_features()) == 0
 
 
 def test_a_lane_with_a_border_too_few_is_refused_by_name():
-    layer = lanes_to_features(two_way_street())
+    layer = two_way_street().to_features()
     layer.geometries[2] = shapely.Polygon([(0, 0, 0), (5, 0, 0), (0, 3, 0)])
     with pytest.raises(RoadExtractionError, match=r"Lane 1\.2\.1 has 3 vertices"):
-        lanes_from_features(layer)
+        Lanes.from_features(layer)
 
 
 @pytest.mark.parametrize("field, value, said", [
     ("lane_id", None, "no lane_id"), ("lane_id", "1.1.2", "1.1.2 is there 2 times"), ("type", "motorway", "'motorway'")])
 def test_what_lanes_cannot_be_is_said(field, value, said):
-    layer = lanes_to_features(two_way_street())
+    layer = two_way_street().to_features()
     layer.rows[0][field] = value
     with pytest.raises(RoadExtractionError, match=said):
-        lanes_from_features(layer)
+        Lanes.from_features(layer)

@@ -11,7 +11,7 @@ from lanewright.core.driving.lanes import laid_out
 from lanewright.core.markings.cross_section.candidates import boundary_candidates, gather_boundaries
 from lanewright.core.markings.cross_section.sections import sections_of_lines
 from lanewright.core.markings.cross_section.weights import EstimateWeights
-from lanewright.core.markings.lines.painted_lines import lines_from_features
+from lanewright.core.markings.lines.painted_lines import PaintedLines
 from lined_streets import Street
 
 BLOCK = 100.0   # m from one junction to the next
@@ -29,7 +29,7 @@ def street(blocks):
 
 def painted(blocks):
     made = street(blocks)
-    return lines_from_features(made.lines, made.frame), made.frame
+    return PaintedLines.from_features(made.lines, made.frame), made.frame
 
 
 def lanes_of(blocks):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from lanewright.core.common.features import ROAD_EDGES, Features
 from lanewright.core.driving.driving_lines import make_driving_lines
-from lanewright.core.markings.lines.painted_lines import lines_from_features
+from lanewright.core.markings.lines.painted_lines import PaintedLines
 from lanewright.core.road.edges.road_edges import RoadEdges
 from lined_streets import HEIGHT, Street
 from shapely.geometry import LineString
@@ -19,7 +19,8 @@ def lanes_of(*edges, backwards=False):
         s = np.arange(first, last + 0.1, 0.5)
         layer.add(LineString(np.c_[street.places(s, offset), np.full(len(s), HEIGHT - 0.05)]), road=0, side="left" if offset > 0 else "right",
                   status="measured", kind="main", edge=what)
-    return make_driving_lines(lines_from_features(street.lines, street.frame), street.frame, edges=RoadEdges.from_features(layer, street.frame))[2]
+    lines, edges = PaintedLines.from_features(street.lines, street.frame), RoadEdges.from_features(layer, street.frame)
+    return make_driving_lines(lines, street.frame, edges=edges)[2]
 
 
 def shoulders_of(lanes):

@@ -5,8 +5,8 @@ import pytest
 from lanewright.core.common.features import MARKINGS, ROAD_EDGES, Features
 from lanewright.core.common.progress import Progress
 from lanewright.core.driving.driving_lines import make_driving_lines
-from lanewright.core.markings.lines.painted_lines import lines_from_features
-from lanewright.core.markings.objects.marking_objects import markings_from_features
+from lanewright.core.markings.lines.painted_lines import PaintedLines
+from lanewright.core.markings.objects.marking_objects import MarkingObjects
 from lanewright.core.sample.parts.paint import straight_arrow
 from lined_streets import EAST, HEIGHT, Street
 from shapely.geometry import LineString, Polygon
@@ -152,8 +152,8 @@ def test_arrows_against_the_drive_still_tell_which_lanes_lead_alike(way):
     assert lanes_of(street, markings=arrows) == {-3.5: 1, 0.0: way, 3.5: -1}
     said, progress = [], Progress()
     progress.warn = said.append
-    make_driving_lines(lines_from_features(street.lines, street.frame), street.frame, progress=progress,
-                       markings=markings_from_features(arrows, street.frame))
+    make_driving_lines(PaintedLines.from_features(street.lines, street.frame), street.frame, progress=progress,
+                       markings=MarkingObjects.from_features(arrows, street.frame))
     assert "against the arrows" in " ".join(said)
 
 

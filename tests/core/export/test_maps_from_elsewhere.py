@@ -5,12 +5,12 @@ import time
 import numpy as np
 import pytest
 import shapely
-from lanewright.core.driving.layers import lanes_from_features
+from lanewright.core.driving.layers import Lanes
 from lanewright.core.export.check.lanelets import check_lanelets
 from lanewright.core.export.inferred_ways import with_inferred_ways
 from lanewright.core.export.lanelet_export import draft_lanelets, lanelet2_text, to_degrees
 from lanewright.core.export.lanelet_map import layers_of_lanelets, node_places, read_lanelet2
-from lanewright.core.export.map_layers import LaneRows, border_misses
+from lanewright.core.export.map_layers import border_misses
 from lanewright.core.export.opendrive.exporter import draft_opendrive
 from lanewright.core.export.opendrive.geometry import fit_cubics
 from lanewright.core.export.opendrive.layers import layers_of_opendrive
@@ -81,7 +81,7 @@ MAPS = {
 def taken_in(folder, text):
     """Layers of a file, and its lanes as they are read from the layer of areas."""
     found = layers_of_opendrive(read_opendrive(written(folder, opendrive(text if isinstance(text, list) else [text]))), "EPSG:25832")
-    return found, lanes_from_features(found.lane_areas())
+    return found, Lanes.from_features(found.lane_areas())
 
 
 def given_out(folder, lanes):
@@ -138,10 +138,10 @@ def test_roads_that_do_not_meet_in_height_are_named(tmp_path):
 
 
 def test_a_miss_between_the_vertices_of_a_border_is_seen_and_what_lies_beyond_its_end_is_not():
-    ours, theirs = LaneRows(), LaneRows()
-    ours.add(np.array([[0.0, 0, 0], [10, 0, 0]]), np.array([[0.0, -3, 0], [10, -3, 0]]))
-    theirs.add(np.array([[-1.0, 0, 0], [5, 0.05, 0], [12, 0, 0]]), np.array([[-1.0, -3, 0], [5, -3, 0], [12, -3, 0]]))
-    assert border_misses(ours.lanes(), theirs.lanes())[0].largest == pytest.approx(0.05)
+    ours, theirs = (Lanes.of_pieces([dict(left=np.array(left), right=np.array(right))]) for left, right in (
+        ([[0.0, 0, 0], [10, 0, 0]], [[0.0, -3, 0], [10, -3, 0]]),
+        ([[-1.0, 0, 0], [5, 0.05, 0], [12, 0, 0]], [[-1.0, -3, 0], [5, -3, 0], [12, -3, 0]])))
+    assert border_misses(ours, theirs)[0].largest == pytest.approx(0.05)
 
 
 def test_a_lane_that_begins_at_width_0_keeps_both_of_its_borders(tmp_path):

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 from lanewright.core.inventory.borders import BorderLayers
-from lanewright.core.inventory.cross_sections import measure_cross_sections
-from lanewright.core.inventory.section_layer import sections_to_features
+from lanewright.core.inventory.cross_sections import measure_cross_sections, sections_to_features
 from measured_streets import HALF, Drive, edges_of, markings_of, measured_road
 
 # step in m, roll and yaw of either scanner on the vehicle in m/m: 0.004 are 0.23 degrees

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.inventory.borders import BorderLayers
-from lanewright.core.inventory.cross_sections import measure_cross_sections
-from lanewright.core.inventory.section_layer import sections_to_features
+from lanewright.core.inventory.cross_sections import measure_cross_sections, sections_to_features
 from lanewright.core.inventory.settings import CrossSectionSettings
 from lanewright.core.report.inventory import cross_section_report
 from measured_streets import GROUND, HALF, Drive, edges_of, lanes_of, markings_of, measured_road

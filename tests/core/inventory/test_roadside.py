@@ -6,13 +6,11 @@ import shapely
 from lanewright.core.common.features import Features
 from lanewright.core.inventory.borders import BorderLayers
 from lanewright.core.inventory.roadside import find as finding
-from lanewright.core.inventory.roadside.chains import find_chains
-from lanewright.core.inventory.roadside.divide import things_of
+from lanewright.core.inventory.roadside.chains import find_chains, things_of
 from lanewright.core.inventory.roadside.find import find_roadside
-from lanewright.core.inventory.roadside.layers import roadside_to_features
-from lanewright.core.inventory.roadside.poles import find_poles
-from lanewright.core.inventory.roadside.settings import RoadsideSettings
-from lanewright.core.inventory.roadside.uprights import TOP_BINS, Uprights
+from lanewright.core.inventory.roadside.result import roadside_to_features
+from lanewright.core.inventory.roadside.uprights import TOP_BINS, Uprights, find_poles
+from lanewright.core.inventory.settings import RoadsideSettings
 from lanewright.core.report.inventory import roadside_report
 from measured_streets import GROUND, SENSOR, Drive, edges_of, measured_road
 from roadside_streets import BESIDE, HEIGHTS, LENGTH, Thing, hidden_by, points_of, pole_points, road_with, vans

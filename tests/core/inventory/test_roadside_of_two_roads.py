@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 from drives import drive, joined, straight
 from lanewright.core.inventory.roadside.chains import Chain
-from lanewright.core.inventory.roadside.poles import Pole
-from lanewright.core.inventory.roadside.settings import RoadsideSettings
-from lanewright.core.inventory.roadside.shared import Roadside, SideEdges, SideLine, told_once
-from lanewright.core.inventory.roadside.uprights import LOW_BINS, UPRIGHT_SLICE, Uprights
+from lanewright.core.inventory.roadside.result import Roadside, SideEdges, SideLine, told_once
+from lanewright.core.inventory.roadside.uprights import LOW_BINS, UPRIGHT_SLICE, Pole, Uprights
+from lanewright.core.inventory.settings import RoadsideSettings
 from lanewright.core.survey.frame.road_frame import build_frame
 
 APART, HALF, LENGTH = 20.0, 4.0, 100.0   # m between the tracks, from each to its edges

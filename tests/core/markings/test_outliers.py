@@ -124,7 +124,7 @@ def test_a_lone_point_goes_however_points_are_rounded_or_repeated_and_25_at_one_
     records = EXPORTS[export](with_stray(paint(FRAME, [LINE, strip(5, 60, -2.6, -2.45)], density=1500), 33.0, 0.4))
     kept = remove_outliers(road_points(records, FRAME)).all_points()
     assert (abs(kept.d - 0.4) < 0.01).any() == (export == "every point 25 times")
-    assert len(kept) > 0.97 * len(records)
+    assert len(kept) > 0.95 * len(records)
 
 
 def test_a_handful_of_points_is_left_alone():

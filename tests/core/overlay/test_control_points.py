@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from flown_images import EAST, NORTH, image
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.overlay.control_point_file import read_control_points
-from lanewright.core.overlay.control_points import control_points
+from lanewright.core.overlay.control_points import control_points, read_control_points
 from lanewright.core.overlay.source_image import SourceImage
 
 PIXEL, LINE = [10.5, 590.0, 300.25, 20.0], [20.25, 30.0, 380.0, 390.5]

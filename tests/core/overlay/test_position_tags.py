@@ -1,7 +1,7 @@
 """Position tags of images."""
 
 import pytest
-from lanewright.core.overlay.position_tags import read_position_tags
+from lanewright.core.overlay.rough_place import read_position_tags
 from lanewright.core.overlay.source_image import open_image
 
 

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.overlay.control_points import control_points
-from lanewright.core.overlay.position_tags import position_tags
-from lanewright.core.overlay.rough_place import rough_place
+from lanewright.core.overlay.rough_place import position_tags, rough_place
 from lanewright.core.overlay.source_image import SourceImage
 from lanewright.core.sample.camera_tags import camera_tags
 from lanewright.core.sample.survey import SampleSettings, make_sample_survey

@@ -5,7 +5,7 @@ import pytest
 import shapely
 from lanewright.core.inventory.borders import BorderLayers
 from lanewright.core.inventory.roadside.find import find_roadside
-from lanewright.core.inventory.roadside.layers import roadside_to_features
+from lanewright.core.inventory.roadside.result import roadside_to_features
 from lanewright.core.sample.parts.materials import LABEL
 from lanewright.core.sample.survey import SampleSettings, make_sample_survey
 from lanewright.core.survey.open_survey import SurveySettings, open_survey

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from lanewright.core.common.features import MARKINGS, Features
 from lanewright.core.markings.cross_section.roads import arrows_of
-from lanewright.core.markings.objects.marking_objects import markings_from_features
+from lanewright.core.markings.objects.marking_objects import MarkingObjects
 from lanewright.core.sample.parts.paint import left_arrow, straight_arrow, turn_arrow
 from lined_streets import HEIGHT, Street
 from shapely.geometry import Polygon
@@ -15,7 +15,7 @@ def ways(street, *outlines, cluster=None):
     for outline in outlines:
         places = street.places(*outline.T)
         layer.add(Polygon(np.c_[places, np.full(len(places), HEIGHT)]), road=0, use="other", cluster=cluster, **{"class": "arrow"})
-    return arrows_of(markings_from_features(layer, street.frame), street.frame, 0)
+    return arrows_of(MarkingObjects.from_features(layer, street.frame), street.frame, 0)
 
 
 def turned(outline, angle):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from lanewright.core.common.features import MARKINGS, Features
 from lanewright.core.markings.cross_section.evidence import borders_of_hatching
-from lanewright.core.markings.objects.marking_objects import markings_from_features
+from lanewright.core.markings.objects.marking_objects import MarkingObjects
 from lined_streets import HEIGHT, Street
 from shapely.geometry import Polygon
 
@@ -18,7 +18,7 @@ def borders(*areas):
     for first, last, right, left, kind in areas:
         corners = street.places([first, last, last, first], [right, right, left, left])
         layer.add(Polygon(np.c_[corners, np.full(4, HEIGHT)]), **{"road": 0, "class": kind, "use": "other" if kind == "hatch" else "keep"})
-    found = borders_of_hatching(markings_from_features(layer, street.frame), street.frame, 0, S)
+    found = borders_of_hatching(MarkingObjects.from_features(layer, street.frame), street.frame, 0, S)
     rows = found[np.arange(len(found)), :]
     # the borders beside the bars and those of the tips follow each other
     assert len(rows) % 2 == 0 and (np.isfinite(rows[::2]).sum(0) <= 1).all()

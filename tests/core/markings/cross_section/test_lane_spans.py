@@ -7,7 +7,7 @@ from lanewright.core.markings.cross_section.estimate import lane_spans
 from lanewright.core.markings.cross_section.roads import estimate_roads
 from lanewright.core.markings.cross_section.sections import sections_of_lines
 from lanewright.core.markings.cross_section.sequence import lane_strips
-from lanewright.core.markings.lines.painted_lines import lines_from_features
+from lanewright.core.markings.lines.painted_lines import PaintedLines
 from lined_streets import Street
 
 
@@ -15,7 +15,7 @@ def read_as_one_way():
     """The estimate of a street with a double line between its two lanes, and where two lanes of one way are chosen instead."""
     street = Street(vehicle=-1.75).paint(3.5, kind="edge").paint(-3.5, kind="edge")
     street.paint(0.15, pattern="double-solid").paint(-0.15, pattern="double-solid")
-    lines = lines_from_features(street.lines, street.frame)
+    lines = PaintedLines.from_features(street.lines, street.frame)
     estimate = estimate_roads(sections_of_lines(lines), street.frame, 3.5, "right").roads[0].estimate
     strips, shape = lane_strips(estimate.sections), estimate.sections.cost.shape
     number, first = np.zeros((2, *shape))

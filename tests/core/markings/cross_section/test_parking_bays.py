@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from lanewright.core.common.features import MARKINGS, Features
 from lanewright.core.markings.cross_section.evidence import BINS, places_of_bays, rows_of_bays
-from lanewright.core.markings.objects.marking_objects import markings_from_features
+from lanewright.core.markings.objects.marking_objects import MarkingObjects
 from lined_streets import HEIGHT, Street
 from shapely.geometry import Polygon
 
@@ -22,7 +22,7 @@ def bays(*rows, width=0.1, driven=-1.5, skew=0.0):
             corners = street.places([s, s + width, s + width + lean, s + lean], [right, right, left, left])
             layer.add(Polygon(np.c_[corners, np.full(4, HEIGHT)]), **{"road": 0, "class": "symbol", "use": "other", "width_m": width})
     track = np.full((1, len(S)), driven)
-    places, ends = places_of_bays(rows_of_bays(markings_from_features(layer, street.frame), 0, S, track), S, track)
+    places, ends = places_of_bays(rows_of_bays(MarkingObjects.from_features(layer, street.frame), 0, S, track), S, track)
     return places, ends[np.arange(len(ends)), :]
 
 

@@ -5,8 +5,8 @@ import pytest
 import shapely
 from lanewright.core.common.features import MARKING_LINES, MARKINGS, Features
 from lanewright.core.markings.lines.linking import with_paint_between_tracks, with_unseen_paint
-from lanewright.core.markings.lines.painted_lines import lines_from_features
-from lanewright.core.markings.objects.marking_objects import markings_from_features, markings_to_features, with_kinds_of
+from lanewright.core.markings.lines.painted_lines import PaintedLines
+from lanewright.core.markings.objects.marking_objects import MarkingObjects, with_kinds_of
 from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.store.records import ROAD_POINT, to_units
 from lanewright.core.survey.store.road_points import RoadPoints
@@ -44,7 +44,7 @@ def street(spacing=0.30, slope=0.012, phase=-0.05, painted=lambda x: x > -1, sha
     paint.store.append(0, records[records["cluster"] > 0])
     points.store.append(0, records)
     paint.has_cluster = paint.has_spacing = True
-    return markings_from_features(markings, FRAME), lines_from_features(lines, FRAME), paint, points
+    return MarkingObjects.from_features(markings, FRAME), PaintedLines.from_features(lines, FRAME), paint, points
 
 
 def completed(markings, lines, paint, points):
@@ -62,7 +62,7 @@ def test_a_line_that_lies_between_two_tracks_for_a_while_goes_on_there():
     found = completed(markings, *rest)
     assert drawn_in_gap(markings) == 0.0
     assert drawn_in_gap(found) == pytest.approx(15.0, abs=0.5)
-    more = found.take(np.arange(len(markings), len(found)))
+    more = found[len(markings):]
     assert set(more.kind) == {"lane"} and set(more.cluster) <= {1, 3} and (more.points == 0).all() and more.width == pytest.approx(WIDTH)
     true = shapely.box(0.0, LINE - WIDTH / 2, 40.0, LINE + WIDTH / 2).buffer(0.01)
     assert all(true.contains(polygon) for polygon in more.outlines.polygons(FRAME.origin))
@@ -109,7 +109,7 @@ def test_lines_that_were_drawn_by_hand_add_no_paint():
 def test_stage_by_stage_the_layer_gets_the_same_paint_as_in_one_call():
     markings, *rest = street()
     found = completed(markings, *rest)
-    read, whole = markings_to_features(markings, FRAME), markings_to_features(found, FRAME)
-    layer = with_kinds_of(read, found)
+    read, whole = markings.to_features(FRAME), found.to_features(FRAME)
+    layer = with_kinds_of(read, found, FRAME)
     assert len(layer.rows) > len(read.rows) and layer.rows == whole.rows
     assert all(shapely.equals_identical(a, b) for a, b in zip(layer.geometries, whole.geometries, strict=True))

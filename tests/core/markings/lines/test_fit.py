@@ -11,8 +11,8 @@ from lanewright.core.common.features import MARKINGS, Features
 from lanewright.core.common.progress import Progress
 from lanewright.core.curves.model_selection import curve_from_params
 from lanewright.core.markings.lines.fit import MarkingLineSettings, fit_marking_lines
-from lanewright.core.markings.lines.painted_lines import lines_from_features, lines_to_features
-from lanewright.core.markings.objects.marking_objects import markings_from_features
+from lanewright.core.markings.lines.painted_lines import PaintedLines
+from lanewright.core.markings.objects.marking_objects import MarkingObjects
 from lanewright.core.survey.store.road_points import RoadPoints
 
 
@@ -288,13 +288,13 @@ def test_where_the_chosen_curve_cannot_be_the_user_is_told():
 def test_lines_that_are_written_as_a_layer_and_read_again_lie_at_the_same_stations_and_offsets():
     street = ClusteredStreet().paint(0, 120, 4.0, kind="edge").dashes(3.0, 6.0, 0.0, missing=(4, 5))
     lines = street.painted_lines()
-    again = lines_from_features(lines_to_features(lines, street.frame), street.frame)
+    again = PaintedLines.from_features(lines.to_features(street.frame), street.frame)
     for name in ("line", "kind", "pattern", "status"):
         np.testing.assert_array_equal(getattr(again, name), getattr(lines, name))
     for name in ("road", "start", "s", "d", "z"):
         np.testing.assert_array_equal(getattr(again.course, name), getattr(lines.course, name))
     with pytest.raises(ValueError, match="no fitted curves"):
-        lines_to_features(again, street.frame)
+        again.to_features(street.frame)
 
 
 def test_three_worn_pieces_between_solid_stretches_are_no_dashes_though_they_lie_evenly():
@@ -312,7 +312,7 @@ def test_points_that_were_not_clustered_are_refused():
     street = ClusteredStreet()
     points = RoadPoints.empty_like(origin=street.frame.origin)
     with pytest.raises(RoadExtractionError, match="Cluster markings"):
-        fit_marking_lines(points, markings_from_features(Features("PolygonZ", MARKINGS), street.frame), street.frame)
+        fit_marking_lines(points, MarkingObjects.from_features(Features("PolygonZ", MARKINGS), street.frame), street.frame)
 
 
 def test_settings_out_of_range_are_refused():

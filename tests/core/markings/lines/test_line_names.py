@@ -4,8 +4,8 @@ import numpy as np
 import shapely
 from lanewright.core.common.features import MARKING_LINES, MARKINGS, Features
 from lanewright.core.markings.lines.fit import named_by_lines
-from lanewright.core.markings.lines.painted_lines import lines_from_features
-from lanewright.core.markings.objects.marking_objects import markings_from_features
+from lanewright.core.markings.lines.painted_lines import PaintedLines
+from lanewright.core.markings.objects.marking_objects import MarkingObjects
 from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.trajectory.trajectory import Trajectory
 
@@ -27,13 +27,13 @@ def street(*lines):
 
 def test_the_dashes_of_a_centre_line_are_centre_line_and_nothing_else_changes_its_name():
     markings, lines = street((0.0, "centre"), (4.0, "edge"))
-    objects = markings_from_features(markings, FRAME)
-    assert named_by_lines(objects, lines_from_features(lines, FRAME)).kind.tolist() == ["centre"] * 3 + ["arrow", "edge"]
+    objects = MarkingObjects.from_features(markings, FRAME)
+    assert named_by_lines(objects, PaintedLines.from_features(lines, FRAME)).kind.tolist() == ["centre"] * 3 + ["arrow", "edge"]
     assert objects.kind.tolist() == ["lane"] * 3 + ["arrow", "edge"]
 
 
 def test_a_line_beside_a_marking_does_not_name_it():
     markings, lines = street((0.4, "centre"))
-    objects = markings_from_features(markings, FRAME)
+    objects = MarkingObjects.from_features(markings, FRAME)
     for some in (lines, Features("LineStringZ", MARKING_LINES)):
-        assert named_by_lines(objects, lines_from_features(some, FRAME)).kind.tolist() == objects.kind.tolist()
+        assert named_by_lines(objects, PaintedLines.from_features(some, FRAME)).kind.tolist() == objects.kind.tolist()
