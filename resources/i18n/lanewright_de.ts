@@ -1310,8 +1310,8 @@
         </message>
         <message>
             <location filename="../../algorithms/driving/road_map.py" />
-            <source>The same stages as the single algorithms, handed on in memory. Every output is optional.</source>
-            <translation>Dieselben Stufen wie die einzelnen Algorithmen, im Speicher weitergereicht. Jede Ausgabe ist wahlfrei.</translation>
+            <source>Point clouds, the trajectory, and where to save are enough: everything else has a default that suits most surveys. The stages are those of the single algorithms, handed on in memory. Every output is optional.</source>
+            <translation>Punktwolken, die Trajektorie und der Ort zum Speichern genügen: Alles andere ist so voreingestellt, dass es für die meisten Vermessungen passt. Die Stufen sind die der einzelnen Algorithmen, im Speicher weitergereicht. Jede Ausgabe ist wahlfrei.</translation>
         </message>
         <message>
             <location filename="../../algorithms/driving/road_map.py" />
@@ -1445,8 +1445,8 @@
         </message>
         <message>
             <location filename="../../algorithms/export/check_map.py" />
-            <source>A schema validator looks at other things; use both.</source>
-            <translation>Eine Schemaprüfung sieht auf anderes; nehmen Sie beides.</translation>
+            <source>The same finding at many places is one row of the report and one line of the log, with its count, its places and the largest; those at the fewest places come first. A schema validator looks at other things; use both.</source>
+            <translation>Derselbe Befund an vielen Stellen ist eine Zeile im Bericht und eine im Protokoll, mit Anzahl, Stellen und dem größten; Befunde an den wenigsten Stellen kommen zuerst. Eine Schemaprüfung sieht auf anderes; nehmen Sie beides.</translation>
         </message>
         <message>
             <location filename="../../algorithms/export/check_map.py" />
@@ -1510,8 +1510,8 @@
         </message>
         <message>
             <location filename="../../algorithms/export/check_map.py" />
-            <source>A point for each finding. Heights are the map's.</source>
-            <translation>Ein Punkt je Befund. Höhen sind die der Karte.</translation>
+            <source>A point for each finding, with the row of the report in which the same findings are one. Heights are the map's.</source>
+            <translation>Ein Punkt je Befund, mit der Zeile des Berichts, die gleiche Befunde zusammenfasst. Höhen sind die der Karte.</translation>
         </message>
         <message>
             <location filename="../../algorithms/export/check_map.py" />
@@ -1535,8 +1535,13 @@
         </message>
         <message>
             <location filename="../../algorithms/export/check_map.py" />
-            <source>{fault}: {count}</source>
-            <translation>{fault}: {count}</translation>
+            <source>{fault}: {count} ({places}). {text}</source>
+            <translation>{fault}: {count} ({places}). {text}</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/check_map.py" />
+            <source>The first {shown} of {count}; the layer has all of them.</source>
+            <translation>Die ersten {shown} von {count}; der Layer hat alle.</translation>
         </message>
         <message>
             <location filename="../../algorithms/export/export_cad.py" />
@@ -1822,6 +1827,11 @@
             <location filename="../../algorithms/export/export_lanelet2.py" />
             <source>Lanelet2 map</source>
             <translation>Lanelet2-Karte</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_lanelet2.py" />
+            <source>{fault}: {count}</source>
+            <translation>{fault}: {count}</translation>
         </message>
         <message>
             <location filename="../../algorithms/export/export_lanelet2.py" />
@@ -4659,364 +4669,359 @@
             <translation>{label} hat Geometrien ohne Höhen (Z). Den Layer verwenden, den Lanewright geschrieben hat.</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>measured</source>
             <translation>gemessen</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>bridged</source>
             <translation>überbrückt</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>inferred</source>
             <translation>erschlossen</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>hidden</source>
             <translation>verdeckt</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>grown</source>
             <translation>gewachsen</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>accepted</source>
             <translation>bestätigt</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>drawn</source>
             <translation>gezeichnet</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>unknown</source>
             <translation>unbekannt</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>together</source>
             <translation>zusammen</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>carriageway</source>
             <translation>Fahrbahn</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>dropped curb</source>
             <translation>abgesenkter Bordstein</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>edge of the pavement</source>
             <translation>Rand der Befestigung</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>main carriageway</source>
             <translation>durchgehende Fahrbahn</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>corner of a curb</source>
             <translation>Bordsteinecke</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>side street</source>
             <translation>Seitenstraße</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>island</source>
             <translation>Insel</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>Zebra crossing</source>
             <translation>Zebrastreifen</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>Stop line</source>
             <translation>Haltlinie</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>Give-way line</source>
             <translation>Wartelinie</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>Zigzag line</source>
             <translation>Zickzacklinie</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>Arrow</source>
             <translation>Pfeil</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>Symbol</source>
             <translation>Symbol</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>Hatching</source>
             <translation>Schraffur</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>Bicycle symbol</source>
             <translation>Fahrradsymbol</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>Word BUS</source>
             <translation>Schriftzug BUS</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>marking</source>
             <translation>Markierung</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>other paint</source>
             <translation>andere Farbe</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>solid</source>
             <translation>durchgezogen</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>dashed</source>
             <translation>gestrichelt</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>double, solid</source>
             <translation>doppelt, durchgezogen</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>double, dashed</source>
             <translation>doppelt, gestrichelt</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>solid and dashed</source>
             <translation>durchgezogen und gestrichelt</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>dashed and solid</source>
             <translation>gestrichelt und durchgezogen</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>between two lines</source>
             <translation>zwischen zwei Linien</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>beside one line</source>
             <translation>neben einer Linie</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>Driving lane</source>
             <translation>Fahrstreifen</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>Shoulder</source>
             <translation>Seitenstreifen</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>Parking</source>
             <translation>Parkstreifen</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>Bicycle lane</source>
             <translation>Radfahrstreifen</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>Hatched area</source>
             <translation>Sperrfläche</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>Median</source>
             <translation>Mittelstreifen</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>Connector over a junction</source>
             <translation>Verbindung über eine Kreuzung</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>accept</source>
             <translation>bestätigen</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>delete</source>
             <translation>löschen</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>move</source>
             <translation>verschieben</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>ahead</source>
             <translation>vorn</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>behind</source>
             <translation>hinten</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>above</source>
             <translation>oberhalb</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>below</source>
             <translation>unterhalb</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>Wall</source>
             <translation>Mauer</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>Gutter</source>
             <translation>Rinne</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>Tree trunk</source>
             <translation>Baumstamm</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>rut depth</source>
             <translation>Spurrinnentiefe</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>grade</source>
             <translation>Längsneigung</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>correct</source>
             <translation>richtig</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>missed</source>
             <translation>verpasst</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>false</source>
             <translation>falsch</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>excluded</source>
             <translation>ausgenommen</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>Control point</source>
             <translation>Passpunkt</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>Check point</source>
             <translation>Prüfpunkt</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>Disabled point</source>
             <translation>Abgeschalteter Punkt</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>start</source>
             <translation>Anfang</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>end</source>
             <translation>Ende</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>arc</source>
             <translation>Kreisbogen</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>parametric cubic</source>
             <translation>parametrische Kubik</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>Edge line</source>
             <translation>Randlinie</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>Lane line</source>
             <translation>Fahrstreifenlinie</translation>
         </message>
         <message>
-            <location filename="../../core/common/words.py" />
+            <location filename="../../core/common/texts.py" />
             <source>Centre line</source>
             <translation>Mittellinie</translation>
         </message>
         <message>
             <location filename="../../core/report/assessment.py" />
-            <source>Accuracy of road boundaries</source>
-            <translation>Genauigkeit der Straßenränder</translation>
+            <source>largest</source>
+            <translation>größte</translation>
         </message>
         <message>
             <location filename="../../core/report/assessment.py" />
-            <source>Errors in the correct intervals</source>
-            <translation>Abweichungen in den richtigen Abschnitten</translation>
+            <source>lateral error (cm)</source>
+            <translation>Querabweichung (cm)</translation>
         </message>
         <message>
             <location filename="../../core/report/assessment.py" />
-            <source>Intervals by outcome; north is up. Correct, missed and excluded ones are drawn along the reference, false ones along the result.</source>
-            <translation>Abschnitte nach Ergebnis; Norden ist oben. Richtige, übersehene und ausgenommene sind längs der Referenz gezeichnet, falsche längs des Ergebnisses.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>Along the road</source>
-            <translation>Längs der Straße</translation>
+            <source>% of the length</source>
+            <translation>% der Länge</translation>
         </message>
         <message>
             <location filename="../../core/report/assessment.py" />
@@ -5025,1258 +5030,123 @@
         </message>
         <message>
             <location filename="../../core/report/assessment.py" />
-            <source>Distribution</source>
-            <translation>Verteilung</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>Accuracy of driving lines</source>
-            <translation>Genauigkeit der Fahrlinien</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>Errors</source>
-            <translation>Abweichungen</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>The result's lines, correct and false, and the reference where it was missed; north is up.</source>
-            <translation>Die Linien des Ergebnisses, richtig und falsch, und die Referenz, wo sie übersehen wurde; Norden ist oben.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
             <source>positive left of the reference as drawn</source>
             <translation>positiv links der Referenz, wie sie gezeichnet ist</translation>
         </message>
         <message>
             <location filename="../../core/report/assessment.py" />
-            <source>Line by line</source>
-            <translation>Linie für Linie</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>Accuracy of markings</source>
-            <translation>Genauigkeit der Markierungen</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>With a tolerance and for objects, IoU is F1 / (2 − F1): right cells of the result and found ones of the reference differ in number.</source>
-            <translation>Mit Toleranz und bei Objekten ist IoU = F1 / (2 − F1): Die Zahl der richtigen Zellen des Ergebnisses und die der gefundenen der Referenz unterscheiden sich.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>Map</source>
-            <translation>Karte</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>Objects of the reference that were found and missed, and false objects of the result; north is up.</source>
-            <translation>Gefundene und übersehene Objekte der Referenz und falsche Objekte des Ergebnisses; Norden ist oben.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>By class</source>
-            <translation>Nach Klasse</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>Recall and precision count paint of any class; F1 and IoU of the class require the same class in both, if both have it.</source>
-            <translation>Vollständigkeit und Präzision zählen Farbe jeder Klasse; F1 und IoU der Klasse verlangen in beiden dieselbe Klasse, wo beide eine haben.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>Side</source>
-            <translation>Seite</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>Tolerance (cm)</source>
-            <translation>Toleranz (cm)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>Intervals</source>
-            <translation>Abschnitte</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>Correct</source>
-            <translation>Richtig</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>Missed</source>
-            <translation>Übersehen</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>False</source>
-            <translation>Falsch</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>Across: mean (cm)</source>
-            <translation>Quer: Mittel (cm)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>Maximum (cm)</source>
-            <translation>Größter Wert (cm)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>Height: mean (cm)</source>
-            <translation>Höhe: Mittel (cm)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>Half-width (cm)</source>
-            <translation>Halbe Breite (cm)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>Total width (cm)</source>
-            <translation>Ganze Breite (cm)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>Mean gap (m)</source>
-            <translation>Mittlere Lücke (m)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>Mean (cm)</source>
-            <translation>Mittel (cm)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>Reference line</source>
-            <translation>Referenzlinie</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>Right</source>
-            <translation>Richtig</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>within {cells} (%)</source>
-            <translation>innerhalb von {cells} (%)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>Class</source>
-            <translation>Klasse</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>Reference cells</source>
-            <translation>Zellen der Referenz</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>Result cells</source>
-            <translation>Zellen des Ergebnisses</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>F1 of the class (%)</source>
-            <translation>F1 der Klasse (%)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>IoU of the class (%)</source>
-            <translation>IoU der Klasse (%)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>Judged in intervals of {interval:g} m along {along}, each side by itself. An interval is correct when lines of the result cover at least {coverage:g} % of it and {agreement:g} % of them lie within the tolerance of the reference. A line elsewhere is false, and the reference is missed; so it is where there is no line, whether something hid the boundary or not. Tolerances are distances to either side.</source>
-            <translation>Beurteilt in Abschnitten von {interval:g} m längs: {along}; jede Seite für sich. Ein Abschnitt ist richtig, wenn Linien des Ergebnisses mindestens {coverage:g} % davon abdecken und {agreement:g} % von ihnen innerhalb der Toleranz der Referenz liegen. Eine Linie anderswo ist falsch und die Referenz übersehen; ebenso, wo keine Linie ist, ob nun etwas den Rand verdeckt hat oder nicht. Toleranzen sind Abstände nach jeder Seite.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>Not judged: {count} intervals.</source>
-            <translation>Nicht beurteilt: {count} Abschnitte.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>The mean across is {signed}; heights are result less reference, and missing where a layer has none.</source>
-            <translation>Das Mittel quer ist {signed}; Höhen sind Ergebnis weniger Referenz und fehlen, wo ein Layer keine hat.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>Map, within {tolerance:g} cm</source>
-            <translation>Karte, innerhalb von {tolerance:g} cm</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>{result} against {reference}.</source>
-            <translation>{result} gegen {reference}.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>Not judged because</source>
-            <translation>Nicht beurteilt, weil</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>Completeness (recall) is the share of the reference within the tolerance of the result; correctness (precision) the share of the result within the tolerance of the reference, and miscoding the share outside it: the buffer lies about the reference. Quality is matched result over result and unmatched reference.</source>
-            <translation>Vollständigkeit ist der Anteil der Referenz innerhalb der Toleranz des Ergebnisses; Richtigkeit (Präzision) der Anteil des Ergebnisses innerhalb der Toleranz der Referenz, Fehlkodierung der Anteil außerhalb: Der Puffer liegt um die Referenz. Qualität ist zugeordnetes Ergebnis durch Ergebnis und nicht zugeordnete Referenz.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>{result:.1f} m of result, {reference:.1f} m of reference. A gap is at least {gap:g} m of reference without a result within the tolerance.</source>
-            <translation>{result:.1f} m Ergebnis, {reference:.1f} m Referenz. Eine Lücke ist mindestens {gap:g} m Referenz ohne ein Ergebnis innerhalb der Toleranz.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>Across</source>
-            <translation>Quer</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>Height</source>
-            <translation>Höhe</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>Of the result within {distance:.0f} cm of a reference line. The mean across is positive left of the reference as drawn.</source>
-            <translation>Vom Ergebnis innerhalb von {distance:.0f} cm um eine Referenzlinie. Das Mittel quer ist positiv links der Referenz, wie sie gezeichnet ist.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>Half-widths. Each reference line with the result that lies nearest to it; result farther than {distance:.0f} cm from every reference line belongs to none and shows in the table above only.</source>
-            <translation>Halbe Breiten. Jede Referenzlinie mit dem Ergebnis, das ihr am nächsten liegt; Ergebnis, das weiter als {distance:.0f} cm von jeder Referenzlinie entfernt ist, gehört zu keiner und steht nur in der Tabelle oben.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>Judged in cells of {size:g} cm; a cell is painted when its centre is. With a tolerance of one cell the other side is widened by one cell all round before the comparison. An object is found, or right, if at least {share:g} % of its cells are, with a tolerance of {cells}.</source>
-            <translation>Beurteilt in Zellen von {size:g} cm; eine Zelle ist markiert, wenn ihre Mitte es ist. Mit einer Toleranz von einer Zelle wird die andere Seite vor dem Vergleich ringsum um eine Zelle verbreitert. Ein Objekt ist gefunden oder richtig, wenn mindestens {share:g} % seiner Zellen es sind, mit einer Toleranz von {cells}.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>Cells, strict</source>
-            <translation>Zellen, streng</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>With a tolerance of {cells}.</source>
-            <translation>Mit einer Toleranz von {cells}.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>{count} cell</source>
-            <translation>{count} Zelle</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>{count} cells</source>
-            <translation>{count} Zellen</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>{length:.1f} m of the result lie more than {corridor:g} m from the trajectory and were left out.</source>
-            <translation>{length:.1f} m des Ergebnisses liegen mehr als {corridor:g} m von der Trajektorie entfernt und wurden weggelassen.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>Tolerances were given as the total width of the buffer; the half-width stands beside it.</source>
-            <translation>Toleranzen wurden als ganze Breite des Puffers angegeben; die halbe steht daneben.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>Tolerances were given as the half-width of the buffer, from the line to its rim.</source>
-            <translation>Toleranzen wurden als halbe Breite des Puffers angegeben, von der Linie zu seinem Rand.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>Lines match whatever their direction.</source>
-            <translation>Linien passen zusammen, welche Richtung sie auch haben.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>Cells, tolerance {cells}</source>
-            <translation>Zellen, Toleranz {cells}</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>Objects</source>
-            <translation>Objekte</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>Lines that cross at more than {angle:g}° do not match.</source>
-            <translation>Linien, die sich unter mehr als {angle:g}° kreuzen, passen nicht zusammen.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>Recall {tolerance:g} cm (%)</source>
-            <translation>Vollständigkeit {tolerance:g} cm (%)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment.py" />
-            <source>Miscoding {tolerance:g} cm (%)</source>
-            <translation>Fehlkodierung {tolerance:g} cm (%)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment_figures.py" />
-            <source>largest</source>
-            <translation>größte</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment_figures.py" />
-            <source>lateral error (cm)</source>
-            <translation>Querabweichung (cm)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment_figures.py" />
-            <source>% of the length</source>
-            <translation>% der Länge</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/assessment_figures.py" />
             <source>along {what} (m)</source>
             <translation>längs: {what} (m)</translation>
         </message>
         <message>
-            <location filename="../../core/report/assessment_figures.py" />
+            <location filename="../../core/report/assessment.py" />
             <source>The lateral error along {what}: bars are the RMSE of every {bin:.0f} m, the line is the largest.</source>
             <translation>Die Querabweichung längs: {what}. Balken sind der RMSE von je {bin:.0f} m, die Linie ist die größte.</translation>
         </message>
         <message>
-            <location filename="../../core/report/assessment_figures.py" />
+            <location filename="../../core/report/assessment.py" />
             <source>Lateral error, {signed}; what lies farther out is counted in the outermost bars.</source>
             <translation>Querabweichung, {signed}; was weiter außen liegt, zählt in den äußersten Balken.</translation>
         </message>
         <message>
-            <location filename="../../core/report/assessment_figures.py" />
+            <location filename="../../core/report/assessment.py" />
             <source>Outcomes along {what}, in every {bin:.0f} m.</source>
             <translation>Ergebnisse längs: {what}, je {bin:.0f} m.</translation>
         </message>
         <message>
-            <location filename="../../core/report/assessment_figures.py" />
-            <source>The bar is {length:g} m long.</source>
-            <translation>Der Balken ist {length:g} m lang.</translation>
+            <location filename="../../core/report/hd_map.py" />
+            <source>{named}; and {rest} more</source>
+            <translation>{named}; und {rest} weitere</translation>
         </message>
         <message>
-            <location filename="../../core/report/cross_sections.py" />
-            <source>Stations count along the road, offsets to its left. Crossfall is positive where the road falls to the right, seen along the road; left and right are seen that way too.</source>
-            <translation>Stationen zählen längs der Straße, Abstände nach links. Die Querneigung ist positiv, wo die Straße nach rechts fällt, längs der Straße gesehen; auch links und rechts sind so gesehen.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/cross_sections.py" />
-            <source>Limits</source>
-            <translation>Grenzwerte</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/cross_sections.py" />
-            <source>What exceeds the limits</source>
-            <translation>Was die Grenzwerte überschreitet</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/cross_sections.py" />
-            <source>Medians along the road. ± is the standard deviation of a crossfall, with what roll leaves unknown.</source>
-            <translation>Mediane längs der Straße. ± ist die Standardabweichung einer Querneigung, einschließlich dessen, was der Rollwinkel offenlässt.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/cross_sections.py" />
+            <location filename="../../core/report/inventory.py" />
             <source>Station (m)</source>
             <translation>Station (m)</translation>
         </message>
         <message>
-            <location filename="../../core/report/cross_sections.py" />
+            <location filename="../../core/report/inventory.py" />
             <source>Offset (m)</source>
             <translation>Abstand (m)</translation>
         </message>
         <message>
-            <location filename="../../core/report/cross_sections.py" />
-            <source>The lanes from above, straightened. Red: a limit is exceeded.</source>
-            <translation>Die Fahrstreifen von oben, begradigt. Rot: Ein Grenzwert ist überschritten.</translation>
+            <location filename="../../core/report/inventory.py" />
+            <source>edge of the carriageway</source>
+            <translation>Fahrbahnrand</translation>
         </message>
         <message>
-            <location filename="../../core/report/cross_sections.py" />
+            <location filename="../../core/report/inventory.py" />
             <source>Crossfall of the lanes</source>
             <translation>Querneigung der Fahrstreifen</translation>
         </message>
         <message>
-            <location filename="../../core/report/cross_sections.py" />
+            <location filename="../../core/report/inventory.py" />
             <source>Rut depth of the lanes, the deeper wheel path</source>
             <translation>Spurrinnentiefe der Fahrstreifen, die tiefere Radspur</translation>
         </message>
         <message>
-            <location filename="../../core/report/cross_sections.py" />
+            <location filename="../../core/report/inventory.py" />
             <source>Width of the lanes</source>
             <translation>Breite der Fahrstreifen</translation>
         </message>
         <message>
-            <location filename="../../core/report/cross_sections.py" />
+            <location filename="../../core/report/inventory.py" />
             <source>Width of the carriageway</source>
             <translation>Breite der Fahrbahn</translation>
         </message>
         <message>
-            <location filename="../../core/report/cross_sections.py" />
+            <location filename="../../core/report/inventory.py" />
             <source>Grade</source>
             <translation>Längsneigung</translation>
         </message>
         <message>
-            <location filename="../../core/report/cross_sections.py" />
+            <location filename="../../core/report/inventory.py" />
             <source>Height of the left curb</source>
             <translation>Höhe des linken Bords</translation>
         </message>
         <message>
-            <location filename="../../core/report/cross_sections.py" />
+            <location filename="../../core/report/inventory.py" />
             <source>Height of the right curb</source>
             <translation>Höhe des rechten Bords</translation>
         </message>
         <message>
-            <location filename="../../core/report/cross_sections.py" />
+            <location filename="../../core/report/inventory.py" />
             <source>Clearance</source>
             <translation>Lichte Höhe</translation>
         </message>
         <message>
-            <location filename="../../core/report/cross_sections.py" />
+            <location filename="../../core/report/inventory.py" />
             <source>Rut depth, at most (mm)</source>
             <translation>Spurrinnentiefe, höchstens (mm)</translation>
         </message>
         <message>
-            <location filename="../../core/report/cross_sections.py" />
+            <location filename="../../core/report/inventory.py" />
             <source>Crossfall, at least (%)</source>
             <translation>Querneigung, mindestens (%)</translation>
         </message>
         <message>
-            <location filename="../../core/report/cross_sections.py" />
+            <location filename="../../core/report/inventory.py" />
             <source>Crossfall, at most (%)</source>
             <translation>Querneigung, höchstens (%)</translation>
         </message>
         <message>
-            <location filename="../../core/report/cross_sections.py" />
+            <location filename="../../core/report/inventory.py" />
             <source>Grade, at most (%)</source>
             <translation>Längsneigung, höchstens (%)</translation>
         </message>
         <message>
-            <location filename="../../core/report/cross_sections.py" />
+            <location filename="../../core/report/inventory.py" />
             <source>Width of a lane, at least (m)</source>
             <translation>Breite eines Fahrstreifens, mindestens (m)</translation>
         </message>
         <message>
-            <location filename="../../core/report/cross_sections.py" />
+            <location filename="../../core/report/inventory.py" />
             <source>Clearance, at least (m)</source>
             <translation>Lichte Höhe, mindestens (m)</translation>
         </message>
         <message>
-            <location filename="../../core/report/cross_sections.py" />
-            <source>The country of the catalogue sets no limits.</source>
-            <translation>Das Land des Katalogs setzt keine Grenzwerte.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/cross_sections.py" />
-            <source>No section exceeds a limit.</source>
-            <translation>Kein Querschnitt überschreitet einen Grenzwert.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/cross_sections.py" />
-            <source>Lane</source>
-            <translation>Fahrstreifen</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/cross_sections.py" />
-            <source>Limit</source>
-            <translation>Grenzwert</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/cross_sections.py" />
-            <source>From (m)</source>
-            <translation>Von (m)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/cross_sections.py" />
-            <source>To (m)</source>
-            <translation>Bis (m)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/cross_sections.py" />
-            <source>Worst</source>
-            <translation>Schlechtester Wert</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/cross_sections.py" />
-            <source>Part</source>
-            <translation>Teil</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/cross_sections.py" />
-            <source>Width (m)</source>
-            <translation>Breite (m)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/cross_sections.py" />
-            <source>Crossfall (%)</source>
-            <translation>Querneigung (%)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/cross_sections.py" />
-            <source>Grade (%)</source>
-            <translation>Längsneigung (%)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/cross_sections.py" />
-            <source>Rut left (mm)</source>
-            <translation>Spurrinne links (mm)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/cross_sections.py" />
-            <source>Rut right (mm)</source>
-            <translation>Spurrinne rechts (mm)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/cross_sections.py" />
-            <source>Road {road}</source>
-            <translation>Straße {road}</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/cross_sections.py" />
-            <source>no limit</source>
-            <translation>kein Grenzwert</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/cross_sections.py" />
-            <source>Of the country: {sources}</source>
-            <translation>Vom Land: {sources}</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/cross_sections.py" />
-            <source>{count} more are in the layer (field exceeds).</source>
-            <translation>{count} weitere stehen im Layer (Feld exceeds).</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/cross_sections.py" />
+            <location filename="../../core/report/inventory.py" />
             <source>lane {number}</source>
             <translation>Fahrstreifen {number}</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/estimated_trajectory.py" />
-            <source>Estimated trajectory</source>
-            <translation>Geschätzte Trajektorie</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/estimated_trajectory.py" />
-            <source>Where the scanner was, from the point clouds alone.</source>
-            <translation>Wo der Scanner war, allein aus den Punktwolken.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/estimated_trajectory.py" />
-            <source>Turned: counter-clockwise from straight across. Ahead, left and up: from the middle of the scanners.</source>
-            <translation>Verdreht: gegen den Uhrzeigersinn aus der Querrichtung. Vorn, links und oben: von der Mitte der Scanner aus.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/estimated_trajectory.py" />
-            <source>seconds of driving, without pauses</source>
-            <translation>Sekunden der Fahrt, ohne Pausen</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/estimated_trajectory.py" />
-            <source>one sigma (m)</source>
-            <translation>ein Sigma (m)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/estimated_trajectory.py" />
-            <source>Uncertainty along the drive</source>
-            <translation>Unsicherheit längs der Fahrt</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/estimated_trajectory.py" />
-            <source>Blue the place, orange the height, one sigma. It grows at the ends of the cloud, where few lines see the road.</source>
-            <translation>Blau die Lage, orange die Höhe, ein Sigma. Sie wächst an den Enden der Wolke, wo wenige Linien die Straße sehen.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/estimated_trajectory.py" />
-            <source>{median:.3f} m (median), {largest:.3f} m (largest)</source>
-            <translation>{median:.3f} m (Median), {largest:.3f} m (größte)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/estimated_trajectory.py" />
-            <source>Scanner</source>
-            <translation>Scanner</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/estimated_trajectory.py" />
-            <source>Turns per second</source>
-            <translation>Umdrehungen je Sekunde</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/estimated_trajectory.py" />
-            <source>Plane turned (°)</source>
-            <translation>Ebene verdreht (°)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/estimated_trajectory.py" />
-            <source>Plane leaning forward (°)</source>
-            <translation>Ebene nach vorn geneigt (°)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/estimated_trajectory.py" />
-            <source>Ahead (m)</source>
-            <translation>Vorn (m)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/estimated_trajectory.py" />
-            <source>Left (m)</source>
-            <translation>Links (m)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/estimated_trajectory.py" />
-            <source>Up (m)</source>
-            <translation>Oben (m)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/estimated_trajectory.py" />
-            <source>Returns off their rays (mm)</source>
-            <translation>Echos neben ihren Strahlen (mm)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/estimated_trajectory.py" />
-            <source>place</source>
-            <translation>Lage</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/estimated_trajectory.py" />
-            <source>height</source>
-            <translation>Höhe</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/estimated_trajectory.py" />
-            <source>Way</source>
-            <translation>Weg</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/estimated_trajectory.py" />
-            <source>Length</source>
-            <translation>Länge</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/estimated_trajectory.py" />
-            <source>Time</source>
-            <translation>Zeit</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/estimated_trajectory.py" />
-            <source>Refers to</source>
-            <translation>Bezieht sich auf</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/estimated_trajectory.py" />
-            <source>Uncertainty of the place, one sigma</source>
-            <translation>Unsicherheit der Lage, ein Sigma</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/estimated_trajectory.py" />
-            <source>Uncertainty of the height, one sigma</source>
-            <translation>Unsicherheit der Höhe, ein Sigma</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/estimated_trajectory.py" />
-            <source>no time</source>
-            <translation>keine Zeit</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/estimated_trajectory.py" />
-            <source>the middle of the scanners</source>
-            <translation>die Mitte der Scanner</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/estimated_trajectory.py" />
-            <source>the scanner</source>
-            <translation>den Scanner</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/estimated_trajectory.py" />
-            <source>from {what}</source>
-            <translation>aus: {what}</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/estimated_trajectory.py" />
-            <source>{first:.3f} to {last:.3f} s</source>
-            <translation>{first:.3f} bis {last:.3f} s</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/georeferencing.py" />
-            <source>How well the image lies on its control points.</source>
-            <translation>Wie gut das Bild auf seinen Passpunkten liegt.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/georeferencing.py" />
-            <source>{share:.0f} % of the image, left out</source>
-            <translation>{share:.0f} % des Bildes, weggelassen</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/georeferencing.py" />
-            <source>{share:.0f} % of the image</source>
-            <translation>{share:.0f} % des Bildes</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/georeferencing.py" />
-            <source>shift (order 0)</source>
-            <translation>Verschiebung (Ordnung 0)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/georeferencing.py" />
-            <source>polynomial of order 1 (affine)</source>
-            <translation>Polynom der Ordnung 1 (affin)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/georeferencing.py" />
-            <source>polynomial of order 2</source>
-            <translation>Polynom der Ordnung 2</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/georeferencing.py" />
-            <source>polynomial of order 3</source>
-            <translation>Polynom der Ordnung 3</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/georeferencing.py" />
-            <source>Control points, each left out in turn</source>
-            <translation>Passpunkte, jeder der Reihe nach weggelassen</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/georeferencing.py" />
-            <source>RMSE (pixels)</source>
-            <translation>RMSE (Pixel)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/georeferencing.py" />
-            <source>Point</source>
-            <translation>Punkt</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/georeferencing.py" />
-            <source>Role</source>
-            <translation>Rolle</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/georeferencing.py" />
-            <source>Pixel</source>
-            <translation>Pixel</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/georeferencing.py" />
-            <source>Line, downwards</source>
-            <translation>Zeile, nach unten</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/georeferencing.py" />
-            <source>East (m)</source>
-            <translation>Ost (m)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/georeferencing.py" />
-            <source>North (m)</source>
-            <translation>Nord (m)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/georeferencing.py" />
-            <source>Residual (m)</source>
-            <translation>Restabweichung (m)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/georeferencing.py" />
-            <source>Without this point (m)</source>
-            <translation>Ohne diesen Punkt (m)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/georeferencing.py" />
-            <source>Pixels and lines</source>
-            <translation>Pixel und Zeilen</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/georeferencing.py" />
-            <source>Placed by</source>
-            <translation>Eingepasst durch</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/georeferencing.py" />
-            <source>Result</source>
-            <translation>Ergebnis</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/georeferencing.py" />
-            <source>Drawn within</source>
-            <translation>Gezeichnet innerhalb von</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/georeferencing.py" />
-            <source>Outside the hull of the control points</source>
-            <translation>Außerhalb der Hülle der Passpunkte</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/georeferencing.py" />
-            <source>From where the polynomial puts each point to where it was measured, {times} times as long as on the ground. North is up; the thin line is the hull of the control points.</source>
-            <translation>Von dort, wohin das Polynom jeden Punkt setzt, dorthin, wo er gemessen wurde, {times}-mal so lang wie am Boden. Norden ist oben; die dünne Linie ist die Hülle der Passpunkte.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/georeferencing.py" />
-            <source>RMSE = √(Σ(dx² + dy²) / n). The residuals of control points are too small, since the polynomial was fitted to them; there are {free} more than it needs. Points measured in the laser point cloud itself show how well the image fits the cloud, not how well either fits the ground.</source>
-            <translation>RMSE = √(Σ(dx² + dy²) / n). Die Restklaffungen der Passpunkte sind zu klein, denn das Polynom wurde an sie angepasst; es gibt {free} mehr, als es braucht. Punkte, die in der Laserpunktwolke selbst gemessen sind, zeigen, wie gut das Bild zur Wolke passt, nicht, wie gut eines von beiden zum Boden passt.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/georeferencing.py" />
-            <source>no CRS</source>
-            <translation>kein KBS</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/georeferencing.py" />
-            <source>{width} × {height} pixels of {size:g} m</source>
-            <translation>{width} × {height} Pixel von {size:g} m</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/georeferencing.py" />
-            <source>{departure:.2f} pixels of the polynomial, everywhere</source>
-            <translation>{departure:.2f} Pixeln vom Polynom, überall</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>What the point clouds and the trajectory hold, before any work is done on them.</source>
-            <translation>Was die Punktwolken und die Trajektorie enthalten, bevor damit gearbeitet wird.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>Files</source>
-            <translation>Dateien</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>Density</source>
-            <translation>Dichte</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>Time and scanners</source>
-            <translation>Zeit und Scanner</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>Drive</source>
-            <translation>Fahrt</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>unknown: too few points lie under the vehicle</source>
-            <translation>unbekannt: zu wenige Punkte liegen unter dem Fahrzeug</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>Intensity</source>
-            <translation>Intensität</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>File</source>
-            <translation>Datei</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>Point format</source>
-            <translation>Punktformat</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>Points per m²</source>
-            <translation>Punkte je m²</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>Points per m³</source>
-            <translation>Punkte je m³</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>Points per m², from 0 (dark) to {most:.0f} (yellow); north is up.</source>
-            <translation>Punkte je m², von 0 (dunkel) bis {most:.0f} (gelb); Norden ist oben.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>Red is the trajectory.</source>
-            <translation>Rot ist die Trajektorie.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>{count}, distinguished by {field}</source>
-            <translation>{count}, unterschieden durch {field}</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>Pass</source>
-            <translation>Befahrung</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>From station (m)</source>
-            <translation>Von Station (m)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>To station (m)</source>
-            <translation>Bis Station (m)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>Seconds</source>
-            <translation>Sekunden</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>Mean speed (km/h)</source>
-            <translation>Mittlere Geschwindigkeit (km/h)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>Extent</source>
-            <translation>Ausdehnung</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>Returns</source>
-            <translation>Echos</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>Classes</source>
-            <translation>Klassen</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>none that can be used</source>
-            <translation>keine verwendbare</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>Points within 25 m of the trajectory</source>
-            <translation>Punkte innerhalb von 25 m der Trajektorie</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>Scan time covered by the trajectory</source>
-            <translation>Von der Trajektorie abgedeckte Scanzeit</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>{height:.2f} m above the road</source>
-            <translation>{height:.2f} m über der Straße</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>Driven</source>
-            <translation>Gefahren</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>Heights along the drive, {length:.0f} m from left to right, {low:.1f} m (below) to {high:.1f} m (above): red the trajectory, grey the road under it.</source>
-            <translation>Höhen längs der Fahrt, {length:.0f} m von links nach rechts, {low:.1f} m (unten) bis {high:.1f} m (oben): rot die Trajektorie, grau die Straße darunter.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>Range</source>
-            <translation>Bereich</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>1 %, median, 99 %</source>
-            <translation>1 %, Median, 99 %</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>Different values</source>
-            <translation>Verschiedene Werte</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>Counted as</source>
-            <translation>Gezählt als</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>seconds of the GPS week, says the file</source>
-            <translation>Sekunden der GPS-Woche, laut Datei</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>along</source>
-            <translation>mit</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>against</source>
-            <translation>gegen</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>How often each intensity occurs, from {low} (left) to {high} (right).</source>
-            <translation>Wie oft jede Intensität vorkommt, von {low} (links) bis {high} (rechts).</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>{width:.1f} × {depth:.1f} m, {height:.1f} m high</source>
-            <translation>{width:.1f} × {depth:.1f} m, {height:.1f} m hoch</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>Mean of occupied cells</source>
-            <translation>Mittel der besetzten Zellen</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>Median of occupied cells</source>
-            <translation>Median der besetzten Zellen</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>As a point sees it (mean over points)</source>
-            <translation>Wie ein Punkt sie sieht (Mittel über die Punkte)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>Densest cell</source>
-            <translation>Dichteste Zelle</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>{first:.3f} to {last:.3f} s, {seconds:.1f} s</source>
-            <translation>{first:.3f} bis {last:.3f} s, {seconds:.1f} s</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>{count} positions over {length:.1f} m</source>
-            <translation>{count} Positionen über {length:.1f} m</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>{low} to {high}</source>
-            <translation>{low} bis {high}</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>adjusted standard GPS time; begins {start} in GPS time</source>
-            <translation>GPS-Standardzeit weniger eine Milliarde Sekunden; beginnt {start} in GPS-Zeit</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>{low:.2f} to {high:.2f}</source>
-            <translation>{low:.2f} bis {high:.2f}</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/inspection.py" />
-            <source>road {number}: {length:.1f} m</source>
-            <translation>Straße {number}: {length:.1f} m</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/intensity.py" />
-            <source>Intensity correction</source>
-            <translation>Intensitätskorrektur</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/intensity.py" />
-            <source>Asphalt's intensity by scanner, before and after. Distances are from the track of the vehicle.</source>
-            <translation>Die Intensität des Asphalts nach Scanner, vorher und nachher. Entfernungen sind die von der Spur des Fahrzeugs.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/intensity.py" />
-            <source>Asphalt before</source>
-            <translation>Asphalt vorher</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/intensity.py" />
-            <source>Asphalt after</source>
-            <translation>Asphalt nachher</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/intensity.py" />
-            <source>Variation before (%)</source>
-            <translation>Schwankung vorher (%)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/intensity.py" />
-            <source>Variation after (%)</source>
-            <translation>Schwankung nachher (%)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/intensity.py" />
-            <source>Highest/lowest before</source>
-            <translation>Höchster/niedrigster vorher</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/intensity.py" />
-            <source>Highest/lowest after</source>
-            <translation>Höchster/niedrigster nachher</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/map_check.py" />
-            <source>Check of an HD map</source>
-            <translation>Prüfung einer HD-Karte</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/map_check.py" />
-            <source>Faults</source>
-            <translation>Fehler</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/map_check.py" />
-            <source>Nothing was found.</source>
-            <translation>Es wurde nichts gefunden.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/map_check.py" />
-            <source>What it means</source>
-            <translation>Was er bedeutet</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/map_check.py" />
-            <source>Where</source>
-            <translation>Wo</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/map_check.py" />
-            <source>What was seen</source>
-            <translation>Was gesehen wurde</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/map_check.py" />
-            <source>The first {shown} of {count}; the layer has all of them.</source>
-            <translation>Die ersten {shown} von {count}; der Layer hat alle.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/map_export.py" />
-            <source>The file as it is read back</source>
-            <translation>Die Datei, wie sie zurückgelesen wird</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/map_export.py" />
-            <source>Lanes by type and painted lines; north is up.</source>
-            <translation>Fahrstreifen nach Art und aufgemalte Linien; Norden ist oben.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/proposed_points.py" />
-            <source>Proposed control points</source>
-            <translation>Vorgeschlagene Passpunkte</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/proposed_points.py" />
-            <source>The same paint in the image and in the intensity image.</source>
-            <translation>Dieselbe Farbe im Bild und im Intensitätsbild.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/proposed_points.py" />
-            <source>Pairs of cut-outs</source>
-            <translation>Paare von Ausschnitten</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/proposed_points.py" />
-            <source>Left the image, right the intensity image, both 3.2 m wide, north up. Green: accepted. Red: refused by default. Below each: its number, the likeness of the two, and how far off the other pairs place it.</source>
-            <translation>Links das Bild, rechts das Intensitätsbild, beide 3,2 m breit, Norden oben. Grün: angenommen. Rot: in der Vorgabe abgelehnt. Unter jedem: seine Nummer, die Ähnlichkeit der beiden, und wie weit daneben die anderen Paare es setzen.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/proposed_points.py" />
-            <source>Accepted</source>
-            <translation>Bestätigt</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/proposed_points.py" />
-            <source>Likeness</source>
-            <translation>Ähnlichkeit</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/proposed_points.py" />
-            <source>Why not</source>
-            <translation>Warum nicht</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/proposed_points.py" />
-            <source>Placed roughly by</source>
-            <translation>Ungefähr eingepasst durch</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/proposed_points.py" />
-            <source>Found turned by</source>
-            <translation>Gefunden mit Drehung</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/proposed_points.py" />
-            <source>Pixel on the ground</source>
-            <translation>Pixel am Boden</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/proposed_points.py" />
-            <source>Pairs</source>
-            <translation>Paare</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/proposed_points.py" />
-            <source>RMSE of the accepted pairs, each left out in turn</source>
-            <translation>RMSE der angenommenen Paare, jedes der Reihe nach weggelassen</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/proposed_points.py" />
-            <source>The next likely place lies {away:.1f} m away: {here:.0f} corners speak for the place found, {there:.0f} for that one.</source>
-            <translation>Die nächstwahrscheinliche Stelle liegt {away:.1f} m entfernt: {here:.0f} Ecken sprechen für die gefundene Stelle, {there:.0f} für jene.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/proposed_points.py" />
-            <source>yes</source>
-            <translation>ja</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/proposed_points.py" />
-            <source>no</source>
-            <translation>nein</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/proposed_points.py" />
-            <source>{turn:.1f}° counter-clockwise, from its rows to east</source>
-            <translation>{turn:.1f}° gegen den Uhrzeigersinn, von seinen Zeilen nach Osten</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/proposed_points.py" />
-            <source>{count}, of which {accepted} accepted</source>
-            <translation>{count}, davon {accepted} angenommen</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/proposed_points.py" />
-            <source>{rmse:.3f} m, by a polynomial of order {order}</source>
-            <translation>{rmse:.3f} m, durch ein Polynom der Ordnung {order}</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>The uncertainty is one sigma across the line, from residuals, point spacing and what passes differ by; two thirds of the places lie within it on simulated streets. What the whole trajectory is off is not in it.</source>
-            <translation>Die Unsicherheit ist ein Sigma quer zur Linie, aus Restabweichungen, Punktabstand und dem, worin Befahrungen sich unterscheiden; auf simulierten Straßen liegen zwei Drittel der Stellen innerhalb davon. Ein Fehler der ganzen Trajektorie ist nicht darin.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Made by Lanewright. Lengths are in metres; “bridged” was drawn across a gap, “inferred” was placed from the outer lines alone; everything else was measured.</source>
-            <translation>Erstellt von Lanewright. Längen sind in Metern; „überbrückt“ wurde über eine Lücke hinweg gezeichnet, „erschlossen“ allein aus den äußeren Linien; alles andere wurde gemessen.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Road edges and surface</source>
-            <translation>Straßenränder und Oberfläche</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Agreement of the two methods</source>
-            <translation>Übereinstimmung der beiden Verfahren</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Here they lie more than 5 cm apart; look at these places first.</source>
-            <translation>Hier liegen sie mehr als 5 cm auseinander; diese Stellen zuerst ansehen.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Absolute mean curvature of the surface through the points of line markings, as measured and at the height of the line fitted to them: how rough a marking is, not how the road bends.</source>
-            <translation>Betrag der mittleren Krümmung der Fläche durch die Punkte von Linienmarkierungen, wie gemessen und in der Höhe der eingepassten Linie: wie rau eine Markierung ist, nicht, wie die Straße sich krümmt.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Curvature along the driving lines</source>
-            <translation>Krümmung längs der Fahrlinien</translation>
         </message>
         <message>
             <location filename="../../core/report/road_map.py" />
@@ -6284,369 +5154,29 @@
             <translation>Station (m)</translation>
         </message>
         <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Reading and placing points</source>
-            <translation>Punkte lesen und zuordnen</translation>
+            <location filename="../../core/report/survey.py" />
+            <source>no CRS</source>
+            <translation>kein KBS</translation>
         </message>
         <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Curbs</source>
-            <translation>Bordsteine</translation>
+            <location filename="../../core/report/survey.py" />
+            <source>seconds of driving, without pauses</source>
+            <translation>Sekunden der Fahrt, ohne Pausen</translation>
         </message>
         <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Marking extraction</source>
-            <translation>Markierungen extrahieren</translation>
+            <location filename="../../core/report/survey.py" />
+            <source>one sigma (m)</source>
+            <translation>ein Sigma (m)</translation>
         </message>
         <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Outlier removal</source>
-            <translation>Ausreißer entfernen</translation>
+            <location filename="../../core/report/survey.py" />
+            <source>place</source>
+            <translation>Lage</translation>
         </message>
         <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Clustering</source>
-            <translation>Zusammenfassen</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>road edge, measured</source>
-            <translation>Straßenrand, gemessen</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>road edge, bridged</source>
-            <translation>Straßenrand, überbrückt</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>the two methods more than 5 cm apart</source>
-            <translation>die beiden Verfahren mehr als 5 cm auseinander</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>marking line</source>
-            <translation>Markierungslinie</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Stage</source>
-            <translation>Schritt</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>The road map over the intensity image; north is up.</source>
-            <translation>Die Straßenkarte über dem Intensitätsbild; Norden ist oben.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Neither a curb nor an edge of the pavement was found along this road, so no edge line was drawn.</source>
-            <translation>Längs dieser Straße wurde weder ein Bordstein noch ein Rand der Befestigung gefunden; daher wurde keine Randlinie gezeichnet.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Status of the surface</source>
-            <translation>Status der Oberfläche</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Area (m²)</source>
-            <translation>Fläche (m²)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Edges measured (m)</source>
-            <translation>Gemessene Ränder (m)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Nowhere do they lie more than 5 cm apart for a metre or more.</source>
-            <translation>Nirgends liegen sie einen Meter oder länger mehr als 5 cm auseinander.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Apart at most (cm)</source>
-            <translation>Auseinander, höchstens (cm)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Use</source>
-            <translation>Verwendung</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Number</source>
-            <translation>Anzahl</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>No driving line was made: no two lines that bound a lane were found.</source>
-            <translation>Es wurde keine Fahrlinie erstellt: Keine zwei Linien wurden gefunden, die einen Fahrstreifen begrenzen.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Source</source>
-            <translation>Herkunft</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Status</source>
-            <translation>Status</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Uncertainty (mm)</source>
-            <translation>Unsicherheit (mm)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>The driving lines have no circular arcs.</source>
-            <translation>Die Fahrlinien haben keine Kreisbögen.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Row</source>
-            <translation>Zeile</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Action</source>
-            <translation>Aktion</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Target</source>
-            <translation>Ziel</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Note</source>
-            <translation>Notiz</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Per m³, mean of occupied cubes</source>
-            <translation>Je m³, Mittel der besetzten Würfel</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Per m³, as a point sees it</source>
-            <translation>Je m³, wie ein Punkt sie sieht</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Mean curvature of marking points (1/m)</source>
-            <translation>Mittlere Krümmung von Markierungspunkten (1/m)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Before fitting</source>
-            <translation>Vor dem Einpassen</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>After fitting</source>
-            <translation>Nach dem Einpassen</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>less than {speed}</source>
-            <translation>unter {speed}</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Allows (km/h)</source>
-            <translation>Erlaubt (km/h)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Why</source>
-            <translation>Warum</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Speed (km/h)</source>
-            <translation>Geschwindigkeit (km/h)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Least radius (m)</source>
-            <translation>Kleinster Radius (m)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Least length of a curve (m)</source>
-            <translation>Kleinste Länge einer Kurve (m)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Together</source>
-            <translation>Zusammen</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Points read</source>
-            <translation>Gelesene Punkte</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Points near the road</source>
-            <translation>Punkte nahe der Straße</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Passes</source>
-            <translation>Befahrungen</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Trajectory above the road</source>
-            <translation>Trajektorie über der Straße</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Edge</source>
-            <translation>Rand</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>{taken} points were taken for paint, {kept} are left without outliers.</source>
-            <translation>{taken} Punkte galten als Farbe, {kept} bleiben ohne Ausreißer.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Line</source>
-            <translation>Linie</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Pattern</source>
-            <translation>Muster</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Turn</source>
-            <translation>Drehsinn</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Cubes of 1 m. {share:.1f} % of the points near the road are its surface. “As a point sees it” is the mean over points of how many share their cube.</source>
-            <translation>Würfel von 1 m. {share:.1f} % der Punkte nahe der Straße sind ihre Oberfläche. „Wie ein Punkt sie sieht“ ist das Mittel über die Punkte, wie viele sich ihren Würfel teilen.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>the line as drawn</source>
-            <translation>die Linie, wie gezeichnet</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>arcs of the table of curve elements</source>
-            <translation>Bögen der Tabelle der Bogenelemente</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>In 1/m, in the direction of travel, positive to the left; from the headings of the {base:g} m behind and ahead. Stations are the road's.</source>
-            <translation>In 1/m, in Fahrtrichtung, positiv nach links; aus den Richtungen der {base:g} m davor und danach. Stationen sind die der Straße.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Design code check, {code}</source>
-            <translation>Prüfung nach Entwurfsregel, {code}</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>{height:.2f} m (pass {number})</source>
-            <translation>{height:.2f} m (Befahrung {number})</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Both methods see {length:.0f} m of the edges drawn; 95 % of each piece keeps within {usual:.1f} cm on average.</source>
-            <translation>Beide Verfahren sehen {length:.0f} m der gezeichneten Ränder; 95 % jedes Stücks liegen im Mittel innerhalb von {usual:.1f} cm.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Corrections that match nothing in this run and were left out: {count}. Look at these places and delete or renew the rows.</source>
-            <translation>Korrekturen, die in diesem Lauf zu nichts passen und weggelassen wurden: {count}. Diese Stellen ansehen und die Zeilen löschen oder erneuern.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>{count} further driving lines are not drawn.</source>
-            <translation>{count} weitere Fahrlinien sind nicht gezeichnet.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Before: points near the road</source>
-            <translation>Vorher: Punkte nahe der Straße</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>After: road surface</source>
-            <translation>Nachher: Straßenoberfläche</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>kernel of 0.2 m, {count} points</source>
-            <translation>Kern von 0,2 m, {count} Punkte</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>least radius for the speed, {code}</source>
-            <translation>kleinster Radius für die Geschwindigkeit, {code}</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Road {road}, lane {lane}.</source>
-            <translation>Straße {road}, Fahrstreifen {lane}.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/road_map.py" />
-            <source>Lane {lane}.</source>
-            <translation>Fahrstreifen {lane}.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/roadside.py" />
-            <source>What stands beside the road. Heights are those above the ground at its foot; distances count outward from the carriageway's edge.</source>
-            <translation>Was neben der Straße steht. Höhen sind die über dem Boden am Fuß; Abstände zählen vom Fahrbahnrand nach außen.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/roadside.py" />
-            <source>edge of the carriageway</source>
-            <translation>Fahrbahnrand</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/roadside.py" />
-            <source>The roadside from above, straightened; black are the edges of the carriageway.</source>
-            <translation>Der Straßenseitenraum von oben, begradigt; schwarz sind die Fahrbahnränder.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/roadside.py" />
-            <source>Nothing was found within the reach.</source>
-            <translation>In der Reichweite wurde nichts gefunden.</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/roadside.py" />
-            <source>Single</source>
-            <translation>Einzelnes</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/roadside.py" />
-            <source>Kind</source>
-            <translation>Art</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/roadside.py" />
-            <source>From the edge (m)</source>
-            <translation>Vom Rand (m)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/roadside.py" />
-            <source>Height (m)</source>
-            <translation>Höhe (m)</translation>
-        </message>
-        <message>
-            <location filename="../../core/report/roadside.py" />
-            <source>Foot (m)</source>
-            <translation>Fuß (m)</translation>
+            <location filename="../../core/report/survey.py" />
+            <source>height</source>
+            <translation>Höhe</translation>
         </message>
         <message>
             <location filename="../../desktop/cloud_widget.py" />
@@ -6817,6 +5347,11 @@
             <location filename="../../desktop/columns_widget.py" />
             <source>{count} positions over {length} m, heights {low:.1f} to {high:.1f} m</source>
             <translation>{count} Positionen über {length} m, Höhen {low:.1f} bis {high:.1f} m</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/columns_widget.py" />
+            <source>no time</source>
+            <translation>keine Zeit</translation>
         </message>
         <message>
             <location filename="../../desktop/columns_widget.py" />
@@ -7395,6 +5930,11 @@
         </message>
         <message>
             <location filename="../../desktop/review/doubt_dock.py" />
+            <source>Along the road</source>
+            <translation>Längs der Straße</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/review/doubt_dock.py" />
             <source>Only what is not done</source>
             <translation>Nur was nicht erledigt ist</translation>
         </message>
@@ -7540,11 +6080,6 @@
         </message>
         <message>
             <location filename="../../desktop/review/doubtful.py" />
-            <source>another reading</source>
-            <translation>eine andere Lesart</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/review/doubtful.py" />
             <source>the two boundary methods lie {apart:.0f} cm apart</source>
             <translation>die beiden Verfahren für die Ränder liegen {apart:.0f} cm auseinander</translation>
         </message>
@@ -7552,11 +6087,6 @@
             <location filename="../../desktop/review/doubtful.py" />
             <source>confidence {sure:.2f}</source>
             <translation>Vertrauen {sure:.2f}</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/review/doubtful.py" />
-            <source>a lane of {width:.1f} m {direction}</source>
-            <translation>ein Fahrstreifen von {width:.1f} m {direction}</translation>
         </message>
         <message>
             <location filename="../../desktop/review/doubtful.py" />
@@ -7825,6 +6355,11 @@
         </message>
         <message>
             <location filename="../../processing_provider/results/attributes.py" />
+            <source>another reading</source>
+            <translation>eine andere Lesart</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/attributes.py" />
             <source>station</source>
             <translation>Station</translation>
         </message>
@@ -7835,13 +6370,33 @@
         </message>
         <message>
             <location filename="../../processing_provider/results/attributes.py" />
+            <source>Lane</source>
+            <translation>Fahrstreifen</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/attributes.py" />
             <source>Paint</source>
             <translation>Farbe</translation>
         </message>
         <message>
             <location filename="../../processing_provider/results/attributes.py" />
+            <source>Pass</source>
+            <translation>Befahrung</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/attributes.py" />
             <source>Curb point</source>
             <translation>Bordsteinpunkt</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/attributes.py" />
+            <source>a lane of {width:.1f} m {direction}</source>
+            <translation>ein Fahrstreifen von {width:.1f} m {direction}</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/ready_styles.py" />
+            <source>By class</source>
+            <translation>Nach Klasse</translation>
         </message>
         <message>
             <location filename="../../processing_provider/results/ready_styles.py" />
@@ -7852,16 +6407,6 @@
             <location filename="../../processing_provider/results/ready_styles.py" />
             <source>By confidence</source>
             <translation>Nach Vertrauen</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/results/run_table.py" />
-            <source>Runs of Lanewright</source>
-            <translation>Läufe von Lanewright</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/results/run_table.py" />
-            <source>since QGIS was started</source>
-            <translation>seit dem Start von QGIS</translation>
         </message>
         <message>
             <location filename="../../processing_provider/results/run_table.py" />
@@ -7884,582 +6429,2062 @@
             <translation>Lanewright</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/report/templates/assessment.html" />
+            <source>{result} against {reference}.</source>
+            <translation>{result} gegen {reference}.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/boundary_accuracy.html" />
+            <source>Accuracy of road boundaries</source>
+            <translation>Genauigkeit der Straßenränder</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/boundary_accuracy.html" />
+            <source>Judged in intervals of {interval:g} m along {along}, each side by itself. An interval is correct when lines of the result cover at least {coverage:g} % of it and {agreement:g} % of them lie within the tolerance of the reference. A line elsewhere is false, and the reference is missed; so it is where there is no line, whether something hid the boundary or not. Tolerances are distances to either side.</source>
+            <translation>Beurteilt in Abschnitten von {interval:g} m längs: {along}; jede Seite für sich. Ein Abschnitt ist richtig, wenn Linien des Ergebnisses mindestens {coverage:g} % davon abdecken und {agreement:g} % von ihnen innerhalb der Toleranz der Referenz liegen. Eine Linie anderswo ist falsch und die Referenz übersehen; ebenso, wo keine Linie ist, ob nun etwas den Rand verdeckt hat oder nicht. Toleranzen sind Abstände nach jeder Seite.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/boundary_accuracy.html" />
+            <source>Side</source>
+            <translation>Seite</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/boundary_accuracy.html" />
+            <source>Tolerance (cm)</source>
+            <translation>Toleranz (cm)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/boundary_accuracy.html" />
+            <source>Intervals</source>
+            <translation>Abschnitte</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/boundary_accuracy.html" />
+            <source>Correct</source>
+            <translation>Richtig</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/boundary_accuracy.html" />
+            <source>Missed</source>
+            <translation>Übersehen</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/boundary_accuracy.html" />
+            <source>False</source>
+            <translation>Falsch</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/boundary_accuracy.html" />
+            <source>Not judged: {count} intervals.</source>
+            <translation>Nicht beurteilt: {count} Abschnitte.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/boundary_accuracy.html" />
+            <source>{length:.1f} m of the result lie more than {corridor:g} m from the trajectory and were left out.</source>
+            <translation>{length:.1f} m des Ergebnisses liegen mehr als {corridor:g} m von der Trajektorie entfernt und wurden weggelassen.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/boundary_accuracy.html" />
+            <source>Not judged because</source>
+            <translation>Nicht beurteilt, weil</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/boundary_accuracy.html" />
+            <source>Errors in the correct intervals</source>
+            <translation>Abweichungen in den richtigen Abschnitten</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/boundary_accuracy.html" />
+            <source>Across: mean (cm)</source>
+            <translation>Quer: Mittel (cm)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/boundary_accuracy.html" />
+            <source>Maximum (cm)</source>
+            <translation>Größter Wert (cm)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/boundary_accuracy.html" />
+            <source>Height: mean (cm)</source>
+            <translation>Höhe: Mittel (cm)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/boundary_accuracy.html" />
+            <source>The mean across is {signed}; heights are result less reference, and missing where a layer has none.</source>
+            <translation>Das Mittel quer ist {signed}; Höhen sind Ergebnis weniger Referenz und fehlen, wo ein Layer keine hat.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/boundary_accuracy.html" />
+            <source>Intervals by outcome; north is up. Correct, missed and excluded ones are drawn along the reference, false ones along the result.</source>
+            <translation>Abschnitte nach Ergebnis; Norden ist oben. Richtige, übersehene und ausgenommene sind längs der Referenz gezeichnet, falsche längs des Ergebnisses.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/cross_sections.html" />
+            <source>Stations count along the road, offsets to its left. Crossfall is positive where the road falls to the right, seen along the road; left and right are seen that way too.</source>
+            <translation>Stationen zählen längs der Straße, Abstände nach links. Die Querneigung ist positiv, wo die Straße nach rechts fällt, längs der Straße gesehen; auch links und rechts sind so gesehen.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/cross_sections.html" />
+            <source>Limits</source>
+            <translation>Grenzwerte</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/cross_sections.html" />
+            <source>no limit</source>
+            <translation>kein Grenzwert</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/cross_sections.html" />
+            <source>Of the country: {sources}</source>
+            <translation>Vom Land: {sources}</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/cross_sections.html" />
+            <source>The country of the catalogue sets no limits.</source>
+            <translation>Das Land des Katalogs setzt keine Grenzwerte.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/cross_sections.html" />
+            <source>What exceeds the limits</source>
+            <translation>Was die Grenzwerte überschreitet</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/cross_sections.html" />
+            <source>Limit</source>
+            <translation>Grenzwert</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/cross_sections.html" />
+            <source>From (m)</source>
+            <translation>Von (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/cross_sections.html" />
+            <source>To (m)</source>
+            <translation>Bis (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/cross_sections.html" />
+            <source>Worst</source>
+            <translation>Schlechtester Wert</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/cross_sections.html" />
+            <source>No section exceeds a limit.</source>
+            <translation>Kein Querschnitt überschreitet einen Grenzwert.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/cross_sections.html" />
+            <source>{count} more are in the layer (field exceeds).</source>
+            <translation>{count} weitere stehen im Layer (Feld exceeds).</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/cross_sections.html" />
+            <source>Road {road}</source>
+            <translation>Straße {road}</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/cross_sections.html" />
+            <source>Part</source>
+            <translation>Teil</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/cross_sections.html" />
+            <source>Width (m)</source>
+            <translation>Breite (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/cross_sections.html" />
+            <source>Crossfall (%)</source>
+            <translation>Querneigung (%)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/cross_sections.html" />
+            <source>Grade (%)</source>
+            <translation>Längsneigung (%)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/cross_sections.html" />
+            <source>Rut left (mm)</source>
+            <translation>Spurrinne links (mm)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/cross_sections.html" />
+            <source>Rut right (mm)</source>
+            <translation>Spurrinne rechts (mm)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/cross_sections.html" />
+            <source>Medians along the road. ± is the standard deviation of a crossfall, with what roll leaves unknown.</source>
+            <translation>Mediane längs der Straße. ± ist die Standardabweichung einer Querneigung, einschließlich dessen, was der Rollwinkel offenlässt.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/cross_sections.html" />
+            <source>The lanes from above, straightened. Red: a limit is exceeded.</source>
+            <translation>Die Fahrstreifen von oben, begradigt. Rot: Ein Grenzwert ist überschritten.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/driving_accuracy.html" />
+            <source>Accuracy of driving lines</source>
+            <translation>Genauigkeit der Fahrlinien</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/driving_accuracy.html" />
+            <source>Tolerances were given as the total width of the buffer; the half-width stands beside it.</source>
+            <translation>Toleranzen wurden als ganze Breite des Puffers angegeben; die halbe steht daneben.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/driving_accuracy.html" />
+            <source>Tolerances were given as the half-width of the buffer, from the line to its rim.</source>
+            <translation>Toleranzen wurden als halbe Breite des Puffers angegeben, von der Linie zu seinem Rand.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/driving_accuracy.html" />
+            <source>Completeness (recall) is the share of the reference within the tolerance of the result; correctness (precision) the share of the result within the tolerance of the reference, and miscoding the share outside it: the buffer lies about the reference. Quality is matched result over result and unmatched reference.</source>
+            <translation>Vollständigkeit ist der Anteil der Referenz innerhalb der Toleranz des Ergebnisses; Richtigkeit (Präzision) der Anteil des Ergebnisses innerhalb der Toleranz der Referenz, Fehlkodierung der Anteil außerhalb: Der Puffer liegt um die Referenz. Qualität ist zugeordnetes Ergebnis durch Ergebnis und nicht zugeordnete Referenz.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/driving_accuracy.html" />
+            <source>Lines that cross at more than {angle:g}° do not match.</source>
+            <translation>Linien, die sich unter mehr als {angle:g}° kreuzen, passen nicht zusammen.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/driving_accuracy.html" />
+            <source>Lines match whatever their direction.</source>
+            <translation>Linien passen zusammen, welche Richtung sie auch haben.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/driving_accuracy.html" />
+            <source>Half-width (cm)</source>
+            <translation>Halbe Breite (cm)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/driving_accuracy.html" />
+            <source>Total width (cm)</source>
+            <translation>Ganze Breite (cm)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/driving_accuracy.html" />
+            <source>Mean gap (m)</source>
+            <translation>Mittlere Lücke (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/driving_accuracy.html" />
+            <source>{result:.1f} m of result, {reference:.1f} m of reference. A gap is at least {gap:g} m of reference without a result within the tolerance.</source>
+            <translation>{result:.1f} m Ergebnis, {reference:.1f} m Referenz. Eine Lücke ist mindestens {gap:g} m Referenz ohne ein Ergebnis innerhalb der Toleranz.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/driving_accuracy.html" />
+            <source>Errors</source>
+            <translation>Abweichungen</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/driving_accuracy.html" />
+            <source>Mean (cm)</source>
+            <translation>Mittel (cm)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/driving_accuracy.html" />
+            <source>Across</source>
+            <translation>Quer</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/driving_accuracy.html" />
+            <source>Height</source>
+            <translation>Höhe</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/driving_accuracy.html" />
+            <source>Of the result within {distance:.0f} cm of a reference line. The mean across is positive left of the reference as drawn.</source>
+            <translation>Vom Ergebnis innerhalb von {distance:.0f} cm um eine Referenzlinie. Das Mittel quer ist positiv links der Referenz, wie sie gezeichnet ist.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/driving_accuracy.html" />
+            <source>Line by line</source>
+            <translation>Linie für Linie</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/driving_accuracy.html" />
+            <source>Reference line</source>
+            <translation>Referenzlinie</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/driving_accuracy.html" />
+            <source>Recall {tolerance:g} cm (%)</source>
+            <translation>Vollständigkeit {tolerance:g} cm (%)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/driving_accuracy.html" />
+            <source>Miscoding {tolerance:g} cm (%)</source>
+            <translation>Fehlkodierung {tolerance:g} cm (%)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/driving_accuracy.html" />
+            <source>Half-widths. Each reference line with the result that lies nearest to it; result farther than {distance:.0f} cm from every reference line belongs to none and shows in the table above only.</source>
+            <translation>Halbe Breiten. Jede Referenzlinie mit dem Ergebnis, das ihr am nächsten liegt; Ergebnis, das weiter als {distance:.0f} cm von jeder Referenzlinie entfernt ist, gehört zu keiner und steht nur in der Tabelle oben.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/driving_accuracy.html" />
+            <source>The result's lines, correct and false, and the reference where it was missed; north is up.</source>
+            <translation>Die Linien des Ergebnisses, richtig und falsch, und die Referenz, wo sie übersehen wurde; Norden ist oben.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/estimated_trajectory.html" />
+            <source>Estimated trajectory</source>
+            <translation>Geschätzte Trajektorie</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/estimated_trajectory.html" />
+            <source>Where the scanner was, from the point clouds alone.</source>
+            <translation>Wo der Scanner war, allein aus den Punktwolken.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/estimated_trajectory.html" />
+            <source>{median:.3f} m (median), {largest:.3f} m (largest)</source>
+            <translation>{median:.3f} m (Median), {largest:.3f} m (größte)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/estimated_trajectory.html" />
+            <source>Way</source>
+            <translation>Weg</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/estimated_trajectory.html" />
+            <source>from {what}</source>
+            <translation>aus: {what}</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/estimated_trajectory.html" />
+            <source>Length</source>
+            <translation>Länge</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/estimated_trajectory.html" />
+            <source>Time</source>
+            <translation>Zeit</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/estimated_trajectory.html" />
+            <source>{first:.3f} to {last:.3f} s</source>
+            <translation>{first:.3f} bis {last:.3f} s</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/estimated_trajectory.html" />
+            <source>Refers to</source>
+            <translation>Bezieht sich auf</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/estimated_trajectory.html" />
+            <source>the middle of the scanners</source>
+            <translation>die Mitte der Scanner</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/estimated_trajectory.html" />
+            <source>the scanner</source>
+            <translation>den Scanner</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/estimated_trajectory.html" />
+            <source>Uncertainty of the place, one sigma</source>
+            <translation>Unsicherheit der Lage, ein Sigma</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/estimated_trajectory.html" />
+            <source>Uncertainty of the height, one sigma</source>
+            <translation>Unsicherheit der Höhe, ein Sigma</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/estimated_trajectory.html" />
+            <source>Scanner</source>
+            <translation>Scanner</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/estimated_trajectory.html" />
+            <source>Turns per second</source>
+            <translation>Umdrehungen je Sekunde</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/estimated_trajectory.html" />
+            <source>Plane turned (°)</source>
+            <translation>Ebene verdreht (°)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/estimated_trajectory.html" />
+            <source>Plane leaning forward (°)</source>
+            <translation>Ebene nach vorn geneigt (°)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/estimated_trajectory.html" />
+            <source>Ahead (m)</source>
+            <translation>Vorn (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/estimated_trajectory.html" />
+            <source>Left (m)</source>
+            <translation>Links (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/estimated_trajectory.html" />
+            <source>Up (m)</source>
+            <translation>Oben (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/estimated_trajectory.html" />
+            <source>Returns off their rays (mm)</source>
+            <translation>Echos neben ihren Strahlen (mm)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/estimated_trajectory.html" />
+            <source>Turned: counter-clockwise from straight across. Ahead, left and up: from the middle of the scanners.</source>
+            <translation>Verdreht: gegen den Uhrzeigersinn aus der Querrichtung. Vorn, links und oben: von der Mitte der Scanner aus.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/estimated_trajectory.html" />
+            <source>Uncertainty along the drive</source>
+            <translation>Unsicherheit längs der Fahrt</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/estimated_trajectory.html" />
+            <source>Blue the place, orange the height, one sigma. It grows at the ends of the cloud, where few lines see the road.</source>
+            <translation>Blau die Lage, orange die Höhe, ein Sigma. Sie wächst an den Enden der Wolke, wo wenige Linien die Straße sehen.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/georeferencing.html" />
+            <source>How well the image lies on its control points.</source>
+            <translation>Wie gut das Bild auf seinen Passpunkten liegt.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/georeferencing.html" />
+            <source>shift (order 0)</source>
+            <translation>Verschiebung (Ordnung 0)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/georeferencing.html" />
+            <source>polynomial of order 1 (affine)</source>
+            <translation>Polynom der Ordnung 1 (affin)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/georeferencing.html" />
+            <source>polynomial of order 2</source>
+            <translation>Polynom der Ordnung 2</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/georeferencing.html" />
+            <source>polynomial of order 3</source>
+            <translation>Polynom der Ordnung 3</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/georeferencing.html" />
+            <source>Pixels and lines</source>
+            <translation>Pixel und Zeilen</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/georeferencing.html" />
+            <source>Placed by</source>
+            <translation>Eingepasst durch</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/georeferencing.html" />
+            <source>Result</source>
+            <translation>Ergebnis</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/georeferencing.html" />
+            <source>{width} × {height} pixels of {size:g} m</source>
+            <translation>{width} × {height} Pixel von {size:g} m</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/georeferencing.html" />
+            <source>Drawn within</source>
+            <translation>Gezeichnet innerhalb von</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/georeferencing.html" />
+            <source>{departure:.2f} pixels of the polynomial, everywhere</source>
+            <translation>{departure:.2f} Pixeln vom Polynom, überall</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/georeferencing.html" />
+            <source>Outside the hull of the control points</source>
+            <translation>Außerhalb der Hülle der Passpunkte</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/georeferencing.html" />
+            <source>{share:.0f} % of the image, left out</source>
+            <translation>{share:.0f} % des Bildes, weggelassen</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/georeferencing.html" />
+            <source>{share:.0f} % of the image</source>
+            <translation>{share:.0f} % des Bildes</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/georeferencing.html" />
+            <source>RMSE (pixels)</source>
+            <translation>RMSE (Pixel)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/georeferencing.html" />
+            <source>Control points, each left out in turn</source>
+            <translation>Passpunkte, jeder der Reihe nach weggelassen</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/georeferencing.html" />
+            <source>RMSE = √(Σ(dx² + dy²) / n). The residuals of control points are too small, since the polynomial was fitted to them; there are {free} more than it needs. Points measured in the laser point cloud itself show how well the image fits the cloud, not how well either fits the ground.</source>
+            <translation>RMSE = √(Σ(dx² + dy²) / n). Die Restklaffungen der Passpunkte sind zu klein, denn das Polynom wurde an sie angepasst; es gibt {free} mehr, als es braucht. Punkte, die in der Laserpunktwolke selbst gemessen sind, zeigen, wie gut das Bild zur Wolke passt, nicht, wie gut eines von beiden zum Boden passt.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/georeferencing.html" />
+            <source>From where the polynomial puts each point to where it was measured, {times} times as long as on the ground. North is up; the thin line is the hull of the control points.</source>
+            <translation>Von dort, wohin das Polynom jeden Punkt setzt, dorthin, wo er gemessen wurde, {times}-mal so lang wie am Boden. Norden ist oben; die dünne Linie ist die Hülle der Passpunkte.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/georeferencing.html" />
+            <source>Point</source>
+            <translation>Punkt</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/georeferencing.html" />
+            <source>Role</source>
+            <translation>Rolle</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/georeferencing.html" />
+            <source>Pixel</source>
+            <translation>Pixel</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/georeferencing.html" />
+            <source>Line, downwards</source>
+            <translation>Zeile, nach unten</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/georeferencing.html" />
+            <source>East (m)</source>
+            <translation>Ost (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/georeferencing.html" />
+            <source>North (m)</source>
+            <translation>Nord (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/georeferencing.html" />
+            <source>Residual (m)</source>
+            <translation>Restabweichung (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/georeferencing.html" />
+            <source>Without this point (m)</source>
+            <translation>Ohne diesen Punkt (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/inspection.html" />
+            <source>What the point clouds and the trajectory hold, before any work is done on them.</source>
+            <translation>Was die Punktwolken und die Trajektorie enthalten, bevor damit gearbeitet wird.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/inspection.html" />
+            <source>Files</source>
+            <translation>Dateien</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/inspection.html" />
+            <source>Extent</source>
+            <translation>Ausdehnung</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/inspection.html" />
+            <source>{width:.1f} × {depth:.1f} m, {height:.1f} m high</source>
+            <translation>{width:.1f} × {depth:.1f} m, {height:.1f} m hoch</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/inspection.html" />
+            <source>{low:.2f} to {high:.2f}</source>
+            <translation>{low:.2f} bis {high:.2f}</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/inspection.html" />
+            <source>Returns</source>
+            <translation>Echos</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/inspection.html" />
+            <source>Classes</source>
+            <translation>Klassen</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/inspection.html" />
+            <source>Density</source>
+            <translation>Dichte</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/inspection.html" />
+            <source>Points per m²</source>
+            <translation>Punkte je m²</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/inspection.html" />
+            <source>Points per m³</source>
+            <translation>Punkte je m³</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/inspection.html" />
+            <source>Mean of occupied cells</source>
+            <translation>Mittel der besetzten Zellen</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/inspection.html" />
+            <source>Median of occupied cells</source>
+            <translation>Median der besetzten Zellen</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/inspection.html" />
+            <source>As a point sees it (mean over points)</source>
+            <translation>Wie ein Punkt sie sieht (Mittel über die Punkte)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/inspection.html" />
+            <source>Densest cell</source>
+            <translation>Dichteste Zelle</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/inspection.html" />
+            <source>Points per m², from 0 (dark) to {most:.0f} (yellow); north is up.</source>
+            <translation>Punkte je m², von 0 (dunkel) bis {most:.0f} (gelb); Norden ist oben.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/inspection.html" />
+            <source>Red is the trajectory.</source>
+            <translation>Rot ist die Trajektorie.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/inspection.html" />
+            <source>Time and scanners</source>
+            <translation>Zeit und Scanner</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/inspection.html" />
+            <source>{first:.3f} to {last:.3f} s, {seconds:.1f} s</source>
+            <translation>{first:.3f} bis {last:.3f} s, {seconds:.1f} s</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/inspection.html" />
+            <source>Counted as</source>
+            <translation>Gezählt als</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/inspection.html" />
+            <source>adjusted standard GPS time; begins {start} in GPS time</source>
+            <translation>GPS-Standardzeit weniger eine Milliarde Sekunden; beginnt {start} in GPS-Zeit</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/inspection.html" />
+            <source>seconds of the GPS week, says the file</source>
+            <translation>Sekunden der GPS-Woche, laut Datei</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/inspection.html" />
+            <source>none that can be used</source>
+            <translation>keine verwendbare</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/inspection.html" />
+            <source>{count}, distinguished by {field}</source>
+            <translation>{count}, unterschieden durch {field}</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/inspection.html" />
+            <source>Points within 25 m of the trajectory</source>
+            <translation>Punkte innerhalb von 25 m der Trajektorie</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/inspection.html" />
+            <source>Scan time covered by the trajectory</source>
+            <translation>Von der Trajektorie abgedeckte Scanzeit</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/inspection.html" />
+            <source>{count} positions over {length:.1f} m</source>
+            <translation>{count} Positionen über {length:.1f} m</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/inspection.html" />
+            <source>Drive</source>
+            <translation>Fahrt</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/inspection.html" />
+            <source>road {number}: {length:.1f} m</source>
+            <translation>Straße {number}: {length:.1f} m</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/inspection.html" />
+            <source>Driven</source>
+            <translation>Gefahren</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/inspection.html" />
+            <source>unknown: too few points lie under the vehicle</source>
+            <translation>unbekannt: zu wenige Punkte liegen unter dem Fahrzeug</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/inspection.html" />
+            <source>{height:.2f} m above the road</source>
+            <translation>{height:.2f} m über der Straße</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/inspection.html" />
+            <source>From station (m)</source>
+            <translation>Von Station (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/inspection.html" />
+            <source>To station (m)</source>
+            <translation>Bis Station (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/inspection.html" />
+            <source>Seconds</source>
+            <translation>Sekunden</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/inspection.html" />
+            <source>Mean speed (km/h)</source>
+            <translation>Mittlere Geschwindigkeit (km/h)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/inspection.html" />
+            <source>along</source>
+            <translation>mit</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/inspection.html" />
+            <source>against</source>
+            <translation>gegen</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/inspection.html" />
+            <source>Heights along the drive, {length:.0f} m from left to right, {low:.1f} m (below) to {high:.1f} m (above): red the trajectory, grey the road under it.</source>
+            <translation>Höhen längs der Fahrt, {length:.0f} m von links nach rechts, {low:.1f} m (unten) bis {high:.1f} m (oben): rot die Trajektorie, grau die Straße darunter.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/inspection.html" />
+            <source>Intensity</source>
+            <translation>Intensität</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/inspection.html" />
+            <source>Range</source>
+            <translation>Bereich</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/inspection.html" />
+            <source>{low} to {high}</source>
+            <translation>{low} bis {high}</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/inspection.html" />
+            <source>1 %, median, 99 %</source>
+            <translation>1 %, Median, 99 %</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/inspection.html" />
+            <source>Different values</source>
+            <translation>Verschiedene Werte</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/inspection.html" />
+            <source>How often each intensity occurs, from {low} (left) to {high} (right).</source>
+            <translation>Wie oft jede Intensität vorkommt, von {low} (links) bis {high} (rechts).</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/inspection.html" />
+            <source>File</source>
+            <translation>Datei</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/inspection.html" />
+            <source>Point format</source>
+            <translation>Punktformat</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/intensity_correction.html" />
+            <source>Intensity correction</source>
+            <translation>Intensitätskorrektur</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/intensity_correction.html" />
+            <source>Asphalt's intensity by scanner, before and after. Distances are from the track of the vehicle.</source>
+            <translation>Die Intensität des Asphalts nach Scanner, vorher und nachher. Entfernungen sind die von der Spur des Fahrzeugs.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/intensity_correction.html" />
+            <source>Asphalt before</source>
+            <translation>Asphalt vorher</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/intensity_correction.html" />
+            <source>Asphalt after</source>
+            <translation>Asphalt nachher</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/intensity_correction.html" />
+            <source>Variation before (%)</source>
+            <translation>Schwankung vorher (%)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/intensity_correction.html" />
+            <source>Variation after (%)</source>
+            <translation>Schwankung nachher (%)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/intensity_correction.html" />
+            <source>Highest/lowest before</source>
+            <translation>Höchster/niedrigster vorher</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/intensity_correction.html" />
+            <source>Highest/lowest after</source>
+            <translation>Höchster/niedrigster nachher</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/map_check.html" />
+            <source>Check of an HD map</source>
+            <translation>Prüfung einer HD-Karte</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/map_check.html" />
+            <source>Nothing was found.</source>
+            <translation>Es wurde nichts gefunden.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/map_check.html" />
+            <source>Faults</source>
+            <translation>Fehler</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/map_check.html" />
+            <source>What it means</source>
+            <translation>Was er bedeutet</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/map_check.html" />
+            <source>One row for the same finding at many places, those at the fewest places first; what was seen is the largest. The layer has a point for each place, with its row.</source>
+            <translation>Eine Zeile für denselben Befund an vielen Stellen, die an den wenigsten Stellen zuerst; gesehen ist der größte. Der Layer hat einen Punkt je Stelle, mit seiner Zeile.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/map_check.html" />
+            <source>Row</source>
+            <translation>Zeile</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/map_check.html" />
+            <source>Where</source>
+            <translation>Wo</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/map_check.html" />
+            <source>What was seen</source>
+            <translation>Was gesehen wurde</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/map_export.html" />
+            <source>The file as it is read back</source>
+            <translation>Die Datei, wie sie zurückgelesen wird</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/map_export.html" />
+            <source>Lanes by type and painted lines; north is up.</source>
+            <translation>Fahrstreifen nach Art und aufgemalte Linien; Norden ist oben.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/marking_accuracy.html" />
+            <source>Accuracy of markings</source>
+            <translation>Genauigkeit der Markierungen</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/marking_accuracy.html" />
+            <source>{count} cell</source>
+            <translation>{count} Zelle</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/marking_accuracy.html" />
+            <source>{count} cells</source>
+            <translation>{count} Zellen</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/marking_accuracy.html" />
+            <source>Judged in cells of {size:g} cm; a cell is painted when its centre is. With a tolerance of one cell the other side is widened by one cell all round before the comparison. An object is found, or right, if at least {share:g} % of its cells are, with a tolerance of {cells}.</source>
+            <translation>Beurteilt in Zellen von {size:g} cm; eine Zelle ist markiert, wenn ihre Mitte es ist. Mit einer Toleranz von einer Zelle wird die andere Seite vor dem Vergleich ringsum um eine Zelle verbreitert. Ein Objekt ist gefunden oder richtig, wenn mindestens {share:g} % seiner Zellen es sind, mit einer Toleranz von {cells}.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/marking_accuracy.html" />
+            <source>Right</source>
+            <translation>Richtig</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/marking_accuracy.html" />
+            <source>Objects</source>
+            <translation>Objekte</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/marking_accuracy.html" />
+            <source>Cells, strict</source>
+            <translation>Zellen, streng</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/marking_accuracy.html" />
+            <source>Cells, tolerance {cells}</source>
+            <translation>Zellen, Toleranz {cells}</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/marking_accuracy.html" />
+            <source>With a tolerance and for objects, IoU is F1 / (2 − F1): right cells of the result and found ones of the reference differ in number.</source>
+            <translation>Mit Toleranz und bei Objekten ist IoU = F1 / (2 − F1): Die Zahl der richtigen Zellen des Ergebnisses und die der gefundenen der Referenz unterscheiden sich.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/marking_accuracy.html" />
+            <source>within {cells} (%)</source>
+            <translation>innerhalb von {cells} (%)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/marking_accuracy.html" />
+            <source>Class</source>
+            <translation>Klasse</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/marking_accuracy.html" />
+            <source>Reference cells</source>
+            <translation>Zellen der Referenz</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/marking_accuracy.html" />
+            <source>Result cells</source>
+            <translation>Zellen des Ergebnisses</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/marking_accuracy.html" />
+            <source>F1 of the class (%)</source>
+            <translation>F1 der Klasse (%)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/marking_accuracy.html" />
+            <source>IoU of the class (%)</source>
+            <translation>IoU der Klasse (%)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/marking_accuracy.html" />
+            <source>Recall and precision count paint of any class; F1 and IoU of the class require the same class in both, if both have it.</source>
+            <translation>Vollständigkeit und Präzision zählen Farbe jeder Klasse; F1 und IoU der Klasse verlangen in beiden dieselbe Klasse, wo beide eine haben.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/marking_accuracy.html" />
+            <source>Objects of the reference that were found and missed, and false objects of the result; north is up.</source>
+            <translation>Gefundene und übersehene Objekte der Referenz und falsche Objekte des Ergebnisses; Norden ist oben.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/marking_accuracy.html" />
+            <source>With a tolerance of {cells}.</source>
+            <translation>Mit einer Toleranz von {cells}.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/parts.html" />
+            <source>Map</source>
+            <translation>Karte</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/parts.html" />
+            <source>Map, within {tolerance:g} cm</source>
+            <translation>Karte, innerhalb von {tolerance:g} cm</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/parts.html" />
+            <source>The bar is {length:g} m long.</source>
+            <translation>Der Balken ist {length:g} m lang.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/parts.html" />
+            <source>Distribution</source>
+            <translation>Verteilung</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/proposed_points.html" />
+            <source>Proposed control points</source>
+            <translation>Vorgeschlagene Passpunkte</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/proposed_points.html" />
+            <source>The same paint in the image and in the intensity image.</source>
+            <translation>Dieselbe Farbe im Bild und im Intensitätsbild.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/proposed_points.html" />
+            <source>Placed roughly by</source>
+            <translation>Ungefähr eingepasst durch</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/proposed_points.html" />
+            <source>Found turned by</source>
+            <translation>Gefunden mit Drehung</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/proposed_points.html" />
+            <source>{turn:.1f}° counter-clockwise, from its rows to east</source>
+            <translation>{turn:.1f}° gegen den Uhrzeigersinn, von seinen Zeilen nach Osten</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/proposed_points.html" />
+            <source>Pixel on the ground</source>
+            <translation>Pixel am Boden</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/proposed_points.html" />
+            <source>Pairs</source>
+            <translation>Paare</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/proposed_points.html" />
+            <source>{count}, of which {accepted} accepted</source>
+            <translation>{count}, davon {accepted} angenommen</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/proposed_points.html" />
+            <source>RMSE of the accepted pairs, each left out in turn</source>
+            <translation>RMSE der angenommenen Paare, jedes der Reihe nach weggelassen</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/proposed_points.html" />
+            <source>{rmse:.3f} m, by a polynomial of order {order}</source>
+            <translation>{rmse:.3f} m, durch ein Polynom der Ordnung {order}</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/proposed_points.html" />
+            <source>The next likely place lies {away:.1f} m away: {here:.0f} corners speak for the place found, {there:.0f} for that one.</source>
+            <translation>Die nächstwahrscheinliche Stelle liegt {away:.1f} m entfernt: {here:.0f} Ecken sprechen für die gefundene Stelle, {there:.0f} für jene.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/proposed_points.html" />
+            <source>Pairs of cut-outs</source>
+            <translation>Paare von Ausschnitten</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/proposed_points.html" />
+            <source>Left the image, right the intensity image, both 3.2 m wide, north up. Green: accepted. Red: refused by default. Below each: its number, the likeness of the two, and how far off the other pairs place it.</source>
+            <translation>Links das Bild, rechts das Intensitätsbild, beide 3,2 m breit, Norden oben. Grün: angenommen. Rot: in der Vorgabe abgelehnt. Unter jedem: seine Nummer, die Ähnlichkeit der beiden, und wie weit daneben die anderen Paare es setzen.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/proposed_points.html" />
+            <source>Accepted</source>
+            <translation>Bestätigt</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/proposed_points.html" />
+            <source>Likeness</source>
+            <translation>Ähnlichkeit</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/proposed_points.html" />
+            <source>Why not</source>
+            <translation>Warum nicht</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/proposed_points.html" />
+            <source>yes</source>
+            <translation>ja</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/proposed_points.html" />
+            <source>no</source>
+            <translation>nein</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Made by Lanewright. Lengths are in metres; “bridged” was drawn across a gap, “inferred” was placed from the outer lines alone; everything else was measured.</source>
+            <translation>Erstellt von Lanewright. Längen sind in Metern; „überbrückt“ wurde über eine Lücke hinweg gezeichnet, „erschlossen“ allein aus den äußeren Linien; alles andere wurde gemessen.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>The uncertainty is one sigma across the line, from residuals, point spacing and what passes differ by; two thirds of the places lie within it on simulated streets. What the whole trajectory is off is not in it.</source>
+            <translation>Die Unsicherheit ist ein Sigma quer zur Linie, aus Restabweichungen, Punktabstand und dem, worin Befahrungen sich unterscheiden; auf simulierten Straßen liegen zwei Drittel der Stellen innerhalb davon. Ein Fehler der ganzen Trajektorie ist nicht darin.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>The road map over the intensity image; north is up.</source>
+            <translation>Die Straßenkarte über dem Intensitätsbild; Norden ist oben.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>road edge, measured</source>
+            <translation>Straßenrand, gemessen</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>road edge, bridged</source>
+            <translation>Straßenrand, überbrückt</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>the two methods more than 5 cm apart</source>
+            <translation>die beiden Verfahren mehr als 5 cm auseinander</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>marking line</source>
+            <translation>Markierungslinie</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>{height:.2f} m (pass {number})</source>
+            <translation>{height:.2f} m (Befahrung {number})</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Points read</source>
+            <translation>Gelesene Punkte</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Points near the road</source>
+            <translation>Punkte nahe der Straße</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Passes</source>
+            <translation>Befahrungen</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Trajectory above the road</source>
+            <translation>Trajektorie über der Straße</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Per m³, mean of occupied cubes</source>
+            <translation>Je m³, Mittel der besetzten Würfel</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Per m³, as a point sees it</source>
+            <translation>Je m³, wie ein Punkt sie sieht</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Before: points near the road</source>
+            <translation>Vorher: Punkte nahe der Straße</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>After: road surface</source>
+            <translation>Nachher: Straßenoberfläche</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Cubes of 1 m. {share:.1f} % of the points near the road are its surface. “As a point sees it” is the mean over points of how many share their cube.</source>
+            <translation>Würfel von 1 m. {share:.1f} % der Punkte nahe der Straße sind ihre Oberfläche. „Wie ein Punkt sie sieht“ ist das Mittel über die Punkte, wie viele sich ihren Würfel teilen.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Road edges and surface</source>
+            <translation>Straßenränder und Oberfläche</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Edge</source>
+            <translation>Rand</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Status</source>
+            <translation>Status</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Uncertainty (mm)</source>
+            <translation>Unsicherheit (mm)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Neither a curb nor an edge of the pavement was found along this road, so no edge line was drawn.</source>
+            <translation>Längs dieser Straße wurde weder ein Bordstein noch ein Rand der Befestigung gefunden; daher wurde keine Randlinie gezeichnet.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Agreement of the two methods</source>
+            <translation>Übereinstimmung der beiden Verfahren</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Edges measured (m)</source>
+            <translation>Gemessene Ränder (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Both methods see {length:.0f} m of the edges drawn; 95 % of each piece keeps within {usual:.1f} cm on average.</source>
+            <translation>Beide Verfahren sehen {length:.0f} m der gezeichneten Ränder; 95 % jedes Stücks liegen im Mittel innerhalb von {usual:.1f} cm.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Here they lie more than 5 cm apart; look at these places first.</source>
+            <translation>Hier liegen sie mehr als 5 cm auseinander; diese Stellen zuerst ansehen.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Apart at most (cm)</source>
+            <translation>Auseinander, höchstens (cm)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Nowhere do they lie more than 5 cm apart for a metre or more.</source>
+            <translation>Nirgends liegen sie einen Meter oder länger mehr als 5 cm auseinander.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Status of the surface</source>
+            <translation>Status der Oberfläche</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Area (m²)</source>
+            <translation>Fläche (m²)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>{taken} points were taken for paint, {kept} are left without outliers.</source>
+            <translation>{taken} Punkte galten als Farbe, {kept} bleiben ohne Ausreißer.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Use</source>
+            <translation>Verwendung</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Number</source>
+            <translation>Anzahl</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Line</source>
+            <translation>Linie</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Pattern</source>
+            <translation>Muster</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Mean curvature of marking points (1/m)</source>
+            <translation>Mittlere Krümmung von Markierungspunkten (1/m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Before fitting</source>
+            <translation>Vor dem Einpassen</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>After fitting</source>
+            <translation>Nach dem Einpassen</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>kernel of 0.2 m, {count} points</source>
+            <translation>Kern von 0,2 m, {count} Punkte</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Absolute mean curvature of the surface through the points of line markings, as measured and at the height of the line fitted to them: how rough a marking is, not how the road bends.</source>
+            <translation>Betrag der mittleren Krümmung der Fläche durch die Punkte von Linienmarkierungen, wie gemessen und in der Höhe der eingepassten Linie: wie rau eine Markierung ist, nicht, wie die Straße sich krümmt.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>No driving line was made: no two lines that bound a lane were found.</source>
+            <translation>Es wurde keine Fahrlinie erstellt: Keine zwei Linien wurden gefunden, die einen Fahrstreifen begrenzen.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Source</source>
+            <translation>Herkunft</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Turn</source>
+            <translation>Drehsinn</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>The driving lines have no circular arcs.</source>
+            <translation>Die Fahrlinien haben keine Kreisbögen.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Curvature along the driving lines</source>
+            <translation>Krümmung längs der Fahrlinien</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Road {road}, lane {lane}.</source>
+            <translation>Straße {road}, Fahrstreifen {lane}.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Lane {lane}.</source>
+            <translation>Fahrstreifen {lane}.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>the line as drawn</source>
+            <translation>die Linie, wie gezeichnet</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>arcs of the table of curve elements</source>
+            <translation>Bögen der Tabelle der Bogenelemente</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>least radius for the speed, {code}</source>
+            <translation>kleinster Radius für die Geschwindigkeit, {code}</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>In 1/m, in the direction of travel, positive to the left; from the headings of the {base:g} m behind and ahead. Stations are the road's.</source>
+            <translation>In 1/m, in Fahrtrichtung, positiv nach links; aus den Richtungen der {base:g} m davor und danach. Stationen sind die der Straße.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>{count} further driving lines are not drawn.</source>
+            <translation>{count} weitere Fahrlinien sind nicht gezeichnet.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Design code check, {code}</source>
+            <translation>Prüfung nach Entwurfsregel, {code}</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>less than {speed}</source>
+            <translation>unter {speed}</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Allows (km/h)</source>
+            <translation>Erlaubt (km/h)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Why</source>
+            <translation>Warum</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Speed (km/h)</source>
+            <translation>Geschwindigkeit (km/h)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Least radius (m)</source>
+            <translation>Kleinster Radius (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Least length of a curve (m)</source>
+            <translation>Kleinste Länge einer Kurve (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Corrections that match nothing in this run and were left out: {count}. Look at these places and delete or renew the rows.</source>
+            <translation>Korrekturen, die in diesem Lauf zu nichts passen und weggelassen wurden: {count}. Diese Stellen ansehen und die Zeilen löschen oder erneuern.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Action</source>
+            <translation>Aktion</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Target</source>
+            <translation>Ziel</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Note</source>
+            <translation>Notiz</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Reading and placing points</source>
+            <translation>Punkte lesen und zuordnen</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Curbs</source>
+            <translation>Bordsteine</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Marking extraction</source>
+            <translation>Markierungen extrahieren</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Outlier removal</source>
+            <translation>Ausreißer entfernen</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Clustering</source>
+            <translation>Zusammenfassen</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Stage</source>
+            <translation>Schritt</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/road_map.html" />
+            <source>Together</source>
+            <translation>Zusammen</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/roadside.html" />
+            <source>What stands beside the road. Heights are those above the ground at its foot; distances count outward from the carriageway's edge.</source>
+            <translation>Was neben der Straße steht. Höhen sind die über dem Boden am Fuß; Abstände zählen vom Fahrbahnrand nach außen.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/roadside.html" />
+            <source>Single</source>
+            <translation>Einzelnes</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/roadside.html" />
+            <source>Nothing was found within the reach.</source>
+            <translation>In der Reichweite wurde nichts gefunden.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/roadside.html" />
+            <source>The roadside from above, straightened; black are the edges of the carriageway.</source>
+            <translation>Der Straßenseitenraum von oben, begradigt; schwarz sind die Fahrbahnränder.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/roadside.html" />
+            <source>Kind</source>
+            <translation>Art</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/roadside.html" />
+            <source>From the edge (m)</source>
+            <translation>Vom Rand (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/roadside.html" />
+            <source>Height (m)</source>
+            <translation>Höhe (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/roadside.html" />
+            <source>Foot (m)</source>
+            <translation>Fuß (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/runs.html" />
+            <source>Runs of Lanewright</source>
+            <translation>Läufe von Lanewright</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/templates/runs.html" />
+            <source>since QGIS was started</source>
+            <translation>seit dem Start von QGIS</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/features.py" />
             <source>Pass that drove nearest</source>
             <translation>Befahrung, die am nächsten fuhr</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Side (left/right)</source>
             <translation>Seite (left/right)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Confidence (0 to 1)</source>
             <translation>Vertrauen (0 bis 1)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Second reading that is almost as probable (JSON)</source>
             <translation>Zweite Lesart, die fast ebenso wahrscheinlich ist (JSON)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Offset, left positive (m)</source>
             <translation>Abstand, links positiv (m)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Part (bottom/top)</source>
             <translation>Teil (bottom/top)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Agreement of the two methods (cm)</source>
             <translation>Übereinstimmung der beiden Verfahren (cm)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Radius (m)</source>
             <translation>Radius (m)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Kind (main/corner/side_street/island)</source>
             <translation>Art (main/corner/side_street/island)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>RMSE of the fit (m)</source>
             <translation>RMSE der Einpassung (m)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Uncertainty across, one sigma (m)</source>
             <translation>Unsicherheit quer, ein Sigma (m)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Part of the uncertainty across that all lines of the road share, from trajectory and passes (m)</source>
             <translation>Anteil der Querunsicherheit, den alle Linien der Straße teilen, aus Trajektorie und Befahrungen (m)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Edge (curb/dropped/pavement)</source>
             <translation>Rand (curb/dropped/pavement)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>End station (m)</source>
             <translation>Endstation (m)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Distance from the carriageway's edge (m)</source>
             <translation>Abstand vom Fahrbahnrand (m)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Outcome (correct/missed/false/excluded)</source>
             <translation>Ergebnis (correct/missed/false/excluded)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Chain along the curb</source>
             <translation>Kette längs des Bordsteins</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Distance along the chain (m)</source>
             <translation>Entfernung längs der Kette (m)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Supporting points</source>
             <translation>Stützende Punkte</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Interval of the planes (m)</source>
             <translation>Abstand der Ebenen (m)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Cluster</source>
             <translation>Gruppe</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Use (keep/other)</source>
             <translation>Verwendung (keep/other)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Elongation</source>
             <translation>Längung</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Scanning distance (m)</source>
             <translation>Scanentfernung (m)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Kind (edge/lane/centre)</source>
             <translation>Art (edge/lane/centre)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Curve</source>
             <translation>Kurve</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Fitted function (JSON)</source>
             <translation>Eingepasste Funktion (JSON)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Lines to its left|right</source>
             <translation>Linien links|rechts davon</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Direction (1 along, -1 against the road)</source>
             <translation>Richtung (1 mit, -1 gegen die Straße)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Source (pair/offset)</source>
             <translation>Herkunft (pair/offset)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Lane and piece (road.lane.piece)</source>
             <translation>Fahrstreifen und Stück (Straße.Streifen.Stück)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Type (driving/shoulder/parking/bicycle/hatched/median/connector)</source>
             <translation>Art (driving/shoulder/parking/bicycle/hatched/median/connector)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Direction (1 along, -1 against the road, 0 not driven)</source>
             <translation>Richtung (1 mit, -1 gegen die Straße, 0 nicht befahren)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>What its left border is (line N of the marking lines, edge N: chain of the road edges)</source>
             <translation>Was ihr linker Rand ist (line N der Markierungslinien, edge N: chain der Straßenränder)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>What its right border is (line N of the marking lines, edge N: chain of the road edges)</source>
             <translation>Was ihr rechter Rand ist (line N der Markierungslinien, edge N: chain der Straßenränder)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Kind of its left border</source>
             <translation>Art der linken Begrenzung</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Kind of its right border</source>
             <translation>Art der rechten Begrenzung</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Pattern of its left border</source>
             <translation>Muster der linken Begrenzung</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Pattern of its right border</source>
             <translation>Muster der rechten Begrenzung</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Lanes that follow, by lane_id</source>
             <translation>Folgende Fahrstreifen, nach lane_id</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Turn (left/right)</source>
             <translation>Drehsinn (left/right)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>R (m)</source>
             <translation>R (m)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>R (ft)</source>
             <translation>R (ft)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Δ (°)</source>
             <translation>Δ (°)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>D (° per 100 ft)</source>
             <translation>D (° je 100 ft)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>D (° per 100 m)</source>
             <translation>D (° je 100 m)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>L (m)</source>
             <translation>L (m)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>L (ft)</source>
             <translation>L (ft)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>T (m)</source>
             <translation>T (m)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>T (ft)</source>
             <translation>T (ft)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>M (m)</source>
             <translation>M (m)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>M (ft)</source>
             <translation>M (ft)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>LC (m)</source>
             <translation>LC (m)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>LC (ft)</source>
             <translation>LC (ft)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>E (m)</source>
             <translation>E (m)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>E (ft)</source>
             <translation>E (ft)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>RMSE of the arc (m)</source>
             <translation>RMSE des Bogens (m)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Highest design speed allowed (km/h)</source>
             <translation>Höchste erlaubte Entwurfsgeschwindigkeit (km/h)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Design code check</source>
             <translation>Prüfung nach Entwurfsregel</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Action (accept/delete/move/draw/take)</source>
             <translation>Aktion (accept/delete/move/draw/take)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>What is meant (edge/marking/lane)</source>
             <translation>Was gemeint ist (edge/marking/lane)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Kind of a line that is drawn (edge/lane/centre)</source>
             <translation>Art einer gezeichneten Linie (edge/lane/centre)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Pattern of a line that is drawn (solid/dashed)</source>
             <translation>Muster einer gezeichneten Linie (solid/dashed)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Second reading that is taken (JSON)</source>
             <translation>Zweite Lesart, die genommen wird (JSON)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Road, lane, way or relation</source>
             <translation>Straße, Fahrstreifen, Weg oder Relation</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
+            <source>Row of the report</source>
+            <translation>Zeile des Berichts</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/features.py" />
+            <source>Places with the same finding</source>
+            <translation>Stellen mit demselben Befund</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/features.py" />
             <source>Section</source>
             <translation>Querschnitt</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Part (carriageway/lane)</source>
             <translation>Teil (carriageway/lane)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Type of the lane</source>
             <translation>Art des Fahrstreifens</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Direction (1 along, -1 against the road, 0 not known)</source>
             <translation>Richtung (1 mit, -1 gegen die Straße, 0 unbekannt)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Offset of its middle, left positive (m)</source>
             <translation>Abstand seiner Mitte, links positiv (m)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Borders taken from (lanes/lines/edges/track)</source>
             <translation>Grenzen aus (lanes/lines/edges/track)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Crossfall, positive falls to the right along the road (%)</source>
             <translation>Querneigung, positiv fällt längs der Straße nach rechts (%)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Sigma of the crossfall, roll included (%)</source>
             <translation>Sigma der Querneigung mit Rollwinkel (%)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Grade, positive climbs along the road (%)</source>
             <translation>Längsneigung, positiv steigt längs der Straße (%)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Rut depth, left wheel path (mm)</source>
             <translation>Spurrinnentiefe, linke Radspur (mm)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Rut depth, right wheel path (mm)</source>
             <translation>Spurrinnentiefe, rechte Radspur (mm)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Height of the left curb (m)</source>
             <translation>Höhe des linken Bords (m)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Height of the right curb (m)</source>
             <translation>Höhe des rechten Bords (m)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Clearance above (m)</source>
             <translation>Lichte Höhe (m)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Surface seen (%)</source>
             <translation>Gesehene Oberfläche (%)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Limits not kept</source>
             <translation>Nicht eingehaltene Grenzwerte</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Kind (guard_rail/barrier/wall/fence/hedge/gutter)</source>
             <translation>Art (guard_rail/barrier/wall/fence/hedge/gutter)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Height of its top above the ground, of a gutter its depth (m)</source>
             <translation>Höhe der Oberkante über dem Boden, einer Rinne ihre Tiefe (m)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Height of its lower edge above the ground (m)</source>
             <translation>Höhe der Unterkante über dem Boden (m)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Kind (pole/sign/trunk)</source>
             <translation>Art (pole/sign/trunk)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Height of its top above the ground (m)</source>
             <translation>Höhe der Spitze über dem Boden (m)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Diameter of its shaft (m)</source>
             <translation>Durchmesser des Schafts (m)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Role (control/check/disabled)</source>
             <translation>Rolle (control/check/disabled)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Residual east (m)</source>
             <translation>Restklaffung Ost (m)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Residual north (m)</source>
             <translation>Restklaffung Nord (m)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Residual without this point (m)</source>
             <translation>Restklaffung ohne diesen Punkt (m)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Leverage (0 to 1)</source>
             <translation>Hebelwirkung (0 bis 1)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Role (control/check)</source>
             <translation>Rolle (control/check)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>What was pointed at</source>
             <translation>Worauf gezeigt wurde</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Accepted (1/0)</source>
             <translation>Angenommen (1/0)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Likeness of the two cut-outs (0 to 1)</source>
             <translation>Ähnlichkeit der beiden Ausschnitte (0 bis 1)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Distance from where the other pairs place it (m)</source>
             <translation>Abstand von da, wo die anderen Paare es hinlegen (m)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Why it is not accepted</source>
             <translation>Warum es nicht angenommen ist</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Time (s)</source>
             <translation>Zeit (s)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Roll (°)</source>
             <translation>Rollwinkel (°)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Pitch (°)</source>
             <translation>Nickwinkel (°)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Heading (°, clockwise from grid north)</source>
             <translation>Kurs (°, im Uhrzeigersinn von Gitternord)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Uncertainty of the place, one sigma (m)</source>
             <translation>Unsicherheit der Lage, ein Sigma (m)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Uncertainty of the height, one sigma (m)</source>
             <translation>Unsicherheit der Höhe, ein Sigma (m)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Begins (s, clock of the point clouds)</source>
             <translation>Beginnt (s, Uhr der Punktwolken)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Ends (s, clock of the point clouds)</source>
             <translation>Endet (s, Uhr der Punktwolken)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Road, or line of the reference</source>
             <translation>Straße, oder Linie der Referenz</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Covered by the result (m)</source>
             <translation>Vom Ergebnis abgedeckt (m)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Row of the line in its layer</source>
             <translation>Zeile der Linie in ihrem Layer</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>From, along the line (m)</source>
             <translation>Von, längs der Linie (m)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>To, along the line (m)</source>
             <translation>Bis, längs der Linie (m)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Mean distance (m)</source>
             <translation>Mittlerer Abstand (m)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Largest distance (m)</source>
             <translation>Größter Abstand (m)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Of (reference/result)</source>
             <translation>Aus (reference/result)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Share of it in the other layer (%)</source>
             <translation>Anteil davon im anderen Layer (%)</translation>
         </message>
         <message>
-            <location filename="../../core/common/schemas.py" />
+            <location filename="../../core/common/features.py" />
             <source>Judged area (m²)</source>
             <translation>Beurteilte Fläche (m²)</translation>
         </message>

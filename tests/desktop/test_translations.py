@@ -147,6 +147,20 @@ def test_the_legend_of_a_layer_that_is_in_the_tree_already_turns_german(german, 
     ("Measure more points. No paint was found on this road, so there are no marking lines and no driving lines.",
      "Mehr Punkte messen. Auf dieser Straße wurde keine Farbe gefunden; es gibt daher keine Markierungslinien und keine Fahrlinien."),
     ("kink at a link", "Knick an einer Verknüpfung"),
+    ("0.12 rad between it and lane -2 of road 7 at its start.", "0.12 rad zwischen ihm und Streifen -2 der Straße 7 an seinem Anfang."),
+    ("The column 'Time' of a.csv holds times of a clock such as '1/2/2021 23:46'. GPS seconds are needed, and day and month cannot be told apart. "
+     "Export the trajectory with GPS time in seconds; or write dates as year-month-day.",
+     "Die Spalte 'Time' von a.csv enthält Uhrzeiten wie '1/2/2021 23:46'. Nötig sind GPS-Sekunden, und Tag und Monat sind nicht zu "
+     "unterscheiden. Die Trajektorie mit GPS-Zeit in Sekunden exportieren; oder Daten als Jahr-Monat-Tag schreiben."),
+    ("The column 't' of a.csv goes up by 1.2e-05 from row to row as if it counted days, but 7.5 is no day of a known count (MJD, Julian days, a "
+     "spreadsheet). GPS seconds are needed: export the trajectory with these.",
+     "Die Spalte 't' von a.csv steigt um 1.2e-05 von Zeile zu Zeile, als würden Tage gezählt, aber 7.5 ist kein Tag einer bekannten Zählung (MJD, "
+     "julianisches Datum, Tabellenkalkulation). Nötig sind GPS-Sekunden: die Trajektorie mit diesen exportieren."),
+    ("The heights of the cloud alone seem to be in feet where x and y are in metres: the laser beams meet in the scanner only if heights are "
+     "multiplied by 0.3048. Curbs are missed, and heights and slopes are wrong by that factor. Convert these heights, and run again.",
+     "Die Höhen der Wolke allein sind anscheinend in Fuß, während x und y in Metern sind: Die Laserstrahlen treffen sich nur dann im Scanner, wenn "
+     "die Höhen mit 0.3048 multipliziert werden. Bordsteine werden übersehen, Höhen und Neigungen sind um diesen Faktor falsch. Diese Höhen "
+     "umrechnen und neu starten."),
     ("/data/B12/my roads/a 1.laz", "/data/B12/my roads/a 1.laz"),
     ("Something that nobody has translated.", "Something that nobody has translated."),
 ])

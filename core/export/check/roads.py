@@ -363,11 +363,11 @@ class _Links:
         apart = [pair[0] - pair[1] for pair in pairs]
         gap, rise = max(float(np.hypot(*d[:2])) for d in apart), max(abs(float(d[2])) for d in apart)
         kink = abs(float(np.arctan2(*(_cross_dot(own[2], theirs[2] if end != there else -theirs[2])))))
-        for fault, size, most, text in (("gap at a link", gap, MAX_GAP_AT_LINK, f"{metres(gap)} from"),
-                                        ("height step at a link", rise, MAX_HEIGHT_AT_LINK, f"{metres(rise)} to"),
-                                        ("kink at a link", kink * driven, MAX_KINK_AT_LINK, f"{kink:.3f} rad to")):
+        for fault, size, most, text in (("gap at a link", gap, MAX_GAP_AT_LINK, metres(gap)),
+                                        ("height step at a link", rise, MAX_HEIGHT_AT_LINK, metres(rise)),
+                                        ("kink at a link", kink * driven, MAX_KINK_AT_LINK, f"{kink:.3f} rad")):
             if size > most:
-                self.findings.add(fault, name, f"{text} lane {other[2]} of road {other[0]} at its {end}.", own[0])
+                self.findings.add(fault, name, f"{text} between it and lane {other[2]} of road {other[0]} at its {end}.", own[0])
         self._driven_on(name, key, end, own[0], other, there, target, driven)
 
     def _driven_on(self, name, key, end, place, other, there, target, driven):

@@ -95,8 +95,8 @@ def _other_heights(sample, trajectory, mountings, progress):
                 alone = abs(up) > max(VEHICLE_HEIGHT, abs(up - (1.0 - stretch) * height))
                 of = "the cloud alone" if alone else "cloud and trajectory"
                 progress.warn(f"The heights of {of} seem to be {said}: the laser beams meet in the scanner only if heights are "
-                              f"multiplied by {stretch:.4g}. Curbs are missed, and heights and slopes are wrong by that factor. Convert the heights "
-                              f"of {'the cloud' if alone else 'both'}, and run again.")
+                              f"multiplied by {stretch:.4g}. Curbs are missed, and heights and slopes are wrong by that factor. Convert these "
+                              "heights, and run again.")
                 return True
     if all(one.ground > 0 for one in mountings):
         progress.warn(f"The road lies {np.mean([one.ground for one in mountings]):.1f} m above the scanners, as if heights were counted downwards or "

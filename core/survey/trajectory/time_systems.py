@@ -39,7 +39,7 @@ LEAP_DAYS = ("1981-07-01", "1982-07-01", "1983-07-01", "1985-07-01", "1988-01-01
 
 # Where counts of days begin, in the Gregorian calendar; of several that may be, the first that gives a day of FIRST_SURVEY or later
 DAY_COUNTS = {"modified Julian days": "1858-11-17", "days of a spreadsheet": "1899-12-30", "days of MATLAB": "-0001-12-31",
-              "Julian days": "-4713-11-24T12"}
+              "days of the Julian date": "-4713-11-24T12"}
 FIRST_SURVEY, LAST_SURVEY = "1990-01-01", "2050-01-01"
 SHORTEST_STEP = 5e-4    # weight: s from row to row; no trajectory has 2000 positions a second, and a vehicle drives a centimetre in it
 
@@ -59,7 +59,7 @@ class ClockTimes:
     dated: bool
     zone: str
     order_known: bool
-    kind: str = "clock times"
+    kind: str = "times of a clock"
     first: str = ""
 
 
