@@ -122,8 +122,8 @@ class Algorithm:
     def add_cloud(self, name, label, text, optional=False):
         self.add(CloudSpec(name, label, text, optional))
 
-    def add_layer(self, name, label, text, geometry="any", optional=False):
-        self.add(LayerSpec(name, label, text, optional, geometry=geometry))
+    def add_layer(self, name, label, text, geometry="any", optional=False, advanced=False):
+        self.add(LayerSpec(name, label, text, optional, advanced, geometry=geometry))
 
     def add_layer_raster(self, name, label, text, optional=False):
         self.add(RasterSpec(name, label, text, optional))

@@ -16,7 +16,7 @@ def add_corrections(algorithm):
            "(edge, marking, lane). Further fields: note; kind and pattern of a line that is drawn; other of a second reading that is taken. "
            "A row concerns what this run finds within half a metre of it, whatever its number; for lanes it is one metre, for move two. "
            "A row without geometry lies at its road, station_m and offset_m. "
-           "What matches nothing is listed in log and report. The window of doubtful places writes this layer."), optional=True)
+           "What matches nothing is listed in log and report. The window of doubtful places writes this layer."), optional=True, advanced=True)
 
 
 def corrections_of(call):

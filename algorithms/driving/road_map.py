@@ -48,10 +48,9 @@ STAGES = {
     "driving": DRIVING_SETTINGS,
 }
 
-# The dialog shows what one turns from survey to survey, folds away what one turns now and then,
-# and leaves the rest to the single stages
-BASIC = ("MIN_HEIGHT", "MAX_HEIGHT", "MAX_GAP", "CELL_SIZE", "LANE_WIDTH", "TRAFFIC_SIDE")
-ADVANCED = ("SLOPE", "INTERVAL", "SCANLINE_MIN_HEIGHT", "BLOCK_LENGTH", "FALLBACK_WIDTH", "MAX_WIDTH", "METHOD", "CURVE", "DEGREE", "LINE_DISTANCE")
+# Settings of the stages that one turns now and then; the rest is left to the single algorithms
+OFFERED = ("BLOCK_LENGTH", "MIN_HEIGHT", "MAX_HEIGHT", "SLOPE", "INTERVAL", "SCANLINE_MIN_HEIGHT", "MAX_GAP", "FALLBACK_WIDTH", "MAX_WIDTH",
+           "CELL_SIZE", "METHOD", "CURVE", "DEGREE", "COUNTRY", "LANE_WIDTH", "TRAFFIC_SIDE", "LINE_DISTANCE")
 
 LAYERS = (
     ("ROAD_EDGES", "edges", "LineStringZ", ROAD_EDGES, tr("Road edges")),
@@ -77,21 +76,20 @@ class RoadMap(Algorithm):
     NEEDS_GDAL = True  # the stages hand the intensity image on as a GeoTIFF
 
     def declare(self):
+        # the dialog shows clouds, trajectory and where to save; all else is folded away, in the order of the stages
         self.add_survey(trajectory_optional=True, without=WITHOUT_TRAJECTORY)
-        add_corrections(self)
-        self.add_settings((METHOD_SETTING,))
-        self.add(FlagSpec(
-            "CORRECT_INTENSITY", tr("Correct intensity first"),
-            tr("Evens out range, incidence and the difference between scanners. Switch it off for clouds whose "
-               "intensity was corrected already."),
-            value=True,
-        ))
-        for specs in STAGES.values():
-            self.add_settings(specs, only=BASIC)
-        self.add_settings(DRIVING_SETTINGS, only=("COUNTRY",))
-        for specs in STAGES.values():
-            self.add_settings(specs, only=ADVANCED, advanced=True)
+        self.add_settings((METHOD_SETTING,), advanced=True)
+        for stage, specs in STAGES.items():
+            if stage == "intensity":
+                self.add(FlagSpec(
+                    "CORRECT_INTENSITY", tr("Correct intensity first"),
+                    tr("Evens out range, incidence and the difference between scanners. Switch it off for clouds whose "
+                       "intensity was corrected already."),
+                    value=True, advanced=True,
+                ))
+            self.add_settings(specs, only=OFFERED, advanced=True)
         self.add_settings(SURVEY_SETTINGS)
+        add_corrections(self)
         add_execution(self)
         for name, _, geometry, fields, label in LAYERS:
             self.add_sink(name, label, fields=fields, geometry=geometry, optional=True)

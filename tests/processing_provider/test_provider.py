@@ -4,7 +4,7 @@ import re
 
 import pytest
 from lanewright.algorithms.catalogue import ALGORITHMS
-from lanewright.algorithms.driving.road_map import ADVANCED, BASIC, STAGES
+from lanewright.algorithms.driving.road_map import OFFERED, STAGES
 from lanewright.algorithms.parameters import settings_class
 from lanewright.processing_provider.algorithm import LanewrightAlgorithm
 from qgis.core import Qgis, QgsProcessingParameterDefinition
@@ -121,22 +121,17 @@ def test_clouds_are_files_since_qgis_without_pdal_cannot_load_them(algorithm):
         assert clouds.layerType() == Qgis.ProcessingSourceType.File
 
 
-def test_rarely_changed_settings_are_out_of_the_way(provider):
-    shown = [
-        parameter
-        for parameter in provider.algorithm("roadmap").parameterDefinitions()
-        if parameter.type() in ("number", "enum", "boolean")
-        and not parameter.flags() & QgsProcessingParameterDefinition.Flag.FlagAdvanced
-    ]
-    assert len(shown) <= 9
+def test_the_dialog_of_the_road_map_shows_clouds_trajectory_and_where_to_save(provider):
+    shown = [parameter.name() for parameter in provider.algorithm("roadmap").parameterDefinitions()
+             if not parameter.isDestination() and not parameter.flags() & QgsProcessingParameterDefinition.Flag.FlagAdvanced]
+    assert shown == ["POINT_CLOUDS", "TRAJECTORY"]
 
 
 def test_a_setting_of_the_road_map_changes_one_thing_only():
     # a road lies in one country: lines and driving lines are given the same
     names = [spec.name for specs in STAGES.values() for spec in specs if spec.name != "COUNTRY"]
     assert len(names) == len(set(names))
-    assert set(BASIC) | set(ADVANCED) <= set(names)
-    assert not set(BASIC) & set(ADVANCED)
+    assert set(OFFERED) <= {*names, "COUNTRY"}
 
 
 def test_settings_of_a_package_that_is_not_there_leave_the_algorithm_listed():
