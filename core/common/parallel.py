@@ -15,13 +15,17 @@ from contextlib import contextmanager, suppress
 from functools import partial
 from importlib import import_module
 from pathlib import Path
-from typing import Generic, TypeVar
+from typing import TYPE_CHECKING, Generic, TypeVar
 
-import numpy as np
-from numpy.typing import DTypeLike
-
+from ..lazy import LazyModule
 from .errors import Cancelled, RoadExtractionError
 from .progress import Progress
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import DTypeLike
+else:
+    np = LazyModule("numpy")  # the plugin loads without it, to say what is missing
 
 POLL_INTERVAL = 0.2   # s between two checks for cancellation while a result is awaited
 MAX_WORKERS = 4       # threads by default at most
@@ -272,7 +276,7 @@ class ScratchBuffers(threading.local):
         """A function (name, dtype=float64) that returns the array of that name with `count` values."""
         return partial(self._array, count)
 
-    def _array(self, count: int, name: str, dtype: DTypeLike = np.float64) -> np.ndarray:
+    def _array(self, count: int, name: str, dtype: DTypeLike = float) -> np.ndarray:
         nbytes = count * np.dtype(dtype).itemsize
         data = self._arrays.get(name)
         if data is None or len(data) < nbytes:

@@ -7,7 +7,7 @@ import re
 from collections.abc import Sequence
 from typing import Any
 
-from qgis.core import QgsEditorWidgetSetup, QgsVectorLayer
+from qgis.core import QgsEditorWidgetSetup, QgsProviderRegistry, QgsVectorLayer
 
 from ...core.common.features import OTHER
 from ..texts import tr
@@ -113,9 +113,21 @@ def explain_attributes(layer: QgsVectorLayer, output: str, schema: Sequence[Any]
 def explain_readings(layer: QgsVectorLayer) -> None:
     """Show the values of the field `other`, which are JSON, in words: by a map of those that the layer has now, which needs no plugin."""
     index = layer.fields().lookupField(OTHER.name)
-    values = sorted(str(value) for value in layer.uniqueValues(index) if value)
+    values = sorted(str(value) for value in _values(layer, index) if value)
     layer.setFieldAlias(index, layer.attributeAlias(index).removesuffix(" (JSON)"))
     layer.setEditorWidgetSetup(index, QgsEditorWidgetSetup("ValueMap", {"map": [{second_reading(value): value} for value in values]}))
+
+
+def _values(layer, index):
+    """Values of a field. Those of a file are read without QGIS, whose connections would keep it open after the run."""
+    if layer.providerType() != "ogr":
+        return layer.uniqueValues(index)
+    from osgeo import gdal
+
+    place = QgsProviderRegistry.instance().decodeUri("ogr", layer.source())
+    data = gdal.OpenEx(place["path"], gdal.OF_VECTOR)
+    table = data and (data.GetLayerByName(place["layerName"]) if place.get("layerName") else data.GetLayer(0))
+    return {feature.GetField(layer.fields().at(index).name()) for feature in table} if table else set()
 
 
 def second_reading(other: str) -> str:
