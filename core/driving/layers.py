@@ -62,15 +62,11 @@ class Lanes(LayerRows):
     confidence: np.ndarray = field(metadata=column(unknown=1.0))
     station: np.ndarray = field(metadata=column("station_m", unknown=0.0))
     end: np.ndarray = field(metadata=column("end_m", unknown=0.0))
+    other: np.ndarray = field(metadata=column())
     left: np.ndarray
     right: np.ndarray
     start: np.ndarray
     crs: str = ""
-    other: np.ndarray = field(default=None, metadata=column())  # type: ignore[arg-type]  # filled on construction
-
-    def __post_init__(self) -> None:
-        if self.other is None:
-            object.__setattr__(self, "other", np.full(len(self.road), "", object))
 
     @staticmethod
     def of_pieces(pieces: Sequence[Mapping[str, Any]], crs: str = "") -> Lanes:
@@ -208,14 +204,10 @@ class DrivingLines(LayerRows):
     offset: np.ndarray = field(metadata=column("offset_m"))
     width: np.ndarray = field(metadata=column("width_m"))
     sigma: np.ndarray = field(metadata=column("sigma_m"))
+    other: np.ndarray = field(metadata=column())
     vertices: np.ndarray
     start: np.ndarray
     crs: str = ""
-    other: np.ndarray = field(default=None, metadata=column())  # type: ignore[arg-type]  # filled on construction
-
-    def __post_init__(self) -> None:
-        if self.other is None:
-            object.__setattr__(self, "other", np.full(len(self.road), "", object))
 
     @staticmethod
     def of_pieces(pieces: Sequence[Mapping[str, Any]], crs: str) -> DrivingLines:

@@ -31,7 +31,7 @@ def two_way_street(length=40.0, half_width=3.5):
         np.array([1, 1, -1, 0]), texts("line 1", "line 1", "line 1", "line 2"), texts("line 2", "line 2", "edge 1", "edge 2"),
         texts("centre", "centre", "centre", "edge"), texts("edge", "edge", "curb", "curb"), texts("dashed", "dashed", "dashed", "solid"),
         texts("solid", "solid", "", ""), [("1.1.2",), (), (), ()], texts("measured", "bridged", "inferred", "measured"),
-        np.array([0.9, 0.5, 0.8, 1.0]), np.array([0.0, 20.0, 0.0, 0.0]), np.array([20.0, length, length, length]),
+        np.array([0.9, 0.5, 0.8, 1.0]), np.array([0.0, 20.0, 0.0, 0.0]), np.array([20.0, length, length, length]), texts("", "", "", ""),
         np.concatenate([left for left, _ in strips]), np.concatenate([right for _, right in strips]), np.append(0, np.cumsum(counts)),
         "EPSG:25832")
 
