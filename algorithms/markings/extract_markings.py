@@ -1,23 +1,24 @@
 """Points of paint."""
 
 from ..algorithm import Algorithm
-from ..parameters import SettingSpec
+from ..parameters import ChoiceSpec, SettingSpec
 from ..survey_input import bright_road_points_of, frame_of
 from ..texts import tr
 
-EXTRACTION = "markings.paint.settings:MarkingSettings"
-PEAKS = "markings.paint.settings:PeakSettings"
-SEGMENTS = "markings.paint.settings:SegmentSettings"
+EXTRACTION = "core.markings.paint.settings:MarkingSettings"
+PEAKS = "products.published_markings:IntensityPeaks"
+SEGMENTS = "products.published_markings:PointSegments"
+
+METHOD = ChoiceSpec(
+    "METHOD", tr("Method"),
+    tr("multi-threshold sets a threshold for every strip along the road on the intensity image: the one to map with. The "
+       "other two are published methods to compare with. intensity-peaks looks for narrow peaks in profiles across the "
+       "road and finds lines only; point-segments sets thresholds on the points and keeps the dense ones. Neither "
+       "tells concrete gutters from paint."),
+    value="multi-threshold", choices=("multi-threshold", "intensity-peaks", "point-segments"),
+)
 
 MARKING_SETTINGS = (
-    SettingSpec(
-        "METHOD", EXTRACTION, "method", tr("Method"),
-        tr("multi-threshold sets a threshold for every strip along the road on the intensity image: the one to map with. The "
-           "other two are published methods to compare with. intensity-peaks looks for narrow peaks in profiles across the "
-           "road and finds lines only; point-segments sets thresholds on the points and keeps the dense ones. Neither "
-           "tells concrete gutters from paint."),
-        choices=("multi-threshold", "intensity-peaks", "point-segments"),
-    ),
     SettingSpec(
         "SEPARATION", EXTRACTION, "separation", tr("Multi-threshold: least distance of paint from asphalt (σ)"),
         tr("How many spreads of asphalt the paint of a strip must lie above it before the strip counts as painted. Lower "
@@ -95,6 +96,12 @@ SEGMENT_SETTINGS = (
 )
 
 
+def marking_settings(call):
+    """MarkingSettings with the method that the user chose and its own settings."""
+    published = {"intensity-peaks": PEAK_SETTINGS, "point-segments": SEGMENT_SETTINGS}.get(call.choice("METHOD"))
+    return call.settings(MARKING_SETTINGS, method=None if published is None else call.settings(published))
+
+
 class ExtractMarkings(Algorithm):
     ID, TITLE, GROUP = "extractmarkings", "Extract markings", "Markings"
     SUMMARY = "Separates paint from asphalt by intensity and keeps the points of the paint."
@@ -104,6 +111,7 @@ class ExtractMarkings(Algorithm):
         self.add_cloud("ROAD_POINTS", tr("Road points"), tr("The file that the intensity image was made from."))
         self.add_layer_raster("INTENSITY_IMAGE", tr("Intensity image"), tr("The GeoTIFF written by Intensity image."))
         self.add_trajectory()
+        self.add(METHOD)
         for specs in (MARKING_SETTINGS, PEAK_SETTINGS, SEGMENT_SETTINGS):
             self.add_settings(specs)
         self.add_laz("MARKING_POINTS", tr("Marking points"))
@@ -121,9 +129,8 @@ class ExtractMarkings(Algorithm):
         frame = frame_of(call, road_points.crs, progress, road_points)
         image = IntensityImage.open(call.raster("INTENSITY_IMAGE"))
         check_image_shows(image, road_points)
-        settings = call.settings(MARKING_SETTINGS, peaks=call.settings(PEAK_SETTINGS), segments=call.settings(SEGMENT_SETTINGS))
         markings = extract_markings(
-            road_points, image, frame, settings, progress.part(0.2, 0.95),
+            road_points, image, frame, marking_settings(call), progress.part(0.2, 0.95),
             mask_path=call.new_file("MARKING_MASK") or None,
         )
         write_road_points(markings, call.new_file("MARKING_POINTS"), progress.part(0.95, 1.0))
