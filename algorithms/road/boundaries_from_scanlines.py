@@ -6,7 +6,7 @@ from ..parameters import SettingSpec
 from ..survey_input import frame_of
 from ..texts import tr
 
-SCANLINES_OF = "road.scanlines.detect:ScanlineBoundarySettings"
+SCANLINES_OF = "core.road.scanlines.detect:ScanlineBoundarySettings"
 
 BOUNDARY_SETTINGS = (
     SettingSpec(
@@ -75,8 +75,8 @@ class BoundariesFromScanlines(Algorithm):
 
     def work(self, call, progress):
         from ...core.road.scanlines.detect import CORNER_BLOCK, LayerScanlines, boundary_lines, curbs_from_scanlines
-        from ...core.road.scanlines.layer import scanlines_from_features
         from ...core.survey.adjustment.register import sigma_of_layer
+        from ...products.scanline_layer import scanlines_from_features
 
         settings = call.settings(BOUNDARY_SETTINGS)
         layer = call.features("SCANLINES", SCANLINES, "LineStringZM")
