@@ -23,7 +23,7 @@ NUMBERS = {
     "io": 23,
     "curves": 42,
     "survey": 430,
-    "road": 522,
+    "road": 26,
     "intensity": 49,
     "markings": 439,
     "driving": 62,
