@@ -2,8 +2,7 @@
 
 The folders in the order of the work: `survey` (what was measured), `road` (where the road is),
 `intensity` (what asphalt and paint return), `markings` (what is painted, and which lanes it makes), `driving` (where to drive),
-`corrections` (what an analyst decided), `inventory` (what else the road shows), `export` (HD maps and CAD), `assess` (how good
-it is). `pipeline` runs them as one. Beside them: `curves` (fitted curves), `countries` (what road authorities prescribe),
-`execution` (threads, worker processes or a cluster), `overlay` (UAV images), `report` (HTML pages), `sample` (a simulated survey
-with known truth), `io` (tables, CRS, rasters) and `common` (errors, progress, layers in memory).
+`corrections` (what an analyst decided). `pipeline` runs them as one. Below them: `curves` (fitted curves), `countries` (what road
+authorities prescribe), `io` (tables, CRS, rasters), `execution` (threads, worker processes or a cluster) and `common` (errors,
+progress, layers in memory). What is made from a map stands in `products`, beside `core`; the simulated survey in `simulator`.
 """

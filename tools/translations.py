@@ -18,16 +18,16 @@ from models import RECIPES
 
 ROOT = Path(__file__).resolve().parents[1]
 FOLDER = ROOT / "resources" / "i18n"
-TEMPLATES = ROOT / "core" / "report" / "templates"
+TEMPLATES = ROOT / "products" / "report" / "templates"
 SCHEMAS = ROOT / "core" / "common" / "features.py"
 CONTEXT = "Lanewright"
-FOLDERS = ("algorithms", "processing_provider", "desktop", "core", "library")
+FOLDERS = ("algorithms", "processing_provider", "desktop", "core", "products", "simulator", "library")
 FEWEST_LETTERS = 8  # of a sentence of the core: what is shorter would be found in anything
 FEWEST_WORDS = 3  # of a phrase of the core that is put into a sentence elsewhere
 # Errors that tell a programmer, not a user
 OF_PROGRAMMERS = {"ValueError", "TypeError", "KeyError", "IndexError", "AttributeError", "AssertionError", "RuntimeError", "OSError"}
 # The texts of the first are translated as those of a dialog, the last holds names of columns in many languages
-NO_SENTENCES = ("core/report", "core/common/features.py", "core/common/texts.py", "core/survey/trajectory/columns.py")
+NO_SENTENCES = ("products/report", "core/common/features.py", "core/common/texts.py", "core/survey/trajectory/columns.py")
 # Patterns, XML, CRSs, names of columns, commands
 NO_PROSE = re.compile(r"[\\]|<[?x!]|^ *<[A-Za-z]|^[+]proj=|^[A-Z_]+\[|"
                       r"^(pixel|line|mapx|mapy|mapz|name|enable|check) \w+ \w+|^pip |^1 hit|^SELECT |lanewright [A-Z{l]")
@@ -111,7 +111,7 @@ def core_messages():
     What is said at once comes first, then the sentences and phrases that are put together elsewhere.
     """
     said, phrases = {}, {}
-    for path in sorted(path for folder in ("core", "library") for path in (ROOT / folder).rglob("*.py")):
+    for path in sorted(path for folder in ("core", "products", "simulator", "library") for path in (ROOT / folder).rglob("*.py")):
         file, tree = path.relative_to(ROOT).as_posix(), ast.parse(path.read_text(encoding="utf-8"))
         for node in ast.walk(tree):
             argument = said_in(node)
