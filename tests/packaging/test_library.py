@@ -46,7 +46,7 @@ def test_the_package_holds_what_works_without_qgis(lanewright, tmp_path):
     assert len(packages) == 1
     assert {path.name for path in packages[0].iterdir()} - {"__pycache__"} == {
         "__init__.py", "core", "products", "simulator", "algorithms", "library", "resources"}
-    assert {path.suffix for path in packages[0].glob("resources/*/*")} == {".ts", ".json"}
+    assert {path.suffix for path in packages[0].glob("resources/*/*")} == {".json"}
     version = next(line.partition("=")[2] for line in (ROOT / "metadata.txt").read_text().splitlines() if line.startswith("version="))
     assert lanewright("--version", cwd=tmp_path) == f"lanewright {version}\n"
     assert "Punktwolken" in lanewright("roadmap", "--help", "--lang=de", cwd=tmp_path)
