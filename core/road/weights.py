@@ -10,7 +10,7 @@ Arcs = tuple[tuple[float, ...], ...]   # shifts (m), turns (radians) and bends (
 
 
 @dataclass(frozen=True)
-class CurbWeights:
+class _CurbWeights:
     """How steps are told from noise, linked to curbs and chosen along a road, whatever method finds them."""
 
     # corners of curbs
@@ -150,11 +150,11 @@ class CurbWeights:
     min_piece_steps: int = 3   # steps, of a piece
 
 
-CURBS = CurbWeights()
+CURBS = _CurbWeights()
 
 
 @dataclass(frozen=True)
-class ProfileWeights:
+class _ProfileWeights:
     """How steps are found on profiles."""
 
     # points of a curb
@@ -185,11 +185,11 @@ class ProfileWeights:
     max_network_rows: int = 9   # profiles that are sorted element by element; for more, numpy's sort is faster
 
 
-PROFILE = ProfileWeights()
+PROFILE = _ProfileWeights()
 
 
 @dataclass(frozen=True)
-class ScanlineWeights:
+class _ScanlineWeights:
     """How scan lines are laid and corners of curbs found on them."""
 
     # candidates
@@ -269,11 +269,11 @@ class ScanlineWeights:
     min_slice_length: float = 0.20   # m along the road: thinner slices may lie between two turns of a scanner
 
 
-SCANLINE = ScanlineWeights()
+SCANLINE = _ScanlineWeights()
 
 
 @dataclass(frozen=True)
-class ReturnWeights:
+class _ReturnWeights:
     """How curbs are found in plan: corners, side streets, islands."""
 
     # classes
@@ -468,7 +468,7 @@ class ReturnWeights:
     max_join_overlap: float = 0.3   # m that two such chains may overlap, and
 
 
-RETURN = ReturnWeights()
+RETURN = _ReturnWeights()
 
 
 @dataclass(frozen=True)
@@ -493,7 +493,7 @@ class EdgeUncertainty:
 
 
 @dataclass(frozen=True)
-class EdgeWeights:
+class _EdgeWeights:
     """How lines are led through curb points."""
 
     # curb returns
@@ -538,11 +538,11 @@ class EdgeWeights:
     curb_return: EdgeUncertainty = EdgeUncertainty(foot=0.0075, spacing=0.0, scatter=1.5, end=0.006, gap=0.0005)   # found in plan, from fewer points
 
 
-EDGE = EdgeWeights()
+EDGE = _EdgeWeights()
 
 
 @dataclass(frozen=True)
-class SurfaceWeights:
+class _SurfaceWeights:
     """Where the road ends and what belongs to its surface."""
 
     # surface
@@ -696,11 +696,11 @@ class SurfaceWeights:
     min_surface_status_length: float = 5.0   # m: shorter changes of status are not drawn
 
 
-SURFACE = SurfaceWeights()
+SURFACE = _SurfaceWeights()
 
 
 @dataclass(frozen=True)
-class BoundaryWeights:
+class _BoundaryWeights:
     """How two methods are compared."""
 
     # shares of the work
@@ -719,4 +719,4 @@ class BoundaryWeights:
     sure_support: float = 80.0   # points per metre of road that show a step beyond doubt
 
 
-BOUNDARY = BoundaryWeights()
+BOUNDARY = _BoundaryWeights()
