@@ -17,7 +17,7 @@ from ..core.io.local_files import gdal_exceptions
 from ..core.survey.blocks import HEIGHT_PEAK_REACH, OWN_TRACK_HALF_WIDTH, sensor_height_of
 from ..core.survey.frame.road_frame import build_frame
 from ..core.survey.las.point_fields import INTENSITY_SOURCES, ScannerCensus, intensity_source_of, without_intensity
-from ..core.survey.las.reader import POINTS_PER_BLOCK, read_blocks, read_headers
+from ..core.survey.las.reader import read_blocks, read_headers
 from ..core.survey.las.samples import PER_METRE, coarse_coordinates, distinct_rows, may_overlap, sample_files, without_copies
 from ..core.survey.open_survey import match_clocks
 from ..core.survey.survey import SurveySettings
@@ -106,7 +106,7 @@ def inspect_survey(paths: Sequence[str | Path], trajectory: Trajectory | None = 
     counter = _Counter(files, settings, _usable(trajectory, wkt))
     total, done = sum(file.count for file in files), 0
     for file in files:
-        for block in read_blocks(file.path, POINTS_PER_BLOCK, units=file.units):
+        for block in read_blocks(file.path, units=file.units):
             counter.take(block)
             done += len(block)
             progress.report(done / total)

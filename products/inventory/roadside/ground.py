@@ -17,7 +17,7 @@ from .uprights import TOP_BINS, UPRIGHT_SLICE, Uprights
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from ....core.survey.open_survey import Survey
+    from ....core.survey.survey import Survey
 
 GROUND_SLICE, GROUND_CELL = 1.0, 0.20   # m along and across
 STANDING_WIDTH = 2.5      # m: narrower humps of the lowest layer stand on the ground (parked cars, hedges)
