@@ -25,7 +25,7 @@ NUMBERS = {
     "core/io": 23,
     "core/curves": 44,
     "core/survey": 422,
-    "core/road": 516,
+    "core/road": 20,
     "core/intensity": 49,
     "core/markings": 440,
     "core/driving": 62,
