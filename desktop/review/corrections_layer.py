@@ -46,7 +46,6 @@ def corrections_of_survey(project: QgsProject, survey: str, extent: QgsRectangle
 
     Parameters
     ----------
-    project : QgsProject
     survey : its name
     extent, crs : where it lies
     """

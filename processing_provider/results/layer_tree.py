@@ -38,7 +38,6 @@ def place_layer(layer: QgsMapLayer, project: QgsProject, output: str, run: Run) 
     Parameters
     ----------
     layer : in the tree of the project
-    project : QgsProject
     output : the result whose look it has, such as ROAD_EDGES
     run : Run that made it
     """

@@ -118,12 +118,6 @@ def measure_cross_sections(survey: Survey, layers: BorderLayers = BorderLayers()
     ----------
     survey : Survey, opened with enough height above the road for the clearance
     layers : BorderLayers, of which any may be missing. Without edges and lines a lane of the country's usual width about the track is measured
-    settings : CrossSectionSettings
-    progress : Progress
-
-    Returns
-    -------
-    RoadSections
 
     Raises
     ------
@@ -477,14 +471,6 @@ def _on_vehicles(s: np.ndarray, d: np.ndarray, h: np.ndarray) -> np.ndarray:
 
     A vehicle that moves beside the scanner is drawn out, and in places only the upper part of its flank was seen. What hangs together from below
     LOWEST_OVERHEAD and is neither higher nor broader than vehicles may be is taken for one; a deck on a pier is not, for it is broader.
-
-    Parameters
-    ----------
-    s, d, h : (N,) m, stations, offsets within the carriageway, and heights above its surface, VEHICLE_REACH beyond the stretch that is asked for
-
-    Returns
-    -------
-    (N,) bool
     """
     from scipy.ndimage import binary_dilation, find_objects, label
 
@@ -515,10 +501,6 @@ MIN_SECTION_VERTICES = 2
 
 def sections_to_features(sections: RoadSections) -> tuple[Features, Features]:
     """The layer CROSS_SECTIONS, and its rows as a table.
-
-    Parameters
-    ----------
-    sections : RoadSections
 
     Returns
     -------

@@ -114,13 +114,7 @@ def georeference(image: SourceImage, points: ControlPoints, settings: Georeferen
 
     Parameters
     ----------
-    image : SourceImage
     points : ControlPoints in a projected CRS in metres, or in local metres
-    settings : GeoreferenceSettings
-
-    Returns
-    -------
-    Georeferencing
 
     Raises
     ------
@@ -162,10 +156,6 @@ def georeference(image: SourceImage, points: ControlPoints, settings: Georeferen
 
 def residual_vectors(found: Georeferencing) -> Features:
     """Residuals of the control and check points as vectors on the map, in their true length.
-
-    Parameters
-    ----------
-    found : Georeferencing
 
     Returns
     -------
@@ -272,7 +262,6 @@ def own_pixel_size(fit: ControlPointFit, area: shapely.Geometry) -> float:
 
     Parameters
     ----------
-    fit : ControlPointFit
     area : shapely polygon in pixel and line
 
     Returns

@@ -193,10 +193,6 @@ def fit_image_polynomial(pixel: np.ndarray, line: np.ndarray, easting: np.ndarra
     easting, northing : (N,) m
     order : 1, 2 or 3
 
-    Returns
-    -------
-    ControlPointFit
-
     Notes
     -----
     The terms are those of the polynomials of ArcGIS and GDAL. They are centred and scaled, and solved by QR. With R of the QR,
@@ -222,10 +218,6 @@ def fit_shift(pixel: np.ndarray, line: np.ndarray, easting: np.ndarray, northing
     pixel, line : (N,) in the image
     easting, northing : (N,) m
     geotransform : approximate position of the image, six numbers as in GDAL
-
-    Returns
-    -------
-    ControlPointFit
     """
     x0, xp, xl, y0, yp, yl = geotransform
     places, target = np.column_stack([pixel, line]).astype(float), np.column_stack([easting, northing]).astype(float)

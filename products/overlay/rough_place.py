@@ -51,7 +51,6 @@ def rough_place(image: SourceImage, crs: str, reach: float, pixel_size: float = 
 
     Parameters
     ----------
-    image : SourceImage
     crs : WKT of the map, projected in metres; "" where unknown
     reach : m, how far off a position of the image may be
     pixel_size : m; 0 where unknown

@@ -87,10 +87,6 @@ def open_image(path: str | Path) -> SourceImage:
     ----------
     path : of a file that GDAL reads
 
-    Returns
-    -------
-    SourceImage
-
     Raises
     ------
     RoadExtractionError

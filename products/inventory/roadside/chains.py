@@ -223,13 +223,7 @@ class Gaps(Rows):
 
 
 def _gaps_between(uprights: Uprights, ends: list[np.ndarray], begins: list[np.ndarray]) -> Gaps:
-    """Gaps between pieces of lines.
-
-    Parameters
-    ----------
-    uprights : Uprights
-    ends, begins : G times rows of the last uprights before a gap, and of the first after it, in order
-    """
+    """Gaps between pieces of lines."""
     sides = [[_end(uprights[rows]) for rows in some] for some in (ends, begins)]
     d, low, high, points, behind = np.array(sides, float).reshape(2, len(ends), 5).transpose(2, 1, 0)
     before, after = (np.array([rows[k] for rows in some], np.int64) for some, k in ((ends, -1), (begins, 0)))
@@ -299,7 +293,6 @@ def judged(gaps: Gaps, parts: Iterable[tuple[list[int], np.ndarray]]) -> Gaps:
 
     Parameters
     ----------
-    gaps : Gaps
     parts : rows of some of the gaps and their pulses as `pulses_at` counts them
     """
     length = gaps.last - gaps.first + 1
@@ -409,7 +402,6 @@ def things_of(chain: Chain, min_length: float) -> list[tuple[str, Chain]]:
 
     Parameters
     ----------
-    chain : Chain
     min_length : m along the road of a thing
     """
     cuts = [0, *_cuts(_sections(chain), chain.members.slice, 0, len(chain.members), min_length), len(chain.members)]

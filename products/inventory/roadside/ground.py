@@ -178,7 +178,6 @@ def lines_of_sight(survey: Survey, road: int, number: int, s: np.ndarray, d: np.
 
     Parameters
     ----------
-    survey : Survey
     road, number : of the road and of the pass
     s, d, h : (N,) m, station, offset, and height above the road
     time : (N,) s
@@ -201,10 +200,6 @@ def level_views(survey: Survey) -> dict[int, float]:
 
     In open country nothing stands that a mirror could see above it. That its view ends is told by the ground beside the vehicle, which only a
     mirror sees; without times, which tell where the scanner was, nothing high is taken for a view that ends.
-
-    Parameters
-    ----------
-    survey : Survey
 
     Returns
     -------

@@ -45,13 +45,11 @@ class SideLine:
     kind : guard_rail, barrier, wall, fence, hedge or gutter
     chain : Chain
     foot : m, lower end of what is seen of it above the ground
-    from_edge : m from the carriageway's edge, outward positive; NaN where no layer says where it is
     """
 
     kind: str
     chain: Chain
     foot: float
-    from_edge: float
 
 
 @dataclass
@@ -74,10 +72,6 @@ class Roadside:
 
 def told_once(found: Roadside) -> tuple[list[SideLine], dict]:
     """Lines and poles of all roads without those parts that a road nearer to them has too.
-
-    Parameters
-    ----------
-    found : Roadside
 
     Returns
     -------

@@ -79,7 +79,6 @@ def find_places(photo: np.ndarray, paint: np.ndarray, cell: float, bounds: Bound
     cell : m, pixel of the intensity image
     bounds : Bounds, of the pixels of `photo`
     sign : 1, or -1 where paint is darker than the road
-    progress : Progress
 
     Returns
     -------
@@ -218,8 +217,6 @@ def paint_about(image: SourceImage, intensity: IntensityImage, rough: RoughPlace
 
     Parameters
     ----------
-    image : SourceImage
-    intensity : IntensityImage
     rough : RoughPlace in its CRS
 
     Returns

@@ -146,9 +146,6 @@ def corner_scores(placement: Placement, paint: SurveyedPaint, photo: Photo, x: n
 
     Parameters
     ----------
-    placement : Placement
-    paint : SurveyedPaint
-    photo : Photo
     x, y : (N,) m, local
 
     Returns
