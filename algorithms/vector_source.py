@@ -123,9 +123,7 @@ def read_features(source, schema, geometry_type):
             if not part.has_z or np.isnan(shapely.get_coordinates(part, include_z=True)).any():
                 raise RoadExtractionError(
                     tr("{label} has geometries without heights (Z). Use the layer that Lanewright wrote.").format(
-                        label=source.label
-                    )
-                )
+                        label=source.label))
             result.add(part, **row)
     return result
 
@@ -139,9 +137,7 @@ def _columns(source, schema):
     if missing:
         raise RoadExtractionError(
             tr("{label} lacks the field(s) {fields}. Use the layer that Lanewright wrote.").format(
-                label=source.label, fields=", ".join(missing)
-            )
-        )
+                label=source.label, fields=", ".join(missing)))
     return found
 
 
@@ -151,9 +147,7 @@ def _check_kind(source, geometry_type):
     if geometry_type != "None" and source.kind != needed:
         raise RoadExtractionError(
             tr("{label} holds geometries of the kind {found}; {needed} is needed. Use the layer that Lanewright wrote.").format(
-                label=source.label, found=source.kind_label(source.kind), needed=source.kind_label(needed)
-            )
-        )
+                label=source.label, found=source.kind_label(source.kind), needed=source.kind_label(needed)))
 
 
 def _measured_parts(wkb, label):
@@ -161,8 +155,7 @@ def _measured_parts(wkb, label):
     _, has_z, has_m = _type_of(wkb, 0)
     if not (has_z and has_m):
         raise RoadExtractionError(
-            tr("{label} has geometries without heights (Z) or measures (M). Use the layer that Lanewright wrote.").format(label=label)
-        )
+            tr("{label} has geometries without heights (Z) or measures (M). Use the layer that Lanewright wrote.").format(label=label))
     for at, count, *_ in _runs(wkb):
         yield wkb[at - 9:at + 32 * count]   # with its byte order, type and count
 

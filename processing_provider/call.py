@@ -70,8 +70,7 @@ class QgisCall(Call):
         given = self.parameters.get(name)
         if isinstance(given, str) and given and not crs.isValid():
             raise RoadExtractionError(
-                tr("{label}: the CRS {given} is not known. Give it as EPSG:number.").format(label=self.label(name), given=given)
-            )
+                tr("{label}: the CRS {given} is not known. Give it as EPSG:number.").format(label=self.label(name), given=given))
         return in_metres(crs_text(crs))[0]
 
     def raster(self, name):
