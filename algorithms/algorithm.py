@@ -18,8 +18,6 @@ TAGS_OF_ALL = ("mls", "mobile mapping", "lidar", "point cloud", "las", "laz", "r
 class Algorithm:
     """Base of every algorithm; subclasses set the texts below and write `declare` and `work`.
 
-    Attributes
-    ----------
     parameters : list of ParameterSpec, inputs and outputs in the order of the dialog
     numbers : list of NumberOutput
     """

@@ -28,8 +28,6 @@ NAMES_ONLY = "LANEWRIGHT_NAMES_ONLY"
 class Call:
     """Reads parameters into what the core takes, and writes what the core gave.
 
-    Attributes
-    ----------
     algorithm : Algorithm
     parameters : dict, parameter name to what was given
     """

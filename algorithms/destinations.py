@@ -59,8 +59,6 @@ def at_path(value, path):
 def check_suffix(path, spec, vector_suffixes):
     """Raise RoadExtractionError where the name promises a kind of file that is not written.
 
-    Parameters
-    ----------
     path : Path
     spec : OutputSpec
     vector_suffixes : the endings, without dot, of the vector formats that the program writes

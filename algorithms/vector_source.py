@@ -17,8 +17,6 @@ FARTHEST_ON_EARTH = 1e8   # m or feet: coordinates of a map, some times around t
 class VectorSource:
     """A layer that is open for reading; every program that runs the algorithms has its own.
 
-    Attributes
-    ----------
     label : what messages call it
     names : list of str, its fields
     kind : POINT, LINE, POLYGON, TABLE or UNKNOWN
@@ -32,8 +30,6 @@ class VectorSource:
     def stored_rows(self, measures=False, check_validity=True):
         """(WKB or None where there is no geometry, b"" where it is none, list of values with None for NULL) of every row, as it is stored.
 
-        Parameters
-        ----------
         measures : keep M in the WKB
         check_validity : refuse or skip invalid geometries where the program does so
         """

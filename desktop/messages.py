@@ -30,8 +30,6 @@ def all_is_there(iface) -> bool:
 def tell_result(iface, title: str, layers: Sequence[QgsMapLayer], warnings: Sequence[str]) -> None:
     """What a run made: the map goes there where nothing of it is seen, and its warnings can be read.
 
-    Parameters
-    ----------
     iface : of QGIS
     title : of the algorithm
     layers : that came into the project

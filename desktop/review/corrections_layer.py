@@ -44,8 +44,6 @@ def corrections_layers(project: QgsProject) -> list[QgsVectorLayer]:
 def corrections_of_survey(project: QgsProject, survey: str, extent: QgsRectangle, crs: QgsCoordinateReferenceSystem) -> QgsVectorLayer | None:
     """The layer with the corrections of a survey: one that says so, else one that says nothing and lies where the survey does.
 
-    Parameters
-    ----------
     survey : its name
     extent, crs : where it lies
     """

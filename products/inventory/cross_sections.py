@@ -425,15 +425,10 @@ LINKED_CELLS = 2, 1, 1    # cells along, across and up by which the points of on
 def clear_height(points: Points, h: np.ndarray, right: float, left: float) -> float | None:
     """Height of the lowest thing above a strip.
 
-    Parameters
-    ----------
     points : (N,) Points of a stretch of road
     h : (N,) m, heights above the surface
     right, left : m, offsets of the strip's borders
-
-    Returns
-    -------
-    m; None where nothing was seen above it
+    Returns m; None where nothing was seen above it
     """
     d = points.d
     near = np.flatnonzero((d > right + OVERHEAD_INSIDE) & (d < left - OVERHEAD_INSIDE) & (h > STANDS_FROM))

@@ -67,8 +67,6 @@ class SurfaceGrid:
 def surface_grid(survey: Survey, road: int, start: float, slices: int, offsets: tuple[float, float]) -> SurfaceGrid:
     """Read a stretch of road.
 
-    Parameters
-    ----------
     road : number
     start : m, station of the first slice
     slices : number of slices, SLICE_LENGTH each
@@ -236,14 +234,9 @@ def _line(x, y):
 def solve_height_errors(overlaps: Iterable[Overlap], passes: list[Pass]) -> HeightErrors:
     """The errors that explain the overlaps best: least squares with the priors above, robust against single windows.
 
-    Parameters
-    ----------
     overlaps : of one road
     passes : all passes of the survey, by number
-
-    Returns
-    -------
-    HeightErrors; without overlaps, an empty one
+    Returns HeightErrors; without overlaps, an empty one
     """
     overlaps = list(overlaps)
     if not overlaps:

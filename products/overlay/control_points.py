@@ -50,8 +50,6 @@ NUMBER_ORDERS = (("pixel", "line", "easting", "northing"), ("easting", "northing
 class ControlPoints:
     """N control points.
 
-    Attributes
-    ----------
     pixel, line : (N,) in the image, lines counted downward
     easting, northing, height : (N,) m; height is NaN where it is unknown
     names : N texts

@@ -27,9 +27,7 @@ _ALGORITHMS = {"nearest": "near", "bilinear": "bilinear", "cubic": "cubic"}
 def drawn_area(found: Georeferencing) -> shapely.Geometry:
     """The part of the image that is drawn.
 
-    Returns
-    -------
-    shapely polygon in pixel and line
+    Returns shapely polygon in pixel and line
     """
     frame = shapely.box(0, 0, found.image.width, found.image.height)
     return found.hull.intersection(frame) if found.cut and found.hull is not None else frame

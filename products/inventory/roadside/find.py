@@ -38,8 +38,6 @@ def find_roadside(survey: Survey, layers: BorderLayers = BorderLayers(), setting
                   progress: Progress = Progress()) -> Roadside:
     """Lines of rails, barriers, walls, fences and hedges beside every road.
 
-    Parameters
-    ----------
     layers : BorderLayers; without them what is more than 2 m from a track counts as beside the road
     """
     borders = RoadBorders(layers, survey.frame, country(settings.country))

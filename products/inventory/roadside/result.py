@@ -73,9 +73,7 @@ class Roadside:
 def told_once(found: Roadside) -> tuple[list[SideLine], dict]:
     """Lines and poles of all roads without those parts that a road nearer to them has too.
 
-    Returns
-    -------
-    lines, in the order they had, and poles by road
+    Returns lines, in the order they had, and poles by road
     """
     return _lines(found), _poles(found)
 
@@ -127,13 +125,8 @@ def _away(found, road, s, d, side):
 def along_faces(things: list[tuple[str, Chain]]) -> list[tuple[str, Chain]]:
     """Things of which those of one kind that run beside each other, nearer than two things stand, are one.
 
-    Parameters
-    ----------
     things : kinds and chains of one side of a road
-
-    Returns
-    -------
-    The same, in order of station; where two are joined, the uprights nearer to the road are kept
+    Returns The same, in order of station; where two are joined, the uprights nearer to the road are kept
     """
     found: list[tuple[str, Chain]] = []
     for kind, chain in sorted(things, key=lambda thing: int(thing[1].members.slice[0])):

@@ -28,8 +28,6 @@ _FINER = (0.5, 0.25)      # of a step, tried about each place in the second roun
 class Place(NamedTuple):
     """A similarity from the photo's middle to the map.
 
-    Attributes
-    ----------
     x, y : m, local, of the photo's middle
     turn : radians, counter-clockwise, from the rows of the photo to east
     size : m of a pixel
@@ -49,8 +47,6 @@ class Place(NamedTuple):
 class Bounds:
     """What is tried.
 
-    Attributes
-    ----------
     x, y : m, local, about where the photo's middle lies
     reach : m, how far off that may be; infinite where nothing is known
     turns : (from, to) radians

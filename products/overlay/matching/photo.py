@@ -21,8 +21,6 @@ _LUMINANCE = (0.299, 0.587, 0.114)  # of red, green and blue (ITU-R BT.601)
 class SurveyedPaint:
     """Contrast of a part of the intensity image, north up.
 
-    Attributes
-    ----------
     contrast : (H, W) float32, 0 where unknown
     values : (H, W) float32 intensity, NaN where unknown
     cell : m
@@ -45,8 +43,6 @@ class SurveyedPaint:
 class Photo:
     """Contrast of the photo.
 
-    Attributes
-    ----------
     contrast : (H, W) float32
     luminance : (H, W) float32, NaN where there is none
     factor : pixels of the image side by side in a pixel here
@@ -60,13 +56,8 @@ class Photo:
 def read_paint(image: IntensityImage, box: tuple[float, float, float, float] | None = None) -> SurveyedPaint:
     """The part of an intensity image within a box of map coordinates, its cells made no finer than FINEST_CELL.
 
-    Parameters
-    ----------
     box : west, south, east, north, m; None: the whole image
-
-    Returns
-    -------
-    SurveyedPaint; empty where the box lies outside the image
+    Returns SurveyedPaint; empty where the box lies outside the image
     """
     cell = image.cell_size
     first, last = (0, 0), (image.width, image.height)
@@ -171,14 +162,9 @@ def _smooth(values, deviation):
 def reduced(contrast: np.ndarray, factor: int) -> np.ndarray:
     """The contrast in pixels that are `factor` times as wide, each the mean of those it covers.
 
-    Parameters
-    ----------
     contrast : (H, W)
     factor : at least 1; the last columns and rows that fill no pixel are left out
-
-    Returns
-    -------
-    (H // factor, W // factor) float32
+    Returns (H // factor, W // factor) float32
     """
     if factor == 1:
         return contrast

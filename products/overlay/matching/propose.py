@@ -231,8 +231,6 @@ WEAK, REPEATS, AWAY = "looks different", "repeats nearby", "does not fit the oth
 class Pairs(NamedTuple):
     """N corners of paint and where the image has them.
 
-    Attributes
-    ----------
     placement : Placement that those that agree were fitted to
     order : of the polynomial that the residuals belong to
     x, y : (N,) m, local
