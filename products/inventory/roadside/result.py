@@ -126,7 +126,7 @@ def along_faces(things: list[tuple[str, Chain]]) -> list[tuple[str, Chain]]:
     """Things of which those of one kind that run beside each other, nearer than two things stand, are one.
 
     things : kinds and chains of one side of a road
-    Returns The same, in order of station; where two are joined, the uprights nearer to the road are kept
+    Returns the same, in order of station; where two are joined, the uprights nearer to the road are kept
     """
     found: list[tuple[str, Chain]] = []
     for kind, chain in sorted(things, key=lambda thing: int(thing[1].members.slice[0])):
