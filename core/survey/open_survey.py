@@ -145,7 +145,7 @@ def _found_survey(work, name, files, progress):
 
 INGEST_PROGRESS = 0.7        # of the work, where the passes are adjusted afterwards
 SECTION_POINTS = 250_000      # points of a section, about, and
-SECTION_LENGTHS = SECTION_LENGTH, 10.0, 25.0   # m that it may be long
+LONGER_SECTIONS = 10.0, 25.0   # m that a section may be long beside the usual length
 PARTS_PROGRESS = 0.85        # of reading, where the points are put in order afterwards
 HIGHEST_SENSOR = 5.0         # m above the road: vehicles are up to 4 m high (Directive 96/53/EC), and a mast on a roof adds some
 
@@ -322,7 +322,7 @@ def _see_passes(survey, fit_passes, measured, shared, progress):
 
 
 def section_length(files: list[CloudHeader], frame: RoadFrame) -> float:
-    """Metres of station in a section of the store: the longest of SECTION_LENGTHS that holds up to SECTION_POINTS, or the shortest.
+    """Metres of station in a section of the store: the longest that holds up to SECTION_POINTS, or the shortest.
 
     Threads work section by section, and Python lets several of them work at once only where arrays are large.
 
@@ -331,7 +331,7 @@ def section_length(files: list[CloudHeader], frame: RoadFrame) -> float:
     files : headers of the clouds
     """
     density = sum(file.count for file in files) / max(sum(road.length for road in frame.roads), 1.0)
-    return max((length for length in SECTION_LENGTHS if length * density <= SECTION_POINTS), default=SECTION_LENGTH)
+    return max((length for length in (SECTION_LENGTH, *LONGER_SECTIONS) if length * density <= SECTION_POINTS), default=SECTION_LENGTH)
 
 
 def _sampled(files, reader, has_time, progress):

@@ -283,7 +283,7 @@ def _decodable(text: bytes) -> bytes:
 # the survey is told. Offsets are those of LAS 1.4 (ASPRS, R15, tables 3, 6 and 7) and of its extra bytes (table 25).
 
 MAX_RECORD_SIZE = 65535     # bytes of a point
-SAMPLED_RECORDS = 1000     # of those behind the last point that a header states, to see whether they are points too
+SAMPLED_RECORDS = 1000     # points looked at: behind the last that a header states, to see whether they are points too, and all over a file
 # derived: whole numbers of 32 bits within which points lie about those stated: the road goes on, but what is read as places and is none lies
 # anywhere, or, as text and floating-point numbers, near the upper end; one in eight of it in each axis lies as near by chance
 NEAR_STATED = 2**31 // 8
@@ -480,7 +480,6 @@ CHUNKED_COMPRESSOR = 2       # of the other point formats, where each chunk begi
 LAYERED_COMPRESSOR = 3       # of point formats 6 and above: a chunk holds its values layer by layer
 MAX_DECODED = 400_000        # points of a last chunk that is decoded to count them: larger ones take too much memory
 FLUSHED_BYTES = 16           # at most that a coder writes behind its last point: points that need fewer bytes are not all there are
-MAX_LOOKS = 1000             # chunks whose first point is looked at
 LAYERS_OF_ITEM = {10: 9, 11: 1, 12: 2, 13: 1}  # POINT14, RGB14, RGBNIR14, WAVEPACKET14; BYTE14 has one layer for each byte
 
 
@@ -556,7 +555,7 @@ def places_here_and_there(path: str | os.PathLike[str], mended: _MendedHeader) -
             at = begin + np.cumsum([0] + [length for points, length in table if points and length])[:-1]
             places = np.empty((0, 3), "<i4")
             if len(at):
-                places = np.array([_integers_at(file, int(place)) for place in at[np.unique(np.linspace(0, len(at) - 1, MAX_LOOKS).astype(int))]])
+                places = np.array([_integers_at(file, int(place)) for place in at[np.unique(np.linspace(0, len(at) - 1, SAMPLED_RECORDS).astype(int))]])
         return places * fields.scales + fields.offsets
 
 

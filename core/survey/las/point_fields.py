@@ -12,7 +12,7 @@ import numpy as np
 
 from ...common.errors import RoadExtractionError
 from ..store.records import COORDINATE_SCALE, MAX_XY_32_BIT, fill_units
-from .reader import CloudHeader, read_blocks
+from .reader import FARTHEST_PLACE, CloudHeader, read_blocks
 from .samples import FileSample
 
 MAX_SCANNERS = 8
@@ -358,9 +358,8 @@ def valid_points(block: laspy.ScaleAwarePointRecord) -> np.ndarray | None:
 
 # Coordinates of a LAS file, stored as integers, converted to the local integers of a record.
 
-# m from the frame's origin: points beyond are outliers, and would overflow the integers of a record
-MAX_COORDINATE = {"X": MAX_XY_32_BIT, "Y": MAX_XY_32_BIT, "Z": 2e4}
-MAX_COORDINATE_64_BIT = 1e8    # m, where the records have 64 bits
+# m above or below the frame's origin: points beyond are outliers, and would overflow the integers of a record
+FARTHEST_HEIGHT = 2e4
 
 
 class LasAxis:
@@ -385,8 +384,8 @@ class LasAxis:
         self._step, self._start = (np.array(round(value) % modulus if self._integer else 0, unsigned).view(self._dtype)
                                    for value in (step, start))
 
-        # the file's integers of places within MAX_COORDINATE
-        farthest = MAX_COORDINATE[name] if self._dtype == np.int32 else MAX_COORDINATE_64_BIT
+        # the file's integers of places that are no outliers
+        farthest = FARTHEST_PLACE if self._dtype != np.int32 else FARTHEST_HEIGHT if name == "Z" else MAX_XY_32_BIT
         limits = sorted((sign * farthest - self.shift) / scale for sign in (-1, 1))
         self._least, self._most = np.ceil(limits[0]), np.floor(limits[1])
 
@@ -401,7 +400,7 @@ class LasAxis:
         Returns
         -------
         units : (N,) units of 0.1 mm
-        valid : (N,) bool, whether a point lies within MAX_COORDINATE; None where all do
+        valid : (N,) bool, whether a point is no outlier; None where all do
         """
         numbers = buffer(self.name, self._dtype)
         np.copyto(numbers, raw[self.name])

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 POINTS_PER_BLOCK = 400_000  # points decoded at a time
 CLOUD_SUFFIXES = (".las", ".laz")
 MAX_HEADER_SCALE, MAX_HEADER_OFFSET = 1e3, 1e12  # m, of coordinates stored as integers; beyond them no place on earth is described
-MAX_MAP_COORDINATE = 1e8      # m or feet: bounds beyond were never those of points
+FARTHEST_PLACE = 1e8      # m or feet from any origin: no place of a map lies farther
 BOUNDS_TOLERANCE = 0.01      # m: bounds are often rounded to centimetres
 NOT_FILE_ERRORS = (KeyboardInterrupt, SystemExit, GeneratorExit, Cancelled, MemoryError)  # they say nothing about the file
 
@@ -202,7 +202,7 @@ def _overflow(header):
     """What to tell of coordinates that the integers of a file cannot hold, by the bounds that its header states; () where they can."""
     reach = 2.0**31 * np.abs(header.scales)   # of coordinates stored as 32-bit integers
     for axis, low, high, least, most in zip("xyz", header.mins, header.maxs, header.offsets - reach, header.offsets + reach):
-        if -MAX_MAP_COORDINATE < low < high < MAX_MAP_COORDINATE and not (low >= least - BOUNDS_TOLERANCE and high <= most + BOUNDS_TOLERANCE):
+        if -FARTHEST_PLACE < low < high < FARTHEST_PLACE and not (low >= least - BOUNDS_TOLERANCE and high <= most + BOUNDS_TOLERANCE):
             return (f"its header says that {axis} runs from {low:.1f} to {high:.1f}, and its scale and offset can hold {least:.1f} to "
                     f"{most:.1f} alone: points lie elsewhere than they were measured. Export it again with an offset near the survey",)
     return ()
