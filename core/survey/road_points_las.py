@@ -15,12 +15,13 @@ from ..common.progress import Progress
 from ..io.crs import as_in_file, parse_crs
 from ..io.local_files import unfinished_path
 from .adjustment.register import PassCorrections, sigma_of_records, sigma_to_record
-from .las.reader import POINTS_PER_BLOCK, cloud_crs, open_cloud, read_blocks
+from .las.reader import cloud_crs, open_cloud, read_blocks
 from .store.records import COORDINATE_SCALE, ROAD_POINT, point_dtype
 from .store.road_points import RoadPoints
 from .store.section_store import SectionStore
+from .weights import LAS, READING
 
-MAX_LAS_INTEGER = 2**31 - 2    # largest coordinate, as an integer about the offset, in a LAS file
+MAX_LAS_INTEGER = 2**31 - 2    # derived: largest coordinate, as an integer about the offset, in a LAS file
 
 
 def scale_for(farthest: float) -> float:
@@ -101,16 +102,16 @@ def new_laz(path: str | os.PathLike[str], header: Any) -> Iterator[Any]:
 
 # Road points as a LAZ file, with the road frame in extra fields for the later stages.
 
-ROAD_CLASS = 11  # ASPRS: road surface
-MAX_CORRECTION = 10.0  # m: larger than any correction of a pass
+ROAD_CLASS = 11  # source: ASPRS, road surface
+MILLIMETRE = 1e-3   # source: definition; m of widths and spacings in the file
 
 # stations and offsets are integers of 0.1 mm, so that reading returns exactly the records that were written
 EXTRA_FIELDS = [("road", "uint16", "Road", None), ("pass", "uint16", "Pass", None), ("scanner", "uint8", "Scanner", None),
                 ("station_m", "int32", "Station along the road", COORDINATE_SCALE), ("offset_m", "int32", "Offset, left positive", COORDINATE_SCALE),
-                ("half_width", "uint16", "Half width of the road", 1e-3), ("covered", "uint8", "Beneath something on the road", None)]
+                ("half_width", "uint16", "Half width of the road", MILLIMETRE), ("covered", "uint8", "Beneath something on the road", None)]
 CORRECTED_FIELD = ("intensity_corrected", "float32", "Intensity, range corrected", None)
 CLUSTER_FIELD = ("cluster", "int32", "Cluster of paint", None)
-SPACING_FIELD = ("spacing", "uint16", "Spacing across the road", 1e-3)
+SPACING_FIELD = ("spacing", "uint16", "Spacing across the road", MILLIMETRE)
 REQUIRED_FIELDS = ("road", "pass", "station_m", "offset_m", "half_width")
 
 
@@ -163,7 +164,7 @@ def _farthest(road_points):
         return 0.0
     ends = [int(np.abs(road_points.store.section(road, number)[name]).max(initial=0))
             for road, number in road_points.all_sections() for name in "xy"]
-    return max(ends, default=0) * COORDINATE_SCALE + MAX_CORRECTION
+    return max(ends, default=0) * COORDINATE_SCALE + READING.max_correction
 
 
 def _whole(units, share):
@@ -225,7 +226,7 @@ def read_road_points(path: str | Path, progress: Progress = Progress()) -> RoadP
     has_corrected, has_cluster, has_spacing = (name in names for name in ("intensity_corrected", "cluster", "spacing"))
     store = SectionStore(dtype)
     done = 0
-    for block in read_blocks(path, POINTS_PER_BLOCK):
+    for block in read_blocks(path, LAS.points_per_block):
         records = np.zeros(len(block), dtype)
         # another program may have rewritten the file with its own scale
         for _axis, (name, scale) in enumerate(zip("xyz", scales)):
@@ -238,12 +239,12 @@ def read_road_points(path: str | Path, progress: Progress = Progress()) -> RoadP
         records["scanner"] = block["scanner"] if "scanner" in names else 0
         records["s"] = np.rint(np.asarray(block["station_m"], float) / COORDINATE_SCALE)
         records["d"] = np.rint(np.asarray(block["offset_m"], float) / COORDINATE_SCALE)
-        records["half_width"] = np.rint(np.asarray(block["half_width"], float) / 1e-3)
+        records["half_width"] = np.rint(np.asarray(block["half_width"], float) / MILLIMETRE)
         records["corrected"] = block["intensity_corrected"] if has_corrected else np.nan
         records["cluster"] = block["cluster"] if has_cluster else 0
         records["covered"] = block["covered"] if "covered" in names else 0
         if has_spacing:
-            records["spacing"] = np.rint(np.asarray(block["spacing"], float) / 1e-3)
+            records["spacing"] = np.rint(np.asarray(block["spacing"], float) / MILLIMETRE)
         if moves is not None:
             for name, moved in zip("xyz", moves.units(records)):
                 records[name] += moved

@@ -18,17 +18,7 @@ import numpy as np
 from ..common.parallel import POLL_INTERVAL, check_cancelled
 from ..common.progress import Progress
 from ..execution.phase import Executor, Phase, Recipe
-from .blocks import (
-    DEFAULT_SENSOR_HEIGHT,
-    KEPT_BELOW_ROAD,
-    LEVEL_HEIGHT,
-    BlockReader,
-    BlockSummary,
-    ChosenPoints,
-    HeightFilter,
-    PointChoice,
-    estimate_sensor_height,
-)
+from .blocks import BlockReader, BlockSummary, ChosenPoints, HeightFilter, PointChoice, estimate_sensor_height
 from .estimation.interleaved import ScannerSplitter
 from .frame.road_frame import RoadFrame
 from .las.parallel_reader import ParallelCloudReader
@@ -39,12 +29,7 @@ from .store.columns import Columns
 from .store.records import COORDINATE_SCALE, road_of
 from .store.section_store import STRETCH_POINTS, SectionStore, Stretch
 from .store.spill_file import StoreIndex, close_parts
-
-MAX_WAITING_POINTS = 4_000_000  # points held back at most until the height of the road is known
-HEIGHT_SAMPLES = 5_000     # points on the own track from which the rough height is estimated
-MAX_INGEST_THREADS = 4     # each decodes blocks with all cores (lazrs keeps the others waiting) and projects their points
-BLOCKS_PER_THREAD = 3      # begun or queued per thread: keeps the threads busy while sections are written to the temporary file
-MAX_SPLIT_SAMPLES = 1_500_000   # points sampled, by which two scanners are told apart
+from .weights import READING
 
 
 class SurveyReader:
@@ -74,7 +59,7 @@ class SurveyReader:
         # both are created once the rough height of the road is known; until then parts of blocks wait
         self._ground: HeightFilter | None = None
         self._chosen: ChosenPoints
-        self._drop = DEFAULT_SENSOR_HEIGHT
+        self._drop = READING.default_sensor_height
         self._waiting: list[tuple[int, Columns]] = []
         self._samples: list[np.ndarray] = []
 
@@ -86,7 +71,7 @@ class SurveyReader:
     def read(self, files: list[CloudHeader], block: int, progress: Progress) -> None:
         """Read all files, `block` points at a time, in several threads of this process."""
         total, done = self._begin(files), 0
-        threads = min(MAX_INGEST_THREADS, os.cpu_count() or 1)
+        threads = min(READING.max_threads, os.cpu_count() or 1)
         with ParallelCloudReader(self.choice.layers) as readers, ThreadPoolExecutor(threads) as pool:
             waiting: deque[Future] = deque()
 
@@ -101,7 +86,7 @@ class SurveyReader:
                 for load in readers.blocks(files, block):
                     waiting.append(pool.submit(self._read_block, load))
                     # the height of the road is estimated from the first blocks and filters the others
-                    while len(waiting) > (BLOCKS_PER_THREAD * threads if self._ground else 0):
+                    while len(waiting) > (READING.blocks_per_thread * threads if self._ground else 0):
                         take()
                 while waiting:
                     take()
@@ -123,14 +108,14 @@ class SurveyReader:
         self._settle()
         source = _PartsOfFiles(files, self.frame, self.store, self.choice, self.slots, self._drop, np.array(ranges, np.int64).reshape(-1, 3), block)
         phase = Phase(_read_part, source, (), source.place, source.size, _join_parts)
-        for part in executor.run(phase, source.items(PART_POINTS), progress.part(done / total, 1.0)):
+        for part in executor.run(phase, source.items(READING.part_points), progress.part(done / total, 1.0)):
             self._take_part(part)
         self._end()
 
     def _begin(self, files):
         """Prepare for the points of files; how many there are."""
         total = sum(file.count for file in files)
-        self.slots = TimeSlots.for_points(total, MAX_SPLIT_SAMPLES)
+        self.slots = TimeSlots.for_points(total, READING.max_split_samples)
         self._blocks = BlockReader(self.frame, self.choice, self.slots)
         return total
 
@@ -155,7 +140,7 @@ class SurveyReader:
         else:
             self._waiting += parts
             self._samples += [drops[::7] for road, points in parts if road >= 0 for _, drops in self._blocks.tracks.drops(road, points)]
-            if sum(map(len, self._samples)) > HEIGHT_SAMPLES or sum(len(points) for _, points in self._waiting) > MAX_WAITING_POINTS:
+            if sum(map(len, self._samples)) > READING.height_samples or sum(len(points) for _, points in self._waiting) > READING.max_waiting_points:
                 self._settle()
         return count
 
@@ -179,7 +164,7 @@ class SurveyReader:
         if self._ground is not None:
             return
         drop = estimate_sensor_height(np.concatenate(self._samples)) if self._samples else None
-        self._drop = DEFAULT_SENSOR_HEIGHT if drop is None else drop
+        self._drop = READING.default_sensor_height if drop is None else drop
         self._ground, self._chosen = self._blocks.ground(self._drop), self._blocks.chosen(self._drop)
         waiting, self._waiting, self._samples = self._waiting, [], []
         self._choose(waiting)
@@ -192,7 +177,6 @@ class SurveyReader:
 
 # The phase of reading: ranges of points of the files, each decoded, placed and written to the store's folder by whoever is given it.
 
-PART_POINTS = 1_200_000   # points of a part, about: a second or two of a worker's time, some 20 MB of its file
 
 
 @dataclass(frozen=True)
@@ -357,7 +341,6 @@ def _order_sections(source: UnorderedPoints, item: Stretch) -> StoreIndex:
 
 # What is done with the points of a section before they are put in order: scanners are numbered, and those far above or below the road go.
 
-ROAD_HEIGHT_STEP = 0.25      # m between the stations at which points are compared with the height of the road
 
 
 @dataclass(frozen=True)
@@ -400,11 +383,11 @@ class Finishing:
             records["scanner"] = numbers_by_value(self.scanners, int(numbers.max()) + 1).take(numbers)
         # only records near the limits are compared with the height at their own station
         z = records["z"]
-        below, above = (KEPT_BELOW_ROAD, self.above_road) if road >= 0 else (LEVEL_HEIGHT, LEVEL_HEIGHT)
+        below, above = (READING.kept_below_road, self.above_road) if road >= 0 else (READING.level_height, READING.level_height)
         first, nodes = self._heights(road_of(road), records["s"].min() * COORDINATE_SCALE, records["s"].max() * COORDINATE_SCALE)
         doubtful = np.flatnonzero((z < (nodes.max() - below) / COORDINATE_SCALE + 1)
                                   | (z > (nodes.min() + above) / COORDINATE_SCALE - 1))
-        at = records["s"][doubtful] * COORDINATE_SCALE / ROAD_HEIGHT_STEP - first
+        at = records["s"][doubtful] * COORDINATE_SCALE / READING.road_height_step - first
         k = at.astype(np.int64)
         h = z[doubtful] * COORDINATE_SCALE - (nodes[k] + (at - k) * (nodes[k + 1] - nodes[k]))
         near = np.ones(len(records), bool)
@@ -413,6 +396,6 @@ class Finishing:
 
     def _heights(self, road, start, end):
         """Heights of the road at fixed stations from start to end: number of the first, heights."""
-        first = int(np.floor(start / ROAD_HEIGHT_STEP))
-        stations = np.arange(first, int(np.floor(end / ROAD_HEIGHT_STEP)) + 2) * ROAD_HEIGHT_STEP
+        first = int(np.floor(start / READING.road_height_step))
+        stations = np.arange(first, int(np.floor(end / READING.road_height_step)) + 2) * READING.road_height_step
         return first, self.frame.track_height(road, stations, self.sensor_height)

@@ -22,7 +22,7 @@ NUMBERS = {
     "countries": 15,
     "io": 23,
     "curves": 42,
-    "survey": 430,
+    "survey": 200,
     "road": 522,
     "intensity": 49,
     "markings": 439,

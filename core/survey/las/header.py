@@ -11,14 +11,16 @@ from typing import BinaryIO
 
 import numpy as np
 
-VLR_HEADER_SIZE, EVLR_HEADER_SIZE = 54, 60  # bytes
-LASZIP_USER, LASZIP_RECORD = b"laszip encoded", 22204
-COMPRESSED_BIT = 0x80        # of the point format
-VARIABLE_CHUNKS = 0xFFFFFFFF  # as the size of chunks: each has its own number of points
-EXTRA_BYTES_USER, EXTRA_BYTES_RECORD, EXTRA_BYTES_SIZE = b"LASF_Spec", 4, 192
-CRS_USER, CRS_TEXTS = b"LASF_Projection", (2111, 2112, 34737)   # whose records are text: WKT, and names of the GeoKeys
-MAX_NAME = 24    # bytes of a name to which a number is added, of the 32 that a name may have
-TYPE_SIZES = 1, 1, 2, 2, 4, 4, 8, 8, 4, 8   # bytes of the types 1 to 10 of extra bytes; 11 to 20 are pairs of these, 21 to 30 triples
+from ..weights import LAS
+
+VLR_HEADER_SIZE, EVLR_HEADER_SIZE = 54, 60  # source: bytes (LAS 1.4 R15, tables 6 and 7)
+LASZIP_USER, LASZIP_RECORD = b"laszip encoded", 22204   # source: LASzip, as the next two
+COMPRESSED_BIT = 0x80        # source: of the point format
+VARIABLE_CHUNKS = 0xFFFFFFFF  # source: as the size of chunks: each has its own number of points
+EXTRA_BYTES_USER, EXTRA_BYTES_RECORD, EXTRA_BYTES_SIZE = b"LASF_Spec", 4, 192   # source: LAS 1.4 R15, table 24
+CRS_USER, CRS_TEXTS = b"LASF_Projection", (2111, 2112, 34737)   # source: LAS 1.4 R15; its records of text: WKT, and names of the GeoKeys
+MAX_NAME = 24    # derived: bytes of a name to which a number is added, of the 32 that a name may have
+TYPE_SIZES = 1, 1, 2, 2, 4, 4, 8, 8, 4, 8   # source: bytes (LAS 1.4 R15, table 25) of types 1 to 10; 11 to 20 are pairs of these, 21 to 30 triples
 
 
 @dataclass(frozen=True)
@@ -282,12 +284,11 @@ def _decodable(text: bytes) -> bytes:
 # the encoding of their country. laspy believes all of them. Here such bytes are replaced in memory before laspy reads them, and what may matter to
 # the survey is told. Offsets are those of LAS 1.4 (ASPRS, R15, tables 3, 6 and 7) and of its extra bytes (table 25).
 
-MAX_RECORD_SIZE = 65535     # bytes of a point
-SAMPLED_RECORDS = 1000     # points looked at: behind the last that a header states, to see whether they are points too, and all over a file
+MAX_RECORD_SIZE = 65535     # derived: bytes of a point, as 16 bits state them
 # derived: whole numbers of 32 bits within which points lie about those stated: the road goes on, but what is read as places and is none lies
 # anywhere, or, as text and floating-point numbers, near the upper end; one in eight of it in each axis lies as near by chance
 NEAR_STATED = 2**31 // 8
-COUNT_AT, LONG_COUNT_AT, RECORD_SIZE_AT, POINTS_AT, EVLR_COUNT_AT = 107, 247, 105, 96, 243
+COUNT_AT, LONG_COUNT_AT, RECORD_SIZE_AT, POINTS_AT, EVLR_COUNT_AT = 107, 247, 105, 96, 243   # source: bytes (LAS 1.4 R15, table 3)
 
 
 @dataclass(frozen=True)
@@ -459,9 +460,9 @@ def _are_points(file, fields, first, end, rest):
 
 
 def _sampled_places(file: BinaryIO, fields: HeaderFields, first: int, end: int) -> np.ndarray:
-    """(N, 3) coordinates, as they are stored, of up to SAMPLED_RECORDS points of an uncompressed file from `first` to before `end`."""
+    """(N, 3) coordinates, as they are stored, of some points of an uncompressed file from `first` to before `end`."""
     found = []
-    for row in np.unique(np.linspace(first, end - 1, min(SAMPLED_RECORDS, max(end - first, 0))).astype(np.int64)).tolist():
+    for row in np.unique(np.linspace(first, end - 1, min(LAS.points_looked_at, max(end - first, 0))).astype(np.int64)).tolist():
         file.seek(fields.points_at + row * fields.record_size)
         place = file.read(12)
         if len(place) < 12:   # of a file cut off
@@ -475,12 +476,9 @@ def _sampled_places(file: BinaryIO, fields: HeaderFields, first: int, end: int) 
 # The decoder does not check them: with a wrong number of chunks it asks for more memory than any machine has, which ends the whole program. Offsets
 # and sizes are those of LAS 1.4 (ASPRS, R15, tables 3 and 6) and of the LASzip VLR.
 
-MAX_CHUNK_SIZE = 50_000_000  # points; LASzip writes 50,000
-CHUNKED_COMPRESSOR = 2       # of the other point formats, where each chunk begins anew
-LAYERED_COMPRESSOR = 3       # of point formats 6 and above: a chunk holds its values layer by layer
-MAX_DECODED = 400_000        # points of a last chunk that is decoded to count them: larger ones take too much memory
-FLUSHED_BYTES = 16           # at most that a coder writes behind its last point: points that need fewer bytes are not all there are
-LAYERS_OF_ITEM = {10: 9, 11: 1, 12: 2, 13: 1}  # POINT14, RGB14, RGBNIR14, WAVEPACKET14; BYTE14 has one layer for each byte
+CHUNKED_COMPRESSOR = 2       # source: LASzip; of point formats 0 to 5, where each chunk begins anew
+LAYERED_COMPRESSOR = 3       # source: LASzip; of point formats 6 and above: a chunk holds its values layer by layer
+LAYERS_OF_ITEM = {10: 9, 11: 1, 12: 2, 13: 1}  # source: LASzip; POINT14, RGB14, RGBNIR14, WAVEPACKET14; BYTE14 has one layer for each byte
 
 
 def find_damage(path: str | os.PathLike[str], mended: _MendedHeader | None = None) -> str:
@@ -515,7 +513,7 @@ def find_damage(path: str | os.PathLike[str], mended: _MendedHeader | None = Non
             return "it is compressed, but the record that describes the compression is missing"
         if compression.point_size != fields.record_size:
             return f"its header states {fields.record_size} bytes per point, the compressor {compression.point_size}"
-        if compression.chunk_size != VARIABLE_CHUNKS and not 0 < compression.chunk_size <= MAX_CHUNK_SIZE:
+        if compression.chunk_size != VARIABLE_CHUNKS and not 0 < compression.chunk_size <= LAS.max_chunk_size:
             return f"its compressor states chunks of {compression.chunk_size:,} points"
         return _chunk_table_damage(file, fields.points_at, size, compression)
 
@@ -555,7 +553,7 @@ def places_here_and_there(path: str | os.PathLike[str], mended: _MendedHeader) -
             at = begin + np.cumsum([0] + [length for points, length in table if points and length])[:-1]
             places = np.empty((0, 3), "<i4")
             if len(at):
-                places = np.array([_integers_at(file, int(place)) for place in at[np.unique(np.linspace(0, len(at) - 1, SAMPLED_RECORDS).astype(int))]])
+                places = np.array([_integers_at(file, int(at[k])) for k in np.unique(np.linspace(0, len(at) - 1, LAS.points_looked_at).astype(int))])
         return places * fields.scales + fields.offsets
 
 
@@ -579,9 +577,9 @@ def _points_of(file, compression, begin, table, fields):
         raw = compression.point_size
         return full + struct.unpack_from("<I", chunk, raw)[0] if len(chunk) >= raw + 4 else fields.count
     stated = next((count for count in fields.counts if full < count <= full + size), 0)
-    if min(size, stated - full if stated else size) > MAX_DECODED:
+    if min(size, stated - full if stated else size) > LAS.max_decoded:
         return stated or fields.count
-    if stated and not _holds(compression, chunk[:length - max(FLUSHED_BYTES, length // 100)], stated - full):
+    if stated and not _holds(compression, chunk[:length - max(LAS.flushed_bytes, length // 100)], stated - full):
         return stated
     low, high = max(stated - full, 1), size + 1   # points that can be decoded, and that cannot
     while high - low > 1:

@@ -9,13 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from ..weights import LAS
 from .header import chunks_of
 from .reader import CloudHeader, layer_selection, open_cloud, read_blocks, read_points, truncated_file_error, wrap_read_error
-
-MAX_BLOCKS_PER_CHUNK = 4   # larger chunks are not decoded as a whole: the points are read one block after the other
-MOST_LAYOUTS = 64          # files whose header and chunks are remembered
-SAMPLED_PLACES = 5                # places in a file at which points are looked at
-POINTS_PER_SAMPLE = 1000
 
 
 class ParallelCloudReader:
@@ -101,7 +97,7 @@ class ParallelCloudReader:
                 chunks = record, place, np.array(table, np.int64).reshape(-1, 2)
             found = header, chunks
             with self._lock:
-                while len(self._layouts) >= MOST_LAYOUTS:
+                while len(self._layouts) >= LAS.most_layouts:
                     self._layouts.pop(next(iter(self._layouts)))
                 self._layouts[file.path] = found
         return found
@@ -115,13 +111,13 @@ class ParallelCloudReader:
         """Yield a few points at several places of a file, its first and last among them, as laspy point records; the next may overwrite one."""
         loads: list[Callable[[], Any]]
         if file.chunk:
-            starts = np.linspace(0, max(file.count - POINTS_PER_SAMPLE, 0), SAMPLED_PLACES).astype(int)
+            starts = np.linspace(0, max(file.count - LAS.points_per_sample, 0), LAS.sampled_places).astype(int)
             starts[:-1] -= starts[:-1] % file.chunk   # a chunk is decoded from its start on
-            loads = [partial(self._read_points, file, int(start), POINTS_PER_SAMPLE) for start in np.unique(starts)]
+            loads = [partial(self._read_points, file, int(start), LAS.points_per_sample) for start in np.unique(starts)]
         else:
             header, chunks = self._layout(file)
             loads = [partial(self._read_chunks, file.path, header, *run) for run in _chunk_runs(file, 1, chunks)]
-            loads = [loads[k] for k in np.unique(np.linspace(0, len(loads) - 1, SAMPLED_PLACES).astype(int))]
+            loads = [loads[k] for k in np.unique(np.linspace(0, len(loads) - 1, LAS.sampled_places).astype(int))]
         for load in loads:
             yield load()
 
@@ -210,7 +206,7 @@ def _point_record(buffer, header):
 
 def _in_one_piece(file, size):
     """Whether the chunks of a file are too large to be decoded apart."""
-    return min(file.chunk, file.count) > MAX_BLOCKS_PER_CHUNK * size
+    return min(file.chunk, file.count) > LAS.max_blocks_per_chunk * size
 
 
 def _chunk_runs(file, size, chunks):

@@ -12,11 +12,10 @@ import numpy as np
 
 from ...common.errors import RoadExtractionError
 from ..store.records import COORDINATE_SCALE, MAX_XY_32_BIT, fill_units
-from .reader import FARTHEST_PLACE, CloudHeader, read_blocks
+from ..weights import LAS
+from .reader import CloudHeader, read_blocks
 from .samples import FileSample
 
-MAX_SCANNERS = 8
-MIN_INTERLEAVED_SHARE = 0.8   # of the points: their values must overlap in time if the values identify scanners
 EVER = (-np.inf, np.inf)      # s
 
 
@@ -38,7 +37,7 @@ class ScannerCensus:
     def take(self, name: str, times: dict[int, tuple[float, float, int]]) -> None:
         """Add the result of `times_by_value` for a block."""
         seen = self.spans[name]
-        if len(seen) > 4 * MAX_SCANNERS:
+        if len(seen) > 4 * LAS.max_scanners:
             return
         for value, (start, end, number) in times.items():
             first, last, count = seen.get(value, (np.inf, -np.inf, 0))
@@ -70,18 +69,18 @@ class ScannerCensus:
                 raise RoadExtractionError(
                     f"Scanner field {wanted!r} is not known; choose automatic, scanner_channel or point_source_id.")
             values = sorted(self.spans[wanted])
-            if len(values) > 4 * MAX_SCANNERS:
+            if len(values) > 4 * LAS.max_scanners:
                 raise RoadExtractionError(
-                    f"{wanted} has more than {4 * MAX_SCANNERS} different values, too many to be scanners. "
+                    f"{wanted} has more than {4 * LAS.max_scanners} different values, too many to be scanners. "
                     "Set the scanner field to automatic.")
-            return wanted, values if len(values) <= MAX_SCANNERS else _heads(self.spans[wanted])
+            return wanted, values if len(values) <= LAS.max_scanners else _heads(self.spans[wanted])
         channels = self.spans["scanner_channel"]
-        if 1 < len(channels) <= MAX_SCANNERS:
+        if 1 < len(channels) <= LAS.max_scanners:
             return "scanner_channel", sorted(channels)
         sources = self.spans["point_source_id"]
-        if 1 < len(sources) <= 4 * MAX_SCANNERS and _interleaved(sources.values()):
+        if 1 < len(sources) <= 4 * LAS.max_scanners and _interleaved(sources.values()):
             heads = _heads(sources)
-            if 1 < len(heads) <= MAX_SCANNERS:
+            if 1 < len(heads) <= LAS.max_scanners:
                 return "point_source_id", heads
         return None, [0]
 
@@ -99,7 +98,7 @@ def times_by_value(values: np.ndarray, time: np.ndarray, span: tuple[float, floa
     # a broadcast column has one value
     few = values if values.strides[0] else values[:1]
     low, high = int(few.min()), int(few.max())
-    present = [low, high][:high - low + 1] if high - low < 2 else np.flatnonzero(np.bincount(values))[: 4 * MAX_SCANNERS + 1].tolist()
+    present = [low, high][:high - low + 1] if high - low < 2 else np.flatnonzero(np.bincount(values))[: 4 * LAS.max_scanners + 1].tolist()
     found = {}
     for value in present:
         times = time if low == high else time[values == value]
@@ -141,24 +140,20 @@ def _interleaved(spans):
         total += count
         # at the ends of a recording one scanner may see the road alone
         shared += count * (longest > 0 and longest >= 0.5 * (last - first))
-    return shared >= MIN_INTERLEAVED_SHARE * total
+    return shared >= LAS.min_interleaved_share * total
 
 
 # What the intensity of a point is read from, and how: exporters write it with a sign, in decibels, or into an extra field.
 
+SCANNER_FIELDS = "point_source_id", "scanner_channel"
 INTENSITY_SOURCES = "intensity", "rgb"
 COLOUR_FIELDS = "red", "green", "blue"
-LUMINANCE_WEIGHTS = 0.2126, 0.7152, 0.0722   # of red, green and blue (ITU-R BT.709-6, section 3.2)
+LUMINANCE_WEIGHTS = 0.2126, 0.7152, 0.0722   # source: of red, green and blue (ITU-R BT.709-6, section 3.2)
 USUAL_FIELDS = "reflect", "amplitude", "intensity"   # parts of names of extra fields that hold what a scanner received, the best first
-MAX_INTENSITY = 65535
-SIGN = 2**15
-EMPTY_MIDDLE = 0.001      # share of values in the middle half of 16 bits, at most, where values with a sign were wrapped
-LEAST_SHARE = 0.01        # of values in the uppermost quarter, which were negative
-USUAL_SPREAD = 20.0       # dB between dark asphalt and paint or signs, at one range and another
-MAX_SPREAD = 60.0         # dB that no survey exceeds
-VALUES_PER_DECIBEL = 1, 10, 100   # as exporters store it
-MAX_POWER = 290.0         # of ten, with which a double can be multiplied
-TOP, TOP_STEP = 30_000, 5.0   # intensity of the brightest points, and dB to which they are rounded, so that samples agree
+MAX_INTENSITY = 2**16 - 1   # derived: of 16 bits
+SIGN = 2**15   # derived: from here on the values of 16 bits are negative, where they have a sign
+VALUES_PER_DECIBEL = 1, 10, 100   # source: as exporters store it
+MAX_POWER = 290.0         # derived: of ten, with which a double can be multiplied
 
 
 @dataclass(frozen=True)
@@ -244,7 +239,7 @@ def _wrapped(values):
     What a saturated scanner has at the upper end is mostly one value, and signs brighter than all else are few.
     """
     quarter = np.bincount(values >> 14, minlength=4) / len(values)
-    if quarter[1] + quarter[2] > EMPTY_MIDDLE or quarter[3] < LEAST_SHARE:
+    if quarter[1] + quarter[2] > LAS.empty_middle or quarter[3] < LAS.least_upper_share:
         return False
     counts = np.bincount(values[values >= 3 * SIGN // 2])
     return bool(counts.max() < 0.5 * counts.sum())
@@ -254,13 +249,14 @@ def _source(field, values, signed=False):
     """The source that makes linear intensities of (N,) values."""
     low, high = np.quantile(values, [0.005, 0.995])
     spread = float(high - low)
-    decibels = spread <= MAX_SPREAD * VALUES_PER_DECIBEL[-1] and (low < 0 or "amplitude" in field.lower() and USUAL_SPREAD / 4 < spread <= MAX_SPREAD)
+    named = "amplitude" in field.lower() and LAS.usual_spread / 4 < spread <= LAS.max_spread
+    decibels = spread <= LAS.max_spread * VALUES_PER_DECIBEL[-1] and (low < 0 or named)
     if not decibels:
         zero = min(float(values.min()), 0.0)
-        return IntensitySource(field, signed, zero=zero, factor=TOP / max(float(high) - zero, 1e-12))
-    unit = float(min(VALUES_PER_DECIBEL, key=lambda each: abs(np.log(max(spread, 1e-9) / each / USUAL_SPREAD))))
-    top = np.ceil(high / unit / TOP_STEP) * TOP_STEP
-    return IntensitySource(field, signed, unit, factor=float(TOP / 10.0 ** (top / 10.0)))
+        return IntensitySource(field, signed, zero=zero, factor=LAS.brightest / max(float(high) - zero, 1e-12))
+    unit = float(min(VALUES_PER_DECIBEL, key=lambda each: abs(np.log(max(spread, 1e-9) / each / LAS.usual_spread))))
+    top = np.ceil(high / unit / LAS.brightest_step) * LAS.brightest_step
+    return IntensitySource(field, signed, unit, factor=float(LAS.brightest / 10.0 ** (top / 10.0)))
 
 
 def _unit(source):
@@ -330,7 +326,7 @@ def _has_colours(file):
 # Points that whoever made the cloud marked as none of the survey: withheld ones, which "should not be included in processing (synonymous with
 # Deleted)", and noise, classes 7 and 18 (ASPRS, LAS specification 1.4 R15, table 17).
 
-NOISE_CLASSES = 7, 18
+NOISE_CLASSES = 7, 18   # source: as above
 
 
 def flagged(block: laspy.ScaleAwarePointRecord) -> bool:
@@ -358,8 +354,6 @@ def valid_points(block: laspy.ScaleAwarePointRecord) -> np.ndarray | None:
 
 # Coordinates of a LAS file, stored as integers, converted to the local integers of a record.
 
-# m above or below the frame's origin: points beyond are outliers, and would overflow the integers of a record
-FARTHEST_HEIGHT = 2e4
 
 
 class LasAxis:
@@ -385,7 +379,7 @@ class LasAxis:
                                    for value in (step, start))
 
         # the file's integers of places that are no outliers
-        farthest = FARTHEST_PLACE if self._dtype != np.int32 else FARTHEST_HEIGHT if name == "Z" else MAX_XY_32_BIT
+        farthest = LAS.farthest_place if self._dtype != np.int32 else LAS.farthest_height if name == "Z" else MAX_XY_32_BIT
         limits = sorted((sign * farthest - self.shift) / scale for sign in (-1, 1))
         self._least, self._most = np.ceil(limits[0]), np.floor(limits[1])
 

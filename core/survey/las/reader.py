@@ -14,16 +14,13 @@ import numpy as np
 from ...common.errors import Cancelled, RoadExtractionError
 from ...common.parallel import check_cancelled
 from ...io.crs import METRES, SAME_DATUM, SAME_UNIT, FileUnits, horizontal_part, in_metres, moved_by
+from ..weights import LAS
 from .header import HeaderFields, find_damage, mend, opened, places_here_and_there, points_per_chunk, with_points_of_chunks
 
 if TYPE_CHECKING:
     from pyproj import CRS
 
-POINTS_PER_BLOCK = 400_000  # points decoded at a time
 CLOUD_SUFFIXES = (".las", ".laz")
-MAX_HEADER_SCALE, MAX_HEADER_OFFSET = 1e3, 1e12  # m, of coordinates stored as integers; beyond them no place on earth is described
-FARTHEST_PLACE = 1e8      # m or feet from any origin: no place of a map lies farther
-BOUNDS_TOLERANCE = 0.01      # m: bounds are often rounded to centimetres
 NOT_FILE_ERRORS = (KeyboardInterrupt, SystemExit, GeneratorExit, Cancelled, MemoryError)  # they say nothing about the file
 
 ReadResult = TypeVar("ReadResult")
@@ -182,7 +179,8 @@ def read_header(path: str | os.PathLike[str], given: str = "") -> CloudHeader:
     with _open(path, mended, None) as reader:
         header = reader.header
         names = set(header.point_format.dimension_names)
-        if not ((np.abs(header.scales) < MAX_HEADER_SCALE).all() and (np.abs(header.offsets) < MAX_HEADER_OFFSET).all() and np.all(header.scales)):
+        scales, offsets = np.abs(header.scales), np.abs(header.offsets)
+        if not ((scales > 0) & (scales < LAS.max_header_scale) & (offsets < LAS.max_header_offset)).all():
             raise RoadExtractionError(
                 f"{path} gives its points no coordinates: its header says scales of {_listed(header.scales)} and offsets of "
                 f"{_listed(header.offsets)}. Export the file again, with a scale such as 0.001 m.")
@@ -202,7 +200,8 @@ def _overflow(header):
     """What to tell of coordinates that the integers of a file cannot hold, by the bounds that its header states; () where they can."""
     reach = 2.0**31 * np.abs(header.scales)   # of coordinates stored as 32-bit integers
     for axis, low, high, least, most in zip("xyz", header.mins, header.maxs, header.offsets - reach, header.offsets + reach):
-        if -FARTHEST_PLACE < low < high < FARTHEST_PLACE and not (low >= least - BOUNDS_TOLERANCE and high <= most + BOUNDS_TOLERANCE):
+        held = least - LAS.bounds_tolerance <= low and high <= most + LAS.bounds_tolerance
+        if -LAS.farthest_place < low < high < LAS.farthest_place and not held:
             return (f"its header says that {axis} runs from {low:.1f} to {high:.1f}, and its scale and offset can hold {least:.1f} to "
                     f"{most:.1f} alone: points lie elsewhere than they were measured. Export it again with an offset near the survey",)
     return ()
@@ -215,7 +214,7 @@ def _bounds_hold(path, mended, header):
     plausible = (header.offsets - reach <= low) & (low <= high) & (high <= header.offsets + reach)
     if not (plausible.all() and (low < high).any()):
         return False
-    places, margin = places_here_and_there(path, mended), np.abs(header.scales) + BOUNDS_TOLERANCE
+    places, margin = places_here_and_there(path, mended), np.abs(header.scales) + LAS.bounds_tolerance
     return bool(((places >= low - margin) & (places <= high + margin)).all())
 
 
@@ -263,7 +262,7 @@ def read_headers(paths: Iterable[str | os.PathLike[str]], warn: Callable[[str], 
     return files
 
 
-def read_blocks(path: str | os.PathLike[str], size: int = POINTS_PER_BLOCK, layers: Sequence[str] | None = None,
+def read_blocks(path: str | os.PathLike[str], size: int = LAS.points_per_block, layers: Sequence[str] | None = None,
                 units: FileUnits = METRES) -> Iterator[Any]:
     """Yield the points of a file in blocks.
 
@@ -358,7 +357,7 @@ def wrap_read_error(read: Callable[[], ReadResult], path: str | os.PathLike[str]
 RECORDS_OF = "LASF_Projection"  # user id of the records
 WKT_RECORD, KEYS_RECORD, DOUBLES_RECORD = 2112, 34735, 34736
 PROJECTED, GEODETIC, LENGTH_UNIT, LENGTH_SIZE, VERTICAL, HEIGHT_UNIT = 3072, 2048, 3076, 3077, 4096, 4099   # GeoKeys, OGC 19-008r4
-EPSG_CODES = range(1024, 32767)
+EPSG_CODES = range(1024, 32767)   # source: OGC 19-008r4, as are those of the records and keys above
 
 
 def crs_of_records(header: Any) -> tuple[str, str]:

@@ -11,13 +11,9 @@ import numpy as np
 import shapely
 
 from ...common.progress import Progress
-from .parallel_reader import POINTS_PER_SAMPLE, SAMPLED_PLACES, ParallelCloudReader
+from ..weights import LAS
+from .parallel_reader import ParallelCloudReader
 from .reader import CloudHeader, read_blocks, read_headers
-
-COARSE_COORDINATES = 0.02        # m: coordinates in steps of more scatter by more than half a centimetre, which is what curbs and lines are told by
-VALUES_FOR_STEP = 1000       # of a file, from which the step of its coordinates is told
-GAPS_FOR_STEP = 10           # between different values of a coordinate: fewer may be chance
-SHARE_OF_OTHER_GAPS = 0.01        # of the gaps between different values may be less than the step, as where other points were added
 
 
 @dataclass(frozen=True)
@@ -52,9 +48,9 @@ def sample_files(files: Sequence[CloudHeader]) -> list[FileSample]:
     with ParallelCloudReader(("z", "intensity", "all_extra_bytes")) as reader:
         for file in files:
             if file.count:
-                places = np.linspace(0, file.count - 1, SAMPLED_PLACES).astype(int).tolist()
+                places = np.linspace(0, file.count - 1, LAS.sampled_places).astype(int).tolist()
                 starts = sorted({reader.chunk_start(file, at) for at in places})
-                parts = [_sample(next(reader.following(file, start, POINTS_PER_SAMPLE))) for start in starts]
+                parts = [_sample(next(reader.following(file, start, LAS.points_per_sample))) for start in starts]
                 raw, intensity = (np.concatenate([part[k] for part in parts]) for k in (0, 1))
                 found.append(FileSample(file, raw, intensity, {name: np.concatenate([part[2][name] for part in parts]) for name in parts[0][2]}))
     return found
@@ -70,7 +66,8 @@ def _sample(points):
 def _step(values):
     """Between neighbouring ones of (N,) integers."""
     gaps = np.diff(np.unique(values))
-    return float(np.quantile(gaps, SHARE_OF_OTHER_GAPS, method="lower")) if len(values) >= VALUES_FOR_STEP and len(gaps) >= GAPS_FOR_STEP else 0.0
+    enough = len(values) >= LAS.values_for_step and len(gaps) >= LAS.gaps_for_step
+    return float(np.quantile(gaps, LAS.share_of_other_gaps, method="lower")) if enough else 0.0
 
 
 def coarse_coordinates(samples: Sequence[FileSample]) -> tuple[str, float]:
@@ -85,7 +82,7 @@ def coarse_coordinates(samples: Sequence[FileSample]) -> tuple[str, float]:
         steps, scales = sample.steps, np.abs(sample.file.scales)
         ends = np.array([sample.file.minimum, sample.file.maximum], np.float32)
         short = (np.abs(steps - np.abs(np.spacing(ends))) <= scales).any(axis=0)
-        coarse = steps > COARSE_COORDINATES
+        coarse = steps > LAS.coarse_coordinates
         told = coarse & (short | np.isclose(steps, scales, rtol=0.01))
         # Coarse steps on another axis that neither explains are those of a raster on which the points lie, as after thinning by voxels
         if not told.any() or (coarse & ~told).any():
@@ -101,7 +98,6 @@ def coarse_coordinates(samples: Sequence[FileSample]) -> tuple[str, float]:
 
 # An even sample of a survey's points that keeps neighbours together, whatever the order of the files.
 
-SLOT = 0.001   # s: some hundred pulses, a part of a mirror's turn
 
 
 @dataclass(frozen=True)
@@ -126,7 +122,7 @@ class TimeSlots:
         """(N,) bool of the points in the sample, by (N,) times in seconds."""
         if self.stride == 1:
             return np.ones(len(time), bool)
-        slot = np.asarray(time, float) / SLOT
+        slot = np.asarray(time, float) / LAS.slot
         np.floor(slot, out=slot)
         # the nearest multiple of the stride, exact for whole numbers: a remainder takes ten times as long
         nearest = slot * (1.0 / self.stride)
@@ -177,7 +173,6 @@ def points_near(paths: Iterable[str | os.PathLike[str]], x: float, y: float, rad
 
 # Copies of files and of points among the files of a survey: they would count twice.
 
-PER_METRE = 1000.0   # places are compared in millimetres: a copy may store them with other scales and offsets
 
 
 def without_copies(files: list[CloudHeader], warn: Callable[[str], None]) -> list[CloudHeader]:
@@ -244,7 +239,7 @@ def distinct_rows(time: np.ndarray, place: np.ndarray) -> np.ndarray:
 
 
 def _whole(places):
-    return tuple(np.rint(np.asarray(places, float) * PER_METRE).astype(np.int64).tolist())
+    return tuple(np.rint(np.asarray(places, float) * LAS.places_per_metre).astype(np.int64).tolist())
 
 
 def _content(file):
@@ -257,7 +252,7 @@ def _content(file):
             if name == "gps_time":
                 values = np.ascontiguousarray(values, np.float64).view(np.uint64)
             elif name != "intensity":
-                values = np.rint(values * PER_METRE).astype(np.int64).view(np.uint64)
+                values = np.rint(values * LAS.places_per_metre).astype(np.int64).view(np.uint64)
             # sums beyond 64 bits start again from 0, in any order the same
             sums[k] += values.sum(dtype=np.uint64)
     return tuple(sums.tolist())

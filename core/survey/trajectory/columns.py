@@ -7,6 +7,8 @@ from collections.abc import Iterator, Sequence
 from functools import cache
 from typing import NamedTuple
 
+from ..weights import TRAJECTORY
+
 ROLES = ("time", "x", "y", "z", "roll", "pitch", "heading")
 
 # {role: (whole names, of which the first that a table has is used; words of which a longer name holds one, such as "time" of "GPS Time of Week";
@@ -64,18 +66,16 @@ class Unit(NamedTuple):
     factor: float = 1.0
 
 
-_UNITS = {
+_UNITS = {   # source: definitions of the units
     ("degrees", 1.0): "deg degree degrees ° dd", ("radians", 1.0): "rad radian radians", ("degrees", 0.9): "gon grads",
     ("feet", 1.0): "ft feet foot usft", ("metres", 1.0): "m meter meters metre metres", ("metres", 1e3): "km", ("metres", 0.01): "cm",
     ("metres", 1e-3): "mm", ("seconds", 1.0): "s sec secs seconds", ("seconds", 1e-3): "ms msec milliseconds millisec millis",
     ("seconds", 1e-6): "us µs μs usec microseconds", ("seconds", 1e-9): "ns nsec nanoseconds", ("sexagesimal", 1.0): "d m s|dms|d:m:s|ddd mm ss",
 }
 UNIT_NAMES = {word: Unit(*unit) for unit, words in _UNITS.items() for word in (words.split("|") if "|" in words else words.split())}
-# Degrees, minutes and seconds in one number: DDMMSS.ss, DD.MMSSss of pocket calculators, DDMM.mmmm of receivers
+# source: degrees, minutes and seconds in one number: DDMMSS.ss, DD.MMSSss of pocket calculators, DDMM.mmmm of receivers
 PACKED_ANGLES = ((re.compile(r"d{2,3}m{2}s{2}(\.s+)?"), Unit("packed seconds")), (re.compile(r"d{1,3}\.m{2}s{2,}"), Unit("packed seconds", 1e4)),
                  (re.compile(r"d{2,3}m{2}(\.m+)?"), Unit("packed minutes")))
-MAX_HEADER_LINES = 15   # above a table, in which the names of its columns are sought
-LONGEST_NAME, MOST_NAMES = 40, 25   # of names of columns in a message
 SEPARATORS = (",", ";", r"\t", r"\|", r"\s{2,}", r"\s+")
 
 
@@ -213,5 +213,6 @@ def stated_angle_unit(preamble: Sequence[str]) -> str:
 
 def listed(names: Sequence[str]) -> str:
     """Names of columns for a message, long ones and long lists cut."""
-    cut = [name if len(name) <= LONGEST_NAME else name[:LONGEST_NAME - 1] + "…" for name in map(str, names[:MOST_NAMES])]
-    return ", ".join(cut) + (f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else "")
+    longest, most = TRAJECTORY.longest_name, TRAJECTORY.most_names
+    cut = [name if len(name) <= longest else name[:longest - 1] + "…" for name in map(str, names[:most])]
+    return ", ".join(cut) + (f" and {len(names) - most} more" if len(names) > most else "")

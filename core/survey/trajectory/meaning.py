@@ -12,8 +12,9 @@ import numpy as np
 
 from ...common.errors import RoadExtractionError
 from ...io.text_table import read_number_table
-from .columns import LONGEST_NAME, ROLES, Unit, candidates_by_role, listed
-from .table_columns import CHECKED_ROWS, TableColumn, first_row, is_record, titled_columns, with_week
+from ..weights import TRAJECTORY
+from .columns import ROLES, Unit, candidates_by_role, listed
+from .table_columns import TableColumn, first_row, is_record, titled_columns, with_week
 from .time_systems import (
     ADJUSTED_OFFSET,
     SECONDS_PER_DAY,
@@ -24,7 +25,6 @@ from .time_systems import (
     counted_days,
     hemisphere_signs,
     hold_angles,
-    hold_times,
     is_to_come,
     leap_seconds,
     unix_time_found,
@@ -32,13 +32,10 @@ from .time_systems import (
     whole_seconds,
 )
 from .trajectory import Trajectory
-from .unnamed_columns import MIN_MAP_COORDINATE, columns_from_numbers, rough_metres
+from .unnamed_columns import columns_from_numbers, rough_metres
 
-EARTH_RADIUS = 6.33e6, 6.42e6    # m from the centre of the earth to its surface, with mountains
-HIGHEST_ROAD = 9000.0            # m: a third coordinate beyond it is no height
+EARTH_RADIUS = 6.33e6, 6.42e6    # source: m (WGS 84: 6.357e6 to 6.378e6) from the centre of the earth to its surface, with mountains
 MEAN_SEA_LEVEL = ("ortho", "msl", "sea", "geoid")   # in names of heights
-LARGEST_SECONDS = 1e10           # times beyond it are counted in smaller units
-LEAST_EVEN = 0.95                # of the steps of a column that may be time are near the usual one
 COUNTS_OTHERS = re.compile(r"id\b|\b(no|nr)\b|num|count|index|station|chainage|dist|length|km|frame|image|photo|row|line|record", re.IGNORECASE)
 TOLD_CLOCKS = {"gps": "GPS", "utc": "UTC"}          # words of Columns that say what a clock shows
 
@@ -74,7 +71,7 @@ def meaning_of(columns: Sequence[TableColumn], label: str, given: Sequence[str] 
         place["minute"] = full["minute"][-1]                  # mm may be months too, which come first
         full["time"] = [k for k in full.get("time", ()) if k != place.get("hour")]
     times = [k for k in full.get("time", ()) if not columns[k].is_text] or full.get("time", []) or \
-        [k for k, column in enumerate(columns) if k not in place.values() and column.holds_texts and hold_times(column.written()[:CHECKED_ROWS])]
+        [k for k, column in enumerate(columns) if k not in place.values() and column.holds_clock_times]
     if not times:
         times = [k for k in full.get("date", ()) if (columns[k].values % 1 > 0).any()]   # days of a spreadsheet, with the time as their share
     if times and "time" not in given:
@@ -109,7 +106,7 @@ def _earth_centred(x, y, z):
     if not good.any():
         return False
     away = np.median(np.sqrt(x[good]**2 + y[good]**2 + z[good]**2))
-    return bool(EARTH_RADIUS[0] < away < EARTH_RADIUS[1] and np.median(np.abs(z[good])) > HIGHEST_ROAD)
+    return bool(EARTH_RADIUS[0] < away < EARTH_RADIUS[1] and np.median(np.abs(z[good])) > TRAJECTORY.highest_road)
 
 
 def values_by_role(columns: Sequence[TableColumn], meaning: _Meaning, label: str, notes: list[str], doubts: list[str]) -> dict[str, np.ndarray]:
@@ -191,8 +188,8 @@ def _time(columns, meaning, label, notes, doubts):
         return _gps_seconds(times, column, titles, meaning.clock, label, notes)
     if column.holds_texts:
         raise RoadExtractionError(
-            f"The column {listed([column.title])} of {label} should be the time, but holds {column.first[:LONGEST_NAME]!r}, which is neither a "
-            f"number nor a clock time. The first row reads {first_row(columns)}. Rename the column, or say which is "
+            f"The column {listed([column.title])} of {label} should be the time, but holds {column.first[:TRAJECTORY.longest_name]!r}, which is "
+            f"neither a number nor a clock time. The first row reads {first_row(columns)}. Rename the column, or say which is "
             "which in Columns of Import trajectory.")
     if "utc" in column.title.lower():
         doubts.append(f"The column {listed([column.title])} of {label} counts seconds of UTC by its name; no leap seconds were added. If points and "
@@ -238,8 +235,8 @@ def _counted_seconds(column, label, doubts):
     """(N,) seconds of a column that counts them, or smaller units."""
     seconds = column.values * column.unit.factor if column.unit.name == "seconds" else column.values
     largest = np.nanmax(np.abs(seconds), initial=0.0)
-    if column.unit.name != "seconds" and largest > LARGEST_SECONDS:
-        factor = next((10.0**-power for power in (3, 6, 9) if largest * 10.0**-power < LARGEST_SECONDS), 1.0)
+    if column.unit.name != "seconds" and largest > TRAJECTORY.largest_seconds:
+        factor = next((10.0**-power for power in (3, 6, 9) if largest * 10.0**-power < TRAJECTORY.largest_seconds), 1.0)
         seconds = seconds * factor
         doubts.append(f"The times of {label} are so large that they are taken as counts of {factor:g} s.")
     return seconds
@@ -294,8 +291,8 @@ def _gps_seconds(times, column, titles, clock, label, notes):
         why = f"it is not said whether the clock shows GPS time, UTC, which differs {apart}, or local time"
         advice = "call the column GPS time or UTC, or write gps or utc in place of time in Columns of Import trajectory, if you know what it shows"
     raise RoadExtractionError(
-        f"The column {listed([column.title or 'without a name'])} of {label} holds {times.kind} such as {times.first[:LONGEST_NAME]!r}. GPS seconds "
-        f"are needed, and {why}. Export the trajectory with GPS time in seconds; or {advice}.")
+        f"The column {listed([column.title or 'without a name'])} of {label} holds {times.kind} such as {times.first[:TRAJECTORY.longest_name]!r}. "
+        f"GPS seconds are needed, and {why}. Export the trajectory with GPS time in seconds; or {advice}.")
 
 
 def _added_leap_seconds(utc, label, notes):
@@ -317,7 +314,7 @@ def _like_time(columns, used, label):
             continue
         usual = np.median(step)
         counts_rows = (step == 1).all() and values[0] in (0, 1)
-        if not counts_rows and np.mean(np.abs(step - usual) <= 0.2 * usual) > LEAST_EVEN:
+        if not counts_rows and np.mean(np.abs(step - usual) <= 0.2 * usual) > TRAJECTORY.least_even:
             likely.append(f"{listed([column.title or f'column {k + 1}'])} ({values[0]:.10g} to {values[-1]:.10g})")
     if not likely:
         return []
@@ -329,7 +326,6 @@ def _like_time(columns, used, label):
 
 ASSIGNABLE = (*ROLES, "lon", "lat", *TOLD_CLOCKS, "week", "date")
 LEFT_OUT = ("-", "", "skip")
-FIRST_GPS_SECONDS, LAST_GPS_SECONDS = 0.6e9, 1.7e9     # s since 1980: 1999 to 2033
 
 
 def assigned_columns(text: str, count: int, path: str | os.PathLike[str]) -> dict[str, int]:
@@ -439,7 +435,7 @@ def meaning_of_table(columns: Sequence[TableColumn], unmatched: Sequence[str] | 
         return _Meaning(assigned_columns(assigned, len(columns), path), clock=clock)
     if any(column.title for column in columns):
         return meaning_of(columns, path.name)
-    clocks = [k for k, column in enumerate(columns) if column.holds_texts and hold_times(column.written()[:CHECKED_ROWS])]
+    clocks = [k for k, column in enumerate(columns) if column.holds_clock_times]
     numbers = [k for k in range(len(columns)) if k not in clocks]
     try:
         place = {role: numbers[k] for role, k in columns_from_numbers(np.stack([columns[k].values for k in numbers], axis=1), path).items()}
@@ -448,7 +444,7 @@ def meaning_of_table(columns: Sequence[TableColumn], unmatched: Sequence[str] | 
             raise RoadExtractionError(f"{refused} The first row reads {first_row(columns)}.") from refused
         place = {}
     # small numbers are guessed by their order alone, which names that do not fit contradict
-    if unmatched and (not place or "x" in place and np.nanmedian(np.abs(columns[place["x"]].values)) < MIN_MAP_COORDINATE):
+    if unmatched and (not place or "x" in place and np.nanmedian(np.abs(columns[place["x"]].values)) < TRAJECTORY.min_map_coordinate):
         raise RoadExtractionError(
             f"{path} names {len(unmatched)} columns ({listed(unmatched)}), but its rows have {len(columns)}, and the numbers do not show which "
             f"is which. The first row reads {first_row(columns)}. Say which is which in Columns of Import trajectory.")
@@ -461,9 +457,10 @@ def meaning_of_table(columns: Sequence[TableColumn], unmatched: Sequence[str] | 
 def time_system_by_size(time: np.ndarray) -> str:
     """What (N,) times most likely count, by their size alone: gps, adjusted, week or day; "" where that is not clear."""
     first, last = float(np.nanmin(time)), float(np.nanmax(time))
-    if FIRST_GPS_SECONDS < first and last < LAST_GPS_SECONDS:
+    earliest, latest = TRAJECTORY.first_gps_seconds, TRAJECTORY.last_gps_seconds
+    if earliest < first and last < latest:
         return "gps"
-    if first < 0 and first > FIRST_GPS_SECONDS - ADJUSTED_OFFSET or SECONDS_PER_WEEK < first and last < LAST_GPS_SECONDS - ADJUSTED_OFFSET:
+    if earliest - ADJUSTED_OFFSET < first < 0 or SECONDS_PER_WEEK < first and last < latest - ADJUSTED_OFFSET:
         return "adjusted"
     if 0 <= first and SECONDS_PER_DAY < last <= SECONDS_PER_WEEK:
         return "week"

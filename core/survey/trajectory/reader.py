@@ -14,17 +14,15 @@ import numpy as np
 from ...common.errors import RoadExtractionError
 from ...io.crs import horizontal_part, parse_crs
 from ...io.text_table import SAMPLE_BYTES, finite_or_nan, read_number_table
+from ..weights import TRAJECTORY
 from .columns import listed, stated_angle_unit
 from .meaning import meaning_of, meaning_of_table, values_by_role
 from .table_columns import columns_of_record, columns_of_rows, is_record, titled_columns
-from .trajectory import MAX_VEHICLE_SPEED, Trajectory, lengths_in_metres, reproject_trajectory
-from .unnamed_columns import HEADING_TOLERANCE, angle_between, driven_course, geographic_unit, rough_metres
+from .trajectory import Trajectory, lengths_in_metres, reproject_trajectory
+from .unnamed_columns import angle_between, driven_course, geographic_unit, rough_metres
 
-SBET_DOUBLES = 17  # time, lat, lon, height, 3 velocities, roll, pitch, heading, wander angle, 6 more
+SBET_DOUBLES = 17  # source: Applanix POSPac; time, lat, lon, height, 3 velocities, roll, pitch, heading, wander angle, 6 more
 WGS84 = "EPSG:4326"
-SLOWEST_DRIVE = 0.07  # m/s: a survey whose fastest seconds are slower counts its time in thousandths
-# A vehicle on a road rolls by more than 3 degrees somewhere, but never by 0.2 radians.
-MAX_ROLL_RADIANS = 0.15
 
 
 def read_trajectory(path: str | os.PathLike[str], crs: str = "", target_crs: str = "", columns: str = "") -> Trajectory:
@@ -173,8 +171,8 @@ def _in_seconds(trajectory, label):
     speed = step[seconds > 0] / seconds[seconds > 0]
     speed = speed[np.isfinite(speed)]
     fastest = np.percentile(speed, 98) if len(speed) else 0.0
-    factor = next((10.0**-power for power in (3, 6, 9) if SLOWEST_DRIVE < fastest * 10.0**power < MAX_VEHICLE_SPEED), 1.0)
-    if not trajectory.has_time or not 0.0 < fastest < SLOWEST_DRIVE or factor == 1.0:
+    factor = next((10.0**-power for power in (3, 6, 9) if TRAJECTORY.slowest_drive < fastest * 10.0**power < TRAJECTORY.max_vehicle_speed), 1.0)
+    if not trajectory.has_time or not 0.0 < fastest < TRAJECTORY.slowest_drive or factor == 1.0:
         return trajectory
     note = f"The times of {label} are taken as counts of {factor:g} s: in seconds the drive would be at most {fastest:.2g} m/s fast."
     return replace(trajectory, time=trajectory.time * factor, doubts=(*trajectory.doubts, note))
@@ -287,7 +285,7 @@ def _angles(columns, x, y, crs, unit, notes):
             notes += note
     elif not unit:
         largest = max((np.nanmax(np.abs(v)) for v in found.values() if v is not None and np.isfinite(v).any()), default=1.0)
-        unit = "radians" if largest < MAX_ROLL_RADIANS else "degrees"
+        unit = "radians" if largest < TRAJECTORY.max_roll_radians else "degrees"
     if unit == "radians":
         notes.append("Roll, pitch and heading are in radians; they were converted to degrees.")
         found = {role: None if values is None else np.degrees(values) for role, values in found.items()}
@@ -304,9 +302,9 @@ def _median_difference(heading, unit, course):
 def _from_north(heading, in_degrees, course, unit):
     """The heading clockwise from north, and a note where it was counted from east or contradicts the course."""
     difference = float(np.median(angle_between(in_degrees, course)))
-    if difference < 3 * HEADING_TOLERANCE:
+    if difference < 3 * TRAJECTORY.heading_tolerance:
         return heading, []
-    if np.median(angle_between(90.0 - in_degrees, course)) < HEADING_TOLERANCE:
+    if np.median(angle_between(90.0 - in_degrees, course)) < TRAJECTORY.heading_tolerance:
         quarter = np.pi / 2 if unit == "radians" else 90.0
         return quarter - heading, ["The heading is counted counter-clockwise from east; it was converted to clockwise from north."]
     return heading, [f"The heading differs from the course driven by {difference:.0f}° in the median; the course is used, not the heading."]
@@ -350,8 +348,7 @@ def _read_sbet(path, crs):
 
 # The accuracy of a trajectory as Applanix POSPac writes it beside an SBET: smrmsg_MISSION.out for sbet_MISSION.out.
 
-SMRMSG_DOUBLES = 10   # time, RMS north, east, down (m), of three velocities (m/s), roll, pitch, heading (arc minutes)
-WORST = 100.0         # m: a position that is known worse than this is none, and the file another one
+SMRMSG_DOUBLES = 10   # source: Applanix POSPac; time, RMS north, east, down (m), of three velocities (m/s), roll, pitch, heading (arc minutes)
 
 
 def _accuracy_across(sbet: Path, time: np.ndarray, x: np.ndarray, y: np.ndarray) -> tuple[float, str]:
@@ -399,5 +396,6 @@ def _records(path):
     if len(rows) < 2 or len(data) != rows.size:
         return None
     with np.errstate(invalid="ignore"):
-        usable = np.isfinite(rows).all() and (np.diff(rows[:, 0]) > 0).all() and (rows[:, 1:4] >= 0).all() and (rows[:, 1:4] < WORST).all()
+        rms = rows[:, 1:4]
+        usable = np.isfinite(rows).all() and (np.diff(rows[:, 0]) > 0).all() and ((rms >= 0) & (rms < TRAJECTORY.worst_accuracy)).all()
     return rows if usable else None

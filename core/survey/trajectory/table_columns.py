@@ -13,12 +13,11 @@ import numpy as np
 
 from ...common.errors import RoadExtractionError
 from ...io.text_table import NumberTable, as_number, finite_or_nan
-from .columns import MAX_HEADER_LINES, Unit, candidates_by_role, listed, split_header, unit_named, unit_of_name, units_above
+from ..weights import TRAJECTORY
+from .columns import Unit, candidates_by_role, listed, split_header, unit_named, unit_of_name, units_above
 from .time_systems import SECONDS_PER_WEEK, degrees_of, hemisphere_signs, hold_times, whole_minutes
 
-FIRST_WHOLE_WEEK, LAST_WEEK = 1024.0, 4096.0  # weeks since 1980; smaller ones are those of old receivers, which begin anew after 1024
-LEAST_NAMED = 2         # roles in the line of names
-CHECKED_ROWS = 200      # by which it is told whether a column takes several fields
+FIRST_WHOLE_WEEK, LAST_WEEK = 1024.0, 4096.0  # source: weeks since 1980 (IS-GPS-200); smaller ones begin anew after 1024, as old receivers do
 
 
 @dataclass(frozen=True)
@@ -45,6 +44,11 @@ class TableColumn:
         """Whether it holds something, but no number at all."""
         return bool(self.first) and self.is_text
 
+    @property
+    def holds_clock_times(self) -> bool:
+        """Whether it holds clock times or dates as texts, by its first rows."""
+        return self.holds_texts and hold_times(self.written()[:TRAJECTORY.checked_rows])
+
 
 def titled_columns(table: NumberTable) -> tuple[list[TableColumn], list[str] | None]:
     """The columns of a table with the names above it.
@@ -55,9 +59,9 @@ def titled_columns(table: NumberTable) -> tuple[list[TableColumn], list[str] | N
     unmatched : the names in a line that has another number of them, None otherwise
     """
     fields = _fields(table)
-    best: tuple[int, list[str], list[tuple[int, str]]] = (LEAST_NAMED - 1, [], [])
-    unmatched: tuple[int, list[str]] = (LEAST_NAMED, [])
-    for line in table.preamble[-MAX_HEADER_LINES:]:
+    best: tuple[int, list[str], list[tuple[int, str]]] = (TRAJECTORY.least_named - 1, [], [])
+    unmatched: tuple[int, list[str]] = (TRAJECTORY.least_named, [])
+    for line in table.preamble[-TRAJECTORY.max_header_lines:]:
         for names in split_header(line):
             named = candidates_by_role(names) if len(names) <= len(fields) + 20 else {}
             if len(named) <= min(best[0], unmatched[0]):
@@ -138,7 +142,7 @@ def _possible_spans(role, fields):
     elif role == "time" and len(fields) > 1 and _week(fields[0].values) and _within(fields[1].values, 0.0, SECONDS_PER_WEEK + 1.0):
         yield 2, "week"
     elif role in ("lon", "lat") and len(fields) > 2:
-        degrees, minutes, seconds = (column.values[:CHECKED_ROWS] for column in fields[:3])
+        degrees, minutes, seconds = (column.values[:TRAJECTORY.checked_rows] for column in fields[:3])
         if _whole(degrees) and _within(minutes, 0.0, 60.0):
             if _whole(minutes) and _within(seconds, 0.0, 60.0):
                 yield 3, "angle"
@@ -152,7 +156,7 @@ def _fields_of_a_time(fields):
     if len(fields) < 2 or not (fields[0].is_text or _within(fields[0].values, 19_800_106.0, 21_000_101.0)) or not fields[1].is_text or \
             not (fields[0].first[:1].isdigit() and ":" in fields[1].first):
         return 1
-    if ":" in fields[0].first or not hold_times(fields[1].written()[:CHECKED_ROWS]):
+    if ":" in fields[0].first or not hold_times(fields[1].written()[:TRAJECTORY.checked_rows]):
         return 1
     return 3 if len(fields) > 2 and fields[2].first.upper() in ("AM", "PM") else 2
 
@@ -198,11 +202,8 @@ def _together(names, spans, units, fields):
 
 # What receivers and telephones keep: sentences of NMEA 0183 and NovAtel's ASCII logs, and tracks in GPX and KML.
 
-HEAD_BYTES = 20_000
 KINDS_OF_POSITIONS = ("trkpt", "coord", "rtept", "coordinates", "wpt", "point")   # in GPX and KML, the likeliest drive first
 TRACK_ENDINGS = (".gpx", ".kml")
-CHUNK = 1 << 16            # bytes handed to the parser at once
-MOST_TEXT = 200            # characters of a coordinate or time that are kept
 
 
 class _Sentence(NamedTuple):
@@ -214,7 +215,7 @@ class _Sentence(NamedTuple):
 
 # NMEA 0183: fields behind the name of the sentence. NovAtel (OEM7 Commands and Logs Reference): fields behind the semicolon, and of
 # the header before it the week and the seconds. Heights of NMEA and BESTPOS are above mean sea level; "geoid" leads to the ellipsoid.
-SENTENCES = {
+SENTENCES = {   # source: as above
     "GGA": _Sentence(0, {"clock": 1, "lat": 2, "lat_side": 3, "lon": 4, "lon_side": 5, "quality": 6, "z": 9, "geoid": 11}),
     "GNS": _Sentence(1, {"clock": 1, "lat": 2, "lat_side": 3, "lon": 4, "lon_side": 5, "z": 9, "geoid": 10}),
     **{name: _Sentence(0, {"week": 0, "seconds": 1, "lat": 2, "lon": 3, "z": 4, "roll": 8, "pitch": 9, "heading": 10})
@@ -352,7 +353,7 @@ class _TrackReader:
 
     def read(self, path):
         with open(path, "rb") as file:
-            while chunk := file.read(CHUNK):
+            while chunk := file.read(TRAJECTORY.chunk):
                 self._parser.Parse(chunk)
             self._parser.Parse(b"", True)
 
@@ -368,7 +369,7 @@ class _TrackReader:
 
     def _characters(self, text):
         # the coordinates of a line in KML are one text
-        self._text = self._text + text if len(self._text) < MOST_TEXT or self._point is None else self._text
+        self._text = self._text + text if len(self._text) < TRAJECTORY.most_text or self._point is None else self._text
 
     def _end(self, name):
         name, text = name.rpartition(":")[2], self._text.strip()
@@ -388,7 +389,7 @@ class _TrackReader:
 def is_record(path: Path) -> bool:
     """Whether a file is a track or a log of sentences, by its ending and its beginning."""
     with open(path, "rb") as file:
-        head = file.read(HEAD_BYTES)
+        head = file.read(TRAJECTORY.head_bytes)
     text = head.decode("latin-1")
     return path.suffix.lower() in TRACK_ENDINGS or bool(NMEA.search(text) or NOVATEL.search(text))
 

@@ -8,12 +8,7 @@ import numpy as np
 
 from ...common.errors import RoadExtractionError
 from ...io.crs import horizontal_part, parse_crs
-from .trajectory import MAX_VEHICLE_SPEED
-
-MAX_SAMPLE_ROWS = 20_000      # rows from which the columns are recognised
-MAX_LEAN = 20.0               # degrees: no vehicle on a road rolls or pitches by more
-LEAST_SWING = 0.05            # of the rows on either side of zero
-MIN_MAP_COORDINATE = 9000.0   # m: x and y of map coordinates are larger, heights are smaller
+from ..weights import TRAJECTORY
 
 
 def columns_from_numbers(values: np.ndarray, path: str | os.PathLike[str]) -> dict[str, int]:
@@ -37,7 +32,7 @@ def columns_from_numbers(values: np.ndarray, path: str | os.PathLike[str]) -> di
         If time, x, y and z cannot be recognised.
     """
     values = values[np.isfinite(values).sum(axis=1) >= 3]
-    sample = values[:MAX_SAMPLE_ROWS]
+    sample = values[:TRAJECTORY.max_sample_rows]
     count = sample.shape[1]
     if not len(sample):
         raise _unrecognised_columns(path, count)
@@ -108,7 +103,7 @@ def _plane(sample, time, others):
     """((x column, y column, unit) or None, heading column or None): coordinates that a heading confirms are preferred."""
     rate = {k: _rate(sample, time, k, 98) for k in others}
     size = {k: np.nanmedian(np.abs(sample[:, k])) for k in others}
-    map_like = [k for k in others if size[k] > MIN_MAP_COORDINATE and rate[k] < MAX_VEHICLE_SPEED]
+    map_like = [k for k in others if size[k] > TRAJECTORY.min_map_coordinate and rate[k] < TRAJECTORY.max_vehicle_speed]
     if len(map_like) > 2:
         return None, None
     if len(map_like) == 2:
@@ -131,7 +126,7 @@ def _agreeing_headings(sample, time, others, pairs):
     for a, b, unit in pairs:
         x, y = sample[:, a].copy(), sample[:, b].copy()
         if unit != "metres":
-            scale = METRES_PER_DEGREE * (np.degrees(1.0) if unit == "radians" else 1.0)
+            scale = TRAJECTORY.metres_per_degree * (np.degrees(1.0) if unit == "radians" else 1.0)
             middle = np.nanmedian(y) * (1.0 if unit == "radians" else np.pi / 180)
             x, y = x * scale * np.cos(middle), y * scale
         for h in others:
@@ -151,7 +146,7 @@ def _local_pairs(sample, time, others, size, rate):
     first = next((k for k in range(sample.shape[1]) if k != time and not _is_counter(sample[:, k])), 0)
     in_order = all(k in others for k in range(first, first + 3)) and (time is None or time < first or time == first + 3)
     unexplained = [k for k in others if k >= first + 3 and size[k] > 360.0]
-    if not in_order or unexplained or not 0.1 < np.hypot(rate[first], rate[first + 1]) < MAX_VEHICLE_SPEED:
+    if not in_order or unexplained or not 0.1 < np.hypot(rate[first], rate[first + 1]) < TRAJECTORY.max_vehicle_speed:
         return []
     return [(first, first + 1, "metres")]
 
@@ -185,7 +180,7 @@ def _longitude_first(pairs, sample):
 
 def _height_column(sample, time, others, plane, heading):
     """The slowly changing column that follows x and y, otherwise the only one left."""
-    left = [k for k in others if k not in plane and k != heading and np.nanmax(np.abs(sample[:, k])) < MIN_MAP_COORDINATE]
+    left = [k for k in others if k not in plane and k != heading and np.nanmax(np.abs(sample[:, k])) < TRAJECTORY.min_map_coordinate]
     slow = [k for k in left if _rate(sample, time, k, 90) < 20.0]
     following = [k for k in slow if k == max(plane) + 1]
     if heading == max(plane) + 3 and _after_roll_and_pitch(sample, heading):
@@ -202,16 +197,12 @@ def _after_roll_and_pitch(sample, k):
     if k is None or k < 2:
         return False
     before = sample[:, [k - 2, k - 1]]
-    swings = (np.nanmean(before > 0, axis=0) > LEAST_SWING) & (np.nanmean(before < 0, axis=0) > LEAST_SWING)
-    return bool(swings.all() and np.nanmax(np.abs(before)) < MAX_LEAN)
+    swings = (np.nanmean(before > 0, axis=0) > TRAJECTORY.least_swing) & (np.nanmean(before < 0, axis=0) > TRAJECTORY.least_swing)
+    return bool(swings.all() and np.nanmax(np.abs(before)) < TRAJECTORY.max_lean)
 
 
 # Whether numbers can be the headings and coordinates of a drive.
 
-METRES_PER_DEGREE = 111_000.0   # of latitude, rounded
-HEADING_TOLERANCE = 10.0        # degrees between the heading and the course driven, median
-MIN_COURSE_STEP = 1.0           # m of driving between two courses: the positions of a standing vehicle scatter in all directions
-MAX_COURSE_ROWS = 5000          # courses of a drive
 
 
 def rough_metres(x: np.ndarray, y: np.ndarray, crs: str) -> tuple[np.ndarray, np.ndarray]:
@@ -223,7 +214,7 @@ def rough_metres(x: np.ndarray, y: np.ndarray, crs: str) -> tuple[np.ndarray, np
     crs : WKT or "EPSG:n"; "" where unknown, which is taken to be metric
     """
     if crs and horizontal_part(parse_crs(crs)).is_geographic:
-        return x * np.cos(np.radians(np.nanmedian(y))) * METRES_PER_DEGREE, y * METRES_PER_DEGREE
+        return x * np.cos(np.radians(np.nanmedian(y))) * TRAJECTORY.metres_per_degree, y * TRAJECTORY.metres_per_degree
     return x, y
 
 
@@ -236,11 +227,11 @@ def driven_course(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]
 
     Returns
     -------
-    rows : (K,) indices of positions, at least MIN_COURSE_STEP of driving apart
+    rows : (K,) indices of positions, at least `min_course_step` of driving apart
     course : (K,) degrees clockwise from north at these
     """
     driven = np.r_[0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y)))]
-    spacing = max(MIN_COURSE_STEP, driven[-1] / MAX_COURSE_ROWS)
+    spacing = max(TRAJECTORY.min_course_step, driven[-1] / TRAJECTORY.max_course_rows)
     cell = np.floor(driven / spacing)
     rows = np.flatnonzero(np.r_[True, np.diff(cell) > 0])
     if len(rows) < 3:
@@ -259,7 +250,7 @@ def _heading_disagreement(x: np.ndarray, y: np.ndarray, heading: np.ndarray) -> 
 
     x, y : (N,) metres
     heading : (N,) degrees or radians
-    Returns: Median difference in degrees; None beyond HEADING_TOLERANCE or where the column cannot be an angle
+    Returns: Median difference in degrees; None beyond `heading_tolerance` or where the column cannot be an angle
     """
     good = np.isfinite(x) & np.isfinite(y) & np.isfinite(heading)
     rows, course = driven_course(x[good], y[good])
@@ -267,7 +258,7 @@ def _heading_disagreement(x: np.ndarray, y: np.ndarray, heading: np.ndarray) -> 
     if len(rows) < 3 or np.abs(heading[good]).max() > 361.0:
         return None
     found = min(float(np.median(angle_between(heading[good][rows] * factor, course))) for factor in (1.0, np.degrees(1.0)))
-    return found if found < HEADING_TOLERANCE else None
+    return found if found < TRAJECTORY.heading_tolerance else None
 
 
 def geographic_unit(lon: np.ndarray, lat: np.ndarray, time: np.ndarray | None = None) -> str:
@@ -297,12 +288,12 @@ def geographic_unit(lon: np.ndarray, lat: np.ndarray, time: np.ndarray | None = 
     else:
         seconds = np.diff(np.asarray(time)[good])
         speed = np.percentile(step[seconds > 0] / seconds[seconds > 0], 95) if (seconds > 0).any() else 0.0
-        if not 0 < speed < 2 * MAX_VEHICLE_SPEED / METRES_PER_DEGREE:
+        if not 0 < speed < 2 * TRAJECTORY.max_vehicle_speed / TRAJECTORY.metres_per_degree:
             return ""
         # a constant, or the noise of a standard deviation, varies but does not travel
         if np.hypot(*(np.diff(column).sum() for column in (lon, lat))) < 0.02 * step.sum():
             return ""
     if np.abs(lon).max() > np.pi or np.abs(lat).max() > np.pi / 2:
         return "degrees"
-    in_radians = None if speed is None else speed * METRES_PER_DEGREE * np.degrees(1.0)
-    return "radians" if in_radians is not None and in_radians < MAX_VEHICLE_SPEED else "degrees" if speed is not None else ""
+    in_radians = None if speed is None else speed * TRAJECTORY.metres_per_degree * np.degrees(1.0)
+    return "radians" if in_radians is not None and in_radians < TRAJECTORY.max_vehicle_speed else "degrees" if speed is not None else ""
