@@ -15,14 +15,12 @@ from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from .crs import place_of_raster, place_raster
 from .local_files import gdal_exceptions, open_raster, reading, unfinished_path
+from .weights import IO
 
-GEOTIFF_TILE = 512          # px, side of a tile of the file, and of the parts that are processed at a time
-NODATA = -9999.0            # value of pixels without data
-MAX_SAMPLED_WINDOW = 4 * GEOTIFF_TILE**2   # px that are read as one window to be sampled
-MAX_CACHED_PIXELS = 32 * GEOTIFF_TILE**2   # px that GDAL may cache of what a thread has read
-COMPRESSION_THREADS = 2
-DISPLAY_SIZE = 2000         # px, longer side of the reduced image from which the stretch is computed
-MAX_DISPLAY_STEP = 16       # px between its pixels at the most, where few tiles of a large image hold data
+GEOTIFF_TILE = 512          # source: GDAL's block sizes are multiples of 16; px, side of a tile of the file, and of the parts that are processed at a time
+NODATA = -9999.0            # source: usual in GIS; value of pixels without data
+MAX_SAMPLED_WINDOW = 4 * GEOTIFF_TILE**2   # derived: px that are read as one window to be sampled
+MAX_CACHED_PIXELS = 32 * GEOTIFF_TILE**2   # derived: px that GDAL may cache of what a thread has read
 
 
 class IntensityImage:
@@ -239,7 +237,7 @@ class _NewGeoTiff:
         from osgeo import gdal
 
         options = [f"BLOCKXSIZE={GEOTIFF_TILE}", f"BLOCKYSIZE={GEOTIFF_TILE}", "TILED=YES", "COMPRESS=DEFLATE", "SPARSE_OK=TRUE",
-                   "BIGTIFF=IF_SAFER", f"NUM_THREADS={COMPRESSION_THREADS}"]
+                   "BIGTIFF=IF_SAFER", f"NUM_THREADS={IO.compression_threads}"]
         # Intensities are too noisy to be predicted from their neighbours: a predictor costs more time than it saves.
         options += ["PREDICTOR=2"] if byte else ["ZLEVEL=1"]
         self._type = gdal.GDT_Byte if byte else gdal.GDT_Float32
@@ -347,8 +345,8 @@ def _stretch(image):
     """1st and 99.5th percentile of an image, computed from every n-th pixel."""
     tiles = image.tiles()
     # a large image that is mostly empty gives as many pixels as a small one that is full
-    filled = int(np.sqrt(len(tiles))) * GEOTIFF_TILE // DISPLAY_SIZE
-    step = max(1, min(max(image.width, image.height) // DISPLAY_SIZE, max(filled, MAX_DISPLAY_STEP)))
+    filled = int(np.sqrt(len(tiles))) * GEOTIFF_TILE // IO.display_size
+    step = max(1, min(max(image.width, image.height) // IO.display_size, max(filled, IO.max_display_step)))
     parts = [np.empty(0, np.float32)]
     for column, row in tiles:
         values = image.read_pixels(column, row, GEOTIFF_TILE, GEOTIFF_TILE)[::step, ::step]

@@ -19,6 +19,7 @@ from typing import Any
 from uuid import uuid4
 
 from ..common.errors import RoadExtractionError
+from .weights import IO
 
 # Formats that hold their pixels themselves; a VRT, which names other files, is read where its name says that it is one
 RASTER_DRIVERS = ("GTiff", "JPEG", "PNG", "HFA", "JP2OpenJPEG", "JP2KAK", "JP2ECW", "JP2MrSID", "JPEG2000", "ECW", "MrSID", "HEIF", "AVIF",
@@ -164,7 +165,6 @@ def _for_all_threads(modules):
 
 # Files that appear whole or not at all: until a file is finished it has a hidden name of its own beside its place.
 
-ABANDONED_TIME = 24 * 3600.0   # s since the last write to an unfinished file after which its run is taken for dead; a computer may be suspended
 
 
 def unfinished_path(path: str | os.PathLike[str], suffix: str) -> Path:
@@ -181,7 +181,7 @@ def unfinished_path(path: str | os.PathLike[str], suffix: str) -> Path:
     target = Path(path)
     for left in target.parent.glob(f".{escape(target.name)}.*.unfinished*"):
         try:
-            if time.time() - max(file.stat().st_mtime for file in (left, *left.glob("*"))) > ABANDONED_TIME:
+            if time.time() - max(file.stat().st_mtime for file in (left, *left.glob("*"))) > IO.abandoned_time:
                 shutil.rmtree(left) if left.is_dir() else left.unlink()
         except OSError:
             pass   # another run was quicker, or it is held open

@@ -20,7 +20,7 @@ NUMBERS = {
     "common": 17,
     "execution": 25,
     "countries": 15,
-    "io": 23,
+    "io": 5,
     "curves": 42,
     "survey": 200,
     "road": 522,

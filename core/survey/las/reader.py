@@ -13,7 +13,8 @@ import numpy as np
 
 from ...common.errors import Cancelled, RoadExtractionError
 from ...common.parallel import check_cancelled
-from ...io.crs import METRES, SAME_DATUM, SAME_UNIT, FileUnits, horizontal_part, in_metres, moved_by
+from ...io.crs import METRES, FileUnits, horizontal_part, in_metres, moved_by
+from ...io.weights import IO
 from ..weights import LAS
 from .header import HeaderFields, find_damage, mend, opened, places_here_and_there, points_per_chunk, with_points_of_chunks
 
@@ -396,7 +397,7 @@ def _stated(text, keys, doubles, place):
         written, vertical = plane, written
     if written is None:
         return "", problem or ("" if _same_unit(vertical, 1.0) else f"only the CRS of its heights is known ({vertical.name})")
-    if plane is not None and moved_by(plane, horizontal_part(written), place) > SAME_DATUM:
+    if plane is not None and moved_by(plane, horizontal_part(written), place) > IO.same_datum:
         problem = problem or f"its WKT says {horizontal_part(written).name}, its GeoKeys say {plane.name}"
     own = written.sub_crs_list[-1] if written.is_compound else None
     if own is not None and vertical is not None and not _same_unit(own, vertical.axis_info[0].unit_conversion_factor):
@@ -411,7 +412,7 @@ def _of_keys(values: Mapping[int, Any]) -> tuple[CRS | None, CRS | None, str]:
         plane = None
     factor, unit = _length(values.get(LENGTH_UNIT), values.get(LENGTH_SIZE))
     problem = ""
-    if factor and plane is None and abs(factor - 1.0) > SAME_UNIT:
+    if factor and plane is None and abs(factor - 1.0) > IO.same_unit:
         problem = f"its x and y are in {unit}, and the CRS that they lie in is not known"
     elif factor and plane is not None and not plane.is_geographic and not _same_unit(plane, factor):
         problem = f"its code says {plane.name}, whose unit is {plane.axis_info[0].unit_name}, and its unit key says {unit}"
@@ -457,7 +458,7 @@ def _of_heights(crs):
 
 def _same_unit(crs, factor):
     """Whether the first axis of a CRS has a unit of `factor` metres."""
-    return abs(crs.axis_info[0].unit_conversion_factor / factor - 1.0) < SAME_UNIT
+    return abs(crs.axis_info[0].unit_conversion_factor / factor - 1.0) < IO.same_unit
 
 
 def _length(code, size):

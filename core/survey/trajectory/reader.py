@@ -13,7 +13,8 @@ import numpy as np
 
 from ...common.errors import RoadExtractionError
 from ...io.crs import horizontal_part, parse_crs
-from ...io.text_table import SAMPLE_BYTES, finite_or_nan, read_number_table
+from ...io.text_table import finite_or_nan, read_number_table
+from ...io.weights import IO
 from ..weights import TRAJECTORY
 from .columns import listed, stated_angle_unit
 from .meaning import meaning_of, meaning_of_table, values_by_role
@@ -314,7 +315,7 @@ def _is_sbet(path):
     """Whether a file consists of binary records of 17 doubles with valid latitude, longitude and increasing time."""
     size = path.stat().st_size
     with open(path, "rb") as file:
-        head = file.read(SAMPLE_BYTES)
+        head = file.read(IO.sample_bytes)
     if b"\0" not in head or head[:2] in (b"\xff\xfe", b"\xfe\xff") or size < 2 * SBET_DOUBLES * 8:
         return False
     usable = len(head) // (SBET_DOUBLES * 8) * SBET_DOUBLES
