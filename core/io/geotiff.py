@@ -17,7 +17,7 @@ from .crs import place_of_raster, place_raster
 from .local_files import gdal_exceptions, open_raster, reading, unfinished_path
 from .weights import IO
 
-GEOTIFF_TILE = 512          # source: GDAL's block sizes are multiples of 16; px, side of a tile of the file, and of the parts that are processed at a time
+GEOTIFF_TILE = 512          # source: TIFF 6.0, sides of tiles are multiples of 16; px, of the file and of what is processed at a time
 NODATA = -9999.0            # source: usual in GIS; value of pixels without data
 MAX_SAMPLED_WINDOW = 4 * GEOTIFF_TILE**2   # derived: px that are read as one window to be sampled
 MAX_CACHED_PIXELS = 32 * GEOTIFF_TILE**2   # derived: px that GDAL may cache of what a thread has read
