@@ -25,10 +25,9 @@ TYPE_SIZES = 1, 1, 2, 2, 4, 4, 8, 8, 4, 8   # source: bytes (LAS 1.4 R15, table 
 
 @dataclass(frozen=True)
 class HeaderFields:
-    """The numbers of a header, as they stand there.
+    """The numbers of a header as they stand there.
 
-    head : its first bytes
-    counts : those of the counts of points that are not 0, that of 64 bits first
+    head : its first bytes; counts : its counts of points that are not 0, that of 64 bits first
     first_waveform : byte of the first waveform packet, 0 without any in the file
     """
 
@@ -110,10 +109,7 @@ class HeaderFields:
 
 @dataclass(frozen=True)
 class _Compression:
-    """How the points of a file are compressed, as the LASzip record says.
-
-    data : the record
-    """
+    """How the points of a file are compressed; `data` is the LASzip record."""
 
     data: bytes
 
@@ -140,13 +136,7 @@ class _Compression:
 
 @dataclass(frozen=True)
 class _Record:
-    """A variable length record.
-
-    at : byte of the file at which it begins
-    head : its header
-    length : of its data, as it states
-    data : as much of it as there is and is looked into
-    """
+    """A variable length record: where it begins, its header, the length that it states, and as much of its data as is there and looked into."""
 
     at: int
     head: bytes
@@ -223,12 +213,7 @@ def _extra_bytes_described(records: list[_Record]) -> int:
 
 
 def _readable_extra_bytes(record: _Record, point_format: int, room: int) -> _Record:
-    """A record of extra bytes that describes no more than there is room for, in names that a table can have; itself where nothing is wrong.
-
-    record : which describes extra bytes
-    point_format : whose own fields have their names already
-    room : extra bytes of a point
-    """
+    """A record of extra bytes that describes at most `room` bytes, in names that the point format leaves free; itself where nothing is wrong."""
     from laspy import PointFormat
 
     taken, left, kept = {*PointFormat(point_format).dimension_names, *PointFormat(point_format).dtype().names, "ExtraBytes"}, room, []
@@ -293,11 +278,7 @@ COUNT_AT, LONG_COUNT_AT, RECORD_SIZE_AT, POINTS_AT, EVLR_COUNT_AT = 107, 247, 10
 
 @dataclass(frozen=True)
 class _MendedHeader:
-    """What is read in place of some bytes of a file, and what to tell of it.
-
-    patches : (first byte, bytes)
-    notes : the ends of sentences about the file
-    """
+    """What is read in place of some bytes of a file, (first byte, bytes) each, and the ends of sentences about it."""
 
     patches: tuple[tuple[int, bytes], ...] = ()
     notes: tuple[str, ...] = ()
@@ -335,16 +316,7 @@ def opened(path: str | os.PathLike[str], mended: _MendedHeader) -> io.BufferedRe
 
 
 def mend(path: str | os.PathLike[str]) -> _MendedHeader:
-    """What a file says of itself against what is in it; the points in compressed chunks are not counted here.
-
-    Parameters
-    ----------
-    path : of a LAS or LAZ file
-
-    Returns
-    -------
-    _MendedHeader; without patches where nothing is wrong, or nothing is sure
-    """
+    """What a LAS or LAZ file says of itself against what is in it; points in compressed chunks are not counted here."""
     size = os.path.getsize(path)
     with open(path, "rb") as file:
         stated = HeaderFields.read(file)
@@ -482,17 +454,7 @@ LAYERS_OF_ITEM = {10: 9, 11: 1, 12: 2, 13: 1}  # source: LASzip; POINT14, RGB14,
 
 
 def find_damage(path: str | os.PathLike[str], mended: _MendedHeader | None = None) -> str:
-    """What is wrong with the lengths in a file's header.
-
-    Parameters
-    ----------
-    path : of a LAS or LAZ file
-    mended : what is read in place of some of its bytes; by default as `mend` says
-
-    Returns
-    -------
-    The end of a sentence; "" where nothing is wrong, or the file is not a LAS file at all
-    """
+    """What is wrong with the lengths in a file's header, as the end of a sentence; "" where nothing is, or the file is no LAS file."""
     size = os.path.getsize(path)
     with opened(path, mend(path) if mended is None else mended) as file:
         fields = HeaderFields.read(file)
@@ -521,8 +483,8 @@ def find_damage(path: str | os.PathLike[str], mended: _MendedHeader | None = Non
 def with_points_of_chunks(path: str | os.PathLike[str], mended: _MendedHeader) -> _MendedHeader:
     """The header of an undamaged file, with as many points as its chunks hold where it is compressed.
 
-    Chunks of point formats 6 and above, and those of all sizes, state their points. Of the others each but the last is full, and how many
-    points the last has shows when it is decoded: points beyond its last need bytes that are not there.
+    Chunks of point formats 6 and above, and those of varying size, state their points. Of the others only the last may not be full: it is decoded,
+    since points beyond its last need bytes that are not there.
     """
     with opened(path, mended) as file:
         fields = HeaderFields.read(file)
@@ -536,12 +498,7 @@ def with_points_of_chunks(path: str | os.PathLike[str], mended: _MendedHeader) -
 
 
 def places_here_and_there(path: str | os.PathLike[str], mended: _MendedHeader) -> np.ndarray:
-    """Coordinates of points all over an undamaged file, without decoding it.
-
-    Returns
-    -------
-    (N, 3) map coordinates: of the first point of every chunk, which is not compressed, or of points evenly spread in a file without chunks
-    """
+    """(N, 3) map coordinates of points all over an undamaged file: evenly spread, or the first of each chunk, which is not compressed."""
     with opened(path, mended) as file:
         fields = HeaderFields.read(file)
         if fields is None or not fields.count:
@@ -608,14 +565,7 @@ def points_per_chunk(path: str | os.PathLike[str]) -> int:
 
 
 def chunks_of(path: str | os.PathLike[str]) -> tuple[bytes, int, list[tuple[int, int]]]:
-    """The chunks of an undamaged LAZ file.
-
-    Returns
-    -------
-    record : the LASzip record
-    begin : byte at which the chunks begin
-    table : [(points, bytes)] of each chunk
-    """
+    """The LASzip record of an undamaged LAZ file, the byte at which its chunks begin, and (points, bytes) of each."""
     with open(path, "rb") as file:
         compression, begin, table = _chunks(file)
         return compression.data, begin, table

@@ -15,12 +15,7 @@ from .reader import CloudHeader, layer_selection, open_cloud, read_blocks, read_
 
 
 class ParallelCloudReader:
-    """Files read by several threads, each of which reuses one buffer for the points that it decodes.
-
-    Parameters
-    ----------
-    layers : names of the layers that are decoded, as in `open_cloud`
-    """
+    """Files read by several threads, each of which reuses one buffer for its points; `layers` as in `open_cloud`."""
 
     def __init__(self, layers: Sequence[str] | None = None):
         self._layers = layers
@@ -38,8 +33,7 @@ class ParallelCloudReader:
     def blocks(self, files: Sequence[CloudHeader], size: int) -> Iterator[Callable[[], Any]]:
         """Yield functions, in the order of the points, that return a laspy point record of about `size` points.
 
-        Any thread may call them; its next call may overwrite the record. A file that cannot be
-        decoded in parallel is read here, one block after the other.
+        Any thread may call them; its next call may overwrite the record.
         """
         for number, first, count in self.ranges(files, size):
             if _in_one_piece(files[number], size):
@@ -51,7 +45,7 @@ class ParallelCloudReader:
     def ranges(self, files: Sequence[CloudHeader], size: int) -> Iterator[tuple[int, int, int]]:
         """Yield (number of a file, index of the first point, points) of ranges of about `size` points, in the order of the points.
 
-        A range is whole chunks of a file; one that cannot be decoded in parallel is one range.
+        A range is whole chunks of a file, or the whole file where its chunks are too large to be decoded apart.
         """
         for number, file in enumerate(files):
             if not file.count:
@@ -130,9 +124,9 @@ class ParallelCloudReader:
         return int(ends[k - 1]) if k else 0
 
     def following(self, file: CloudHeader, start: int, count: int) -> Iterator[Any]:
-        """Yield `count` points after another as laspy point records, or chunk after chunk where their size varies; the next may overwrite one.
+        """Yield laspy point records of `count` points, or of chunks where their size varies, from the first point of a chunk on.
 
-        They begin with the first point of a chunk, which is decoded no further than the points are asked for.
+        A chunk is decoded no further than its points are asked for; the next record may overwrite one.
         """
         if file.chunk:
             for first in range(start, file.count, count):

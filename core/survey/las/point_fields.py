@@ -21,11 +21,9 @@ EVER = (-np.inf, np.inf)      # s
 
 @dataclass
 class ScannerCensus:
-    """Counts and time spans of scanner_channel and point_source_id, gathered while reading.
+    """Times at which each value of the fields that may tell scanners apart was measured: {LAS field: {value: (first, last, count)}}.
 
-    In a cloud without times stations along the road stand in their place: scanners measure the same stretches of it, files and tiles do not.
-
-    spans : {LAS field: {value: (first time, last time, count)}}
+    Without times stations along the road stand in their place: scanners measure the same stretches of it, files and tiles do not.
     """
 
     spans: dict[str, dict[int, tuple[float, float, int]]] = field(default_factory=lambda: {"scanner_channel": {}, "point_source_id": {}})
@@ -44,25 +42,11 @@ class ScannerCensus:
             seen[value] = min(first, start), max(last, end), count + number
 
     def choose(self, wanted: str | None = "automatic") -> tuple[str | None, list[Any]]:
-        """The LAS field that identifies the scanners.
+        """The LAS field that identifies the scanners, None for one scanner, and the values of each scanner, a tuple for several recordings.
 
-        This is `scanner_channel` if it has more than one value, else `point_source_id` if it has 2 to 32 values that
-        overlap in time, or along the road where there are no times. LAS defines the latter as a flight line or file number;
-        some exporters count frames in it, others number every recording of every scanner.
-
-        Parameters
-        ----------
-        wanted : "automatic", or the LAS field to use
-
-        Returns
-        -------
-        name : of the field; None if there is one scanner
-        values : one entry per scanner in ascending order, a tuple where successive recordings belong to one scanner
-
-        Raises
-        ------
-        RoadExtractionError
-            If the wanted field is unknown or has too many values.
+        This is `scanner_channel` if it has more than one value, else `point_source_id` if its values overlap in time. LAS defines the latter
+        as a flight line or file number; some exporters count frames in it, others number every recording of every scanner.
+        RoadExtractionError where the wanted field is unknown or has too many values.
         """
         if wanted not in ("", "automatic", None):
             if wanted not in self.spans:
@@ -88,7 +72,7 @@ class ScannerCensus:
 def times_by_value(values: np.ndarray, time: np.ndarray, span: tuple[float, float] = EVER) -> dict[int, tuple[float, float, int]]:
     """{value: (first time, last time, count)} of (N,) small integers and times; incomplete if there are too many values.
 
-    Points at times out of the span, or at none, do not count: some exporters write a wrong time here and there.
+    Points at times out of the span do not count: some exporters write a wrong time here and there.
     """
     if len(values) and not (time.min() >= span[0] and time.max() <= span[1]):
         usable = np.flatnonzero((time >= span[0]) & (time <= span[1]))
@@ -160,10 +144,8 @@ MAX_POWER = 290.0         # derived: of ten, with which a double can be multipli
 class IntensitySource:
     """How the intensity of points is read.
 
-    field : of the points: "intensity", an extra field, or "rgb" for the luminance of their colours
-    signed : whether values from SIGN on stand for negative ones
-    per_decibel : values that make a decibel; 0 where they are linear
-    zero : of linear values, what counts as 0
+    field : "intensity", an extra field, or "rgb" for the luminance of colours; signed : whether values from SIGN on stand for negative ones
+    per_decibel : values that make a decibel, 0 where they are linear; zero : of linear values, what counts as 0
     factor : by which linear values, or those of decibels made linear, are multiplied
     """
 
@@ -199,17 +181,9 @@ class IntensitySource:
 
 
 def intensity_source_of(samples: Sequence[FileSample], wanted: str) -> tuple[IntensitySource, str]:
-    """How the intensities of files are to be read.
+    """How the intensities of all files are to be read, and what the user should know of it.
 
-    Parameters
-    ----------
-    samples : of all files
     wanted : one of INTENSITY_SOURCES
-
-    Returns
-    -------
-    source : IntensitySource
-    note : what the user should know of it, "" where intensities are read as they are
     """
     if wanted == "rgb":
         return IntensitySource("rgb"), ""
@@ -234,9 +208,9 @@ def intensity_source_of(samples: Sequence[FileSample], wanted: str) -> tuple[Int
 
 
 def _wrapped(values):
-    """Whether (N,) intensities are negative and positive values that were written without their sign: one body or two, with nothing between.
+    """Whether (N,) intensities are negative and positive values written without their sign: one body or two, with nothing between.
 
-    What a saturated scanner has at the upper end is mostly one value, and signs brighter than all else are few.
+    A saturated scanner has mostly one value at the upper end, and signs brighter than all else are few.
     """
     quarter = np.bincount(values >> 14, minlength=4) / len(values)
     if quarter[1] + quarter[2] > LAS.empty_middle or quarter[3] < LAS.least_upper_share:
@@ -265,27 +239,12 @@ def _unit(source):
 
 
 def luminance(points: Any) -> np.ndarray:
-    """Brightness of coloured points, the weighted sum of their colours.
-
-    Parameters
-    ----------
-    points : laspy point record with red, green and blue
-
-    Returns
-    -------
-    (N,) uint16, in the unit of the colours
-    """
+    """(N,) uint16 brightness of points with colours, the weighted sum of their red, green and blue, in the unit of these."""
     return np.rint(sum(weight * np.asarray(points[name], np.float32) for name, weight in zip(COLOUR_FIELDS, LUMINANCE_WEIGHTS))).astype(np.uint16)
 
 
 def check_coloured(files: Sequence[CloudHeader]) -> None:
-    """Refuse files whose points have no colours.
-
-    Raises
-    ------
-    RoadExtractionError
-        If the point format of a file that has points holds no colours.
-    """
+    """Raise RoadExtractionError where the point format of a file that has points holds no colours."""
     grey = [file for file in files if file.count and not file.has_colour]
     if grey:
         raise RoadExtractionError(
@@ -294,18 +253,7 @@ def check_coloured(files: Sequence[CloudHeader]) -> None:
 
 
 def without_intensity(files: Sequence[CloudHeader], taken_from: str, fields: Sequence[str] = ()) -> str:
-    """What to say of a cloud whose points are all equally bright.
-
-    Parameters
-    ----------
-    files : headers of the clouds
-    taken_from : one of INTENSITY_SOURCES, what was read as intensity
-    fields : extra fields of the points
-
-    Returns
-    -------
-    A sentence that names the colours, or else the extra fields, where they are a way out; "" where they are not
-    """
+    """A sentence on points that are all equally bright: whether colours, or else extra fields, are a way out; "" where they are not."""
     if taken_from == "rgb":
         return "The colours of the points are all the same, so they do not stand in for intensity."
     if any(_has_colours(file) for file in files):
@@ -336,12 +284,7 @@ def flagged(block: laspy.ScaleAwarePointRecord) -> bool:
 
 
 def valid_points(block: laspy.ScaleAwarePointRecord) -> np.ndarray | None:
-    """Which points of a block are neither withheld nor classified as noise: (N,) bool, None for all.
-
-    Parameters
-    ----------
-    block : laspy point record of N points, of whose LAZ layers `flags` and `classification` are decoded
-    """
+    """(N,) bool: the points of a block that are neither withheld nor noise; None for all. Its layers `flags` and `classification` are decoded."""
     there = flagged(block) and "withheld" in block.point_format.dimension_names
     withheld = np.asarray(block["withheld"]) != 0 if there else np.zeros(1, bool)
     classes = np.asarray(block["classification"])
@@ -357,15 +300,7 @@ def valid_points(block: laspy.ScaleAwarePointRecord) -> np.ndarray | None:
 
 
 class LasAxis:
-    """One coordinate axis of a file.
-
-    Parameters
-    ----------
-    name : "X", "Y" or "Z"
-    scale, offset : of the file's header, metres
-    origin : metres, of the road frame
-    dtype : of the units, int32 or int64
-    """
+    """One coordinate axis of a file, "X", "Y" or "Z": its integers, with scale and offset in metres, converted to units of 0.1 mm from an origin."""
 
     def __init__(self, name: str, scale: float, offset: float, origin: float, dtype: np.dtype | type = np.int32):
         self._dtype = np.dtype(dtype)
@@ -384,17 +319,9 @@ class LasAxis:
         self._least, self._most = np.ceil(limits[0]), np.floor(limits[1])
 
     def units(self, raw: np.ndarray, buffer: Callable[..., np.ndarray]) -> tuple[np.ndarray, np.ndarray | None]:
-        """Local coordinates of raw points.
+        """Local coordinates of (N,) raw points in units of 0.1 mm, and (N,) bool of those that are no outliers, None for all.
 
-        Parameters
-        ----------
-        raw : (N,) structured array with the column `name` of the file's integers
         buffer : function of a name and a dtype (float64 by default) that returns an (N,) working array
-
-        Returns
-        -------
-        units : (N,) units of 0.1 mm
-        valid : (N,) bool, whether a point is no outlier; None where all do
         """
         numbers = buffer(self.name, self._dtype)
         np.copyto(numbers, raw[self.name])

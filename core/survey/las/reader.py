@@ -31,17 +31,11 @@ ReadResult = TypeVar("ReadResult")
 class CloudHeader:
     """The header of one LAS, LAZ or COPC file.
 
-    path : of the file
-    version : such as "1.4"
-    point_format : number of the ASPRS point data record format
-    count : points
-    minimum, maximum : (3,) map coordinates
-    scales : (3,) metres
-    crs : WKT, metric, "" where the file has none
-    has_time, has_channel : whether the points have gps_time and a scanner channel
+    version : such as "1.4"; point_format : number of the ASPRS point data record format; count : points
+    minimum, maximum : (3,) map coordinates; scales : (3,) metres; crs : WKT, metric, "" where the file has none
+    has_time, has_channel, has_colour : whether the points have gps_time, a scanner channel, and colours
     adjusted_time : whether gps_time is adjusted standard GPS time (global encoding bit 0), not seconds of the GPS week
     chunk : points that are compressed together; 1 in a LAS file, 0 where the number varies
-    has_colour : whether the points have red, green and blue
     notes : sentences about what the header states otherwise than the file shows
     units : of the coordinates in the file; all others here are in metres
     crs_problem : why what the file says about its coordinates is not used, "" for nothing
@@ -67,19 +61,14 @@ class CloudHeader:
 
 def open_cloud(path: str | os.PathLike[str], layers: Iterable[str] | None = None, known: CloudHeader | None = None, sparse: bool = False,
                units: FileUnits = METRES) -> Any:
-    """Open a LAS, LAZ or COPC file with laspy, its coordinates in metres.
+    """Open a LAS, LAZ or COPC file with laspy: a LasReader whose header has scales, offsets and bounds in metres.
 
     Parameters
     ----------
-    path : of the file
     layers : names of the layers of a LAZ 1.4 file that are decoded beside x, y and the return numbers ("z", "intensity" ...); all by default
     known : the file's header, where it was read and checked for damage before
     sparse : few points are read here and there: a chunk is decoded no further than they lie in it, by one thread
     units : of its coordinates, where it does not state them by its CRS
-
-    Returns
-    -------
-    laspy.LasReader, whose header has scales, offsets and bounds in metres
 
     Raises
     ------
@@ -111,13 +100,7 @@ def _to_metres(header, units):
 
 
 def _mended(path):
-    """What is read in place of some bytes of a file, which is checked for damage.
-
-    Raises
-    ------
-    RoadExtractionError
-        As `open_cloud`.
-    """
+    """What is read in place of some bytes of a file, which is checked for damage; raises as `open_cloud`."""
     path = str(path)
     if not Path(path).exists():
         raise RoadExtractionError(f"There is no file {path}. Check the path of the point cloud.")
@@ -166,15 +149,7 @@ def layer_selection(layers: Iterable[str] | None) -> Any:
 def read_header(path: str | os.PathLike[str], given: str = "") -> CloudHeader:
     """The header of a file; bounds that it does not give, or outside of which points lie, are computed from the points.
 
-    Parameters
-    ----------
-    path : of the file
-    given : WKT of the CRS, where the file states none
-
-    Raises
-    ------
-    RoadExtractionError
-        If the file is missing, is not LAS or LAZ, or cannot be read.
+    given : WKT of the CRS, where the file states none. RoadExtractionError if the file is missing, is not LAS or LAZ, or cannot be read.
     """
     mended = _mended(path)
     with _open(path, mended, None) as reader:
@@ -238,7 +213,6 @@ def read_headers(paths: Iterable[str | os.PathLike[str]], warn: Callable[[str], 
 
     Parameters
     ----------
-    paths : of the files
     warn : is told what headers state otherwise than their files show
     given : WKT of the CRS of those that state none
 
@@ -265,22 +239,9 @@ def read_headers(paths: Iterable[str | os.PathLike[str]], warn: Callable[[str], 
 
 def read_blocks(path: str | os.PathLike[str], size: int = LAS.points_per_block, layers: Sequence[str] | None = None,
                 units: FileUnits = METRES) -> Iterator[Any]:
-    """Yield the points of a file in blocks.
+    """Yield the points of a file in blocks of `size` points, as laspy.ScaleAwarePointRecord in file order.
 
-    Parameters
-    ----------
-    path : of the file
-    size : points of a block
-    layers, units : as in `open_cloud`
-
-    Returns
-    -------
-    laspy.ScaleAwarePointRecord of each block, in file order
-
-    Raises
-    ------
-    RoadExtractionError
-        If the file ends early or is damaged.
+    layers, units : as in `open_cloud`. RoadExtractionError if the file ends early or is damaged.
     """
     with open_cloud(path, layers, units=units) as reader:
         promised, read = reader.header.point_count, 0
@@ -292,23 +253,9 @@ def read_blocks(path: str | os.PathLike[str], size: int = LAS.points_per_block, 
 
 
 def read_points(reader: Any, path: str | os.PathLike[str], first: int, count: int) -> Any:
-    """Read some points of an open file.
+    """`count` points of an open laspy.LasReader from index `first` on, as a laspy.ScaleAwarePointRecord; fewer where the file has no more.
 
-    Parameters
-    ----------
-    reader : laspy.LasReader
-    path : of the file, for messages
-    first : index of the first point
-    count : points; fewer are returned where the file has no more
-
-    Returns
-    -------
-    laspy.ScaleAwarePointRecord
-
-    Raises
-    ------
-    RoadExtractionError
-        If they cannot be read, or the file ends early.
+    RoadExtractionError, which names `path`, if they cannot be read or the file ends early.
     """
     promised = reader.header.point_count
 
@@ -329,20 +276,7 @@ def truncated_file_error(path: str | os.PathLike[str], promised: int, found: int
 
 
 def wrap_read_error(read: Callable[[], ReadResult], path: str | os.PathLike[str], promised: int, first: int) -> ReadResult:
-    """Call a function that reads points; errors of the file become one sentence.
-
-    Parameters
-    ----------
-    read : function without arguments
-    path : of the file, for the message
-    promised : points of the file
-    first : index of the first point that is read
-
-    Raises
-    ------
-    RoadExtractionError
-        If the points cannot be read.
-    """
+    """The result of a function that reads points of a file from `first` on; errors of the file become a RoadExtractionError of one sentence."""
     try:
         return read()
     except BaseException as problem:
@@ -362,17 +296,7 @@ EPSG_CODES = range(1024, 32767)   # source: OGC 19-008r4, as are those of the re
 
 
 def crs_of_records(header: Any) -> tuple[str, str]:
-    """The CRS that a file states.
-
-    Parameters
-    ----------
-    header : laspy.LasHeader
-
-    Returns
-    -------
-    wkt : of the file's CRS with the unit of its heights, "" where it has none, or none that is understood
-    problem : a sentence on why what the file says cannot be used, "" for none
-    """
+    """The CRS that a laspy header states, as WKT with the unit of its heights, and a sentence on why it cannot be used; "" for either."""
     records = [record for record in [*header.vlrs, *(header.evlrs or ())] if record.user_id == RECORDS_OF]
     texts = [record.record_data_bytes() for record in records if record.record_id == WKT_RECORD]
     keys = [record.record_data_bytes() for record in records if record.record_id == KEYS_RECORD]

@@ -18,12 +18,7 @@ from .reader import CloudHeader, read_blocks, read_headers
 
 @dataclass(frozen=True)
 class FileSample:
-    """N points of a file.
-
-    raw : (N, 3) int64, x, y and z as they are stored
-    intensity : (N,) uint16
-    fields : {name: (N,) float64} of the extra fields with one number a point
-    """
+    """N points of a file: (N, 3) int64 places as they are stored, (N,) uint16 intensities, and (N,) extra fields with one number a point."""
 
     file: CloudHeader
     raw: np.ndarray
@@ -37,13 +32,7 @@ class FileSample:
 
 
 def sample_files(files: Sequence[CloudHeader]) -> list[FileSample]:
-    """Samples of the files that have points.
-
-    Raises
-    ------
-    RoadExtractionError
-        If a file cannot be read.
-    """
+    """Samples of the files that have points; RoadExtractionError where one cannot be read."""
     found = []
     with ParallelCloudReader(("z", "intensity", "all_extra_bytes")) as reader:
         for file in files:
@@ -71,12 +60,9 @@ def _step(values):
 
 
 def coarse_coordinates(samples: Sequence[FileSample]) -> tuple[str, float]:
-    """What to tell of coordinates that lie in steps of centimetres and more since their numbers hold no finer ones, and what that leaves open.
+    """What to tell of coordinates in coarse steps, as their numbers hold no finer ones, and what that leaves open: m across, one sigma.
 
-    Returns
-    -------
-    The warning, "" where there are no such steps, and m across, one sigma. Edges lie between two points, each of which may be off by half of a step,
-    as may all others of its line: the sum of two uniform errors
+    Edges lie between two points, each of which may be off by half of a step, as may all others of its line: the sum of two uniform errors.
     """
     for sample in samples:
         steps, scales = sample.steps, np.abs(sample.file.scales)
@@ -102,10 +88,7 @@ def coarse_coordinates(samples: Sequence[FileSample]) -> tuple[str, float]:
 
 @dataclass(frozen=True)
 class TimeSlots:
-    """Every `stride`-th slot of time.
-
-    Points of one slot follow each other along a scan line; slots pass through all parts of a turn.
-    """
+    """Every `stride`-th slot of time: points of one slot follow each other along a scan line, and slots pass through all parts of a turn."""
 
     stride: int
 
@@ -136,17 +119,15 @@ class TimeSlots:
 # Points about a place, for a look at it.
 
 def points_near(paths: Iterable[str | os.PathLike[str]], x: float, y: float, radius: float, progress: Progress = Progress()) -> np.ndarray:
-    """The points within a square about a place.
+    """The points within a square about a place, (N, 4) x, y, z in map coordinates and intensity, in file order.
+
+    Files whose bounds lie elsewhere are not opened beyond their header. Only these points and the block being read are held in memory.
 
     Parameters
     ----------
-    paths : of point clouds; those whose bounds lie elsewhere are not opened beyond their header
+    paths : of point clouds
     x, y : map coordinates of the middle
     radius : m, half the side of the square
-
-    Returns
-    -------
-    (N, 4) x, y, z in map coordinates and intensity, in file order. Only these are held in memory, and the block being read.
 
     Raises
     ------
@@ -178,21 +159,7 @@ def points_near(paths: Iterable[str | os.PathLike[str]], x: float, y: float, rad
 def without_copies(files: list[CloudHeader], warn: Callable[[str], None]) -> list[CloudHeader]:
     """The files without those that hold the same points as an earlier one, such as a COPC beside the LAZ it was made from.
 
-    Only files with the same number of points and the same bounds are read.
-
-    Parameters
-    ----------
-    files : headers
-    warn : is told of every copy
-
-    Returns
-    -------
-    headers, in the order given
-
-    Raises
-    ------
-    RoadExtractionError
-        If a file that must be read is damaged.
+    Only files with the same number of points and the same bounds are read; `warn` is told of every copy.
     """
     first: dict[tuple, CloudHeader] = {}
     contents: dict[str, tuple[int, ...]] = {}
@@ -222,17 +189,7 @@ def may_overlap(files: Sequence[CloudHeader]) -> bool:
 
 
 def distinct_rows(time: np.ndarray, place: np.ndarray) -> np.ndarray:
-    """Indices of the points that are no copies of earlier ones.
-
-    Parameters
-    ----------
-    time : (N,) s
-    place : (N, 3) in any unit
-
-    Returns
-    -------
-    (M,) intp, ascending
-    """
+    """(M,) ascending indices of the points that are no copies of earlier ones, by (N,) times and (N, 3) places."""
     order = np.lexsort((*place.T, time))
     same = (time[order[1:]] == time[order[:-1]]) & (place[order[1:]] == place[order[:-1]]).all(axis=1)
     return np.sort(order[np.r_[True, ~same][:len(order)]])
