@@ -15,7 +15,7 @@ from ..core.common.parallel import cancellation_scope, claim_memory, is_lack_of_
 from .algorithm import WARNINGS
 from .cloud_files import cloud_files, survey_name
 from .destinations import UnfinishedFiles, UnfinishedLayers, bring_back, check_suffix, check_writable, destination_path
-from .parameters import LayerOutput, settings_class
+from .parameters import settings_class
 from .progress import CountedWarnings
 from .provenance import provenance_now, sign_file
 from .report_head import run_facts, sign_report
@@ -58,23 +58,8 @@ class Call:
         """The path given for a file parameter, "" for none; it need not be there."""
         raise NotImplementedError
 
-    def number(self, name):
-        raise NotImplementedError
-
-    def whole(self, name):
-        """A whole number."""
-        raise NotImplementedError
-
-    def flag(self, name):
-        """Yes or no."""
-        raise NotImplementedError
-
-    def choice(self, name):
-        """One of the words of a choice."""
-        raise NotImplementedError
-
-    def string(self, name):
-        """A text as it was given."""
+    def value(self, name):
+        """A number, a flag, a word of a choice, or a text as it was given."""
         raise NotImplementedError
 
     def crs(self, name="CRS"):
@@ -192,15 +177,10 @@ class Call:
         source = self.source(name)
         return None if source is None else read_features(source, schema, geometry_type)
 
-    def setting(self, spec):
-        """What the user chose for a SettingSpec, in the type of the core's default."""
-        read = {"choice": self.choice, "flag": self.flag, "text": self.string, "whole": self.whole, "number": self.number}
-        return read[spec.kind()](spec.name)
-
     def settings(self, specs, **more):
         """The core Settings object that these specs describe; one that the algorithm does not offer keeps its default."""
         offered = [spec for spec in specs if self.algorithm.parameter(spec.name) is not None]
-        return settings_class(specs[0].settings)(**{spec.field: self.setting(spec) for spec in offered}, **more)
+        return settings_class(specs[0].settings)(**{spec.field: self.value(spec.name) for spec in offered}, **more)
 
     def wants(self, name):
         """Whether an optional output was asked for."""
@@ -217,7 +197,7 @@ class Call:
             if path is None:
                 continue
             check_suffix(path, spec, self.VECTOR_SUFFIXES)
-            if isinstance(spec, LayerOutput):
+            if spec.kind == "layer":
                 bring_back(path)
             read = self.read_as(value, path) or self._cloud_at(path)
             if read:
@@ -316,6 +296,8 @@ def run(call, progress):
     try:
         claim_memory()
         call.check_destinations()
+        for name in filter(call.given, call.algorithm.RETIRED):
+            counted.warn(tr("{name} was given and has no effect any more: the usual value is used. Leave it out.").format(name=name))
         with cancellation_scope(progress):
             results = call.algorithm.work(call, counted) or {}
         results[WARNINGS], call.warnings = len(counted.texts), counted.texts

@@ -14,9 +14,9 @@ from pathlib import Path
 
 from ..core.common.errors import RoadExtractionError
 from ..core.io.local_files import finish_file, unfinished_path
-from .parameters import FileOutput, LayerOutput, RasterOutput, ReportOutput
 from .texts import tr
 
+SUFFIXES = {"cloud": (".laz", ".las"), "raster": (".tif", ".tiff"), "report": (".html", ".htm")}
 SHAPEFILE = (".shp", ".shx", ".dbf", ".prj", ".cpg", ".qix", ".sbn", ".sbx")
 # QGIS puts a stroke before an apostrophe in the path; people leave it out
 DATABASE = re.compile(r"dbname='(?P<path>.+?)(?<!\\)'(?=\s|$)(?: *table=\"(?P<table>[^\"]+)\")?")
@@ -65,11 +65,10 @@ def check_suffix(path, spec, vector_suffixes):
     spec : OutputSpec
     vector_suffixes : the endings, without dot, of the vector formats that the program writes
     """
-    if isinstance(spec, LayerOutput):
+    if spec.kind == "layer":
         _check_vector_suffix(path, spec.label, vector_suffixes)
         return
-    kinds = (".tif", ".tiff") if isinstance(spec, RasterOutput) else (".html", ".htm") if isinstance(spec, ReportOutput) else \
-        spec.suffixes if isinstance(spec, FileOutput) else (".laz", ".las")
+    kinds = spec.suffixes or SUFFIXES[spec.kind]
     name = path.name.lower()
     if not name.endswith(kinds) or name.endswith((".copc.laz", ".copc.las")):
         raise RoadExtractionError(

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from ..core.common.errors import RoadExtractionError
-from .parameters import FolderSpec, SettingSpec
+from .parameters import SettingSpec
 from .texts import tr
 
 SURVEY = "survey.open_survey:SurveySettings"
@@ -99,13 +99,13 @@ def estimated_trajectory(call, progress):
 def add_execution(algorithm):
     """Who does the work, and where finished work is kept."""
     algorithm.add_settings(EXECUTION_SETTINGS)
-    algorithm.add(FolderSpec(
-        "WORK_FOLDER", tr("Work folder"),
+    algorithm.add_input(
+        "folder", "WORK_FOLDER", tr("Work folder"),
         tr("A folder for finished work, about 20 bytes for every point near the road. A run that ended early, or that is repeated with "
            "other settings of later stages, does not read the points and find the curbs again. What was made from other files, settings "
            "or another version of Lanewright is not used. Nothing that is finished is ever removed; delete it when the map is done."),
         optional=True, advanced=True,
-    ))
+    )
 
 
 def execution_of(call):
@@ -234,7 +234,7 @@ def imported_trajectory(call, progress):
     from ..core.survey.open_survey import match_clocks
     from ..core.survey.trajectory.trajectory import reproject_trajectory, taken_to_be_in
 
-    trajectory = call.trajectory("INPUT", call.crs("INPUT_CRS"), columns=call.string("COLUMNS"))
+    trajectory = call.trajectory("INPUT", call.crs("INPUT_CRS"), columns=call.value("COLUMNS"))
     headers = read_headers(call.point_clouds()) if call.given("POINT_CLOUDS") else []
     target = call.crs("TARGET_CRS") or next((header.crs for header in headers if header.crs), "")
     if target and not trajectory.crs:

@@ -15,7 +15,6 @@ from qgis.core import (
 
 from ..algorithms.call import Call, existing_file
 from ..algorithms.destinations import at_path, destination_path
-from ..algorithms.parameters import RasterOutput
 from ..algorithms.vector_source import crs_to_write
 from ..core.common.errors import RoadExtractionError
 from .database import add_tables
@@ -27,6 +26,8 @@ from .results.layer_tree import keeps_names_only
 from .results.runs import run_of
 from .styling import style_on_load
 from .texts import tr
+
+READERS = {"number": "parameterAsDouble", "whole": "parameterAsInt", "flag": "parameterAsBool", "choice": "parameterAsEnumString"}
 
 
 class QgisCall(Call):
@@ -57,20 +58,9 @@ class QgisCall(Call):
     def file(self, name):
         return self.processing.parameterAsFile(self.parameters, name, self.context)
 
-    def number(self, name):
-        return self.processing.parameterAsDouble(self.parameters, name, self.context)
-
-    def whole(self, name):
-        return self.processing.parameterAsInt(self.parameters, name, self.context)
-
-    def flag(self, name):
-        return self.processing.parameterAsBool(self.parameters, name, self.context)
-
-    def choice(self, name):
-        return self.processing.parameterAsEnumString(self.parameters, name, self.context)
-
-    def string(self, name):
-        return self.processing.parameterAsString(self.parameters, name, self.context)
+    def value(self, name):
+        read = READERS.get(self.algorithm.parameter(name).kind, "parameterAsString")
+        return getattr(self.processing, read)(self.parameters, name, self.context)
 
     def crs(self, name="CRS"):
         """WKT, or "" where none was chosen; refuses a CRS that QGIS does not know, which it would pass over."""
@@ -112,7 +102,7 @@ class QgisCall(Call):
         return QgisSource(layer, self.label(name)), "", ""
 
     def rows_where(self, name, source):
-        text = self.string(name)  # parameterAsExpression hides a faulty one
+        text = self.value(name)  # parameterAsExpression hides a faulty one
         if not text:
             return None
         expression = QgsExpression(text)
@@ -147,7 +137,7 @@ class QgisCall(Call):
         return value
 
     def output_path(self, name):
-        if isinstance(self.algorithm.parameter(name), RasterOutput):
+        if self.algorithm.parameter(name).kind == "raster":
             return self.processing.parameterAsOutputLayer(self.parameters, name, self.context)
         return self.processing.parameterAsFileOutput(self.parameters, name, self.context)
 

@@ -2,7 +2,7 @@
 
 from ...core.common.errors import RoadExtractionError
 from ..algorithm import Algorithm
-from ..parameters import ChoiceSpec, SettingSpec
+from ..parameters import SettingSpec
 from ..texts import told, tr
 from .inputs import add_road_map_layers, road_map_source
 
@@ -13,7 +13,7 @@ CAD_SETTINGS = (
     SettingSpec("TOLERANCE", ROADS, "tolerance", tr("Tolerance (m)"),
                 tr("LandXML: how far a line may be missed by its elements, in plan and in height. DXF has every vertex.")),
 )
-NUMBERS = (("LINES", tr("Lines")), ("ALIGNMENTS", tr("Alignments")), ("MISSED", tr("Largest distance of a line from its elements (m)")))
+
 
 
 class ExportCad(Algorithm):
@@ -25,22 +25,21 @@ class ExportCad(Algorithm):
             "DXF has no place for the CRS; LandXML names it. Both have the units of the layers' CRS, such as US "
             "survey feet. Cross-sections, surfaces and texts are not there.")
     TAGS = ("DXF", "LandXML", "CAD", "alignment", "profile")
+    NUMBERS = (("LINES", tr("Lines")), ("ALIGNMENTS", tr("Alignments")), ("MISSED", tr("Largest distance of a line from its elements (m)")))
 
     def declare(self):
         add_road_map_layers(self)
-        self.add(ChoiceSpec("FORMAT", tr("Format"), tr("dxf is drawn by every CAD program, landxml is taken over by programs for road design."),
-                            value=FORMATS[0], choices=FORMATS))
+        self.add_input("choice", "FORMAT", tr("Format"), tr("dxf is drawn by every CAD program, landxml is taken over by programs for road design."),
+                       default=FORMATS[0], choices=FORMATS)
         self.add_settings(CAD_SETTINGS)
-        self.add_file("OUTPUT", tr("CAD file"), tr("With the ending .dxf, or .xml for LandXML."), (".dxf", ".xml", ".landxml"),
-                      "DXF (*.dxf);;LandXML (*.xml *.landxml)")
+        self.add_output("file", "OUTPUT", tr("CAD file"), tr("With the ending .dxf, or .xml for LandXML."),
+                        suffixes=(".dxf", ".xml", ".landxml"), file_filter="DXF (*.dxf);;LandXML (*.xml *.landxml)")
         self.add_report()
-        for name, label in NUMBERS:
-            self.add_number(name, label)
 
     def work(self, call, progress):
         from ...core.report.hd_map import map_export_report
 
-        kind = call.choice("FORMAT")
+        kind = call.value("FORMAT")
         self._check_name(call, kind)
         source = road_map_source(call, progress.part(0.0, 0.2))
         for note in source.notes:
@@ -77,7 +76,7 @@ def _landxml(call, source, progress):
 
     from ...core.export.cad.landxml import alignments_of, landxml_text
 
-    tolerance = call.setting(CAD_SETTINGS[0])
+    tolerance = call.value("TOLERANCE")
     found = alignments_of(source, tolerance)
     now = datetime.now()
     text = landxml_text(found, source.lanes.crs, call.layer_name("LANES"), now.strftime("%Y-%m-%d"), now.strftime("%H:%M:%S"))

@@ -1,9 +1,9 @@
 """Lanes written as OpenDRIVE."""
 
 from ..algorithm import Algorithm
-from ..parameters import ChoiceSpec, SettingSpec
+from ..parameters import SettingSpec
 from ..texts import told, tr
-from .inputs import OPENDRIVE_FILTER, add_road_map_layers, road_map_source
+from .inputs import add_road_map_layers, road_map_source
 
 ROADS = "export.opendrive.exporter:OpenDriveSettings"
 VERSIONS, SIDES = ("1.7", "1.8"), ("automatic", "right", "left")
@@ -11,11 +11,7 @@ ROAD_SETTINGS = (
     SettingSpec("TOLERANCE", ROADS, "tolerance", tr("Tolerance (m)"),
                 tr("How far borders may be missed, across and in height. Smaller follows the survey more closely with more and shorter elements.")),
 )
-NUMBERS = (("ROADS", tr("Roads")), ("JUNCTIONS", tr("Junctions")), ("SUCCESSORS", tr("Links from one lane to the next")),
-           ("BORDER_MAXIMUM", tr("Largest distance of a border from the survey's (m)")),
-           ("HEIGHT_MAXIMUM", tr("Largest difference in height of a border (m)")),
-           ("DRIVING_LINE_P95", tr("95th percentile of the distance of driving lines from the middles of lanes (m)")),
-           ("FINDINGS", tr("Findings of the check")))
+
 
 
 class ExportOpenDrive(Algorithm):
@@ -30,17 +26,20 @@ class ExportOpenDrive(Algorithm):
             "stores no line to drive on; the report also says how far the middles of the lanes are from the driving lines. Signals, signs, "
             "speed limits and buildings are not there.")
     TAGS = ("OpenDRIVE", "xodr", "HD map", "simulator", "CARLA", "esmini")
+    NUMBERS = (("ROADS", tr("Roads")), ("JUNCTIONS", tr("Junctions")), ("SUCCESSORS", tr("Links from one lane to the next")),
+               ("BORDER_MAXIMUM", tr("Largest distance of a border from the survey's (m)")),
+               ("HEIGHT_MAXIMUM", tr("Largest difference in height of a border (m)")),
+               ("DRIVING_LINE_P95", tr("95th percentile of the distance of driving lines from the middles of lanes (m)")),
+               ("FINDINGS", tr("Findings of the check")))
 
     def declare(self):
         add_road_map_layers(self)
-        self.add(ChoiceSpec("VERSION", tr("Version"), tr("Of the format; older simulators read 1.7."), value=VERSIONS[0], choices=VERSIONS))
+        self.add_input("choice", "VERSION", tr("Version"), tr("Of the format; older simulators read 1.7."), default=VERSIONS[0], choices=VERSIONS)
         self.add_settings(ROAD_SETTINGS)
-        self.add(ChoiceSpec("TRAFFIC_SIDE", tr("Side of traffic"), tr(
-            "Automatic takes it from roads with lanes in both directions; choose it where all roads are one-way."), value=SIDES[0], choices=SIDES))
-        self.add_file("OUTPUT", tr("OpenDRIVE file"), tr("The map."), (".xodr",), OPENDRIVE_FILTER.split(" *.XODR")[0] + ")")
+        self.add_input("choice", "TRAFFIC_SIDE", tr("Side of traffic"), tr(
+            "Automatic takes it from roads with lanes in both directions; choose it where all roads are one-way."), default=SIDES[0], choices=SIDES)
+        self.add_output("file", "OUTPUT", tr("OpenDRIVE file"), tr("The map."), suffixes=(".xodr",), file_filter="OpenDRIVE (*.xodr)")
         self.add_report()
-        for name, label in NUMBERS:
-            self.add_number(name, label)
 
     def work(self, call, progress):
         from pathlib import Path
@@ -54,7 +53,7 @@ class ExportOpenDrive(Algorithm):
         from ...core.export.shared_borders import with_shared_borders
 
         source = with_shared_borders(with_inferred_ways(road_map_source(call, progress.part(0.0, 0.2))))
-        settings = call.settings(ROAD_SETTINGS, version=call.choice("VERSION"), traffic_side=call.choice("TRAFFIC_SIDE"))
+        settings = call.settings(ROAD_SETTINGS, version=call.value("VERSION"), traffic_side=call.value("TRAFFIC_SIDE"))
         draft = draft_opendrive(source, settings, progress.part(0.2, 0.7))
         draft.map.reference = reference_of_crs(source.lanes.crs)
         path = call.new_file("OUTPUT")

@@ -51,6 +51,10 @@ class CrossSections(Algorithm):
             "count as hanging above it.")
     TAGS = ("profile", "rutting", "crossfall", "superelevation", "clearance", "road condition", "width")
     LOOKS = {"OUTPUT": "CROSS_SECTIONS"}
+    NUMBERS = (("SECTIONS", tr("Sections")),
+               ("EXCEEDED", tr("Lanes and carriageways that exceed a limit")),
+               ("LARGEST_RUT", tr("Greatest rut depth (mm)")),
+               ("LEAST_CLEARANCE", tr("Least clearance (m)")))
 
     def declare(self):
         self.add_survey()
@@ -66,10 +70,6 @@ class CrossSections(Algorithm):
         self.add_sink("TABLE", tr("Table of the cross-sections"), tr("The same rows without lines, for spreadsheets."), fields=CROSS_SECTIONS,
                       geometry="None", optional=True, by_default=False)
         self.add_report()
-        self.add_number("SECTIONS", tr("Sections"))
-        self.add_number("EXCEEDED", tr("Lanes and carriageways that exceed a limit"))
-        self.add_number("LARGEST_RUT", tr("Greatest rut depth (mm)"))
-        self.add_number("LEAST_CLEARANCE", tr("Least clearance (m)"))
 
     def work(self, call, progress):
         from ...core.inventory.cross_sections import measure_cross_sections, sections_to_features

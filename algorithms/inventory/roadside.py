@@ -45,6 +45,8 @@ class Roadside(Algorithm):
             "along an edge that the road falls to; the higher side of a road has none.")
     TAGS = ("guard rail", "barrier", "noise wall", "fence", "hedge", "pole", "sign", "tree", "asset", "street furniture")
     LOOKS = {"OUTPUT": "ROADSIDE", "OBJECTS": "ROADSIDE_OBJECTS"}
+    NUMBERS = (("LENGTH", tr("Length of all lines but gutters (m)")),
+               ("POLES", tr("Poles, signs and trunks")))
 
     def declare(self):
         self.add_survey()
@@ -59,8 +61,6 @@ class Roadside(Algorithm):
                       fields=ROADSIDE, geometry="LineStringZ")
         self.add_sink("OBJECTS", tr("Poles, signs and trunks"), fields=ROADSIDE_OBJECTS, geometry="PointZ", optional=True)
         self.add_report()
-        self.add_number("LENGTH", tr("Length of all lines but gutters (m)"))
-        self.add_number("POLES", tr("Poles, signs and trunks"))
 
     def work(self, call, progress):
         from ...core.inventory.roadside.find import find_roadside

@@ -24,10 +24,10 @@ class CorrectIntensity(Algorithm):
     TAGS = ("intensity", "range correction", "calibration")
 
     def declare(self):
-        self.add_cloud("ROAD_POINTS", tr("Road points"), tr("The file written by Extract road surface."))
+        self.add_input("cloud", "ROAD_POINTS", tr("Road points"), tr("The file written by Extract road surface."))
         self.add_trajectory()
         self.add_settings(INTENSITY_SETTINGS)
-        self.add_laz("OUTPUT", tr("Corrected road points"))
+        self.add_output("cloud", "OUTPUT", tr("Corrected road points"))
         self.add_report()
 
     def work(self, call, progress):

@@ -33,13 +33,6 @@ PROPOSE_SETTINGS = (
     ),
 )
 
-NUMBERS = (
-    ("PROPOSED", tr("Pairs proposed")),
-    ("ACCEPTED", tr("Pairs accepted")),
-    ("RMSE", tr("RMSE of the accepted pairs, each left out in turn (m)")),
-    ("GROUND_PIXEL", tr("Pixel of the image on the ground (m)")),
-    ("TURN", tr("Turn of the image, from its rows to east (°)")),
-)
 
 
 class ProposeControlPoints(Algorithm):
@@ -55,12 +48,19 @@ class ProposeControlPoints(Algorithm):
             "The pairs tell how well the image fits the point cloud, not how well either fits the ground. They lie on the road, so that the "
             "image is reliable there and less so beside it. Sun, shadow and dark paint do no harm; paint renewed between the two surveys does.")
     TAGS = ("UAV", "drone", "GCP", "control points", "matching", "registration", "orthoimage", "georeferencer")
+    NUMBERS = (
+        ("PROPOSED", tr("Pairs proposed")),
+        ("ACCEPTED", tr("Pairs accepted")),
+        ("RMSE", tr("RMSE of the accepted pairs, each left out in turn (m)")),
+        ("GROUND_PIXEL", tr("Pixel of the image on the ground (m)")),
+        ("TURN", tr("Turn of the image, from its rows to east (°)")),
+    )
 
     def declare(self):
-        self.add_layer_raster("IMAGE", tr("Image"), tr("TIFF, JPEG, PNG or any other raster that looks straight down, of up to 500 m of ground."))
-        self.add_layer_raster("INTENSITY_IMAGE", tr("Intensity image"), tr("As Intensity image and Road map write it."))
-        self.add_layer(
-            "ROUGH_POINTS", tr("Two rough points"),
+        self.add_input("raster", "IMAGE", tr("Image"), tr("TIFF, JPEG, PNG or any other raster that looks straight down, of up to 500 m of ground."))
+        self.add_input("raster", "INTENSITY_IMAGE", tr("Intensity image"), tr("As Intensity image and Road map write it."))
+        self.add_input(
+            "layer", "ROUGH_POINTS", tr("Two rough points"),
             tr("Where the image has no position: a layer with the fields pixel and line of two or more points far apart, right to some "
                "metres."),
             optional=True,
@@ -68,8 +68,6 @@ class ProposeControlPoints(Algorithm):
         self.add_settings(PROPOSE_SETTINGS)
         self.add_sink("CONTROL_POINTS", tr("Control points"), tr("As Georeference image takes them."), "PointZ", fields=PROPOSED_POINTS)
         self.add_report()
-        for name, label in NUMBERS:
-            self.add_number(name, label)
 
     def work(self, call, progress):
         from ...core.io.geotiff import IntensityImage

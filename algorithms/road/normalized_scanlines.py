@@ -58,8 +58,9 @@ class NormalizedScanlines(Algorithm):
         add_execution(self)
         self.add_sink("SCANLINES", tr("Normalized scanlines"),
                       tr("Lines with height (Z) and intensity (M)."), fields=SCANLINES, geometry="LineStringZM", optional=True)
-        self.add_laz("RESAMPLED_POINTS", tr("Resampled points"), tr("Points at equal steps along the scanlines, with intensity, station and "
-                     "offset: a cloud of even density."), optional=True, by_default=False)
+        self.add_output("cloud", "RESAMPLED_POINTS", tr("Resampled points"), tr(
+            "Points at equal steps along the scanlines, with intensity, station and offset: a cloud of even density."),
+            optional=True, by_default=False)
 
     def work(self, call, progress):
         from ...core.road.scanlines.layer import ResampledPoints, write_scanlines

@@ -2,7 +2,7 @@
 
 from ...core.common.features import CONTROL_POINTS, TRAJECTORY
 from ..algorithm import Algorithm
-from ..parameters import CrsSpec, SettingSpec
+from ..parameters import SettingSpec
 from ..texts import tr
 from ..trajectory_source import trajectory_features
 
@@ -43,22 +43,8 @@ SAMPLE_SETTINGS = (
         tr("More brings the lines closer together, with fewer points on each."), advanced=True,
     ),
     SettingSpec(
-        "MOUNT_YAW", SAMPLE, "mount_yaw", tr("Scanners' planes turned from straight across (°)"),
-        tr("0 scans straight across the road; more sees the faces of things from ahead and behind, one scanner either way."),
-        advanced=True,
-    ),
-    SettingSpec(
         "RADIUS", SAMPLE, "radius", tr("Radius of the bends (m)"),
         tr("Smaller makes sharper bends; motorway, serpentine, crossing and roundabout have bends of their own."),
-        advanced=True,
-    ),
-    SettingSpec(
-        "CURB_HEIGHT", SAMPLE, "curb_height", tr("Height of the curbs (m)"), tr("Lower is harder to find."),
-        advanced=True,
-    ),
-    SettingSpec(
-        "GUTTER", SAMPLE, "gutter", tr("Width of a concrete gutter along the curbs (m)"),
-        tr("A gutter is as bright as paint and is not to be taken for it; 0 leaves it out."),
         advanced=True,
     ),
 )
@@ -78,26 +64,27 @@ class SampleSurvey(Algorithm):
     SUMMARY = "Simulates a mobile laser scanning survey of a street, motorway, junction or mountain road, together with its known truth."
     HELP = "Every pulse of two scanners is followed to what it meets first. Figures reached on it are figures on simulated data."
     TAGS = ("sample", "simulation", "test data")
+    NUMBERS = (("POINTS", tr("Points")),)
+    RETIRED = ("MOUNT_YAW", "CURB_HEIGHT", "GUTTER")
 
     def declare(self):
         self.add_settings(SAMPLE_SETTINGS)
-        self.add(CrsSpec(
-            "CRS", tr("CRS of the survey"),
+        self.add_input(
+            "crs", "CRS", tr("CRS of the survey"),
             tr("A projected CRS in metres. The coordinates are the same in each; it only says where on earth they are."),
-            optional=True, advanced=True, value="EPSG:32650",
-        ))
-        self.add_laz("POINT_CLOUD", tr("Point cloud"))
+            optional=True, advanced=True, default="EPSG:32650",
+        )
+        self.add_output("cloud", "POINT_CLOUD", tr("Point cloud"))
         self.add_sink("TRAJECTORY", tr("Trajectory"), fields=TRAJECTORY, geometry="PointZ")
         for name, _, geometry, label in TRUTHS:
             self.add_sink(name, label, geometry=geometry, optional=True)
-        self.add_raster(
-            "UAV_IMAGE", tr("UAV image"),
+        self.add_output(
+            "raster", "UAV_IMAGE", tr("UAV image"),
             tr("What a UAV sees of the first 150 m: a TIFF of 4 cm pixels without a place on the map, with the distortion of its camera and "
                "the position tags of a drone. Propose control points and Georeference image find its place. "
                "There is none of motorway, serpentine, crossing and roundabout."), optional=True, by_default=False)
         self.add_sink("UAV_GCPS", tr("Ground control points of the UAV image"), geometry="PointZ", optional=True, by_default=False,
                       fields=CONTROL_POINTS)
-        self.add_number("POINTS", tr("Points"))
 
     def work(self, call, progress):
         from ...core.sample.survey import make_sample_survey

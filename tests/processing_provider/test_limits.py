@@ -30,7 +30,7 @@ def numbers(provider):
     for declaration in ALGORITHMS:
         algorithm = LanewrightAlgorithm(declaration()).create()
         for spec in algorithm.declaration.parameters:
-            if isinstance(spec, SettingSpec) and spec.kind() in ("whole", "number"):
+            if isinstance(spec, SettingSpec) and spec.kind in ("whole", "number"):
                 found.append((algorithm.name(), spec, algorithm.parameterDefinition(spec.name).clone()))
     return found
 
