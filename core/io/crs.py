@@ -22,21 +22,7 @@ UNDEFINED_CARTESIAN = 'LOCAL_CS["Undefined Cartesian SRS",UNIT["metre",1]]'
 
 
 def parse_crs(text: str | None) -> CRS | None:
-    """The CRS that a text defines.
-
-    Parameters
-    ----------
-    text : WKT, "EPSG:n" or PROJ text
-
-    Returns
-    -------
-    pyproj.CRS; None for an empty text
-
-    Raises
-    ------
-    RoadExtractionError
-        If the text is not understood.
-    """
+    """The pyproj.CRS of WKT, "EPSG:n" or PROJ text, None for an empty one; RoadExtractionError if the text is not understood."""
     from pyproj import CRS
     from pyproj.exceptions import CRSError
 
@@ -62,17 +48,9 @@ def horizontal_part(crs: Any) -> Any:
 
 
 def check_metric(crs: Any, what: str) -> None:
-    """Refuse a CRS that is geographic, geocentric or of heights alone, or not in metres.
+    """Raise RoadExtractionError for a pyproj.CRS that is geographic, geocentric or of heights alone, or not in metres.
 
-    Parameters
-    ----------
-    crs : pyproj.CRS
     what : the subject of the message, such as "The point cloud"
-
-    Raises
-    ------
-    RoadExtractionError
-        If the CRS is of such a kind, or a unit of it is not the metre.
     """
     flat = horizontal_part(crs)
     if flat.is_geocentric or flat.is_vertical:
@@ -120,7 +98,7 @@ def moved_by(a: Any, b: Any, place: tuple[float, float]) -> float:
 
 
 def check_same_crs(own: str, other: str, place: tuple[float, float], label: str) -> None:
-    """Refuse a layer in another CRS than the point clouds; one whose CRS is not known is taken to be in theirs.
+    """Raise RoadExtractionError for a layer in another CRS than the point clouds; one whose CRS is not known is taken to be in theirs.
 
     Two that give the place of the layer the same coordinates, such as UTM zone 32 of ETRS89 and of WGS 84, are no others.
 
@@ -129,11 +107,6 @@ def check_same_crs(own: str, other: str, place: tuple[float, float], label: str)
     own, other : WKT or "EPSG:n" of the layer and of the point clouds, "" where unknown
     place : (x, y) in the layer
     label : name of the layer, as at the beginning of a sentence
-
-    Raises
-    ------
-    RoadExtractionError
-        If they differ.
     """
     layer, clouds = horizontal_part(parse_crs(own)), horizontal_part(parse_crs(other))
     if layer is not None and clouds is not None and not moved_by(layer, clouds, place) < IO.same_coordinates:
@@ -157,8 +130,7 @@ def check_projected(files: Sequence[Any], given: str = "", trajectory_crs: str =
     Parameters
     ----------
     files : CloudHeader of each point cloud
-    given : WKT or "EPSG:n", for clouds without a CRS; "" where none was given
-    trajectory_crs : WKT or "EPSG:n"; "" where unknown
+    given, trajectory_crs : WKT or "EPSG:n", the first for clouds without a CRS; "" where unknown
 
     Returns
     -------
@@ -215,18 +187,7 @@ def _in_degrees(files):
 
 
 def crs_note(files: Sequence[Any], given: str, crs: str) -> str:
-    """A note for the user about the CRS in which a survey is processed.
-
-    Parameters
-    ----------
-    files : CloudHeader of each point cloud
-    given : the CRS that the user gave, "" for none
-    crs : WKT of the CRS of the survey, "" where unknown
-
-    Returns
-    -------
-    Sentences; "" where there is nothing to note
-    """
+    """Sentences for the user about the CRS (WKT, "" where unknown) in which a survey is processed, and the one that was given; "" for none."""
     if not crs:
         return ("The point cloud carries no CRS, and neither do the results: they lie in its own coordinates. Where these are "
                 "map coordinates, give their CRS by the parameter CRS (such as EPSG:25832) and run again.")
@@ -245,13 +206,7 @@ def crs_note(files: Sequence[Any], given: str, crs: str) -> str:
 
 
 def unit_note(height: float, crs: str) -> str:
-    """A note for the user where a cloud without CRS is in feet, as it seems; "" where there is nothing to note.
-
-    Parameters
-    ----------
-    height : m, of the sensor above the road; NaN where unknown
-    crs : WKT of the CRS of the survey, "" where unknown
-    """
+    """A note for the user where a cloud without CRS is in feet, as it seems by the height of the sensor above the road, m; "" for none."""
     if crs or not IO.suspicious_sensor_height[0] < height < IO.suspicious_sensor_height[1]:
         return ""
     return (f"The sensor seems to ride {height:.1f} m above the road, as if cloud and trajectory were in feet, and no CRS tells their "
@@ -265,9 +220,8 @@ def unit_note(height: float, crs: str) -> str:
 
 @dataclass(frozen=True)
 class _MapPlace:
-    """A place of the map on the ground.
+    """A place of the map on the ground: degrees from Greenwich, of the CRS's own datum.
 
-    longitude, latitude : degrees from Greenwich, of the CRS's own datum
     scale : length on the map per length on the ground, in the direction where it is farthest from 1; NaN where the projection is not defined
     """
 
@@ -282,19 +236,11 @@ class _MapPlace:
 
 
 def place_on_ground(crs: Any, x: float, y: float) -> _MapPlace:
-    """Where a place of the map lies, and the scale there.
+    """Where a place of the map, x and y in metres of a projected pyproj.CRS, lies, and the scale there.
 
     The metric of the ground is measured along x, y and their diagonal with geodesics; its eigenvalues are the squared lengths of the axes of
-    Tissot's indicatrix [1]_. Heights, which shorten lengths on the map by 0.16 per mille a kilometre, are not counted.
-
-    Parameters
-    ----------
-    crs : pyproj.CRS, projected in metres
-    x, y : m
-
-    References
-    ----------
-    .. [1] Snyder (1987), Map Projections: A Working Manual, USGS Professional Paper 1395, p. 20-26.
+    Tissot's indicatrix (Snyder, 1987, Map Projections: A Working Manual, USGS Professional Paper 1395, p. 20-26). Heights, which shorten lengths
+    on the map by 0.16 per mille a kilometre, are not counted.
     """
     from pyproj import Transformer
 
@@ -366,24 +312,9 @@ def check_place(wkt: str, place: tuple[float, float], what: str) -> str:
 
 
 def check_extent(wkt: str, bounds: Sequence[Sequence[float]], what: str) -> str:
-    """As `check_place`, of what lies between two corners.
+    """As `check_place`, of what lies between two corners, (2,) or (3,) least and greatest coordinates in metres.
 
     Single points astray move one corner, and the middle with it: what is right at the middle or at either corner is not refused.
-
-    Parameters
-    ----------
-    wkt : metric CRS
-    bounds : (2,) or (3,) least coordinates and greatest coordinates, metres
-    what : the subject of the message, such as "The point cloud"
-
-    Returns
-    -------
-    As `check_place`
-
-    Raises
-    ------
-    RoadExtractionError
-        If `check_place` refuses the middle and both corners.
     """
     corners = np.array(bounds)[:, :2]
     notes, refusals = [], []
@@ -455,11 +386,7 @@ NO_PLACE = (0.0, 1.0, 0.0, 0.0, 0.0, 1.0)   # source: of a raster without georef
 
 @dataclass(frozen=True)
 class FileUnits:
-    """The units of coordinates in a file.
-
-    across : metres per unit of x and y (1 for degrees)
-    up : metres per unit of z
-    """
+    """The units of coordinates in a file: metres per unit of x and y (1 for degrees), and per unit of z."""
 
     across: float = 1.0
     up: float = 1.0
@@ -487,7 +414,7 @@ METRES = FileUnits()
 
 @lru_cache(maxsize=64)
 def in_metres(wkt: str) -> tuple[str, FileUnits]:
-    """The CRS to work in with coordinates of a file, and the units of the file.
+    """The CRS to work in with coordinates of a file, and the units of the file; RoadExtractionError if the text is not understood.
 
     Parameters
     ----------
@@ -497,11 +424,6 @@ def in_metres(wkt: str) -> tuple[str, FileUnits]:
     -------
     wkt : as it was where the file is in metres (or degrees); otherwise a CRS with the same projection in metres
     units : FileUnits. Heights without a vertical CRS have the unit of x and y, and beside degrees metres
-
-    Raises
-    ------
-    RoadExtractionError
-        If the text is not understood.
     """
     file_wkt = _file_wkt(wkt)
     crs = parse_crs(file_wkt or wkt)
@@ -513,17 +435,7 @@ def in_metres(wkt: str) -> tuple[str, FileUnits]:
 
 @lru_cache(maxsize=64)
 def as_in_file(wkt: str) -> tuple[str, FileUnits]:
-    """The CRS of a file that is to be written, and its units.
-
-    Parameters
-    ----------
-    wkt : of the CRS that was worked in, "" where unknown
-
-    Returns
-    -------
-    wkt : of the survey's own CRS
-    units : FileUnits
-    """
+    """The survey's own CRS, in which a file is written, and its units, of the CRS that was worked in; WKT, "" where unknown."""
     file_wkt = _file_wkt(wkt)
     return (file_wkt, _units_of(parse_crs(file_wkt))) if file_wkt else (wkt, METRES)
 

@@ -51,17 +51,9 @@ def offline() -> Iterator[None]:
 
 
 def open_raster(path: str | Path, give: str = "Give a TIFF, JPEG or PNG.") -> Any:
-    """The gdal.Dataset of a raster file, within `gdal_exceptions`.
+    """The gdal.Dataset of a raster file, within `gdal_exceptions`; RoadExtractionError if its format does not hold its pixels itself.
 
-    Parameters
-    ----------
-    path : of the file
-    give : what to try where it is none, a sentence
-
-    Raises
-    ------
-    RoadExtractionError
-        If it is none of the formats that hold their pixels themselves.
+    give : what to try then, a sentence
     """
     from osgeo import gdal
 
@@ -171,12 +163,7 @@ def unfinished_path(path: str | os.PathLike[str], suffix: str) -> Path:
     """Where a file is written until it is finished, and then moved to its place by `finish_file`; or where a folder for its parts is made.
 
     The name is used once, so that of several runs that write the same file each ends well, and the last to end is kept. What killed
-    runs left of the file is removed.
-
-    Parameters
-    ----------
-    path : of the finished file
-    suffix : of the unfinished one, such as ".tif"
+    runs left of the file is removed. suffix : of the unfinished file, such as ".tif"
     """
     target = Path(path)
     for left in target.parent.glob(f".{escape(target.name)}.*.unfinished*"):

@@ -64,8 +64,7 @@ class NumberTable:
     """A table of numbers.
 
     values : (N, K) float64, NaN where a field is not a number
-    preamble : the lines above the numbers, header included, top down
-    first_row : the fields of the first row as they are written
+    preamble, first_row : the lines above the numbers, header included, top down, and the fields of the first row as they are written
     dropped : rows left out because they had another number of fields
     body : the rows, their fields separated by blanks, with _ for a blank within a field
     """
@@ -87,17 +86,12 @@ class NumberTable:
 
 
 def read_number_table(path: str | os.PathLike[str]) -> NumberTable:
-    """The table of numbers in a text file with any delimiter, with or without a header.
-
-    Parameters
-    ----------
-    path : of the file, in UTF-8, UTF-16 or an encoding that shares the characters of ASCII
+    """The table of numbers in a text file with any delimiter, with or without a header, in UTF-8, UTF-16 or another encoding like ASCII.
 
     Raises
     ------
     RoadExtractionError
-        If the file cannot be read, holds no table of at least three columns of
-        numbers, or uses the comma for columns and decimals alike.
+        If the file cannot be read, holds no table of at least three columns of numbers, or uses the comma for columns and decimals alike.
     """
     data = _without_quotes(_text_bytes(path))
     lines = _sample_lines(data)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
-class IoWeights:
+class _IoWeights:
     """Text tables, rasters, coordinate systems and files."""
 
     same_datum: float = 2.0   # m between a place in two realisations of one datum, such as NAD 83 and WGS 84
@@ -30,4 +30,4 @@ class IoWeights:
     fields_per_chunk: int = 200_000   # fields parsed at a time where some are words
 
 
-IO = IoWeights()
+IO = _IoWeights()

@@ -30,10 +30,8 @@ DECODED_LAYERS = ("z", "intensity", "point_source_id", "gps_time", "flags", "cla
 class BlockSummary:
     """What a block contributes to the knowledge of the whole cloud.
 
-    scanners : {LAS field: {value: (first time, last time, count)}}
-    darkest, brightest : lowest and highest intensity
-    without_time : number of points at a time of no pass
-    excluded : number of points that are withheld or classified as noise
+    scanners : {LAS field: {value: (first time, last time, count)}}; darkest, brightest : lowest and highest intensity
+    without_time, excluded : numbers of points at a time of no pass, and of those that are withheld or classified as noise
     """
 
     scanners: dict[str, dict[int, tuple[float, float, int]]] = field(default_factory=dict)
@@ -56,12 +54,8 @@ class BlockSummary:
         self.brightest = max(self.brightest, int(columns["intensity"].max()))
 
     def add_scanners(self, columns: dict[str, np.ndarray], names: set[str], at: np.ndarray, span: tuple[float, float] = EVER) -> None:
-        """Count points by the fields that may tell scanners apart.
+        """Count points by the fields that may tell scanners apart, of which the file has `names`; `columns` has (N,) source and scanner.
 
-        Parameters
-        ----------
-        columns : (N,) source and scanner
-        names : LAS fields that the file has
         at : (N,) s, their times; m, their stations where there are none
         span : s, (first, last) time of the drive: points at other times say nothing of the scanners
         """
@@ -77,13 +71,7 @@ class BlockSummary:
 
 
 class HeightFilter:
-    """Selects points near the rough height of the road.
-
-    Parameters
-    ----------
-    drop : metres from the trajectory down to the road
-    above : metres above the road up to which points are kept
-    """
+    """Selects points near the rough height of the road, `drop` metres below the trajectory, up to `above` metres above it."""
 
     def __init__(self, frame: RoadFrame, drop: float, above: float = READING.kept_above_road):
         self._roads = {}
@@ -95,18 +83,7 @@ class HeightFilter:
             self._roads[road.number] = first, to_units(lowest)
 
     def near(self, road: int, s: np.ndarray, z: np.ndarray, buffers: Callable[..., np.ndarray]) -> np.ndarray:
-        """Which points lie near the height of the road.
-
-        Parameters
-        ----------
-        road : number
-        s, z : (N,) int32 station and local height, units of 0.1 mm
-        buffers : of `ScratchBuffers.of` for N values
-
-        Returns
-        -------
-        (N,) bool
-        """
+        """(N,) bool: which points at (N,) int32 stations s and local heights z, units of 0.1 mm, lie near the height of the road."""
         first, lowest = self._roads[int(road)]
         cell, k = np.right_shift(s, READING.height_cell_bits, out=buffers("cell", np.int32)), buffers("k", np.intp)
         np.copyto(k, np.subtract(cell, first, out=cell))
@@ -126,11 +103,9 @@ class HeightFilter:
 class PointChoice:
     """Which points of the files are taken, and how.
 
-    corridor : metres either side
+    corridor, above_road : metres either side, and metres above the road up to which points are kept
     has_time : whether points are assigned to passes by their time; else by the nearest point on a road
-    week_ends : whether the GPS week ends during the scan
-    above_road : metres above the road up to which points are kept
-    intensity : what the intensity of points is read from
+    week_ends : whether the GPS week ends during the scan; intensity : what the intensity of points is read from
     """
 
     corridor: float
@@ -158,18 +133,11 @@ class _BlockProjector:
 
     def read(self, block: laspy.ScaleAwarePointRecord, found: BlockSummary,
              ground: HeightFilter | None = None) -> Iterator[tuple[int, Columns, np.ndarray | None]]:
-        """The points of a block near a road, piece by piece; each piece overwrites the Columns of the one before.
+        """Yield the points of a block near a road, piece by piece; each piece overwrites the Columns of the one before.
 
-        Parameters
-        ----------
-        block : laspy point record
-        found : BlockSummary, which is updated
-        ground : HeightFilter; without it points of any height are taken
-
-        Yields
-        ------
-        road number, Columns of a piece, and (N,) bool of the points to use, None for all; for ground beyond the corridor the number is that
-        of `beside_road`, and stations are the vehicle's
+        found : BlockSummary, which is updated; ground : HeightFilter, without which points of any height are taken. Yields road number, Columns of
+        a piece, and (N,) bool of the points to use, None for all; for ground beyond the corridor the number is that of `beside_road`, and
+        stations are the vehicle's.
         """
         names = set(block.point_format.dimension_names)
         axes = [LasAxis(*axis, self.dtype[axis[0].lower()]) for axis in zip("XYZ", block.scales, block.offsets, self.frame.origin)]
@@ -312,9 +280,8 @@ def _both(one, other):
 
 @dataclass
 class ChosenPoints:
-    """What the points that are kept say of the survey.
+    """What the points that are kept say of the survey: the HeightHistogram of those on the vehicle's own track, and samples.
 
-    histogram : HeightHistogram of those on the vehicle's own track
     sampled : (N,) times and (N, 3) units of 0.1 mm of some points; without times none
     """
 
@@ -323,12 +290,7 @@ class ChosenPoints:
 
 
 class BlockReader:
-    """Chooses the points of blocks that lie near the road and partitions them by section; safe to use in several threads.
-
-    Parameters
-    ----------
-    slots : TimeSlots of the points that are sampled
-    """
+    """Chooses the points of blocks that lie near the road and partitions them by section; safe to use in several threads."""
 
     def __init__(self, frame: RoadFrame, choice: PointChoice, slots: TimeSlots):
         self.frame, self.choice, self.slots = frame, choice, slots
@@ -396,16 +358,9 @@ class VehicleTracks:
             self._tracks[p.number] = first, to_units(offsets), to_units(heights)
 
     def drops(self, road: int, points: Columns, own: np.ndarray | None = None) -> Iterator[tuple[int, np.ndarray]]:
-        """Depths below the trajectory of the points on the own track, pass by pass.
+        """Yield pass number and (M,) int32 depths below the trajectory, units of 0.1 mm, of the points of a road on the pass's own track.
 
-        Parameters
-        ----------
-        road : number
         own : (N,) bool, points to use; all by default
-
-        Yields
-        ------
-        pass number and (M,) int32 units of 0.1 mm from the trajectory down to the points
         """
         if not len(points):
             return
@@ -447,11 +402,8 @@ def estimate_sensor_height(drops: np.ndarray) -> float | None:
 
 
 class HeightHistogram:
-    """Histogram of the depths below the trajectory of points on the track; independent of the order of adding.
+    """Histogram of the depths below the trajectory of points on the track, by pass; independent of the order of adding.
 
-    Parameters
-    ----------
-    passes : numbers of the passes
     about : first estimate of the sensor height, m
     """
 
@@ -479,14 +431,10 @@ class HeightHistogram:
             self.counts[number] += found
 
     def heights(self) -> dict[int, float]:
-        """Height of the trajectory above the road, one per pass.
+        """{pass number: metres of the trajectory above the road, to millimetres}; a pass without points on its track gets the median of others.
 
-        The road makes the peak of the histogram, the fullest decimetre. Its height is the median of the points within
-        half a metre of the peak, so that bridges and trees above do not count.
-
-        Returns
-        -------
-        {pass number: metres, rounded to millimetres}; a pass without points on its own track gets the median of the others.
+        The road makes the peak of the histogram, the fullest decimetre. Its height is the median of the points within half a metre of the peak, so
+        that bridges and trees above do not count.
         """
         found = {number: _road_height(counts, self.origin) for number, counts in self.counts.items()}
         known = [height for height in found.values() if height is not None]
@@ -494,15 +442,10 @@ class HeightHistogram:
         return {number: usual if height is None else height for number, height in found.items()}
 
     def uneven(self) -> tuple[float, float] | None:
-        """Variation of the height of the trajectory above the road, where it is more than a vehicle can cause.
+        """(median absolute deviation, height) of the trajectory above the road in metres, where it varies by more than a vehicle can cause.
 
-        Points and trajectory share the errors of navigation, so half of the points on the own track lie within a few
-        centimetres of one height below it, whatever is parked or grows on the rest.
-
-        Returns
-        -------
-        (median absolute deviation from the height, height) in metres, of the pass where it is largest; None if no pass
-        exceeds `max_suspension_travel`.
+        Points and trajectory share the errors of navigation, so half of the points on the own track lie within a few centimetres of one height
+        below it, whatever is parked or grows on the rest. The pass with the largest deviation counts; None if none exceeds `max_suspension_travel`.
         """
         heights = self.heights()
         found = [(_half_within(counts, self.origin, heights[number]), heights[number])

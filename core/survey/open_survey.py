@@ -148,13 +148,7 @@ def _found_survey(work, name, files, progress):
 
 @dataclass(frozen=True)
 class _SharedReading:
-    """A survey that is read by workers, or kept.
-
-    reading : Executor that reads the files
-    ordering : Executor that puts the points in order
-    points : folder for the points as they are read, seen by both; it is made
-    ordered : folder that gets the points; it is made where it is missing
-    """
+    """A survey that is read by workers, or kept: who reads the files and who puts the points in order, and the folders for either."""
 
     reading: Executor
     ordering: Executor
@@ -175,8 +169,7 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     Raises
     ------
     RoadExtractionError
-        If a file cannot be read, the CRS is geographic or not in metres, or the
-        trajectory does not overlap the cloud in space or time.
+        If a file cannot be read, the CRS is geographic or not in metres, or the trajectory does not overlap the cloud in space or time.
     """
     if settings.intensity_from == "rgb":
         check_coloured(files)
@@ -321,10 +314,6 @@ def section_length(files: list[CloudHeader], frame: RoadFrame) -> float:
     """Metres of station in a section of the store: the longest that holds no more than `section_points`, or the shortest.
 
     Threads work section by section, and Python lets several of them work at once only where arrays are large.
-
-    Parameters
-    ----------
-    files : headers of the clouds
     """
     density = sum(file.count for file in files) / max(sum(road.length for road in frame.roads), 1.0)
     lengths = SECTION_LENGTH, *READING.longer_sections
@@ -360,24 +349,9 @@ def _tell_scanners_apart(survey, time, place, stride, progress):
 
 def match_clocks(files: list[CloudHeader], trajectory: Trajectory, settings: SurveySettings,
                  progress: Progress) -> tuple[Trajectory, str, bool, bool]:
-    """Convert the trajectory to the time system of the cloud.
+    """The trajectory in the time system of the cloud, and a note for the log, "" without one; RoadExtractionError if their times do not overlap.
 
-    Parameters
-    ----------
-    files : headers of the clouds
-    settings : SurveySettings, of which `time` is used
-
-    Returns
-    -------
-    trajectory : in the time system of the cloud
-    note : for the log, "" without one
-    has_time : whether points can be assigned to passes by their time
-    week_ends : whether the GPS week ends during the scan
-
-    Raises
-    ------
-    RoadExtractionError
-        If the times of cloud and trajectory do not overlap.
+    The last two say whether points can be assigned to passes by their time, and whether the GPS week ends during the scan.
     """
     if not trajectory.has_time:
         return trajectory, "The trajectory has no time; each point is assigned to the nearest position on it.", False, False
@@ -401,10 +375,7 @@ def _without_time(files, trajectory):
 
 
 def _time_span(files):
-    """((first, last) gps_time, whether the week ends in between), of samples of every file; None if all times are equal.
-
-    The samples include the last points of each file.
-    """
+    """((first, last) gps_time, whether the week ends in between), of samples of every file, its last points among them; None if all are equal."""
     with ParallelCloudReader(("gps_time",)) as readers:
         samples = [time[np.isfinite(time)] for file in files if file.count for time in readers.times(file)]
     times = np.concatenate(samples)
@@ -487,11 +458,7 @@ def _no_overlap(files, frame, reader, corridor):
 
 
 def _check_clock(survey: Survey, progress: Progress = Progress()) -> None:
-    """Warn if points were measured at times at which the vehicle was elsewhere.
-
-    survey : Survey with times
-    progress : receives the warning
-    """
+    """Warn if points were measured at times at which the vehicle was elsewhere."""
     ahead, speed = _look_ahead(survey)
     if len(ahead) < READING.min_clock_points or np.percentile(np.abs(ahead), READING.nearest_percentile) < READING.max_look_ahead:
         return

@@ -25,20 +25,9 @@ MAX_LAS_INTEGER = 2**31 - 2    # derived: largest coordinate, as an integer abou
 
 
 def scale_for(farthest: float) -> float:
-    """The coordinate scale of a LAS file: 0.1 mm, or the least power of ten times it with which all points fit.
+    """The coordinate scale of a LAS file, metres per integer: 0.1 mm, or the least power of ten times it with which all points fit.
 
-    Parameters
-    ----------
-    farthest : metres, the largest coordinate counted from the offset of the file
-
-    Returns
-    -------
-    Metres per integer
-
-    Raises
-    ------
-    RoadExtractionError
-        If even 0.1 m is too fine.
+    farthest : metres, the largest coordinate counted from the offset of the file. RoadExtractionError if even 0.1 m is too fine.
     """
     for per_metre in (10_000, 1_000, 100, 10):
         if farthest * per_metre <= MAX_LAS_INTEGER:
@@ -48,14 +37,9 @@ def scale_for(farthest: float) -> float:
 
 
 def place_in_file(header: Any, origin: np.ndarray, crs: str, farthest: float) -> None:
-    """Set the scales, offsets and CRS of a new file, in the units of the survey's own CRS.
+    """Set the scales, offsets and CRS of a new laspy header, in the units of the survey's own CRS.
 
-    Parameters
-    ----------
-    header : laspy.LasHeader
-    origin : (3,) metres, map coordinates of the local origin
-    crs : WKT, metric, "" where unknown
-    farthest : metres, the largest local coordinate
+    origin : (3,) metres, map coordinates of the local origin; crs : WKT, metric, "" where unknown; farthest : metres, the largest local coordinate
     """
     file_wkt, units = as_in_file(crs)
     header.scales = np.full(3, scale_for(farthest / min(units.across, units.up)))
@@ -72,17 +56,9 @@ def metres_of_file(header: Any, crs: str) -> list[float]:
 
 @contextmanager
 def new_laz(path: str | os.PathLike[str], header: Any) -> Iterator[Any]:
-    """A laspy writer of a new file, which appears at its path only when all is written.
+    """A laspy writer of a new file, which appears at its path only when all is written; compressed unless the path ends in .las.
 
-    Parameters
-    ----------
-    path : of the file; compressed unless it ends in .las
-    header : laspy.LasHeader
-
-    Raises
-    ------
-    RoadExtractionError
-        If the file cannot be written.
+    RoadExtractionError if the file cannot be written.
     """
     import laspy
 
@@ -116,19 +92,10 @@ REQUIRED_FIELDS = ("road", "pass", "station_m", "offset_m", "half_width")
 
 
 def write_road_points(road_points: RoadPoints, path: str | Path, progress: Progress = Progress()) -> None:
-    """Write road points as LAS 1.4, class 11, in road order; a failed run leaves no file.
+    """Write road points as LAS 1.4, class 11, in road order; a failed run leaves no file. RoadExtractionError if it cannot be written.
 
     Coordinates are written as measured, in the units of the survey's own CRS; in metres with a scale of 0.1 mm, of 1 mm beyond 214 km from
     the origin and of 1 cm beyond 2,147 km. Corrections of passes are written beside them and applied again on reading.
-
-    Parameters
-    ----------
-    path : of the file, .laz or .las
-
-    Raises
-    ------
-    RoadExtractionError
-        If the file cannot be written.
     """
     sections = road_points.all_sections()
     header = _header(road_points)
@@ -199,17 +166,7 @@ def _record(road_points, road, number, header):
 
 
 def read_road_points(path: str | Path, progress: Progress = Progress()) -> RoadPoints:
-    """Read a LAZ file written by `write_road_points`.
-
-    Parameters
-    ----------
-    path : of the file
-
-    Raises
-    ------
-    RoadExtractionError
-        If the file lacks the extra fields of road points, or holds no points.
-    """
+    """Read a LAZ file written by `write_road_points`; RoadExtractionError if it lacks the extra fields of road points, or holds no points."""
     with open_cloud(path) as reader:
         header = reader.header
         names = set(header.point_format.dimension_names)

@@ -33,22 +33,13 @@ from .weights import READING
 
 
 class SurveyReader:
-    """Reads files into a section store and gathers statistics of the whole survey.
+    """Reads files into a section store and gathers statistics of the whole survey, complete after `read` or `read_in_parts`.
 
-    Parameters
-    ----------
-    store : SectionStore that the points are added to
-
-    Attributes, complete after `read` or `read_in_parts`
-    ----------------------------------------------------
-    census : ScannerCensus
     darkest, brightest : lowest and highest intensity
-    unplaced_time : number of points at a time of no pass
-    excluded : number of points that are withheld or classified as noise
-    heights : {pass number: metres from the trajectory down to the road}
-    uneven : see `HeightHistogram.uneven`
-    slots : TimeSlots of the points sampled, to tell scanners apart that no field distinguishes
-    sampled : their (N,) times and (N, 3) units of 0.1 mm, in no order; without times none
+    unplaced_time, excluded : numbers of points at a time of no pass, and of those that are withheld or classified as noise
+    heights, uneven : {pass number: metres from the trajectory down to the road}, and as of `HeightHistogram.uneven`
+    slots, sampled : TimeSlots of the points by which scanners are told apart that no field distinguishes; their (N,) times and (N, 3) units
+        of 0.1 mm, in no order; without times none
     """
 
     def __init__(self, frame: RoadFrame, store: SectionStore, choice: PointChoice):
@@ -181,12 +172,9 @@ class SurveyReader:
 
 @dataclass(frozen=True)
 class _PartOfFiles:
-    """What was found in a range of points.
+    """What was found in a range of points: where those lie that were kept, and what all contribute to the knowledge of the cloud.
 
-    index : where those lie that were kept
-    found : what all of them contribute to the knowledge of the cloud
-    drops : {pass number: counts of its HeightHistogram}
-    times, places : (N,) s and (N, 3) units of 0.1 mm of the sampled points
+    drops : {pass number: counts of its HeightHistogram}; times, places : (N,) s and (N, 3) units of 0.1 mm of the sampled points
     """
 
     index: StoreIndex
@@ -199,14 +187,8 @@ class _PartOfFiles:
 class _PartsOfFiles:
     """Files whose points are read part by part into the folder of a store; several threads may do so.
 
-    Parameters
-    ----------
-    files : CloudHeaders
-    store : SectionStore, of which dtype, section length, memory limit and folder count
-    slots : TimeSlots of the points that are sampled
-    drop : m from the trajectory down to the road, about
-    ranges : (B, 3) number of a file, index of the first point and points of every block
-    block : points of a block, about
+    store : of which dtype, section length, memory limit and folder count; drop : m from the trajectory down to the road, about
+    ranges : (B, 3) number of a file, index of the first point and points of every block, which has about `block` points
     """
 
     def __init__(self, files: Sequence[CloudHeader], frame: RoadFrame, store: SectionStore, choice: PointChoice, slots: TimeSlots, drop: float,
@@ -251,12 +233,7 @@ def _parts_of_files(columns: list[list[str]], section_length: float, memory_limi
 
 
 def _read_part(source: _PartsOfFiles, item: tuple[int, int]) -> _PartOfFiles:
-    """The phase of reading: the points of some blocks that lie near the road.
-
-    Parameters
-    ----------
-    item : (first, last + 1) numbers of blocks
-    """
+    """The phase of reading: the points of some blocks, (first, last + 1) of their numbers, that lie near the road."""
     chosen, found = source.reader.chosen(source.drop), BlockSummary()
     with source.store.part() as store:
         for number, first, count in source.ranges[item[0]:item[1]].tolist():
@@ -283,14 +260,7 @@ def _join_parts(parts: list[_PartOfFiles]) -> _PartOfFiles:
 # The phase that puts points in order: sections are read from where they were stored, finished, sorted, and written to a folder.
 
 class UnorderedPoints:
-    """Points of a store, to be put in order in a folder.
-
-    Parameters
-    ----------
-    store : SectionStore; the executor's workers must see its folder
-    finishing : what its points are finished with, None where they are
-    folder : that gets the points
-    """
+    """Points of a store, which workers must see, to be put in order in a folder, finished with `finishing`, None where they are."""
 
     def __init__(self, store: SectionStore, finishing: Finishing | None, folder: Path):
         self.store, self.finishing, self.folder = store, finishing, folder
@@ -301,13 +271,7 @@ class UnorderedPoints:
                                                                finishing=self.finishing, folder=str(self.folder)))
 
     def put_in_order(self, executor: Executor, place: Callable[[int, float, float], str], progress: Progress) -> None:
-        """Put all points in order; the store has them from the folder, from then on.
-
-        Parameters
-        ----------
-        executor : who does it
-        place : names the stretch of a road between two stations (m)
-        """
+        """Put all points in order; the store has them from the folder, from then on. place : names the stretch of a road between two stations (m)"""
         length = self.store.section_length
 
         def points(item):
@@ -326,12 +290,7 @@ def _unordered_points(contents: dict[str, Any], points_folder: str, finishing: F
 
 
 def _order_sections(source: UnorderedPoints, item: Stretch) -> StoreIndex:
-    """The phase: the points of some sections, in order, in a file of the folder.
-
-    Parameters
-    ----------
-    item : Stretch of its road
-    """
+    """The phase: the points of some sections, in order, in a file of the folder."""
     try:
         return source.store.write_in_order(source.store.in_stretch(item), source.folder)
     finally:
@@ -345,12 +304,10 @@ def _order_sections(source: UnorderedPoints, item: Stretch) -> StoreIndex:
 
 @dataclass(frozen=True)
 class Finishing:
-    """Finishes the points of sections.
+    """Finishes the points of sections: numbers their scanners from 0, and tells those near the height of the road.
 
-    frame : RoadFrame
     sensor_height : {pass number: metres from the trajectory down to the road}
-    scanner_field : LAS field that identifies the scanners, None if there is one
-    scanners : values of that field, see `ScannerCensus.choose`
+    scanner_field, scanners : LAS field that identifies the scanners, None if there is one, and its values, see `ScannerCensus.choose`
     splitter : tells scanners apart that no field distinguishes; None where there is no need
     above_road : metres above the road up to which points are kept
     """
@@ -363,17 +320,7 @@ class Finishing:
     above_road: float
 
     def __call__(self, road: int, records: Columns) -> np.ndarray | None:
-        """Number the scanners of the records of a section from 0.
-
-        Parameters
-        ----------
-        road : number, or that of what lies beside it
-        records : (N,) Columns, in no order, N > 0
-
-        Returns
-        -------
-        (N,) bool of those near the height of the road, None for all
-        """
+        """Number the scanners of (N,) records of a section, N > 0, and tell which lie near the height of the road: (N,) bool, None for all."""
         if self.splitter is not None:
             records["scanner"] = self.splitter.numbers(records["time"], np.stack([records[name] for name in "xyz"], axis=1) * COORDINATE_SCALE)
         elif self.scanner_field is None:

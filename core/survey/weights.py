@@ -8,7 +8,7 @@ import numpy as np
 
 
 @dataclass(frozen=True)
-class LasWeights:
+class _LasWeights:
     """Reading LAS and LAZ files."""
 
     points_looked_at: int = 1000   # points by which it shows whether records are points, and where points lie
@@ -41,11 +41,11 @@ class LasWeights:
     farthest_height: float = 2e4   # m above or below the frame's origin: points beyond are outliers, and would overflow the integers of a record
 
 
-LAS = LasWeights()
+LAS = _LasWeights()
 
 
 @dataclass(frozen=True)
-class ReadingWeights:
+class _ReadingWeights:
     """Reading a survey: which points are kept, how much at a time, and when clock and height of the trajectory are doubted."""
 
     kept_above_road: float = 3.5   # m: vehicles that hide a curb stand above the road
@@ -86,11 +86,11 @@ class ReadingWeights:
     max_correction: float = 10.0   # m: no pass is moved farther when passes are adjusted
 
 
-READING = ReadingWeights()
+READING = _ReadingWeights()
 
 
 @dataclass(frozen=True)
-class TrajectoryWeights:
+class _TrajectoryWeights:
     """Reading a trajectory and cleaning it."""
 
     max_header_lines: int = 15   # lines above a table in which the names of its columns are looked for
@@ -136,11 +136,11 @@ class TrajectoryWeights:
     max_course_rows: int = 5000   # courses of a drive that are compared
 
 
-TRAJECTORY = TrajectoryWeights()
+TRAJECTORY = _TrajectoryWeights()
 
 
 @dataclass(frozen=True)
-class TrackWeights:
+class _TrackWeights:
     """The first track of a trajectory from the cloud alone, and the ridge of density of a cloud without times."""
 
     max_samples: int = 6_000_000   # points held in memory: 250 MB while they are sorted
@@ -178,11 +178,11 @@ class TrackWeights:
     max_cells: int = 4_000_000   # cells of the density: 1 km^2
 
 
-TRACK = TrackWeights()
+TRACK = _TrackWeights()
 
 
 @dataclass(frozen=True)
-class MirrorWeights:
+class _MirrorWeights:
     """Scanners with a mirror: places in short windows, first poses, and scanners told apart by their scan lines."""
 
     knot_spacing: float = 0.1   # s between the knots of the splines: suspensions swing at 1 to 3 Hz
@@ -196,7 +196,7 @@ class MirrorWeights:
     max_window_points: int = 400   # points used of a window
     resection_rounds: int = 3   # rounds of reweighting
     min_fixes: int = 5   # windows with a place that a scanner needs, or it is left out
-    fix_stiffness: float = 10.0   # (0.1 m of scatter / 0.03 m, see TrackWeights.stiffness)^2
+    fix_stiffness: float = 10.0   # (0.1 m of scatter / 0.03 m, see TRACK.stiffness)^2
     # from a mirror that turns evenly for seconds to one whose rate swings from window to window
     phase_stiffnesses: tuple[float, ...] = 1e8, 1e6, 1e4, 1e2, 0.1
     max_worse_phases: float = 1.5   # times the median deviation of the most flexible curve: a stiffer one deviates no more than this
@@ -213,11 +213,11 @@ class MirrorWeights:
     direction_tolerance: int = 4   # directions off its own that a step may lead
 
 
-MIRROR = MirrorWeights()
+MIRROR = _MirrorWeights()
 
 
 @dataclass(frozen=True)
-class AdjustmentWeights:
+class _AdjustmentWeights:
     """The adjustment of poses to the rays of mirrors: what is known of vehicles, and when returns are understood."""
 
     acceleration: float = 3.0   # m/s^2, usual of a vehicle on the road
@@ -263,11 +263,11 @@ class AdjustmentWeights:
     max_crossfall: float = 0.1   # slope: roads are no steeper across
 
 
-RAYS = AdjustmentWeights()
+RAYS = _AdjustmentWeights()
 
 
 @dataclass(frozen=True)
-class EstimateWeights:
+class _EstimateWeights:
     """The estimated trajectory: what of it is written, and which clouds no vehicle on a road has measured."""
 
     row_spacing: float = 0.02   # s between the positions written: a third of a metre on a motorway
@@ -294,11 +294,11 @@ class EstimateWeights:
     min_standing_time: float = 2.0   # s of measuring before standing still means anything
 
 
-ESTIMATE = EstimateWeights()
+ESTIMATE = _EstimateWeights()
 
 
 @dataclass(frozen=True)
-class HeadWeights:
+class _HeadWeights:
     """The track and the height of a many-beam head that turns about an upright axis."""
 
     turning_rates: tuple[float, float] = 4.0, 25.0   # turns per second that heads make
@@ -348,4 +348,4 @@ class HeadWeights:
     heights: tuple[float, float] = 1.0, 4.5   # m above the road at which heads are mounted
 
 
-HEAD = HeadWeights()
+HEAD = _HeadWeights()

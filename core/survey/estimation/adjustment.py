@@ -21,10 +21,7 @@ from .poses import PITCH, POSE, ROLL, YAW, Poses, X, Y, Z, spline_slopes, spline
 class Returns:
     """The returns that are adjusted, in order of intervals.
 
-    interval, share : (N,) place in the splines
-    time : (N,) s
-    place : (N, 3) m
-    scanner : (N,)
+    interval, share : (N,) place in the splines; time : (N,) s; place : (N, 3) m; scanner : (N,) numbers
     tick : s to which the times are rounded; 0 where they are exact
     """
 
@@ -43,11 +40,8 @@ class Returns:
 class Adjusted:
     """The adjusted poses.
 
-    poses : Poses
-    usual : m, median of the misfits
-    unexplained : m, median of what the rounding of the times does not explain of them
-    misfit : (K, S) m, mean misfit of each interval and scanner; NaN without returns
-    noise : (K, S) m, by which returns were weighted
+    usual, unexplained : m, medians of the misfits and of what the rounding of the times does not explain of them
+    misfit, noise : (K, S) m, mean misfit of each interval and scanner, NaN without returns, and by which returns were weighted
     place_covariance : (K, 3, 3) m^2 of each control value's place; includes what the mounting leaves open
     mounting_sigma : (S, 5) radians and metres
     """
@@ -65,10 +59,8 @@ def _adjust_poses(poses: Poses, guess: Poses, crossfall: np.ndarray, returns: Re
                   progress: Progress = Progress()) -> Adjusted:
     """Adjust poses and mountings to the returns by Gauss-Newton steps with robust weights.
 
-    poses : Poses near the truth: within a metre, mirror phases within half a radian
-    guess : Poses with the mounting that the unknown one scatters about
-    crossfall : (K,) radians of the road under the vehicle at every interval, positive where it rises to the left
-    noise : (K, S) m, how far returns of each interval and scanner may lie off their rays to begin with
+    poses : near the truth: within a metre, mirror phases within half a radian; guess : with the mounting that the unknown one scatters about
+    crossfall : (K,) radians of the road under the vehicle, positive where it rises to the left; noise : (K, S) m off the rays to begin with
     """
     for number in range(RAYS.rounds):
         equations, misfit, by_rounding, count = _equations(poses, guess, crossfall, returns, noise, progress)
@@ -177,16 +169,9 @@ def _add_mounting(equations, poses, guess):
 
 
 def grown_poses(poses: Poses, known: np.ndarray, returns: Returns, progress: Progress = Progress()) -> Adjusted:
-    """Adjust poses to the returns, from the known intervals on.
+    """Adjust poses to the returns, from the (K, S) intervals of each scanner on that are `known` to be near the truth.
 
-    Parameters
-    ----------
-    poses : Poses to start from
-    known : (K, S) bool, intervals of each scanner where they are near the truth
-
-    Returns
-    -------
-    Adjusted; its misfit is NaN in the intervals of scanners whose returns were not used
+    The misfit of the result is NaN in the intervals of scanners whose returns were not used.
     """
     guess, crossfall = poses, np.zeros(len(poses.control))
     held = np.zeros(known.shape, bool)
@@ -225,10 +210,7 @@ def _reached(poses, good):
 
 
 def _carried_on(poses: Poses, good: np.ndarray) -> Poses:
-    """The poses with values where no interval is good replaced by smooth continuation.
-
-    good : (K, S) bool of intervals
-    """
+    """The poses with values where no interval is `good`, (K, S) bool, replaced by smooth continuation."""
     control = poses.control.copy()
     for drive in poses.drives:
         own = slice(drive.first, drive.first + drive.count)
@@ -253,12 +235,9 @@ MOUNTING = 5          # derived: unknowns of a scanner's mounting: turn, lean an
 
 @dataclass
 class _Misfits:
-    """Of N returns: off the scan plane and, within it, off the ray.
+    """Of N returns: off the scan plane and, within it, off the ray, (2, N) m, and the range along the ray, negative behind the scanner.
 
-    off : (2, N) m
-    pose : (2, N, 6 + S) change per change of the values of the spline
-    mounting : (2, N, 5 S) change per change of turn, lean and lever of each scanner
-    range : (N,) m along the ray; negative behind the scanner
+    pose, mounting : (2, N, 6 + S) and (2, N, 5 S) change per change of the values of the spline, and of turn, lean and lever of each scanner
     """
 
     off: np.ndarray
@@ -269,14 +248,8 @@ class _Misfits:
 
 def misfits(poses: Poses, interval: np.ndarray, share: np.ndarray, time: np.ndarray, place: np.ndarray, scanner: np.ndarray,
             noise: tuple[np.ndarray, np.ndarray] | None = None) -> _Misfits:
-    """The _Misfits of returns.
+    """The _Misfits of returns at places in the splines, (N,) s, (N, 3) m and (N,) numbers of scanners.
 
-    Parameters
-    ----------
-    interval, share : (N,) place in the splines
-    time : (N,) s
-    place : (N, 3) m
-    scanner : (N,) numbers
     noise : (N,) m of the returns' places and (N,) radians of the rays' directions; None where the directions are exact
     """
     values = poses.at(interval, share)
@@ -319,13 +292,7 @@ def misfits(poses: Poses, interval: np.ndarray, share: np.ndarray, time: np.ndar
 # Normal equations of splines with a few common unknowns: a band along time with a border.
 
 class _BandedEquations:
-    """Sums of the normal equations; control values of one drive only meet those up to three knots away.
-
-    Parameters
-    ----------
-    knots, columns : control values are (knots, columns)
-    common : number of common unknowns
-    """
+    """Sums of the normal equations of (knots, columns) control values, which only meet those up to three knots away, and of common unknowns."""
 
     def __init__(self, knots: int, columns: int, common: int):
         self.band = np.zeros((knots, 4, columns, columns))  # of knot k with knot k + j
@@ -334,16 +301,10 @@ class _BandedEquations:
         self.corner, self.common = np.zeros((common, common)), np.zeros(common)
 
     def add_rows(self, interval: int, weights: np.ndarray, pose: np.ndarray, common: np.ndarray, off: np.ndarray, weight: np.ndarray) -> None:
-        """Observations of one interval.
+        """N observations of one interval.
 
-        Parameters
-        ----------
-        interval : number
-        weights : (N, 4) of the spline
-        pose : (N, columns) change per change of the spline's values
-        common : (N, common) change per change of the common unknowns
-        off : (N,) misfit
-        weight : (N,)
+        weights : (N, 4) of the spline; off, weight : (N,) misfit and its weight
+        pose, common : (N, columns) and (N, common) change per change of the spline's values and of the common unknowns
         """
         columns = pose.shape[1]
         rows = (weights[:, :, None] * pose[:, None, :]).reshape(len(off), 4 * columns)
@@ -358,14 +319,7 @@ class _BandedEquations:
         self.common -= common.T @ (weight * off)
 
     def add_each(self, first: int, change: np.ndarray, off: np.ndarray, weight: np.ndarray) -> None:
-        """One observation for each of M consecutive intervals.
-
-        Parameters
-        ----------
-        first : number of the first interval
-        change : (M, W, columns) change per change of its first W control values
-        off, weight : (M,)
-        """
+        """One observation, (M,) misfit and weight, for each of M intervals; `change`, (M, W, columns), per change of its first W control values."""
         size, width = change.shape[:2]
         for i in range(width):
             for j in range(i, width):
@@ -395,8 +349,7 @@ class _BandedEquations:
     def variances(self) -> np.ndarray:
         """(knots, columns, columns) covariance of each knot's control values, common unknowns held.
 
-        Blocks of three knots form a block-tridiagonal matrix, the diagonal blocks of whose inverse follow from one sweep
-        from either end.
+        Blocks of three knots form a block-tridiagonal matrix; the diagonal blocks of its inverse follow from one sweep from either end.
         """
         knots, _, columns, _ = self.band.shape
         blocks = -(-knots // 3)
@@ -434,10 +387,7 @@ class _BandedEquations:
 
 
 def _crossfall_of(poses: Poses, returns: Returns) -> np.ndarray:
-    """Crossfall under the vehicle.
-
-    Returns: (K,) radians at the start of every interval, positive where the road rises to the left; 0 where it is not seen
-    """
+    """(K,) radians of crossfall under the vehicle at every interval, positive where the road rises to the left; 0 where it is not seen."""
     found = np.zeros(len(poses.control))
     for drive in poses.drives:
         rows = slice(*np.searchsorted(returns.interval, [drive.first, drive.first + drive.count]))

@@ -27,16 +27,13 @@ WAYS = {"rays": "the rays of the mirrors", "turns": "the turns of a many-beam he
 
 @dataclass
 class EstimatedTrajectory:
-    """A trajectory and how well it is known.
+    """A trajectory of the middle of the scanners, and how well it is known.
 
-    trajectory : Trajectory of the middle of the scanners
     sigma, sigma_height : (N,) m, standard deviation of the place on the map and of the height
     method : "rays" of mirrors, "turns" of a many-beam head, or "density" of points alone, which is rough
-    scanners : the scanners that took part
-    adjusted : Adjusted, None with density alone
+    scanners, adjusted : that took part, and the adjustment of their poses; none with density alone
     above_road : m, median height above the road where it was measured, NaN where it was not
-    notes : sentences for the user
-    cloud_notes : the same on the point clouds, which whoever reads them with this trajectory says too
+    notes, cloud_notes : sentences for the user, the latter on the point clouds, which whoever reads them with this trajectory says too
     """
 
     trajectory: Trajectory
@@ -164,17 +161,7 @@ def _adjusted(samples, tracks, scanners, progress):
 
 
 def separated(samples: Samples, tracks: list[FirstTrack], progress: Progress = Progress()) -> tuple[Samples, list[Spinning], Adjusted] | None:
-    """Scanners that no field tells apart.
-
-    Parameters
-    ----------
-    samples : Samples, whose own numbers of scanners do not count
-    tracks : FirstTrack of each drive
-
-    Returns
-    -------
-    The samples with their scanners, these, and the poses; None where the points are of one scanner, or cannot be told apart
-    """
+    """The samples with scanners that no field tells apart, these, and the poses; None for one scanner, or where they cannot be told apart."""
     steps = [steps_of(samples.place[drive], track, samples.time[drive]) for drive, track in zip(samples.drives, tracks)]
     ways = scan_line_directions(np.concatenate([direction for _, direction in steps]))
     if len(ways) < 2:
@@ -199,12 +186,7 @@ def separated(samples: Samples, tracks: list[FirstTrack], progress: Progress = P
 
 
 def splitter_of(samples: Samples, progress: Progress = Progress()) -> ScannerSplitter | None:
-    """What tells scanners apart whose points no field distinguishes; None where there is one, or they cannot be told apart.
-
-    Parameters
-    ----------
-    samples : Samples of one scanner, as it seems
-    """
+    """What tells scanners apart whose points no field distinguishes; None where there is one, or they cannot be told apart."""
     if not samples.drives:
         return None
     tracks = [first_track(samples.time[drive], samples.place[drive]) for drive in samples.drives]
@@ -318,10 +300,7 @@ def _rough(time, place, yaw, origin, crs, has_time):
 
 
 def _refuse_airborne(tracks: list[FirstTrack]) -> None:
-    """Refuse a cloud whose points are spread so wide at any time that they were measured from high above.
-
-    Raises RoadExtractionError if it is one.
-    """
+    """Refuse a cloud whose points are spread so wide at any time that they were measured from high above."""
     reach = float(np.nanmedian(np.concatenate([track.reach for track in tracks])))
     if reach > ESTIMATE.farthest_median:
         raise RoadExtractionError(
@@ -331,10 +310,7 @@ def _refuse_airborne(tracks: list[FirstTrack]) -> None:
 
 
 def _refuse_clocks_that_overlap(samples: Samples, tracks: list[FirstTrack]) -> None:
-    """Refuse points that were measured in two places at the same times: drives whose clocks overlap.
-
-    Raises RoadExtractionError if most moments of the survey show two such places.
-    """
+    """Refuse points that were measured in two places at most of the times: drives whose clocks overlap."""
     apart = np.concatenate([_places_apart(samples.time[drive], samples.place[drive, :2], track) for drive, track in zip(samples.drives, tracks)])
     if len(apart) and np.mean(np.isfinite(apart)) > 0.5:
         raise RoadExtractionError(
@@ -366,19 +342,13 @@ def _places_apart(time, flat, track):
 
 
 def _usual_acceleration(tracks: list[np.ndarray], spacing: float) -> float:
-    """m/s^2 that nine tenths of the tracks keep below.
-
-    tracks : (N, 2 or more) m each, at times `spacing` (s) apart
-    """
+    """m/s^2 that nine tenths of the tracks keep below, (N, 2 or more) m each, at times `spacing` (s) apart."""
     bends = np.concatenate([np.hypot(*np.diff(track[:, :2], 2, axis=0).T) for track in tracks])
     return float(np.quantile(bends, ESTIMATE.drivable_share)) / spacing**2 if len(bends) else 0.0
 
 
 def _refuse_without_road(tracks: list[FirstTrack]) -> None:
-    """Refuse to follow the density of points among which the road under the vehicle is not.
-
-    Raises RoadExtractionError if most points lie far from where they are densest, or that place moves as no vehicle does.
-    """
+    """Refuse points of which most lie far from where they are densest, or where that place moves as no vehicle does."""
     reach = float(np.nanmedian(np.concatenate([track.reach for track in tracks])))
     sharp = _usual_acceleration([track.foot for track in tracks], TRACK.window)
     if reach > ESTIMATE.max_road_reach or sharp > ESTIMATE.max_acceleration:
@@ -392,10 +362,7 @@ def _refuse_without_road(tracks: list[FirstTrack]) -> None:
 def _refuse_terrestrial(tracks: list[FirstTrack], places: list[np.ndarray]) -> None:
     """Refuse a cloud that was measured from one place.
 
-    tracks : FirstTrack of each drive
     places : (N, 2 or more) m, where scanners were seen, in order of time, some of them wrong; none where that is not known
-
-    Raises RoadExtractionError if it is one.
     """
     if places := [place[:, :2] for place in places if len(place)]:
         # a vehicle may stand most of the time, but where it drives, it is seen several times
@@ -412,18 +379,10 @@ def _refuse_terrestrial(tracks: list[FirstTrack], places: list[np.ndarray]) -> N
 
 
 def refuse_handheld(tracks: list[FirstTrack], scanners: list[Spinning], heads: Sequence[HeadTrack] = ()) -> None:
-    """Refuse a cloud measured at walking pace by a scanner without a steadily mounted mirror.
+    """Raise RoadExtractionError for a cloud measured at walking pace by a scanner without a steadily mounted mirror.
 
-    Parameters
-    ----------
-    tracks : FirstTrack of each drive
     scanners : whose mirrors turn steadily; where there is one, nobody carries it
     heads : of many beams; their places are sharper than the first track
-
-    Raises
-    ------
-    RoadExtractionError
-        If it is one.
     """
     if scanners:
         return

@@ -22,17 +22,9 @@ def told_apart(scanners: int) -> str:
 
 
 def steps_of(place: np.ndarray, track: FirstTrack, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Steps between points that follow each other in time, on the road near the track.
+    """Steps between points that follow each other in time, on the road near the track: (M,) rows of their first points, and (M,) directions.
 
-    Parameters
-    ----------
-    place : (N, 3) m, in order of time
-    time : (N,) s
-
-    Returns
-    -------
-    row : (M,) of the first point of every step
-    direction : (M,) number of its direction among those of half a turn, relative to the way driven
+    place, time : (N, 3) m and (N,) s, ascending. A direction is a number among those of half a turn, relative to the way driven
     """
     foot, heading = track.at(time)
     away = place - foot
@@ -52,12 +44,7 @@ def steps_of(place: np.ndarray, track: FirstTrack, time: np.ndarray) -> tuple[np
 
 
 def scan_line_directions(direction: np.ndarray) -> list[int]:
-    """The directions in which steps lead, the most frequent first; one where the points are of one scanner, none where they lead anywhere.
-
-    Parameters
-    ----------
-    direction : (M,) as of `steps_of`
-    """
+    """The directions in which (M,) steps lead, the most frequent first; one where the points are of one scanner, none where they lead anywhere."""
     if len(direction) < MIRROR.min_steps:
         return []
     alone = np.bincount(direction, minlength=MIRROR.directions).astype(float)
@@ -80,14 +67,7 @@ def _apart(direction, one):
 
 
 def lines_of_each(direction: np.ndarray, row: np.ndarray, size: int, ways: list[int]) -> np.ndarray:
-    """(size,) number of the scanner of every point, -1 where its steps do not tell.
-
-    Parameters
-    ----------
-    direction, row : (M,) as of `steps_of`
-    size : number of points
-    ways : the directions of the scanners, of `scan_line_directions`
-    """
+    """(size,) number of the scanner of every point, among the directions `ways` of their scan lines; -1 where its steps do not tell."""
     votes = np.stack([np.bincount(row[_apart(direction, one) <= MIRROR.direction_tolerance], minlength=size) for one in ways])
     first = votes.argmax(axis=0)
     most = votes.max(axis=0)
@@ -98,9 +78,7 @@ def lines_of_each(direction: np.ndarray, row: np.ndarray, size: int, ways: list[
 class ScannerSplitter:
     """Tells by the rays which of several scanners measured a point.
 
-    poses : Poses with all of them
-    start : s of time 0 of the poses
-    origin : (3,) map coordinates of their places
+    poses : with all of them; start : s of time 0 of the poses; origin : (3,) map coordinates of their places
     """
 
     poses: Poses

@@ -38,11 +38,9 @@ class _DriveKnots:
 class Poses:
     """Cubic B-splines of place, attitude and mirror phases, and the mounting of S scanners.
 
-    drives : _DriveKnots of each drive
     control : (K, 6 + S) control values: x, y, z (m), roll (right side down), pitch (nose up), yaw (counter-clockwise from east; radians),
         and of each scanner what its direction angle is ahead of 2 pi rate t (radians)
-    rate : (S,) Hz
-    turn : (S,) radians by which the scan line is turned counter-clockwise from straight across
+    rate : (S,) Hz; turn : (S,) radians by which the scan line is turned counter-clockwise from straight across
     lean : (S,) radians by which the scan plane leans, its upper half forward
     lever : (S, 3) m ahead, left and up from the place of the pose; their mean is 0
     """
@@ -112,11 +110,9 @@ def vehicle_axes(roll: np.ndarray, pitch: np.ndarray, yaw: np.ndarray) -> tuple[
 class _Fixes:
     """Places of one scanner in windows of one drive; only windows with a good one.
 
-    time : (W,) s, middles
-    place : (W, 3) m, as if the scan plane stood upright
+    time, place : (W,) s, middles, and (W, 3) m, as if the scan plane stood upright; misfit : (W,) m
     phase : (W,) radians that the direction of a point was ahead of 2 pi rate t, in the plane, 0 to the left, from the middle of the window
     yaw : (W,) radians by which the scan line is turned, counter-clockwise, from straight across
-    misfit : (W,) m
     """
 
     time: np.ndarray
@@ -127,10 +123,7 @@ class _Fixes:
 
 
 def _rotation_rate_of(runs: list[tuple[np.ndarray, np.ndarray, FirstTrack]]) -> float | None:
-    """The rate at which one scanner's mirror turns, Hz; None where its points show none.
-
-    runs : per drive (N,) times, (N, 3) places and the drive's FirstTrack
-    """
+    """Hz of one scanner's mirror, by (N,) times, (N, 3) places and the FirstTrack of every drive; None where its points show none."""
     spectra = []
     for time, place, track in runs:
         for middle in np.linspace(track.time[0], track.time[-1], MIRROR.rotation_samples_per_drive + 2)[1:-1]:
@@ -149,10 +142,8 @@ def _rotation_rate_of(runs: list[tuple[np.ndarray, np.ndarray, FirstTrack]]) -> 
 
 
 def _fixes_of(time: np.ndarray, place: np.ndarray, track: FirstTrack, rate: float) -> _Fixes:
-    """The places of one scanner in the windows of one drive.
+    """The places of one scanner in the windows of one drive, by (N,) ascending times and (N, 3) places.
 
-    time : (N,) s, ascending
-    place : (N, 3) m
     track : FirstTrack of the drive, against which the vehicle's motion within a window is removed
     rate : Hz, positive where directions turn counter-clockwise seen from ahead, looking back
     """
@@ -193,17 +184,10 @@ def _line_directions(place, window, size):
 
 
 def resected(a: np.ndarray, b: np.ndarray, angle: np.ndarray, window: np.ndarray, size: int) -> tuple[np.ndarray, ...]:
-    """The places from which the rays of windows lead.
+    """The places from which the rays of `size` windows lead.
 
-    Parameters
-    ----------
-    a, b : (N,) m, places of returns in the scan plane
-    angle : (N,) radians that the mirror has turned through, from any start in each window
-    window : (N,) number of the window, below `size`
-
-    Returns
-    -------
-    u, v, phase, misfit, in_front : (size,) m of the place, radians of the angle's start, m, and share of the returns that lie before the place
+    a, b : (N,) m, places of returns in the scan plane; angle : (N,) radians that the mirror has turned through, from any start in each window;
+    window : (N,) its number. Returns (size,) m of the places u and v, radians of the angle's start, misfit (m), and share of the returns in front
     """
     sin, cos = np.sin(angle), np.cos(angle)
     rows = (a * sin - b * cos, a * cos + b * sin, -sin, -cos)
@@ -234,12 +218,7 @@ def resected(a: np.ndarray, b: np.ndarray, angle: np.ndarray, window: np.ndarray
 
 @dataclass
 class Spinning:
-    """A scanner whose mirror was seen to turn.
-
-    number : of the scanner
-    rate : Hz, signed
-    fixes : of each drive
-    """
+    """A scanner whose mirror was seen to turn: its number, signed rate (Hz), and fixes of each drive."""
 
     number: int
     rate: float
@@ -287,13 +266,7 @@ def _phase_steps(fixes, rate):
 
 
 def first_poses(samples: Samples, tracks: list[FirstTrack], scanners: list[Spinning]) -> Poses:
-    """Poses through the fixes of all scanners; mountings upright.
-
-    Parameters
-    ----------
-    tracks : FirstTrack of each drive
-    scanners : those that spin; they are numbered anew in this order
-    """
+    """Poses through the fixes of all scanners that spin, which are numbered anew in this order; mountings upright."""
     turn = np.array([np.median(np.concatenate([fixes.yaw for fixes in one.fixes])) for one in scanners])
     lever = _levers(tracks, scanners)
     drives, control, first = [], [], 0

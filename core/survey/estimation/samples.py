@@ -28,13 +28,9 @@ ROUNDINGS = tuple(sorted((*(10.0**-k for k in range(2, 7)), *(2.0**-k for k in r
 class Samples:
     """Points in order of time.
 
-    time : (N,) seconds since `start`, of the drives; zeros without time
-    place : (N, 3) metres from `origin`
-    scanner : (N,) numbers of the scanners from 0
-    start : s, the gps_time of the first drive's first point
-    origin : (3,) map coordinates
-    has_time : whether the points' times differ
-    drives : slices of the rows between gaps in time
+    time : (N,) seconds since `start`, of the drives; zeros without time; start : s, the gps_time of the first drive's first point
+    place : (N, 3) metres from `origin`, (3,) map coordinates; scanner : (N,) numbers of the scanners from 0
+    has_time : whether the points' times differ; drives : slices of the rows between gaps in time
     left_out : points of drives too short to be estimated
     """
 
@@ -58,17 +54,9 @@ class Samples:
 
 
 def read_samples(files: Sequence[CloudHeader], scanner_field: str = "automatic", progress: Progress = Progress()) -> Samples:
-    """First returns of the files in an even sample of at most `max_samples`.
+    """First returns of the files in an even sample of at most `max_samples`; RoadExtractionError if a file cannot be read, or too few are left.
 
-    Parameters
-    ----------
-    files : headers of the clouds
     scanner_field : "automatic", "scanner_channel" or "point_source_id"
-
-    Raises
-    ------
-    RoadExtractionError
-        If a file cannot be read, or too few points are left.
     """
     slots = TimeSlots.for_points(sum(file.count for file in files), TRACK.max_samples)
     origin = np.floor(np.min([file.minimum for file in files if file.count], axis=0))
@@ -100,14 +88,8 @@ def read_samples(files: Sequence[CloudHeader], scanner_field: str = "automatic",
 
 
 def samples_of(time: np.ndarray, place: np.ndarray, scanner: np.ndarray, origin: np.ndarray, stride: int = 1) -> Samples:
-    """Points in any order as Samples.
+    """Points in any order as Samples: (N,) s, not all the same, (N, 3) m from the origin, and (N,) uint8 scanners.
 
-    Parameters
-    ----------
-    time : (N,) s, not all the same
-    place : (N, 3) m from the origin
-    scanner : (N,) uint8
-    origin : (3,) map coordinates
     stride : every how many points of the survey are among them one is
     """
     order = np.argsort(time, kind="stable")
@@ -127,13 +109,7 @@ def samples_of(time: np.ndarray, place: np.ndarray, scanner: np.ndarray, origin:
 
 
 def rounding_of(time: np.ndarray, start: float) -> float:
-    """What times are rounded to, s; 0 where that is no power of ten or two.
-
-    Parameters
-    ----------
-    time : (N,) s since `start`
-    start : s
-    """
+    """What (N,) times in seconds since `start` are rounded to, s; 0 where that is no power of ten or two."""
     some = time[::max(len(time) // TRACK.max_rounding_samples, 1)] + start
     for tick in ROUNDINGS:
         steps = some / tick
@@ -168,10 +144,8 @@ def _sample(block, slots, origin):
 class FirstTrack:
     """The rough track of one drive.
 
-    time : (W,) s, middles of windows
-    foot : (W, 3) m, on the ground
+    time, foot, count : (W,) s, middles of windows, (W, 3) m, on the ground, and (W,) samples
     heading : (W,) radians, where the vehicle looked ahead, counter-clockwise from east, continuous
-    count : (W,) samples
     reach : (W,) m, median horizontal distance of the samples from the densest place
     """
 
@@ -188,15 +162,10 @@ class FirstTrack:
 
 
 def first_track(time: np.ndarray, place: np.ndarray) -> FirstTrack:
-    """The ridge of density of one drive.
+    """The ridge of density of one drive, of (N,) ascending times (s) and (N, 3) places (m).
 
     On a flat road the density of a scan line falls off with the distance x from the scanner's foot as
     h / (h^2 + x^2): a Cauchy distribution, whose place is estimated by its likelihood.
-
-    Parameters
-    ----------
-    time : (N,) s, ascending
-    place : (N, 3) m
     """
     begin = float(time[0])
     window = ((time - begin) / TRACK.window).astype(np.int64)
@@ -223,13 +192,9 @@ def first_track(time: np.ndarray, place: np.ndarray) -> FirstTrack:
 
 
 def headings_of(track: np.ndarray, about: np.ndarray | None = None) -> np.ndarray:
-    """(N,) continuous headings, radians counter-clockwise from east, of a track of (N, 2 or more) evenly timed places.
+    """(N,) continuous headings, radians counter-clockwise from east, of a track of (N, 2 or more) evenly timed places, m.
 
     Where the vehicle stands, it keeps the heading in which it came; where it backs up, it keeps looking ahead.
-
-    Parameters
-    ----------
-    track : (N, 2 or more) m
     about : (N,) radians, headings known to less than a right angle; None for those of the track itself
     """
     velocity = np.gradient(track[:, :2], axis=0) if len(track) > 1 else np.zeros((len(track), 2))
@@ -267,20 +232,9 @@ def _headings_by_distance(track):
 
 
 def ridge_of(place: np.ndarray) -> np.ndarray:
-    """The longest way along the ridge of density.
+    """The longest way along the ridge of density of (N, 3) points: (M, 3) m, places of the scanner at a usual height, `ridge_spacing` apart.
 
-    Parameters
-    ----------
-    place : (N, 3) m
-
-    Returns
-    -------
-    (M, 3) m, places of the scanner at a usual height, `ridge_spacing` apart
-
-    Raises
-    ------
-    RoadExtractionError
-        If there is none.
+    RoadExtractionError if there is none.
     """
     ground = place[_on_ground(place)]
     corner = ground[:, :2].min(axis=0)

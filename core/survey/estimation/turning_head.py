@@ -35,13 +35,7 @@ class HeadTrack:
 
 
 def turning_heads(samples: Samples, tracks: list[FirstTrack]) -> list[HeadTrack] | None:
-    """The places of a many-beam head in every drive; None where the points are not those of one.
-
-    Parameters
-    ----------
-    samples : Samples with times
-    tracks : FirstTrack of each drive
-    """
+    """The places of a many-beam head in every drive; None where the points are not those of one."""
     rate = _turning_rate(samples, tracks)
     if rate is None:
         return None
@@ -55,11 +49,7 @@ def turning_heads(samples: Samples, tracks: list[FirstTrack]) -> list[HeadTrack]
 
 
 def _turning_rate(samples: Samples, tracks: list[FirstTrack]) -> float | None:
-    """Turns per second of a head, negative where it turns clockwise; None where bearings do not turn steadily.
-
-    samples : Samples with times
-    tracks : FirstTrack of each drive
-    """
+    """Turns per second of a head, negative where it turns clockwise; None where bearings do not turn steadily."""
     drive, track = max(zip(samples.drives, tracks), key=lambda pair: pair[0].stop - pair[0].start)
     middle = 0.5 * (samples.time[drive.start] + samples.time[drive.stop - 1])
     rows = drive.start + np.flatnonzero(np.abs(samples.time[drive] - middle) <= HEAD.rate_seconds / 2)
@@ -76,14 +66,7 @@ def _turning_rate(samples: Samples, tracks: list[FirstTrack]) -> float | None:
 
 
 def _head_track(time: np.ndarray, place: np.ndarray, track: FirstTrack, rate: float) -> HeadTrack | None:
-    """The places of the head in one drive.
-
-    time : (N,) s, ascending
-    place : (N, 3) m
-    track : FirstTrack of the drive
-    rate : turns per second, of `_turning_rate`
-    Returns: HeadTrack; None where no whole turn was seen
-    """
+    """The places of the head in one drive, of (N,) ascending times (s) and (N, 3) places (m); None where no whole turn was seen."""
     time, flat, turn = _turns(time, place[:, :2], 1.0 / abs(rate))
     if not len(time):
         return None
@@ -154,20 +137,7 @@ def _headings(time, place):
 
 
 def head_heights(samples: Samples, tracks: list[FirstTrack], heads: list[HeadTrack]) -> tuple[list[np.ndarray], float | None, float]:
-    """Ground beneath the head, and its height above it.
-
-    Parameters
-    ----------
-    samples : Samples with times
-    tracks : FirstTrack of each drive
-    heads : HeadTrack of each drive
-
-    Returns
-    -------
-    ground : (T,) m for each head, height of the road beneath it at every turn
-    height : m of the head above it; None where the beams do not tell it
-    sigma : m, of the height
-    """
+    """Ground beneath the head, (T,) m for each drive, and its height above it with one sigma, m; None where the beams do not tell it."""
     ground, parts, turns = [], [], 0
     share = max(sum(drive.stop - drive.start for drive in samples.drives) // HEAD.max_height_points, 1)
     for drive, track, head in zip(samples.drives, tracks, heads):
@@ -200,11 +170,9 @@ def _seen_from(time, place, head, share):
 
 
 def _ground_planes(turn: np.ndarray, away: np.ndarray, z: np.ndarray, first: np.ndarray) -> np.ndarray:
-    """The road about every turn as a plane, by robust least squares from a first height.
+    """The road about every turn as a plane, (T, 3) height beneath the head and slopes to the east and north, by robust least squares.
 
-    turn : (N,) int; away : (N, 2) m from the head; z : (N,) m
-    first : (T,) m, heights to begin with
-    Returns: (T, 3) height beneath the head and slopes to the east and north; level at the first height where few points are
+    turn, away, z : (N,) numbers, (N, 2) m from the head, (N,) m; first : (T,) m, heights to begin with, which stay where few points are
     """
     near = np.hypot(*away.T) < HEAD.plane_reach
     turn, z = turn[near], z[near]

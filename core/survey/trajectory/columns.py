@@ -80,15 +80,9 @@ SEPARATORS = (",", ";", r"\t", r"\|", r"\s{2,}", r"\s+")
 
 
 def columns_by_role(names: Sequence[str]) -> dict[str, str]:
-    """The roles of columns by their names.
+    """{role: name} of the columns whose role their names tell: time, x, y, z, roll, pitch, heading, lon, lat, and parts of these.
 
-    Parameters
-    ----------
-    names : of the columns; capitals, punctuation and units such as in "roll_deg" or "Easting (m)" do not matter
-
-    Returns
-    -------
-    {role: name} of the roles that are recognised: time, x, y, z, roll, pitch, heading, lon, lat, and parts of these
+    Capitals, punctuation and units such as in "roll_deg" or "Easting (m)" do not matter.
     """
     return {role: names[places[0]] for role, places in candidates_by_role(names).items()}
 

@@ -50,17 +50,9 @@ class _Meaning:
 
 
 def meaning_of(columns: Sequence[TableColumn], label: str, given: Sequence[str] = ()) -> _Meaning:
-    """The roles of named columns.
+    """The roles of named columns, without those that are `given` from elsewhere, such as x and y from the points of a layer.
 
-    Parameters
-    ----------
-    columns : of the table
-    label : of the table, for notes
-    given : roles that come from elsewhere, such as x and y from the points of a layer
-
-    Returns
-    -------
-    _Meaning; geodetic coordinates are preferred to earth-centred ones, numbers to clock times, and the usual names to others
+    Geodetic coordinates are preferred to earth-centred ones, numbers to clock times, and the usual names to others.
     """
     named = candidates_by_role([column.title for column in columns])
     notes: list[str] = []
@@ -110,23 +102,10 @@ def _earth_centred(x, y, z):
 
 
 def values_by_role(columns: Sequence[TableColumn], meaning: _Meaning, label: str, notes: list[str], doubts: list[str]) -> dict[str, np.ndarray]:
-    """The values of a trajectory: seconds, metres, degrees; roll, pitch and heading in the unit of their columns.
+    """{role: (N,) float64} of a trajectory's columns: seconds, metres, degrees; roll, pitch and heading in the unit of their columns.
 
-    Parameters
-    ----------
-    columns : of the table
-    meaning : of these
-    label : of the table, for messages
-    notes, doubts : sentences for the user, and warnings, are added to them
-
-    Returns
-    -------
-    {role: (N,) float64} of time, x, y, z, lon, lat, roll, pitch, heading as far as they are there
-
-    Raises
-    ------
-    RoadExtractionError
-        If times are clock times of which it is not said what they show, or count from 1970.
+    Sentences for the user and warnings are added to `notes` and `doubts`. RoadExtractionError if times are clock times of which it is not said what
+    they show, or count from 1970.
     """
     place = meaning.place
     found = {role: columns[k].values for role, k in place.items() if role in ("x", "y", "z", "roll", "pitch", "heading")}
@@ -329,23 +308,11 @@ LEFT_OUT = ("-", "", "skip")
 
 
 def assigned_columns(text: str, count: int, path: str | os.PathLike[str]) -> dict[str, int]:
-    """Which column of a table has which role, as the user wrote it.
+    """{role: column} as the user wrote it: one word a column, from the left, separated by commas.
 
-    Parameters
-    ----------
-    text : one word a column, from the left, separated by commas: a role of ASSIGNABLE, or - for a column that is left out. Columns
-        after the last word are left out. gps and utc are times of which it is known what the clock shows
-    count : columns of the table
-    path : of the file, for messages
-
-    Returns
-    -------
-    {role: column}
-
-    Raises
-    ------
-    RoadExtractionError
-        If a word is no role, a role is there twice, there are more words than columns, or a place or the height is missing.
+    A word is a role of ASSIGNABLE, or - for a column that is left out, as are those after the last word. gps and utc are times of which it is known
+    what the clock shows. RoadExtractionError if a word is no role, a role is there twice, there are more words than columns (`count`), or a place
+    or the height is missing.
     """
     place: dict[str, int] = {}
     for column, word in enumerate(_words(text)):
@@ -372,13 +339,7 @@ def _words(text):
 
 @dataclass(frozen=True)
 class TableColumns:
-    """The columns of a text table.
-
-    titles : what stands above each column, "" where nothing does
-    roles : of each column, "" for one that is left out
-    rows : the first rows as texts, (R, K)
-    problem : why the roles are not known, "" where they are
-    """
+    """The columns of a text table: titles and roles, "" without one, the first rows as (R, K) texts, and why the roles are not known."""
 
     titles: tuple[str, ...]
     roles: tuple[str, ...]
@@ -387,18 +348,9 @@ class TableColumns:
 
 
 def columns_of_table(path: str | os.PathLike[str], columns: str = "", rows: int = 4) -> TableColumns:
-    """What is understood of the columns of a text file.
+    """What is understood of the columns of a text file, with the first `rows` of them.
 
-    Parameters
-    ----------
-    path : of the file
-    columns : as `assigned_columns` takes them; "" recognises them
-    rows : how many are given back at most
-
-    Raises
-    ------
-    RoadExtractionError
-        If the file holds no table of numbers.
+    columns : as `assigned_columns` takes them; "" recognises them. RoadExtractionError if the file holds no table of numbers.
     """
     if is_record(Path(path)):
         raise RoadExtractionError(f"{path} is a log or a track, whose columns are known. Leave Columns empty.")
@@ -419,16 +371,8 @@ def columns_of_table(path: str | os.PathLike[str], columns: str = "", rows: int 
 def meaning_of_table(columns: Sequence[TableColumn], unmatched: Sequence[str] | None, path: Path, assigned: str = "") -> _Meaning:
     """The _Meaning of the columns of a file: as assigned, otherwise by the names above them, otherwise by their numbers.
 
-    Parameters
-    ----------
-    columns, unmatched : as `titled_columns` gives them
-    path : of the file
-    assigned : as `assigned_columns` takes it; "" where nothing was assigned
-
-    Raises
-    ------
-    RoadExtractionError
-        If the columns are not recognised.
+    columns, unmatched : as `titled_columns` gives them; assigned : as `assigned_columns` takes it, "" where nothing was assigned.
+    RoadExtractionError if the columns are not recognised.
     """
     if assigned.strip():
         clock = next((TOLD_CLOCKS[word] for word in _words(assigned) if word in TOLD_CLOCKS), "")

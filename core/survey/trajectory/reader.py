@@ -31,17 +31,14 @@ def read_trajectory(path: str | os.PathLike[str], crs: str = "", target_crs: str
 
     Parameters
     ----------
-    path : of the file
-    crs : WKT or "EPSG:n" of its coordinates; by default the one that the file states, and
-        WGS 84 for longitude and latitude
+    crs : WKT or "EPSG:n" of its coordinates; by default the one that the file states, and WGS 84 for longitude and latitude
     target_crs : WKT or "EPSG:n"; where it is given and the trajectory's CRS is known, the trajectory is reprojected
     columns : of a text table, as `assigned_columns` takes them; "" recognises them
 
     Returns
     -------
-    Trajectory, not yet cleaned: rows in file order, angles in degrees; `notes`
-    state what was recognised. Longitude and latitude stay in degrees (x is the
-    longitude) when no `target_crs` is given.
+    Trajectory, not yet cleaned: rows in file order, angles in degrees; `notes` state what was recognised. Longitude and latitude stay in degrees
+    (x is the longitude) when no `target_crs` is given.
 
     Raises
     ------
@@ -62,21 +59,16 @@ def read_trajectory(path: str | os.PathLike[str], crs: str = "", target_crs: str
 
 def trajectory_from_columns(columns: Mapping[str, Any], crs: str = "", angle_unit: str = "", label: str = "The trajectory",
                             notes: Sequence[str] = (), stated_units: Sequence[tuple[str, str]] = ()) -> Trajectory:
-    """A trajectory from columns of numbers, such as those of a layer.
+    """A trajectory, not yet cleaned, from columns of numbers.
 
     Parameters
     ----------
-    columns : {role: (N,) array}; roles are time, x, y, z, roll, pitch, heading,
-        and lon, lat instead of x, y. Without `time` the positions are in driving order
+    columns : {role: (N,) array}; roles are time, x, y, z, roll, pitch, heading, and lon, lat instead of x, y. Without `time` the positions are in
+        driving order
     crs : WKT or "EPSG:n" of x, y, in its units; "" where unknown
     angle_unit : "degrees" or "radians"; "" recognises it
-    label : the source, for messages
-    notes : of the Trajectory so far
+    label, notes : of the source for messages, and of the Trajectory so far
     stated_units : (role, "metres" or "feet") of x, y and z where their columns state a unit
-
-    Returns
-    -------
-    Trajectory, not yet cleaned
 
     Raises
     ------
@@ -102,20 +94,14 @@ def trajectory_from_columns(columns: Mapping[str, Any], crs: str = "", angle_uni
 
 def trajectory_from_rows(titles: Sequence[str], rows: Sequence[Sequence[object]], given: Mapping[str, Any], crs: str = "",
                          label: str = "The trajectory", heights_needed: bool = True) -> Trajectory:
-    """A trajectory from the rows of a layer, by the same names and units as those of a file.
+    """A trajectory, not yet cleaned, from the rows of a layer, by the same names and units as those of a file.
 
     Parameters
     ----------
-    titles : names of the fields
-    rows : a list of values for each position, None where one is missing
+    titles, rows : names of the fields, and a list of their values for each position, None where one is missing
     given : {role: (N,) array} of what the fields need not tell, such as x and y from the points of the layer
     crs : WKT or "EPSG:n" of x, y; "" where unknown
-    label : the layer, for messages
     heights_needed : without them 0 is taken where no height is known
-
-    Returns
-    -------
-    Trajectory, not yet cleaned
 
     Raises
     ------
@@ -353,13 +339,10 @@ SMRMSG_DOUBLES = 10   # source: Applanix POSPac; time, RMS north, east, down (m)
 
 
 def _accuracy_across(sbet: Path, time: np.ndarray, x: np.ndarray, y: np.ndarray) -> tuple[float, str]:
-    """One sigma of a trajectory across its way, from the file beside it.
+    """One sigma of a trajectory across its way in metres, from the file beside its SBET, and a sentence on it; 0 and "" without one.
 
-    sbet : path of the SBET
-    time : (N,) s, as it stands in the SBET
-    x, y : (N,) longitude and latitude, degrees
-    Returns: sigma : m, the root of the mean square over the way driven, so that waiting does not count; 0 where nothing is known
-    note : a sentence on it, "" where there is no such file
+    It is the root of the mean square over the way driven, so that waiting does not count. time, x, y : (N,) s, and longitude and latitude in
+    degrees, as they stand in the SBET.
     """
     try:
         path = _beside(sbet)

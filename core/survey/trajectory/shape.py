@@ -35,12 +35,7 @@ MAX_NOISE = float(TRAJECTORY.vehicle_jerk * (TRAJECTORY.noise_time / (2 * np.pi)
 
 @dataclass(frozen=True)
 class _TrackShape:
-    """What is found of a trajectory's shape, and what was done.
-
-    trajectory : Trajectory with curved bends, or smoothed
-    sigma : m, one sigma of its place that stays unknown for that
-    said : the warnings
-    """
+    """A trajectory with curved bends, or smoothed; one sigma of its place that stays unknown for that (m), and the warnings."""
 
     trajectory: Trajectory
     sigma: float = 0.0
@@ -48,22 +43,14 @@ class _TrackShape:
 
 
 def shaped_trajectory(trajectory: Trajectory) -> _TrackShape:
-    """A trajectory without noise that no vehicle can have caused, and with curves where its vertices are too far apart for its bends.
-
-    Parameters
-    ----------
-    trajectory : Trajectory, cleaned
-    """
+    """A cleaned trajectory without noise that no vehicle can have caused, and with curves where its vertices are too far apart for its bends."""
     smooth = _smoothed_track(trajectory)
     curved = _curved_track(smooth.trajectory)
     return _TrackShape(curved.trajectory, float(np.hypot(smooth.sigma, curved.sigma)), smooth.said + curved.said)
 
 
 def _smoothed_track(trajectory: Trajectory) -> _TrackShape:
-    """A trajectory without the noise that no vehicle can have caused; as it is where there is none.
-
-    trajectory : Trajectory, cleaned
-    """
+    """A trajectory without the noise that no vehicle can have caused; as it is where there is none."""
     if not trajectory.has_time:
         return _TrackShape(trajectory)
     pieces = [piece for piece in _pieces(trajectory) if _even(trajectory.time[piece])]
@@ -91,10 +78,7 @@ def _smooth(columns, piece, step):
 
 
 def _curved_track(trajectory: Trajectory) -> _TrackShape:
-    """A trajectory with curves through its vertices where they are too far apart for its bends; as it is where they are not.
-
-    trajectory : Trajectory, cleaned
-    """
+    """A trajectory with curves through its vertices where they are too far apart for its bends; as it is where they are not."""
     found, worst, sigma, unsafe = [], (0.0, 0.0, 0), 0.0, 0
     for piece in _pieces(trajectory):
         rows = trajectory.rows(piece)

@@ -22,10 +22,9 @@ FIRST_WHOLE_WEEK, LAST_WEEK = 1024.0, 4096.0  # source: weeks since 1980 (IS-GPS
 
 @dataclass(frozen=True)
 class TableColumn:
-    """A column of a table, or several fields of it that are one value.
+    """A column of a table, or several fields of it that are one value: (N,) float64, NaN where no number stands.
 
-    title : "" without a name; values : (N,) float64, NaN where no number stands; unit : of the values
-    written : gives the (N,) texts as they stand in the table; first : the first of them
+    title : "" without a name; written : gives the (N,) texts as they stand in the table; first : the first of them
     """
 
     title: str
@@ -51,13 +50,7 @@ class TableColumn:
 
 
 def titled_columns(table: NumberTable) -> tuple[list[TableColumn], list[str] | None]:
-    """The columns of a table with the names above it.
-
-    Returns
-    -------
-    columns : in the order of the fields; without titles where the names are not known
-    unmatched : the names in a line that has another number of them, None otherwise
-    """
+    """The columns of a table in the order of its fields, with the names above it, and those names where their number is another one."""
     fields = _fields(table)
     best: tuple[int, list[str], list[tuple[int, str]]] = (TRAJECTORY.least_named - 1, [], [])
     unmatched: tuple[int, list[str]] = (TRAJECTORY.least_named, [])
@@ -229,10 +222,7 @@ NOVATEL = re.compile(r"[#%](?P<name>[A-Z]+A),(?P<head>[^;\n]*);(?P<rest>[^*\n]*)
 
 
 def _read_log(path: Path) -> list[TableColumn]:
-    """The positions in a log of sentences, as columns with names.
-
-    Raises RoadExtractionError if its sentences hold no positions.
-    """
+    """The positions in a log of sentences, as columns with names; RoadExtractionError where there are none."""
     kept: dict[str, list[list[str]]] = {}
     day = ""
     for line in path.read_text(encoding="latin-1").split("\n"):
@@ -308,12 +298,10 @@ def _gps_column(rows, number):
 
 
 def _read_track(path: Path) -> list[TableColumn]:
-    """The positions of a GPX or KML file, as columns with names.
+    """The positions of a GPX or KML file, as columns with names; RoadExtractionError if it is no XML, or holds none.
 
     Of GPX the points of tracks are taken, otherwise those of its route, otherwise its waypoints; of KML the tracks (gx:Track), otherwise the
     lines, otherwise the points.
-
-    Raises RoadExtractionError if it is no XML, or holds neither track nor line.
     """
     reader = _TrackReader()
     try:

@@ -47,9 +47,8 @@ class ClockTimes:
     """Clock times that were written as text, or as days.
 
     seconds : (N,) since 6 January 1980 as the clock counts, or since its midnight where no date is written; NaN where a text is no time
-    dated : whether dates are written
+    dated, order_known : whether dates are written, and whether day and month can be told apart
     zone : "UTC" or "GPS" where the texts say so, "" otherwise; times with an offset from UTC are brought to UTC
-    order_known : whether day and month can be told apart
     kind, first : what was written, and the first of them
     """
 
@@ -135,16 +134,8 @@ def _midnight(date, day_first):
 def counted_days(values: np.ndarray, texts: Callable[[], Sequence[str]], what: str) -> ClockTimes | None:
     """The clock times of (N,) days and their shares, as MJD or spreadsheets count them; None of values that count seconds.
 
-    Parameters
-    ----------
-    values : (N,) numbers
-    texts : gives the (N,) texts as they are written
-    what : the beginning of a message
-
-    Raises
-    ------
-    RoadExtractionError
-        If they go up like days, but are of no known count, or have too few decimals.
+    texts : gives the (N,) texts as they are written; what : the beginning of a message. RoadExtractionError if they go up like days, but are of no
+    known count, or have too few decimals.
     """
     steps = np.diff(values)
     steps = steps[steps > 0]
@@ -229,16 +220,7 @@ LARGEST_SHIFT = TAI_TO_GPS + len(LEAP_DAYS)   # derived: s between two clocks, T
 
 
 def unwrap_time(time: np.ndarray) -> np.ndarray:
-    """Seconds of the week or day, continued past midnight or the end of the week.
-
-    Parameters
-    ----------
-    time : (N,) seconds, in driving order
-
-    Returns
-    -------
-    (N,) float64 seconds; the same values where the count does not start again
-    """
+    """(N,) seconds of the week or day in driving order, continued past midnight or the end of the week; the same where neither ends."""
     time = np.asarray(time, float)
     known = np.flatnonzero(np.isfinite(time))
     if len(known) < 2:
@@ -262,30 +244,22 @@ def wrapped_week(span: tuple[float, float]) -> bool:
 
 
 def align_time(time: np.ndarray, cloud_span: tuple[float, float], system: str = "automatic", adjusted: bool = True) -> tuple[float, str]:
-    """Seconds to add to a trajectory's time to convert it to the cloud's.
+    """Seconds to add to a trajectory's time to convert it to the cloud's, and a sentence for the user, "" where nothing is to be told.
+
+    Leap seconds are never guessed: where a shift of 18 s (or 17, 37 ...) would make the two agree, the note or the message says so, and the user
+    decides.
 
     Parameters
     ----------
     time : (N,) seconds of the trajectory, in driving order where the count starts again from zero
     cloud_span : (first, last) gps_time of the cloud, seconds
-    system : the time system of the trajectory: "gps" (seconds since 1980), "adjusted"
-        (the same minus 1e9), "week", "day", or "automatic"
+    system : "gps" (seconds since 1980), "adjusted" (the same minus 1e9), "week", "day", or "automatic"
     adjusted : whether the header of the cloud states adjusted standard GPS time
-
-    Returns
-    -------
-    offset : seconds
-    note : a sentence for the user; "" where nothing was changed and nothing is doubtful
 
     Raises
     ------
     RoadExtractionError
         If the time system is not known, the trajectory has no times, or cloud and trajectory overlap in no time system.
-
-    Notes
-    -----
-    Leap seconds are never guessed: where a shift of 18 s (or 17, 37 ...) would
-    make the two agree, the note or the message says so, and the user decides.
     """
     if system not in TIME_SYSTEMS:
         raise RoadExtractionError(f"The time system {system!r} is not known; choose one of {', '.join(TIME_SYSTEMS)}.")

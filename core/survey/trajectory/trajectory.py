@@ -70,18 +70,9 @@ class Trajectory:
 
 
 def clean_trajectory(trajectory: Trajectory) -> Trajectory:
-    """The trajectory sorted by time, without repeated times, outliers and rows that have no position.
+    """The trajectory sorted by time, without repeated times, outliers and rows that have no position; its notes say what was changed.
 
-    Standstills remain, since time goes on while the vehicle waits; the road's reference line, which is
-    sampled by distance, does not contain them.
-
-    Parameters
-    ----------
-    trajectory : Trajectory, as read
-
-    Returns
-    -------
-    Trajectory, whose notes also say what was changed
+    Standstills remain, since time goes on while the vehicle waits; the road's reference line, which is sampled by distance, does not contain them.
 
     Raises
     ------
@@ -186,18 +177,10 @@ def _refuse_degrees(trajectory):
 
 
 def reproject_trajectory(trajectory: Trajectory, target_wkt: str) -> Trajectory:
-    """The trajectory in another CRS: its positions, and its heading from the target's grid north.
+    """The trajectory in another CRS, WKT or "EPSG:n": its positions, and its heading from the target's grid north.
 
-    Heights stay as they are; whether they are ellipsoidal or orthometric is absorbed by
-    the estimated height of the sensor.
-
-    Parameters
-    ----------
-    target_wkt : WKT or "EPSG:n", projected; "" where unknown
-
-    Returns
-    -------
-    Trajectory; unchanged where its CRS or the target is unknown
+    It is unchanged where its CRS or the target is unknown. Heights stay as they are; whether they are ellipsoidal or orthometric is absorbed by the
+    estimated height of the sensor.
 
     Raises
     ------
@@ -240,10 +223,7 @@ def reproject_trajectory(trajectory: Trajectory, target_wkt: str) -> Trajectory:
 def taken_to_be_in(trajectory: Trajectory, wkt: str) -> Trajectory:
     """A trajectory without a CRS, its coordinates taken to be those of another file's CRS; it is unchanged where they are in metres.
 
-    Raises
-    ------
-    RoadExtractionError
-        If its columns say feet, and the CRS does not.
+    RoadExtractionError if its columns say feet, and the CRS does not.
     """
     crs, (x, y, z), left = lengths_in_metres(wkt, (trajectory.x, trajectory.y, trajectory.z), trajectory.stated_units, "The trajectory")
     if "feet" in dict(left).values():
@@ -255,25 +235,10 @@ def taken_to_be_in(trajectory: Trajectory, wkt: str) -> Trajectory:
 
 def lengths_in_metres(crs: str, places: tuple[np.ndarray, np.ndarray, np.ndarray], stated: Sequence[tuple[str, str]],
                       label: str) -> tuple[str, tuple[np.ndarray, ...], Sequence[tuple[str, str]]]:
-    """Coordinates of a trajectory in metres.
+    """Coordinates of a trajectory in metres: the WKT of their metric CRS, x, y and z, and what is still to be looked at once the CRS is known.
 
-    Parameters
-    ----------
-    crs : WKT of their CRS, "" where unknown
-    places : x, y and z, (N,) each, in its units, or where their columns state one, in that
-    stated : (role, "feet" or "metres") of x, y and z
-    label : the source, for messages
-
-    Returns
-    -------
-    crs : WKT, metric
-    places : in metres, or as they were where the CRS is unknown
-    stated : what is still to be looked at once the CRS is known
-
-    Raises
-    ------
-    RoadExtractionError
-        If x or y are stated in feet, and the CRS is in another unit.
+    crs : WKT, "" where unknown: then they stay as they were; places : x, y and z, (N,) each, in its units, or where `stated` says one, in that
+    stated : (role, "feet" or "metres") of x, y and z. RoadExtractionError if x or y are stated in feet, and the CRS is in another unit.
     """
     known = dict(stated)
     if not crs:

@@ -12,24 +12,10 @@ from ..weights import TRAJECTORY
 
 
 def columns_from_numbers(values: np.ndarray, path: str | os.PathLike[str]) -> dict[str, int]:
-    """The roles of the columns of a table without names.
+    """{role: index of the column} of a table without names, (N, K) numbers in driving order, with x, y or lon, lat.
 
-    Time increases evenly; x and y are large and change no faster than a vehicle drives; z follows
-    them; the heading agrees with the course driven. Nothing is guessed where several columns qualify.
-
-    Parameters
-    ----------
-    values : (N, K) numbers, in driving order
-    path : of the file, for messages
-
-    Returns
-    -------
-    {role: index of the column}, with x, y or lon, lat
-
-    Raises
-    ------
-    RoadExtractionError
-        If time, x, y and z cannot be recognised.
+    Time increases evenly; x and y are large and change no faster than a vehicle drives; z follows them; the heading agrees with the course driven.
+    Nothing is guessed where several columns qualify. RoadExtractionError, which names `path`, if time, x, y and z cannot be recognised.
     """
     values = values[np.isfinite(values).sum(axis=1) >= 3]
     sample = values[:TRAJECTORY.max_sample_rows]
@@ -206,29 +192,16 @@ def _after_roll_and_pitch(sample, k):
 
 
 def rough_metres(x: np.ndarray, y: np.ndarray, crs: str) -> tuple[np.ndarray, np.ndarray]:
-    """(N,) x and y in metres, of longitude and latitude as far as speeds and courses need it.
-
-    Parameters
-    ----------
-    x, y : (N,) in the CRS
-    crs : WKT or "EPSG:n"; "" where unknown, which is taken to be metric
-    """
+    """(N,) x and y in metres, of longitude and latitude as far as speeds and courses need it; an unknown CRS is taken to be metric."""
     if crs and horizontal_part(parse_crs(crs)).is_geographic:
         return x * np.cos(np.radians(np.nanmedian(y))) * TRAJECTORY.metres_per_degree, y * TRAJECTORY.metres_per_degree
     return x, y
 
 
 def driven_course(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The course of a drive.
+    """(K,) indices of positions, at least `min_course_step` of driving apart, and (K,) courses there, degrees clockwise from north.
 
-    Parameters
-    ----------
     x, y : (N,) metres, in driving order
-
-    Returns
-    -------
-    rows : (K,) indices of positions, at least `min_course_step` of driving apart
-    course : (K,) degrees clockwise from north at these
     """
     driven = np.r_[0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y)))]
     spacing = max(TRAJECTORY.min_course_step, driven[-1] / TRAJECTORY.max_course_rows)
@@ -246,12 +219,7 @@ def angle_between(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def _heading_disagreement(x: np.ndarray, y: np.ndarray, heading: np.ndarray) -> float | None:
-    """How far a column that may be the heading differs from the course driven.
-
-    x, y : (N,) metres
-    heading : (N,) degrees or radians
-    Returns: Median difference in degrees; None beyond `heading_tolerance` or where the column cannot be an angle
-    """
+    """Median difference, degrees, of a column that may be the heading from the course driven; None beyond the tolerance, or where it is no angle."""
     good = np.isfinite(x) & np.isfinite(y) & np.isfinite(heading)
     rows, course = driven_course(x[good], y[good])
     # The course of a straight drive equals many a constant column: values beyond an angle's range exclude it.
@@ -262,18 +230,9 @@ def _heading_disagreement(x: np.ndarray, y: np.ndarray, heading: np.ndarray) -> 
 
 
 def geographic_unit(lon: np.ndarray, lat: np.ndarray, time: np.ndarray | None = None) -> str:
-    """The unit of two columns that may be the longitude and latitude of a drive.
+    """The unit, "degrees" or "radians", of two columns that may be the longitude and latitude of a drive; "" where they are not.
 
-    They are if their values are in range and change at the speed of a vehicle when taken as angles.
-
-    Parameters
-    ----------
-    lon, lat : (N,) numbers
-    time : (N,) seconds; None where unknown
-
-    Returns
-    -------
-    "degrees" or "radians"; "" where they are not longitude and latitude
+    They are if their values are in range and change at the speed of a vehicle when taken as angles. time : (N,) seconds; None where unknown
     """
     good = np.isfinite(lon) & np.isfinite(lat)
     lon, lat = lon[good], lat[good]
