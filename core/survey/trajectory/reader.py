@@ -177,8 +177,8 @@ def _stated_crs(path, preamble, projected, notes):
 
 def _check_complete(source, columns, place, heights_needed=True):
     """Refuse a table without coordinates."""
-    missing = [role for role, others in (("x", ("lon", "ecef_x")), ("y", ("lat", "ecef_y")), ("z", ("ecef_z",)))
-               if role not in place and not any(other in place for other in others) and (role != "z" or heights_needed)]
+    ways = {"x": {"x", "lon", "ecef_x"}, "y": {"y", "lat", "ecef_y"}, **({"z": {"z", "ecef_z"}} if heights_needed else {})}
+    missing = [role for role, roles in ways.items() if not roles & set(place)]
     if missing:
         titles = [column.title or f"column {k + 1}" for k, column in enumerate(columns)]
         raise RoadExtractionError(
@@ -202,13 +202,14 @@ def _plane_coordinates(columns, time, crs, label, notes):
     """x, y and their CRS; longitude and latitude in degrees where they are geographic."""
     known = parse_crs(crs)
     geographic = known is not None and horizontal_part(known).is_geographic
-    if "x" in columns and "y" in columns and ("lon" not in columns or (known is not None and not geographic)):
+    projected = known is not None and not geographic
+    if {"x", "y"} <= set(columns) and (projected or "lon" not in columns):
         x, y = columns["x"], columns["y"]
         unit = geographic_unit(x, y, time)
         _check_map(x, y, unit, time, known, label)
         if not geographic and not unit:
-            return x, y, "" if known is None else known.to_wkt()
-    elif "lon" in columns and "lat" in columns:
+            return x, y, known.to_wkt() if projected else ""
+    elif {"lon", "lat"} <= set(columns):
         x, y = columns["lon"], columns["lat"]
         unit = geographic_unit(x, y, time)
         _check_degrees(x, y, unit, label)
@@ -225,23 +226,24 @@ def _plane_coordinates(columns, time, crs, label, notes):
 
 def _check_map(x, y, unit, time, known, label):
     """Refuse x and y that contradict their CRS, `known`, or are latitude and longitude; `unit` is that of angles, "" of what is none."""
-    geographic = known is not None and horizontal_part(known).is_geographic
-    if geographic and not unit and (np.abs(np.stack([x, y])) > 360).any():
-        raise RoadExtractionError(
-            f"{label} has the CRS {horizontal_part(known).name} (degrees), but its coordinates reach "
-            f"{_farthest(x):.0f}, {_farthest(y):.0f}. Give the CRS that its x and y are in.")
-    if not geographic and known is not None and unit:
+    if known is not None and horizontal_part(known).is_geographic:
+        if not unit and max(_farthest(x), _farthest(y)) > 360:
+            raise RoadExtractionError(
+                f"{label} has the CRS {horizontal_part(known).name} (degrees), but its coordinates reach "
+                f"{_farthest(x):.0f}, {_farthest(y):.0f}. Give the CRS that its x and y are in.")
+        return
+    if known is not None and unit:
         raise RoadExtractionError(
             f"{label} has the CRS {horizontal_part(known).name}, but its coordinates look like longitude and latitude "
             f"(about {np.nanmedian(x):.4f}, {np.nanmedian(y):.4f}). Set its CRS to EPSG:4326.")
-    if not geographic and not unit and geographic_unit(y, x, time) == "degrees" and _farthest(y) > 90.0:
+    if not unit and geographic_unit(y, x, time) == "degrees" and _farthest(y) > 90.0:
         raise RoadExtractionError(f"{label} has x and y that look like latitude and longitude (about {np.nanmedian(x):.4f}, "
                                   f"{np.nanmedian(y):.4f}), in this order. Name the columns latitude and longitude.")
 
 
 def _check_degrees(lon, lat, unit, label):
     """Refuse longitudes and latitudes that are no angles, or exchanged."""
-    if not unit and (np.abs(np.stack([lon, lat])) > 360).any():
+    if not unit and max(_farthest(lon), _farthest(lat)) > 360:
         raise RoadExtractionError(
             f"{label} has longitude and latitude up to {_farthest(lon):.0f}, {_farthest(lat):.0f}; these are not degrees. Write their unit behind "
             "their names, such as latitude (ddmm.mmmm) or latitude (1e-7 deg), or name the columns x and y where they are metres.")
@@ -252,38 +254,40 @@ def _check_degrees(lon, lat, unit, label):
 
 def _angles(columns, x, y, crs, unit, notes):
     """roll, pitch, heading in degrees, heading clockwise from north; None where a column is missing."""
-    found = {role: columns.get(role) for role in ("roll", "pitch", "heading")}
-    if all(values is None for values in found.values()):
-        return [None, None, None]
+    angles = {role: columns[role] for role in ("roll", "pitch", "heading") if role in columns}
+    heading = angles.get("heading", np.full(len(x), np.nan))
     x, y = rough_metres(x, y, crs)
-    heading = found["heading"]
-    good = np.isfinite(x) & np.isfinite(y) & np.isfinite(np.nan if heading is None else heading)
-    if good.sum() > 2:
-        rows, course = driven_course(x[good], y[good])
-        heading_there = heading[good][rows]
-        if np.abs(heading[good]).max() > 2 * np.pi + 0.1:
-            unit = "degrees"
-        elif not unit and len(rows):
-            unit = min(("degrees", "radians"), key=lambda u: _median_difference(heading_there, u, course))
-        if len(rows):
-            in_degrees = np.degrees(heading_there) if unit == "radians" else heading_there
-            heading, note = _from_north(heading, in_degrees, course, unit)
-            found["heading"] = heading
-            notes += note
-    elif not unit:
-        largest = max((np.nanmax(np.abs(v)) for v in found.values() if v is not None and np.isfinite(v).any()), default=1.0)
-        unit = "radians" if largest < TRAJECTORY.max_roll_radians else "degrees"
-    if unit == "radians":
+    good = np.flatnonzero(np.isfinite(x + y + heading))
+    rows, course = driven_course(x[good], y[good]) if len(good) > 2 else (good[:0], heading[:0])
+    driven = heading[good][rows]
+    unit = _angle_unit(angles, heading[good], driven, course, unit)
+    if len(rows):
+        angles["heading"], note = _from_north(heading, np.degrees(driven) if unit == "radians" else driven, course, unit)
+        notes += note
+    if angles and unit == "radians":
         notes.append("Roll, pitch and heading are in radians; they were converted to degrees.")
-        found = {role: None if values is None else np.degrees(values) for role, values in found.items()}
-    if found["heading"] is not None:
-        found["heading"] = found["heading"] % 360.0
-    return [found["roll"], found["pitch"], found["heading"]]
+        angles = {role: np.degrees(values) for role, values in angles.items()}
+    if "heading" in angles:
+        angles["heading"] = angles["heading"] % 360.0
+    return [angles.get(role) for role in ("roll", "pitch", "heading")]
 
 
-def _median_difference(heading, unit, course):
-    """Median difference in degrees between a heading in some unit and the course."""
-    return float(np.median(angle_between(np.degrees(heading) if unit == "radians" else heading, course)))
+def _angle_unit(angles, headings, driven, course, unit):
+    """The unit of {role: (N,) angles}: `unit` where it is stated, unless the headings, of which (K,) have a course (degrees), exceed radians."""
+    if len(headings) > 2:
+        return "degrees" if np.abs(headings).max() > 2 * np.pi + 0.1 else unit or _likelier_unit(driven, course)
+    if unit or not angles:
+        return unit
+    largest = np.nanmax(np.abs(np.concatenate([*angles.values()])), initial=-1.0)
+    return "radians" if 0.0 <= largest < TRAJECTORY.max_roll_radians else "degrees"
+
+
+def _likelier_unit(heading, course):
+    """The unit in which (N,) headings differ less from the course, degrees; "" of none."""
+    if not len(heading):
+        return ""
+    as_degrees, as_radians = (float(np.median(angle_between(angles, course))) for angles in (heading, np.degrees(heading)))
+    return "degrees" if as_degrees <= as_radians else "radians"
 
 
 def _from_north(heading, in_degrees, course, unit):

@@ -39,6 +39,16 @@ class TableColumn:
         return not np.isfinite(self.values).any()
 
     @property
+    def is_empty(self) -> bool:
+        """Whether it holds neither texts nor numbers."""
+        return not self.first and self.is_text
+
+    @property
+    def in_metres(self) -> np.ndarray:
+        """(N,) lengths in metres where they are given in these or in parts of them, otherwise as they stand."""
+        return self.values * (self.unit.factor if self.unit.name == "metres" else 1.0)
+
+    @property
     def holds_texts(self) -> bool:
         """Whether it holds something, but no number at all."""
         return bool(self.first) and self.is_text
@@ -52,25 +62,28 @@ class TableColumn:
 def titled_columns(table: NumberTable) -> tuple[list[TableColumn], list[str] | None]:
     """The columns of a table in the order of its fields, with the names above it, and those names where their number is another one."""
     fields = _fields(table)
-    best: tuple[int, list[str], list[tuple[int, str]]] = (TRAJECTORY.least_named - 1, [], [])
-    unmatched: tuple[int, list[str]] = (TRAJECTORY.least_named, [])
-    for line in table.preamble[-TRAJECTORY.max_header_lines:]:
-        for names in split_header(line):
-            named = candidates_by_role(names) if len(names) <= len(fields) + 20 else {}
-            if len(named) <= min(best[0], unmatched[0]):
-                continue
-            spans = _spans(names, named, fields) if len(named) > best[0] else None
-            if spans is not None:
-                best = len(named), names, spans
-            elif len(named) > unmatched[0]:
-                unmatched = len(named), names
-    _, names, spans = best
+    names, spans, unmatched = _names_above(table, fields)
     if not names:
-        return _together([""] * len(fields), _spans_without_names(fields), [Unit()] * len(fields), fields), unmatched[1] or None
+        return _together([""] * len(fields), _spans_without_names(fields), [Unit()] * len(fields), fields), unmatched or None
     units = [unit_of_name(name) for name in names]
     if not any(unit.name for unit in units):
         units = units_above(table.preamble, len(names)) or units
     return _together(names, spans, units, fields), None
+
+
+def _names_above(table, fields):
+    """The names in the lines above a table that give the most roles, with their spans, and those of another number that give even more."""
+    most, names, spans = TRAJECTORY.least_named - 1, [], []
+    most_unmatched, unmatched = TRAJECTORY.least_named, []
+    for line in table.preamble[-TRAJECTORY.max_header_lines:]:
+        for words in split_header(line):
+            named = candidates_by_role(words) if len(words) <= len(fields) + 20 else {}
+            fitting = _spans(words, named, fields) if len(named) > most else None
+            if fitting is not None:
+                most, names, spans = len(named), words, fitting
+            elif len(named) > most_unmatched:
+                most_unmatched, unmatched = len(named), words
+    return names, spans, unmatched
 
 
 def columns_of_rows(titles: Sequence[str], rows: Sequence[Sequence[object]]) -> list[TableColumn]:
@@ -134,24 +147,27 @@ def _possible_spans(role, fields):
         yield together, "time"
     elif role == "time" and len(fields) > 1 and _week(fields[0].values) and _within(fields[1].values, 0.0, SECONDS_PER_WEEK + 1.0):
         yield 2, "week"
-    elif role in ("lon", "lat") and len(fields) > 2:
-        degrees, minutes, seconds = (column.values[:TRAJECTORY.checked_rows] for column in fields[:3])
-        if _whole(degrees) and _within(minutes, 0.0, 60.0):
-            if _whole(minutes) and _within(seconds, 0.0, 60.0):
-                yield 3, "angle"
-            if not _whole(minutes):
-                yield 2, "angle"
+    elif role in ("lon", "lat"):
+        yield from ((count, "angle") for count in _fields_of_an_angle(fields))
     yield 1, ""
+
+
+def _fields_of_an_angle(fields):
+    """The numbers of fields in which degrees with minutes, and with seconds, may stand."""
+    parts = [column.values[:TRAJECTORY.checked_rows] for column in fields[:3]]
+    if len(parts) < 3 or not _whole(parts[0]) or not _within(parts[1], 0.0, 60.0):
+        return []
+    return ([3] if _within(parts[2], 0.0, 60.0) else []) if _whole(parts[1]) else [2]
 
 
 def _fields_of_a_time(fields):
     """2 for a date with a clock behind it, 3 for one with AM or PM behind that, otherwise 1."""
-    if len(fields) < 2 or not (fields[0].is_text or _within(fields[0].values, 19_800_106.0, 21_000_101.0)) or not fields[1].is_text or \
-            not (fields[0].first[:1].isdigit() and ":" in fields[1].first):
+    first, second, third = (*fields, None, None)[:3]
+    if second is None or ":" not in second.first or not second.holds_clock_times or not re.match(r"\d[^:]*$", first.first):
         return 1
-    if ":" in fields[0].first or not hold_times(fields[1].written()[:TRAJECTORY.checked_rows]):
+    if not first.is_text and not _within(first.values, 19_800_106.0, 21_000_101.0):
         return 1
-    return 3 if len(fields) > 2 and fields[2].first.upper() in ("AM", "PM") else 2
+    return 3 if third is not None and third.first.upper() in ("AM", "PM") else 2
 
 
 def _within(values, low, high):
@@ -177,20 +193,21 @@ def with_week(seconds: np.ndarray, week: np.ndarray) -> np.ndarray:
 
 def _together(names, spans, units, fields):
     """One TableColumn a name."""
-    found, start = [], 0
-    for name, (count, kind), unit in zip(names, spans, units):
-        parts = fields[start:start + count]
-        start += count
-        unit, values = unit if unit.name else parts[0].unit, parts[0].values
-        if kind == "week":
-            values = with_week(parts[1].values, values)
-        elif kind == "angle":
-            values, unit = degrees_of(*(part.values for part in parts), *[np.zeros(len(values))] * (3 - count)), Unit("degrees")
-        elif kind == "time":
-            values = np.full(len(values), np.nan)
-        written = parts[0].written if count == 1 else lambda parts=parts: [" ".join(texts) for texts in zip(*(part.written() for part in parts))]
-        found.append(TableColumn(name, values, unit, written, " ".join(part.first for part in parts)))
-    return found
+    ends = np.cumsum([count for count, _ in spans])
+    return [_joined(name, fields[end - count:end], kind, unit) for name, (count, kind), unit, end in zip(names, spans, units, ends.tolist())]
+
+
+def _joined(name, parts, kind, unit):
+    """The TableColumn of fields that are one value together."""
+    values, unit = parts[0].values, unit if unit.name else parts[0].unit
+    if kind == "week":
+        values = with_week(parts[1].values, values)
+    elif kind == "angle":
+        values, unit = degrees_of(*(part.values for part in parts), *[np.zeros(len(values))] * (3 - len(parts))), Unit("degrees")
+    elif kind == "time":
+        values = np.full(len(values), np.nan)
+    written = parts[0].written if len(parts) == 1 else lambda: [" ".join(texts) for texts in zip(*(part.written() for part in parts))]
+    return TableColumn(name, values, unit, written, " ".join(part.first for part in parts))
 
 
 # What receivers and telephones keep: sentences of NMEA 0183 and NovAtel's ASCII logs, and tracks in GPX and KML.

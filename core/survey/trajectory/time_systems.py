@@ -79,25 +79,28 @@ def clock_times(texts: Sequence[str]) -> ClockTimes | None:
     """Clock times of (N,) texts; None where they are none."""
     if not hold_times(texts) and not all(re.fullmatch(r"\d{8} .*:.*", text) for text in texts[:TRAJECTORY.texts_looked_at] if text):
         return None
-    found = [_match(text) for text in texts]
-    dates = {match["date"] for match in found if match and match["date"]}
+    matches = [*map(_match, texts)]
+    dates = {match["date"] for match in filter(None, matches)} - {None}
     day_first, order_known = _order(dates)
-    midnight = {date: _midnight(date, day_first) for date in dates}
-    seconds = np.full(len(texts), np.nan)
-    zones = set()
-    for row, match in enumerate(found):
-        if match is None or (match["hour"] is None and not match["date"]) or (dates and not match["date"]):
-            continue
-        value = midnight[match["date"]] if match["date"] else 0.0
-        if match["hour"]:
-            value += _since_midnight(match)
-        zone = (match["zone"] or "").upper()
-        zones.add(zone)
-        if zone[:1] in ("+", "-") and zone:
-            value -= (60 * int(zone[1:3]) + int(zone[-2:])) * 60.0 * (1 if zone[0] == "+" else -1)
-        seconds[row] = value
-    zone = "" if "" in zones or not zones else "GPS" if all(name.startswith("GPS") for name in zones) else "UTC"
+    # without any date the clock alone counts, and with dates a clock without one is none
+    midnight = {date: _midnight(date, day_first) for date in dates} or {None: 0.0}
+    seconds = np.array([np.nan if match is None else _clock_seconds(match, midnight) for match in matches])
+    zone = _common_zone({(match["zone"] or "").upper() for match, second in zip(matches, seconds) if not np.isnan(second)})
     return ClockTimes(seconds, bool(dates), zone, order_known, first=next(filter(None, texts), ""))
+
+
+def _common_zone(zones):
+    """"GPS" or "UTC" where every time says what it is of, otherwise ""."""
+    return "" if "" in zones or not zones else "GPS" if all(name.startswith("GPS") for name in zones) else "UTC"
+
+
+def _clock_seconds(match, midnight):
+    """Seconds of a clock time in UTC, where it says how far off that it is; NaN where it lacks a date that others have, or a clock and a date."""
+    if match["date"] not in midnight or not match["hour"] and not match["date"]:
+        return np.nan
+    zone = match["zone"] or ""
+    ahead = (60 * int(zone[1:3]) + int(zone[-2:])) * 60.0 * (1 if zone[0] == "+" else -1) if zone[:1] in ("+", "-") and zone else 0.0
+    return midnight[match["date"]] + (_since_midnight(match) if match["hour"] else 0.0) - ahead
 
 
 def _since_midnight(match):
@@ -292,30 +295,37 @@ def align_time(time: np.ndarray, cloud_span: tuple[float, float], system: str = 
 
 def _offsets(first, last, cloud, system):
     """[(system, offset)]: the offsets that may convert each time system to the cloud's."""
-    absolute_cloud = cloud + ADJUSTED_OFFSET if cloud < ADJUSTED_OFFSET else cloud
-    absolute = cloud > 1.5 * SECONDS_PER_WEEK  # the count of the cloud does not start again every week
+    options = [*_absolute_offsets(first, cloud, system), *_period_offsets(first, last, cloud, system)]
+    kept = [(name, float(offset)) for name, offset in options if system in ("automatic", name)]
+    return [("as it is", 0.0), *kept] if system == "automatic" else kept
+
+
+def _absolute_offsets(first, cloud, system):
+    """Those of times that count from 1980, "adjusted" or not."""
+    shifts = (("adjusted", ADJUSTED_OFFSET), ("gps", 0.0))
+    if cloud > 1.5 * SECONDS_PER_WEEK:   # the count of the cloud does not start again every week
+        return [(name, shift + cloud - _since_1980(cloud)) for name, shift in shifts]
+    periods = (SECONDS_PER_WEEK, SECONDS_PER_DAY) if cloud < 1.5 * SECONDS_PER_DAY else (SECONDS_PER_WEEK,)
+    return [(name, -np.floor((first + shift) / period) * period + shift + turn * period) for name, shift in shifts
+            if system == name or first > 2 * SECONDS_PER_WEEK or first < 0 for period in periods for turn in (0, -1, 1)]
+
+
+def _period_offsets(first, last, cloud, system):
+    """Those of times that start again every week or day."""
     options = []
-    for name, shift in (("adjusted", ADJUSTED_OFFSET), ("gps", 0.0)):
-        if absolute:
-            options.append((name, shift + cloud - absolute_cloud))
-        elif system == name or first > 2 * SECONDS_PER_WEEK or first < 0:
-            start = first + shift
-            options += [(name, -np.floor(start / period) * period + shift + turn * period)
-                        for period in ((SECONDS_PER_WEEK, SECONDS_PER_DAY) if cloud < 1.5 * SECONDS_PER_DAY else (SECONDS_PER_WEEK,))
-                        for turn in (0, -1, 1)]
     for name, period in (("week", SECONDS_PER_WEEK), ("day", SECONDS_PER_DAY)):
-        if last > 2 * period and system != name:
-            continue
-        if absolute:
-            start = np.floor(absolute_cloud / period) * period - absolute_cloud + cloud
-        else:
-            start = np.floor(cloud / period) * period
-        options += [(name, start + turn * period) for turn in (0, -1, 1)]
+        if last <= 2 * period or system == name:
+            whole = _since_1980(cloud) if cloud > 1.5 * SECONDS_PER_WEEK else cloud
+            start = np.floor(whole / period) * period - whole + cloud
+            options += [(name, start + turn * period) for turn in (0, -1, 1)]
     if cloud < 1.5 * SECONDS_PER_DAY <= first and last <= 2 * SECONDS_PER_WEEK:
-        options += [("week", -np.floor(first / SECONDS_PER_DAY) * SECONDS_PER_DAY)]
-    if system == "automatic":
-        return [("as it is", 0.0), *((name, float(offset)) for name, offset in options)]
-    return [(name, float(offset)) for name, offset in options if name == system]
+        options.append(("week", -np.floor(first / SECONDS_PER_DAY) * SECONDS_PER_DAY))
+    return options
+
+
+def _since_1980(cloud):
+    """GPS time of an absolute time of a cloud, adjusted or not."""
+    return cloud + ADJUSTED_OFFSET if cloud < ADJUSTED_OFFSET else cloud
 
 
 def is_to_come(seconds: float) -> bool:
