@@ -14,7 +14,7 @@ from ..core.common.errors import RoadExtractionError
 from ..core.common.parallel import cancellation_scope, claim_memory, is_lack_of_memory, out_of_memory
 from .algorithm import WARNINGS
 from .cloud_files import cloud_files, survey_name
-from .destinations import UnfinishedFiles, UnfinishedLayers, bring_back, check_suffix, check_writable, destination_path
+from .destinations import Unfinished, check_suffix, check_writable, destination_path
 from .parameters import settings_class
 from .progress import CountedWarnings
 from .provenance import provenance_now, sign_file
@@ -38,7 +38,7 @@ class Call:
 
     def __init__(self, algorithm, parameters):
         self.algorithm, self.parameters = algorithm, parameters
-        self._files, self._layer_files = UnfinishedFiles(), UnfinishedLayers()
+        self._unfinished = Unfinished()
         self._scratch = tempfile.TemporaryDirectory(prefix="lanewright-")
         self._results = {}
         self._layers = []
@@ -197,8 +197,6 @@ class Call:
             if path is None:
                 continue
             check_suffix(path, spec, self.VECTOR_SUFFIXES)
-            if spec.kind == "layer":
-                bring_back(path)
             read = self.read_as(value, path) or self._cloud_at(path)
             if read:
                 raise RoadExtractionError(
@@ -226,7 +224,7 @@ class Call:
         if not self.wants(name):
             return ""
         self._results[name] = path = self.output_path(name)
-        return self._files.begin(path)
+        return str(self._unfinished.begin(path))
 
     def scratch_file(self, name):
         """A path in a folder that vanishes with the run."""
@@ -236,7 +234,7 @@ class Call:
         """Take back a file that `new_file` began: there is nothing to put into it."""
         path = self._results.pop(name, "")
         if path:
-            self._files.forget(path)
+            self._unfinished.forget(path)
 
     def text(self, name, text):
         """Write a text result (a report) where it is wanted."""
@@ -257,19 +255,18 @@ class Call:
         """What the user gave or left at its default for every input, in types that JSON has."""
         raise NotImplementedError
 
-    def commit_files(self):
-        """Give the files their names, each with a note of where it comes from; that note, for the layers."""
+    def sign_files(self):
+        """Note in every file where it comes from; that note, for the layers."""
         provenance = provenance_now(self.algorithm.ID, self.values(), self.warnings, self.names_only)
         crs = next((features.crs for _, features in self._layers if features.crs), "")
-        for path in self._files.unfinished():
+        for path in self._unfinished.begun():
             sign_file(path, provenance)
             sign_report(path, lambda: run_facts(self.algorithm, self.survey, self.surveyed(), crs, provenance))
-        self._files.commit()
         return provenance
 
     def in_users_names(self, text):
         """A message with the names of unfinished files replaced by those the user gave."""
-        return self._layer_files.in_users_names(self._files.in_users_names(text))
+        return self._unfinished.in_users_names(text)
 
     def at_end(self, action):
         """Call a function when the run ends, however it does."""
@@ -277,8 +274,7 @@ class Call:
 
     def discard_unfinished(self):
         self._at_end.close()
-        self._files.discard()
-        self._layer_files.discard()
+        self._unfinished.discard()
         self._scratch.cleanup()
 
 

@@ -11,10 +11,10 @@ from .texts import tr
 
 
 def settings_class(path):
-    """`road.profiles.detect:CurbSettings` -> the class; None where a package it needs is missing."""
+    """`core.road.profiles.detect:CurbSettings` -> the class; None where a package it needs is missing."""
     module, name = path.split(":")
     try:
-        return getattr(import_module(f"..core.{module}", __package__), name)
+        return getattr(import_module(f"..{module}", __package__), name)
     except ImportError:
         return None
 

@@ -6,7 +6,7 @@ from ..core.common.errors import RoadExtractionError
 from .parameters import SettingSpec
 from .texts import tr
 
-SURVEY = "survey.open_survey:SurveySettings"
+SURVEY = "core.survey.open_survey:SurveySettings"
 
 SURVEY_SETTINGS = (
     SettingSpec(
@@ -56,7 +56,7 @@ READING_SETTINGS = tuple(spec for spec in SURVEY_SETTINGS if spec.name != "TRAJE
 
 EXECUTION_SETTINGS = (
     SettingSpec(
-        "WORKERS", "execution.choice:ExecutionSettings", "workers", tr("Worker processes, 0 = automatic (whole number)"),
+        "WORKERS", "core.execution.choice:ExecutionSettings", "workers", tr("Worker processes, 0 = automatic (whole number)"),
         tr("So many further processes of Python read the points, find curbs and do most of what is done point by point, with the same "
            "results. More are faster as long as there are processor cores for them, and each takes some hundred MB of memory. Automatic takes "
            "one for every 8 million points, eight or one per core at most, and none for less than 24 million points, nor on two cores for "
@@ -64,14 +64,14 @@ EXECUTION_SETTINGS = (
         advanced=True,
     ),
     SettingSpec(
-        "SCHEDULER", "execution.choice:ExecutionSettings", "scheduler", tr("Address of a Dask scheduler"),
+        "SCHEDULER", "core.execution.choice:ExecutionSettings", "scheduler", tr("Address of a Dask scheduler"),
         tr("The workers of a Dask cluster that is running already do what worker processes would, with the same results: tls://host:8786, or "
            "tcp://127.0.0.1:8786 on this computer. They need the same Python, packages and Lanewright, no QGIS, and a work folder that all "
            "machines see. The manual's page on large surveys tells how to start one. Worker processes are not used then."),
         advanced=True,
     ),
     SettingSpec(
-        "INSECURE", "execution.choice:ExecutionSettings", "insecure", tr("Connect without encryption"),
+        "INSECURE", "core.execution.choice:ExecutionSettings", "insecure", tr("Connect without encryption"),
         tr("Whoever can reach an unencrypted cluster can run programs on it. Set this only in a network that is yours alone; on this "
            "computer it is not needed."),
         advanced=True,

@@ -109,12 +109,12 @@ class FileCall(Call):
             features.description = "\n".join(provenance.history(self.algorithm.LOOKS.get(name, name)))
             value = self.destination(name)
             path, table = destination_path(value), file_and_table(value)[1]
-            unfinished = self._layer_files.begin_copy(path) if table else self._layer_files.begin(path)
+            unfinished = self._unfinished.begin_copy(path) if table else self._unfinished.begin(path)
             write_layer(str(unfinished), table, features, self._progress.check_cancelled)
             self._results[name] = f"{path}|layername={table}" if table else value
         self._progress.check_cancelled()
-        self.commit_files()
-        self._layer_files.commit()
+        self.sign_files()
+        self._unfinished.commit()
         return {**self._results, **numbers}
 
     def values(self):

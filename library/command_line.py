@@ -16,9 +16,8 @@ from ..algorithms.provenance import own_version
 from ..algorithms.texts import told, tr
 from ..core.common.errors import Cancelled, RoadExtractionError
 from .call import FileCall
-from .language import speak
 from .progress import TextProgress, cancelled_by_signals
-from .run import algorithms
+from .run import algorithms, speak
 
 # What a value looks like in the help
 METAVARS = {"layer": "LAYER", "folder": "FOLDER", "crs": "EPSG:NUMBER", "flag": "true|false", "expression": "CONDITION", "text": "TEXT",

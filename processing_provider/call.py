@@ -150,10 +150,10 @@ class QgisCall(Call):
             self._results[name] = self._write(name, features)
         for name, _ in self._layers:
             close_database(self.destination(name), self.context)
-        provenance = self.commit_files()
+        provenance = self.sign_files()
         added_to = {destination_path(self.destination(name)).absolute() for name, _ in self._layers
                     if self.destination(name).startswith("ogr:")}
-        self._layer_files.commit(added_to, add_tables)
+        self._unfinished.commit(added_to, add_tables)
         schemas = {name: features.schema for name, features in self._layers}
         run = run_of(provenance, self.surveyed(), self.algorithm.WHOLE_MAP, self.context, self.processing.group_of_inputs)
         for name, dest in self._results.items():
@@ -179,7 +179,7 @@ class QgisCall(Call):
         crs = QgsCoordinateReferenceSystem.fromWkt(wkt) if wkt else QgsCoordinateReferenceSystem()
         parameters, unfinished, file = self.parameters, "", ""
         if path is not None:
-            unfinished = str(self._layer_files.begin(path))
+            unfinished = str(self._unfinished.begin(path))
             beside, file = at_path(value, unfinished)
             parameters = {**parameters, name: self._redirected(name, beside)}
         sink, dest = self.processing.parameterAsSink(parameters, name, self.context, fields, WKB_TYPES[features.geometry_type], crs)

@@ -220,10 +220,9 @@ def write(folder, language):
     application.initQgis()
     try:
         if language:
-            from lanewright.processing_provider.texts import install_translator
+            from lanewright.processing_provider.texts import speak
 
-            translator = install_translator(language)  # Qt keeps none
-            assert translator is not None, f"there is no translation to {language}: run make translations"
+            assert speak(language), f"there is no translation to {language}: run make translations"
         from lanewright.algorithms.catalogue import ALGORITHMS
 
         folder.mkdir(parents=True, exist_ok=True)

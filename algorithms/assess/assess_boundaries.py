@@ -17,7 +17,7 @@ from .inputs import (
     tolerances,
 )
 
-BOUNDARY = "assess.boundaries:BoundaryAccuracySettings"
+BOUNDARY = "products.assess.boundaries:BoundaryAccuracySettings"
 
 EDGES = ("automatic", "all", "curbs")
 BOUNDARY_SETTINGS = (
@@ -77,8 +77,8 @@ class AssessBoundaries(Algorithm):
         self.add_report()
 
     def work(self, call, progress):
-        from ...core.assess.boundaries import assess_boundaries
-        from ...core.assess.inputs import (
+        from ...products.assess.boundaries import assess_boundaries
+        from ...products.assess.inputs import (
             along_the_road_only,
             bottoms_only,
             check_kind,
@@ -89,8 +89,8 @@ class AssessBoundaries(Algorithm):
             in_crs,
             without_stray_vertices,
         )
-        from ...core.assess.layers import boundary_layer
-        from ...core.report.assessment import boundary_report
+        from ...products.assess.layers import boundary_layer
+        from ...products.report.assessment import boundary_report
 
         settings = call.settings(BOUNDARY_SETTINGS, tolerances=tolerances(call))
         result, (reference, excluded, kinds) = layer_of(call, "INPUT"), layer_and_excluded(call, "REFERENCE")

@@ -8,7 +8,7 @@ from ..parameters import SettingSpec, settings_class
 from ..texts import tr
 from .inputs import add_area, add_tolerances, area_of, found_numbers, frame_of_drive, layer_of, shares_of, tolerances
 
-LINES = "assess.driving_lines:LineAccuracySettings"
+LINES = "products.assess.driving_lines:LineAccuracySettings"
 WIDTHS = ("half-width", "total-width")
 
 LINE_SETTINGS = (
@@ -63,11 +63,11 @@ class AssessDrivingLines(Algorithm):
         self.add_report()
 
     def work(self, call, progress):
-        from ...core.assess.driving_lines import match_lines
-        from ...core.assess.inputs import check_kind, check_overlap, check_reference, common_crs, in_crs, without_stray_vertices
-        from ...core.assess.layers import driving_line_layer
-        from ...core.assess.matching import stations_of_match
-        from ...core.report.assessment import driving_report
+        from ...products.assess.driving_lines import match_lines
+        from ...products.assess.inputs import check_kind, check_overlap, check_reference, common_crs, in_crs, without_stray_vertices
+        from ...products.assess.layers import driving_line_layer
+        from ...products.assess.matching import stations_of_match
+        from ...products.report.assessment import driving_report
 
         settings = self._settings(call)
         result, reference = layer_of(call, "INPUT"), layer_of(call, "REFERENCE")
@@ -103,7 +103,7 @@ class AssessDrivingLines(Algorithm):
 
 
 def _numbers(accuracy, tolerance):
-    from ...core.assess.metrics import f1_of
+    from ...products.assess.metrics import f1_of
 
     complete, correct = 100 * accuracy.completeness[tolerance], 100 * accuracy.correctness[tolerance]
     return {

@@ -6,7 +6,7 @@ from ..parameters import SettingSpec
 from ..texts import tr
 from .inputs import add_area, add_tolerances, area_of, found_numbers, frame_of_drive, painted_of, shares_of, tolerances
 
-MARKINGS = "assess.markings:MarkingAccuracySettings"
+MARKINGS = "products.assess.markings:MarkingAccuracySettings"
 
 MARKING_SETTINGS = (
     SettingSpec(
@@ -65,9 +65,9 @@ class AssessMarkings(Algorithm):
         self.add_report()
 
     def work(self, call, progress):
-        from ...core.assess.inputs import check_marking_reference, check_overlap, classes_of, common_crs, in_crs, marking_polygons
-        from ...core.assess.layers import marking_layer
-        from ...core.assess.markings import OutcomeRaster, assess_markings
+        from ...products.assess.inputs import check_marking_reference, check_overlap, classes_of, common_crs, in_crs, marking_polygons
+        from ...products.assess.layers import marking_layer
+        from ...products.assess.markings import OutcomeRaster, assess_markings
 
         settings = call.settings(MARKING_SETTINGS, tolerances=tolerances(call))
         layers = [painted_of(call, name, progress.part(*part))[0] for name, part in (("INPUT", (0.0, 0.15)), ("REFERENCE", (0.15, 0.3)))]
@@ -97,8 +97,8 @@ class AssessMarkings(Algorithm):
         return numbers
 
     def _report(self, call, accuracy, layer, frame, image, warnings):
-        from ...core.assess.matching import stations_of_blocks
-        from ...core.report.assessment import marking_report
+        from ...products.assess.matching import stations_of_blocks
+        from ...products.report.assessment import marking_report
 
         station, along = stations_of_blocks(accuracy.blocks, frame)
         names = call.layer_name("INPUT"), call.layer_name("REFERENCE")

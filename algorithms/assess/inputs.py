@@ -71,7 +71,7 @@ def _read(source):
     """(AssessedLayer, place of each of its rows among those of the source)."""
     import shapely
 
-    from ...core.assess.inputs import AssessedLayer
+    from ...products.assess.inputs import AssessedLayer
 
     layer, places = AssessedLayer(source.label, [], [], source.crs), []
     for place, (wkb, values) in enumerate(source.rows()):
@@ -86,8 +86,8 @@ def painted_of(call, name, progress):
     """(AssessedLayer of polygons and lines, whether it was a raster) of a vector or raster layer."""
     import shapely
 
-    from ...core.assess.inputs import AssessedLayer, polygons_of_raster
     from ...core.io.crs import in_metres
+    from ...products.assess.inputs import AssessedLayer, polygons_of_raster
 
     source, path, crs = call.painted(name)
     if source is not None:
@@ -115,7 +115,7 @@ def area_of(call, crs, warn):
     """The union of AREA's polygons in the CRS; None where it was not given."""
     import shapely
 
-    from ...core.assess.inputs import check_kind, in_crs
+    from ...products.assess.inputs import check_kind, in_crs
 
     layer = layer_of(call, "AREA")
     if layer is None:

@@ -7,7 +7,7 @@ from ..parameters import SettingSpec
 from ..survey_input import frame_of, road_points_of
 from ..texts import tr
 
-DRIVING = "driving.settings:DrivingSettings"
+DRIVING = "core.driving.settings:DrivingSettings"
 
 DRIVING_SETTINGS = (
     SettingSpec(

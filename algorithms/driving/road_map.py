@@ -17,7 +17,8 @@ from ..algorithm import Algorithm
 from ..corrections import add_corrections, corrections_of
 from ..markings.cluster_markings import CLUSTER_SETTINGS
 from ..markings.correct_intensity import INTENSITY_SETTINGS
-from ..markings.extract_markings import MARKING_SETTINGS
+from ..markings.extract_markings import METHOD as MARKING_METHOD
+from ..markings.extract_markings import marking_settings
 from ..markings.fit_marking_lines import LINE_SETTINGS
 from ..markings.intensity_image import IMAGE_SETTINGS
 from ..markings.remove_outliers import OUTLIER_SETTINGS
@@ -38,7 +39,6 @@ STAGES = {
     "surface": SURFACE_SETTINGS,
     "intensity": INTENSITY_SETTINGS,
     "image": IMAGE_SETTINGS,
-    "markings": MARKING_SETTINGS,
     "outliers": OUTLIER_SETTINGS,
     "clusters": CLUSTER_SETTINGS,
     "lines": LINE_SETTINGS,
@@ -46,7 +46,7 @@ STAGES = {
 }
 
 # Settings of the stages that one turns now and then; the rest is left to the single algorithms
-OFFERED = ("BLOCK_LENGTH", "MIN_HEIGHT", "MAX_HEIGHT", "SLOPE", "MAX_GAP", "FALLBACK_WIDTH", "MAX_WIDTH", "CELL_SIZE", "METHOD", "CURVE", "DEGREE",
+OFFERED = ("BLOCK_LENGTH", "MIN_HEIGHT", "MAX_HEIGHT", "SLOPE", "MAX_GAP", "FALLBACK_WIDTH", "MAX_WIDTH", "CELL_SIZE", "CURVE", "DEGREE",
            "COUNTRY", "LANE_WIDTH", "TRAFFIC_SIDE")
 
 LAYERS = (
@@ -87,6 +87,8 @@ class RoadMap(Algorithm):
                     default=True, advanced=True,
                 )
             self.add_settings(specs, only=OFFERED, advanced=True)
+            if stage == "image":
+                self.add_settings((MARKING_METHOD,), advanced=True)
         self.add_settings(SURVEY_SETTINGS)
         add_corrections(self)
         add_execution(self)
@@ -110,6 +112,7 @@ class RoadMap(Algorithm):
             boundary_method=call.value("BOUNDARY_METHOD"),
             survey=call.settings(SURVEY_SETTINGS, crs=call.crs()),
             execution=execution_of(call),
+            markings=marking_settings(call),
             **{field: call.settings(specs) for field, specs in STAGES.items()},
         )
         if not any(call.wants(one.name) for one in self.outputs()):
@@ -138,7 +141,7 @@ class RoadMap(Algorithm):
             call.layer("PASSES", passes_to_features(road_map.frame, road_map.crs))
         call.layer("CURB_POINTS", road_map.layer("curb_points"))
         if call.wants("REPORT"):
-            from ...core.report.road_map import road_map_report
+            from ...products.report.road_map import road_map_report
 
             call.text("REPORT", road_map_report(road_map, image_path))
         return road_map_numbers([road.length for road in road_map.frame.roads],

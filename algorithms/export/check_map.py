@@ -38,7 +38,7 @@ class CheckMap(Algorithm):
         self.add_report()
 
     def work(self, call, progress):
-        from ...core.report.hd_map import map_check_report, places_of_findings
+        from ...products.report.hd_map import map_check_report, places_of_findings
 
         path = map_file(call)
         found, note = (_lanelets if _is_lanelet2(path) else _roads)(path, call.crs(), progress)
@@ -72,9 +72,9 @@ def _is_lanelet2(path):
 
 
 def _roads(path, crs, progress):
-    from ...core.export.check.roads import check_opendrive
-    from ...core.export.map_layers import crs_of_reference
-    from ...core.export.opendrive.xodr import read_opendrive
+    from ...products.export.check.roads import check_opendrive
+    from ...products.export.map_layers import crs_of_reference
+    from ...products.export.opendrive.xodr import read_opendrive
 
     whole = read_opendrive(path, progress.part(0.0, 0.4))
     crs, note = crs_of_reference(whole.reference, crs)
@@ -82,8 +82,8 @@ def _roads(path, crs, progress):
 
 
 def _lanelets(path, crs, progress):
-    from ...core.export.check.lanelets import check_lanelets
-    from ...core.export.lanelet_map import node_places, read_lanelet2
+    from ...products.export.check.lanelets import check_lanelets
+    from ...products.export.lanelet_map import node_places, read_lanelet2
 
     whole = read_lanelet2(path, progress.part(0.0, 0.4))
     return check_lanelets(whole, *node_places(whole, crs), progress.part(0.4, 0.95)), ""

@@ -6,7 +6,7 @@ from ..parameters import SettingSpec
 from ..texts import told, tr
 from .inputs import add_road_map_layers, road_map_source
 
-ROADS = "export.opendrive.exporter:OpenDriveSettings"
+ROADS = "products.export.opendrive.exporter:OpenDriveSettings"
 FORMATS = ("dxf", "landxml")
 SUFFIXES = {"dxf": (".dxf",), "landxml": (".xml", ".landxml")}
 CAD_SETTINGS = (
@@ -37,7 +37,7 @@ class ExportCad(Algorithm):
         self.add_report()
 
     def work(self, call, progress):
-        from ...core.report.hd_map import map_export_report
+        from ...products.report.hd_map import map_export_report
 
         kind = call.value("FORMAT")
         self._check_name(call, kind)
@@ -61,7 +61,7 @@ class ExportCad(Algorithm):
 def _dxf(call, source, progress):
     from collections import Counter
 
-    from ...core.export.cad.dxf import dxf_lines, write_dxf
+    from ...products.export.cad.dxf import dxf_lines, write_dxf
 
     lines = dxf_lines(source)
     write_dxf(lines, call.new_file("OUTPUT"), source.lanes.crs)
@@ -74,7 +74,7 @@ def _landxml(call, source, progress):
     from datetime import datetime
     from pathlib import Path
 
-    from ...core.export.cad.landxml import alignments_of, landxml_text
+    from ...products.export.cad.landxml import alignments_of, landxml_text
 
     tolerance = call.value("TOLERANCE")
     found = alignments_of(source, tolerance)

@@ -5,7 +5,7 @@ from ..parameters import SettingSpec
 from ..texts import told, tr
 from .inputs import add_road_map_layers, road_map_source
 
-LANELETS = "export.lanelet_export:LaneletSettings"
+LANELETS = "products.export.lanelet_export:LaneletSettings"
 LOCATIONS = ("urban", "nonurban")
 LANELET_SETTINGS = (
     SettingSpec("SPEED_LIMIT", LANELETS, "speed_limit", tr("Speed limit (km/h)"),
@@ -41,12 +41,12 @@ class ExportLanelet2(Algorithm):
     def work(self, call, progress):
         from pathlib import Path
 
-        from ...core.export.check.lanelets import check_lanelets
-        from ...core.export.inferred_ways import with_inferred_ways
-        from ...core.export.lanelet_export import draft_lanelets, lanelet2_text, to_degrees
-        from ...core.export.lanelet_map import layers_of_lanelets, node_places, read_lanelet2
-        from ...core.export.shared_borders import with_shared_borders
-        from ...core.report.hd_map import map_export_report
+        from ...products.export.check.lanelets import check_lanelets
+        from ...products.export.inferred_ways import with_inferred_ways
+        from ...products.export.lanelet_export import draft_lanelets, lanelet2_text, to_degrees
+        from ...products.export.lanelet_map import layers_of_lanelets, node_places, read_lanelet2
+        from ...products.export.shared_borders import with_shared_borders
+        from ...products.report.hd_map import map_export_report
 
         source = with_shared_borders(with_inferred_ways(road_map_source(call, progress.part(0.0, 0.2))))
         progress.report(0.2)

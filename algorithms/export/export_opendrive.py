@@ -5,7 +5,7 @@ from ..parameters import SettingSpec
 from ..texts import told, tr
 from .inputs import add_road_map_layers, road_map_source
 
-ROADS = "export.opendrive.exporter:OpenDriveSettings"
+ROADS = "products.export.opendrive.exporter:OpenDriveSettings"
 VERSIONS, SIDES = ("1.7", "1.8"), ("automatic", "right", "left")
 ROAD_SETTINGS = (
     SettingSpec("TOLERANCE", ROADS, "tolerance", tr("Tolerance (m)"),
@@ -44,13 +44,13 @@ class ExportOpenDrive(Algorithm):
     def work(self, call, progress):
         from pathlib import Path
 
-        from ...core.export.check.roads import check_opendrive
-        from ...core.export.inferred_ways import with_inferred_ways
-        from ...core.export.map_layers import border_misses, driving_line_misses, reference_of_crs
-        from ...core.export.opendrive.exporter import draft_opendrive
-        from ...core.export.opendrive.layers import layers_of_opendrive
-        from ...core.export.opendrive.xodr import opendrive_text, read_opendrive
-        from ...core.export.shared_borders import with_shared_borders
+        from ...products.export.check.roads import check_opendrive
+        from ...products.export.inferred_ways import with_inferred_ways
+        from ...products.export.map_layers import border_misses, driving_line_misses, reference_of_crs
+        from ...products.export.opendrive.exporter import draft_opendrive
+        from ...products.export.opendrive.layers import layers_of_opendrive
+        from ...products.export.opendrive.xodr import opendrive_text, read_opendrive
+        from ...products.export.shared_borders import with_shared_borders
 
         source = with_shared_borders(with_inferred_ways(road_map_source(call, progress.part(0.0, 0.2))))
         settings = call.settings(ROAD_SETTINGS, version=call.value("VERSION"), traffic_side=call.value("TRAFFIC_SIDE"))
@@ -89,7 +89,7 @@ def _report(call, whole, found, shown, misses, notes):
     from collections import defaultdict
 
     from ...core.common.texts import word
-    from ...core.report.hd_map import map_export_report
+    from ...products.report.hd_map import map_export_report
 
     lengths = defaultdict(float)
     for road in whole.roads:

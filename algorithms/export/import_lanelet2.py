@@ -21,7 +21,7 @@ class ImportLanelet2(Algorithm):
         add_map_layers(self)
 
     def work(self, call, progress):
-        from ...core.export.lanelet_map import layers_of_lanelets, read_lanelet2
+        from ...products.export.lanelet_map import layers_of_lanelets, read_lanelet2
 
         found = read_lanelet2(map_file(call), progress.part(0.0, 0.5))
         return write_map_layers(call, layers_of_lanelets(found, call.crs(), progress.part(0.5, 0.95)), progress)

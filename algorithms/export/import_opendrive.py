@@ -22,9 +22,9 @@ class ImportOpenDrive(Algorithm):
         add_map_layers(self)
 
     def work(self, call, progress):
-        from ...core.export.map_layers import crs_of_reference
-        from ...core.export.opendrive.layers import layers_of_opendrive
-        from ...core.export.opendrive.xodr import read_opendrive
+        from ...products.export.map_layers import crs_of_reference
+        from ...products.export.opendrive.layers import layers_of_opendrive
+        from ...products.export.opendrive.xodr import read_opendrive
 
         found = read_opendrive(map_file(call), progress.part(0.0, 0.5))
         crs, note = crs_of_reference(found.reference, call.crs())

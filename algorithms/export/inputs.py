@@ -72,7 +72,7 @@ def road_map_source(call, progress):
     from dataclasses import replace
 
     from ...core.driving.layers import Lanes
-    from ...core.export.sources import RoadMapSource, checked
+    from ...products.export.sources import RoadMapSource, checked
 
     source = RoadMapSource(
         Lanes.from_features(call.features("LANES", LANES, "PolygonZ")), call.features("DRIVING_LINES", LINE_FIELDS, "LineStringZ"),
@@ -80,7 +80,7 @@ def road_map_source(call, progress):
         call.features("MARKINGS", MARKING_FIELDS, "PolygonZ"))
     source = checked(source)
     if call.cloud("ROAD_POINTS"):
-        from ...core.export.sources import with_surface_heights
+        from ...products.export.sources import with_surface_heights
 
         road_points = road_points_of(call, "ROAD_POINTS", progress)
         lanes, share = with_surface_heights(source.lanes, road_points)

@@ -8,7 +8,7 @@ from ..survey_input import READING_SETTINGS
 from ..texts import tr
 from .survey_with_borders import add_borders, survey_with_borders
 
-SECTIONS = "inventory.settings:CrossSectionSettings"
+SECTIONS = "products.inventory.settings:CrossSectionSettings"
 ABOVE_ROAD = 12.0  # m of height above the road that are read: more than any clearance that a rule asks for
 
 SECTION_SETTINGS = (
@@ -72,8 +72,8 @@ class CrossSections(Algorithm):
         self.add_report()
 
     def work(self, call, progress):
-        from ...core.inventory.cross_sections import measure_cross_sections, sections_to_features
-        from ...core.report.inventory import cross_section_report
+        from ...products.inventory.cross_sections import measure_cross_sections, sections_to_features
+        from ...products.report.inventory import cross_section_report
 
         settings = call.settings(SECTION_SETTINGS)
         survey, layers = survey_with_borders(call, progress.part(0.0, 0.5), ABOVE_ROAD)

@@ -8,7 +8,7 @@ from ..survey_input import READING_SETTINGS
 from ..texts import tr
 from .survey_with_borders import add_borders, survey_with_borders
 
-ROADSIDE_OF = "inventory.settings:RoadsideSettings"
+ROADSIDE_OF = "products.inventory.settings:RoadsideSettings"
 ABOVE_ROAD = 8.0  # m of height above the road that are read: buildings reach higher than anything that is looked for
 
 ROADSIDE_SETTINGS = (
@@ -63,9 +63,9 @@ class Roadside(Algorithm):
         self.add_report()
 
     def work(self, call, progress):
-        from ...core.inventory.roadside.find import find_roadside
-        from ...core.inventory.roadside.result import roadside_to_features
-        from ...core.report.inventory import roadside_report
+        from ...products.inventory.roadside.find import find_roadside
+        from ...products.inventory.roadside.result import roadside_to_features
+        from ...products.report.inventory import roadside_report
 
         settings = call.settings(ROADSIDE_SETTINGS)
         survey, layers = survey_with_borders(call, progress.part(0.0, 0.6), ABOVE_ROAD)

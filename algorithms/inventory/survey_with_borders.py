@@ -26,8 +26,8 @@ def survey_with_borders(call, progress, above_road):
     """
     from shapely import get_coordinates
 
-    from ...core.inventory.borders import BorderLayers
     from ...core.io.crs import check_same_crs
+    from ...products.inventory.borders import BorderLayers
 
     layers = {name: call.features(name, schema, geometry) for name, (_, schema, geometry) in BORDER_LAYERS.items()}
     for name, features in layers.items():

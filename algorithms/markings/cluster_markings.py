@@ -6,7 +6,7 @@ from ..parameters import SettingSpec
 from ..survey_input import frame_of, paint_of
 from ..texts import tr
 
-CLUSTERS = "markings.objects.cluster:ClusterSettings"
+CLUSTERS = "core.markings.objects.cluster:ClusterSettings"
 
 CLUSTER_SETTINGS = (
     SettingSpec(

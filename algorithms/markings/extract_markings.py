@@ -1,21 +1,22 @@
 """Points of paint."""
 
 from ..algorithm import Algorithm
-from ..parameters import SettingSpec
+from ..parameters import ParameterSpec, SettingSpec
 from ..survey_input import bright_road_points_of, frame_of
 from ..texts import tr
 
-EXTRACTION = "markings.paint.settings:MarkingSettings"
+EXTRACTION = "core.markings.paint.settings:MarkingSettings"
+
+METHOD = ParameterSpec(
+    "choice", "METHOD", tr("Method"),
+    tr("multi-threshold sets a threshold for every strip along the road on the intensity image: the one to map with. The "
+       "other two are published methods to compare with. intensity-peaks looks for narrow peaks in profiles across the "
+       "road and finds lines only; point-segments sets thresholds on the points and keeps the dense ones. Neither "
+       "tells concrete gutters from paint."),
+    default="multi-threshold", choices=("multi-threshold", "intensity-peaks", "point-segments"),
+)
 
 MARKING_SETTINGS = (
-    SettingSpec(
-        "METHOD", EXTRACTION, "method", tr("Method"),
-        tr("multi-threshold sets a threshold for every strip along the road on the intensity image: the one to map with. The "
-           "other two are published methods to compare with. intensity-peaks looks for narrow peaks in profiles across the "
-           "road and finds lines only; point-segments sets thresholds on the points and keeps the dense ones. Neither "
-           "tells concrete gutters from paint."),
-        choices=("multi-threshold", "intensity-peaks", "point-segments"),
-    ),
     SettingSpec(
         "SEPARATION", EXTRACTION, "separation", tr("Multi-threshold: least distance of paint from asphalt (σ)"),
         tr("How many spreads of asphalt the paint of a strip must lie above it before the strip counts as painted. Lower "
@@ -23,6 +24,13 @@ MARKING_SETTINGS = (
         advanced=True,
     ),
 )
+
+
+def marking_settings(call):
+    """MarkingSettings with the method that the user chose."""
+    from ...products.published_markings import METHODS
+
+    return call.settings(MARKING_SETTINGS, method=METHODS[call.value("METHOD")])
 
 
 class ExtractMarkings(Algorithm):
@@ -36,6 +44,7 @@ class ExtractMarkings(Algorithm):
         self.add_input("cloud", "ROAD_POINTS", tr("Road points"), tr("The file that the intensity image was made from."))
         self.add_input("raster", "INTENSITY_IMAGE", tr("Intensity image"), tr("The GeoTIFF written by Intensity image."))
         self.add_trajectory()
+        self.add(METHOD)
         self.add_settings(MARKING_SETTINGS)
         self.add_output("cloud", "MARKING_POINTS", tr("Marking points"))
         self.add_output(
@@ -53,5 +62,5 @@ class ExtractMarkings(Algorithm):
         image = IntensityImage.open(call.raster("INTENSITY_IMAGE"))
         check_image_shows(image, road_points)
         markings = extract_markings(
-            road_points, image, frame, call.settings(MARKING_SETTINGS), progress.part(0.2, 0.95), mask_path=call.new_file("MARKING_MASK") or None)
+            road_points, image, frame, marking_settings(call), progress.part(0.2, 0.95), mask_path=call.new_file("MARKING_MASK") or None)
         write_road_points(markings, call.new_file("MARKING_POINTS"), progress.part(0.95, 1.0))

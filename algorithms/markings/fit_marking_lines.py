@@ -7,7 +7,7 @@ from ..parameters import SettingSpec
 from ..survey_input import check_layers_on_roads, frame_of, paint_of, road_points_of
 from ..texts import tr
 
-LINES = "markings.lines.fit:MarkingLineSettings"
+LINES = "core.markings.lines.fit:MarkingLineSettings"
 
 LINE_SETTINGS = (
     SettingSpec(

@@ -5,7 +5,7 @@ from ..parameters import SettingSpec
 from ..survey_input import bright_road_points_of
 from ..texts import tr
 
-IMAGE = "intensity.image:ImageSettings"
+IMAGE = "core.intensity.image:ImageSettings"
 
 IMAGE_SETTINGS = (
     SettingSpec(

@@ -5,7 +5,7 @@ from ..parameters import SettingSpec
 from ..survey_input import paint_of
 from ..texts import tr
 
-OUTLIERS = "markings.outliers:OutlierSettings"
+OUTLIERS = "core.markings.outliers:OutlierSettings"
 
 OUTLIER_SETTINGS = (
     SettingSpec(

@@ -7,7 +7,7 @@ from ..parameters import SettingSpec
 from ..texts import tr
 from .control_point_layer import read_control_point_layer
 
-GEOREFERENCE = "overlay.georeference:GeoreferenceSettings"
+GEOREFERENCE = "products.overlay.georeference:GeoreferenceSettings"
 POINTS_FILTER = "Control points (*.points *.csv *.txt *.POINTS *.CSV *.TXT);;All files (*.*)"
 
 GEOREFERENCE_SETTINGS = (
@@ -88,10 +88,10 @@ class GeoreferenceImage(Algorithm):
         self.add_report()
 
     def work(self, call, progress):
-        from ...core.overlay.georeference import georeference, residual_vectors
-        from ...core.overlay.source_image import open_image
-        from ...core.overlay.warp import draw_image
-        from ...core.report.overlay import georeferencing_report
+        from ...products.overlay.georeference import georeference, residual_vectors
+        from ...products.overlay.source_image import open_image
+        from ...products.overlay.warp import draw_image
+        from ...products.report.overlay import georeferencing_report
 
         image = open_image(call.raster("IMAGE"))
         if image.geotransform is None:
@@ -117,7 +117,7 @@ class GeoreferenceImage(Algorithm):
 def _control_points(call, image, progress):
     """From the layer or the file, whichever was given."""
     from ...core.io.crs import horizontal_part, parse_crs, same_crs
-    from ...core.overlay.control_points import read_control_points
+    from ...products.overlay.control_points import read_control_points
 
     given = call.crs()
     path = call.file("GCP_FILE")
@@ -137,7 +137,7 @@ def _control_points(call, image, progress):
 
 
 def _numbers(found):
-    from ...core.overlay.control_points import CHECK, CONTROL
+    from ...products.overlay.control_points import CHECK, CONTROL
 
     lengths = [float((dx * dx + dy * dy) ** 0.5) for dx, dy in found.errors[found.points.having(CONTROL)]]
     values = {

@@ -6,7 +6,7 @@ from ..parameters import SettingSpec
 from ..texts import tr
 from .control_point_layer import read_control_point_layer
 
-PROPOSE = "overlay.matching.propose:ProposalSettings"
+PROPOSE = "products.overlay.matching.propose:ProposalSettings"
 
 PROPOSE_SETTINGS = (
     SettingSpec(
@@ -71,10 +71,10 @@ class ProposeControlPoints(Algorithm):
 
     def work(self, call, progress):
         from ...core.io.geotiff import IntensityImage
-        from ...core.overlay.matching.propose import propose_control_points
-        from ...core.overlay.rough_place import rough_place
-        from ...core.overlay.source_image import open_image
-        from ...core.report.overlay import proposed_points_report
+        from ...products.overlay.matching.propose import propose_control_points
+        from ...products.overlay.rough_place import rough_place
+        from ...products.overlay.source_image import open_image
+        from ...products.report.overlay import proposed_points_report
 
         image = open_image(call.raster("IMAGE"))
         intensity = IntensityImage.open(call.raster("INTENSITY_IMAGE"))
@@ -99,7 +99,7 @@ def _rough_points(call, image, crs):
     """Given points in the CRS of the intensity image, None where there are none."""
     from dataclasses import replace
 
-    from ...core.overlay.rough_place import to_map
+    from ...products.overlay.rough_place import to_map
 
     source = call.source("ROUGH_POINTS")
     if source is None:

@@ -10,7 +10,7 @@ from .detect_curbs import CURB_SETTINGS
 from .fit_road_edges import EDGE_SETTINGS
 
 METHOD_SETTING = SettingSpec(
-    "BOUNDARY_METHOD", "road.detect_boundaries:BoundarySettings", "method", tr("Boundary method"),
+    "BOUNDARY_METHOD", "core.road.detect_boundaries:BoundarySettings", "method", tr("Boundary method"),
     tr("Profiles looks for the curb in slices across the road; scanlines meets the planes of road, curb face and sidewalk; both "
        "lets the two check each other: at every place the one that measures better is drawn, agree_cm says how far apart they are, "
        "and it takes as long as the two together."),

@@ -6,7 +6,7 @@ from ..parameters import SettingSpec
 from ..survey_input import SURVEY_SETTINGS, check_layers_on_roads, open_survey_of
 from ..texts import tr
 
-SURFACE = "road.surface.extract:SurfaceSettings"
+SURFACE = "core.road.surface.extract:SurfaceSettings"
 
 SURFACE_SETTINGS = (
     SettingSpec(

@@ -6,7 +6,7 @@ from ..parameters import SettingSpec
 from ..survey_input import frame_of
 from ..texts import tr
 
-EDGES = "road.edges.fit:EdgeSettings"
+EDGES = "core.road.edges.fit:EdgeSettings"
 
 EDGE_SETTINGS = (
     SettingSpec(

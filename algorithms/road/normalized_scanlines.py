@@ -8,7 +8,7 @@ from ..parameters import SettingSpec
 from ..survey_input import SURVEY_SETTINGS, add_execution, open_survey_of
 from ..texts import tr
 
-PLANES = "road.scanlines.section_planes:ScanlineSettings"
+PLANES = "core.road.scanlines.section_planes:ScanlineSettings"
 
 SCANLINE_SETTINGS = (
     SettingSpec(
@@ -28,13 +28,13 @@ SCANLINE_SETTINGS = (
 )
 LAYER_SETTINGS = (
     SettingSpec(
-        "SIMPLIFY", "road.scanlines.layer:ScanlineLayerSettings", "simplify", tr("Deviation allowed in thinning the scanlines (m)"),
+        "SIMPLIFY", "products.scanline_layer:ScanlineLayerSettings", "simplify", tr("Deviation allowed in thinning the scanlines (m)"),
         tr("Larger draws and writes faster and shows less of the surface; 0 keeps every vertex."),
     ),
 )
 POINT_SETTINGS = (
     SettingSpec(
-        "RESAMPLED_SPACING", "road.scanlines.layer:ResamplingSettings", "spacing", tr("Spacing of resampled points along a scanline (m)"),
+        "RESAMPLED_SPACING", "products.scanline_layer:ResamplingSettings", "spacing", tr("Spacing of resampled points along a scanline (m)"),
         tr("Smaller gives more points, without more being known of the surface."),
         advanced=True,
     ),
@@ -63,7 +63,7 @@ class NormalizedScanlines(Algorithm):
             optional=True, by_default=False)
 
     def work(self, call, progress):
-        from ...core.road.scanlines.layer import ResampledPoints, write_scanlines
+        from ...products.scanline_layer import ResampledPoints, write_scanlines
 
         survey = open_survey_of(call, progress.part(0.0, 0.5))
         points = nullcontext()

@@ -46,8 +46,8 @@ class EstimateTrajectory(Algorithm):
     def work(self, call, progress):
         import numpy as np
 
-        from ...core.report.survey import estimated_trajectory_report
         from ...core.survey.estimation import estimate_trajectory
+        from ...products.report.survey import estimated_trajectory_report
 
         found = estimate_trajectory(call.point_clouds(), call.crs(), call.value("SCANNER_FIELD"), progress)
         for note in found.cloud_notes + found.notes:

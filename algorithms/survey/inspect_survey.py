@@ -4,7 +4,7 @@ from ..algorithm import Algorithm
 from ..parameters import SettingSpec
 from ..texts import tr
 
-INSPECTION = "survey.inspection:InspectionSettings"
+INSPECTION = "products.inspection:InspectionSettings"
 
 INSPECTION_SETTINGS = (
     SettingSpec(
@@ -39,8 +39,8 @@ class InspectSurvey(Algorithm):
         self.add_output("raster", "DENSITY", tr("Point density"), tr("Points per m² in every cell."), optional=True, by_default=False)
 
     def work(self, call, progress):
-        from ...core.report.survey import inspection_report
-        from ...core.survey.inspection import NEAR_TRAJECTORY, inspect_survey, write_density
+        from ...products.inspection import NEAR_TRAJECTORY, inspect_survey, write_density
+        from ...products.report.survey import inspection_report
 
         found = inspect_survey(
             call.point_clouds(), call.trajectory(), call.settings(INSPECTION_SETTINGS), call.crs(), progress.part(0.0, 0.95)

@@ -6,7 +6,7 @@ from ..parameters import SettingSpec
 from ..texts import tr
 from ..trajectory_source import trajectory_features
 
-SAMPLE = "sample.survey:SampleSettings"
+SAMPLE = "simulator.survey:SampleSettings"
 
 SAMPLE_SETTINGS = (
     SettingSpec(
@@ -87,22 +87,22 @@ class SampleSurvey(Algorithm):
                       fields=CONTROL_POINTS)
 
     def work(self, call, progress):
-        from ...core.sample.survey import make_sample_survey
+        from ...simulator.survey import make_sample_survey
 
         settings = call.settings(SAMPLE_SETTINGS, **({"crs": call.crs()} if call.crs() else {}))
         survey = make_sample_survey(settings, progress.part(0.0, 0.1))
         if call.wants("UAV_IMAGE") or call.wants("UAV_GCPS"):
-            from ...core.sample.orthophoto import seen_from_above
+            from ...simulator.orthophoto import seen_from_above
 
             seen_from_above(survey)
         count = survey.write_cloud(call.new_file("POINT_CLOUD"), progress.part(0.1, 0.9 if call.wants("UAV_IMAGE") else 1.0))
         progress.info(tr("Sample survey: {count} points along {length:.0f} m of road.").format(count=count, length=settings.length))
         if call.wants("UAV_IMAGE"):
-            from ...core.sample.orthophoto import write_uav_image
+            from ...simulator.orthophoto import write_uav_image
 
             write_uav_image(survey, call.new_file("UAV_IMAGE"), progress.part(0.9, 1.0))
         if call.wants("UAV_GCPS"):
-            from ...core.sample.orthophoto import uav_control_points
+            from ...simulator.orthophoto import uav_control_points
 
             call.layer("UAV_GCPS", uav_control_points(survey))
         call.layer("TRAJECTORY", trajectory_features(survey.trajectory))

@@ -1,5 +1,7 @@
 """The stages of a road map, run by any executor on a sample survey in small tasks, and what must be the same to the last bit."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import shapely
@@ -25,9 +27,9 @@ from lanewright.core.markings.paint.extract import extract_markings
 from lanewright.core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
 from lanewright.core.road.surface import extract, ground_grid
 from lanewright.core.road.surface.extract import extract_road_surface
-from lanewright.core.survey import inspection as point_density
+from lanewright.core.survey import density as point_density
 from lanewright.core.survey import open_survey as opening
-from lanewright.core.survey.inspection import cube_densities
+from lanewright.core.survey.density import cube_densities
 
 PHASES = ["ground_of_windows", "surface_points", "cubes_of_stretch", "levels_of_stretch", "corrected_of_stretch", "windows_of_image",
           "sums_of_pieces", "scatter_of_windows", "levels_of_windows", "paint_of_windows", "kept_of_windows", "links_of_windows",
@@ -40,7 +42,7 @@ def found_by(sample, executor=None, work=None, progress=Progress()):
     with pytest.MonkeyPatch.context() as patch:
         for module in (extract, correction, point_density, evidence):
             patch.setattr(module, "STRETCH_POINTS", 40_000)
-        patch.setattr(ground_grid, "MEASURED_WINDOWS", 2)
+        patch.setattr(ground_grid, "SURFACE", replace(ground_grid.SURFACE, measured_windows=2))
         patch.setattr(imaging, "LOOKED_WINDOWS", 1)
         patch.setattr(imaging, "PIECES_PER_TASK", 3)
         patch.setattr(extraction, "WINDOWS_PER_TASK", 1)
