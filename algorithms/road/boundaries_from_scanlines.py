@@ -55,7 +55,8 @@ class BoundariesFromScanlines(Algorithm):
                       geometry="LineStringZ", optional=True)
 
     def work(self, call, progress):
-        from ...core.road.scanlines.detect import CORNER_BLOCK, LayerScanlines, boundary_lines, curbs_from_scanlines
+        from ...core.road.scanlines.detect import LayerScanlines, boundary_lines, curbs_from_scanlines
+        from ...core.road.weights import SCANLINE
         from ...core.survey.adjustment.register import sigma_of_layer
         from ...products.scanline_layer import scanlines_from_features
 
@@ -65,7 +66,7 @@ class BoundariesFromScanlines(Algorithm):
         frame.pass_sigma = sigma_of_layer(layer)
         lines, interval = scanlines_from_features(layer, frame)
         source = LayerScanlines(lines, frame, interval, layer.crs, settings.sensor_height)
-        corners = curbs_from_scanlines(source, settings, CORNER_BLOCK, progress.part(0.3, 0.95))
+        corners = curbs_from_scanlines(source, settings, SCANLINE.corner_block, progress.part(0.3, 0.95))
         lines = boundary_lines(corners, frame, settings.max_gap, progress.part(0.95, 1.0))
         call.layer("CORNERS", corners.to_features(frame))
         call.layer("BOUNDARIES", lines.to_features(frame))

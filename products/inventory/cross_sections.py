@@ -31,8 +31,8 @@ from .surface_grid import (
 
 if TYPE_CHECKING:
     from ...core.survey.frame.road_frame import RoadFrame
-    from ...core.survey.open_survey import Survey
     from ...core.survey.store.records import Points
+    from ...core.survey.survey import Survey
 
 STRETCH = 10.0               # m of road about a section from which grade and ruts are measured; shorter where the interval is
 READ_BESIDE = 1.0                 # m beyond the borders that are read too, for the curbs' tops

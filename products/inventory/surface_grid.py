@@ -15,8 +15,8 @@ from ...core.road.common.pseudo_scanlines import lowest_layers
 from ...core.survey.frame.passes import Pass
 
 if TYPE_CHECKING:
-    from ...core.survey.open_survey import Survey
     from ...core.survey.store.records import Points
+    from ...core.survey.survey import Survey
 
 SLICE_LENGTH = 1.0        # m along the road over which a transverse profile is averaged
 CROSS_CELL = 0.05       # m across the road

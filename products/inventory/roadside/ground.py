@@ -10,14 +10,14 @@ from scipy.ndimage import grey_opening, median_filter, minimum_filter1d
 
 from ....core.common.arrays import order_by
 from ....core.road.common.pseudo_scanlines import lowest_layers
-from ....core.survey.blocks import DEFAULT_SENSOR_HEIGHT
+from ....core.survey.weights import READING
 from ..surface_grid import CROSS_CELL, SLICE_LENGTH, SurfaceGrid, smoothed, surface_grid
 from .uprights import TOP_BINS, UPRIGHT_SLICE, Uprights
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from ....core.survey.open_survey import Survey
+    from ....core.survey.survey import Survey
 
 GROUND_SLICE, GROUND_CELL = 1.0, 0.20   # m along and across
 STANDING_WIDTH = 2.5      # m: narrower humps of the lowest layer stand on the ground (parked cars, hedges)
@@ -185,7 +185,7 @@ def lines_of_sight(survey: Survey, road: int, number: int, s: np.ndarray, d: np.
     heading = line.heading(s)
     ahead, left = np.cos(heading), np.sin(heading)
     dx, dy = eye_x - x, eye_y - y
-    return np.stack([dx * ahead + dy * left, dy * ahead - dx * left]), survey.sensor_height.get(number, DEFAULT_SENSOR_HEIGHT) - h
+    return np.stack([dx * ahead + dy * left, dy * ahead - dx * left]), survey.sensor_height.get(number, READING.default_sensor_height) - h
 
 
 def level_views(survey: Survey) -> dict[int, float]:
@@ -210,7 +210,7 @@ def level_views(survey: Survey) -> dict[int, float]:
                 slope = -up / np.maximum(away, 1e-3)
                 slopes.setdefault(number, []).append(slope)
                 far.setdefault(number, []).append(slope[away > LEAST_RANGE])
-    return {number: float(survey.sensor_height.get(number, DEFAULT_SENSOR_HEIGHT)) for number in slopes if _is_level(
+    return {number: float(survey.sensor_height.get(number, READING.default_sensor_height)) for number in slopes if _is_level(
         np.concatenate(far[number]), np.concatenate(slopes[number]), survey.frame.has_time)}
 
 
