@@ -20,8 +20,9 @@ import numpy as np
 from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
 from ...execution.phase import THREADS, Executor, Phase, Recipe
-from ...survey.blocks import DEFAULT_SENSOR_HEIGHT, sensor_height_of
+from ...survey.blocks import sensor_height_of
 from ...survey.lattice.scan_lattice import ScanLattice, find_lattice
+from ...survey.weights import READING
 from ..common.curb_points import CurbPoints, curb_points_at
 from ..common.occlusion import OcclusionGrid
 from ..common.sides import SIDE_SIGNS, OutermostTrack, expected_height, fixed_sections, hidden_points, join_sections
@@ -440,7 +441,7 @@ class LayerScanlines:
             height = sensor_height_of(drops)
             if height is not None:
                 known[p.number] = height
-        typical = float(np.median(list(known.values()))) if known else DEFAULT_SENSOR_HEIGHT
+        typical = float(np.median(list(known.values()))) if known else READING.default_sensor_height
         return {p.number: known.get(p.number, typical) for p in self.frame.passes}
 
     def stretch(self, road: int, start: float, end: float) -> str:
