@@ -17,8 +17,7 @@ class PeakSettings:
     profile_length : m of road that one profile is averaged over
     prominence : deviations (MAD of the profile) that a peak must rise above both its feet
     narrowest, widest : m, width of a peak at half its height
-    jump : m across that the peak may move from profile to profile
-    gap : m along the road without a peak that a chain continues over
+    jump, gap : m that a peak may move across, and be missing along the road, from profile to profile of a chain
     shortest : m, least length of a chain
     """
 
