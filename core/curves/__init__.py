@@ -10,9 +10,9 @@ from ..lazy import public
 
 __getattr__, __all__ = public(__name__, {
     "base": ("Arc", "Curve", "CurveFit"),
-    "bspline": ("Spline", "fit_spline", "fit_splines", "smooth_profiles"),
-    "clothoid": ("Clothoid", "fit_clothoid", "fit_clothoids"),
-    "model_selection": ("curve_from_params", "fit_curve", "fit_curves", "select_each"),
-    "segmentation": ("element_ranges", "segment_line"),
-    "simple_curves": ("Ellipse", "Polynomial", "fit_circle", "fit_circles", "fit_ellipse", "fit_line", "fit_lines", "fit_polynomial"),
+    "bspline": ("Spline", "fit_splines", "smooth_profiles"),
+    "clothoid": ("Clothoid", "fit_clothoids"),
+    "model_selection": ("fit_curve", "fit_curves", "select_each"),
+    "segmentation": ("element_ranges",),
+    "simple_curves": ("Ellipse", "Polynomial", "fit_circles", "fit_ellipse", "fit_lines", "fit_polynomial"),
 })

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -20,7 +21,7 @@ END_TOLERANCE = 1e-6      # m; farther beyond an end, a tabulated curve is strai
 
 
 class Curve:
-    """A plane curve as a function of arc length u: 0 at its start, `length` at its end.
+    """A plane curve as a function of arc length u: 0 at its start, `length` at its end. A subclass is a frozen dataclass.
 
     `at`, `heading` and `curvature` extrapolate beyond both ends as the curve itself does (an arc stays an arc); a polynomial and a B-spline
     continue straight. Curvature is positive where the curve turns left; offsets are positive to the left.
@@ -84,12 +85,12 @@ class Curve:
         return self.at(np.linspace(0.0, self.length, max(2, int(np.ceil(self.length / step - 1e-9)) + 1)))
 
     def params(self) -> dict[str, Any]:
-        """The curve's parameters as a dict for JSON; `curve_from_params` restores the curve."""
+        """The curve's parameters as a dict for JSON."""
         return {"curve": self.kind, **asdict(self)}  # type: ignore[call-overload]
 
     def moved(self, dx: float, dy: float) -> Curve:
         """The curve shifted by (dx, dy) metres: from local to map coordinates."""
-        raise NotImplementedError
+        return replace(self, x=self.x + dx, y=self.y + dy)  # type: ignore[type-var, attr-defined]
 
     def reversed(self) -> Curve:
         """The curve in the opposite direction."""
@@ -102,44 +103,40 @@ class TabulatedCurve(Curve):
     Subclasses define `_span` (t at start and end), `_place`, `_slope` and `_bend` (position and its first and second derivative by t, (N, 2)).
     """
 
-    def _span(self) -> tuple[float, float]:
-        raise NotImplementedError
+    _span: Callable[[], tuple[float, float]]
+    _place: Callable[[np.ndarray], np.ndarray]
+    _slope: Callable[[np.ndarray], np.ndarray]
+    _bend: Callable[[np.ndarray], np.ndarray]
+    tilt: float   # radians, direction of the axis of those that have one
 
-    def _place(self, t: np.ndarray) -> np.ndarray:
-        raise NotImplementedError
-
-    def _slope(self, t: np.ndarray) -> np.ndarray:
-        raise NotImplementedError
-
-    def _bend(self, t: np.ndarray) -> np.ndarray:
-        raise NotImplementedError
-
+    @cached_property
     def _table(self):
         """(arc lengths (M,), t as a function of arc length, t (M,), headings (M,)) at the nodes."""
-        found = self.__dict__.get("_nodes")
-        if found is None:
-            first, last = self._span()
-            rough = self._place(np.linspace(first, last, 200))
-            length = np.hypot(*np.diff(rough, axis=0).T).sum()
-            # Gauss-Legendre between nodes: exact to the micrometre for any road
-            t = np.linspace(first, last, max(8, int(np.ceil(length / ARC_LENGTH_STEP))) + 1)
-            g, w = np.polynomial.legendre.leggauss(3)
-            h = np.diff(t)[:, None]
-            speed = np.hypot(*self._slope((t[:-1, None] + h * (g + 1) / 2).ravel()).T).reshape(len(h), 3)
-            u = np.r_[0.0, np.cumsum((speed * w * np.abs(h) / 2).sum(1))]
-            slope = self._slope(t)
-            inverse = CubicHermiteSpline(u, t, np.sign(last - first) / np.hypot(slope[:, 0], slope[:, 1]))
-            found = u, inverse, t, np.unwrap(np.arctan2(slope[:, 1], slope[:, 0]))
-            object.__setattr__(self, "_nodes", found)
-        return found
+        first, last = self._span()
+        rough = self._place(np.linspace(first, last, 200))
+        length = np.hypot(*np.diff(rough, axis=0).T).sum()
+        # Gauss-Legendre between nodes: exact to the micrometre for any road
+        t = np.linspace(first, last, max(8, int(np.ceil(length / ARC_LENGTH_STEP))) + 1)
+        g, w = np.polynomial.legendre.leggauss(3)
+        h = np.diff(t)[:, None]
+        speed = np.hypot(*self._slope((t[:-1, None] + h * (g + 1) / 2).ravel()).T).reshape(len(h), 3)
+        u = np.r_[0.0, np.cumsum((speed * w * np.abs(h) / 2).sum(1))]
+        slope = self._slope(t)
+        inverse = CubicHermiteSpline(u, t, np.sign(last - first) / np.hypot(slope[:, 0], slope[:, 1]))
+        return u, inverse, t, np.unwrap(np.arctan2(slope[:, 1], slope[:, 0]))
 
     @property
     def length(self) -> float:  # type: ignore[override]
-        return float(self._table()[0][-1])
+        return float(self._table[0][-1])
+
+    def _turned(self, along, across):
+        """(N, 2) of coordinates along and across the axis."""
+        c, s = np.cos(self.tilt), np.sin(self.tilt)
+        return np.c_[along * c - across * s, along * s + across * c]
 
     def _t(self, u):
         """(t, metres beyond an end) at arc lengths u."""
-        nodes, inverse, *_ = self._table()
+        nodes, inverse, *_ = self._table
         inside = np.clip(np.asarray(u, float), 0.0, nodes[-1])
         return inverse(inside), np.asarray(u, float) - inside
 
@@ -154,7 +151,7 @@ class TabulatedCurve(Curve):
 
     def u_of(self, t: np.ndarray) -> np.ndarray:
         """(N,) arc lengths, metres, at parameters t, to a millimetre or so."""
-        u, _, nodes, _ = self._table()
+        u, _, nodes, _ = self._table
         return np.interp(t, *_rising(nodes, u))
 
     def at(self, u: np.ndarray) -> np.ndarray:
@@ -166,7 +163,7 @@ class TabulatedCurve(Curve):
         t, _ = self._t(u)
         slope = self._slope(t)
         heading = np.arctan2(slope[:, 1], slope[:, 0])
-        near = np.interp(t, *_rising(*self._table()[2:]))
+        near = np.interp(t, *_rising(*self._table[2:]))
         return heading + 2 * np.pi * np.round((near - heading) / (2 * np.pi))
 
     def curvature(self, u: np.ndarray | float) -> np.ndarray:
@@ -248,9 +245,6 @@ class Arc(Curve):
             numbers["centre"], numbers["radius"] = [float(c) for c in self.centre], self.radius
         return numbers
 
-    def moved(self, dx: float, dy: float) -> Arc:
-        return Arc(self.x + dx, self.y + dy, self.direction, self.bend, self.length)
-
     def reversed(self) -> Arc:
         (x, y), = self.at(np.array([self.length]))
         return Arc(float(x), float(y), float(self.heading(self.length)) + np.pi, -self.bend, self.length)
@@ -308,16 +302,7 @@ def bic_lower_bound(points: int, parameters: float) -> float:
 
 
 def checked_points(x: np.ndarray, y: np.ndarray, min_points: int) -> tuple[np.ndarray, np.ndarray]:
-    """The points of a line as float arrays.
-
-    Parameters
-    ----------
-    x, y : (N,) metres
-    min_points : how many the curve needs
-
-    Returns
-    -------
-    x, y : (N,) float64
+    """The points of a line, x and y (N,) metres, as float64; `min_points` is how many the curve needs.
 
     Raises
     ------

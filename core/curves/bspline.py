@@ -70,23 +70,27 @@ class _SplineBasis:
         scale = self.sizes / np.maximum(lengths, 1e-6) * np.array([b for _, b in each]) ** 6 / steps**5
         self._penalty = np.concatenate([_roughness(count) * by for count, by in zip(self.counts.tolist(), scale.tolist())])
 
-    def solve(self, weight: np.ndarray, values: np.ndarray) -> np.ndarray:
-        """Control points by penalised weighted least squares.
+    def robustly_solved(self, values: np.ndarray, residuals_of: Callable[[np.ndarray, np.ndarray], np.ndarray],
+                        rounds: int) -> list[Any]:
+        """(control points (K, C), residuals (N,)) of each block, by least squares whose weights follow the residuals until they change no more.
 
-        Parameters
-        ----------
-        weight : (N,), of the points of all blocks, one block after the other
-        values : (N, C) metres
-
-        Returns
-        -------
-        (K, C) control points of all blocks, one block after the other
-
-        Raises
-        ------
-        LinAlgError
-            If the normal matrix is not positive definite.
+        values : (N, C) metres of the points of all blocks; residuals_of : gives (N,) m from values and slopes of the splines at these points
         """
+        weight, solved = np.ones(len(values)), [None] * len(self.sizes)
+        for turn in range(rounds):
+            control = self._solve(weight, values)
+            residuals = residuals_of(self._values @ control, self._slopes @ control)
+            before, weight = weight, self._weights(residuals)
+            settled = np.maximum.reduceat(np.abs(weight - before), self.rows) < WEIGHT_TOLERANCE
+            for k in np.flatnonzero(settled | (turn == rounds - 1)).tolist():
+                rows, points = slice(self.rows[k], self.rows[k] + self.sizes[k]), slice(self.starts[k], self.starts[k] + self.counts[k])
+                solved[k] = solved[k] or (control[points], residuals[rows])
+            if None not in solved:
+                break
+        return solved
+
+    def _solve(self, weight, values):
+        """(K, C) control points by penalised least squares with (N,) weights."""
         bands = (self._products @ weight).reshape(-1, 4)
         bands += self._penalty
         # a slight ridge penalty: control points in a gap would be undetermined without it
@@ -98,15 +102,7 @@ class _SplineBasis:
             raise LinAlgError(f"The spline's equations cannot be solved ({trouble}).")
         return control
 
-    def evaluate(self, control: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """(N, C) values of the splines with control points (K, C), and (N, C) slopes, at the points."""
-        return self._values @ control, self._slopes @ control
-
-    def block(self, control: np.ndarray, k: int) -> np.ndarray:
-        """The control points of block k."""
-        return control[self.starts[k]:self.starts[k] + self.counts[k]]
-
-    def weights(self, residuals: np.ndarray) -> np.ndarray:
+    def _weights(self, residuals):
         """`robust_weights` of (N,) residuals, with a scale for each block."""
         found, size = np.empty(len(residuals)), np.abs(residuals)
         k = 0
@@ -183,8 +179,9 @@ class Spline(TabulatedCurve):
         return Spline(tuple(turn - k for k in self.knots[::-1]), self.control_x[::-1], self.control_y[::-1])
 
 
-def fit_spline(x: np.ndarray, y: np.ndarray, along: np.ndarray | None = None, bandwidth: float | None = None) -> CurveFit:
-    """Fit a penalised cubic B-spline by robust least squares.
+def fit_splines(lines: Sequence[tuple[np.ndarray, np.ndarray]], along: Sequence[np.ndarray | None] | None = None,
+                bandwidth: float | None = None) -> list[CurveFit]:
+    """Fit a penalised cubic B-spline to each line, from its first point to its last, by robust least squares.
 
     The penalty is on the third derivative: arcs are not affected, only changes of
     curvature are smoothed. The bandwidth is selected by BIC among BANDWIDTHS, with the effective number of parameters of a smoothing spline of
@@ -193,54 +190,37 @@ def fit_spline(x: np.ndarray, y: np.ndarray, along: np.ndarray | None = None, ba
 
     Parameters
     ----------
-    x, y : (N,) metres, N >= 4, ordered along the line; gaps are allowed
-    along : (N,) rising distances along the line, metres, if known
-        (stations), else chord lengths of the points
-    bandwidth : metres, or None to select it
-
-    Returns
-    -------
-    CurveFit with a Spline from the first point to the last.
+    lines : list of (x, y), each (N,) metres, N >= 4, ordered along the line; gaps are allowed
+    along : for each line its (N,) rising distances, metres, such as stations, or None for the chord lengths of its points
+    bandwidth : metres, or None to select it for each line
 
     References
     ----------
     .. [1] Eilers and Marx (1996), Statistical Science 11, 89-121; the effective
        dimension is the integral of 1 / (1 + (w b)^6).
     """
-    return fit_splines([(x, y)], [along], bandwidth)[0]
-
-
-def fit_splines(lines: Sequence[tuple[np.ndarray, np.ndarray]], along: Sequence[np.ndarray | None] | None = None,
-                bandwidth: float | None = None) -> list[CurveFit]:
-    """`fit_spline` of many lines at once.
-
-    Parameters
-    ----------
-    lines : list of (x, y), each (N,) metres, N >= 4, ordered along the line
-    along : for each line its (N,) rising distances, metres, or None; None if no line has any
-    bandwidth : metres, or None to select it for each line
-
-    Returns
-    -------
-    list of CurveFit, one for each line
-    """
     selections = [_SplineSelection(*checked_points(x, y, 4), known, bandwidth) for (x, y), known in zip(lines, along or [None] * len(lines))]
     waiting = [line for line in selections if line.waiting]
     while waiting:
         check_cancelled()
-        some: list[tuple[_SplineSelection, int]] = []
-        size = 0
-        for line in waiting:
-            count = min(max((SPLINE_POINTS_PER_BATCH - size) // len(line.t), 0 if some else 1), len(line.waiting))
-            if not count:
-                break
-            some.append((line, count))
-            size += count * len(line.t)
-        fitted = iter(_penalised([(line.x, line.y, line.t, line.waiting[:count]) for line, count in some]))
-        for line, count in some:
+        batch = _next_batch(waiting)
+        fitted = iter(_penalised([(line.x, line.y, line.t, line.waiting[:count]) for line, count in batch]))
+        for line, count in batch:
             line.take([next(fitted) for _ in range(count)])
         waiting = [line for line in waiting if line.waiting]
     return [line.fit() for line in selections]
+
+
+def _next_batch(waiting):
+    """[(line, number of its bandwidths)] that are fitted together: SPLINE_POINTS_PER_BATCH points, but at least one bandwidth of the first line."""
+    batch, size = [], 0
+    for line in waiting:
+        count = min(max((SPLINE_POINTS_PER_BATCH - size) // len(line.t), 0 if batch else 1), len(line.waiting))
+        if not count:
+            break
+        batch.append((line, count))
+        size += count * len(line.t)
+    return batch
 
 
 class _SplineSelection:
@@ -295,40 +275,22 @@ def _smoothed(values, reach=4):
 def _penalised(lines):
     """[(knots, control points (K, 2), distances (N,) across the curve)] of (x, y, t, bandwidths), line by line, for each bandwidth."""
     basis = _SplineBasis([(t, bandwidths) for _, _, t, bandwidths in lines])
-    blocks = len(basis.sizes)
-    weight, turn = np.ones(int(basis.sizes.sum())), 0
     middles = [np.array([x.mean(), y.mean()]) for x, y, _, bandwidths in lines for _ in bandwidths]
     places = np.concatenate([np.stack([x, y], axis=1) for x, y, _, bandwidths in lines for _ in bandwidths])
     places -= np.repeat(middles, basis.sizes, axis=0)
-    found = [None] * blocks
-    for turn in range(MAX_REWEIGHTINGS):
-        control = basis.solve(weight, places)
-        at, slope = basis.evaluate(control)
+
+    def across(at, slope):
         gap = places - at
-        size = np.maximum(np.hypot(slope[:, 0], slope[:, 1]), 1e-12)
-        across = (gap[:, 1] * slope[:, 0] - gap[:, 0] * slope[:, 1]) / size
-        before, weight = weight, basis.weights(across)
-        settled = np.maximum.reduceat(np.abs(weight - before), basis.rows) < WEIGHT_TOLERANCE
-        for k in range(blocks):
-            if found[k] is None and (settled[k] or turn == MAX_REWEIGHTINGS - 1):
-                rows = slice(basis.rows[k], basis.rows[k] + basis.sizes[k])
-                found[k] = basis.knots[k], basis.block(control, k) + middles[k], across[rows]
-        if None not in found:
-            break
-    return found
+        return (gap[:, 1] * slope[:, 0] - gap[:, 0] * slope[:, 1]) / np.maximum(np.hypot(slope[:, 0], slope[:, 1]), 1e-12)
+
+    return [(knots, control + middle, residuals)
+            for knots, middle, (control, residuals) in zip(basis.knots, middles, basis.robustly_solved(places, across, MAX_REWEIGHTINGS))]
 
 
 def smooth_profiles(profiles: Sequence[tuple[np.ndarray, np.ndarray]], bandwidth: float) -> list[Callable[[np.ndarray], np.ndarray]]:
-    """Robust smoothing splines of profiles, such as heights or offsets along lines.
+    """Robust smoothing splines of profiles, such as heights or offsets along lines, with a `bandwidth` in metres.
 
-    Parameters
-    ----------
-    profiles : list of (t, values), each (N,) metres, t rising
-    bandwidth : metres
-
-    Returns
-    -------
-    list of functions of t, (M,) -> (M,) metres, constant beyond both ends
+    Of each profile, (t, values) with (N,) metres and t rising, a function of (M,) t that gives (M,) metres, constant beyond both ends.
     """
     profiles = [(np.asarray(t, float), np.asarray(values, float)) for t, values in profiles]
     found: list[Any] = [None] * len(profiles)
@@ -354,17 +316,8 @@ def _smooth(profiles, bandwidth):
     basis = _SplineBasis([(t - t[0], [bandwidth]) for t, _ in profiles])
     levels = [median(values) for _, values in profiles]
     places = np.concatenate([values - level for (_, values), level in zip(profiles, levels)])
-    weight, found = np.ones(len(places)), [None] * len(profiles)
-    for turn in range(MAX_PROFILE_REWEIGHTINGS):
-        control = basis.solve(weight, places[:, None])
-        before, weight = weight, basis.weights(places - basis.evaluate(control)[0][:, 0])
-        settled = np.maximum.reduceat(np.abs(weight - before), basis.rows) < WEIGHT_TOLERANCE
-        for k, (t, _) in enumerate(profiles):
-            if found[k] is None and (settled[k] or turn == MAX_PROFILE_REWEIGHTINGS - 1):
-                found[k] = _profile(basis.knots[k], basis.block(control, k)[:, 0], levels[k], t[0])
-        if None not in found:
-            break
-    return found
+    solved = basis.robustly_solved(places[:, None], lambda at, slope: places - at[:, 0], MAX_PROFILE_REWEIGHTINGS)
+    return [_profile(knots, control[:, 0], level, t[0]) for knots, (control, _), level, (t, _) in zip(basis.knots, solved, levels, profiles)]
 
 
 def _profile(knots, control, level, start):

@@ -72,9 +72,6 @@ class Clothoid(Curve):
     def curvature(self, u: np.ndarray | float) -> np.ndarray:
         return self.bend + self.change * np.asarray(u, float)
 
-    def moved(self, dx: float, dy: float) -> Clothoid:
-        return Clothoid(self.x + dx, self.y + dy, self.direction, self.bend, self.change, self.length)
-
     def reversed(self) -> Clothoid:
         (x, y), = self.at(np.array([self.length]))
         return Clothoid(float(x), float(y), float(self.heading(self.length)) + np.pi,
@@ -87,34 +84,15 @@ class Clothoid(Curve):
                         self.change, float(last - first))
 
 
-def fit_clothoid(x: np.ndarray, y: np.ndarray) -> CurveFit:
-    """Fit a clothoid by robust orthogonal least squares.
+def fit_clothoids(lines: Sequence[tuple[np.ndarray, np.ndarray]], max_misfit: float = np.inf) -> list[CurveFit]:
+    """Fit a clothoid to each line by robust orthogonal least squares, from the first point's projection to the last's.
 
     The start is a parabola through the headings of chords between bins of points (theta is a parabola of u on a clothoid); the unknowns are those
     at the middle, where they are correlated least.
 
     Parameters
     ----------
-    x, y : (N,) metres, N >= 5, ordered along the line
-
-    Returns
-    -------
-    CurveFit with a Clothoid from the first point's projection to the last's.
-    """
-    return fit_clothoids([(x, y)])[0]
-
-
-def fit_clothoids(lines: Sequence[tuple[np.ndarray, np.ndarray]], max_misfit: float = np.inf) -> list[CurveFit]:
-    """`fit_clothoid` of many lines at once.
-
-    Parameters
-    ----------
-    lines : list of (x, y), each (N,) metres, N >= 5, ordered along the line
-    max_misfit : metres; a curve from which a twentieth of the points lie farther is not refined
-
-    Returns
-    -------
-    list of CurveFit, one for each line
+    lines, max_misfit : as of `fit_batch`, N >= 5
     """
     return fit_batch([checked_points(x, y, 5) for x, y in lines], _ClothoidProblem, max_misfit)
 

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from ..common.errors import RoadExtractionError
 from ..common.parallel import check_cancelled
-from .base import Arc, Curve, CurveFit, bic_lower_bound
-from .bspline import Spline, fit_spline, fit_splines
-from .clothoid import Clothoid, fit_clothoid, fit_clothoids
+from .base import CurveFit, bic_lower_bound
+from .bspline import fit_splines
+from .clothoid import fit_clothoids
 from .robust import COARSE_POINTS, PointGroups
-from .simple_curves import MIN_ELLIPSE_TURN, Ellipse, Polynomial, fit_circle, fit_circles, fit_ellipse, fit_line, fit_lines, fit_polynomial
+from .simple_curves import MIN_ELLIPSE_TURN, fit_circles, fit_ellipse, fit_lines, fit_polynomial
 
 CURVES = ("automatic", "line", "circle", "ellipse", "clothoid", "polynomial", "b-spline")
 MAX_RESIDUAL_P95 = 0.05  # m; a simpler curve is selected only if 95 % of the points are nearer
@@ -47,35 +48,21 @@ def fit_curve(x: np.ndarray, y: np.ndarray, curve: str = "automatic", degree: in
     if len(x) < least:
         raise RoadExtractionError(
             f"A {curve} needs at least {least} places along the line, there are {len(x)}. Choose curve = automatic.")
-    fits = {"line": fit_line, "circle": fit_circle, "ellipse": fit_ellipse, "clothoid": fit_clothoid, "b-spline": fit_spline}
-    return fit_polynomial(x, y, degree) if curve == "polynomial" else fits[curve](x, y)
+    if curve == "polynomial":
+        return fit_polynomial(x, y, degree)
+    if curve == "ellipse":
+        return fit_ellipse(x, y)
+    fits: dict[str, Callable[..., list[CurveFit]]] = {"line": fit_lines, "circle": fit_circles, "clothoid": fit_clothoids, "b-spline": fit_splines}
+    return fits[curve]([(x, y)])[0]
 
 
 def fit_curves(lines: Sequence[tuple[np.ndarray, np.ndarray]]) -> list[CurveFit]:
-    """The simplest acceptable curve of each of many lines, selected as `fit_curve` does.
+    """The simplest acceptable curve of each of many lines, (x, y) of (N,) metres, selected as `fit_curve` does.
 
-    Parameters
-    ----------
-    lines : list of (x, y), each (N,) metres, ordered along the line
-
-    Returns
-    -------
-    list of CurveFit; if no kind is acceptable, the one with the smallest 95th percentile of the residuals
+    If no kind is acceptable, it is the one with the smallest 95th percentile of the residuals.
     """
     choices = select_each(lines, (*ALIGNMENT_CURVES, ("ellipse", 12, _ellipses), ("b-spline", 6, fit_splines)), MAX_RESIDUAL_P95)
     return [choice.best or min(choice.found, key=lambda fit: fit.residual_p95) for choice in choices]
-
-
-def _lines(lines):
-    return fit_lines(lines, MAX_MISFIT)
-
-
-def _circles(lines):
-    return fit_circles(lines, MAX_MISFIT)
-
-
-def _clothoids(lines):
-    return fit_clothoids(lines, MAX_MISFIT)
 
 
 def _ellipses(lines):
@@ -96,7 +83,8 @@ def _ellipse(x, y):
 
 
 # (name, minimum number of points, function of a list of lines) of the elements of a road alignment, simplest first
-ALIGNMENT_CURVES = ("line", 2, _lines), ("circle", 4, _circles), ("clothoid", 8, _clothoids)
+ALIGNMENT_CURVES = tuple((name, fewest, partial(fit_all, max_misfit=MAX_MISFIT))
+                         for name, fewest, fit_all in (("line", 2, fit_lines), ("circle", 4, fit_circles), ("clothoid", 8, fit_clothoids)))
 
 
 def select_each(lines: Sequence[tuple[np.ndarray, np.ndarray]],
@@ -108,10 +96,6 @@ def select_each(lines: Sequence[tuple[np.ndarray, np.ndarray]],
     lines : list of (x, y), each (N,) metres, ordered along the line
     kinds : as ALIGNMENT_CURVES, simplest first
     max_residual : metres; largest acceptable 95th percentile of the residuals
-
-    Returns
-    -------
-    list of _ModelSelection, one for each line
     """
     choices = [_ModelSelection(max_residual) for _ in lines]
     for name, fewest, fit_all in kinds:
@@ -164,36 +148,3 @@ class _ModelSelection:
         return max((abs(fit.curve.bend) * fit.curve.length for fit in self.found if fit.curve.kind == "circle"), default=0.0)
 
 
-def select_simplest(fits: Iterable[CurveFit], max_residual: float = np.inf) -> CurveFit | None:
-    """The best of a _ModelSelection among fits, simplest first; a lazy iterable is read only as far as needed."""
-    choice = _ModelSelection(max_residual)
-    for fit in fits:
-        choice.add(fit)
-        if choice.decided:
-            break
-    return choice.best
-
-
-_PARAMETERS = {
-    "clothoid": (Clothoid, ("x", "y", "direction", "bend", "change", "length")),
-    "ellipse": (Ellipse, ("x", "y", "a", "b", "tilt", "first", "last")),
-    "polynomial": (Polynomial, ("x", "y", "tilt", "scale", "coefficients", "first", "last")),
-    "b-spline": (Spline, ("knots", "control_x", "control_y")),
-    "line": (Arc, ("x", "y", "direction", "bend", "length")),
-    "circle": (Arc, ("x", "y", "direction", "bend", "length")),
-}
-
-
-def curve_from_params(params: Mapping[str, Any]) -> Curve:
-    """The curve described by a dict of `Curve.params`, also after a round trip through JSON.
-
-    Raises
-    ------
-    RoadExtractionError
-        If its kind is unknown.
-    """
-    kind = params["curve"]
-    if kind not in _PARAMETERS:
-        raise RoadExtractionError(f"There is no curve called {kind!r}. Choose one of {', '.join(CURVES[1:])}.")
-    maker, names = _PARAMETERS[kind]
-    return maker(*(tuple(params[name]) if isinstance(params[name], list) else params[name] for name in names))

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from scipy.linalg import solveh_banded
 
+from ..common.arrays import quantile_in_order
 from ..common.parallel import check_cancelled
 
 SOFT_L1_SCALE = 0.03  # m; the weight of larger residuals falls off (soft L1)
@@ -15,17 +16,9 @@ MAD_TO_SIGMA = 1.4826  # standard deviation of a normal distribution / its media
 
 
 def robust_weights(residuals: np.ndarray) -> np.ndarray:
-    """Weights of soft L1, ``1 / sqrt(1 + (r / c)^2)``.
+    """Weights of soft L1, ``1 / sqrt(1 + (r / c)^2)``, of (..., N) residuals in metres.
 
     The scale c of each row is 1.4826 times the median of ``|r|``, at least `SOFT_L1_SCALE`.
-
-    Parameters
-    ----------
-    residuals : (..., N) array, metres
-
-    Returns
-    -------
-    (..., N) array: 1 for small residuals, falling as ``1 / |r|`` for large ones.
     """
     residuals = np.asarray(residuals)
     scale = np.maximum(SOFT_L1_SCALE, MAD_TO_SIGMA * row_medians(np.abs(residuals)))
@@ -40,25 +33,10 @@ def median(values: np.ndarray) -> float:
 
 
 def percentiles(values: np.ndarray, percents: Sequence[float]) -> list[float]:
-    """`numpy.percentile` of (N,) floats, N >= 1, without NaN; faster on small arrays.
-
-    Parameters
-    ----------
-    values : (N,) array
-    percents : 0 to 100
-
-    Returns
-    -------
-    list of float, one for each of `percents`.
-    """
-    positions = [percent / 100 * (len(values) - 1) for percent in percents]
-    ranks = [(int(position), min(int(position) + 1, len(values) - 1)) for position in positions]
-    ordered = np.partition(values, sorted({rank for pair in ranks for rank in pair}))
-    found = []
-    for position, (below, above) in zip(positions, ranks):
-        share, low, high = position - below, float(ordered[below]), float(ordered[above])
-        found.append(low + (high - low) * share if share < 0.5 else high - (high - low) * (1 - share))
-    return found
+    """`numpy.percentile` of (N,) floats, N >= 1, without NaN; faster on small arrays."""
+    below = {int(percent / 100 * (len(values) - 1)) for percent in percents}
+    ordered = np.partition(values, sorted(below | {min(rank + 1, len(values) - 1) for rank in below}))
+    return [quantile_in_order(ordered, len(values), percent / 100) for percent in percents]
 
 
 def row_medians(values: np.ndarray) -> np.ndarray:
@@ -131,20 +109,17 @@ def batches(counts: Sequence[int] | np.ndarray, max_points: int = FIT_POINTS_PER
 
 
 def fit_batch(lines: Sequence[tuple[np.ndarray, np.ndarray]], problem_of: Callable[..., Any], max_misfit: float = np.inf) -> list[Any]:
-    """Fit curves of one kind to many lines.
+    """Fit curves of one kind to many lines; the result of a line does not depend on the others.
 
     Each curve is fitted to a subsample of its line first, which takes most of the steps, then to all points, unless its misfit is too large.
 
     Parameters
     ----------
     lines : list of (x, y), each (N,) metres, ordered along the line
-    problem_of : makes a problem for `_minimise_batch` from PointGroups, x and y; it also has `start()`, (L, P), `scale`, `fit`, and
+    problem_of : makes a problem for `_minimise_batch` from PointGroups, x and y; it also has `start()`, (L, P), `scale`,
+        `fit(k, unknown, x, y, residuals, state)`, which gives what is returned for line k, and
         `with_points(points, x, y, lines, state)`: the same unknowns for more points of some of its lines
     max_misfit : metres; a curve from which a twentieth of the points lie farther is not refined with all points
-
-    Returns
-    -------
-    list of what `fit(k, unknown, x, y, residuals, state)` of the problem returns for each line
     """
     found = [None] * len(lines)
     counts = np.array([len(x) for x, _ in lines], np.int64)
@@ -283,19 +258,7 @@ def _cost(problem, residuals, f_scale):
 
 def minimise(residuals: Callable[[np.ndarray], np.ndarray], jacobian: Callable[[np.ndarray], np.ndarray], start: Sequence[float] | np.ndarray,
              scale: Sequence[float] | np.ndarray, max_misfit: float = np.inf) -> np.ndarray:
-    """`_minimise_batch` of one curve.
-
-    Parameters
-    ----------
-    residuals, jacobian : functions of the parameters (P,) that return (N,) and (N, P)
-    start : (P,) initial parameters
-    scale : (P,) the size of a sensible step in each parameter
-    max_misfit : metres, as in `_minimise_batch`
-
-    Returns
-    -------
-    (P,) parameters
-    """
+    """(P,) parameters of one curve by `_minimise_batch`, from functions of these that give (N,) residuals and their (N, P) derivatives."""
     problem = _SingleCurve(residuals, jacobian, start)
     return _minimise_batch(problem, problem.first[None, :], np.asarray(scale, float)[None, :], max_misfit=max_misfit)[0][0]
 

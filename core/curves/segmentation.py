@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from ..common.parallel import check_cancelled
-from .base import CurveFit, checked_points
+from .base import checked_points
 from .bspline import fit_splines
-from .clothoid import fit_clothoid
-from .model_selection import select_simplest
 from .robust import MAD_TO_SIGMA, median
-from .simple_curves import fit_circle, fit_line
 
 ELEMENT_NODE_SPACING = 4.0   # m between the nodes at which elements may join
 MIN_ELEMENT_LENGTH = 8.0     # m
@@ -28,72 +24,30 @@ _EXPONENTS, _DIAGONAL = np.arange(7), np.arange(4)
 _EXPONENT_SUMS = np.add.outer(_DIAGONAL, _DIAGONAL)
 
 
-@dataclass(frozen=True)
-class _AlignmentElement:
-    """One element of an alignment.
-
-    first, last : arc lengths of its ends along the whole line, metres
-    fit : its curve, fitted to its own points
-    """
-
-    first: float
-    last: float
-    fit: CurveFit
-
-    @property
-    def kind(self) -> str:
-        return self.fit.curve.kind
-
-    @property
-    def length(self) -> float:
-        return self.last - self.first
-
-
-def segment_line(x: np.ndarray, y: np.ndarray) -> list[_AlignmentElement]:
-    """Divide a line into straights, circular arcs and clothoids.
+def element_ranges(lines: Sequence[tuple[np.ndarray, np.ndarray]]) -> list[list[tuple[float, float, str]]]:
+    """Divide lines into straights, circular arcs and clothoids.
 
     A smoothing spline is fitted first. Relative to it, with its own heading integrated twice added back, a straight is a polynomial of degree 1 of
     arc length, an arc of degree 2 and a clothoid of degree 3 (to first order in the few centimetres of residual). The best of all divisions at
-    nodes 4 m apart is found by dynamic programming with a BIC cost per element. Each element is then fitted to its own points in exact geometry.
+    nodes 4 m apart is found by dynamic programming with a BIC cost per element.
 
     Parameters
     ----------
-    x, y : (N,) metres, ordered, one point per 0.25 to 1 m
+    lines : list of (x, y), each (N,) metres, ordered, one point per 0.25 to 1 m
 
     Returns
     -------
-    list of _AlignmentElement, in order, covering the line without gaps
+    of each line: first and last arc length, m, and kind of its elements, in order and without gaps
     """
-    (cuts, u, x, y), = _element_cuts([(x, y)])
-    return [_element(first, last, kind, u, x, y) for first, last, kind in cuts]
-
-
-def element_ranges(lines: Sequence[tuple[np.ndarray, np.ndarray]]) -> list[list[tuple[float, float]]]:
-    """Arc lengths (first, last), metres, of the elements that `segment_line` finds in each of many lines (x, y), without their fits."""
-    return [[(first, last) for first, last, _ in cuts] for cuts, *_ in _element_cuts(lines)]
-
-
-def _element_cuts(lines):
-    """[(first, last, kind)] of the elements of each line, and the arc lengths and points they were found from, in order."""
-    lines, found = [checked_points(x, y, 4) for x, y in lines], []
-    for (x, y), base in zip(lines, fit_splines(lines)):
+    ranges = []
+    points = [checked_points(x, y, 4) for x, y in lines]
+    for (x, y), base in zip(points, fit_splines(points)):
         u, e = base.curve.project(x, y)
         order = np.argsort(u, kind="stable")
         u, e = np.clip(u[order], 0, base.curve.length), e[order]
         sigma = max(MAD_TO_SIGMA * median(np.abs(e)), MIN_ELEMENT_SIGMA)
-        found.append((_divide(base.curve, u, e, sigma, base.curve.length), u, x[order], y[order]))
-    return found
-
-
-def _element(first, last, kind, u, x, y):
-    inside = (u >= first - 1e-9) & (u <= last + 1e-9)
-    if inside.sum() < 5:
-        inside = np.sort(np.argsort(np.abs(u - (first + last) / 2), kind="stable")[:5])
-    px, py = x[inside], y[inside]
-    makers = {"line": fit_line, "circle": fit_circle, "clothoid": fit_clothoid}
-    # the division is of first order; in exact geometry a simpler element may fit as well
-    fits = (makers[name](px, py) for name, degree in ELEMENT_DEGREES.items() if degree <= ELEMENT_DEGREES[kind] and len(px) > degree + 1)
-    return _AlignmentElement(first, last, select_simplest(fits))
+        ranges.append(_divide(base.curve, u, e, sigma, base.curve.length))
+    return ranges
 
 
 def _divide(curve, u, e, sigma, length):

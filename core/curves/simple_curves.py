@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,67 +12,24 @@ from .base import Arc, CurveFit, TabulatedCurve, checked_points
 from .robust import PointGroups, fit_batch, minimise, robust_weights
 
 
-def fit_line(x: np.ndarray, y: np.ndarray) -> CurveFit:
-    """Fit a straight line by orthogonal, robust least squares.
-
-    Parameters
-    ----------
-    x, y : (N,) metres, N >= 2, ordered along the line
-
-    Returns
-    -------
-    CurveFit with an Arc of curvature 0 from the first point's projection to the last's.
-    """
-    return fit_lines([(x, y)])[0]
+def fit_lines(lines: Sequence[tuple[np.ndarray, np.ndarray]], max_misfit: float = np.inf) -> list[CurveFit]:
+    """Fit a straight Arc to each line by orthogonal, robust least squares; arguments as of `fit_batch`, N >= 2."""
+    return fit_batch([checked_points(x, y, 2) for x, y in lines], _LineProblem, max_misfit)
 
 
-def fit_circle(x: np.ndarray, y: np.ndarray) -> CurveFit:
-    """Fit a circle: Taubin's algebraic fit as start, then the geometric distance, robustly.
+def fit_circles(lines: Sequence[tuple[np.ndarray, np.ndarray]], max_misfit: float = np.inf) -> list[CurveFit]:
+    """Fit an Arc to each line: Taubin's algebraic fit as start, then the geometric distance, robustly.
 
     The unknowns are heading, offset and curvature at the points' middle, so that a nearly straight line is as easy as a tight bend. Kasa's simpler
     fit is not used: it is biased towards small radii on short arcs.
 
     Parameters
     ----------
-    x, y : (N,) metres, N >= 3, ordered along the line
-
-    Returns
-    -------
-    CurveFit with an Arc from the first point's projection to the last's.
+    lines, max_misfit : as of `fit_batch`, N >= 3
 
     References
     ----------
     Taubin (1991), IEEE PAMI 13, 1115-1138; Chernov (2010), Circular and linear regression, ch. 5-7.
-    """
-    return fit_circles([(x, y)])[0]
-
-
-def fit_lines(lines: Sequence[tuple[np.ndarray, np.ndarray]], max_misfit: float = np.inf) -> list[CurveFit]:
-    """`fit_line` of many lines at once.
-
-    Parameters
-    ----------
-    lines : list of (x, y), each (N,) metres, N >= 2, ordered along the line
-    max_misfit : metres; a curve from which a twentieth of the points lie farther is not refined
-
-    Returns
-    -------
-    list of CurveFit, one for each line
-    """
-    return fit_batch([checked_points(x, y, 2) for x, y in lines], _LineProblem, max_misfit)
-
-
-def fit_circles(lines: Sequence[tuple[np.ndarray, np.ndarray]], max_misfit: float = np.inf) -> list[CurveFit]:
-    """`fit_circle` of many lines at once.
-
-    Parameters
-    ----------
-    lines : list of (x, y), each (N,) metres, N >= 3, ordered along the line
-    max_misfit : metres; a curve from which a twentieth of the points lie farther is not refined
-
-    Returns
-    -------
-    list of CurveFit, one for each line
     """
     return fit_batch([checked_points(x, y, 3) for x, y in lines], _CircleProblem, max_misfit)
 
@@ -100,19 +57,9 @@ def _taubin(groups, x, y):
 
 
 def chords(groups: PointGroups, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The line through the centroids of the two halves of ordered points.
+    """Centroids x and y (L,) of the ordered points of L lines, and the direction (L,) from that of their first half to that of the second, radians.
 
     Unlike the principal axis it keeps the order of the points, and it does not turn where an arc is nearly half a circle.
-
-    Parameters
-    ----------
-    groups : PointGroups of L lines
-    x, y : (N,) metres
-
-    Returns
-    -------
-    x, y : (L,) centroids, metres
-    direction : (L,) radians
     """
     half = np.maximum(groups.counts // 2, 1)
     within = np.arange(len(groups.owner)) - groups.starts[groups.owner]
@@ -120,12 +67,6 @@ def chords(groups: PointGroups, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarra
     head = within < half[groups.owner]
     step = [(groups.sums(np.where(tail, v, 0.0)) - groups.sums(np.where(head, v, 0.0))) / half for v in (x, y)]
     return groups.sums(x) / groups.counts, groups.sums(y) / groups.counts, np.arctan2(step[1], step[0])
-
-
-def chord(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, float]:
-    """`chords` of one line: its centroid (2,), metres, and direction, radians."""
-    middle_x, middle_y, direction = chords(PointGroups([len(x)]), x, y)
-    return np.array([middle_x[0], middle_y[0]]), float(direction[0])
 
 
 class _CircleProblem:
@@ -228,10 +169,6 @@ class Ellipse(TabulatedCurve):
     def _span(self):
         return self.first, self.last
 
-    def _turned(self, along, across):
-        c, s = np.cos(self.tilt), np.sin(self.tilt)
-        return np.c_[along * c - across * s, along * s + across * c]
-
     def _place(self, t):
         return self._turned(self.a * np.cos(t), self.b * np.sin(t)) + [self.x, self.y]
 
@@ -242,11 +179,8 @@ class Ellipse(TabulatedCurve):
     def _bend(self, t):
         return self._turned(-self.a * np.cos(t), -self.b * np.sin(t))
 
-    def moved(self, dx: float, dy: float) -> Ellipse:
-        return Ellipse(self.x + dx, self.y + dy, self.a, self.b, self.tilt, self.first, self.last)
-
     def reversed(self) -> Ellipse:
-        return Ellipse(self.x, self.y, self.a, self.b, self.tilt, self.last, self.first)
+        return replace(self, first=self.last, last=self.first)
 
 
 def fit_ellipse(x: np.ndarray, y: np.ndarray, max_misfit: float = np.inf) -> CurveFit:
@@ -386,10 +320,6 @@ class Polynomial(TabulatedCurve):
     def _span(self):
         return self.first, self.last
 
-    def _turned(self, along, across):
-        c, s = np.cos(self.tilt), np.sin(self.tilt)
-        return np.c_[along * c - across * s, along * s + across * c]
-
     def _value(self, t, order):
         series = np.polynomial.Polynomial(self.coefficients)
         return series.deriv(order)(t / self.scale) / self.scale**order if order else series(t / self.scale)
@@ -402,9 +332,6 @@ class Polynomial(TabulatedCurve):
 
     def _bend(self, t):
         return self._turned(np.zeros_like(t), self._value(t, 2))
-
-    def moved(self, dx: float, dy: float) -> Polynomial:
-        return Polynomial(self.x + dx, self.y + dy, self.tilt, self.scale, self.coefficients, self.first, self.last)
 
     def reversed(self) -> Polynomial:
         turned = tuple(-c * (-1) ** k for k, c in enumerate(self.coefficients))
@@ -432,10 +359,10 @@ def fit_polynomial(x: np.ndarray, y: np.ndarray, degree: int = 2) -> CurveFit:
         If the points turn back along their chord, which no polynomial can follow.
     """
     x, y = checked_points(x, y, degree + 1)
-    middle, tilt = chord(x, y)
+    middle_x, middle_y, tilt = (float(values[0]) for values in chords(PointGroups([len(x)]), x, y))
     c, s = np.cos(tilt), np.sin(tilt)
-    along = (x - middle[0]) * c + (y - middle[1]) * s
-    across = (y - middle[1]) * c - (x - middle[0]) * s
+    along = (x - middle_x) * c + (y - middle_y) * s
+    across = (y - middle_y) * c - (x - middle_x) * s
     if not along[0] < along[-1] or np.abs(along).max() > 1.02 * max(-along[0], along[-1]) + 0.5:
         raise RoadExtractionError(
             "A polynomial cannot follow a line that turns back on itself. Choose curve = automatic or b-spline.")
@@ -446,6 +373,5 @@ def fit_polynomial(x: np.ndarray, y: np.ndarray, degree: int = 2) -> CurveFit:
         root = np.sqrt(weight)
         found = np.linalg.lstsq(design * root[:, None], across * root, rcond=None)[0]
         weight = robust_weights(across - design @ found)
-    curve = Polynomial(float(middle[0]), float(middle[1]), tilt, scale, tuple(float(v) for v in found),
-                       float(along[0]), float(along[-1]))
+    curve = Polynomial(middle_x, middle_y, tilt, scale, tuple(found.tolist()), float(along[0]), float(along[-1]))
     return CurveFit(curve, curve.project(x, y)[1], degree + 1)

@@ -160,7 +160,7 @@ def _divided(axes):
     """[(start station, end station, curve)] of each of some axes, whose parts are fitted together."""
     long = [k for k, axis in enumerate(axes) if len(axis.at) >= ALIGNMENT.min_places_per_fit]
     cuts = element_ranges([axes[k].thinned for k in long])
-    parts = [(k, first, last) for k, bounds in zip(long, cuts) for first, last in bounds]
+    parts = [(k, first, last) for k, bounds in zip(long, cuts) for first, last, _ in bounds]
     choices = select_each([axes[k].part(first, last) for k, first, last in parts])
     found = [[] for _ in axes]
     for (k, first, last), choice in zip(parts, choices):

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.curves.segmentation import segment_line
+from lanewright.core.curves.segmentation import element_ranges
 
 
 def alignment(*parts, step=0.5, noise=0.01, seed=3):
@@ -17,16 +17,16 @@ def alignment(*parts, step=0.5, noise=0.01, seed=3):
 
 @pytest.mark.parametrize("radius", [60.0, 120.0, 400.0])
 def test_an_arc_between_two_straights_is_found_within_a_node_of_its_ends(radius):
-    segments = segment_line(*alignment((40, 0, 0), (60, 1 / radius, 1 / radius), (50, 0, 0)))
-    assert [segment.kind for segment in segments] == ["line", "circle", "line"]
-    assert segments[1].first == pytest.approx(40, abs=6) and segments[1].last == pytest.approx(100, abs=6)
-    assert 1 / abs(segments[1].fit.curve.bend) == pytest.approx(radius, rel=0.03)
+    elements, = element_ranges([alignment((40, 0, 0), (60, 1 / radius, 1 / radius), (50, 0, 0))])
+    assert [kind for *_, kind in elements] == ["line", "circle", "line"]
+    assert elements[1][0] == pytest.approx(40, abs=6) and elements[1][1] == pytest.approx(100, abs=6)
 
 
 def test_a_bend_is_never_called_straight():
-    segments = segment_line(*alignment((80, 1 / 90, 1 / 90)))
-    assert [segment.kind for segment in segments] == ["circle"]
+    (_, _, kind), = element_ranges([alignment((80, 1 / 90, 1 / 90))])[0]
+    assert kind == "circle"
 
 
 def test_a_straight_road_is_one_straight():
-    assert [segment.kind for segment in segment_line(*alignment((150, 0, 0)))] == ["line"]
+    (_, _, kind), = element_ranges([alignment((150, 0, 0))])[0]
+    assert kind == "line"

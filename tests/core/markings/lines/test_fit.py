@@ -9,7 +9,10 @@ from clustered_streets import RADIUS, UP, ClusteredStreet, told
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.features import MARKINGS, Features
 from lanewright.core.common.progress import Progress
-from lanewright.core.curves.model_selection import curve_from_params
+from lanewright.core.curves.base import Arc
+from lanewright.core.curves.bspline import Spline
+from lanewright.core.curves.clothoid import Clothoid
+from lanewright.core.curves.simple_curves import Ellipse
 from lanewright.core.markings.lines.fit import MarkingLineSettings, fit_marking_lines
 from lanewright.core.markings.lines.painted_lines import PaintedLines
 from lanewright.core.markings.objects.marking_objects import MarkingObjects
@@ -254,13 +257,19 @@ def test_the_order_of_the_points_and_the_sections_change_nothing():
         assert {k: v for k, v in a[1].items()} == {k: v for k, v in b[1].items()}
 
 
+def curve_of(params):
+    kind = {"line": Arc, "circle": Arc, "ellipse": Ellipse, "clothoid": Clothoid, "b-spline": Spline}[params["curve"]]
+    values = [params[name] for name in kind.__dataclass_fields__ if name in params]
+    return kind(*(tuple(value) if isinstance(value, list) else value for value in values))
+
+
 def test_every_piece_lies_on_the_curve_that_its_params_tell():
     street = ClusteredStreet().dashes(3.0, 6.0, 0.0, missing=(4, 5)).paint(0, 120, 4.5, kind="edge")
     lines = street.lines()
     assert {row["status"] for _, row in lines} == {"measured", "bridged"}
     for geometry, row in lines:
         params = json.loads(row["params"])
-        curve = curve_from_params(params)
+        curve = curve_of(params)
         assert params["curve"] == row["curve"]
         ends = curve.at(np.array([params["from"], params["to"]]))
         np.testing.assert_allclose(shapely.get_coordinates(geometry)[[0, -1]], ends, atol=1e-3)
