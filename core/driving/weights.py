@@ -8,7 +8,7 @@ import numpy as np
 
 
 @dataclass(frozen=True)
-class AlignmentWeights:
+class _AlignmentWeights:
     """The alignment that lanes have in common, their courses and curves."""
 
     max_parallel_deviation: float = 0.06   # m: 95 % of a lane's places are nearer than this to a parallel of the others
@@ -26,11 +26,11 @@ class AlignmentWeights:
     max_turn: float = np.pi * 0.95   # the tangents of a half circle do not meet
 
 
-ALIGNMENT = AlignmentWeights()
+ALIGNMENT = _AlignmentWeights()
 
 
 @dataclass(frozen=True)
-class SigmaWeights:
+class _SigmaWeights:
     """How uncertain the place of a driving line is."""
 
     border_share: float = 0.13   # of the RMS distance of a border's paint from its curve, that the border is off by
@@ -53,11 +53,11 @@ class SigmaWeights:
     curvature_window: float = 10.0   # m along the lane, of the RMS of the change of curvature
 
 
-SIGMA = SigmaWeights()
+SIGMA = _SigmaWeights()
 
 
 @dataclass(frozen=True)
-class HeightWeights:
+class _HeightWeights:
     """Heights of driving lines."""
 
     height_reach: float = 0.3   # m either side of the driving line
@@ -67,11 +67,11 @@ class HeightWeights:
     height_smoothing_sigma: float = 2.0   # m: a car does not follow a pothole
 
 
-HEIGHTS = HeightWeights()
+HEIGHTS = _HeightWeights()
 
 
 @dataclass(frozen=True)
-class AreaWeights:
+class _AreaWeights:
     """Shoulders and connectors."""
 
     least_shoulder: float = 1.0   # m, median: what is narrower is the marginal strip of the carriageway (0.5 to 0.75 m, RAA)
@@ -82,11 +82,11 @@ class AreaWeights:
     driven_on: float = 2.0   # s between two passes of one drive at most: it went on without a stop between them
 
 
-AREAS = AreaWeights()
+AREAS = _AreaWeights()
 
 
 @dataclass(frozen=True)
-class TrackWeights:
+class _TrackWeights:
     """Lanes followed along the road: first how stretches become one lane."""
 
     max_lane_jump_share: float = 0.35   # share of a lane's width by which it may jump from one stretch to the next
@@ -113,4 +113,4 @@ class TrackWeights:
     missing_share: float = 0.25   # of a lane's width by which two lanes beside each other may be apart or overlap
 
 
-TRACKS = TrackWeights()
+TRACKS = _TrackWeights()

@@ -8,7 +8,7 @@ import numpy as np
 
 
 @dataclass(frozen=True)
-class TrackWeights:
+class _TrackWeights:
     """Tracks of the scan: how far apart points of one marking may lie."""
 
     track_width: float = 0.03   # m that points may lie farther apart than the middles of their tracks
@@ -19,11 +19,11 @@ class TrackWeights:
     max_track_gap: float = 0.50   # m across the road: more between points is no spacing but a shadow
 
 
-TRACKS = TrackWeights()
+TRACKS = _TrackWeights()
 
 
 @dataclass(frozen=True)
-class AsphaltWeights:
+class _AsphaltWeights:
     """The level of asphalt, bright patches and dark ground in it."""
 
     background_limit: float = 2.5   # spreads: brighter cells, and those darker by twice as much, are no background
@@ -51,11 +51,11 @@ class AsphaltWeights:
     min_scanner_points: int = 500   # in squares, below which the scatter of a scanner is unknown
 
 
-ASPHALT = AsphaltWeights()
+ASPHALT = _AsphaltWeights()
 
 
 @dataclass(frozen=True)
-class FaintLineWeights:
+class _FaintLineWeights:
     """Lines that a threshold misses and that stand out against both their sides."""
 
     stroke_cells: int = 3   # across the road: 12 cm, of which the line is the mean
@@ -74,11 +74,11 @@ class FaintLineWeights:
     clear_sigmas: float = 3.0   # standard deviations of what asphalt shows, by which a line stands out
 
 
-FAINT_LINES = FaintLineWeights()
+FAINT_LINES = _FaintLineWeights()
 
 
 @dataclass(frozen=True)
-class GroupWeights:
+class _GroupWeights:
     """Which points belong together."""
 
     road_edge_clearance: float = 0.10   # m: strips so near to the road edge are taken for verge
@@ -91,11 +91,11 @@ class GroupWeights:
     touching: float = 1.5   # squares: and those that touch, at a corner too, are of one figure
 
 
-GROUPS = GroupWeights()
+GROUPS = _GroupWeights()
 
 
 @dataclass(frozen=True)
-class CompoundWeights:
+class _CompoundWeights:
     """Markings that touch: strips along the road, and bars with the lines that end at them."""
 
     strip_windows: tuple[tuple[float, float], tuple[float, float]] = (8.0, 8.0), (4.0, 5.0)   # m that a line is looked for in, and its least length
@@ -127,11 +127,11 @@ class CompoundWeights:
     max_side_shift: float = 0.10   # m by which wear has moved an edge that two pieces share
 
 
-COMPOUNDS = CompoundWeights()
+COMPOUNDS = _CompoundWeights()
 
 
 @dataclass(frozen=True)
-class ShapeWeights:
+class _ShapeWeights:
     """What a cluster looks like."""
 
     middle_line_step_units: int = 5000   # units: 0.5 m of station that the run of a line is followed in
@@ -160,11 +160,11 @@ class ShapeWeights:
     outline_height_neighbours: int = 8   # points that tell the height of a vertex
 
 
-SHAPES = ShapeWeights()
+SHAPES = _ShapeWeights()
 
 
 @dataclass(frozen=True)
-class ZigzagWeights:
+class _ZigzagWeights:
     """Zigzag lines (see the standards in `objects/shape.py`)."""
 
     step_cells: int = 3   # cells along the road whose middle is one place: 12 cm
@@ -183,11 +183,11 @@ class ZigzagWeights:
     least_off_straight: float = 0.05   # m
 
 
-ZIGZAG = ZigzagWeights()
+ZIGZAG = _ZigzagWeights()
 
 
 @dataclass(frozen=True)
-class StripeWeights:
+class _StripeWeights:
     """Stripes of zebra crossings."""
 
     stripe_width: tuple[float, float] = (0.25, 0.80)   # m
@@ -227,11 +227,11 @@ class StripeWeights:
     most_peaks: int = 2   # of them, the clearest, that are looked at closely: a line beside a crossing may repeat more clearly than its stripes
 
 
-STRIPES = StripeWeights()
+STRIPES = _StripeWeights()
 
 
 @dataclass(frozen=True)
-class FigureWeights:
+class _FigureWeights:
     """Bicycles and words, compared with drawn figures."""
 
     figure_size: tuple[float, float] = 0.6, 5.0   # m along and across of a figure
@@ -252,11 +252,11 @@ class FigureWeights:
     steps: tuple[float, float, float] = 0.10, 0.05, 0.025   # of its size that a figure is moved and stretched by, and radians that it is turned by
 
 
-FIGURES = FigureWeights()
+FIGURES = _FigureWeights()
 
 
 @dataclass(frozen=True)
-class StrandWeights:
+class _StrandWeights:
     """Stretches of one painted line without a gap, and the edges of the road beside them."""
 
     run_bin_units: int = 5000   # units of 0.1 mm: 0.5 m of station in which runs of paint are separated
@@ -284,11 +284,11 @@ class StrandWeights:
     paint_beside_piece: float = 2.0   # m of station before and after a piece whose paint counts for its offset
 
 
-STRANDS = StrandWeights()
+STRANDS = _StrandWeights()
 
 
 @dataclass(frozen=True)
-class LinkWeights:
+class _LinkWeights:
     """Strands linked along the road."""
 
     end_window: float = 6.0   # m of a strand's end that say where it goes
@@ -303,11 +303,11 @@ class LinkWeights:
     cost_without_link: float = 2.01   # the worst possible link costs 1 for its mismatch and 1 for its gap
 
 
-LINKS = LinkWeights()
+LINKS = _LinkWeights()
 
 
 @dataclass(frozen=True)
-class TrendWeights:
+class _TrendWeights:
     """How all painted lines of a road change their offset together."""
 
     trend_step: float = 0.5   # m, nodes of the drift
@@ -326,11 +326,11 @@ class TrendWeights:
     shortest_unseen: float = 0.5   # m: less is nothing to draw
 
 
-TREND = TrendWeights()
+TREND = _TrendWeights()
 
 
 @dataclass(frozen=True)
-class SelectionWeights:
+class _SelectionWeights:
     """Which linked paint is a line."""
 
     same_course_offset: float = 0.25   # m: a single dash this near the course of a dashed line is one of its dashes
@@ -360,11 +360,11 @@ class SelectionWeights:
     max_solid_gap: float = 2.5   # m: a longer hole in a solid line is bridged, not measured
 
 
-SELECTION = SelectionWeights()
+SELECTION = _SelectionWeights()
 
 
 @dataclass(frozen=True)
-class SectionWeights:
+class _SectionWeights:
     """Lines as offsets at common stations."""
 
     max_line_obliquity: float = np.tan(np.radians(25.0))   # a line that runs more across the road than this bounds no lane
@@ -375,11 +375,11 @@ class SectionWeights:
     max_dash_gap: float = 9.5   # m that a dashed line may be silent at its ends before it is known to end
 
 
-SECTIONS = SectionWeights()
+SECTIONS = _SectionWeights()
 
 
 @dataclass(frozen=True)
-class EvidenceWeights:
+class _EvidenceWeights:
     """The drive, other carriageways and stop lines as evidence of lanes."""
 
     carriageway_distance: float = 40.0   # m between the tracks on two carriageways of one road at most
@@ -408,11 +408,11 @@ class EvidenceWeights:
     shared_reach: float = 0.5   # of the shorter of two neighbours that lies beside the other
 
 
-EVIDENCE = EvidenceWeights()
+EVIDENCE = _EvidenceWeights()
 
 
 @dataclass(frozen=True)
-class RoadWeights:
+class _RoadWeights:
     """What all roads of a survey have in common."""
 
     length_of_usual: float = 50.0   # m of lanes that weigh as much as what is usual in the country
@@ -429,11 +429,11 @@ class RoadWeights:
     min_dashes: int = 4   # in a run: fewer may be remnants of a line that is worn away
 
 
-ROADS = RoadWeights()
+ROADS = _RoadWeights()
 
 
 @dataclass(frozen=True)
-class NoisyWeights:
+class _NoisyWeights:
     """Paint where single points are noisy: first their averages."""
 
     spot_sigma: float = 1.25   # cells, of the average in which pieces are searched
@@ -480,11 +480,11 @@ class NoisyWeights:
     min_view_sigmas: float = 3.0   # standard errors by which a piece is brighter than its surroundings in the mean of the views
 
 
-NOISY = NoisyWeights()
+NOISY = _NoisyWeights()
 
 
 @dataclass(frozen=True)
-class RimWeights:
+class _RimWeights:
     """What is bright at the rims of roads and no paint: first concrete gutters, and what is left of worn lines."""
 
     worn_gap: float = 0.80   # m along the road: no painted gap is shorter, so bright specks in it belong to one worn line
@@ -517,11 +517,11 @@ class RimWeights:
     min_squares_of_spread: int = 30   # squares of asphalt in a window that tell how far they lie off their planes
 
 
-RIMS = RimWeights()
+RIMS = _RimWeights()
 
 
 @dataclass(frozen=True)
-class ClassWeights:
+class _ClassWeights:
     """What kind of marking a cluster is. First its contrast: seams, joints of bridges and gutters of islands are far paler than paint beside them."""
 
     contrast_stretch: float = 100.0   # m of road, with as much before and after it, whose paint is compared
@@ -566,11 +566,11 @@ class ClassWeights:
     edge_line_length_ratio: float = 2.0   # an edge line is so many times as long as the strips outside it
 
 
-CLASSES = ClassWeights()
+CLASSES = _ClassWeights()
 
 
 @dataclass(frozen=True)
-class RowWeights:
+class _RowWeights:
     """What stands in rows: first dashes."""
 
     max_dash_spacing: float = 3.0   # m between the middles of neighbours in a row
@@ -600,11 +600,11 @@ class RowWeights:
     max_row_slope: float = 0.5   # to the road: of a row more askew the blocks do not touch
 
 
-ROWS = RowWeights()
+ROWS = _RowWeights()
 
 
 @dataclass(frozen=True)
-class LaneWeights:
+class _LaneWeights:
     """What may bound lanes, and how they lie between two boundaries."""
 
     max_interval: int = 4   # cells: longer intervals are divided
@@ -629,4 +629,4 @@ class LaneWeights:
     same_divider: int = 1   # places by which the same border between lanes may lie elsewhere
 
 
-LANES = LaneWeights()
+LANES = _LaneWeights()
