@@ -333,11 +333,9 @@ TREND = _TrendWeights()
 class _SelectionWeights:
     """Which linked paint is a line."""
 
-    same_course_offset: float = 0.25   # m: a single dash this near the course of a dashed line is one of its dashes
     min_shared_paint: float = 0.6   # of a line's paint that must have its twin beside it in a double line
     min_twin_paint: float = 4.0   # m of paint: a shorter line beside another is its frayed edge, however short the other is there
     max_frayed_share: float = 0.35   # of a line's length: less paint beside a line than this is no second line but its frayed edge
-    min_single_dash: float = 1.5   # m
     min_bounding_paint: float = 15.0   # m of paint: enough to bound a road by
     max_neighbour_offset: float = 8.0   # m across: a line this near starts and ends where this one does
     max_bar_length: float = 4.0   # m along the road: what is called hatching and is longer is no single bar of it

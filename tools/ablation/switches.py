@@ -295,7 +295,6 @@ ROWS = (
         ("pairs at crossings", "selection:_without_pairs_at_crossings", nth(0), "street with a traffic island and a zebra crossing"),
         ("lines beyond the edge", "selection:_beyond_the_edge", none_of(), "verge, gutter"),
         ("frayed edges and double lines", "selection:_beside", lambda lines, *_: np.zeros((2, len(lines)), bool)),
-        ("single dashes", "selection:_DashesElsewhere.alike", gives(None), "", "selection:_DashesElsewhere"),
         ("dashed lines end with a gap", "selection:_extended", lambda drawn, *_: merged_pieces(drawn)),
         ("guides in long gaps", "fit:_guides", gives((np.empty(0), np.empty(0))), "bends, gap of 27 m"),
         ("paint between tracks", "linking:with_unseen_paint", lambda lines, *_: replace(lines, unseen=[np.empty((0, 3))] * len(lines)),
