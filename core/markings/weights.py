@@ -541,7 +541,6 @@ class _ClassWeights:
     min_stop_line_fill: float = 0.62   # of length times width: a stop line is a full bar, the outline of hatching with its bars is not
     max_bar_to_outline: float = 0.3   # m from a bar of hatching to its outline
     max_hatching_pitch: float = 3.0   # m between bars of one hatching
-    min_bars_before_tip: int = 2   # that make a row which leads to its tip
     min_hatching_length: float = 4.0   # m along the road: what is longer is more than one bar
     min_arrow_shaft: float = 0.20   # of an arrow's length: its shaft at least,
     max_arrow_tip: float = 0.25   # and at the other end the tip of its head at most

@@ -269,7 +269,6 @@ ROWS = (
         ("rows of short dashes", "classify:_dashes_in_rows", none_of(), "cycle lanes with dashes of 1 m"),
         ("partners of double lines", "classify:_has_partner", none_of(1)),
         ("outlines of hatching", "classify:_outlines", gives(NO_NUMBERS), "many-beam scanner (Karlsruhe)"),
-        ("tips of hatching", "classify:_tips", gives(NO_NUMBERS), "exit of a motorway"),
         ("single bars", "classify:_single_bars", gives(NO_NUMBERS)),
         ("specks", "classify:_speck", gives(False)),
         ("round covers", "classify:_round_cover", gives(False)),
