@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from qgis.PyQt.QtWidgets import QComboBox
-
 from ..algorithms.choice_words import choice_word
 from .dialog_wrapper import DialogWrapper
+from .widgets import choices
 
 
 class ChoiceWrapper(DialogWrapper):
     """A box with the choices of an enumeration in words."""
 
     def createWidget(self, **more):
-        widget = QComboBox()
-        for choice in self.parameterDefinition().options():
-            widget.addItem(choice_word(choice), choice)
+        widget = choices((choice_word(choice), choice) for choice in self.parameterDefinition().options())
         widget.setCurrentIndex(widget.findData(self.parameterDefinition().defaultValue()))
         widget.currentIndexChanged.connect(lambda index: self.widgetValueHasChanged.emit(self))
         return widget

@@ -6,12 +6,13 @@ import math
 
 from qgis.gui import QgsProcessingGui
 from qgis.PyQt.QtCore import QSignalBlocker, pyqtSignal
-from qgis.PyQt.QtWidgets import QComboBox, QHeaderView, QLabel, QLineEdit, QTableWidget, QTableWidgetItem, QVBoxLayout, QWidget
+from qgis.PyQt.QtWidgets import QComboBox, QHeaderView, QLineEdit, QTableWidget, QTableWidgetItem, QVBoxLayout, QWidget
 
 from ..algorithms.trajectory_source import trajectory_path
 from ..core.common.errors import RoadExtractionError
 from ..processing_provider.texts import told, tr
 from .dialog_wrapper import DialogWrapper
+from .widgets import choices, wrapped
 
 ROWS = 4            # of the file that are shown
 SKIPPED = "-"
@@ -38,8 +39,7 @@ class ColumnsWidget(QWidget):
         self.table.setEditTriggers(QTableWidget.EditTrigger.NoEditTriggers)
         self.table.verticalHeader().hide()
         self.table.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
-        self.told = QLabel()
-        self.told.setWordWrap(True)
+        self.told = wrapped()
         self.boxes: list[QComboBox] = []
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
@@ -105,9 +105,7 @@ class ColumnsWidget(QWidget):
         self.table.setHorizontalHeaderLabels([title or tr("Column {number}").format(number=k + 1) for k, title in enumerate(found.titles)])
         self.boxes = []
         for k, role in enumerate(roles):
-            box = QComboBox()
-            for name, title in ROLE_TITLES.items():
-                box.addItem(title, name)
+            box = choices((title, name) for name, title in ROLE_TITLES.items())
             box.setCurrentIndex(box.findData(role))
             box.activated.connect(lambda index: self._assigned())
             self.table.setCellWidget(0, k, box)
