@@ -13,11 +13,8 @@ class ChoiceWrapper(DialogWrapper):
     def createWidget(self, **more):
         widget = choices((choice_word(choice), choice) for choice in self.parameterDefinition().options())
         widget.setCurrentIndex(widget.findData(self.parameterDefinition().defaultValue()))
-        widget.currentIndexChanged.connect(lambda index: self.widgetValueHasChanged.emit(self))
+        widget.currentIndexChanged.connect(self.announce)
         return widget
-
-    def setWidgetValue(self, value, context):
-        self.setValue(value)
 
     def setValue(self, value):
         self.widget.setCurrentIndex(self.widget.findData(value))

@@ -217,7 +217,7 @@ class PointCloudsWrapper(DialogWrapper):
 
     def createWidget(self, **more):
         widget = PointCloudsWidget(told=self.dialogType == QgsProcessingGui.WidgetType.Standard)
-        widget.changed.connect(lambda: self.widgetValueHasChanged.emit(self))
+        widget.changed.connect(self.announce)
         return widget
 
     def setValue(self, value):

@@ -145,12 +145,9 @@ class ColumnsWrapper(DialogWrapper):
     """The widget in QGIS's dialogs; a batch has the line alone."""
 
     def createWidget(self, **more):
-        if self.dialogType != QgsProcessingGui.WidgetType.Standard:
-            widget = QLineEdit()
-            widget.textChanged.connect(lambda: self.widgetValueHasChanged.emit(self))
-            return widget
-        widget = ColumnsWidget()
-        widget.changed.connect(lambda: self.widgetValueHasChanged.emit(self))
+        whole = self.dialogType == QgsProcessingGui.WidgetType.Standard
+        widget = ColumnsWidget() if whole else QLineEdit()
+        (widget.changed if whole else widget.textChanged).connect(self.announce)
         return widget
 
     def postInitialize(self, wrappers):
@@ -165,9 +162,6 @@ class ColumnsWrapper(DialogWrapper):
         source = value.source.staticValue() if hasattr(value, "source") and hasattr(value.source, "staticValue") else value
         path = trajectory_path(source)
         self.widget.show_file(str(path) if path is not None and path.is_file() else "")
-
-    def setWidgetValue(self, value, context):
-        self.setValue(value)
 
     def setValue(self, value):
         if isinstance(self.widget, ColumnsWidget):
