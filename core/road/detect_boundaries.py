@@ -86,12 +86,6 @@ class RoadBoundaries:
 def find_curb_points(survey: Survey, settings: BoundarySettings = BoundarySettings(), progress: Progress = Progress()) -> dict[str, CurbPoints]:
     """Curb points of the methods that the settings name.
 
-    Parameters
-    ----------
-    survey : Survey
-    settings : BoundarySettings
-    progress : Progress
-
     Returns
     -------
     {method: CurbPoints}; with both methods, "profiles" and "scanlines" hold the road's own
@@ -165,14 +159,7 @@ def draw_boundaries(found: dict[str, CurbPoints], frame: RoadFrame, settings: Ed
     Parameters
     ----------
     found : result of `find_curb_points`
-    frame : RoadFrame
-    settings : EdgeSettings
-    progress : Progress
     survey : Survey, in which edges of the pavement are looked for; None leaves them out
-
-    Returns
-    -------
-    RoadBoundaries
     """
     boundaries = _drawn(found, frame, settings, progress if survey is None else progress.part(0.0, BOUNDARY.curb_edges_progress))
     if survey is not None:
@@ -208,8 +195,6 @@ SECOND_METHOD_CHAIN_OFFSET = 100_000   # derived: more chains than a method find
 class CurbEvidence:
     """What a method saw beside the roads.
 
-    Attributes
-    ----------
     chains : (number of the road, side) -> SideChains
     beside : number of the road -> side -> OcclusionGrid
     """
@@ -222,8 +207,6 @@ class CurbEvidence:
 class _EdgeSamples:
     """The edges of one side of a road at N places BOUNDARY.comparison_step apart.
 
-    Attributes
-    ----------
     s : (N,) m, station
     d, z : (N,) m, offset and local height, NaN where there is no edge
     measured : (N,) bool
@@ -240,11 +223,6 @@ class _EdgeSamples:
 def sample_edges(edges: RoadEdges, frame: RoadFrame, road: int, side: str) -> _EdgeSamples:
     """The edges of one side of a road at regular stations.
 
-    Parameters
-    ----------
-    edges : RoadEdges
-    frame : RoadFrame
-    road : number of the road
     side : "left" or "right"
     """
     line = frame.road(road)
@@ -278,16 +256,9 @@ def select_curb_points(points: CurbPoints, others: CurbPoints, edges: RoadEdges,
     takes the points that scatter less about their line. Where they found different curbs,
     those of the first method are taken.
 
-    Parameters
-    ----------
     points, others : CurbPoints of two methods, the one with the stricter model of a curb first
     edges, other_edges : RoadEdges fitted through each
-    frame : RoadFrame
     seen, others_seen : what each method saw beside the roads
-
-    Returns
-    -------
-    CurbPoints
     """
     # the chains of both methods keep apart
     others = replace(others, chain=np.where(others.chain < 0, others.chain, others.chain + SECOND_METHOD_CHAIN_OFFSET))
@@ -365,11 +336,8 @@ def measure_agreement(edges: RoadEdges, first_edges: RoadEdges, second_edges: Ro
     The number is the distance that 95 % of the piece does not exceed, NaN where one of the
     two sets has no line. It is measured across the road, every BOUNDARY.comparison_step metres.
 
-    Parameters
-    ----------
     edges : RoadEdges that are drawn
     first_edges, second_edges : RoadEdges of two methods
-    frame : RoadFrame
 
     Returns
     -------
@@ -423,12 +391,9 @@ def with_pieces_of_both(points: CurbPoints, chains: Sequence[Mapping[tuple[int, 
                         beside: Mapping[int, Mapping[str, OcclusionGrid]], survey: Survey) -> CurbPoints:
     """The curb points, and between them pieces of chains that lie in their line, with the places beside these that are hidden.
 
-    Parameters
-    ----------
     points : CurbPoints of the main curbs
     chains : of each method, (number of the road, side) -> SideChains
     beside : number of the road -> side -> OcclusionGrid
-    survey : Survey
     """
     found = [points]
     for road in survey.store.roads():

@@ -54,7 +54,6 @@ def measure_corners(lines: PseudoScanLines, rows: np.ndarray, cells: np.ndarray,
 
     Parameters
     ----------
-    lines : PseudoScanLines
     rows, cells : (M,) profiles and cells in which the ground rises
     min_height, max_height : m, of a step
 
@@ -115,8 +114,6 @@ def _measure(lines, rows, cells, owner, index, min_height, max_height):
 class StepPatches:
     """Ground points about M candidate steps, in coordinates outward and along from each candidate's place.
 
-    Parameters
-    ----------
     owner : (N,) candidate of every point
     u, s, h : (N,) m, offset outward, distance along, and height
     scanner_noise : (M,) m
@@ -310,8 +307,6 @@ def _line_per_owner(owner, u, h, count):
 class RunningSums:
     """Running sums over the cells of every profile; differences of them give the line through any range of cells.
 
-    Parameters
-    ----------
     shape : (P, C), profiles and cells
     spacing : m, width of a cell
     """

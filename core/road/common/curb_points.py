@@ -92,11 +92,8 @@ def curb_points_at(frame: RoadFrame, road: int, places: Sequence[np.ndarray], ro
 
     Parameters
     ----------
-    frame : RoadFrame
-    road : number of the road
     places : (N,) x, y and z in map coordinates
     rows : N dicts, what is known of each point beside `columns`: name of an attribute of CurbPoints to value
-    crs : WKT
     columns : attributes of CurbPoints: (N,) arrays, or a value that all points share
 
     Returns

@@ -113,7 +113,6 @@ def curb_chains(steps: CurbSteps, label: np.ndarray, profile_width: float, limit
     steps : M CurbSteps of one side of one road
     label : (M,) chain of each step
     profile_width : m of road per profile
-    limits : CurbLimits
 
     Returns
     -------
@@ -282,7 +281,6 @@ def drop_short_curbs(selected: Sequence[tuple[int, float, float]], chains: Seque
     Parameters
     ----------
     selected : result of `select_along_road`
-    chains : list of StepChain
     steps : CurbSteps to which they refer
 
     Returns
@@ -334,8 +332,6 @@ def _chain_scatter(s, u):
 def seen_stretch(profile: np.ndarray) -> slice:
     """The rows of a run of steps in which it is seen densely enough: all, or those whose profiles exceed CURBS.min_chain_density by most.
 
-    Parameters
-    ----------
     profile : (N,) int, ascending, numbers of the profiles
     """
     excess = np.arange(len(profile)) - CURBS.min_chain_density * (profile - profile[0])
@@ -368,16 +364,11 @@ def with_pieces_in_line(kept: Sequence[tuple[int, float, float]], chains: Sequen
                         to_plan: Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]) -> list[np.ndarray]:
     """The steps of the chosen intervals and, between them, the pieces of curb that lie in their line.
 
-    Parameters
-    ----------
     kept : result of `drop_short_curbs`
-    chains : list of StepChain
     steps : CurbSteps to which they refer
     to_plan : function, stations and outward offsets in m -> x and y in m
 
-    Returns
-    -------
-    list of (K,) indices into the steps, by station, one for every interval and piece, in order along the road
+    Returns a list of (K,) indices into the steps, by station, one for every interval and piece, in order along the road
     """
     found = [_between(steps, chains[chain].steps, a - 1e-9, b + 1e-9) for chain, a, b in kept]
     if not found:
@@ -428,15 +419,9 @@ def pieces_between(before: CurbSteps, after: CurbSteps, others: StepsByStation,
                    to_plan: Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]) -> list[PieceInLine]:
     """The pieces of curb on the line between two runs of curb.
 
-    Parameters
-    ----------
     before, after : CurbSteps on both sides of the gap, or any rows with `s`, `u`, `h` and `height`; not empty
     others : the steps that may lie between
     to_plan : function, stations and outward offsets in m -> x and y in m
-
-    Returns
-    -------
-    list of PieceInLine
     """
     a, b = before.s.max(), after.s.min()
     rows, steps = others.rows(a + 1e-6, b - 1e-6), others.steps
@@ -475,14 +460,10 @@ def _is_curb(piece, off, across, height):
 class GapLine:
     """A polynomial in plan across a gap.
 
-    Parameters
-    ----------
     before, after : (2, N) and (2, M) m, x and y of the curb on both sides of the gap, in order; those within CURBS.line_fit_length
         of it are used
     max_degree : greatest degree; 2 is an even bend
 
-    Attributes
-    ----------
     miss : m, greatest distance of the places that were used from the line
     """
 
@@ -543,14 +524,10 @@ class SideChains:
     def support_along(self, s: np.ndarray, u: np.ndarray, skew: np.ndarray) -> np.ndarray:
         """Laser points that show a step on a line.
 
-        Parameters
-        ----------
         s, u : (N,) m, station and outward offset of places on the line
         skew : (N,) m outward per m along, direction of the line
 
-        Returns
-        -------
-        (N,) points per metre of road, over CURBS.max_link_length of it, half on either side
+        Returns (N,) points per metre of road, over CURBS.max_link_length of it, half on either side
         """
         order = np.argsort(self.steps.s, kind="stable")
         by_station = self.steps.s[order]

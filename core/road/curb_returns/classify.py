@@ -50,12 +50,8 @@ class CurbReturn:
 def is_curb_like(chain: PlanStepChain, steps: PlanSteps, scanner_noise: np.ndarray, settings: CurbSettings) -> bool:
     """Is a line long, dense, steep and smooth enough for a curb?
 
-    Parameters
-    ----------
-    chain : PlanStepChain
     steps : M PlanSteps to which it refers
     scanner_noise : (M,) m
-    settings : CurbSettings
     """
     own = steps[chain.steps]
     length = _length(own.x, own.y)
@@ -88,20 +84,12 @@ def classify_curbs(chains: Sequence[PlanStepChain], steps: PlanSteps, falls: np.
                    elsewhere: Sequence[tuple[np.ndarray, np.ndarray]] = ()) -> list[CurbReturn]:
     """The lines that are curbs, each with its kind and side.
 
-    Parameters
-    ----------
-    chains : list of PlanStepChain
     steps : M PlanSteps to which they refer
     falls : (M,) m uphill of each step at which the ground is down again, NaN where it stays up
     runs : main curbs in plan, uphill on the right: list of (side, (x, y, h)), local m
-    line : Road
     limits : side -> SearchLimit
     passes : of the road
     elsewhere : (x, y) of the main curbs of other roads, local m
-
-    Returns
-    -------
-    list of CurbReturn
     """
     if not chains:
         return []
@@ -175,12 +163,9 @@ def classify_continuation(own: PlanSteps, s: np.ndarray, d: np.ndarray, side: st
                           runs: CurbLines) -> list[CurbReturn]:
     """A line that continues a main curb: a piece of that curb, or a corner with the straight curb of a side street behind it.
 
-    Parameters
-    ----------
     own : N PlanSteps in order, uphill on the right
     s, d : (N,) m, their stations and offsets
     side : of the main curb
-    line : Road
     limit : SearchLimit of that side
     runs : CurbLines, the main curbs
     """
@@ -290,14 +275,9 @@ def _long_islands(lines):
 def lies_behind(line: PlanSteps, curbs: CurbLines) -> bool:
     """Does one who goes straight down from a line step off another curb before stepping up one?
 
-    Parameters
-    ----------
     line : N PlanSteps in order
-    curbs : CurbLines
 
-    Returns
-    -------
-    whether that holds at most places that meet a curb at all
+    Returns whether that holds at most places that meet a curb at all
     """
     ax, ay, sx, sy = curbs.segments_about(line.x, line.y, 2 * RETURN.road_width).T
     if not len(ax):
@@ -324,8 +304,6 @@ END_MARGIN = 0.01   # derived: m, more than distances are rounded by
 def is_free_corner(own: PlanSteps, curbs: CurbLines) -> bool:
     """Does a line bend evenly about its uphill side, and point at the end of a curb both ways?
 
-    Parameters
-    ----------
     own : N PlanSteps in order
     curbs : CurbLines, the other curbs
     """

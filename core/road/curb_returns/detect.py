@@ -47,9 +47,6 @@ def with_curb_returns(curb_points: CurbPoints, decimation: PointDecimation, sett
     Parameters
     ----------
     curb_points : CurbPoints of every road, of kind main
-    decimation : PointDecimation of the survey
-    settings : CurbSettings
-    progress : Progress
     beside : number of the road -> side -> OcclusionGrid, what was seen beside it; without, no hidden place is added, and main curbs
         are not looked at for islands
     """
@@ -101,18 +98,10 @@ def find_curb_returns(decimation: PointDecimation, road: int, main: Mapping[str,
 
     Parameters
     ----------
-    decimation : PointDecimation of the survey
-    road : number of the road
     main : side -> (N, 4) points of the main curb, by station: station, offset, height above the expected road in m,
         1 where it was measured and 0 where it is hidden
-    settings : CurbSettings
-    progress : Progress
     elsewhere : (x, y) of the main curbs of other roads, local m
     behind : (2, K) local m, x and y of places that are road although something stands between them and the track
-
-    Returns
-    -------
-    list of CurbReturn
     """
     survey = decimation.survey
     limits = {side: SearchLimit(points, SIDE_SIGNS[side]) for side, points in main.items()}
@@ -160,22 +149,15 @@ def plan_steps_of_section(decimation: PointDecimation, section: tuple[int, int],
                           points_per_cell: int | None = CURBS.points_per_level_cell_in_plan) -> tuple[PlanSteps, np.ndarray, np.ndarray] | None:
     """The phase of curb returns: steps in plan in one section of a road.
 
-    Parameters
-    ----------
-    decimation : PointDecimation of the survey
     section : (first, last + 1) profile numbers
-    road : number of the road
     limits : side -> SearchLimit
     known : places of the main curbs
     barrier : local places that the driven ground does not go beyond
     tips : ends of the main curbs
-    settings : CurbSettings
     behind : (2, K) local x and y of places that are road although something stands between them and the track
     points_per_cell : as in `decimated_points`, where the ground is not uneven nearly everywhere
 
-    Returns
-    -------
-    PlanSteps, (N,) bool where the raised ground behind each ends, and (N,) m the scanner's noise; None where there are no steps
+    Returns PlanSteps, (N,) bool where the raised ground behind each ends, and (N,) m the scanner's noise; None where there are no steps
     """
     survey, width = decimation.survey, decimation.width
     margin = int(np.ceil(RETURN.section_margin / width))

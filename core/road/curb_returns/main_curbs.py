@@ -36,8 +36,6 @@ def main_curbs_of(curb_points: CurbPoints, survey: Survey, road: int) -> tuple[d
 class SearchLimit:
     """How far out one side is searched: to a little behind the main curb, and everywhere at openings.
 
-    Parameters
-    ----------
     points : (N, 4) of the main curb, as of `find_curb_returns`
     sign : of the side's offsets
     """
@@ -115,8 +113,6 @@ def main_runs(main: Mapping[str, np.ndarray], line: Road) -> list[tuple]:
 class KnownPlaces:
     """Places along main curbs, where no other curb is looked for.
 
-    Parameters
-    ----------
     places : (N, 2) local metres
     """
 
@@ -156,8 +152,6 @@ Line = tuple[np.ndarray, np.ndarray]
 class CurbLines:
     """Lines of curb.
 
-    Parameters
-    ----------
     lines : L lines (x, y), each (N,) local m, uphill on the right
     """
 

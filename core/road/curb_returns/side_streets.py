@@ -48,16 +48,9 @@ class _CurbCourse:
 def with_curbs_beyond(curbs: Sequence[CurbReturn], decimation: PointDecimation, road: int, known: KnownPlaces) -> list[CurbReturn]:
     """The curbs away from main curbs, those that leave the corridor led on beyond it.
 
-    Parameters
-    ----------
-    curbs : list of CurbReturn
-    decimation : PointDecimation of the survey
-    road : number of the road
     known : places of the main curbs
 
-    Returns
-    -------
-    list of CurbReturn; places that have no station get that of the end that they lead on from
+    Returns a list of CurbReturn; places that have no station get that of the end that they lead on from
     """
     survey = decimation.survey
     if not any(number < 0 for number in survey.store.numbers()):
@@ -152,14 +145,10 @@ def _cell_means(t, u, z):
 def led_beyond(t: np.ndarray, u: np.ndarray, z: np.ndarray, end: CurbEnd) -> _CurbCourse | None:
     """How a curb leads on from its end.
 
-    Parameters
-    ----------
     t, u, z : (N,) m, along and uphill from the end, and heights, of points about it
     end : its end
 
-    Returns
-    -------
-    the course as far as it is seen, None where it is not
+    Returns the course as far as it is seen, None where it is not
     """
     for start in np.arange(0.0, RETURN.max_dropped_length + 0.1, 1.0):
         course, length = None, RETURN.led_length

@@ -21,14 +21,7 @@ from .road_edges import EdgePiece, edge_sigma
 def curb_return_lines(curb_points: CurbPoints, frame: RoadFrame) -> dict[int, list[tuple[CurbPoints, np.ndarray]]]:
     """The measured curb points that are not of a main curb, by road and chain, in order along each chain.
 
-    Parameters
-    ----------
-    curb_points : CurbPoints
-    frame : RoadFrame
-
-    Returns
-    -------
-    dict road -> list of (points, (N, 3) map coordinates), chains ascending
+    Returns a dict road -> list of (points, (N, 3) map coordinates), chains ascending
     """
     points = curb_points[~curb_points.of_main_curb & (curb_points.status == "measured") & (curb_points.part == "bottom")]
     points = points[np.lexsort((points.along, points.chain, points.road))]
@@ -46,17 +39,12 @@ def draw_curb_returns(edges: list[EdgePiece], road: int, lines: list[tuple[CurbP
 
     A corner begins with the vertex at which the main edge ends, so that the two touch.
 
-    Parameters
-    ----------
     edges : pieces of the main edges, to which these are added
-    road : number of the road
     lines : of this road, from `curb_return_lines`
     number : of the first line
     frame : RoadFrame, which says how far the middle of the passes may be off; None if nothing does
 
-    Returns
-    -------
-    The next free line number
+    Returns The next free line number
     """
     ends = _main_ends(edges, road)
     tree = cKDTree(ends[:, :2])
@@ -199,10 +187,7 @@ class _End:
 def dropped_corners(pieces: Sequence[EdgePiece], frame: RoadFrame, number: int) -> list[EdgePiece]:
     """Arcs across dropped corners, as pieces of status bridged and kind corner.
 
-    Parameters
-    ----------
     pieces : measured and bridged edges of all roads
-    frame : RoadFrame
     number : of the first new line
     """
     lines = [(piece, _uphill_right(piece)) for piece in pieces if piece.kind != "island" and piece.status != "inferred" and piece.part == "bottom"]

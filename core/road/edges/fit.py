@@ -47,9 +47,6 @@ def fit_road_edges(curb_points: CurbPoints, frame: RoadFrame, settings: EdgeSett
     Parameters
     ----------
     curb_points : CurbPoints (those of part `top` are not used)
-    frame : RoadFrame
-    settings : EdgeSettings
-    progress : Progress
     led_across : do even bends lead the curve across gaps? Not needed where only what is measured counts
 
     Returns
@@ -170,13 +167,9 @@ def _with_bridges(points, bridged, frame, road, led_across):
 def without_outliers(points: np.ndarray) -> np.ndarray:
     """Points near the running median of the offsets of their chain.
 
-    Parameters
-    ----------
     points : (N,) structured array, by station, with the fields `chain`, `s` and `d` (m)
 
-    Returns
-    -------
-    (K,) of the same type
+    Returns (K,) of the same type
     """
     inliers = np.ones(len(points), bool)
     order = np.argsort(points["chain"], kind="stable")
@@ -201,15 +194,11 @@ class EdgeCurve:
     The smoothing follows from the noise of the points, so that their weighted squared residuals
     have the expected sum (Dierckx 1993, Curve and Surface Fitting with Splines).
 
-    Parameters
-    ----------
     points : (N,) structured array with the fields `x`, `y`, `z`, `d` (m)
     longest_gap : m that the curve bridges by itself; the longer it is, the stiffer the curve, since the last points before a gap may give a
         poor direction
     measured : numbers of the points whose scatter is that of all; None for all of them
 
-    Attributes
-    ----------
     t : (N,) m, chord length at the points
     residual : (N,) m, distance in plan of the points from the curve
     """

@@ -208,20 +208,15 @@ def edge_sigma(at: np.ndarray, places: np.ndarray, residual: np.ndarray, support
                shared: np.ndarray | float = 0.0) -> np.ndarray:
     """One sigma across an edge at places along it.
 
-    Parameters
-    ----------
     at : (K,) m along the line, where it is looked at
     places : (N,) m along the line of all its curb points, rising
     residual : (N,) m, distances of the curb points from the line
     support : (N,) laser points of each; below 1, or None, where that is unknown
-    shares : EdgeUncertainty
     passes : m, one sigma of the middle of the passes, see `RoadFrame.pass_sigma`; one for all or (K,)
     shared : m, one sigma that neighbouring curb points share, as those of a line that was fitted as a whole: they do not scatter about
         it; one for all or (K,)
 
-    Returns
-    -------
-    (K,) m
+    Returns (K,) m
     """
     first, last = np.searchsorted(places, at - EDGE.scatter_reach), np.searchsorted(places, at + EDGE.scatter_reach, side="right")
     # of a line as long as the road, only the points about the piece

@@ -36,9 +36,6 @@ def detect_curbs(survey: Survey, settings: CurbSettings = CurbSettings(), progre
 
     Parameters
     ----------
-    survey : Survey
-    settings : CurbSettings
-    progress : Progress
     include_returns : are corners, side streets and islands looked for too?
     decimation : PointDecimation of the survey, where it is used again
     beside : is given what was seen beside each road: number of the road -> side -> OcclusionGrid
@@ -90,12 +87,7 @@ def steps_of_section(decimation: PointDecimation, section: tuple[int, int], road
                      settings: CurbSettings) -> tuple[dict[str, CurbSteps], dict[str, OcclusionGrid]]:
     """The phase of profiles: steps in one section of a road.
 
-    Parameters
-    ----------
-    decimation : PointDecimation of the survey
     section : (first, last + 1) profile numbers
-    road : number of the road
-    settings : CurbSettings
 
     Returns
     -------
@@ -182,15 +174,10 @@ def block_bounds(road: Road, start: float, end: float, block_length: float) -> n
     Automatic blocks are PROFILE.min_block_length to PROFILE.max_block_length long, so that the road turns no
     more than PROFILE.max_block_turn within one; the length is decided for every 20 m of road.
 
-    Parameters
-    ----------
-    road : Road
     start, end : m, stations that the blocks cover
     block_length : m, 0 for automatic
 
-    Returns
-    -------
-    (K,) m, ascending
+    Returns (K,) m, ascending
     """
     bounds = []
     first, last = int(np.floor(start / CURBS.block_section_length)), int(np.ceil(end / CURBS.block_section_length))
@@ -227,14 +214,10 @@ def block_numbers(steps: CurbSteps, bounds: np.ndarray) -> np.ndarray:
 
     Blocks in which the curb bends are divided into four, and both ends of a chain are blocks of their own.
 
-    Parameters
-    ----------
     steps : M CurbSteps of one chain, by station
     bounds : (K,) m, result of `block_bounds`
 
-    Returns
-    -------
-    (M,) numbers, ascending along the road
+    Returns (M,) numbers, ascending along the road
     """
     block = np.searchsorted(bounds, steps.s, side="right")
     names, member = np.unique(block, return_inverse=True)
@@ -260,12 +243,6 @@ PRINCIPAL_POINTS = [ROAD, PASS, SIDE, STATION, OFFSET, HEIGHT]
 
 def find_principal_points(survey: Survey, settings: CurbSettings, progress: Progress = Progress()) -> Features:
     """One point per occupied cell of every profile.
-
-    Parameters
-    ----------
-    survey : Survey
-    settings : CurbSettings
-    progress : Progress
 
     Returns
     -------

@@ -15,7 +15,6 @@ def find_steps(lines: PseudoScanLines, min_height: float, max_height: float) -> 
 
     Parameters
     ----------
-    lines : PseudoScanLines
     min_height, max_height : m, of a step
 
     Returns

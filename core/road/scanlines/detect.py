@@ -54,9 +54,7 @@ def curbs_from_scanlines(source: SurveyScanlines | LayerScanlines, settings: Sca
     Parameters
     ----------
     source : SurveyScanlines or LayerScanlines
-    settings : ScanlineBoundarySettings
     block_length : m of road per corner; 0 = 0.5 to 2.0, shorter in sharp bends
-    progress : Progress
     beside : is given what was seen beside each road: number of the road -> side -> OcclusionGrid
     side_chains : is given all chains that were found: (number of the road, side) -> SideChains
 
@@ -103,12 +101,8 @@ def corners_of_section(source: SurveyScanlines | LayerScanlines, section: tuple[
                        settings: ScanlineBoundarySettings) -> tuple[dict[str, CurbCorners], dict[str, OcclusionGrid]]:
     """The phase of scanlines: corners in one section of a road.
 
-    Parameters
-    ----------
     source : SurveyScanlines or LayerScanlines
     section : (first, last + 1) numbers of planes
-    road : number of the road
-    settings : ScanlineBoundarySettings
 
     Returns
     -------
@@ -173,13 +167,7 @@ def _corners(lines, heights, rows, interval, candidates, settings):
 def merged_corners(found: Sequence[CurbCorners]) -> CurbCorners:
     """One corner where several passes or scanners measured the same one: their mean, weighted by support.
 
-    Parameters
-    ----------
     found : CurbCorners of each pass and scanner
-
-    Returns
-    -------
-    CurbCorners
     """
     upright, sloped = (_merged([part[part.sloped == kind] for part in found]) for kind in (False, True))
     # where one pass or scanner shows an upright face, what others show less sharply is no other curb
@@ -260,9 +248,7 @@ def boundary_lines(corners: CurbPoints, frame: RoadFrame, max_gap: float, progre
     Parameters
     ----------
     corners : CurbPoints with `part` bottom or top
-    frame : RoadFrame
     max_gap : m between corners that are connected
-    progress : Progress
 
     Returns
     -------
@@ -334,8 +320,6 @@ class SurveyScanlines:
 
     Parameters
     ----------
-    survey : Survey
-    settings : ScanlineSettings
     sensor_height : m from the trajectory down to the road, 0 = from the data
     lattice : ScanLattice, or None to find it here
     progress : Progress of finding it
@@ -400,9 +384,7 @@ class LayerScanlines:
     Parameters
     ----------
     lines : dict of road number to Scanlines, each sorted by station
-    frame : RoadFrame
     interval : m between section planes
-    crs : WKT
     sensor_height : m from the trajectory down to the road, 0 = from the data
 
     Attributes

@@ -58,10 +58,7 @@ def scanlines_of(survey: Survey, road: int, start: float, end: float, settings: 
 
     Parameters
     ----------
-    survey : Survey
-    road : number of the road
     start, end : m; planes lie at whole multiples of the interval
-    settings : ScanlineSettings
     lattice : ScanLattice of the survey, or None to find it here
 
     Returns
@@ -80,15 +77,9 @@ def scanline_runs(survey: Survey, road: int, start: float, end: float, settings:
                   float, float], LevelStrip | None] | None = None) -> list[Scanlines]:
     """The normalized scanlines of the planes with start <= station < end, apart for each pass and scanner.
 
-    Parameters
-    ----------
     survey, road, start, end, settings, lattice : as in `scanlines_of`
     intensity : whether intensities are computed; else they are 0
     level : function of pass number, start and end (m) that returns the LevelStrip to be left out; None uses all points
-
-    Returns
-    -------
-    list of Scanlines
     """
     interval = settings.interval
     first, last = int(np.ceil(start / interval - 1e-9)), int(np.ceil(end / interval - 1e-9))
@@ -121,7 +112,6 @@ def all_scanlines(survey: Survey, road: int, settings: ScanlineSettings = Scanli
     Parameters
     ----------
     survey, road, settings, lattice : as in `scanlines_of`
-    progress : Progress
 
     Yields
     ------
@@ -198,8 +188,6 @@ def _planes_through(ribs, planes):
 class Crossings:
     """M intersections of planes with ribs.
 
-    Attributes
-    ----------
     point, ahead, share : (M,) of the ribs, as in Ribs
     along : (M,) 0 to 1, place of the intersection on the rib
     """
@@ -230,17 +218,9 @@ def point_scanlines(survey: Survey, road: int, start: float, end: float, interva
 
     A slice holds the points within interval / 2 of its plane, or within SCANLINE.min_slice_length / 2 where that is more.
 
-    Parameters
-    ----------
-    survey : Survey
-    road : number of the road
     start, end : m, stations
     interval : m between planes
     corridor : m either side of the reference line
-
-    Returns
-    -------
-    Scanlines
     """
     first, last = int(np.ceil(start / interval - 1e-9)), int(np.ceil(end / interval - 1e-9))
     half = 0.5 * max(SCANLINE.min_slice_length, interval)
@@ -272,15 +252,11 @@ def point_scanlines(survey: Survey, road: int, start: float, end: float, interva
 def slice_lines(d: np.ndarray, z: np.ndarray, half_width: float) -> list[np.ndarray]:
     """The ground's scanline through one slice of points whose road is not known, for a look at it.
 
-    Parameters
-    ----------
     d : (N,) m, offsets from the middle of the road, left positive
     z : (N,) m, heights
     half_width : m either side of the middle that are looked at
 
-    Returns
-    -------
-    list of (V, 2) offset and height, offsets increasing; a new line begins where the ground is interrupted
+    Returns a list of (V, 2) offset and height, offsets increasing; a new line begins where the ground is interrupted
     """
     if not len(d):
         return []

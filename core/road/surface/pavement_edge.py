@@ -79,9 +79,6 @@ def grown_limit(profiles: SurfaceProfiles, cells: GroundCells, height: np.ndarra
     the limit. Where nothing was measured beyond, the limit may lie farther out. A strip of another brightness before the change
     (gravel along the asphalt) does not belong to the road either.
 
-    Parameters
-    ----------
-    profiles : SurfaceProfiles
     cells : GroundCells of the road, R rows and C columns
     height : (R, C) m, local z of the road
     prior : (R,) m, its expected height, above which that of profiles counts
@@ -89,9 +86,7 @@ def grown_limit(profiles: SurfaceProfiles, cells: GroundCells, height: np.ndarra
     track : (R,) m, offset of the outermost track on that side
     max_width : m from the track
 
-    Returns
-    -------
-    _GrownLimit
+    Returns _GrownLimit
     """
     stations = cells.stations
     nowhere = np.zeros(len(stations), bool)
@@ -147,8 +142,6 @@ def _rise(height, prior, cells, stations, offsets):
 class Carriageway:
     """The surface of one road in rows of station.
 
-    Attributes
-    ----------
     cells : GroundCells of the road, R rows and C columns
     height : (R, C) float32 m, local z of the smoothed road
     ground : (R, C) bool, cells that show the road itself
@@ -174,8 +167,6 @@ def edge_offsets(edges: RoadEdges | None, road: int, stations: np.ndarray) -> di
 
     Parameters
     ----------
-    edges : RoadEdges or None
-    road : number of the road
     stations : (N,) m, ascending
 
     Returns

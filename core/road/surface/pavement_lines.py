@@ -36,18 +36,11 @@ def with_pavement_edges(survey: Survey, edges: RoadEdges, settings: EdgeSettings
                         progress: Progress = Progress(), ground: MeasuredGround | None = None) -> RoadEdges:
     """The edges and, where there is no curb, edges of the pavement.
 
-    Parameters
-    ----------
-    survey : Survey
     edges : RoadEdges, of curbs
     settings : EdgeSettings, of which `max_gap` counts
-    surface : SurfaceSettings
-    progress : Progress
     ground : MeasuredGround of the survey, which keeps what is measured here, or None
 
-    Returns
-    -------
-    RoadEdges, the given ones first; the others have `what` pavement and no height
+    Returns RoadEdges, the given ones first; the others have `what` pavement and no height
     """
     pieces: list[EdgePiece] = []
     roads = survey.store.roads()
@@ -64,18 +57,12 @@ def with_pavement_edges(survey: Survey, edges: RoadEdges, settings: EdgeSettings
 def _pavement_pieces(frame: RoadFrame, road: int, carriageway: Carriageway, edges: RoadEdges, max_gap: float, chain: int = 0) -> list[EdgePiece]:
     """Edges of the pavement of one road.
 
-    Parameters
-    ----------
-    frame : RoadFrame
-    road : number of the road
     carriageway : Carriageway found with the edges
     edges : RoadEdges, where which of a side have an offset nothing is drawn
     max_gap : m, the longest bridged gap
     chain : number of the first line
 
-    Returns
-    -------
-    list of EdgePiece, along the road, side by side
+    Returns a list of EdgePiece, along the road, side by side
     """
     found: list[EdgePiece] = []
     stations = carriageway.cells.stations

@@ -63,16 +63,10 @@ class SurfaceOutlines(LayerRows):
 def outlines(frame: RoadFrame, road: int, carriageway: Carriageway, points_per_row: np.ndarray) -> list[tuple]:
     """The stretches of one road; consecutive ones share two vertices.
 
-    Parameters
-    ----------
-    frame : RoadFrame
-    road : number of the road
     carriageway : Carriageway with R rows
     points_per_row : (R,) int, points of the surface in each row
 
-    Returns
-    -------
-    list of rows of a SurfaceOutlines: road, status, station, end, area, points and outline
+    Returns a list of rows of a SurfaceOutlines: road, status, station, end, area, points and outline
     """
     found = []
     cells = carriageway.cells
