@@ -17,11 +17,12 @@ from ..common.progress import Progress
 from ..survey.frame.road_frame import RoadFrame
 from ..survey.lattice.scan_lattice import find_lattice
 from .common.curb_limits import CurbSettings
-from .common.curb_points import CurbPoints, curb_points_at
+from .common.curb_points import CurbPoints
 from .common.decimation import LevelGround, PointDecimation
 from .common.occlusion import OcclusionGrid
+from .common.side_curbs import SideChains, points_of_rows
 from .common.sides import SIDE_SIGNS, expected_height, hidden_beside
-from .common.tracking import PieceInLine, SideChains, StepsByStation, pieces_between
+from .common.tracking import PieceInLine, StepsByStation, pieces_between
 from .curb_returns.detect import with_curb_returns
 from .curb_returns.main_curbs import main_curbs_of
 from .edges.fit import EdgeSettings, fit_road_edges
@@ -364,7 +365,7 @@ def measure_agreement(edges: RoadEdges, first_edges: RoadEdges, second_edges: Ro
                 x, y, z = frame.to_map(road.number, first.s[a:b], drawn.d[a:b], drawn.z[a:b])
                 differences.append(EdgePiece(
                     np.c_[x, y, z], road.number, side, "measured", len(differences), float(first.s[a]), float(first.s[b - 1]),
-                    float(np.hypot(np.diff(x), np.diff(y)).sum()), agree=100 * float(apart[a:b].max())))
+                    agree=100 * float(apart[a:b].max())))
     return replace(edges, agree=agree), joined_pieces(differences, frame, edges.crs)
 
 
@@ -431,6 +432,4 @@ def _pieces_of_side(points, chains, survey, road, side, number):
             if all(piece.end < other.start or piece.start > other.end for other in chosen):
                 chosen.append(piece)
                 rows += known.points(piece.steps, number + len(rows))
-    s, u, h = (np.array([row[name] for row in rows], float) for name in ("s", "u", "h"))
-    places = frame.to_map(road, s, sign * u, h + expected_height(survey, road, s))
-    return curb_points_at(frame, road, places, [row["fields"] for row in rows], points.crs, side=side, station=s, offset=sign * u)
+    return points_of_rows(survey, road, side, rows, points.crs)

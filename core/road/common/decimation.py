@@ -36,8 +36,6 @@ class PointDecimation:
 
     The decision is kept in a temporary file, one bit per point: call `close` at the end.
 
-    Parameters
-    ----------
     width, spacing : m; a cell is one profile long and about `spacing` wide
     min_step : m, the least step for which `level_strip` leaves ground out
     """
@@ -178,8 +176,6 @@ class PointDecimation:
 class LevelGround:
     """Ground about the track of a pass that is left out, since no curb lies in it.
 
-    Parameters
-    ----------
     decimation : PointDecimation that knows it
     across, along : m kept from ground that is not level
     """
@@ -340,8 +336,6 @@ NO_OFFSET = 1 << 28   # derived: 0.1 mm, farther than any offset
 class LevelStrip:
     """Offsets between which the ground of profiles is level; low > high where it is not.
 
-    Attributes
-    ----------
     first : number of the first profile
     width : m of road per profile
     low, high : (P,) int32, offsets in 0.1 mm

@@ -20,14 +20,10 @@ from ..weights import CURBS
 class OcclusionGrid:
     """Ground and tall things on one side of a road: profiles along, cells of CURBS.occlusion_cell across.
 
-    Parameters
-    ----------
     width : m of road per profile
     first, count : number of the first profile, and how many there are
     reach : m, the largest outward offset
 
-    Attributes
-    ----------
     ground : (P, C) float32, m, height of the lowest ground above the expected road, NaN where none was seen
     tall : (P, C) bool, is there something that can hide a curb?
     """

@@ -84,8 +84,6 @@ def expand_ranges(start: np.ndarray, end: np.ndarray) -> tuple[np.ndarray, np.nd
 class PseudoScanLines:
     """Profiles of one side of the road; offsets count outward from the reference line.
 
-    Attributes
-    ----------
     first : number of the first of P profiles; station of profile k's middle is (k + 1/2) * width
     width, spacing : m of road per profile, and m across per cell
     origin : m, outward offset at which the first of C cells begins
@@ -147,8 +145,6 @@ def pseudo_scan_lines(u: np.ndarray, s: np.ndarray, h: np.ndarray, along: np.nda
                       spacing: float, layer_jump: float, origin: float, reach: float) -> PseudoScanLines:
     """Cut points of one side into profiles and cells and find the ground in each.
 
-    Parameters
-    ----------
     u, s, h : (N,) m, outward offset, station, and height above the expected road
     along : (N,) m along the road from the vehicle to the point when it was measured
     profiles : (first, last + 1) numbers of the profiles

@@ -25,8 +25,6 @@ SIDE_SIGNS = {"left": 1, "right": -1}   # derived: side -> sign of its offsets
 class OutermostTrack:
     """Outward offset of the outermost driven track on one side.
 
-    Parameters
-    ----------
     sign : of the side's offsets
     """
 
@@ -75,15 +73,11 @@ def side_profiles(decimation: PointDecimation, road: int, section: tuple[int, in
                   ) -> Iterator[tuple[str, int, tuple[np.ndarray, ...], PseudoScanLines]]:
     """Profiles of one section, separately for each side and pass.
 
-    Parameters
-    ----------
     section : (first, last + 1) profile numbers
     tracks : side -> OutermostTrack
     points_per_cell : see `PointDecimation.decimated_points`; None uses all points, up to CURBS.points_per_uneven_cell of a cell
 
-    Yields
-    ------
-    side, pass number, (u, s, h) of the tall points (each (N,) m), PseudoScanLines
+    Yields side, pass number, (u, s, h) of the tall points (each (N,) m), PseudoScanLines
     """
     survey, width, spacing = decimation.survey, decimation.width, decimation.spacing
     stations = (np.arange(*section) + 0.5) * width
@@ -192,7 +186,7 @@ def hidden_points(measured: np.ndarray, occlusion: OcclusionGrid, track: Outermo
     s = start[gap] + (number + 0.5) * ((end - start) / np.maximum(parts, 1))[gap]
     u, h = (np.interp(s, measured[:, 0], measured[:, k]) for k in (1, 2))
     hidden = occlusion.hidden(s, u, h, track(s))
-    return [dict(s=float(a), u=float(b), h=float(c), fields=dict(status="occluded"))
+    return [dict(s=float(a), u=float(b), h=float(c), fields=dict(status="occluded", part="bottom"))
             for a, b, c in zip(s[hidden], u[hidden], h[hidden])]
 
 

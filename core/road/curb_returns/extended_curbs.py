@@ -21,9 +21,9 @@ import numpy as np
 
 from ...common.arrays import Rows
 from ...common.progress import Progress
-from ...execution.phase import Phase
 from ..common.corners import RunningSums, SideLines
 from ..common.decimation import PointDecimation
+from ..common.side_curbs import phase_along
 from ..common.sides import ahead_of_vehicle, expected_height
 from ..weights import CURBS, RETURN
 from .classify import CurbReturn, classify_continuation
@@ -118,8 +118,8 @@ def led_on(ground: GroundRaster, ends: FollowedEnds) -> list[PlanSteps]:
     ground : GroundRaster, averaged
     ends : K FollowedEnds, RETURN.line_direction_length of sure curb behind each
 
-    Returns a list of K PlanSteps, RETURN.led_step apart, in order out of the line, about half RETURN.led_length less far than the averages; empty ones
-    where nothing leads on
+    Returns a list of K PlanSteps, RETURN.led_step apart, in order out of the line, about half RETURN.led_length less far than the averages;
+    empty ones where nothing leads on
     """
     return [_led_on(ground, ends[k:k + 1]) for k in range(len(ends))]
 
@@ -249,16 +249,14 @@ def with_led_on(curbs: Sequence[CurbReturn], runs: Sequence[tuple], decimation: 
     if not sections:
         progress.report(1.0)
         return list(curbs)
-    survey, width = decimation.survey, settings.profile_width
-    line, free = survey.frame.road(road), [curb for curb in curbs if curb.kind in LED_KINDS and not curb.closed]
+    line, free = decimation.survey.frame.road(road), [curb for curb in curbs if curb.kind in LED_KINDS and not curb.closed]
     lines = [place for _, place in runs] + [(curb.steps.x, curb.steps.y, curb.steps.h) for curb in free]
     ends, owner = FollowedEnds.with_lines(lines)
-    met = known.and_places(*(np.concatenate([np.empty(0), *(getattr(curb.steps, axis) for curb in curbs)]) for axis in "xy"))
+    met = known.and_steps([curb.steps for curb in curbs])
     open_ones = np.flatnonzero(~met.within(ends.x + RETURN.leaving_length * ends.tx, ends.y + RETURN.leaving_length * ends.ty,
                                            0.5 * RETURN.leaving_length))
     ends, owner = ends[open_ones], owner[open_ones]
-    phase = Phase(_led_steps_of_section, decimation, (road, ends, settings), lambda section: survey.stretch(road, *(k * width for k in section)),
-                  lambda section: survey.store.points_between(road, *(k * width for k in section)), _join_led)
+    phase = phase_along(_led_steps_of_section, decimation, (road, ends, settings), settings.profile_width, _join_led)
     more: list[CurbReturn] = []
     main_ends = CurbLines([(x, y) for _, (x, y, _) in runs])
     extended = {id(curb): curb for curb in curbs}

@@ -18,6 +18,7 @@ from ..weights import CURBS, RETURN
 if TYPE_CHECKING:
     from ...survey.frame.road import Road
     from ...survey.open_survey import Survey
+    from .steps import PlanSteps
 
 
 def main_curbs_of(curb_points: CurbPoints, survey: Survey, road: int) -> tuple[dict[str, np.ndarray], int]:
@@ -133,6 +134,10 @@ class KnownPlaces:
         while len(found._trees) > 1 and 2 * found._trees[-1].n >= found._trees[-2].n:
             found._trees[-2:] = [cKDTree(np.concatenate([tree.data for tree in found._trees[-2:]]))]
         return found
+
+    def and_steps(self, lines: Sequence[PlanSteps]) -> KnownPlaces:
+        """These and the places of lines of steps."""
+        return self.and_places(*(np.concatenate([np.empty(0), *(getattr(steps, axis) for steps in lines)]) for axis in "xy"))
 
     def within(self, x: np.ndarray, y: np.ndarray, distance: float) -> np.ndarray:
         """(N,) bool, is one of the places within a distance of (N,) local places?"""

@@ -153,8 +153,7 @@ def points_about(raster: GroundRaster, points: tuple[np.ndarray, ...], x: np.nda
     px, py, ph, starts = points
     rows, columns = raster.low.shape
     reach = int(np.ceil(np.hypot(PATCH_HALF_WIDTH, half) / RETURN.plan_cell))
-    row = np.floor(y / RETURN.plan_cell - np.rint(raster.y0 / RETURN.plan_cell)).astype(np.int64)
-    column = np.floor(x / RETURN.plan_cell - np.rint(raster.x0 / RETURN.plan_cell)).astype(np.int64)
+    row, column = raster.cells_at(x, y)
     line = row[:, None] + np.arange(-reach, reach + 1)
     # the columns that the rectangle about the place covers in every row of cells
     low = raster.y0 + line * RETURN.plan_cell - y[:, None]

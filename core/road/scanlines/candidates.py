@@ -28,8 +28,6 @@ from .grid import LINE_SEPARATION, HeightGrid, Scanlines, row_of_lines
 class ScanlineBoundarySettings:
     """The parameters of table 1 of the paper.
 
-    Attributes
-    ----------
     search_width : m across within which the height must change
     sensor_height : m from the trajectory down to the road; 0 = from the data
     clipping_height : m above the road; higher points are not used

@@ -141,10 +141,17 @@ class CurbCorners(CurbSteps):
     sloped : (M,) bool, is the face less steep than an upright one?
     """
 
+    PARTS = (*CurbSteps.PARTS, ("top", "top_u", "top_h"))
+
     top_u: np.ndarray
     top_h: np.ndarray
     residual: np.ndarray
     sloped: np.ndarray
+
+    @property
+    def upright(self) -> np.ndarray:
+        """(M,) bool, is the face as steep as is usual?"""
+        return ~self.sloped
 
 
 def corners_of(side: ScanlineSamples, candidates: CurbCandidates, settings: ScanlineBoundarySettings) -> CurbCorners:

@@ -12,12 +12,12 @@ The paper on normalized scanlines (ISPRS Archives, 2020), section 2.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...common.arrays import Rows
 from ...survey.lattice.scan_lattice import time_order
 from ...survey.store.records import COORDINATE_SCALE, take_rows
 from ..weights import SCANLINE
@@ -60,7 +60,7 @@ class ScannerLines:
 
 
 @dataclass
-class Ribs:
+class Ribs(Rows):
     """R sides of the mesh that section planes intersect.
 
     A rib runs from the point `point` to a place between the point `ahead` and the one after it.
@@ -75,11 +75,6 @@ class Ribs:
     share: np.ndarray
     near: np.ndarray
     far: np.ndarray
-
-    @classmethod
-    def joined(cls, parts: Sequence[Ribs]) -> Ribs:
-        """The ribs of several parts."""
-        return cls(*(np.concatenate([getattr(part, f.name) for part in parts]) for f in fields(cls)))
 
 
 def scanner_lines(records: Columns | np.ndarray, p: Pass, mirror: MirrorPhase, corridor: float,
@@ -188,7 +183,7 @@ def ribs_of(lines: ScannerLines, direction: int, mirror: MirrorPhase, interval: 
         rest = np.flatnonzero(~hit) if rest is None else rest[~hit]
         if not len(rest):
             break
-    return Ribs.joined(found)
+    return Ribs.join(found)
 
 
 def _ribs_on_surface(lines, station, longest, direction, point, ahead, place):

@@ -56,14 +56,10 @@ def scanlines_of(survey: Survey, road: int, start: float, end: float, settings: 
                  lattice: ScanLattice | None = None) -> Scanlines:
     """The normalized scanlines of the planes with start <= station < end.
 
-    Parameters
-    ----------
     start, end : m; planes lie at whole multiples of the interval
     lattice : ScanLattice of the survey, or None to find it here
 
-    Returns
-    -------
-    Scanlines; of scanners without a lattice those of the points near the planes
+    Returns Scanlines; of scanners without a lattice those of the points near the planes
     """
     lines = Scanlines.join(scanline_runs(survey, road, start, end, settings, lattice))
     if not len(lines):
@@ -149,16 +145,24 @@ def _cut(records, p, key, mirror, planes, settings, intensity, level):
     lines = scanner_lines(records, p, mirror, settings.corridor, level, intensity)
     if lines is None:
         return Scanlines.none()
-    ribs = Ribs.joined([ribs_of(lines, p.direction, mirror, settings.interval), slanting_edges(lines, mirror, settings.interval)])
+    ribs = Ribs.join([ribs_of(lines, p.direction, mirror, settings.interval), slanting_edges(lines, mirror, settings.interval)])
     rib, plane = _planes_through(ribs, planes)
     if not len(rib):
         return Scanlines.none()
     near = ribs.near.take(rib)
-    crossed = Crossings(ribs.point.take(rib), ribs.ahead.take(rib), ribs.share.take(rib), (plane - near) / (ribs.far.take(rib) - near))
-    phase, d, z = (crossed.of(values) for values in (lines.phase, lines.d, lines.z))
+    point, ahead, share, along = ribs.point.take(rib), ribs.ahead.take(rib), ribs.share.take(rib), (plane - near) / (ribs.far.take(rib) - near)
+
+    def crossed(values):
+        first, last = values.take(point), values.take(ahead)
+        last += share * (values.take(ahead + 1) - last)
+        last -= first
+        last *= along
+        return first + last
+
+    phase, d, z = (crossed(values) for values in (lines.phase, lines.d, lines.z))
     order = plane_order(plane - planes[0], phase if mirror.leftward else 1.0 - phase)
     plane, phase, d, z = (values.take(order) for values in (plane, phase, d, z))
-    bright = np.zeros(len(d), np.float32) if lines.intensity is None else crossed.of(lines.intensity.astype(np.float64))[order].astype(np.float32)
+    bright = np.zeros(len(d), np.float32) if lines.intensity is None else crossed(lines.intensity.astype(np.float64))[order].astype(np.float32)
     order, first = PlaneVertices.from_track(p, settings.interval, mirror, plane, phase, d, z).lines()
     if order is not None:
         plane, d, z, bright = plane[order], d[order], z[order], bright[order] if intensity else bright
@@ -182,28 +186,6 @@ def _planes_through(ribs, planes):
         ribs_cut.append(again[inside])
         planes_cut.append(plane[inside])
     return (np.concatenate(ribs_cut), np.concatenate(planes_cut)) if ribs_cut else (np.empty(0, np.int64),) * 2
-
-
-@dataclass
-class Crossings:
-    """M intersections of planes with ribs.
-
-    point, ahead, share : (M,) of the ribs, as in Ribs
-    along : (M,) 0 to 1, place of the intersection on the rib
-    """
-
-    point: np.ndarray
-    ahead: np.ndarray
-    share: np.ndarray
-    along: np.ndarray
-
-    def of(self, values: np.ndarray) -> np.ndarray:
-        """(M,) values at the intersections, interpolated from the (N,) values of the points."""
-        near, ahead = values.take(self.point), values.take(self.ahead)
-        ahead += self.share * (values.take(self.ahead + 1) - ahead)
-        ahead -= near
-        ahead *= self.along
-        return near + ahead
 
 
 # Scanlines from points near the section planes, where a cloud has no scan lattice to mesh.

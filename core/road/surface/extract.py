@@ -36,8 +36,6 @@ if TYPE_CHECKING:
 class SurfaceSettings:
     """What counts as road surface.
 
-    Attributes
-    ----------
     max_width : m from the vehicle's track; a surface without an edge ends there at the latest
     height_tolerance : m; points farther above or below the height of the road do not belong to it.
         A smaller tolerance is used where the noise of the scanner allows it
@@ -61,8 +59,6 @@ def extract_road_surface(survey: Survey, edges: RoadEdges | None = None, setting
     bright ground), at most `max_width` from the track. An opening of up to 30 m in an edge is closed by a
     straight line; where a side street joins there, the surface goes on into it as far as its ground was scanned.
 
-    Parameters
-    ----------
     ground : MeasuredGround that an earlier stage kept, or None
 
     Returns

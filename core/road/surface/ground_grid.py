@@ -381,9 +381,13 @@ class MeasuredGround:
             road, item[0][0] * SURFACE.row_length, (item[-1][0] + SURFACE.window_rows) * SURFACE.row_length))
         self._file = self._file or SpillFile()
         for item, found in zip(items, executor.run(phase, items, progress)):
-            for kind, (kept, parts) in enumerate(zip(self._kept, found), 1):
-                for values, row in zip(parts, [window[0] for window in item if window[kind]]):
-                    kept[road, row] = self._file.put(values.ravel())
+            self._keep(road, item, found)
+
+    def _keep(self, road, item, found):
+        """Put what `ground_of_windows` found of some windows into the file."""
+        for kind, (kept, parts) in enumerate(zip(self._kept, found), 1):
+            for values, row in zip(parts, [window[0] for window in item if window[kind]]):
+                kept[road, row] = self._file.put(values.ravel())
 
     def _read(self, kind, road, row, out):
         """Fill an array with what is kept of a window: 0 its cells, 1 its profiles."""
