@@ -20,8 +20,9 @@ import numpy as np
 from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
 from ...execution.phase import THREADS, Executor, Recipe
-from ...survey.blocks import DEFAULT_SENSOR_HEIGHT, sensor_height_of
+from ...survey.blocks import sensor_height_of
 from ...survey.lattice.scan_lattice import ScanLattice, find_lattice
+from ...survey.weights import READING
 from ..common.curb_points import CurbPoints
 from ..common.occlusion import OcclusionGrid
 from ..common.side_curbs import SideChains, block_bounds, merged_passes, points_of_side, steps_of_road
@@ -308,7 +309,7 @@ class LayerScanlines:
             height = sensor_height_of(drops)
             if height is not None:
                 known[p.number] = height
-        typical = float(np.median(list(known.values()))) if known else DEFAULT_SENSOR_HEIGHT
+        typical = float(np.median(list(known.values()))) if known else READING.default_sensor_height
         return {p.number: known.get(p.number, typical) for p in self.frame.passes}
 
     def roads(self) -> list[int]:
