@@ -107,7 +107,7 @@ class SideChains:
         steps = self.steps[members]
         if not len(steps):
             return []
-        blocks, member = np.unique(block_numbers(steps, self.bounds), return_inverse=True)
+        blocks, member = np.unique(_block_numbers(steps, self.bounds), return_inverse=True)
         n = np.bincount(member)
         names = {"s", "u", "height", *(name for _, *place in steps.PARTS for name in place)}
         mean = {name: np.bincount(member, getattr(steps, name)) / n for name in names}
@@ -180,7 +180,7 @@ def block_bounds(road: Road, start: float, end: float, block_length: float) -> n
     return np.r_[np.concatenate(bounds), last * whole] if bounds else np.array([start, end])
 
 
-def block_numbers(steps: CurbSteps, bounds: np.ndarray) -> np.ndarray:
+def _block_numbers(steps: CurbSteps, bounds: np.ndarray) -> np.ndarray:
     """The block of each step of a chain.
 
     Blocks in which the curb bends are divided into four, and both ends of a chain are blocks of their own.
