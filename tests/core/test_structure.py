@@ -25,7 +25,7 @@ NUMBERS = {
     "core/io": 5,
     "core/curves": 44,
     "core/survey": 192,
-    "core/road": 20,
+    "core/road": 19,
     "core/intensity": 49,
     "core/markings": 78,
     "core/driving": 5,
