@@ -135,14 +135,8 @@ def fit_line_shapes(lines: list[LinkedLine], spans: list[tuple[float, float]], r
             fit = CurveFit(fit.curve, e[course.own], fit.parameters)
         rising = np.maximum.accumulate(u)
         keep = np.append(True, np.diff(rising) > 1e-6)
-        found.append(_LineShape(fit, course.s[course.own], (course.s[keep], rising[keep]),
-                               _height_above(height, track_height)))
+        found.append(_LineShape(fit, course.s[course.own], (course.s[keep], rising[keep]), lambda s, above=height: above(s) + track_height(s)))
     return found, replaced
-
-
-def _height_above(height, track_height):
-    """The function of stations that gives the height of a line from that above the trajectory."""
-    return lambda s: height(s) + track_height(s)
 
 
 @dataclass
