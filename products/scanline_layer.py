@@ -37,15 +37,12 @@ WKB_HEADER = np.dtype([("order", "u1"), ("type", "<u4"), ("count", "<u4")])
 class ScanlineLayerSettings:
     """How scanlines are written.
 
-    Attributes
-    ----------
     simplify : m by which a simplified line may deviate from the measured one; 0 = not simplified
     """
 
     simplify: float = setting(0.002, 0.0, 1.0, "The simplification", "m")
 
     def __post_init__(self):
-        """Check the limits of all settings."""
         check_limits(self)
 
 
@@ -55,11 +52,8 @@ def write_scanlines(survey: Survey, settings: ScanlineSettings = ScanlineSetting
 
     Parameters
     ----------
-    survey : Survey
-    settings : ScanlineSettings
     layer : ScanlineLayerSettings, or None for no layer
     points : ResampledPoints open for writing, or None for no cloud
-    progress : Progress
 
     Returns
     -------
@@ -88,9 +82,6 @@ def _add_to_layer(spool: LineSpool, lines: Scanlines, frame: RoadFrame, road: in
 
     Parameters
     ----------
-    spool : LineSpool
-    lines : Scanlines
-    frame : RoadFrame
     road : number of the road
     interval : m between section planes
     simplify : m, as in ScanlineLayerSettings
@@ -126,12 +117,7 @@ def simplified_lines(lines: Scanlines, tolerance: float) -> Scanlines:
 
     Parameters
     ----------
-    lines : Scanlines
     tolerance : m from the simplified line to the vertices left out; 0 returns the lines themselves
-
-    Returns
-    -------
-    Scanlines
     """
     if tolerance <= 0 or not len(lines):
         return lines
@@ -150,7 +136,6 @@ def scanlines_from_features(features: Features, frame: RoadFrame) -> tuple[dict[
     Parameters
     ----------
     features : Features SCANLINES whose geometries are LineStringZM as ISO WKB
-    frame : RoadFrame
 
     Returns
     -------
@@ -204,8 +189,6 @@ class LineSpool:
 
     Iterating gives (WKB, row) pairs.
 
-    Parameters
-    ----------
     geometry_type, schema, crs : as in Features
     """
 
@@ -302,15 +285,12 @@ SCANLINE_DIMENSIONS = [("road", "uint16", "Road", None), ("pass", "uint16", "Pas
 class ResamplingSettings:
     """Points along scanlines.
 
-    Attributes
-    ----------
     spacing : m between points along a scanline
     """
 
     spacing: float = setting(0.05, 0.005, 5.0, "The point spacing", "m")
 
     def __post_init__(self):
-        """Check the limits of all settings."""
         check_limits(self)
 
 
@@ -319,7 +299,6 @@ def resample_scanlines(lines: Scanlines, spacing: float) -> tuple[np.ndarray, np
 
     Parameters
     ----------
-    lines : Scanlines
     spacing : m along the line
 
     Returns
@@ -348,8 +327,6 @@ class ResampledPoints:
 
     The file appears when it is complete, and not at all after an error.
 
-    Parameters
-    ----------
     path : of the file
     origin : (3,) m, map coordinates of the local origin
     crs : WKT, "" where unknown
@@ -381,8 +358,6 @@ class ResampledPoints:
 
         Parameters
         ----------
-        lines : Scanlines
-        frame : RoadFrame
         road : number of the road
         """
         import laspy

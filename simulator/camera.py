@@ -20,8 +20,6 @@ _LENS = (0.0016, -0.0009)   # distortion with the second and fourth power of the
 class Camera:
     """A vertical image whose rows lie along the chord of the road.
 
-    Attributes
-    ----------
     middle : (2,) m, local coordinates of the middle of the image
     heading : radians, direction of the rows, counter-clockwise from east
     width, height : pixels
@@ -87,7 +85,6 @@ class Camera:
 
         Parameters
         ----------
-        scene : Scene
         x, y : (N,) m, local
 
         Returns
@@ -103,16 +100,7 @@ class Camera:
 
 
 def camera_over(scene: Scene) -> Camera:
-    """The Camera over the first 150 m of a road.
-
-    Parameters
-    ----------
-    scene : Scene
-
-    Returns
-    -------
-    Camera
-    """
+    """The Camera over the first 150 m of a road."""
     length = min(scene.length, MAX_IMAGE_LENGTH)
     s = np.linspace(0.0, length, 200)
     x, y = scene.axis.to_map(s, np.zeros(200))

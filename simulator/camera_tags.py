@@ -19,7 +19,6 @@ def camera_tags(camera: Camera, origin: tuple[float, float, float], crs: str) ->
 
     Parameters
     ----------
-    camera : Camera
     origin : m, map coordinates of local 0, 0
     crs : WKT of the map
 

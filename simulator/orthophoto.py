@@ -54,11 +54,6 @@ _LEAVES = np.array([62.0, 92.0, 44.0])
 def plates(scene: Scene, camera: Camera) -> list[tuple[float, float, float]]:
     """Signalised plates along both borders of the image, off the carriageway.
 
-    Parameters
-    ----------
-    scene : Scene
-    camera : Camera
-
     Returns
     -------
     list of (x, y, rotation): m, local, and radians
@@ -133,10 +128,6 @@ def uav_control_points(survey: SampleSurvey) -> Features:
     Map coordinates have a standard deviation of 8 mm, places in the image one of a quarter of a pixel. Every third corner of a
     marking is a check point.
 
-    Parameters
-    ----------
-    survey : SampleSurvey
-
     Returns
     -------
     Features CONTROL_POINTS, PointZ in map coordinates
@@ -166,8 +157,6 @@ def uav_control_points(survey: SampleSurvey) -> Features:
 class _StreetColours:
     """Colours of the ground and of the objects on it.
 
-    Parameters
-    ----------
     scene : Scene
     camera : Camera
     seed : of the random numbers
@@ -270,9 +259,7 @@ def write_uav_image(survey: SampleSurvey, path: str | os.PathLike[str], progress
 
     Parameters
     ----------
-    survey : SampleSurvey
     path : of the TIFF, which appears when it is complete
-    progress : Progress
 
     Raises
     ------

@@ -178,11 +178,6 @@ def match_lines(result: Sequence[Any], reference: Sequence[Any], area: Any = Non
         without, in one metric CRS; the direction in which they are drawn is ignored
     area : shapely polygon; what lies outside is left out of both, or None
     max_angle : degrees; lines that cross at a larger angle do not match
-    progress : Progress
-
-    Returns
-    -------
-    LineMatch
     """
     result, result_owner = single_lines([g for g in result if g is not None])
     reference, reference_owner = single_lines([g for g in reference if g is not None])

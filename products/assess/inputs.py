@@ -57,7 +57,6 @@ def check_kind(layer: AssessedLayer, kinds: Sequence[str], needed: str) -> None:
 
     Parameters
     ----------
-    layer : AssessedLayer
     kinds : names of the single geometries that are allowed, such as "LineString"
     needed : what is needed, for the message
 
@@ -111,10 +110,6 @@ def in_crs(layer: AssessedLayer, wkt: str, warn: Callable[[str], None] = _ignore
     layer : AssessedLayer; without a CRS it is assumed to be in this one, with a warning
     wkt : the CRS; "" leaves the layer as it is
     warn : called with a sentence
-
-    Returns
-    -------
-    AssessedLayer
 
     Raises
     ------
@@ -274,7 +269,6 @@ def check_reference(reference: AssessedLayer, result: AssessedLayer, frame: Any 
 
     Parameters
     ----------
-    reference, result : AssessedLayer
     frame : RoadFrame, or None
     area : shapely polygon outside of which nothing is judged, or None
     corridor : metres to either side of the trajectory
@@ -383,7 +377,6 @@ def polygons_of_raster(path: str, progress: Progress = Progress()) -> tuple[list
     Parameters
     ----------
     path : a raster file; values outside 1 to 65534 and fractions below 1 count as 1
-    progress : Progress
 
     Returns
     -------

@@ -89,10 +89,6 @@ def marking_layer(accuracy: MarkingAccuracy, result: Sequence[Any], reference: S
     result, reference : polygons as given to `assess_markings`
     result_classes, reference_classes : class of every polygon, or None
     crs : WKT
-
-    Returns
-    -------
-    Features
     """
     layer = Features("MultiPolygonZ", ASSESSED_MARKINGS, crs=crs)
     of_reference, of_result = accuracy.outcomes()

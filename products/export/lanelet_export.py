@@ -77,11 +77,6 @@ def draft_lanelets(source: RoadMapSource, settings: LaneletSettings = LaneletSet
     Parameters
     ----------
     source : RoadMapSource, checked
-    settings : LaneletSettings
-
-    Returns
-    -------
-    LaneletDraft
     """
     return _Drafting(source, settings).run()
 
@@ -243,7 +238,6 @@ def lanelet2_text(draft: LaneletDraft, degrees: Degrees, local: bool = False) ->
 
     Parameters
     ----------
-    draft : LaneletDraft
     degrees : of its nodes
     local : also write the tags local_x and local_y, metres within a square of 100 km, as Autoware reads them
     """

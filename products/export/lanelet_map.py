@@ -78,13 +78,9 @@ NEVER_DRIVEN = ("crosswalk", "walkway", "stairs")
 class LaneletNetwork:
     """Lanelets with borders in the direction of travel.
 
-    Parameters
-    ----------
     whole : LaneletMap
     places : (N, 3) metres of its nodes
 
-    Attributes
-    ----------
     left, right : id -> rows of nodes, in the direction of travel
     reversed_left, reversed_right : id -> whether the way runs against the direction of travel
     """
@@ -174,11 +170,6 @@ def read_lanelet2(path: str, progress: Progress = Progress()) -> LaneletMap:
     Parameters
     ----------
     path : of the .osm file
-    progress : told of the share that was read
-
-    Returns
-    -------
-    LaneletMap
 
     Raises
     ------
@@ -285,7 +276,6 @@ def node_places(whole: LaneletMap, crs: str = "") -> tuple[np.ndarray, str]:
 
     Parameters
     ----------
-    whole : LaneletMap
     crs : WKT or EPSG:n to compute them in; "" takes the UTM zone of the map
 
     Returns
@@ -325,9 +315,7 @@ def layers_of_lanelets(whole: LaneletMap, crs: str = "", progress: Progress = Pr
 
     Parameters
     ----------
-    whole : LaneletMap
     crs : WKT or EPSG:n of the layers; "" takes the UTM zone of the map
-    progress : told of the share of the lanelets
 
     Returns
     -------

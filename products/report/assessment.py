@@ -33,7 +33,6 @@ def boundary_report(accuracy: BoundaryAccuracy, layer: Features, names: tuple[st
 
     Parameters
     ----------
-    accuracy : BoundaryAccuracy
     layer : Features of `boundary_layer`
     names : (result, reference) as the user calls them
     notes : further sentences
@@ -67,7 +66,6 @@ def driving_report(match: LineMatch, accuracy: LineAccuracy, settings: LineAccur
     Parameters
     ----------
     match, accuracy : LineMatch and its LineAccuracy
-    settings : LineAccuracySettings
     layer : Features of `driving_line_layer`
     names : (result, reference) as the user calls them
     station : (N,) metres along the road of the result's places and (M,) of the reference's
@@ -96,7 +94,6 @@ def marking_report(accuracy: MarkingAccuracy, layer: Features, names: tuple[str,
 
     Parameters
     ----------
-    accuracy : MarkingAccuracy
     layer : Features of `marking_layer`
     names : (result, reference) as the user calls them
     station : (N,) metres along the road of `accuracy.blocks`

@@ -22,8 +22,6 @@ MIN_LABEL_DISTANCE = 12  # px between the labels of two levels
 class Chart:
     """A chart; its parts are drawn in the order of the calls.
 
-    Parameters
-    ----------
     x_range, y_range : (lowest, highest) of the axes
     x_label, y_label : with units
     height : pixels

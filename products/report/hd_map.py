@@ -67,7 +67,6 @@ def map_check_report(found: Findings, path: str, notes: Sequence[str] = ()) -> s
 
     Parameters
     ----------
-    found : Findings
     path : of the file
     notes : further sentences
     """

@@ -52,7 +52,6 @@ def cross_section_report(sections: RoadSections, table: Features) -> str:
 
     Parameters
     ----------
-    sections : RoadSections
     table : Features of `sections_to_features`, the rows of all sections
     """
     limits, interval = sections.settings.limits(), sections.settings.interval
@@ -173,7 +172,6 @@ def roadside_report(found: Roadside, lines: Features, points: Features) -> str:
 
     Parameters
     ----------
-    found : Roadside
     lines, points : Features of `roadside_to_features`
     """
     lengths: dict[tuple[str, str], float] = defaultdict(float)

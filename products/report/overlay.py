@@ -34,7 +34,6 @@ def georeferencing_report(found: Georeferencing, drawn: str, departure: float) -
 
     Parameters
     ----------
-    found : Georeferencing
     drawn : path of the GeoTIFF that was drawn
     departure : pixels between the drawn image and the polynomial, from `draw_image`
     """
@@ -60,7 +59,6 @@ def _residual_picture(found: Georeferencing, drawn: str) -> tuple[np.ndarray, fl
 
     Parameters
     ----------
-    found : Georeferencing
     drawn : path of the GeoTIFF that was drawn
 
     Returns

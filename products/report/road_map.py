@@ -157,7 +157,6 @@ def curvature_along(line: shapely.LineString, step: float = CURVATURE_STEP, base
 
     Parameters
     ----------
-    line : shapely LineString
     step : metres between the values
     base : metres, length of the chords
 

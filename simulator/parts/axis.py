@@ -15,8 +15,6 @@ class RoadAxis:
     The axis passes through (0, 0) at station 0. Evaluation and its inverse agree to a few micrometres for
     offsets below 0.6 of the radius.
 
-    Parameters
-    ----------
     elements : list of (length, curvature at start, curvature at end), m and 1/m, left positive
     start : m, station at which the first element begins (may be negative)
     heading : radians counter-clockwise from east, at `start`

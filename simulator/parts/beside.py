@@ -30,8 +30,6 @@ _LEAVES = 0.10  # m that a pulse travels between the leaves of a hedge, on avera
 class RunningThing:
     """Something that runs along the road, as the truth tells it.
 
-    Attributes
-    ----------
     kind : guard_rail, or one of USUAL
     foot : (N, 3) m, local, on the ground along its face towards the road
     height, low : m above the ground, of its top and of its lower edge
@@ -54,8 +52,6 @@ class RunningThing:
 class Piece:
     """A straight piece of a wall, barrier, fence, hedge or building, which climbs with the ground.
 
-    Attributes
-    ----------
     x, y, z : m, local place of the ground below its middle
     heading : radians counter-clockwise from east
     slope : m per m, of its climb ahead

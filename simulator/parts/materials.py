@@ -16,8 +16,6 @@ CARRIAGEWAY_LABELS = tuple(LABEL[name] for name in ("road", "paint", "worn paint
 class Texture:
     """Deterministic smooth noise of mean 0 and standard deviation about 1, for worn paint and patchy asphalt.
 
-    Parameters
-    ----------
     seed : equal seeds give equal noise
     """
 

@@ -18,8 +18,6 @@ from .materials import LABEL
 class Body:
     """A convex body: the points p with normals @ p <= limits, in the frame of the object (x ahead, y left, z up).
 
-    Attributes
-    ----------
     normals : (F, 3) outward unit normals of the faces
     limits : (F,) m
     brightness : 0 to 1, reflectance
@@ -36,8 +34,6 @@ class Body:
 class Car:
     """A parked car.
 
-    Attributes
-    ----------
     x, y, z : m, local place of the ground below its middle
     heading : radians counter-clockwise from east
     bodies : Body parts of the car
@@ -77,7 +73,6 @@ def entered(body: Body, o: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.nd
 
     Parameters
     ----------
-    body : Body
     o, v : (3, N) origins, m, and directions in the frame of the object
 
     Returns
@@ -113,10 +108,6 @@ def car_bodies(length: float, width: float, height: float, brightness: float) ->
     ----------
     length, width, height : m
     brightness : 0 to 1, reflectance of the paint
-
-    Returns
-    -------
-    tuple of Body
     """
     a, b, waist, floor = length / 2, width / 2, 0.58 * height, 0.19
     shell = [(1, 0, 0, a, 0, 0), (-1, 0, 0, -a, 0, 0), (0, 1, 0, 0, b, 0), (0, -1, 0, 0, -b, 0),
@@ -145,8 +136,6 @@ def car_bodies(length: float, width: float, height: float, brightness: float) ->
 class Post:
     """A vertical cylinder: a pole or a trunk.
 
-    Attributes
-    ----------
     x, y, z : m, local place of its foot
     top : m, local z of its upper end
     radius : m
@@ -187,8 +176,6 @@ class Post:
 class Crown:
     """The leaves of a tree: an ellipsoid in which a pulse travels a random distance before it meets a leaf.
 
-    Attributes
-    ----------
     x, y, z : m, local place of its middle
     reach : m, horizontal radius
     half_height : m, vertical radius
@@ -226,8 +213,6 @@ class Crown:
 class Rail:
     """One length of a guard rail: an upright strip between two places.
 
-    Attributes
-    ----------
     x, y, z : m, local place of the ground below its middle
     heading : radians counter-clockwise from east
     length : m

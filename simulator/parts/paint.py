@@ -18,8 +18,6 @@ if TYPE_CHECKING:
 class PaintedLine:
     """A line along the road.
 
-    Attributes
-    ----------
     kind : class of the marking
     line : number of the line
     offset, width : m
@@ -62,8 +60,6 @@ class PaintedLine:
 class TaperedLine:
     """A solid line whose offset changes along the road, such as the border of a hatched island.
 
-    Attributes
-    ----------
     kind : class of the marking
     line : number of the line
     places : (K, 2) m, station and offset, stations increasing; straight between them
@@ -105,8 +101,6 @@ class TaperedLine:
 class PaintedFigure:
     """Polygons of one marking: a zebra crossing, an arrow or a hatched area.
 
-    Attributes
-    ----------
     kind : class of the marking
     line : None
     polygons : (n, 2) m of station and offset each, not overlapping
@@ -225,8 +219,6 @@ Marking = Union[PaintedLine, TaperedLine, PaintedFigure]
 class Paint:
     """All markings of a road.
 
-    Parameters
-    ----------
     markings : PaintedLine, TaperedLine and PaintedFigure
     texture : Texture of the wear
     """

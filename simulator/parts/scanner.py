@@ -35,16 +35,11 @@ def cast(scene: SurveyedScene, origin: np.ndarray, direction: np.ndarray, statio
 
     Parameters
     ----------
-    scene : SurveyedScene
     origin : (3, N) m, local
     direction : (3, N) unit vectors
     station : m, of the scanner, accurate to 15 m
     rng : Generator for the leaves of trees and the glass of cars
     reach : m; ground farther from the axis is left out
-
-    Returns
-    -------
-    Hits
     """
     hits = scene.meet(origin, direction, station, reach)
     flat = np.hypot(direction[0], direction[1])
@@ -75,8 +70,6 @@ def cast(scene: SurveyedScene, origin: np.ndarray, direction: np.ndarray, statio
 class Scanner:
     """A rotating line scanner.
 
-    Attributes
-    ----------
     number : point_source_id
     rotation_rate : Hz
     pulse_rate : Hz
@@ -112,7 +105,6 @@ class Scanner:
 
         Parameters
         ----------
-        drive : Drive
         lines : (L,) int, consecutive numbers of turns
 
         Returns
@@ -156,8 +148,6 @@ def label_hits(scene: SurveyedScene, hits: Hits, found: np.ndarray) -> np.ndarra
 
     Parameters
     ----------
-    scene : SurveyedScene
-    hits : Hits
     found : (M,) int, indices of hits
 
     Returns
@@ -175,7 +165,6 @@ def brightness_of(scene: SurveyedScene, label: np.ndarray, s: np.ndarray, d: np.
 
     Parameters
     ----------
-    scene : SurveyedScene
     label : (M,) uint8
     s, d : (M,) m, stations and offsets
     own : (M,) reflectance of hits on obstacles

@@ -15,8 +15,6 @@ _RAMP = 1.0      # m along the road from full to lowered curb
 class Side:
     """Strips of ground beside the carriageway, on one side of the road; each is straight across between two borders.
 
-    Attributes
-    ----------
     sign : 1 left, -1 right
     borders : (K + 1,) m from the axis, increasing; the first is the edge of the carriageway
     rises : (K + 1,) m, heights of the borders above the edge of the carriageway, without the curb
@@ -85,10 +83,6 @@ def sidewalk(sign: int, edge: float, curb_height: float, lowered: Sequence[tuple
     width : m, curb and sidewalk
     reach : m from the axis to the end of the verge
     face : m across the face of the curb
-
-    Returns
-    -------
-    Side
     """
     top = edge + face
     borders = np.array([edge, top, top + 0.15, top + 1.2, edge + width, reach])
@@ -108,10 +102,6 @@ def ditch(sign: int, edge: float, depth: float = 0.6, reach: float = 24.0) -> Si
     edge : m from the axis to the edge of the carriageway
     depth : m of the ditch
     reach : m from the axis to the end of the field
-
-    Returns
-    -------
-    Side
     """
     borders = edge + np.array([0.0, 0.8, 2.2, 3.6, 4.1, 5.6, 0.0])
     borders[-1] = reach

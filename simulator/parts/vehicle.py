@@ -18,8 +18,6 @@ _RUN_OUT = 15.0      # m driven before and after the surveyed stretch
 class Drive:
     """One pass: position and attitude as smooth functions of the time since its start.
 
-    Attributes
-    ----------
     way : Followed
     direction : 1 along the axis, -1 against it
     offset : m, mean offset of the vehicle

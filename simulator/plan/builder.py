@@ -34,8 +34,6 @@ def strip(path: Path, start: float, end: float, right: Offset, left: Offset) -> 
 class PlanBuilder:
     """Collects markings, lanes and objects; everything random follows from the seed.
 
-    Parameters
-    ----------
     name : of the scene
     seed : of all random numbers
     area : the surveyed area, m, local; paint, lanes and truth end at its border
@@ -144,10 +142,6 @@ class PlanBuilder:
         curb_height : m
         lowered : areas in which curbs are lowered
         gutter : m, width of a concrete gutter
-
-        Returns
-        -------
-        PlanScene
         """
         west, south, east, north = shapely.buffer(self.area, _FRAME).bounds
         rings = rings_of(carriageway)

@@ -36,10 +36,6 @@ def crossing(length: float, seed: int, radius: float, curb_height: float, gutter
     ----------
     length, seed, curb_height, gutter : as in `..scenes.build_scene`
     radius : not used
-
-    Returns
-    -------
-    PlanScene
     """
     arm = max(length / 2, _STOP[1] + 8.0)
     # to the east, north, west and south, a little turned so that nothing runs along a row of the grid

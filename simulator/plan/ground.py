@@ -20,8 +20,6 @@ _RAMP = 1.0          # m from full to lowered curb
 class _Terrain:
     """Heights on a grid, bilinear between its nodes.
 
-    Parameters
-    ----------
     corner : m, local x and y of the first node
     cell : m between nodes
     heights : (R, C) m, rows to the north
@@ -71,8 +69,6 @@ def curb_heights(places: np.ndarray, height: float, lowered: Sequence[shapely.Po
 class Surface:
     """The ground at (N,) places.
 
-    Attributes
-    ----------
     z : m
     slope_x, slope_y : m per m
     away : m beyond the edge of the carriageway, negative on it
@@ -89,8 +85,6 @@ class Surface:
 class Ground:
     """_Terrain, edges of the carriageway and what lies beyond them.
 
-    Parameters
-    ----------
     terrain : _Terrain
     rings : (K, 2) m, local vertices of each edge, closed, the carriageway on the left
     heights : (K,) m, of the curb at the vertices of each ring

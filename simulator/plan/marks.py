@@ -24,8 +24,6 @@ _CELL = 0.25    # m, cells that tell where paint may be
 class Mark:
     """One marking.
 
-    Attributes
-    ----------
     kind : class of the marking
     line : number of the line, None for other markings
     pattern : solid or dashed, None for other markings
@@ -51,14 +49,9 @@ def line_mark(kind: str, line: int, path: Path, spans: Sequence[tuple[float, flo
     Parameters
     ----------
     kind, line, width, wear : as of Mark
-    path : Path
     spans : (start, end) stations of its painted parts, m
     offsets : for each span the offsets at `stations_between(start, end)`, m
     dashed : whether it is a dash of a line, and not a solid line
-
-    Returns
-    -------
-    Mark
     """
     outlines, pieces = [], []
     for (start, end), offset in zip(spans, offsets):
@@ -79,8 +72,6 @@ def stations_between(start: float, end: float) -> np.ndarray:
 class PlanPaint:
     """All markings of a plan.
 
-    Parameters
-    ----------
     markings : Mark
     texture : Texture of the wear
     """
@@ -111,8 +102,6 @@ class PlanPaint:
 class Areas:
     """Polygons that are looked up by place.
 
-    Parameters
-    ----------
     outlines : (n, 2) m
     numbers : (P,) int16, what to give for each
     """

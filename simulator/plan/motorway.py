@@ -38,10 +38,6 @@ def motorway(length: float, seed: int, radius: float, curb_height: float, gutter
     ----------
     length, seed : as in `..scenes.build_scene`
     radius, curb_height, gutter : not used; its bends are those of a motorway, and it has no curbs
-
-    Returns
-    -------
-    PlanScene
     """
     straight = length / 3
     axis = path_of_elements((0.0, 0.0), np.radians(12.0), [(_RUN + straight, 0, 0), (60.0, 0, 1 / _BEND), (length + _RUN, 1 / _BEND, 1 / _BEND)],

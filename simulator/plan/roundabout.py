@@ -39,10 +39,6 @@ def roundabout(length: float, seed: int, radius: float, curb_height: float, gutt
     ----------
     length, seed, curb_height, gutter : as in `..scenes.build_scene`
     radius : not used
-
-    Returns
-    -------
-    PlanScene
     """
     arm = max(length / 2, _SPLITTERS[1][1] + 6.0)
     turned = np.radians(14.0)

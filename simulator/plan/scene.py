@@ -24,8 +24,6 @@ _ASKEW = 1.45   # m over the ground to the scanner, per m from the track: planes
 class PlanLane:
     """A lane along a path, between two borders.
 
-    Attributes
-    ----------
     number, road : of the lane, and of the road it belongs to
     path : Path
     direction : 1 along the path, -1 against it
@@ -46,8 +44,6 @@ class PlanLane:
 class Track:
     """What a vehicle follows: a path over the terrain.
 
-    Attributes
-    ----------
     path : Path, driven from station 0
     ground : Ground
     """
@@ -76,8 +72,6 @@ class Track:
 class PlanScene:
     """A plan. Its points have x and y (m, local) in the place of station and offset.
 
-    Attributes
-    ----------
     name : of the scene
     ground : Ground
     carriageway : polygon, m, local
@@ -181,13 +175,8 @@ def _truth_of_plan(scene: PlanScene, origin: Sequence[float], crs: str) -> Truth
 
     Parameters
     ----------
-    scene : PlanScene
     origin : (3,) m, map coordinates of the local origin
     crs : WKT
-
-    Returns
-    -------
-    Truth
     """
     def on_map(places, rise=0.0):
         return np.column_stack([places, scene.ground.height(*places.T) + rise]) + origin

@@ -32,10 +32,6 @@ def serpentine(length: float, seed: int, radius: float, curb_height: float, gutt
     ----------
     length, seed : as in `..scenes.build_scene`
     radius, curb_height, gutter : not used; hairpins have a radius of 12 m, and there are no curbs
-
-    Returns
-    -------
-    PlanScene
     """
     axis = _axis(length)
     s = np.arange(0.0, length + 0.1, 0.25)

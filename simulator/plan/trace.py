@@ -25,7 +25,6 @@ def trace(ground: Ground, origin: np.ndarray, direction: np.ndarray, farthest: f
 
     Parameters
     ----------
-    ground : Ground
     origin : (3, N) m, local
     direction : (3, N) unit vectors
     farthest : m over the ground; what lies farther is not looked for

@@ -22,10 +22,6 @@ def cycle_lanes(length: float, seed: int, radius: float, curb_height: float, gut
     Parameters
     ----------
     length, seed, radius, curb_height, gutter : as in `..scenes.build_scene`
-
-    Returns
-    -------
-    Scene
     """
     road = SceneBuilder(length, seed, radius)
     lowered = []

@@ -23,10 +23,6 @@ def one_lane(length: float, seed: int, radius: float, curb_height: float, gutter
     Parameters
     ----------
     length, seed, radius, curb_height, gutter : as in `..scenes.build_scene`
-
-    Returns
-    -------
-    Scene
     """
     return _between_edge_lines("one-lane", 5.8, True, 0.0, length, seed, radius, curb_height, gutter)
 
@@ -91,10 +87,6 @@ def hatched_island(length: float, seed: int, radius: float, curb_height: float, 
     Parameters
     ----------
     length, seed, radius, curb_height, gutter : as in `..scenes.build_scene`
-
-    Returns
-    -------
-    Scene
     """
     return _around_island("hatched-island", _ISLAND, (1.0, 1.0), 0.5, 1.0, length, seed, radius, curb_height, gutter)
 

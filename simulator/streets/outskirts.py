@@ -20,10 +20,6 @@ def outskirts(length: float, seed: int, radius: float, curb_height: float, gutte
     Parameters
     ----------
     length, seed, radius, curb_height, gutter : as in `..scenes.build_scene`
-
-    Returns
-    -------
-    Scene
     """
     road = SceneBuilder(length, seed, radius)
     lowered = []

@@ -24,8 +24,6 @@ if TYPE_CHECKING:
 class Lane:
     """A lane and the offset of its middle, linear between stations.
 
-    Attributes
-    ----------
     number : of the lane
     direction : 1 along the axis, -1 against it
     stations, offsets : (K,) m
@@ -45,8 +43,6 @@ class Scene:
 
     On the carriageway the height is grade_line(s) + fall(d). Beyond its edges the strips of each Side continue it.
 
-    Attributes
-    ----------
     name : of the scene
     axis : RoadAxis
     length : m from station 0
@@ -198,15 +194,10 @@ def cast_ground(scene: Scene, origin: np.ndarray, direction: np.ndarray, station
 
     Parameters
     ----------
-    scene : Scene
     origin : (3, N) m, local
     direction : (3, N) unit vectors
     station : m, of the scanner, accurate to 15 m
     reach : m; ground farther from the axis is left out
-
-    Returns
-    -------
-    Hits
     """
     count = direction.shape[1]
     hits = Hits(np.full(count, np.inf), np.full(count, station), np.zeros(count), np.zeros(count),
@@ -347,13 +338,8 @@ def _truth_of_street(scene: Scene, origin: Sequence[float], crs: str) -> Truth:
 
     Parameters
     ----------
-    scene : Scene
     origin : (3,) m, map coordinates of the local origin
     crs : WKT
-
-    Returns
-    -------
-    Truth
     """
     def on_map(s, d):
         return np.column_stack(scene.to_map(s, d)) + origin

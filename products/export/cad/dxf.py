@@ -73,7 +73,6 @@ def write_dxf(lines: list[_DxfLine], path: str, crs: str = "") -> None:
 
     Parameters
     ----------
-    lines : list of _DxfLine
     path : of the file
     crs : WKT, metric, of the lines, "" where unknown
 

@@ -29,7 +29,6 @@ def landxml_text(alignments: Sequence[Alignment], crs: str = "", name: str = "Ro
 
     Parameters
     ----------
-    alignments : list of Alignment
     crs : WKT, metric, "" where unknown; where it is that of a survey in feet, so is the file, heights too
     name : of the project
     date, time : of the file, ISO 8601
@@ -171,10 +170,6 @@ def alignments_of(source: RoadMapSource, tolerance: float) -> list[Alignment]:
     ----------
     source : RoadMapSource, checked; without driving lines the middles of the lanes are taken
     tolerance : metres that a line may be missed in plan and in height
-
-    Returns
-    -------
-    list of Alignment
     """
     draft = draft_opendrive(source, OpenDriveSettings(tolerance))
     origin = np.array(draft.map.offset[:2])

@@ -47,14 +47,8 @@ def check_lanelets(whole: LaneletMap, places: np.ndarray, crs: str = "", progres
 
     Parameters
     ----------
-    whole : LaneletMap
     places : (N, 3) metres of its nodes, as `node_places` gives them
     crs : WKT of the places
-    progress : told of the share that was looked at
-
-    Returns
-    -------
-    Findings
     """
     check = _LaneletCheck(whole, places, Findings(crs=crs))
     for kind, id, line in whole.twice:

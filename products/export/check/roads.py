@@ -49,13 +49,7 @@ def check_opendrive(whole: OpenDriveMap, crs: str = "", progress: Progress = Pro
 
     Parameters
     ----------
-    whole : OpenDriveMap
     crs : WKT of its coordinates, "" where unknown
-    progress : told of the share of the roads
-
-    Returns
-    -------
-    Findings
     """
     report = _RoadCheck(whole, Findings(crs=crs))
     seen: set[str] = set()

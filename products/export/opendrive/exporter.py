@@ -80,12 +80,6 @@ def draft_opendrive(source: RoadMapSource, settings: OpenDriveSettings = OpenDri
     Parameters
     ----------
     source : RoadMapSource, checked
-    settings : OpenDriveSettings
-    progress : told of the share of the roads
-
-    Returns
-    -------
-    OpenDriveDraft
     """
     source = with_driven_middles(source, MIDDLES_SHARE * settings.tolerance)
     lanes = source.lanes

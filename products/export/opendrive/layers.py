@@ -32,9 +32,7 @@ def layers_of_opendrive(whole: OpenDriveMap, crs: str = "", progress: Progress =
 
     Parameters
     ----------
-    whole : OpenDriveMap
     crs : WKT of its coordinates, "" where unknown
-    progress : told of the share of the roads
 
     Returns
     -------

@@ -294,7 +294,6 @@ def strips_of(slices: list[Slice], breaks: set[tuple[int, int]]) -> list[list[Sl
 
     Parameters
     ----------
-    slices : list of Slice
     breaks : (id of a slice, id of the next) between which a strip ends
 
     Returns

@@ -25,7 +25,6 @@ def read_opendrive(path: str, progress: Progress = Progress()) -> OpenDriveMap:
     Parameters
     ----------
     path : of the .xodr file
-    progress : told of the share that was read
 
     Returns
     -------
