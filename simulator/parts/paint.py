@@ -189,17 +189,7 @@ def hatching(start: float, end: float, right: float, left: float, bar: float = 0
 
 
 def hatched_area(outline: np.ndarray, bar: float = 0.5, gap: float = 1.0) -> tuple[np.ndarray, ...]:
-    """Bars at 45 degrees within an area.
-
-    Parameters
-    ----------
-    outline : (n, 2) m, station and offset
-    bar, gap : m along the road
-
-    Returns
-    -------
-    tuple of (m, 2) polygons
-    """
+    """Bars at 45 degrees, polygons, within an outline of (n, 2) stations and offsets; `bar` and `gap` in m along the road."""
     import shapely
 
     area = shapely.Polygon(outline)
@@ -228,17 +218,7 @@ class Paint:
         self._texture = texture
 
     def at(self, s: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Paint at places on the road.
-
-        Parameters
-        ----------
-        s, d : (N,) m, stations and offsets
-
-        Returns
-        -------
-        number : (N,) int16, index of the marking, -1 where there is none
-        fresh : (N,) bool, whether the paint is not worn off
-        """
+        """(number of the marking, -1 where there is none; whether its paint is not worn off), (N,) each, at (N,) stations and offsets, m."""
         number = np.full(len(s), -1, dtype=np.int16)
         if len(s) == 0:
             return number, np.zeros(0, dtype=bool)

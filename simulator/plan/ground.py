@@ -131,15 +131,7 @@ class Ground:
         return max(0.0, *(float((profile.rises + profile.on_curb * curb).max()) for profile in self.profiles)) + 0.01
 
     def beyond_edge(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """The nearest edge at (N,) places.
-
-        Returns
-        -------
-        away : (N,) m beyond it, negative on the carriageway
-        outward : (2, N) direction in which `away` grows
-        curb : (N,) m, its height
-        profile : (N,) number of the profile
-        """
+        """(m beyond the nearest edge, negative on the carriageway; (2, N) direction of their growth; m of its curb; its profile) at (N,) places."""
         rows, columns = self._shape
         column = np.clip(((x - self.terrain.corner[0]) / _LOOKUP).astype(np.intp), 0, columns - 1)
         row = np.clip(((y - self.terrain.corner[1]) / _LOOKUP).astype(np.intp), 0, rows - 1)

@@ -8,8 +8,8 @@ import numpy as np
 
 from ..parts.axis import RoadAxis, winding_road
 from ..parts.beside import PIECE, RAIL_PIECE, USUAL, RunningThing, rail_of, straight_pieces
-from ..parts.materials import LABEL, Texture
-from ..parts.obstacles import Car, Crown, Post, Rail, car_bodies
+from ..parts.materials import Texture
+from ..parts.obstacles import Rail, standing
 from ..parts.paint import Marking, Paint, PaintedFigure, PaintedLine, TaperedLine
 from ..parts.sides import Side
 from .street import Lane, Scene
@@ -111,14 +111,7 @@ class SceneBuilder:
         scene.repairs = np.array(self.repairs).reshape(-1, 5)
         for kind, s, d, shape in self.objects:
             x, y, z = (float(value[0]) for value in scene.to_map(np.array([s]), np.array([d])))
-            if kind == "car":
-                scene.obstacles.append(Car(x, y, z, float(self.axis.heading(np.array([s]))[0]), car_bodies(*shape)))
-            elif kind == "pole":
-                scene.obstacles.append(Post(x, y, z, z + shape[1], shape[0], LABEL["pole"], 0.35))
-            else:
-                trunk, reach, half, middle = shape
-                scene.obstacles.append(Post(x, y, z, z + middle, trunk, LABEL["tree"], 0.18))
-                scene.obstacles.append(Crown(x, y, z + middle, reach, half, z + middle + half))
+            scene.obstacles += standing(kind, x, y, z, float(self.axis.heading(np.array([s]))[0]), shape)
         for kind, start, end, offset, height in self.running:
             count = int(round((end - start) / (RAIL_PIECE if kind == "guard_rail" else PIECE)))
             stations = np.linspace(start, end, max(count, 1) + 1)
