@@ -14,10 +14,8 @@ from scipy import ndimage
 from scipy.spatial import cKDTree
 
 from ..core.common.arrays import linked_groups
-from ..core.common.errors import RoadExtractionError
 from ..core.common.parallel import ordered_map
 from ..core.common.progress import Progress
-from ..core.common.setting import check_limits, setting
 from ..core.intensity.asphalt_model import asphalt_statistics
 from ..core.markings.paint.asphalt_level import otsu
 from ..core.markings.paint.settings import PaintMethod
@@ -46,21 +44,13 @@ class IntensityPeaks:
     shortest : m, least length of a chain
     """
 
-    profile_length: float = setting(0.20, 0.02, 2.0, "The length of a profile", "m")
-    prominence: float = setting(7.0, 0.5, 100.0, "The prominence of a peak")
-    narrowest: float = setting(0.08, 0.0, 1.95, "The narrowest line", "m")
-    widest: float = setting(0.35, 0.02, 2.0, "The widest line", "m")
-    jump: float = setting(0.15, 0.01, 1.0, "The shift between profiles", "m")
-    gap: float = setting(0.60, 0.02, 10.0, "The gap along a line", "m")
-    shortest: float = setting(1.0, 0.0, 50.0, "The shortest line", "m")
-
-    def __post_init__(self) -> None:
-        check_limits(self)
-        if not self.narrowest < self.widest:
-            raise RoadExtractionError(f"Peaks are {self.narrowest} to {self.widest} m wide; the first must be below the second.")
-        if self.gap < self.profile_length:
-            raise RoadExtractionError(f"Peaks are linked over {self.gap} m along the road; it must be at least the length of a "
-                                      f"profile ({self.profile_length} m).")
+    profile_length: float = 0.20
+    prominence: float = 7.0
+    narrowest: float = 0.08
+    widest: float = 0.35
+    jump: float = 0.15
+    gap: float = 0.60
+    shortest: float = 1.0
 
     def paint_of(self, road_points: RoadPoints, road: int, progress: Progress) -> Iterator[Columns]:
         """Yield the records of one road's points that lie on painted lines, window by window; points corrected or not.
@@ -209,13 +199,10 @@ class PointSegments:
     radius : m around a bright point in which its bright neighbours are counted
     """
 
-    length: float = setting(10.0, 0.5, 200.0, "The length of a segment", "m")
-    width: float = setting(1.0, 0.1, 50.0, "The width of a segment", "m")
-    separation: float = setting(3.0, 0.0, 50.0, "The distance of paint from asphalt", "spreads")
-    radius: float = setting(0.12, 0.01, 1.0, "The radius in which neighbours are counted", "m")
-
-    def __post_init__(self) -> None:
-        check_limits(self)
+    length: float = 10.0
+    width: float = 1.0
+    separation: float = 3.0
+    radius: float = 0.12
 
     def paint_of(self, road_points: RoadPoints, road: int, progress: Progress) -> Iterator[Columns]:
         """Yield the records of one road's points that are paint, segment row by segment row; points corrected or not.
