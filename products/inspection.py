@@ -82,23 +82,13 @@ class Inspection:
 
 def inspect_survey(paths: Sequence[str | Path], trajectory: Trajectory | None = None,
                    settings: InspectionSettings = InspectionSettings(), crs: str = "", progress: Progress = Progress()) -> Inspection:
-    """Read every point once and gather statistics.
+    """Read every point of LAS, LAZ or COPC files once and gather statistics.
 
-    Parameters
-    ----------
-    paths : LAS, LAZ or COPC files
-    trajectory : Trajectory in any known CRS and time system, or None
+    The `notes` of the Inspection name what the road map would refuse (a geographic CRS, no overlap, no time, no intensity) and what to try.
+    Raises RoadExtractionError if a file is missing, damaged, or all are empty.
+
+    trajectory : in any known CRS and time system, or None
     crs : WKT for clouds that carry none
-
-    Returns
-    -------
-    Inspection. Its `notes` name what the road map would refuse (a geographic CRS, no overlap, no time, no intensity) and
-    what to try.
-
-    Raises
-    ------
-    RoadExtractionError
-        If a file is missing, damaged, or all are empty.
     """
     copies: list[str] = []
     files = without_copies(read_headers(paths, copies.append, crs), copies.append)
@@ -352,12 +342,7 @@ def _profile(driven, track_z, at, heights, drops, height):
 
 @gdal_exceptions()
 def write_density(found: Inspection, path: str | Path) -> None:
-    """Write the density of an Inspection: float32 points per m², NaN where no point lies.
-
-    Parameters
-    ----------
-    path : of the .tif
-    """
+    """Write the density of an Inspection to a GeoTIFF: float32 points per m², NaN where no point lies."""
     from osgeo import gdal
 
     density, (west, north) = found.density

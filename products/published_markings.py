@@ -93,16 +93,9 @@ def _window(road_points, road, first, last, profile):
 
 
 def profile_peaks(records: Columns, row: np.ndarray, settings: IntensityPeaks) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Peaks of I(d) in the profiles of one window.
+    """Peaks of I(d) in the profiles of one window, from (N,) records of points and the profile that each lies in.
 
-    Parameters
-    ----------
-    records : (N,) columns of road points
-    row : (N,) int, the profile that each lies in
-
-    Returns
-    -------
-    row, left, right : (P,) int, the profile of each peak and its borders at half its height, units of 0.1 mm
+    Returns the profile of each peak and its left and right border at half its height, units of 0.1 mm, (P,) each.
     """
     from scipy.signal import find_peaks  # slow to load, and this method alone uses it
 
@@ -147,13 +140,7 @@ def _profiles(value, row, column):
 
 
 def in_chains(row: np.ndarray, middle: np.ndarray, settings: IntensityPeaks) -> np.ndarray:
-    """(P,) bool, the peaks that belong to a chain of sufficient length.
-
-    Parameters
-    ----------
-    row : (P,) int, profile of each peak
-    middle : (P,) its offset, units of 0.1 mm
-    """
+    """(P,) bool, the peaks that belong to a chain of sufficient length, from the profile of each and its offset, units of 0.1 mm."""
     if not len(row):
         return np.zeros(0, bool)
     steps = max(1, int(round(settings.gap / settings.profile_length)))
@@ -245,16 +232,7 @@ def _segments(records, settings):
 
 
 def segment_thresholds(records: Columns, settings: PointSegments) -> dict[int, float]:
-    """The least intensity of paint in the segments of one row across the road.
-
-    Parameters
-    ----------
-    records : (N,) columns of road points
-
-    Returns
-    -------
-    threshold by number of the segment, infinite where there is no paint
-    """
+    """The least intensity of paint by number of the segment, in one row of segments across the road; infinite where there is no paint."""
     value, segment = Points(records).value, _segments(records, settings)
     order = np.argsort(segment, kind="stable")
     numbers, starts = np.unique(segment[order], return_index=True)
@@ -289,17 +267,7 @@ def _bright(records, length, limits, settings):
 
 
 def dense_enough(records: Columns, own: np.ndarray, settings: PointSegments) -> np.ndarray:
-    """Points with as many bright neighbours as paint has.
-
-    Parameters
-    ----------
-    records : (N,) columns of bright road points
-    own : (N,) bool, the points to decide on; the others only count as neighbours
-
-    Returns
-    -------
-    (N,) bool, a subset of `own`
-    """
+    """(N,) bool, those of the points `own`, (N,) bool, that have as many bright neighbours as paint has; the others only count as neighbours."""
     keep = np.zeros(len(records), bool)
     if not own.any():
         return keep

@@ -277,17 +277,9 @@ def _summary(table, result_group, nearest, signed, settings):
 
 
 def interval_lines(accuracy: BoundaryAccuracy, tolerance: float) -> Iterator[tuple[str, int, Any]]:
-    """The intervals as lines, by outcome at one of the tolerances.
+    """(outcome, row of `accuracy.intervals`, LineString or MultiLineString) of the intervals at one of the tolerances of its settings, m.
 
-    Parameters
-    ----------
-    tolerance : metres, one of those of its settings
-
-    Yields
-    ------
-    outcome : "correct", "missed", "excluded" (drawn along the reference) or "false" (along the result)
-    interval : row of `accuracy.intervals`
-    geometry : LineString or MultiLineString
+    The outcome is correct, missed, excluded (drawn along the reference) or false (along the result).
     """
     table, k = accuracy.intervals, accuracy.settings.tolerances.index(tolerance)
     outcome = np.where(table.excluded != "", "excluded", np.where(table.hit[:, k], "correct", np.where(table.judged, "missed", "")))

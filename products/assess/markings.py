@@ -245,17 +245,7 @@ class _PolygonRasteriser:
 
     @gdal_exceptions()
     def burn(self, bounds: tuple[float, float, float, float], shape: tuple[int, int]) -> np.ndarray:
-        """Rasterise the polygons.
-
-        Parameters
-        ----------
-        bounds : (min x, min y, max x, max y), metres
-        shape : (rows, columns)
-
-        Returns
-        -------
-        (rows, columns) int32 numbers of polygons, from 1 on; 0 elsewhere. The later of two overlapping polygons wins.
-        """
+        """(rows, columns) int32 numbers of polygons, from 1 on, 0 elsewhere, within (min x, min y, max x, max y); the later of two that overlap."""
         from osgeo import gdal
 
         rows, columns = shape

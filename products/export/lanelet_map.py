@@ -165,17 +165,7 @@ ALL_IDS = 2**64   # of 64 bits; without a sign, as some programs write them, the
 
 
 def read_lanelet2(path: str, progress: Progress = Progress()) -> LaneletMap:
-    """Read a file.
-
-    Parameters
-    ----------
-    path : of the .osm file
-
-    Raises
-    ------
-    RoadExtractionError
-        If the file is no map of this kind, hostile, or has no lanelet.
-    """
+    """Read an .osm file; RoadExtractionError if it is no map of this kind, hostile, or has no lanelet."""
     found = _lanelets_of(read_xml(path, "osm", OSM_KIND, progress))
     if not found.lanelets:
         raise RoadExtractionError(f"{path} has no relation of type lanelet. Maps of OpenStreetMap have roads without lanes; choose a Lanelet2 map.")
@@ -311,21 +301,10 @@ def node_places(whole: LaneletMap, crs: str = "") -> tuple[np.ndarray, str]:
 
 
 def layers_of_lanelets(whole: LaneletMap, crs: str = "", progress: Progress = Progress()) -> MapLayers:
-    """Lanes, painted borders and edges of a map.
+    """Lanes, painted borders and edges of a map in a CRS, WKT or EPSG:n; "" takes the UTM zone of the map.
 
-    Parameters
-    ----------
-    crs : WKT or EPSG:n of the layers; "" takes the UTM zone of the map
-
-    Returns
-    -------
-    MapLayers. `lane_id` of a lane is the lanelet's id; footways are left out; a way of the type of a line is a marking line, curbs and
-    borders of the road are edges
-
-    Raises
-    ------
-    RoadExtractionError
-        As `node_places`.
+    `lane_id` of a lane is the lanelet's id; footways are left out; a way of the type of a line is a marking line, curbs and borders of the road
+    are edges. Raises RoadExtractionError as `node_places`.
     """
     places, crs = node_places(whole, crs)
     network, rows = LaneletNetwork(whole, places), []

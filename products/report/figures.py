@@ -48,19 +48,9 @@ class Chart:
 
     def bars(self, left: np.ndarray | Sequence[float], right: np.ndarray | Sequence[float], values: np.ndarray | Sequence[float], colour: str,
              base: float | np.ndarray = 0.0, title: str = "") -> np.ndarray:
-        """Draw bars.
+        """Draw bars between (N,) left and right, of (N,) heights above `base`, none where NaN; `title` is shown under the pointer.
 
-        Parameters
-        ----------
-        left, right : (N,) x of their sides
-        values : (N,) heights above `base`; no bar where NaN
-        colour : CSS colour
-        base : (N,) or one; y of their lower ends
-        title : text shown under the pointer
-
-        Returns
-        -------
-        (N,) y of their upper ends, on which further bars can be stacked
+        Returns the (N,) y of their upper ends, on which further bars can be stacked.
         """
         base = np.broadcast_to(np.asarray(base, float), np.shape(values))
         for a, b, low, high in zip(self._x(left), self._x(right), base, np.asarray(values, float) + base):
