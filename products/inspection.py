@@ -217,14 +217,8 @@ class _Tally:
 
     def add(self, keys):
         new, counts = np.unique(keys, return_counts=True)
-        place = np.searchsorted(self.keys, new)
-        known = place < len(self.keys)
-        known[known] = self.keys[place[known]] == new[known]
-        self.counts[place[known]] += counts[known]
-        self.keys = np.r_[self.keys, new[~known]]
-        self.counts = np.r_[self.counts, counts[~known]]
-        order = np.argsort(self.keys, kind="stable")
-        self.keys, self.counts = self.keys[order], self.counts[order]
+        self.keys, place = np.unique(np.r_[self.keys, new], return_inverse=True)
+        self.counts = np.bincount(place.ravel(), np.r_[self.counts, counts]).astype(np.int64)
 
 
 def _copy_samples(place, time, every):
