@@ -22,7 +22,6 @@ DENSITY_PICTURE_SIDE = 1400  # px
 NO_DATA_COLOUR = (28, 28, 30)  # blue, green, red
 PLACE_COLOUR, HEIGHT_COLOUR = "#1f6feb", "#c2410c"
 TRACK_COLOUR, ROAD_COLOUR, BAR_COLOUR = "#e63c3c", "#787878", "#3c6e96"
-MOST_BARS = 300   # of a histogram
 CHART_COLUMNS = 600   # of the chart: each shows the worst of its time
 LEAST_CHART_TOP = 0.02  # m
 
@@ -75,7 +74,7 @@ def _profile_chart(profile, low, high):
 
 def _histogram(counts, low, high):
     """SVG of how often the values from low to high occur, from the counts (M,) of the values from 0 on."""
-    edges = np.linspace(low, high + 1, min(MOST_BARS, high - low + 1) + 1)
+    edges = np.linspace(low, high + 1, min(CHART_COLUMNS, high - low + 1) + 1)
     each = np.histogram(np.arange(low, high + 1), edges, weights=counts[low:high + 1])[0] / np.diff(edges)
     chart = Chart((low, high + 1), (0.0, float(each.max())), tr("Intensity"), "")
     chart.bars(edges[:-1], edges[1:], each, BAR_COLOUR)

@@ -15,7 +15,7 @@ from .materials import LABEL
 
 
 @dataclass(frozen=True)
-class Body:
+class _Body:
     """A convex body: the points p with normals @ p <= limits, in the frame of the object (x ahead, y left, z up).
 
     normals : (F, 3) outward unit normals of the faces
@@ -48,7 +48,7 @@ class Solid:
     y: float
     z: float
     heading: float
-    bodies: tuple[Body, ...]
+    bodies: tuple[_Body, ...]
     reach: float
     top: float
     label: int
@@ -78,7 +78,7 @@ class Solid:
         return distance, cosine, brightness
 
 
-def _entered(body: Body, o: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _entered(body: _Body, o: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Distance (m; inf where the ray passes) and cosine of incidence, (N,) each, where rays enter a convex body: the last plane crossed inward.
 
     `o`, `v`: (3, N) origins, m, and directions in the frame of the object.
@@ -98,14 +98,14 @@ def _entered(body: Body, o: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.n
     return np.where(hit, start, np.inf), np.where(hit, -toward[plane, each], 0.0)
 
 
-def body(faces: Sequence[Sequence[float]], brightness: float, transparency: float = 0.0) -> Body:
-    """A Body from rows (nx, ny, nz, point x, y, z on the face)."""
+def body(faces: Sequence[Sequence[float]], brightness: float, transparency: float = 0.0) -> _Body:
+    """A _Body from rows (nx, ny, nz, point x, y, z on the face)."""
     rows = np.array(faces, dtype=float)
     normals = rows[:, :3] / np.linalg.norm(rows[:, :3], axis=1, keepdims=True)
-    return Body(normals, np.sum(normals * rows[:, 3:], axis=1), brightness, transparency)
+    return _Body(normals, np.sum(normals * rows[:, 3:], axis=1), brightness, transparency)
 
 
-def _car_bodies(length: float, width: float, height: float, brightness: float) -> tuple[Body, ...]:
+def _car_bodies(length: float, width: float, height: float, brightness: float) -> tuple[_Body, ...]:
     """Bodies of a car, m and reflectance of its paint: a shell with rounded corners, a cabin with inclined screens, a roof and four wheels."""
     a, b, waist, floor = length / 2, width / 2, 0.58 * height, 0.19
     shell = [(1, 0, 0, a, 0, 0), (-1, 0, 0, -a, 0, 0), (0, 1, 0, 0, b, 0), (0, -1, 0, 0, -b, 0),

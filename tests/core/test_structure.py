@@ -38,7 +38,7 @@ NUMBERS = {
     "products/export": 161,
     "products/assess": 18,
     "products/overlay": 79,
-    "products/report": 27,
+    "products/report": 26,
     "simulator": 151,
 }
 
