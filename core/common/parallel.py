@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Generic, TypeVar
 
 from ..lazy import LazyModule
 from .errors import Cancelled, RoadExtractionError
-from .progress import Progress
+from .progress import Progress, RememberedMessages
 
 if TYPE_CHECKING:
     import numpy as np
@@ -125,24 +125,23 @@ class InBackground(Generic[Result]):
     """
 
     def __init__(self, function: Callable[[Progress], Result]):
-        self._function, self._heard = function, _Heard()
-        self._found: list[Result] = []
-        self._failed: BaseException | None = None
+        self._function, self._progress = function, _MessagesForLater()
+        self._future: Future[Result] = Future()
         self._thread = threading.Thread(target=self._work, daemon=True)
 
     def _work(self) -> None:
         try:
-            with cancellation_scope(self._heard):
-                self._found.append(self._function(self._heard))
+            with cancellation_scope(self._progress):
+                self._future.set_result(self._function(self._progress))
         except BaseException as error:
-            self._failed = error
+            self._future.set_exception(error)
 
     def __enter__(self) -> InBackground[Result]:
         self._thread.start()
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._heard.ended.set()
+        self._progress.ended.set()
         self._thread.join()
 
     def result(self, progress: Progress = Progress()) -> Result:
@@ -158,18 +157,16 @@ class InBackground(Generic[Result]):
         while self._thread.is_alive():
             progress.check_cancelled()
             self._thread.join(POLL_INTERVAL)
-        for say, text in self._heard.messages:
+        for say, text in self._progress.messages:
             getattr(progress, say)(text)
-        if self._failed is not None:
-            raise self._failed
-        return self._found[0]
+        return self._future.result()
 
 
-class _Heard(Progress):
+class _MessagesForLater(RememberedMessages):
     """Keeps messages, as a dialog is spoken to by one thread only, and ends work whose result is not wanted any more."""
 
     def __init__(self) -> None:
-        self.messages: list[tuple[str, str]] = []
+        super().__init__()
         self.ended = threading.Event()
 
     def report(self, fraction: float) -> None:
@@ -178,12 +175,6 @@ class _Heard(Progress):
     def check_cancelled(self) -> None:
         if self.ended.is_set():
             raise Cancelled
-
-    def info(self, text: str) -> None:
-        self.messages.append(("info", text))
-
-    def warn(self, text: str) -> None:
-        self.messages.append(("warn", text))
 
 
 # Reused working memory, work on some rows of a long table at a time, and the return of freed memory to the operating system.

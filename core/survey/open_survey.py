@@ -12,10 +12,10 @@ import numpy as np
 
 from ..common.errors import RoadExtractionError
 from ..common.parallel import ordered_map
-from ..common.progress import Progress
+from ..common.progress import Progress, RememberedMessages
 from ..execution.choice import ExecutionSettings, cluster_for, executor_for
 from ..execution.phase import THREADS, Executor, digest
-from ..execution.work_folder import Heard, KeptResults, WorkFolder, code_digest
+from ..execution.work_folder import KeptResults, WorkFolder, code_digest
 from ..io.crs import FOOT, US_SURVEY_FOOT, as_in_file, check_projected, crs_name, crs_note, parse_crs, unit_note
 from .adjustment.adjust import adjust_passes, compare_carriageways, said_of_levels
 from .adjustment.scanner_fit import lay_scanners
@@ -104,7 +104,7 @@ def _kept_survey(work, executor, read, progress):
         found = _found_survey(work, name, files, progress)
         if found is not None:
             return found
-        heard = Heard(progress)
+        listener = RememberedMessages(progress)
         parts = WorkFolder(str(work.path / f"{name}.parts"))
         if not parts_are_whole(parts.path / "points"):
             parts.discard()
@@ -112,14 +112,14 @@ def _kept_survey(work, executor, read, progress):
         reading = KeptResults(_readers(executor.executor, files, progress), parts)
         shared = _SharedReading(reading, executor.executor, parts.path / "points", work.begin(name))
         try:
-            survey = read_survey(*read, heard, shared)
+            survey = read_survey(*read, listener, shared)
         except RoadExtractionError:
             # another run, which was quicker, has removed the parts
             found = _found_survey(work, name, files, progress)
             if found is None:
                 raise
             return found
-        work.finish(name, survey.folder, heard.messages)
+        work.finish(name, survey.folder, listener.messages)
         parts.discard()
         return survey
     except OSError as error:
