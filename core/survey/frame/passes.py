@@ -46,17 +46,7 @@ class _DrivenPath:
 
 
 def decimate_by_distance(x: np.ndarray, y: np.ndarray, step: float) -> np.ndarray:
-    """Indices of positions at least `step` metres of driving apart, with the first and the last.
-
-    Parameters
-    ----------
-    x, y : (N,) metres
-    step : metres
-
-    Returns
-    -------
-    (M,) int
-    """
+    """(M,) indices of (N,) positions at least `step` metres of driving apart, with the first and the last."""
     driven = np.r_[0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y)))]
     if driven[-1] < step:
         return np.unique([0, len(x) - 1])
@@ -68,18 +58,9 @@ def decimate_by_distance(x: np.ndarray, y: np.ndarray, step: float) -> np.ndarra
 
 
 def moving_rows(x: np.ndarray, y: np.ndarray, step: float = STANDSTILL_RADIUS) -> np.ndarray:
-    """Indices of positions at least `step` metres from the previous one, so that position noise adds no length.
+    """(M,) indices of (N,) positions at least `step` metres from the previous one, so that position noise adds no length.
 
     The first and the last row are included (the last replaces the one before it if that is nearer than `step`).
-
-    Parameters
-    ----------
-    x, y : (N,) metres
-    step : metres
-
-    Returns
-    -------
-    (M,) int
     """
     count = len(x)
     driven = np.r_[0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y)))].tolist()
@@ -105,17 +86,9 @@ def moving_rows(x: np.ndarray, y: np.ndarray, step: float = STANDSTILL_RADIUS) -
 
 
 def split_into_passes(trajectory: Trajectory) -> list[_DrivenPath]:
-    """Split the trajectory where it pauses, turns back, crosses itself or returns to its own track.
+    """Split the trajectory where it pauses, turns back, crosses itself or returns to its own track, in driving order.
 
     Pieces longer than MAX_ROAD_LENGTH are split into equal parts.
-
-    Parameters
-    ----------
-    trajectory : Trajectory in metres
-
-    Returns
-    -------
-    list of _DrivenPath in driving order
     """
     pieces = []
     for first, last in _split_at_pauses(trajectory):
@@ -258,18 +231,10 @@ class Pass:
         Pass.__init__(self, **state)
 
     def at(self, time: np.ndarray, *names: str) -> list[np.ndarray]:
-        """The state of the vehicle at given times, constant before the first and after the last sample.
+        """The state of the vehicle at (N,) times, (N,) metres for each of the `names` among "x", "y", "z", "s", "d".
 
-        Interpolated linearly in tables with a step of 5 ms, so that many times in any order are fast.
-
-        Parameters
-        ----------
-        time : (N,) s
-        names : of "x", "y", "z", "s", "d"
-
-        Returns
-        -------
-        list of (N,) metres, one per name
+        It is constant before the first and after the last sample, and interpolated linearly in tables with a step of 5 ms, so that many times in any
+        order are fast.
         """
         if not self._by_tick:
             span = self.time[-1] - self.time[0]
@@ -298,7 +263,6 @@ class Pass:
         return tuple(self.at(time, "x", "y", "z"))
 
     def station_at(self, time: np.ndarray) -> np.ndarray:
-        """Station of the vehicle, (N,) m, at (N,) times."""
         return self.at(time, "s")[0]
 
     def progress_at(self, time: np.ndarray) -> np.ndarray:

@@ -95,7 +95,6 @@ class _LineLookup:
         return inside
 
     def _about(self, x, y, reach):
-        """(N,) bool: which points lie in the bounding box of the line, extended by `reach` units, where 32 bits are unique."""
         (left, right), (bottom, top) = self._box
         return (x >= left - reach) & (x <= right + reach) & (y >= bottom - reach) & (y <= top + reach)
 
@@ -120,7 +119,6 @@ class _LineLookup:
         return ahead, left, turn, np.multiply(turn, left, out=north_n)
 
     def _moved(self, k, ahead, bend, buffers):
-        """The node beside points that lie `ahead` of node k."""
         on = np.subtract(np.float32(1.0), bend, out=buffers("n", np.float32))
         if not _all_within(on, *BEND_STRETCH):
             np.clip(on, *BEND_STRETCH, out=on)
@@ -199,12 +197,7 @@ CLOCK_SLACK = 1.0                 # s that a cloud may begin before or end after
 
 
 class RoadProjection:
-    """Station and offset of points with times.
-
-    Parameters
-    ----------
-    corridor : metres either side
-    """
+    """Station and offset of points with times, in a corridor of some metres either side."""
 
     def __init__(self, frame: RoadFrame, corridor: float):
         self.frame, self.corridor = frame, corridor
@@ -215,17 +208,9 @@ class RoadProjection:
         self._ticks = [_PassClock(p, frame.road(p.road)) for p in frame.passes]
 
     def project(self, x: np.ndarray, y: np.ndarray, time: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Pass, station and offset of local positions, rounded to 0.1 mm.
+        """Pass, station and offset of (N,) local positions in metres at (N,) times, rounded to 0.1 mm.
 
-        Parameters
-        ----------
-        x, y : (N,) local metres
-        time : (N,) s
-
-        Returns
-        -------
-        pass_number : (N,) int16; -1 where no pass was driven at the point's time
-        s, d : (N,) metres; NaN beyond the corridor or the ends of the road, as by `Road.locate`
+        The pass is -1 where none was driven at the point's time; station and offset are NaN beyond the corridor or the ends of the road.
         """
         s, d = np.empty((2, len(x)), np.int32)
         units_x, units_y = (np.rint(np.asarray(v) / COORDINATE_SCALE).astype(np.int64) for v in (x, y))

@@ -42,7 +42,6 @@ class Road:
         self._tree: cKDTree | None = None
 
     def __getstate__(self) -> dict:
-        """What the reference line is made of; the rest follows from it."""
         return dict(number=self.number, nodes_x=self.x, nodes_y=self.y, start=self.start)
 
     def __setstate__(self, state: dict) -> None:
@@ -83,18 +82,14 @@ class Road:
 
     def locate(self, x: np.ndarray, y: np.ndarray, start: np.ndarray | None = None,
                corridor: float = CORRIDOR) -> tuple[np.ndarray, np.ndarray]:
-        """Station and offset of local positions, by Newton iteration on the along-track component.
+        """Station and offset of (N,) local positions, by Newton iteration on the along-track component.
+
+        NaN beyond the ends of the frame, outside the corridor, or on the inner side of a bend beyond 0.9 of its radius, where normals cross.
 
         Parameters
         ----------
-        x, y : (N,) local metres
         start : (N,) initial stations near the wanted nearest point (from gps_time); None for the nearest node
         corridor : largest |offset|, metres
-
-        Returns
-        -------
-        s, d : (N,) metres; NaN beyond the ends of the frame, outside the corridor, or on the inner side of a bend beyond
-            0.9 of its radius, where normals cross
         """
         x, y = np.asarray(x, float), np.asarray(y, float)
         if start is None:
@@ -161,20 +156,9 @@ def track_line(x: np.ndarray, y: np.ndarray, z: np.ndarray) -> np.ndarray:
 
 
 def reference_nodes(line: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Nodes of the reference line, NODE_SPACING apart, extended by FRAME_EXTENSION at both ends.
+    """Nodes x, y (M,) of the reference line along a track, (N, 2) or (N, 3) m: NODE_SPACING apart, extended by FRAME_EXTENSION at both ends.
 
-    Parameters
-    ----------
-    line : (N, 2) or (N, 3) positions of the track, m
-
-    Returns
-    -------
-    x, y : (M,) m
-
-    Raises
-    ------
-    RoadExtractionError
-        If the track does not move.
+    A track that does not move is refused.
     """
     x, y = line[:, 0], line[:, 1]
     driven = np.r_[0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y)))]
@@ -216,15 +200,9 @@ def _extend(x, y):
 
 
 def continue_line(line: np.ndarray, track: np.ndarray) -> np.ndarray | None:
-    """A line lengthened by a track that continues it at either end, driven in either direction.
+    """A line lengthened by a track that continues it at either end, driven in either direction; None if it does not.
 
-    Parameters
-    ----------
-    line, track : (N, 3) positions as returned by `track_line`
-
-    Returns
-    -------
-    (M, 3) positions in the direction of `line`; None if the track does not continue it
+    Both are (N, 3) positions of `track_line`; the result has the direction of `line`.
     """
     for way in (track, track[::-1]):
         found = _append_track(line, way)

@@ -45,11 +45,9 @@ class RoadFrame:
     way_known: bool = True
 
     def road(self, number: int) -> Road:
-        """The road of a number."""
         return self.roads[number]
 
     def passes_of(self, road: int) -> list[Pass]:
-        """The passes over a road."""
         return [p for p in self.passes if p.road == road]
 
     def passes_sigma(self, road: int, s: np.ndarray, unknown: float = 0.0) -> np.ndarray:
@@ -74,17 +72,9 @@ class RoadFrame:
         return found if z is None else found + (np.asarray(z, float) + self.origin[2],)
 
     def track_height(self, road: int, s: np.ndarray, below: dict[int, float] | None = None) -> np.ndarray:
-        """Height of the trajectory at stations of a road: the mean of the passes there, else the nearest pass.
+        """Height of the trajectory, (N,) local z in metres, at (N,) stations of a road: the mean of the passes there, else the nearest pass.
 
-        Parameters
-        ----------
-        road : number
-        s : (N,) stations, m
         below : {pass number: metres to subtract}, such as the sensor heights
-
-        Returns
-        -------
-        (N,) local z, m
         """
         s = np.asarray(s, float)
         below = below or {}
@@ -131,20 +121,11 @@ MIN_SHARED_LENGTH = 20.0      # m of road that two passes over it must share
 
 
 def build_frame(trajectory: Trajectory) -> RoadFrame:
-    """Roads and passes of a trajectory.
+    """Roads and passes of a trajectory in a projected CRS in metres, which is refused if it does not move.
 
     The drive is split into passes. The longest becomes the reference line of the first road, lengthened by passes that
     continue it, up to MAX_ROAD_LENGTH. Passes parallel to it within 12 m, in either direction, are further passes over
     the same road. The remaining passes make the next road.
-
-    Parameters
-    ----------
-    trajectory : Trajectory in a projected CRS in metres
-
-    Raises
-    ------
-    RoadExtractionError
-        If the trajectory does not move.
     """
     trajectory = shaped_trajectory(clean_trajectory(trajectory)).trajectory
     origin = np.floor([trajectory.x.min(), trajectory.y.min(), trajectory.z.min()])

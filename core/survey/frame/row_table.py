@@ -38,7 +38,6 @@ class RowSpans:
 
     @property
     def size(self) -> int:
-        """How many values a table holds."""
         return int(self.start[-1])
 
     @cached_property
@@ -175,18 +174,13 @@ LEAST_CHANGE = 0.010   # m more or less, that a stretch of a line is cut off for
 
 @dataclass(frozen=True)
 class SigmaAlong:
-    """One sigma by station of a road; it changes evenly between nodes and stays beyond them.
-
-    stations : of the nodes, m, rising
-    metres : one sigma at each
-    """
+    """One sigma by station of a road: `metres` at the rising `stations` of nodes; it changes evenly between them and stays beyond them."""
 
     stations: tuple[float, ...]
     metres: tuple[float, ...]
 
     @classmethod
     def everywhere(cls, metres: float) -> SigmaAlong:
-        """The same all along the road."""
         return cls((0.0,), (float(metres),))
 
     @classmethod
@@ -209,19 +203,10 @@ class SigmaAlong:
 
 
 def cuts_where_it_changes(along: np.ndarray, sigma: np.ndarray) -> np.ndarray:
-    """Where a line is cut so that one number tells how uncertain each of its stretches is.
+    """(K,) rows, without the first, that begin a stretch of a line of which one number tells how uncertain it is; empty where one tells it all.
 
     From stretches of STRETCH on, those beside each other become one that differ least, weighted by their lengths (Ward), until every two differ by
-    CUT_FACTOR times and LEAST_CHANGE.
-
-    Parameters
-    ----------
-    along : (N,) m along the line, rising
-    sigma : (N,) m, one sigma there
-
-    Returns
-    -------
-    (K,) rows that begin a stretch, without the first; empty where one number tells it
+    CUT_FACTOR times and LEAST_CHANGE. `along` : (N,) m along the line, rising; `sigma` : (N,) m, one sigma there.
     """
     count = int((along[-1] - along[0]) / STRETCH) if len(along) else 0
     if count < 2 or np.ptp(sigma) < LEAST_CHANGE:

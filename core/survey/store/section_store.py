@@ -33,13 +33,7 @@ Stretch = tuple[int, int, int]   # number of a road, first and last + 1 number o
 
 @dataclass(frozen=True)
 class PartitionedPoints:
-    """Points of one road, partitioned by section.
-
-    road : number
-    records : (N,) Columns, section by section
-    first : number of the first section
-    ends : the points of section `first + k` end before row `ends[k]`
-    """
+    """Points of one road, section by section: those of section `first + k` end before row `ends[k]` of the records."""
 
     road: int
     records: Columns
@@ -85,7 +79,6 @@ class SectionStore:
 
     @property
     def count(self) -> int:
-        """Points added that have a station."""
         return self._count
 
     def append(self, road: int, records: np.ndarray | Columns) -> None:
@@ -94,14 +87,7 @@ class SectionStore:
             self.add(self.partition(road, records))
 
     def partition(self, road: int, records: np.ndarray | Columns, mask: np.ndarray | None = None) -> PartitionedPoints:
-        """Partition points by section: the part of `append` that any thread may do.
-
-        Parameters
-        ----------
-        road : number
-        records : (N,) structured array or Columns, N > 0
-        mask : (N,) bool, the points to take; all by default
-        """
+        """Partition points of a road, N > 0, by section: the part of `append` that any thread may do. `mask` : (N,) bool, the points to take."""
         strip = np.multiply(records["s"], COORDINATE_SCALE, out=self._buffers.of(len(records))("strip"))
         strip /= self.section_length
         low, high = int(np.floor(strip.min())), int(np.floor(strip.max()))
@@ -113,7 +99,6 @@ class SectionStore:
         return PartitionedPoints(int(road), columns, low, ends[STRIPS_PER_SECTION - 1::STRIPS_PER_SECTION].tolist())
 
     def add(self, points: PartitionedPoints) -> None:
-        """Add points that were partitioned by section."""
         for k, (first, end) in enumerate(zip([0, *points.ends], points.ends)):
             if end > first:
                 self._add_part((points.road, points.first + k), points.records[first:end], False)
@@ -139,14 +124,12 @@ class SectionStore:
         self._spill()
 
     def _spill(self):
-        """Write all points in memory to the own file."""
         file = self._own_file()
         for section in self._sections.values():
             section.spill(file)
         self._waiting_bytes = 0
 
     def _own_file(self):
-        """The file of the points that are not kept in memory."""
         with self._lock:
             if self._file is None:
                 self._file = SpillFile(self.folder and self.folder / f"points-{uuid4().hex}.bin")
@@ -214,18 +197,7 @@ class SectionStore:
         return (records, False) if isinstance(records, Columns) else (self._columns_of_file(records), True)
 
     def column(self, road: int, section: int, name: str, rows: np.ndarray) -> np.ndarray:
-        """Some rows of one column of a section that was read before; nothing else is read or cached.
-
-        Parameters
-        ----------
-        road, section : numbers
-        name : of the column
-        rows : (M,) indices
-
-        Returns
-        -------
-        (M,) array
-        """
+        """(M,) rows of one column of a section that was read before; nothing else is read or cached."""
         part = self._sections[road, section].parts[0]
         return part[name].take(rows, mode="clip") if isinstance(part, Columns) else _from_file(part[name], rows)
 
@@ -239,7 +211,6 @@ class SectionStore:
         return unit
 
     def _columns_of_file(self, stored):
-        """Columns that are read one by one when they are asked for."""
         return Columns({}, self.dtype, stored[self.dtype.names[0]].packing.size, lambda name: _from_file(stored[name]),
                        load_rows=lambda name, rows: _from_file(stored[name], rows))
 
@@ -293,7 +264,6 @@ class SectionStore:
         return ColumnOverlay(self, name, folder)
 
     def clear_cache(self) -> None:
-        """Release the sections that are cached as last read."""
         with self._lock:
             self._cache.clear()
             self._cache_bytes = 0
@@ -315,13 +285,7 @@ class SectionStore:
         return StoreIndex.of((key, section.in_order, section.parts) for key, section in sorted(self._sections.items()))
 
     def write_in_order(self, keys: Sequence[Key], folder: Path) -> StoreIndex:
-        """Write sections, in canonical order, to a new file of a folder; this store stays as it is.
-
-        Parameters
-        ----------
-        keys : (road, section) of each
-        folder : that is there
-        """
+        """Write sections, (road, number) each, in canonical order to a new file of a folder; this store stays as it is."""
         found = []
         with new_part(folder) as file:
             for key in keys:
@@ -360,7 +324,6 @@ class SectionStore:
         self._count = count
 
     def close(self) -> None:
-        """Release all points and their disk space."""
         self._release()
         close_parts()
         if self.at_close is not None:
@@ -420,7 +383,6 @@ class _StoredSection:
         return sum(map(self._count, self.parts))
 
     def spill(self, file: SpillFile) -> None:
-        """Write the parts in memory to the file, as one part."""
         waiting = [part for part in self.parts if isinstance(part, Columns)]
         if waiting:
             stored = {name: file.put(_concatenate_into_buffer([part[name] for part in waiting])) for name in self.dtype.names or ()}
@@ -430,10 +392,7 @@ class _StoredSection:
     def sort(self, file: SpillFile | None, finish: Callable[[Columns], np.ndarray | None] | None) -> None:
         """Finish the points and sort them into one part, which is in the file if any of them were in one.
 
-        Parameters
-        ----------
-        file : that takes it
-        finish : function of Columns, in no order, which it may change; it returns a mask of the points to keep, or None for all
+        `finish` is a function of Columns, in no order, which it may change; it gives a mask of the points to keep, or None for all.
         """
         records, order = self._sorted(finish)
         spilled = [part for part in self.parts if not isinstance(part, Columns)]
@@ -453,12 +412,7 @@ class _StoredSection:
             self.parts = [stored if spilled else Columns(arrays, self.dtype)]
 
     def written_in_order(self, file: SpillFile, finish: Callable[[Columns], np.ndarray | None] | None) -> dict[str, StoredColumn] | None:
-        """Write the points, in canonical order, to a file; this section stays as it is. None where `finish` keeps no point.
-
-        Parameters
-        ----------
-        file, finish : as of `sort`
-        """
+        """Write the points, in canonical order, to a file; this section stays as it is. None where `finish`, as of `sort`, keeps no point."""
         if self.in_order:
             return {name: file.put(part[name] if isinstance(part, Columns) else part[name].file.get(part[name]))
                     for part in self.parts for name in self.dtype.names or ()} or None
@@ -506,18 +460,10 @@ ALL_KEYS = "returns", "source", "y", "x", "intensity", "time", *PLACE_KEYS
 
 
 def canonical_order(records: np.ndarray | Columns, mask: np.ndarray | None = None) -> np.ndarray:
-    """Indices that sort records by station, offset, height, time and the remaining columns.
+    """(M,) indices that sort (N,) records, of at least the columns `ALL_KEYS`, by station, offset, height, time and the remaining columns.
 
-    A record that is the same as another in all of them is the same point from two files, as where tiles overlap: one of them is taken.
-
-    Parameters
-    ----------
-    records : (N,) of at least the columns `ALL_KEYS`
-    mask : (N,) bool, the records to be sorted; all by default
-
-    Returns
-    -------
-    (M,) intp, no two of them of equal records
+    A record that is the same as another in all of them is the same point from two files, as where tiles overlap: one of them is taken. `mask` : (N,)
+    bool, the records to be sorted.
     """
     if not len(records):
         return np.empty(0, np.intp)
@@ -560,19 +506,59 @@ def _chunk_ends(ends):
 
 # A store of which one column is set anew.
 
-class ColumnOverlay(SectionStore):
-    """The points of a store with one column replaced; it holds no points itself and joins two stores.
+class DerivedStore(SectionStore):
+    """Points of another store with columns of their own. They are closed with this one; no points can be appended.
+
+    points : the other store
+    """
+
+    def __init__(self, dtype: Any, points: SectionStore):
+        super().__init__(dtype, points.section_length, points.memory_limit)
+        self.points = points
+
+    def _parts(self) -> tuple[SectionStore, ...]:
+        """The stores it consists of; the first of them has the same sections."""
+        raise NotImplementedError
+
+    def append(self, road: int, records: Any) -> None:
+        raise TypeError("The points of this store are those of another; columns can be put, points cannot be added.")
+
+    def roads(self) -> list[int]:
+        return self._parts()[0].roads()
+
+    def sections(self, road: int) -> list[int]:
+        return self._parts()[0].sections(road)
+
+    def in_stretch(self, stretch: Stretch) -> list[Key]:
+        return self._parts()[0].in_stretch(stretch)
+
+    def size(self, road: int, section: int) -> int:
+        return self._parts()[0].size(road, section)
+
+    def clear_cache(self) -> None:
+        super().clear_cache()
+        for store in self._parts():
+            store.clear_cache()
+
+    def close(self) -> None:
+        super().close()
+        for store in self._parts():
+            store.close()
+
+
+class ColumnOverlay(DerivedStore):
+    """All points of a store with one column replaced; it holds no points itself and joins two stores.
 
     Parameters
     ----------
-    points : SectionStore, closed with this one; it stays an attribute
+    points : SectionStore
     name : of the column
     folder : where its values go that are not kept in memory, so that others can read them; None for a temporary file without a name
     """
 
     def __init__(self, points: SectionStore, name: str, folder: Path | None = None):
-        super().__init__(points.dtype, points.section_length, points.memory_limit)
-        self.points, self._name = points, name
+        super().__init__(points.dtype, points)
+        self._name = name
         # of as many points as the store keeps ready, not of as many bytes
         share = points.dtype[name].itemsize / points.dtype.itemsize
         self._column = SectionStore([(name, points.dtype[name])], points.section_length, points.memory_limit, folder=folder,
@@ -583,32 +569,17 @@ class ColumnOverlay(SectionStore):
         return self._column.count
 
     def put(self, road: int, section: int, records: np.ndarray) -> None:
-        """Set the column of one section, (N,) in the order of its points."""
         self._column.put(road, section, Columns({self._name: records}, self._column.dtype))
 
-    def append(self, road: int, records: Any) -> None:
-        """Refused: the points are those of another store."""
-        raise TypeError("The points of this store are those of another; a column can be put, points cannot be added.")
-
-    def roads(self) -> list[int]:
-        return self.points.roads()
-
-    def sections(self, road: int) -> list[int]:
-        return self.points.sections(road)
-
-    def in_stretch(self, stretch: Stretch) -> list[Key]:
-        return self.points.in_stretch(stretch)
+    def _parts(self) -> tuple[SectionStore, ...]:
+        return self.points, self._column
 
     def shared(self) -> dict[str, Any]:
         """As `SectionStore.contents` of the column alone, and the folder that its values lie in then."""
         return dict(column=self._column.index(), folder=str(self._column.folder))
 
     def adopt_shared(self, column: StoreIndex, folder: str) -> None:
-        """Add the values of `shared`."""
         self._column.adopt(column, Path(folder))
-
-    def size(self, road: int, section: int) -> int:
-        return self.points.size(road, section)
 
     def _read(self, road, section):
         column, points = self._column.section(road, section), self.points.section(road, section)
@@ -621,12 +592,3 @@ class ColumnOverlay(SectionStore):
 
     def column(self, road: int, section: int, name: str, rows: np.ndarray) -> np.ndarray:
         return self.section(road, section).take(rows)[name]
-
-    def clear_cache(self) -> None:
-        self._column.clear_cache()
-        self.points.clear_cache()
-
-    def close(self) -> None:
-        super().close()
-        self._column.close()
-        self.points.close()
