@@ -20,7 +20,7 @@ from scipy.sparse.linalg import spsolve
 
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
-from ..frame.passes import LEVEL_SEPARATION, Pass
+from ..frame.passes import LEVEL_SEPARATION, SAME_CARRIAGEWAY, Pass
 from ..frame.road_frame import RoadFrame
 from ..frame.row_table import SigmaAlong
 from ..store.columns import Columns
@@ -414,7 +414,7 @@ def _further(places):
 FARTHEST_BESIDE = 30.0                    # m between the tracks of two carriageways
 LEAST_PARALLEL = np.cos(np.radians(15))  # cosine of the angle between them, at least
 SHORTEST_BESIDE = 50.0                    # m beside each other, shorter than which it is a junction
-SAME_GROUND, SHARE_ALONG = 12.0, 0.8     # m between tracks over one road, and share of the shorter one that they run along each other
+SHARE_ALONG = 0.8                         # of the shorter of two roads, that they run along each other
 EVEN_RISE = 0.15                          # m by which one may vary in height above the other: navigation drifts by less, ramps climb by more
 SHARE_BETWEEN = 0.25, 0.75               # of the way from one track to the other: what both drives see well
 HEIGHT_CELL = 0.25                        # m, of the cells that heights are compared in
@@ -474,7 +474,7 @@ def said_of_levels(frame: Any) -> list[str]:
     """
     said = []
     for one, other, s, _, offset, rise in _parallel(frame):
-        known = np.flatnonzero((np.abs(offset) < SAME_GROUND) & (np.abs(rise) >= LEVEL_SEPARATION))
+        known = np.flatnonzero((np.abs(offset) < SAME_CARRIAGEWAY) & (np.abs(rise) >= LEVEL_SEPARATION))
         length = min(np.ptp([p.span for p in frame.passes_of(road)]) for road in (one, other))
         if len(known) * CORRECTION_STEP < max(SHORTEST_BESIDE, SHARE_ALONG * length):
             continue

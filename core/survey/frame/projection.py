@@ -74,10 +74,9 @@ class _LineLookup:
         if not (_all_within(share, -NODE_TOLERANCE, 1.0 + NODE_TOLERANCE) and _all_within(bend, -CLOSED_FORM_BEND, CLOSED_FORM_BEND)):
             near = _beside(share) & (np.abs(bend) < CLOSED_FORM_BEND)
         with np.errstate(invalid="ignore"):  # points outside the frame
-            share *= NODE_UNITS
-            np.copyto(s, np.rint(share, out=share), casting="unsafe")
-            offset *= NODE_UNITS
-            np.copyto(d, np.rint(offset, out=offset), casting="unsafe")
+            for nodes, units in ((share, s), (offset, d)):
+                nodes *= NODE_UNITS
+                np.copyto(units, np.rint(nodes, out=nodes), casting="unsafe")
         k *= NODE_UNITS
         k += self.start
         np.add(s, k, out=s, casting="unsafe")
@@ -86,13 +85,17 @@ class _LineLookup:
             about = self._about(x, y, reach)
             if not about.all():
                 near = about if near is None else near & about
-        if near is None and _all_within(s, self.start, self.end - 1) and _all_within(d, -reach, reach):
-            return None
-        inside = (s >= self.start) & (s < self.end) & (d >= -reach) & (d <= reach)
+        inside = self._inside(s, d, reach)
         if near is not None:
-            inside &= near
+            inside = near if inside is None else inside & near
             self._follow(x, y, start, np.flatnonzero(~near & (np.abs(left) < (1.5 * corridor + 5.0) / NODE_SPACING)), corridor, s, d, inside)
         return inside
+
+    def _inside(self, s, d, reach):
+        """(N,) bool, which stations and offsets lie in the frame; None if all do."""
+        if _all_within(s, self.start, self.end - 1) and _all_within(d, -reach, reach):
+            return None
+        return (s >= self.start) & (s < self.end) & (d >= -reach) & (d <= reach)
 
     def _about(self, x, y, reach):
         (left, right), (bottom, top) = self._box

@@ -12,7 +12,7 @@ from scipy.ndimage import gaussian_filter1d
 from scipy.spatial import cKDTree
 
 from ...common.errors import RoadExtractionError
-from .passes import LEVEL_SEPARATION, SAME_CARRIAGEWAY, moving_rows
+from .passes import LEVEL_SEPARATION, PARALLEL_ANGLE, SAME_CARRIAGEWAY, moving_rows
 
 CORRIDOR = 25.0               # m either side of the reference line
 
@@ -145,14 +145,12 @@ FRAME_EXTENSION = 10.0  # m beyond the driven part: scanners measure ahead and b
 SPARSE_TRACK_SPACING = 2.0  # m between rows: beyond it, chords would cut the bends, so a spline is used
 JUNCTION_GAP = 15.0    # m between the end of one pass and the start of the next that continues the road
 MAX_LATERAL_JUMP = 6.0  # m to the side: another lane of the same carriageway
-MAX_JUNCTION_ANGLE = np.radians(30.0)
 LANE_BLEND_LENGTH = 40.0  # m over which a continuing pass in another lane is blended into the line
 
 
 def track_line(x: np.ndarray, y: np.ndarray, z: np.ndarray) -> np.ndarray:
     """(M, 3) positions at least half a metre apart along a track of (N,) x, y and z in metres."""
-    rows = moving_rows(x, y)
-    return np.c_[x, y, z][rows]
+    return np.c_[x, y, z][moving_rows(x, y)]
 
 
 def reference_nodes(line: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -220,7 +218,7 @@ def _append_track(line, track):
     aside = (track[:, :2] - line[-1, :2]) @ np.array([-direction[1], direction[0]])
     if not (-JUNCTION_GAP < ahead[0] < JUNCTION_GAP and abs(aside[0]) < MAX_LATERAL_JUMP and abs(track[0, 2] - line[-1, 2]) < LEVEL_SEPARATION):
         return None
-    if np.arccos(np.clip(_direction(track) @ direction, -1, 1)) > MAX_JUNCTION_ANGLE:
+    if np.arccos(np.clip(_direction(track) @ direction, -1, 1)) > PARALLEL_ANGLE:
         return None
     beyond = track[int(np.argmax(ahead > 1.0)):] if (ahead > 1.0).any() else track[:0]
     if len(beyond) < 3:

@@ -11,9 +11,20 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from scipy.spatial import cKDTree
 
+from ...common.arrays import mask_runs
 from ..trajectory.shape import shaped_trajectory
 from ..trajectory.trajectory import Trajectory, clean_trajectory
-from .passes import LEVEL_SEPARATION, MAX_ROAD_LENGTH, TURN_REACH, Pass, decimate_by_distance, moving_rows, split_into_passes
+from .passes import (
+    LEVEL_SEPARATION,
+    MAX_ROAD_LENGTH,
+    PARALLEL_ANGLE,
+    SAME_CARRIAGEWAY,
+    TURN_REACH,
+    Pass,
+    decimate_by_distance,
+    moving_rows,
+    split_into_passes,
+)
 from .road import CORRIDOR, FRAME_EXTENSION, JUNCTION_GAP, Road, continue_line, reference_nodes, track_line
 from .row_table import SigmaAlong
 
@@ -114,9 +125,7 @@ class RoadFrame:
 
 # Roads and passes of a trajectory: which parts of the drive run over the same road, and along which line.
 
-MAX_PASS_DISTANCE = 12.0      # m between two passes over one carriageway (median)
 MAX_LANE_DISTANCE = 15.0      # m between two passes over one carriageway at most
-MAX_PASS_ANGLE = np.radians(30.0)
 MIN_SHARED_LENGTH = 20.0      # m of road that two passes over it must share
 
 
@@ -217,16 +226,21 @@ def _shared_with(road, line, track, moved, rows):
     level = np.abs(z - line[cKDTree(line[:, :2]).query(np.c_[x, y])[1], 2]) < LEVEL_SEPARATION
     direction = np.arctan2(np.gradient(y), np.gradient(x)) if len(kept) > 1 else np.zeros(len(kept))
     turned = np.abs((direction - road.heading(np.where(np.isnan(s), 0, s)) + np.pi / 2) % np.pi - np.pi / 2)
-    along = np.isfinite(d) & (turned < MAX_PASS_ANGLE) & level
+    along = np.isfinite(d) & (turned < PARALLEL_ANGLE) & level
     if len(kept) < MIN_SHARED_LENGTH:
         along[:] = 2 * along.sum() > len(along)
     along = _fill_runs(along, int(MIN_SHARED_LENGTH / 2))
     if not along.all():
         along = ~_fill_runs(~along, int(MIN_SHARED_LENGTH / 2))
     for i, j in _runs(along):
-        if along[i] and not np.nanmedian(np.abs(d[i:j])) <= MAX_PASS_DISTANCE:
+        if along[i] and not np.nanmedian(np.abs(d[i:j])) <= SAME_CARRIAGEWAY:
             along[i:j] = False
-    shared, left = [], []
+    return _ranges_of(along, rows, kept, s)
+
+
+def _ranges_of(along, rows, kept, s):
+    """The row ranges of the kept rows that run along a road, with their stations, and those of the others."""
+    (a, b), shared, left = rows, [], []
     for i, j in _runs(along):
         ends = [int(kept[i]) if i else a, int(kept[j]) if j < len(kept) else b]
         if not along[i]:
@@ -258,8 +272,8 @@ def _runs(mask):
 def _fill_runs(mask, shortest):
     """Turn runs of False shorter than `shortest` into True."""
     filled = mask.copy()
-    for i, j in _runs(mask):
-        if not mask[i] and j - i < shortest:
+    for i, j in mask_runs(~mask):
+        if j - i < shortest:
             filled[i:j] = True
     return filled
 
@@ -268,7 +282,7 @@ def _make_pass(road, time, x, y, z):
     """A Pass; stations are propagated from row to row, so that they do not jump to another part of the road."""
     kept = moving_rows(x, y)
     driven = np.r_[0.0, np.cumsum(np.hypot(np.diff(x[kept]), np.diff(y[kept])))]
-    s, _ = road.locate(x[kept], y[kept], corridor=2 * MAX_PASS_DISTANCE)
+    s, _ = road.locate(x[kept], y[kept], corridor=2 * SAME_CARRIAGEWAY)
     rows = np.arange(len(x))
     run = _longest_run(s)
     if run is None:
@@ -280,7 +294,7 @@ def _make_pass(road, time, x, y, z):
         before, after = driven[:i] - driven[i], driven[j:] - driven[j - 1]
         walked = np.r_[s[i] + direction * before, s[i:j], s[j - 1] + direction * after]
         hint = np.interp(rows, kept, walked)
-    s, d = road.locate(x, y, hint, corridor=2 * MAX_PASS_DISTANCE)
+    s, d = road.locate(x, y, hint, corridor=2 * SAME_CARRIAGEWAY)
     good = np.isfinite(s)
     if not good.any():
         return Pass(0, road.number, direction, time, x, y, z, np.clip(hint, road.start, road.end), np.zeros(len(x)))

@@ -124,7 +124,7 @@ class Columns:
         if not len(rows):
             return np.empty(0, self.dtype[name])
         if name not in self._arrays:
-            if self._load_rows is not None and rows.min() >= 0 and rows.max() < self._length and self._pays(name, len(rows)):
+            if self._load_rows is not None and self._pays(name, rows):
                 return self._load_rows(name, rows)
             # the rows are split among the parts only where they ascend within bounds
             if self._parts is not None and rows[0] >= 0 and rows[-1] < self._length and (rows[1:] >= rows[:-1]).all():
@@ -133,10 +133,10 @@ class Columns:
         # A column of one repeated value has stride 0 and stays one value.
         return column.take(rows) if column.strides[0] else np.broadcast_to(column[0], len(rows))
 
-    def _pays(self, name, count):
-        """Whether so many rows of a column are read by row: of a column that is kept, only until they have cost half as much as the whole."""
-        cost = self._load_cost.get(name, 0) + count + self._length // ROWS_OVERHEAD if self._kept else count
-        if 2 * cost > self._length:
+    def _pays(self, name, rows):
+        """Whether rows of a column are read by row: of a column that is kept, only until they have cost half as much as the whole."""
+        cost = self._load_cost.get(name, 0) + len(rows) + self._length // ROWS_OVERHEAD if self._kept else len(rows)
+        if 2 * cost > self._length or rows.min() < 0 or rows.max() >= self._length:
             return False
         if self._kept:
             self._load_cost[name] = cost
