@@ -14,7 +14,8 @@ from ...common.progress import Progress
 from ...execution.phase import THREADS, Executor, Phase
 from ...intensity.asphalt_model import LOWER_QUANTILE
 from ...intensity.correction import saturation_of
-from ...intensity.tiled_image import IntensityRaster, TiledImage
+from ...intensity.tiled_image import TiledImage
+from ...io.geotiff import IntensityImage
 from ...survey.frame.road_frame import RoadFrame
 from ...survey.store.columns import Columns
 from ...survey.store.records import COORDINATE_SCALE, Points, join_columns
@@ -42,14 +43,14 @@ from .windows import (
 WINDOWS_PER_TASK = 4     # windows of 20 m that a worker process is given together: at everyday density a fifth of a second of its time
 
 
-def extract_markings(road_points: RoadPoints, image: IntensityRaster, frame: RoadFrame, settings: MarkingSettings = MarkingSettings(),
+def extract_markings(road_points: RoadPoints, image: IntensityImage, frame: RoadFrame, settings: MarkingSettings = MarkingSettings(),
                      progress: Progress = Progress(), mask_path: str | PathLike | None = None) -> RoadPoints:
     """Road points that lie on paint.
 
     Parameters
     ----------
     road_points : RoadPoints, corrected or not
-    image : IntensityRaster of the same points, in memory or on disk; the methods on points need it for the mask alone
+    image : IntensityImage of the same points, in memory or on disk; the methods on points need it for the mask alone
     mask_path : where to write the mask of markings as GeoTIFF in the image's own pixels, or None
 
     Raises
@@ -91,7 +92,7 @@ def _extract_from_points(road_points: RoadPoints, settings: MarkingSettings, pro
     return paint
 
 
-def _extract_from_image(road_points: RoadPoints, image: IntensityRaster, frame: RoadFrame, settings: MarkingSettings, progress: Progress,
+def _extract_from_image(road_points: RoadPoints, image: IntensityImage, frame: RoadFrame, settings: MarkingSettings, progress: Progress,
                         burn: Burn | None) -> RoadPoints:
     """Paint by multi-thresholds on the image, and from averages where points are noisy."""
     source = PaintSource(road_points, image, frame)
