@@ -333,22 +333,23 @@ def _interpolate(road_points: RoadPoints, settings: ImageSettings, progress: Pro
     (c0, r0), (c1, r1) = extents[:, ::2].min(axis=0).tolist(), (extents[:, 1::2].max(axis=0) + 1).tolist()
     check_fits((c1 - c0) * settings.cell_size, (r1 - r0) * settings.cell_size, settings)
     grid = _Grid(settings, c0, r1 - 1, c1 - c0, r1 - r0)
+    return grid, _tiles(grid, pieces, road_points, settings, progress.part(0.3, 1.0))
 
-    def tiles() -> Iterator[tuple[int, int, np.ndarray]]:
-        work = _pieces_by_tile(grid, pieces)
-        made, done = _lifetimes(work)
-        sums = _run(sums_of_pieces, road_points, [piece for new in made for piece in new], PIECES_PER_TASK, settings, progress.part(0.3, 1.0),
-                    lambda piece: (piece.road, piece.number, PIECE_LENGTH))
-        kept: dict[_Piece, _WeightedSums] = {}
-        for ((column, row), parts), new, old in zip(work, made, done):
-            kept.update((piece, next(sums)) for piece in new)
-            values = grid.tile(column, row, [kept[piece] for piece in parts])
-            if values is not None:
-                yield column * GEOTIFF_TILE, row * GEOTIFF_TILE, values
-            for piece in old:
-                del kept[piece]
 
-    return grid, tiles()
+def _tiles(grid: _Grid, pieces: Sequence[_Piece], road_points: RoadPoints, settings: ImageSettings,
+           progress: Progress) -> Iterator[tuple[int, int, np.ndarray]]:
+    work = _pieces_by_tile(grid, pieces)
+    made, done = _lifetimes(work)
+    sums = _run(sums_of_pieces, road_points, [piece for new in made for piece in new], PIECES_PER_TASK, settings, progress,
+                lambda piece: (piece.road, piece.number, PIECE_LENGTH))
+    kept: dict[_Piece, _WeightedSums] = {}
+    for ((column, row), parts), new, old in zip(work, made, done):
+        kept.update((piece, next(sums)) for piece in new)
+        values = grid.tile(column, row, [kept[piece] for piece in parts])
+        if values is not None:
+            yield column * GEOTIFF_TILE, row * GEOTIFF_TILE, values
+        for piece in old:
+            del kept[piece]
 
 
 def _run(function, road_points, items, together, settings, progress, place):
