@@ -42,25 +42,18 @@ def ordered_map(function: Callable[[Item], Result], items: Iterable[Item], progr
 
     At most one result more than there are threads is computed ahead, so memory stays bounded. While a result is
     awaited, cancellation is checked too, by `progress` and by `check_cancelled`. numpy and scipy release the
-    interpreter lock in their heavy loops, which is where most of the time is spent.
+    interpreter lock in their heavy loops, which is where most of the time is spent. Whatever the function raises is raised, and the remaining items
+    are dropped.
 
     Parameters
     ----------
-    function : called with one item, in a worker thread
-    items : items in order
     progress : reports the share of the items that are done
     threads : number of threads; by default one per processor core, at most four
-
-    Yields
-    ------
-    function(item) for every item
 
     Raises
     ------
     Cancelled
         If the user cancelled; the worker threads end at their next `check_cancelled`.
-    Exception
-        Whatever `function` raises; the remaining items are dropped.
     """
     items = list(items)
     threads = threads or min(MAX_WORKERS, os.cpu_count() or 1)
@@ -103,13 +96,9 @@ def cancellation_scope(progress: Progress) -> Iterator[None]:
 
 
 def check_cancelled() -> None:
-    """Check for cancellation in long work that has no `progress` argument.
+    """Raise `Cancelled` in long work without a `progress` argument, if the user cancelled or nobody uses the results of this worker thread any more.
 
-    Raises
-    ------
-    Cancelled
-        If the user cancelled (see `cancellation_scope`), or in a worker thread of `ordered_map` whose results are no
-        longer used.
+    See `cancellation_scope` and `ordered_map`.
     """
     check = getattr(_thread, "check", None)
     if check is not None:
@@ -117,11 +106,9 @@ def check_cancelled() -> None:
 
 
 class InBackground(Generic[Result]):
-    """A function that a thread of its own computes; use it as a context, which the thread does not outlive.
+    """A function of a Progress that a thread of its own computes; use it as a context, which the thread does not outlive.
 
-    Parameters
-    ----------
-    function : of a Progress; what it reads must not change meanwhile
+    What the function reads must not change meanwhile.
     """
 
     def __init__(self, function: Callable[[Progress], Result]):
@@ -145,15 +132,7 @@ class InBackground(Generic[Result]):
         self._thread.join()
 
     def result(self, progress: Progress = Progress()) -> Result:
-        """What the function returns, as soon as it does; what it had to say is said now, in its order.
-
-        Raises
-        ------
-        Cancelled
-            If the user cancelled.
-        Exception
-            Whatever the function raises.
-        """
+        """What the function returns or raises, as soon as it does; what it had to say is said now, in its order."""
         while self._thread.is_alive():
             progress.check_cancelled()
             self._thread.join(POLL_INTERVAL)
@@ -183,17 +162,9 @@ ROWS_OF_A_PART = 1024   # rows of some hundred cells: a megabyte of each array
 
 
 def by_rows(function: Callable[[slice], np.ndarray], count: int, at_once: int = ROWS_OF_A_PART) -> np.ndarray:
-    """What a function gives for rows that do not depend on each other, computed some at a time, so that what it needs meanwhile stays small.
+    """What a function of a slice gives for `count` rows, (count, ...), computed some at a time, so that what it needs meanwhile stays small.
 
-    Parameters
-    ----------
-    function : of a slice of the rows; an array with one entry for each of them
-    count : of rows
-    at_once : rows in a slice
-
-    Returns
-    -------
-    (count, ...) array
+    The rows do not depend on each other.
     """
     found = function(slice(0, min(at_once, count)))
     if count <= at_once:
@@ -332,13 +303,7 @@ def lack_of_memory() -> str:
 
 
 def claim_memory() -> None:
-    """Where memory is limited, take what the work cannot do without, while it is there: large libraries, and working memory of OpenBLAS.
-
-    Raises
-    ------
-    RoadExtractionError
-        If that is more than this process may have.
-    """
+    """Where memory is limited, take what the work cannot do without, while it is there, or refuse: large libraries, working memory of OpenBLAS."""
     lacking = lack_of_memory()
     if lacking:
         raise RoadExtractionError(lacking)

@@ -141,7 +141,6 @@ class Cluster(Executor):
         return all(found is True for found in self.client.run(sees_files, sizes, on_error="return").values())
 
     def new_file(self) -> Path:
-        """A new name in the folder."""
         return self.folder / f"file{next(self._numbers)}.plain"
 
     def close(self) -> None:
@@ -242,7 +241,6 @@ class _Work:
         self._finish(part)
 
     def result(self, part):
-        """The result of a part that is done."""
         until = time.monotonic() + RESULT_TIME
         while not part.file.exists() and time.monotonic() < until:
             time.sleep(POLL_INTERVAL)
@@ -275,7 +273,6 @@ class _Work:
         return RoadExtractionError(f"The connection to the Dask scheduler was lost while {during} was at work. Run again, or without SCHEDULER.")
 
     def end(self):
-        """Leave nothing to do."""
         futures = [future for _, future, _ in self.pending.values()]
         if futures and self.client.status == "running":
             self.client.cancel(futures, force=True)

@@ -149,7 +149,6 @@ def name_of(function: Any) -> str:
 
 
 def named(name: str) -> Any:
-    """The function or class that `name_of` named."""
     module, _, attribute = name.partition(":")
     return getattr(import_module(f"{CORE}.{module}"), attribute)
 

@@ -273,7 +273,6 @@ def environment() -> dict[str, str]:
 
 
 def no_window() -> int:
-    """Flags by which Windows opens no console window."""
     return getattr(subprocess, "CREATE_NO_WINDOW", 0)
 
 

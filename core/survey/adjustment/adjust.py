@@ -80,11 +80,7 @@ def adjust_passes(survey: Any, progress: Progress = Progress(), folder: Path | N
 
 
 def solve_corrections(offsets: list[PassOffsets]) -> dict[int, tuple[np.ndarray, np.ndarray]]:
-    """Corrections of passes from the offsets between them, by least squares with robust weights.
-
-    Parameters
-    ----------
-    offsets : PassOffsets of one road
+    """Corrections of passes from the offsets between them on one road, by least squares with robust weights.
 
     Returns
     -------
@@ -199,12 +195,8 @@ def _replace_points(survey, moves, progress, folder):
 
 
 def replace_points(survey: Any, moved: Callable[[Columns], Columns], progress: Progress = Progress(), folder: Path | None = None) -> None:
-    """Replace the store of a survey by one of moved points.
+    """Replace the store of a Survey by one of points that `moved` gives, the Columns of a section with other coordinates.
 
-    Parameters
-    ----------
-    survey : Survey
-    moved : gives the Columns of a section with other coordinates
     folder : of the moved points that are not kept in memory; None for a temporary file
     """
     before = survey.store
@@ -235,12 +227,8 @@ def continued_corrections(frame: RoadFrame, moves: PassCorrections, compared: li
 
     Navigation drifts slowly, by centimetres over kilometres, so what a drive is off by at the end of a road is what it is off by at the start of
     the next. Between two that were moved the correction changes evenly. Two passes meet in their middle, so what one was moved by across the road
-    is also the sigma of where they meet; `frame.pass_sigma` of roads without one says so.
-
-    Parameters
-    ----------
-    moves : PassCorrections of the passes that were compared
-    compared : PassOffsets of all roads; passes that were found to lie as the others do are not moved
+    is also the sigma of where they meet; `frame.pass_sigma` of roads without one says so. Passes that were compared and found to lie as the others
+    do are not moved.
     """
     known = {number for pair in compared for number in (pair.one, pair.other)}
     by_pass = dict(moves.by_pass)
@@ -296,12 +284,7 @@ MOST_NAMED = 12        # places that a message names
 
 
 def remaining_places(offsets: list[PassOffsets], corrections: dict[int, tuple[np.ndarray, np.ndarray]]) -> list[tuple[float, float, float]]:
-    """Stretches of a road along which two of its passes still differ.
-
-    Parameters
-    ----------
-    offsets : PassOffsets of the road
-    corrections : of `solve_corrections`; empty where nothing was moved
+    """Stretches of a road along which two of its passes still differ, by their PassOffsets and the result of `solve_corrections`.
 
     Returns
     -------
@@ -321,13 +304,7 @@ def remaining_places(offsets: list[PassOffsets], corrections: dict[int, tuple[np
 
 
 def places_of_one_drive(passes: list[Pass], offsets: list[PassOffsets], corrections: PassCorrections) -> list[tuple[float, float, float]]:
-    """Stretches of a road along which a pass was moved in plan and was compared with no other, there or as near as drift changes little.
-
-    Parameters
-    ----------
-    passes : of the road
-    offsets : PassOffsets of all roads
-    corrections : PassCorrections, as they are applied
+    """Stretches along which a pass over a road was moved in plan and was compared with no other, there or as near as drift changes little.
 
     Returns
     -------
@@ -379,7 +356,6 @@ def _applied(pair, corrections, axis):
 
 
 def said_of_places(road: int, places: list[tuple[float, float, float]]) -> str:
-    """The warning about places that remain; "" where there is none."""
     if not places:
         return ""
     named = [f"{start:.0f} to {end:.0f} m (" + (f"more than {100 * MAX_OFFSET:.0f} cm apart, too far to lay them on each other)" if np.isinf(metres)
@@ -390,7 +366,6 @@ def said_of_places(road: int, places: list[tuple[float, float, float]]) -> str:
 
 
 def said_of_one_drive(road: int, places: list[tuple[float, float, float]]) -> str:
-    """The warning about places where one drive alone was moved; "" where there is none."""
     if not places:
         return ""
     return (f"Road {road}: one drive alone shows what lies at {_named_places(places, 'by up to {:.1f} cm')}. It was moved there as where it last "
@@ -398,7 +373,6 @@ def said_of_one_drive(road: int, places: list[tuple[float, float, float]]) -> st
 
 
 def _named_places(places: list[tuple[float, float, float]], size: str) -> str:
-    """Places by station with what is said of their metres in cm, those beyond MOST_NAMED as a number."""
     return ", ".join(f"{start:.0f} to {end:.0f} m ({size.format(100 * metres)})" for start, end, metres in places[:MOST_NAMED]) + _further(places)
 
 
@@ -424,11 +398,9 @@ MAX_HEIGHT_APART = 0.02                   # m in height that two drives may diff
 
 
 class Beside(NamedTuple):
-    """Two roads that run beside each other.
+    """Two roads, `one` and `other`, that run beside each other.
 
-    one, other : their numbers
-    stations : (N,) m on the first, middles of windows of CORRECTION_STEP
-    places : (N,) m, the same on the second
+    stations, places : (N,) m on the first, middles of windows of CORRECTION_STEP, and on the second
     apart : (N,) m of offset, left positive, from the first to the second
     up : (N,) m by which the points of the second lie higher, NaN where both hardly see the same
     """
@@ -442,13 +414,7 @@ class Beside(NamedTuple):
 
 
 def compare_carriageways(survey: Any, progress: Progress = Progress()) -> None:
-    """Tell how far roads lie apart in height that run beside each other and share no pass.
-
-    Parameters
-    ----------
-    survey : Survey with times, after its passes were adjusted
-    progress : Progress, for the messages
-    """
+    """Tell how far roads of a Survey lie apart in height that run beside each other and share no pass, after its passes were adjusted."""
     for pair in roads_beside(survey.frame):
         up = ordered_map(partial(_height_apart, survey, pair), range(len(pair.stations)))
         found = pair._replace(up=np.array(list(up)))

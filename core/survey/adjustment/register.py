@@ -154,14 +154,12 @@ class Strips:
 
     @classmethod
     def of(cls, fine: np.ndarray, coarse: np.ndarray, h: np.ndarray, intensity: np.ndarray, shape: tuple[int, int]) -> Strips:
-        """The strips of (N,) points.
+        """The strips of (N,) points, in so many rows and cells of a shape.
 
         Parameters
         ----------
         fine, coarse : (N,) m along a row, in whose direction offsets are measured, and across rows
         h : (N,) m above the road
-        intensity : (N,)
-        shape : rows and cells
         """
         row, cell = (coarse / ROW_CELL).astype(np.int64), (fine / LAG_CELL).astype(np.int64)
         inside = (row >= 0) & (row < shape[0]) & (cell >= 0) & (cell < shape[1])
@@ -182,7 +180,6 @@ class Strips:
         return cls(heights, steps, np.clip(paint / max(spread, 1e-6), -MAX_CONTRAST, MAX_CONTRAST))
 
     def part(self, rows: slice, cells: slice) -> Strips:
-        """The strips of some rows and cells."""
         return Strips(self.heights[rows, cells], self.steps[rows, cells], self.paint[rows, cells])
 
 
@@ -234,20 +231,11 @@ def height_offset(one: Strips, other: Strips, lag: int) -> float:
 
 
 def pass_offsets(survey: Any, road: int, progress: Progress = Progress()) -> list[PassOffsets]:
-    """Offsets between the passes over a road, each with the next one there.
+    """Offsets between the passes over a road of a Survey with times, each with the next one there.
 
     Oblique bars, as of hatched areas, look moved along where they were moved across, and the other way round. So where passes lie apart, the
     offsets along one axis are taken out before those along the other are measured, and then the other way round. Lines along the road show what
     is across alone, so offsets along come first only where they are much the larger.
-
-    Parameters
-    ----------
-    survey : Survey with times
-    road : number
-
-    Returns
-    -------
-    list of PassOffsets, one per pair of passes
     """
     windows = _windows_of_several(survey, road)
     seen = _seen(survey, road, windows, {}, progress.part(0.0, 1.0 / 3.0))
@@ -258,12 +246,18 @@ def pass_offsets(survey: Any, road: int, progress: Progress = Progress()) -> lis
         found = _combined(seen)
     along, left = (_mean_size(found, axis) for axis in PLAN_AXES)
     order = PLAN_AXES if along > MUCH_LARGER * left else PLAN_AXES[::-1]
+    found = _uncoupled(survey, road, found, seen, rough, order, progress)
+    return [_with_rough(pair, rough.get((pair.one, pair.other), {})) for pair in found]
+
+
+def _uncoupled(survey, road, offsets, seen, rough, order, progress):
+    """The PassOffsets, those along each axis of the order measured with those along the other taken out."""
     for k, (taken, measured) in enumerate((order, order[::-1]), start=1):
-        moves = {(pair.one, pair.other): _taken_out(pair, taken, rough.get((pair.one, pair.other), {})) for pair in found}
+        moves = {(pair.one, pair.other): _taken_out(pair, taken, rough.get((pair.one, pair.other), {})) for pair in offsets}
         if apart := sorted({number for places in moves.values() for number in places}):
             again = _seen(survey, road, apart, moves, progress.part(k / 3.0, (k + 1) / 3.0))
-            found = _measured_again(found, measured, seen, again)
-    return [_with_rough(pair, rough.get((pair.one, pair.other), {})) for pair in found]
+            offsets = _measured_again(offsets, measured, seen, again)
+    return offsets
 
 
 def _windows_of_several(survey, road):
@@ -468,18 +462,10 @@ _NODE = np.dtype([("road", "<u4"), ("station", "<f4"), ("sigma", "<f4")])
 
 
 def sigma_of_passes(offsets: list[PassOffsets]) -> SigmaAlong | None:
-    """How far the middle of the passes over a road may be off across it, from what they differ, place by place.
+    """How far the middle of the passes over a road may be off across it, from what they differ, place by place; None where no offset was measured.
 
     Two passes with independent errors of one sigma s differ by s * sqrt(2), and the mean of n of them is off by s / sqrt(n). Single offsets
     that are far off do not count: of the RMS and the median deviation as a sigma the smaller is taken.
-
-    Parameters
-    ----------
-    offsets : PassOffsets of one road
-
-    Returns
-    -------
-    SigmaAlong; None where no offset was measured
     """
     known = [(pair, np.isfinite(pair.left)) for pair in offsets]
     stations = np.concatenate([pair.stations[own] for pair, own in known] or [np.empty(0)])

@@ -65,8 +65,7 @@ def lay_scanners(survey: Any, progress: Progress = Progress(), folder: Path | No
 
     Parameters
     ----------
-    survey : Survey with times; its store is replaced where points are moved
-    progress : Progress, which hears a warning then
+    survey : Survey with times; its store is replaced where points are moved, and progress hears a warning
     folder : of the moved points that are not kept in memory; None for a temporary file
 
     Returns
@@ -172,11 +171,7 @@ def _moved(frame, moves, records):
 
 
 def _scanner_offsets(survey: Any, windows: int = SCANNER_WINDOWS) -> list[_ScannerOffsets]:
-    """How far the scanners of a survey lie beside the first one.
-
-    survey : Survey with times
-    windows : how many windows of road are looked at
-    """
+    """How far the scanners of a survey lie beside the first one, from so many windows of road."""
     seen: dict[int, list] = {}
     for found in ordered_map(partial(_window_evidence, survey), _windows(survey, windows)):
         for number, evidence in found.items():

@@ -65,13 +65,9 @@ class ScanLattice:
 
 
 def find_lattice(survey: Any, rotation_frequency: float = 0.0, progress: Progress = Progress()) -> ScanLattice:
-    """The scan lattice of every pass and scanner of a survey.
+    """The scan lattice of every pass and scanner of a Survey.
 
-    Parameters
-    ----------
-    survey : Survey
     rotation_frequency : Hz, turns of the mirror per second; 0 = from the data
-    progress : receives progress, and messages about what was found
     """
     lattice = ScanLattice()
     if not survey.has_time:
@@ -123,16 +119,7 @@ class _RotationWindow:
 
 
 def scanner_runs(records: Any) -> list[tuple[tuple[int, int], Any]]:
-    """The first returns of each pass and scanner.
-
-    Parameters
-    ----------
-    records : (N,) of points
-
-    Returns
-    -------
-    [((pass number, scanner), records of its first returns)], ascending
-    """
+    """[((pass number, scanner), records of its first returns)] of (N,) records, ascending."""
     if not len(records):
         return []
     passes, scanner = records["pass_number"], records["scanner"]
@@ -169,41 +156,45 @@ def _sample_windows(survey, road):
         count = int(np.clip((last - first) / ROTATION_SAMPLE_LENGTH, 1, ROTATION_SAMPLES))
         places += [(p.number, middle) for middle in first + (np.arange(count) + 0.5) * (last - first) / count]
 
-    def pieces_of(middle):
-        # a piece of road at a time: of all its points, those of half a second are used
-        bounds = np.linspace(middle - ROTATION_SAMPLE_LENGTH / 2, middle + ROTATION_SAMPLE_LENGTH / 2, ROTATION_SAMPLE_PIECES + 1)
-        for start, end in zip(bounds[:-1], bounds[1:]):
-            yield survey.window(road, start, end).records
-
-    def windows_at(place):
-        number, middle = place
-        times: dict = {}   # (pass number, scanner) -> [times of each piece]
-        for k, records in enumerate(pieces_of(middle)):
-            for key, own in scanner_runs(records):
-                if key[0] == number:
-                    times.setdefault(key, {})[k] = own["time"]
-        near = {key: _near_in_time(list(parts.values())) for key, parts in times.items()}
-        rows = {key: dict(zip(times[key], parts)) for key, parts in near.items() if sum(map(len, parts)) >= MIN_WINDOW_POINTS}
-        chosen: dict = {key: [] for key in rows}
-        for k, records in enumerate(pieces_of(middle)):
-            if any(len(parts.get(k, ())) for parts in rows.values()):
-                for key, own in scanner_runs(records):
-                    if key in rows:
-                        some = take_rows(own, rows[key][k])
-                        chosen[key].append([some[name] for name in ("time", "d", "z")])
-        found = {}
-        for key, parts in chosen.items():
-            time, d, z = (np.concatenate(column) for column in zip(*parts))
-            order = time_order(time)
-            own = dict(time=time[order], d=d[order], z=z[order])
-            found[key] = _RotationWindow(*_phasors(survey, number, own), own["d"] * COORDINATE_SCALE)
-        return found
-
     samples = {}
-    for found in ordered_map(windows_at, places):
-        for key, window in found.items():
+    for windows in ordered_map(lambda place: _windows_at(survey, road, *place), places):
+        for key, window in windows.items():
             samples.setdefault(key, []).append(window)
     return samples
+
+
+def _runs_about(survey, road, number, middle, pieces=range(ROTATION_SAMPLE_PIECES)):
+    """Yield (piece, (pass number, scanner), first returns) of a pass in some pieces of the road about a station: all at once would be too many."""
+    bounds = np.linspace(middle - ROTATION_SAMPLE_LENGTH / 2, middle + ROTATION_SAMPLE_LENGTH / 2, ROTATION_SAMPLE_PIECES + 1)
+    for piece in pieces:
+        for key, records in scanner_runs(survey.window(road, bounds[piece], bounds[piece + 1]).records):
+            if key[0] == number:
+                yield piece, key, records
+
+
+def _windows_at(survey, road, number, middle):
+    """{(pass number, scanner): _RotationWindow} of the scanners that measured enough in half a second of a pass about a station."""
+    times: dict = {}
+    for piece, key, records in _runs_about(survey, road, number, middle):
+        times.setdefault(key, {})[piece] = records["time"]
+    rows = {}
+    for key, parts in times.items():
+        near = _near_in_time(list(parts.values()))
+        if sum(map(len, near)) >= MIN_WINDOW_POINTS:
+            rows[key] = dict(zip(parts, near))
+    chosen: dict = {key: [] for key in rows}
+    pieces = sorted({piece for parts in rows.values() for piece, near in parts.items() if len(near)})
+    for piece, key, records in _runs_about(survey, road, number, middle, pieces):
+        if key in rows:
+            near = take_rows(records, rows[key][piece])
+            chosen[key].append([near[name] for name in ("time", "d", "z")])
+    windows = {}
+    for key, parts in chosen.items():
+        time, d, z = (np.concatenate(column) for column in zip(*parts))
+        order = time_order(time)
+        ordered = dict(time=time[order], d=d[order], z=z[order])
+        windows[key] = _RotationWindow(*_phasors(survey, number, ordered), ordered["d"] * COORDINATE_SCALE)
+    return windows
 
 
 def _near_in_time(parts):
@@ -282,33 +273,34 @@ def _mirror_phases(survey, road, rotations, samples, progress):
     # A length of its own, so that the points that are used do not depend on the length of sections.
     stretches = range(int(first // PHASE_STRETCH), int(last // PHASE_STRETCH) + 1)
 
-    def work(number):
-        gathered = []
-        for key, own in scanner_runs(survey.window(road, number * PHASE_STRETCH, (number + 1) * PHASE_STRETCH).records[::stride]):
-            if key not in rotations or not len(own):
-                continue
-            frequency, _, origin = rotations[key]
-            time, phasor = _phasors(survey, key[0], own)
-            # With the gap of the sky in every turn, the points' times alone have a mean phase half a turn from the zenith.
-            phasor = np.full(len(time), -1.0 + 0j) if origin == "gap" else phasor * mounts[key][_direction_number(phasor)]
-            since = time - bins[key].start
-            gathered.append((key, bins[key].sums_of(since, phasor * np.exp(-2j * np.pi * frequency * since))))
-        return gathered
+    def sums_of_stretch(number):
+        records = survey.window(road, number * PHASE_STRETCH, (number + 1) * PHASE_STRETCH).records[::stride]
+        return [(key, _phasor_sums(survey, key[0], first_returns, rotations[key], mounts.get(key), bins[key]))
+                for key, first_returns in scanner_runs(records) if key in rotations and len(first_returns)]
 
-    for gathered in ordered_map(work, stretches, progress):
+    for gathered in ordered_map(sums_of_stretch, stretches, progress):
         for key, sums in gathered:
             bins[key].add(*sums)
-    found = {}
+    phases = {}
     for key, (frequency, peak, origin) in rotations.items():
         b = bins[key]
         mirror = _mirror_phase_from_phasors(frequency, b.since, b.phasor, b.count, b.length, b.start, peak=peak, origin=origin)
         if mirror is not None:
-            found[key] = replace(mirror, **_line_properties(samples[key], mirror))
-    return found
+            phases[key] = replace(mirror, **_line_properties(samples[key], mirror))
+    return phases
+
+
+def _phasor_sums(survey, number, records, rotation, mounting, bins):
+    """Sums over the bins of the phasors of one scanner's records, relative to its even rotation."""
+    frequency, _, origin = rotation
+    time, phasor = _phasors(survey, number, records)
+    # With the gap of the sky in every turn, the points' times alone have a mean phase half a turn from the zenith.
+    phasor = np.full(len(time), -1.0 + 0j) if origin == "gap" else phasor * mounting[_direction_number(phasor)]
+    since = time - bins.start
+    return bins.sums_of(since, phasor * np.exp(-2j * np.pi * frequency * since))
 
 
 def _direction_number(phasor):
-    """(N,) number of the direction of phasors among MOUNTING_DIRECTIONS."""
     return ((np.angle(phasor) / (2 * np.pi) + 0.5) * MOUNTING_DIRECTIONS).astype(np.int64) % MOUNTING_DIRECTIONS
 
 
@@ -429,18 +421,10 @@ class MirrorPhase:
         return _interpolate(turns, self.turns, self.time, 1.0 / abs(self.frequency))
 
     def lines_and_phase(self, time: np.ndarray, angle: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
-        """Line number and mirror phase of points.
+        """Line number (N,) int64 and mirror phase (N,) in turns of points at (N,) seconds: 0 at the zenith, 0.5 below.
 
-        Parameters
-        ----------
-        time : (N,) seconds
-        angle : (N,) radians about the trajectory, 0 at the zenith. If given, it decides on which side of the
-            zenith a point lies, so that a ceiling is split exactly above the vehicle whatever the error of the phase
-
-        Returns
-        -------
-        line : (N,) int64
-        phase : (N,) float64, turns: 0 at the zenith, 0.5 below; in [0, 1) unless an angle changed the line
+        An angle about the trajectory, (N,) radians from the zenith, decides on which side of the zenith a point lies, so that a ceiling is split
+        exactly above the vehicle whatever the error of the phase; the phase may leave [0, 1) then.
         """
         turns = self.turns_at(time)
         line = np.floor(turns)
@@ -462,7 +446,7 @@ def _interpolate(x, nodes, values, rate):
 
 def _mirror_phase_from_phasors(frequency: float, time: np.ndarray, phasor: np.ndarray, count: np.ndarray, bin_length: float,
                               start: float = 0.0, **fields: Any) -> MirrorPhase | None:
-    """The mirror phase of a pass from the mean phase of its bins.
+    """The mirror phase of a pass from the mean phase of its bins; None where no bin has a phase.
 
     frequency : Hz, signed, near the truth
     time : (B,) seconds since the start, sums over the points of each bin
@@ -470,7 +454,6 @@ def _mirror_phase_from_phasors(frequency: float, time: np.ndarray, phasor: np.nd
     count : (B,) points
     bin_length, start : seconds
     fields : further attributes of the MirrorPhase
-    Returns: MirrorPhase, or None where no bin has a phase
     """
     usable = np.flatnonzero((count >= MIN_PHASE_BIN_POINTS) & (np.abs(phasor) >= MIN_PHASE_COHERENCE * count))
     if not len(usable):
@@ -523,45 +506,29 @@ MIN_ROTATION_PEAK = 0.5
 
 
 def rotation_spectrum(time: np.ndarray, phasor: np.ndarray) -> np.ndarray:
-    """How well points fit each rotation frequency: |mean(exp(i (angle - 2 pi f t)))| (our own).
+    """How well (N,) points fit each rotation frequency: |mean(exp(i (angle - 2 pi f t)))| (our own), as (SPECTRUM_SIZE,) from 0 to 1.
 
-    Parameters
-    ----------
-    time : (N,) seconds, spanning at most ROTATION_WINDOW
-    phasor : (N,) complex, exp(i angle)
-
-    Returns
-    -------
-    (SPECTRUM_SIZE,) float64, 0 to 1, in the order of `_spectrum_frequencies`
+    The times, (N,) seconds, span at most ROTATION_WINDOW; phasors are exp(i angle). The order is that of `numpy.fft.fftfreq`.
     """
     cell = ((time - time.min()) / SPECTRUM_CELL).astype(np.int64)
     size = int(cell.max()) + 1
     total = np.bincount(cell, phasor.real, size) + 1j * np.bincount(cell, phasor.imag, size)
     # averaging over a cell attenuates high frequencies by sinc
-    return np.abs(np.fft.fft(total, SPECTRUM_SIZE)) / len(time) / np.sinc(_spectrum_frequencies() * SPECTRUM_CELL)
-
-
-def _spectrum_frequencies() -> np.ndarray:
-    """(SPECTRUM_SIZE,) frequencies of a spectrum, Hz."""
-    return np.fft.fftfreq(SPECTRUM_SIZE, SPECTRUM_CELL)
+    return np.abs(np.fft.fft(total, SPECTRUM_SIZE)) / len(time) / np.sinc(np.fft.fftfreq(SPECTRUM_SIZE))
 
 
 def strongest_rotation(spectra: Sequence[np.ndarray], given: float = 0.0, signed: bool = True) -> tuple[float, float]:
-    """The frequency that all windows of one scanner fit best.
+    """The frequency (Hz) that all windows of one scanner fit best, and its peak: the median of the windows' peaks, 0 to 1.
+
+    The peak is 0 where the opposite rotation fits nearly as well, as for scanners that spin about the vertical.
 
     Parameters
     ----------
     spectra : (SPECTRUM_SIZE,) of each window
     given : Hz, where the user knows it; 0 = not known
     signed : whether the direction of rotation shows; otherwise the frequency is positive
-
-    Returns
-    -------
-    frequency : Hz
-    peak : median of the windows' peaks, 0 to 1; 0 where the opposite rotation fits nearly as well, as for
-        scanners that spin about the vertical
     """
-    f = _spectrum_frequencies()
+    f = np.fft.fftfreq(SPECTRUM_SIZE, SPECTRUM_CELL)
     allowed = (np.abs(f) >= MIN_ROTATION) & (np.abs(f) <= MAX_ROTATION)
     if given:
         allowed &= np.abs(np.abs(f) - given) <= ROTATION_TOLERANCE * given + 0.25
