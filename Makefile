@@ -38,8 +38,8 @@ lint: setup ## style, spelling, types, names that Qt 6 knows, and the scans QGIS
 fuzz: setup ## every reader fed with broken files, led by coverage where atheris can be installed (SECONDS=1800 of the processor; default 60)
 	@tools/fuzz.sh --seconds $(or $(SECONDS),60)
 
-translations: setup ## new texts into resources/i18n/*.ts for the translators, and the .qm that QGIS loads
-	@tools/translations.sh
+translations: setup ## new texts into resources/i18n for the translators
+	@source tools/env.sh && "$$PY" tools/translations.py
 
 models: setup ## the graphical models, after an algorithm gained or lost a parameter
 	@tools/make_model.sh

@@ -74,9 +74,9 @@ def classFactory(iface):
     # meanwhile: laspy is warned of what Python 3.19 will refuse, and CRSs are compared by their PROJ strings; nothing a user can act on
     warnings.filterwarnings("ignore", category=DeprecationWarning, module="laspy")
     warnings.filterwarnings("ignore", "You will likely lose important projection information", UserWarning)
-    from .processing_provider.texts import install_translator
+    from .processing_provider.texts import chosen_language, speak
 
-    translator = install_translator()
+    speak(chosen_language())
     from .plugin import LanewrightPlugin
 
-    return LanewrightPlugin(iface, translator)
+    return LanewrightPlugin(iface)

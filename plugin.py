@@ -5,13 +5,12 @@ from qgis.core import QgsApplication
 from . import add_library_folders
 from .processing_provider.provider import LanewrightProvider
 from .processing_provider.task_threads import keep_task_threads
-from .processing_provider.texts import remove_translator
+from .processing_provider.texts import speak
 
 
 class LanewrightPlugin:
-    def __init__(self, iface, translator=None):
+    def __init__(self, iface):
         self.iface = iface
-        self.translator = translator  # Qt keeps none
         self.provider = None
         self.menu = None
 
@@ -41,4 +40,4 @@ class LanewrightPlugin:
         if self.provider is not None:
             QgsApplication.processingRegistry().removeProvider(self.provider)
             self.provider = None
-        remove_translator(self.translator)
+        speak("en")

@@ -6,7 +6,7 @@ from pathlib import Path
 from setuptools import find_packages, setup
 from setuptools.command.build_py import build_py
 
-FOLDERS = ("core", "algorithms", "library")
+FOLDERS = ("core", "products", "simulator", "algorithms", "library")
 
 
 class BuildWithoutPlugin(build_py):
@@ -32,7 +32,7 @@ setup(
     package_dir={"lanewright": "."},
     packages=["lanewright"] + [f"lanewright.{name}" for name in find_packages(".", include=[pattern for name in FOLDERS
                                                                                          for pattern in (name, f"{name}.*")])],
-    package_data={"lanewright.core.report": ["templates/*.html"], "lanewright": ["resources/i18n/*.ts", "resources/i18n/core_*.json"]},
+    package_data={"lanewright.products.report": ["templates/*.html"], "lanewright": ["resources/i18n/*.json"]},
     # build/ is that of the checkout
     options={"build": {"build_base": "build/package"}},
     cmdclass={"build_py": BuildWithoutPlugin},

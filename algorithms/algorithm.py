@@ -6,20 +6,7 @@ implements `work(call, progress)`; `call` (see call.py) hands it the values.
 
 from dataclasses import replace
 
-from .parameters import (
-    CloudOutput,
-    CloudSpec,
-    CrsSpec,
-    FileOutput,
-    LayerOutput,
-    LayerSpec,
-    NumberOutput,
-    PointCloudsSpec,
-    RasterOutput,
-    RasterSpec,
-    ReportOutput,
-    TrajectorySpec,
-)
+from .parameters import NumberOutput, OutputSpec, ParameterSpec
 from .texts import tr
 
 # In the order of the work
@@ -41,13 +28,15 @@ class Algorithm:
     TAGS = ()
     HELP = ""
     LOOKS = {}  # output -> the result whose map style it has, where that is not its own name
+    NUMBERS = ()  # (name, label) of numbers among the results
+    RETIRED = ()  # names of parameters of an earlier version, which are accepted and have no effect
     WHOLE_MAP = False  # a run makes a map of its own, not one layer of one
     NEEDS_GDAL = False  # it cannot run without GDAL's Python module, whatever is asked of it
 
     def __init__(self):
-        self.parameters, self.numbers = [], []
+        self.parameters = []
         self.declare()
-        self.add_number(WARNINGS, tr("Warnings"))
+        self.numbers = [NumberOutput(name, tr(label)) for name, label in (*self.NUMBERS, (WARNINGS, tr("Warnings")))]
 
     def declare(self):
         """Add the parameters and outputs."""
@@ -93,6 +82,10 @@ class Algorithm:
         """Add a parameter; a table of a module may have been made before the language was known."""
         self.parameters.append(replace(spec, label=tr(spec.label), help=tr(spec.help) if spec.help else spec.help))
 
+    def add_input(self, kind, name, label, text, geometry="any", **more):
+        """Add an input of a kind; `more` are further attributes of ParameterSpec."""
+        self.add(ParameterSpec(kind, name, label, text, geometry=geometry, **more))
+
     def add_survey(self, trajectory_optional=False, without=""):
         """Point clouds, trajectory and the CRS for clouds that carry none; `without` says what happens without a trajectory."""
         self.add_point_clouds()
@@ -100,33 +93,23 @@ class Algorithm:
         self.add_crs()
 
     def add_point_clouds(self):
-        self.add(PointCloudsSpec("POINT_CLOUDS", tr("Point clouds"),
-                                 tr("LAS, LAZ or COPC files of one survey, or a folder that holds them, or names with wildcards "
-                                    "(/data/B12/tile_*.laz). Files may overlap and come in any order. Withheld points and noise "
-                                    "(classes 7 and 18) are left out.")))
+        self.add_input("clouds", "POINT_CLOUDS", tr("Point clouds"), tr(
+            "LAS, LAZ or COPC files of one survey, or a folder that holds them, or names with wildcards (/data/B12/tile_*.laz). Files may overlap "
+            "and come in any order. Withheld points and noise (classes 7 and 18) are left out."))
 
     def add_trajectory(self, optional=False, without=""):
         text = tr(
             "Where the vehicle drove: a point or line layer with heights, a table with columns time, x, y, z, or "
             "the path of a CSV, TXT or SBET file. Made with Import trajectory it needs no further care."
         )
-        self.add(TrajectorySpec("TRAJECTORY", tr("Trajectory"), f"{text} {tr(without) if without else ''}".strip(), optional))
+        self.add_input("trajectory", "TRAJECTORY", tr("Trajectory"), f"{text} {tr(without) if without else ''}".strip(), optional=optional)
 
     def add_crs(self):
-        self.add(CrsSpec(
-            "CRS", tr("CRS of the point clouds"),
+        self.add_input(
+            "crs", "CRS", tr("CRS of the point clouds"),
             tr("Only for point clouds that carry no CRS of their own, or contradict themselves; it is written into everything made from them."),
             optional=True, advanced=True,
-        ))
-
-    def add_cloud(self, name, label, text, optional=False):
-        self.add(CloudSpec(name, label, text, optional))
-
-    def add_layer(self, name, label, text, geometry="any", optional=False, advanced=False):
-        self.add(LayerSpec(name, label, text, optional, advanced, geometry=geometry))
-
-    def add_layer_raster(self, name, label, text, optional=False):
-        self.add(RasterSpec(name, label, text, optional))
+        )
 
     def add_settings(self, specs, only=None, advanced=None):
         """Fields of a core Settings class, all or `only` those of the names given; what two stages share is asked for once."""
@@ -138,22 +121,11 @@ class Algorithm:
         """A vector output; the help lists its fields."""
         listed = "; ".join(f"{field.name} ({tr(field.alias)})" for field in fields)
         text = " ".join(part for part in (text, tr("Fields: {fields}.").format(fields=listed) if fields else "") if part)
-        self.add(LayerOutput(name, label, text, optional, by_default=by_default, geometry=geometry, schema=tuple(fields)))
+        self.add(OutputSpec("layer", name, label, text, optional, by_default=by_default, geometry=geometry, schema=tuple(fields)))
 
-    def add_laz(self, name, label, text="", optional=False, by_default=True):
-        self.add(CloudOutput(name, label, text, optional, by_default=by_default))
+    def add_output(self, kind, name, label, text="", **more):
+        """Add a result of another kind; `more` are further attributes of OutputSpec."""
+        self.add(OutputSpec(kind, name, label, text, **more))
 
-    def add_raster(self, name, label, text="", optional=False, by_default=True):
-        self.add(RasterOutput(name, label, text, optional, by_default=by_default))
-
-    def add_file(self, name, label, text, suffixes, file_filter):
-        """A file of another kind as result."""
-        self.add(FileOutput(name, label, text, suffixes=suffixes, file_filter=file_filter))
-
-    def add_number(self, name, label):
-        """A number among the results."""
-        self.numbers.append(NumberOutput(name, tr(label)))
-
-    def add_report(self, name="REPORT", label=None, optional=True, by_default=True):
-        self.add(ReportOutput(name, label or tr("Report"), tr("A page with the numbers of every step and a picture."), optional,
-                              by_default=by_default))
+    def add_report(self, **more):
+        self.add_output("report", "REPORT", tr("Report"), tr("A page with the numbers of every step and a picture."), **{"optional": True, **more})

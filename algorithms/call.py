@@ -14,8 +14,8 @@ from ..core.common.errors import RoadExtractionError
 from ..core.common.parallel import cancellation_scope, claim_memory, is_lack_of_memory, out_of_memory
 from .algorithm import WARNINGS
 from .cloud_files import cloud_files, survey_name
-from .destinations import UnfinishedFiles, UnfinishedLayers, bring_back, check_suffix, check_writable, destination_path
-from .parameters import LayerOutput, settings_class
+from .destinations import Unfinished, check_suffix, check_writable, destination_path
+from .parameters import settings_class
 from .progress import CountedWarnings
 from .provenance import provenance_now, sign_file
 from .report_head import run_facts, sign_report
@@ -38,7 +38,7 @@ class Call:
 
     def __init__(self, algorithm, parameters):
         self.algorithm, self.parameters = algorithm, parameters
-        self._files, self._layer_files = UnfinishedFiles(), UnfinishedLayers()
+        self._unfinished = Unfinished()
         self._scratch = tempfile.TemporaryDirectory(prefix="lanewright-")
         self._results = {}
         self._layers = []
@@ -58,23 +58,8 @@ class Call:
         """The path given for a file parameter, "" for none; it need not be there."""
         raise NotImplementedError
 
-    def number(self, name):
-        raise NotImplementedError
-
-    def whole(self, name):
-        """A whole number."""
-        raise NotImplementedError
-
-    def flag(self, name):
-        """Yes or no."""
-        raise NotImplementedError
-
-    def choice(self, name):
-        """One of the words of a choice."""
-        raise NotImplementedError
-
-    def string(self, name):
-        """A text as it was given."""
+    def value(self, name):
+        """A number, a flag, a word of a choice, or a text as it was given."""
         raise NotImplementedError
 
     def crs(self, name="CRS"):
@@ -192,15 +177,10 @@ class Call:
         source = self.source(name)
         return None if source is None else read_features(source, schema, geometry_type)
 
-    def setting(self, spec):
-        """What the user chose for a SettingSpec, in the type of the core's default."""
-        read = {"choice": self.choice, "flag": self.flag, "text": self.string, "whole": self.whole, "number": self.number}
-        return read[spec.kind()](spec.name)
-
     def settings(self, specs, **more):
         """The core Settings object that these specs describe; one that the algorithm does not offer keeps its default."""
         offered = [spec for spec in specs if self.algorithm.parameter(spec.name) is not None]
-        return settings_class(specs[0].settings)(**{spec.field: self.setting(spec) for spec in offered}, **more)
+        return settings_class(specs[0].settings)(**{spec.field: self.value(spec.name) for spec in offered}, **more)
 
     def wants(self, name):
         """Whether an optional output was asked for."""
@@ -217,8 +197,6 @@ class Call:
             if path is None:
                 continue
             check_suffix(path, spec, self.VECTOR_SUFFIXES)
-            if isinstance(spec, LayerOutput):
-                bring_back(path)
             read = self.read_as(value, path) or self._cloud_at(path)
             if read:
                 raise RoadExtractionError(
@@ -246,7 +224,7 @@ class Call:
         if not self.wants(name):
             return ""
         self._results[name] = path = self.output_path(name)
-        return self._files.begin(path)
+        return str(self._unfinished.begin(path))
 
     def scratch_file(self, name):
         """A path in a folder that vanishes with the run."""
@@ -256,7 +234,7 @@ class Call:
         """Take back a file that `new_file` began: there is nothing to put into it."""
         path = self._results.pop(name, "")
         if path:
-            self._files.forget(path)
+            self._unfinished.forget(path)
 
     def text(self, name, text):
         """Write a text result (a report) where it is wanted."""
@@ -277,19 +255,18 @@ class Call:
         """What the user gave or left at its default for every input, in types that JSON has."""
         raise NotImplementedError
 
-    def commit_files(self):
-        """Give the files their names, each with a note of where it comes from; that note, for the layers."""
+    def sign_files(self):
+        """Note in every file where it comes from; that note, for the layers."""
         provenance = provenance_now(self.algorithm.ID, self.values(), self.warnings, self.names_only)
         crs = next((features.crs for _, features in self._layers if features.crs), "")
-        for path in self._files.unfinished():
+        for path in self._unfinished.begun():
             sign_file(path, provenance)
             sign_report(path, lambda: run_facts(self.algorithm, self.survey, self.surveyed(), crs, provenance))
-        self._files.commit()
         return provenance
 
     def in_users_names(self, text):
         """A message with the names of unfinished files replaced by those the user gave."""
-        return self._layer_files.in_users_names(self._files.in_users_names(text))
+        return self._unfinished.in_users_names(text)
 
     def at_end(self, action):
         """Call a function when the run ends, however it does."""
@@ -297,8 +274,7 @@ class Call:
 
     def discard_unfinished(self):
         self._at_end.close()
-        self._files.discard()
-        self._layer_files.discard()
+        self._unfinished.discard()
         self._scratch.cleanup()
 
 
@@ -316,6 +292,8 @@ def run(call, progress):
     try:
         claim_memory()
         call.check_destinations()
+        for name in filter(call.given, call.algorithm.RETIRED):
+            counted.warn(tr("{name} was given and has no effect any more: the usual value is used. Leave it out.").format(name=name))
         with cancellation_scope(progress):
             results = call.algorithm.work(call, counted) or {}
         results[WARNINGS], call.warnings = len(counted.texts), counted.texts

@@ -10,8 +10,8 @@ NEEDED = ("action", "target")
 
 
 def add_corrections(algorithm):
-    algorithm.add_layer(
-        "CORRECTIONS", tr("Corrections"),
+    algorithm.add_input(
+        "layer", "CORRECTIONS", tr("Corrections"),
         tr("What an analyst decided at doubtful places: points or lines with the fields action (accept, delete, move, draw, take) and target "
            "(edge, marking, lane). Further fields: note; kind and pattern of a line that is drawn; other of a second reading that is taken. "
            "A row concerns what this run finds within half a metre of it, whatever its number; for lanes it is one metre, for move two. "

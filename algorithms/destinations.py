@@ -1,7 +1,7 @@
 """Results that appear whole or not at all.
 
-A file is written beside its destination under a temporary name and renamed when
-everything else went well, so a failed or cancelled run leaves the previous file.
+A file is written in a hidden folder beside its destination and moved when everything
+else went well, so a failed or cancelled run leaves the previous file.
 """
 
 import os
@@ -14,9 +14,9 @@ from pathlib import Path
 
 from ..core.common.errors import RoadExtractionError
 from ..core.io.local_files import finish_file, unfinished_path
-from .parameters import FileOutput, LayerOutput, RasterOutput, ReportOutput
 from .texts import tr
 
+SUFFIXES = {"cloud": (".laz", ".las"), "raster": (".tif", ".tiff"), "report": (".html", ".htm")}
 SHAPEFILE = (".shp", ".shx", ".dbf", ".prj", ".cpg", ".qix", ".sbn", ".sbx")
 # QGIS puts a stroke before an apostrophe in the path; people leave it out
 DATABASE = re.compile(r"dbname='(?P<path>.+?)(?<!\\)'(?=\s|$)(?: *table=\"(?P<table>[^\"]+)\")?")
@@ -65,11 +65,10 @@ def check_suffix(path, spec, vector_suffixes):
     spec : OutputSpec
     vector_suffixes : the endings, without dot, of the vector formats that the program writes
     """
-    if isinstance(spec, LayerOutput):
+    if spec.kind == "layer":
         _check_vector_suffix(path, spec.label, vector_suffixes)
         return
-    kinds = (".tif", ".tiff") if isinstance(spec, RasterOutput) else (".html", ".htm") if isinstance(spec, ReportOutput) else \
-        spec.suffixes if isinstance(spec, FileOutput) else (".laz", ".las")
+    kinds = spec.suffixes or SUFFIXES[spec.kind]
     name = path.name.lower()
     if not name.endswith(kinds) or name.endswith((".copc.laz", ".copc.las")):
         raise RoadExtractionError(
@@ -123,59 +122,8 @@ def check_writable(path, label):
         ) from error
 
 
-class UnfinishedFiles:
-    """Files being written under a temporary name."""
-
-    def __init__(self):
-        self._waiting = []
-
-    def begin(self, destination):
-        """The temporary path to write to; its suffix is the destination's, for drivers that go by it."""
-        destination = Path(destination).absolute()
-        # .copc.laz and .tif alike keep what follows the first dot of the name
-        suffix = "".join(destination.suffixes[-2:]) if destination.name.endswith(".copc.laz") else destination.suffix
-        temporary = unfinished_path(destination, suffix)
-        temporary.touch()
-        self._waiting.append((temporary, destination))
-        return str(temporary)
-
-    def unfinished(self):
-        """The temporary paths that were begun."""
-        return [temporary for temporary, _ in self._waiting]
-
-    def commit(self):
-        """Give every file its name."""
-        for temporary, destination in self._waiting:
-            finish_file(temporary, destination)
-            sidecar = Path(f"{temporary}.aux.xml")
-            if sidecar.exists():
-                os.replace(sidecar, f"{destination}.aux.xml")
-        self._waiting = []
-
-    def forget(self, destination):
-        """Remove what was begun for one destination."""
-        destination = Path(destination).absolute()
-        self._remove([pair for pair in self._waiting if pair[1] == destination])
-
-    def in_users_names(self, text):
-        """A text with every temporary path replaced by its destination."""
-        for temporary, destination in self._waiting:
-            text = text.replace(str(temporary), str(destination))
-        return text
-
-    def discard(self):
-        """Remove everything that was begun and not committed."""
-        self._remove(list(self._waiting))
-
-    def _remove(self, pairs):
-        for pair in pairs:
-            for leftover in (pair[0], Path(f"{pair[0]}.aux.xml")):
-                leftover.unlink(missing_ok=True)
-            self._waiting.remove(pair)
-
-
-class UnfinishedLayers:
-    """Vector files being written: each under its own name, which names its layer and its parts, in a hidden folder beside its place."""
+class Unfinished:
+    """Results being written: each under its own name, which names its layer and its parts, in a hidden folder beside its place."""
 
     def __init__(self):
         self._folders = {}  # destination -> hidden folder
@@ -187,6 +135,14 @@ class UnfinishedLayers:
             self._folders[destination] = unfinished_path(destination, "")
             self._folders[destination].mkdir()
         return self._folders[destination] / destination.name
+
+    def begun(self):
+        """The paths to write to."""
+        return [folder / destination.name for destination, folder in self._folders.items()]
+
+    def forget(self, destination):
+        """Remove what was begun for one destination."""
+        shutil.rmtree(self._folders.pop(Path(destination).absolute()), ignore_errors=True)
 
     def begin_copy(self, destination):
         """The same with the tables that there are, for a program that adds one to them."""
@@ -219,18 +175,19 @@ class UnfinishedLayers:
 
 
 def _give_place(folder, destination):
-    """Move the parts of a layer to their place.
+    """Move the parts of a result to their place.
 
     A file of its own replaces the previous one in one step. The parts of a Shapefile cannot: its .shp is taken away first and
     comes last, so that there is no moment at which parts of two layers would be read as one.
     """
-    parts = sorted(folder.iterdir(), key=lambda part: part.name == destination.name)
+    statistics = folder / f"{destination.name}.aux.xml"   # GDAL's, of an image
+    parts = sorted({*folder.iterdir()} - {statistics}, key=lambda part: part.name == destination.name)
     previous = files_of(destination)
     if destination in previous and len(previous) > 1 and destination.suffix.lower() != ".shp":
         _settle(destination)
     if len(parts) > 1:
         destination.unlink(missing_ok=True)
-    for part in parts:
+    for part in parts + [statistics] * statistics.exists():
         finish_file(part, destination.parent / part.name)
     # the index or journal of a file that is gone
     for file in set(previous) - {destination.parent / part.name for part in parts}:
@@ -265,19 +222,8 @@ def _opened(path):
         ) from problem
 
 
-def bring_back(path):
-    """Give a layer its name back where it is missing and an earlier version of the program, killed as it wrote, had set it aside."""
-    if not path.exists():
-        names = (f".{part.name}.previous" for part in _parts(path))
-        for aside in [path.with_name(name) for name in names if path.with_name(name).is_file()]:
-            os.replace(aside, aside.with_name(aside.name[1:].removesuffix(".previous")))
-
-
 def files_of(path):
     """The files there are of a layer: those of one stem for a shapefile, a database's journals for a GeoPackage."""
-    return [file for file in _parts(path) if file.is_file()]
-
-
-def _parts(path):
-    return [path.with_suffix(suffix) for suffix in SHAPEFILE] if path.suffix.lower() == ".shp" else \
+    parts = [path.with_suffix(suffix) for suffix in SHAPEFILE] if path.suffix.lower() == ".shp" else \
         [path.with_name(path.name + suffix) for suffix in ("", "-wal", "-shm", "-journal")]
+    return [file for file in parts if file.is_file()]

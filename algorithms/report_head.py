@@ -20,7 +20,7 @@ SUFFIXES = (".html", ".htm")
 def sign_report(path: str, facts: Callable[[], list[tuple[str, str]]]) -> None:
     """Write the facts of a run below the title of an HTML report that is complete; files of other kinds stay as they are."""
     if Path(path).suffix.lower() in SUFFIXES:
-        from ..core.report.page import with_facts
+        from ..products.report.page import with_facts
 
         Path(path).write_text(with_facts(Path(path).read_text(encoding="utf-8"), facts()), encoding="utf-8")
 

@@ -3,10 +3,10 @@
 from dataclasses import replace
 
 from ..core.common.errors import RoadExtractionError
-from .parameters import FolderSpec, SettingSpec
+from .parameters import SettingSpec
 from .texts import tr
 
-SURVEY = "survey.open_survey:SurveySettings"
+SURVEY = "core.survey.open_survey:SurveySettings"
 
 SURVEY_SETTINGS = (
     SettingSpec(
@@ -56,7 +56,7 @@ READING_SETTINGS = tuple(spec for spec in SURVEY_SETTINGS if spec.name != "TRAJE
 
 EXECUTION_SETTINGS = (
     SettingSpec(
-        "WORKERS", "execution.choice:ExecutionSettings", "workers", tr("Worker processes, 0 = automatic (whole number)"),
+        "WORKERS", "core.execution.choice:ExecutionSettings", "workers", tr("Worker processes, 0 = automatic (whole number)"),
         tr("So many further processes of Python read the points, find curbs and do most of what is done point by point, with the same "
            "results. More are faster as long as there are processor cores for them, and each takes some hundred MB of memory. Automatic takes "
            "one for every 8 million points, eight or one per core at most, and none for less than 24 million points, nor on two cores for "
@@ -64,14 +64,14 @@ EXECUTION_SETTINGS = (
         advanced=True,
     ),
     SettingSpec(
-        "SCHEDULER", "execution.choice:ExecutionSettings", "scheduler", tr("Address of a Dask scheduler"),
+        "SCHEDULER", "core.execution.choice:ExecutionSettings", "scheduler", tr("Address of a Dask scheduler"),
         tr("The workers of a Dask cluster that is running already do what worker processes would, with the same results: tls://host:8786, or "
            "tcp://127.0.0.1:8786 on this computer. They need the same Python, packages and Lanewright, no QGIS, and a work folder that all "
            "machines see. The manual's page on large surveys tells how to start one. Worker processes are not used then."),
         advanced=True,
     ),
     SettingSpec(
-        "INSECURE", "execution.choice:ExecutionSettings", "insecure", tr("Connect without encryption"),
+        "INSECURE", "core.execution.choice:ExecutionSettings", "insecure", tr("Connect without encryption"),
         tr("Whoever can reach an unencrypted cluster can run programs on it. Set this only in a network that is yours alone; on this "
            "computer it is not needed."),
         advanced=True,
@@ -99,13 +99,13 @@ def estimated_trajectory(call, progress):
 def add_execution(algorithm):
     """Who does the work, and where finished work is kept."""
     algorithm.add_settings(EXECUTION_SETTINGS)
-    algorithm.add(FolderSpec(
-        "WORK_FOLDER", tr("Work folder"),
+    algorithm.add_input(
+        "folder", "WORK_FOLDER", tr("Work folder"),
         tr("A folder for finished work, about 20 bytes for every point near the road. A run that ended early, or that is repeated with "
            "other settings of later stages, does not read the points and find the curbs again. What was made from other files, settings "
            "or another version of Lanewright is not used. Nothing that is finished is ever removed; delete it when the map is done."),
         optional=True, advanced=True,
-    ))
+    )
 
 
 def execution_of(call):
@@ -234,7 +234,7 @@ def imported_trajectory(call, progress):
     from ..core.survey.open_survey import match_clocks
     from ..core.survey.trajectory.trajectory import reproject_trajectory, taken_to_be_in
 
-    trajectory = call.trajectory("INPUT", call.crs("INPUT_CRS"), columns=call.string("COLUMNS"))
+    trajectory = call.trajectory("INPUT", call.crs("INPUT_CRS"), columns=call.value("COLUMNS"))
     headers = read_headers(call.point_clouds()) if call.given("POINT_CLOUDS") else []
     target = call.crs("TARGET_CRS") or next((header.crs for header in headers if header.crs), "")
     if target and not trajectory.crs:

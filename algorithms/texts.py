@@ -1,5 +1,34 @@
-"""What users read, in their language; the core, which writes reports, holds what sets it."""
+"""What users read, in their language: texts of the code and sentences of the core, each with its translation, from resources/i18n."""
 
-from ..core.common.texts import set_translation, told, tr
+import json
+from pathlib import Path
 
-__all__ = ["set_translation", "told", "tr"]
+from ..core.common.texts import CoreMessages, set_translation, told, tr
+
+__all__ = ["languages", "speak", "told", "tr"]
+
+TRANSLATIONS = Path(__file__).resolve().parents[1] / "resources" / "i18n"
+
+
+def languages():
+    """Two letters of each language that there is."""
+    return ["en", *sorted(path.stem.partition("_")[2] for path in TRANSLATIONS.glob("lanewright_*.json"))]
+
+
+def speak(language="en"):
+    """Make dialogs, help, messages and reports speak a language, English where it is not known; True where it is.
+
+    Ids, values of choices, fields and files stay as they are. A country after the language, as in de_AT, says nothing more. Labels stand in
+    classes and tables, so the language is chosen before those are imported.
+    """
+    short = language[:2].lower()
+    if short == "en" or short not in languages():
+        set_translation(None)
+        return short == "en"
+    texts = json.loads((TRANSLATIONS / f"lanewright_{short}.json").read_text(encoding="utf-8"))
+
+    def translated(text):
+        return texts.get(text) or text
+
+    set_translation(translated, CoreMessages.load(TRANSLATIONS / f"core_{short}.json", translated).told, short)
+    return True

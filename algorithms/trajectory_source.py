@@ -25,6 +25,7 @@ def read_trajectory_source(source, crs="", heights_needed=True):
     Without heights, where none are needed, all are 0.
     """
     import numpy as np
+    import shapely
 
     from ..core.common.features import ESTIMATED_TRAJECTORY
     from ..core.survey.trajectory.reader import trajectory_from_columns, trajectory_from_rows
@@ -35,17 +36,16 @@ def read_trajectory_source(source, crs="", heights_needed=True):
         if not heights_needed and not np.isfinite(columns.get("z", np.nan)).any():
             columns["z"] = np.zeros(len(columns["x"]))
         return trajectory_from_columns(columns, crs or source.stored_crs, label=source.label)
-    rows, places = [], [np.empty((0, 4))]
+    rows, points = [], []
     for wkb, values in source.stored_rows():
-        if source.kind == POINT:
-            if not wkb:
-                continue
-            places.append(vertices_of(wkb)[:1])
-        rows.append(values)
+        if wkb or source.kind != POINT:
+            rows.append(values)
+            points.append(wkb)
     _refuse_empty(source, len(rows))
     given = {}
     if source.kind == POINT:
-        given["x"], given["y"], z, _ = np.concatenate(places).T
+        firsts = shapely.get_geometry(shapely.from_wkb(np.array(points, object)), 0)  # of what has several
+        given["x"], given["y"], z = shapely.get_coordinates(firsts, include_z=True).T
         if source.has_z:
             given["z"] = z
     found = trajectory_from_rows(source.names, rows, given, crs or source.stored_crs, source.label, heights_needed)

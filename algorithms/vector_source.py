@@ -10,6 +10,7 @@ POINT, LINE, POLYGON, TABLE, UNKNOWN = "point", "line", "polygon", "table", "unk
 KIND_OF = {"PointZ": POINT, "LineStringZ": LINE, "LineStringZM": LINE, "PolygonZ": POLYGON, "MultiLineStringZ": LINE,
            "MultiPolygonZ": POLYGON, "None": TABLE}
 KIND_LABELS = {POINT: "Point", LINE: "Line", POLYGON: "Polygon", TABLE: "No geometry", UNKNOWN: "Unknown geometry"}
+POINT_KIND, POLYGON_KIND = 1, 3  # of WKB; what is higher is made of parts
 FARTHEST_ON_EARTH = 1e8   # m or feet: coordinates of a map, some times around the earth
 
 
@@ -157,89 +158,51 @@ def _check_kind(source, geometry_type):
 
 def _measured_parts(wkb, label):
     """WKB of every part of a line geometry with Z and M: shapely before 2.1 would lose the M."""
-    base, has_z, has_m = _type_of(wkb, 0)
+    _, has_z, has_m = _type_of(wkb, 0)
     if not (has_z and has_m):
         raise RoadExtractionError(
             tr("{label} has geometries without heights (Z) or measures (M). Use the layer that Lanewright wrote.").format(label=label)
         )
-    if base != 5:
-        yield wkb
-        return
-    at = 9
-    for _ in range(_uint(wkb, 5)):
-        size = 9 + 32 * _uint(wkb, at + 5)
-        yield wkb[at:at + size]
-        at += size
+    for at, count, *_ in _runs(wkb):
+        yield wkb[at - 9:at + 32 * count]   # with its byte order, type and count
 
 
 def vertices_of(wkb):
     """(V, 4) x, y, z and m of all vertices of points or lines, in one part or many; NaN where there is no z or m."""
     import numpy as np
 
-    found = []
-    _read_vertices(wkb, 0, found)
-    return np.concatenate(found) if found else np.empty((0, 4))
-
-
-def _read_vertices(wkb, at, found):
-    """Append the vertices of the geometry that begins at a byte; the byte where it ends."""
-    import numpy as np
-
-    base, has_z, has_m = _type_of(wkb, at)
-    at += 5
-    if base in (4, 5):
-        count, at = _uint(wkb, at), at + 4
-        for _ in range(count):
-            at = _read_vertices(wkb, at, found)
-        return at
-    count = 1
-    if base == 2:
-        count, at = _uint(wkb, at), at + 4
-    elif base != 1:
-        raise ValueError(f"neither points nor lines: WKB type {base}")
-    width = 2 + has_z + has_m
-    values = np.frombuffer(wkb, "<f8", count * width, at).reshape(count, width)
-    rows = np.full((count, 4), np.nan)
-    rows[:, :2] = values[:, :2]
-    if has_z:
-        rows[:, 2] = values[:, 2]
-    if has_m:
-        rows[:, 3] = values[:, -1]
-    found.append(rows)
-    return at + 8 * count * width
+    runs = [np.empty((0, 4))]
+    for at, count, has_z, has_m in _runs(wkb):
+        runs.append(np.full((count, 4), np.nan))
+        runs[-1][:, [0, 1, *[2] * has_z, *[3] * has_m]] = np.frombuffer(wkb, "<f8", count * (2 + has_z + has_m), at).reshape(count, -1)
+    return np.concatenate(runs)
 
 
 def scaled_wkb(wkb, across, up):
     """Little endian WKB with x and y times `across` and z times `up`; measures stay."""
+    import numpy as np
+
     data = bytearray(wkb)
-    _scale(data, 0, across, up)
+    for at, count, has_z, has_m in _runs(data):
+        values = np.frombuffer(data, "<f8", count * (2 + has_z + has_m), at).reshape(count, -1)
+        values *= [across, across, *[up] * has_z, *[1.0] * has_m]
     return bytes(data)
 
 
-def _scale(data, at, across, up):
-    """Scale the vertices of the geometry that begins at a byte; the byte where it ends."""
-    import numpy as np
-
-    base, has_z, has_m = _type_of(data, at)
+def _runs(wkb, at=0):
+    """(byte, number of vertices, has Z, has M) of each run of vertices of the geometry that begins at a byte; returns the byte where it ends."""
+    kind, has_z, has_m = _type_of(wkb, at)
     at += 5
-    if base > 3:
-        count, at = _uint(data, at), at + 4
-        for _ in range(count):
-            at = _scale(data, at, across, up)
+    if kind > POLYGON_KIND:
+        parts, at = _uint(wkb, at), at + 4
+        for _ in range(parts):
+            at = yield from _runs(wkb, at)
         return at
-    rings = 1
-    if base == 3:
-        rings, at = _uint(data, at), at + 4
-    width = 2 + has_z + has_m
+    rings, at = (_uint(wkb, at), at + 4) if kind == POLYGON_KIND else (1, at)
     for _ in range(rings):
-        count = 1
-        if base != 1:
-            count, at = _uint(data, at), at + 4
-        values = np.frombuffer(data, "<f8", count * width, at).reshape(count, width)
-        values[:, :2] *= across
-        if has_z:
-            values[:, 2] *= up
-        at += 8 * count * width
+        count, at = (1, at) if kind == POINT_KIND else (_uint(wkb, at), at + 4)
+        yield at, count, has_z, has_m
+        at += 8 * count * (2 + has_z + has_m)
     return at
 
 

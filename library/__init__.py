@@ -6,7 +6,6 @@ In come the names and values of an algorithm's parameters, out go files and a di
 
 from ..core.common.errors import Cancelled, RoadExtractionError
 from ..core.common.progress import Progress
-from .language import speak
-from .run import algorithms, run
+from .run import algorithms, run, speak
 
 __all__ = ["Cancelled", "Progress", "RoadExtractionError", "algorithms", "run", "speak"]

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from ..algorithms import parameters as specs
 from ..algorithms.call import Call
 from ..algorithms.destinations import destination_path
 from ..algorithms.provenance import provenance_now
@@ -16,8 +15,6 @@ from .layer_files import DRIVERS, LayerFile, file_and_table, first_table, write_
 from .measured_lines import check_format
 from .values import checked_values
 
-RASTERS = (specs.RasterSpec, specs.RasterOutput)
-
 
 class FileCall(Call):
     """`Call` for values that name files."""
@@ -26,49 +23,44 @@ class FileCall(Call):
 
     def __init__(self, algorithm, given, progress):
         values = checked_values(algorithm, given)
-        rasters = [spec for spec in algorithm.parameters if isinstance(spec, RASTERS) and spec.name in values]
+        rasters = [spec for spec in algorithm.parameters if spec.kind == "raster" and spec.name in values]
         if rasters or algorithm.NEEDS_GDAL:
             check_gdal(f"{rasters[0].label} ({rasters[0].name}) is a raster" if rasters else f"{algorithm.title()} makes a raster")
         for spec in algorithm.parameters:
-            if isinstance(spec, specs.LayerOutput) and spec.geometry.endswith("ZM") and spec.name in values:
+            if spec.is_output and spec.geometry.endswith("ZM") and spec.name in values:
                 check_format(file_and_table(values[spec.name])[0], spec.label)
         super().__init__(algorithm, values)
         self._progress = progress
 
-    def _value(self, name):
-        return self.parameters.get(name, self.algorithm.parameter(name).default)
-
     # -- in ---------------------------------------------------------------------------------
 
     def files(self, name):
-        return self._value(name) or []
+        return self.value(name) or []
 
     def file(self, name):
-        return self._value(name) or ""
+        return self.value(name) or ""
 
-    number = whole = flag = choice = _value
-
-    def string(self, name):
-        return self._value(name) or ""
+    def value(self, name):
+        return self.parameters.get(name, self.algorithm.parameter(name).default)
 
     def crs(self, name="CRS"):
         from ..core.io.crs import in_metres, parse_crs
 
-        given = self._value(name)
+        given = self.value(name)
         try:
             return in_metres(parse_crs(given).to_wkt())[0] if given else ""
         except RoadExtractionError as problem:
             raise RoadExtractionError(f"{self.label(name)}: the CRS {given} is not known. Give it as EPSG:number.") from problem
 
     def raster(self, name):
-        return existing_raster(self._value(name), self.label(name))
+        return existing_raster(self.value(name), self.label(name))
 
     def source(self, name):
-        value = self._value(name)
+        value = self.value(name)
         return LayerFile(value, self.label(name)) if value else None
 
     def painted(self, name):
-        value, label = self._value(name), self.label(name)
+        value, label = self.value(name), self.label(name)
         path, table = file_and_table(value)
         if table or Path(path).suffix.lower().lstrip(".") in DRIVERS:
             return LayerFile(value, label), "", ""
@@ -81,11 +73,11 @@ class FileCall(Call):
             return LayerFile(value, label), "", ""
 
     def rows_where(self, name, source):
-        condition = self.string(name)
+        condition = self.value(name)
         return source.rows_where(condition) if condition else None
 
     def layer_name(self, name):
-        path, table = file_and_table(self._value(name))
+        path, table = file_and_table(self.value(name))
         return table or Path(path).stem
 
     # -- out --------------------------------------------------------------------------------
@@ -117,16 +109,16 @@ class FileCall(Call):
             features.description = "\n".join(provenance.history(self.algorithm.LOOKS.get(name, name)))
             value = self.destination(name)
             path, table = destination_path(value), file_and_table(value)[1]
-            unfinished = self._layer_files.begin_copy(path) if table else self._layer_files.begin(path)
+            unfinished = self._unfinished.begin_copy(path) if table else self._unfinished.begin(path)
             write_layer(str(unfinished), table, features, self._progress.check_cancelled)
             self._results[name] = f"{path}|layername={table}" if table else value
         self._progress.check_cancelled()
-        self.commit_files()
-        self._layer_files.commit()
+        self.sign_files()
+        self._unfinished.commit()
         return {**self._results, **numbers}
 
     def values(self):
-        return {spec.name: self._value(spec.name) for spec in self.algorithm.inputs()}
+        return {spec.name: self.value(spec.name) for spec in self.algorithm.inputs()}
 
 
 def existing_raster(path, label):

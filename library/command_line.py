@@ -10,24 +10,18 @@ import sys
 import warnings
 from importlib.util import find_spec
 
-from ..algorithms import parameters as specs
 from ..algorithms.algorithm import GROUPS
 from ..algorithms.call import run
 from ..algorithms.provenance import own_version
 from ..algorithms.texts import told, tr
 from ..core.common.errors import Cancelled, RoadExtractionError
 from .call import FileCall
-from .language import speak
 from .progress import TextProgress, cancelled_by_signals
-from .run import algorithms
+from .run import algorithms, speak
 
 # What a value looks like in the help
-METAVARS = (
-    (specs.TrajectorySpec, "FILE"), (specs.LayerSpec, "LAYER"), (specs.LayerOutput, "LAYER"), (specs.PointCloudsSpec, "FILE"),
-    (specs.CloudSpec, "FILE"), (specs.FileSpec, "FILE"), (specs.FolderSpec, "FOLDER"),
-    (specs.RasterSpec, "FILE"), (specs.PaintedSpec, "FILE"), (specs.OutputSpec, "FILE"),
-    (specs.CrsSpec, "EPSG:NUMBER"), (specs.FlagSpec, "true|false"), (specs.ExpressionSpec, "CONDITION"), (specs.TextSpec, "TEXT"),
-)
+METAVARS = {"layer": "LAYER", "folder": "FOLDER", "crs": "EPSG:NUMBER", "flag": "true|false", "expression": "CONDITION", "text": "TEXT",
+            "columns": "TEXT", "whole": "NUMBER", "number": "NUMBER"}
 JSON, LANG = "--json", "--lang"
 
 
@@ -135,18 +129,15 @@ def parser_of(algorithm):
     inputs, advanced, results = (parser.add_argument_group(title) for title in (tr("inputs"), tr("advanced parameters"), tr("results")))
     for spec in algorithm.parameters:
         group = results if spec.is_output else advanced if spec.advanced else inputs
-        several = dict(action="extend", nargs="+") if isinstance(spec, specs.PointCloudsSpec) else {}
+        several = dict(action="extend", nargs="+") if spec.kind == "clouds" else {}
         group.add_argument(f"--{spec.name}", dest=spec.name, metavar=metavar(spec), help=explained(spec).replace("%", "%%"), **several)
+    for name in algorithm.RETIRED:
+        parser.add_argument(f"--{name}", help=argparse.SUPPRESS)
     return parser
 
 
 def metavar(spec):
-    if isinstance(spec, specs.SettingSpec):
-        kind = spec.kind()
-        return "|".join(spec.choices) if kind == "choice" else {"flag": "true|false", "text": "TEXT"}.get(kind, "NUMBER")
-    if isinstance(spec, specs.ChoiceSpec):
-        return "|".join(spec.choices)
-    return next(word for type_, word in METAVARS if isinstance(spec, type_))
+    return "|".join(spec.choices) if spec.kind == "choice" else METAVARS.get(spec.kind, "FILE")
 
 
 def explained(spec):
@@ -158,7 +149,7 @@ def explained(spec):
             notes.append(tr("default {value}").format(value=value))
         elif not spec.optional:
             notes.append(tr("necessary"))
-        if isinstance(spec, specs.SettingSpec) and spec.kind() in ("whole", "number"):
+        if spec.kind in ("whole", "number"):
             notes.append(tr("{low:g} to {high:g}").format(low=spec.limits()[0], high=spec.limits()[1]))
     elif not spec.optional:
         notes.append(tr("necessary"))

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from ..algorithms.call import run as run_call
 from ..algorithms.catalogue import ALGORITHMS
+from ..algorithms.texts import languages
+from ..algorithms.texts import speak as speak_language
 from ..core.common.errors import RoadExtractionError
 from ..core.common.progress import Progress
 from .call import FileCall
@@ -47,3 +49,15 @@ def run(name, progress=None, **parameters):
         raise RoadExtractionError(f"There is no algorithm {name}. There are: {', '.join(known)}.")
     progress = progress or Progress()
     return run_call(FileCall(algorithm, parameters, progress), progress)
+
+
+def speak(language="en"):
+    """Make help, messages and reports speak a language, such as "de"; ids, values of choices, fields and files stay as they are.
+
+    Raises
+    ------
+    RoadExtractionError
+        If there is no translation.
+    """
+    if not speak_language(language):
+        raise RoadExtractionError(f"There are no texts in the language {language}. There are: {', '.join(languages())}.")

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 from difflib import get_close_matches
-from functools import singledispatch
 from os import PathLike, fspath
 
-from ..algorithms import parameters as specs
+from ..algorithms.parameters import choice_refused, number_refused
 from ..core.common.errors import RoadExtractionError
 
 YES, NO = ("true", "yes", "on", "1"), ("false", "no", "off", "0")
@@ -29,11 +28,11 @@ def checked_values(algorithm, given):
     values = {}
     for name, value in given.items():
         spec = algorithm.parameter(name)
-        if spec is None:
+        if spec is None and name not in algorithm.RETIRED:
             raise RoadExtractionError(_unknown(algorithm, name))
         value = _plain(value)
         if value not in (None, "", []):
-            values[name] = parsed(spec, value)
+            values[name] = value if spec is None else parsed(spec, value)
     for spec in algorithm.parameters:
         if spec.name not in values and not spec.optional and spec.default is None:
             raise RoadExtractionError(f"{spec.label} ({spec.name}) was not given and {algorithm.ID} needs it.")
@@ -53,10 +52,11 @@ def _plain(value):
     return fspath(value) if isinstance(value, PathLike) else value
 
 
-@singledispatch
 def parsed(spec, value):
     """The value of one parameter; raises RoadExtractionError where it is none that the parameter takes."""
-    return _text(spec, value)
+    if spec.is_output:
+        return _destination(spec, value)
+    return PARSERS.get(spec.kind, _text)(spec, value)
 
 
 def _text(spec, value):
@@ -65,34 +65,7 @@ def _text(spec, value):
     return value
 
 
-@parsed.register
-def _(spec: specs.SettingSpec, value):
-    kind = spec.kind()
-    if kind == "choice":
-        return _choice(spec, value)
-    if kind == "flag":
-        return _flag(spec, value)
-    return _text(spec, value) if kind == "text" else _number(spec, value, kind == "whole")
-
-
-@parsed.register
-def _(spec: specs.FlagSpec, value):
-    return _flag(spec, value)
-
-
-@parsed.register
-def _(spec: specs.ChoiceSpec, value):
-    return _choice(spec, value)
-
-
-@parsed.register
-def _(spec: specs.PointCloudsSpec, value):
-    paths = value if isinstance(value, list) else [value]
-    return [_text(spec, path) for path in paths]
-
-
-@parsed.register
-def _(spec: specs.OutputSpec, value):
+def _destination(spec, value):
     text = _text(spec, value)
     if text == "TEMPORARY_OUTPUT" or text.startswith(("memory:", "postgres:", "mssql:", "oracle:")):
         raise RoadExtractionError(
@@ -100,9 +73,13 @@ def _(spec: specs.OutputSpec, value):
     return text
 
 
+def _texts(spec, value):
+    return [_text(spec, path) for path in (value if isinstance(value, list) else [value])]
+
+
 def _choice(spec, value):
     if value not in spec.choices:
-        raise RoadExtractionError(specs.choice_refused(spec.label, spec.name, value, spec.choices))
+        raise RoadExtractionError(choice_refused(spec.label, spec.name, value, spec.choices))
     return value
 
 
@@ -113,12 +90,15 @@ def _flag(spec, value):
     return word in YES
 
 
-def _number(spec, value, whole):
+def _number(spec, value):
     least, most = spec.limits()
     try:
         number = math.nan if isinstance(value, bool) else float(value)
     except (TypeError, ValueError):
         number = math.nan
-    if not least <= number <= most or whole and number != int(number):
-        raise RoadExtractionError(specs.number_refused(spec.label, spec.name, value, least, most))
-    return int(number) if whole else number
+    if not least <= number <= most or spec.kind == "whole" and number != int(number):
+        raise RoadExtractionError(number_refused(spec.label, spec.name, value, least, most))
+    return int(number) if spec.kind == "whole" else number
+
+
+PARSERS = {"choice": _choice, "flag": _flag, "whole": _number, "number": _number, "clouds": _texts}

@@ -17,14 +17,14 @@ from qgis.PyQt.QtGui import QIcon
 
 from ..algorithms.call import run
 from ..algorithms.catalogue import toolbox_number
-from ..algorithms.parameters import TrajectorySpec, choice_refused, number_refused
+from ..algorithms.parameters import choice_refused, number_refused
 from ..core.common.errors import Cancelled, RoadExtractionError
 from ..core.common.parallel import lack_of_memory
 from ..core.io.local_files import offline
 from .call import QgisCall
 from .dependencies import missing_packages
 from .input_files import asks_servers, check_files
-from .parameters import qgis_parameter
+from .parameters import qgis_parameter, retired_parameter
 from .progress import FeedbackProgress
 from .results.road_maps import road_map_of
 from .results.run_table import note_run
@@ -49,6 +49,8 @@ class LanewrightAlgorithm(QgsProcessingAlgorithm):
     def initAlgorithm(self, configuration=None):
         for spec in self.declaration.parameters:
             self.addParameter(qgis_parameter(spec))
+        for name in self.declaration.RETIRED:
+            self.addParameter(retired_parameter(name))
         for number in self.declaration.numbers:
             self.addOutput(QgsProcessingOutputNumber(number.name, number.label))
 
@@ -189,7 +191,7 @@ def no_trajectory(declaration, parameters):
 
     for spec in declaration.inputs():
         value = parameters.get(spec.name)
-        if isinstance(spec, TrajectorySpec) and isinstance(value, str) and os.path.isfile(value) and trajectory_path(value) is None \
+        if spec.kind == "trajectory" and isinstance(value, str) and os.path.isfile(value) and trajectory_path(value) is None \
                 and not QgsVectorLayer(value).isValid():
             return tr("{label}: {file} holds neither a layer nor a table of positions. Choose the layer or the CSV, TXT or SBET file of the "
                       "drive.").format(label=spec.label, file=value)
@@ -206,7 +208,7 @@ def accept_trajectory_file(declaration, parameters, context):
 
     accepted = dict(parameters)
     for spec in declaration.inputs():
-        if isinstance(spec, TrajectorySpec) and trajectory_path(parameters.get(spec.name)) is not None:
+        if spec.kind == "trajectory" and trajectory_path(parameters.get(spec.name)) is not None:
             stand_in = QgsVectorLayer("Point", "trajectory", "memory")
             context.temporaryLayerStore().addMapLayer(stand_in)
             accepted[spec.name] = stand_in.id()

@@ -15,7 +15,6 @@ from qgis.core import (
 
 from ..algorithms.call import Call, existing_file
 from ..algorithms.destinations import at_path, destination_path
-from ..algorithms.parameters import RasterOutput
 from ..algorithms.vector_source import crs_to_write
 from ..core.common.errors import RoadExtractionError
 from .database import add_tables
@@ -27,6 +26,8 @@ from .results.layer_tree import keeps_names_only
 from .results.runs import run_of
 from .styling import style_on_load
 from .texts import tr
+
+READERS = {"number": "parameterAsDouble", "whole": "parameterAsInt", "flag": "parameterAsBool", "choice": "parameterAsEnumString"}
 
 
 class QgisCall(Call):
@@ -57,20 +58,9 @@ class QgisCall(Call):
     def file(self, name):
         return self.processing.parameterAsFile(self.parameters, name, self.context)
 
-    def number(self, name):
-        return self.processing.parameterAsDouble(self.parameters, name, self.context)
-
-    def whole(self, name):
-        return self.processing.parameterAsInt(self.parameters, name, self.context)
-
-    def flag(self, name):
-        return self.processing.parameterAsBool(self.parameters, name, self.context)
-
-    def choice(self, name):
-        return self.processing.parameterAsEnumString(self.parameters, name, self.context)
-
-    def string(self, name):
-        return self.processing.parameterAsString(self.parameters, name, self.context)
+    def value(self, name):
+        read = READERS.get(self.algorithm.parameter(name).kind, "parameterAsString")
+        return getattr(self.processing, read)(self.parameters, name, self.context)
 
     def crs(self, name="CRS"):
         """WKT, or "" where none was chosen; refuses a CRS that QGIS does not know, which it would pass over."""
@@ -112,7 +102,7 @@ class QgisCall(Call):
         return QgisSource(layer, self.label(name)), "", ""
 
     def rows_where(self, name, source):
-        text = self.string(name)  # parameterAsExpression hides a faulty one
+        text = self.value(name)  # parameterAsExpression hides a faulty one
         if not text:
             return None
         expression = QgsExpression(text)
@@ -147,7 +137,7 @@ class QgisCall(Call):
         return value
 
     def output_path(self, name):
-        if isinstance(self.algorithm.parameter(name), RasterOutput):
+        if self.algorithm.parameter(name).kind == "raster":
             return self.processing.parameterAsOutputLayer(self.parameters, name, self.context)
         return self.processing.parameterAsFileOutput(self.parameters, name, self.context)
 
@@ -160,10 +150,10 @@ class QgisCall(Call):
             self._results[name] = self._write(name, features)
         for name, _ in self._layers:
             close_database(self.destination(name), self.context)
-        provenance = self.commit_files()
+        provenance = self.sign_files()
         added_to = {destination_path(self.destination(name)).absolute() for name, _ in self._layers
                     if self.destination(name).startswith("ogr:")}
-        self._layer_files.commit(added_to, add_tables)
+        self._unfinished.commit(added_to, add_tables)
         schemas = {name: features.schema for name, features in self._layers}
         run = run_of(provenance, self.surveyed(), self.algorithm.WHOLE_MAP, self.context, self.processing.group_of_inputs)
         for name, dest in self._results.items():
@@ -189,7 +179,7 @@ class QgisCall(Call):
         crs = QgsCoordinateReferenceSystem.fromWkt(wkt) if wkt else QgsCoordinateReferenceSystem()
         parameters, unfinished, file = self.parameters, "", ""
         if path is not None:
-            unfinished = str(self._layer_files.begin(path))
+            unfinished = str(self._unfinished.begin(path))
             beside, file = at_path(value, unfinished)
             parameters = {**parameters, name: self._redirected(name, beside)}
         sink, dest = self.processing.parameterAsSink(parameters, name, self.context, fields, WKB_TYPES[features.geometry_type], crs)

@@ -1,7 +1,6 @@
 """The parameters of an algorithm's declaration as QGIS's own."""
 
 import os
-from functools import singledispatch
 
 from qgis.core import (
     Qgis,
@@ -22,20 +21,16 @@ from qgis.core import (
     QgsProcessingParameterString,
 )
 
-from ..algorithms import parameters as specs
 from ..algorithms.choice_words import choice_word
 from ..algorithms.vector_source import KIND_OF, LINE, POINT, POLYGON
 
 # fileFilter is enforced and case-sensitive, and `extension=` accepts one suffix only
 CLOUD_FILTER = "Point clouds (*.las *.laz *.LAS *.LAZ);;All files (*.*)"
 # Found by name when a dialog is made, which happens in a window only
-WIDGETS = f"{__name__.split('.')[0]}.desktop"
-CLOUDS_WIDGET = {"widget_wrapper": {"class": f"{WIDGETS}.cloud_widget.PointCloudsWrapper"}}
-TRAJECTORY_WIDGET = {"widget_wrapper": {"class": f"{WIDGETS}.trajectory_widget.TrajectoryWrapper"}}
-CHOICE_WIDGET = {"widget_wrapper": {"class": f"{WIDGETS}.choice_widget.ChoiceWrapper"}}  # in other languages than English
-COLUMNS_WIDGET = {"widget_wrapper": {"class": f"{WIDGETS}.columns_widget.ColumnsWrapper"}}
-LAZ_FILTER = "LAZ (*.laz);;LAS (*.las)"
-HTML_FILTER = "HTML (*.html)"
+DESKTOP = f"{__name__.split('.')[0]}.desktop"
+WIDGETS = {"clouds": "cloud_widget.PointCloudsWrapper", "trajectory": "trajectory_widget.TrajectoryWrapper",
+           "columns": "columns_widget.ColumnsWrapper", "choice": "choice_widget.ChoiceWrapper"}  # choices in other languages than English
+FILE_FILTERS = {"cloud": "LAZ (*.laz);;LAS (*.las)", "report": "HTML (*.html)"}  # of results
 DECIMALS = 3  # millimetres; QGIS would show six
 
 SourceType = QgsProcessing.SourceType
@@ -56,13 +51,10 @@ class PointCloudFiles(QgsProcessingParameterMultipleLayers):
         return value if all(isinstance(file, str) and os.path.isfile(file) for file in files) else super().valueAsJsonObject(value, context)
 
 
-def qgis_parameter(spec):
-    """The QGIS parameter of a spec, with its help and in its part of the dialog."""
-    parameter = _parameter(spec)
-    parameter.setHelp(spec.help)
-    if spec.advanced:
-        parameter.setFlags(parameter.flags() | Qgis.ProcessingParameterFlag.Advanced)
-    return parameter
+def _number(spec, kind):
+    limits = spec.limits()
+    return QgsProcessingParameterNumber(
+        spec.name, spec.label, kind, spec.default, **({} if limits is None else dict(minValue=limits[0], maxValue=limits[1])))
 
 
 def _source_type(geometry):
@@ -70,132 +62,64 @@ def _source_type(geometry):
     return SOURCE_TYPES.get(KIND_OF.get(geometry), SourceType.TypeVector)
 
 
-@singledispatch
-def _parameter(spec):
-    raise TypeError(f"QGIS has no parameter for {type(spec).__name__}")
+def _layer(spec):
+    return QgsProcessingParameterFeatureSource(spec.name, spec.label, [_source_type(spec.geometry)])
 
 
-@_parameter.register
-def _(spec: specs.SettingSpec):
-    kind, default = spec.kind(), spec.default
-    if kind == "choice":
-        return _choice(spec, default)
-    if kind == "flag":
-        return QgsProcessingParameterBoolean(spec.name, spec.label, default)
-    if kind == "text":
-        return QgsProcessingParameterString(spec.name, spec.label, default, optional=True)
-    number = QgsProcessingParameterNumber.Type.Integer if kind == "whole" else QgsProcessingParameterNumber.Type.Double
-    limits = spec.limits()
-    parameter = QgsProcessingParameterNumber(
-        spec.name, spec.label, number, default, **({} if limits is None else dict(minValue=limits[0], maxValue=limits[1])))
-    if kind == "number":
+def _text(spec):
+    return QgsProcessingParameterString(spec.name, spec.label, spec.default)
+
+
+def _file_output(spec):
+    return QgsProcessingParameterFileDestination(spec.name, spec.label, FILE_FILTERS.get(spec.kind, spec.file_filter))
+
+
+# Kind of a parameter -> QGIS's own
+INPUTS = {
+    "flag": lambda spec: QgsProcessingParameterBoolean(spec.name, spec.label, spec.default),
+    "choice": lambda spec: QgsProcessingParameterEnum(spec.name, spec.label, list(spec.choices), defaultValue=spec.default, usesStaticStrings=True),
+    "whole": lambda spec: _number(spec, QgsProcessingParameterNumber.Type.Integer),
+    "number": lambda spec: _number(spec, QgsProcessingParameterNumber.Type.Double),
+    "text": _text,
+    "columns": _text,
+    "expression": lambda spec: QgsProcessingParameterExpression(spec.name, spec.label, spec.default, spec.of),
+    "crs": lambda spec: QgsProcessingParameterCrs(spec.name, spec.label, spec.default),
+    "clouds": lambda spec: PointCloudFiles(spec.name, spec.label, SourceType.TypeFile),
+    "cloud": lambda spec: QgsProcessingParameterFile(spec.name, spec.label, fileFilter=CLOUD_FILTER),
+    "file": lambda spec: QgsProcessingParameterFile(spec.name, spec.label, fileFilter=spec.file_filter),
+    "folder": lambda spec: QgsProcessingParameterFile(spec.name, spec.label, Qgis.ProcessingFileParameterBehavior.Folder),
+    "trajectory": _layer,
+    "layer": _layer,
+    "raster": lambda spec: QgsProcessingParameterRasterLayer(spec.name, spec.label),
+    "painted": lambda spec: QgsProcessingParameterMapLayer(spec.name, spec.label, None, False, PAINTED),
+}
+OUTPUTS = {
+    "layer": lambda spec: QgsProcessingParameterFeatureSink(spec.name, spec.label, _source_type(spec.geometry)),
+    "raster": lambda spec: QgsProcessingParameterRasterDestination(spec.name, spec.label),
+    "cloud": _file_output,
+    "report": _file_output,
+    "file": _file_output,
+}
+
+
+def qgis_parameter(spec):
+    """The QGIS parameter of a spec, with its help, its widget and its part of the dialog."""
+    parameter = (OUTPUTS if spec.is_output else INPUTS)[spec.kind](spec)
+    parameter.setHelp(spec.help)
+    for chosen, flag in ((spec.optional, Qgis.ProcessingParameterFlag.Optional), (spec.advanced, Qgis.ProcessingParameterFlag.Advanced)):
+        if chosen:
+            parameter.setFlags(parameter.flags() | flag)
+    if spec.is_output:
+        parameter.setCreateByDefault(spec.by_default)
+    elif spec.kind == "number":
         parameter.setMetadata({"widget_wrapper": {"decimals": DECIMALS}})
+    elif spec.kind in WIDGETS and (spec.kind != "choice" or any(choice_word(choice) != choice for choice in spec.choices)):
+        parameter.setMetadata({"widget_wrapper": {"class": f"{DESKTOP}.{WIDGETS[spec.kind]}"}})
     return parameter
 
 
-def _choice(spec, default):
-    parameter = QgsProcessingParameterEnum(spec.name, spec.label, list(spec.choices), defaultValue=default, usesStaticStrings=True)
-    if any(choice_word(choice) != choice for choice in spec.choices):
-        parameter.setMetadata(CHOICE_WIDGET)
+def retired_parameter(name):
+    """A parameter of an earlier version that commands and models may still give."""
+    parameter = QgsProcessingParameterString(name, name, optional=True)
+    parameter.setFlags(parameter.flags() | Qgis.ProcessingParameterFlag.Hidden | Qgis.ProcessingParameterFlag.Advanced)
     return parameter
-
-
-@_parameter.register
-def _(spec: specs.FlagSpec):
-    return QgsProcessingParameterBoolean(spec.name, spec.label, spec.value)
-
-
-@_parameter.register
-def _(spec: specs.ChoiceSpec):
-    return _choice(spec, spec.value)
-
-
-@_parameter.register
-def _(spec: specs.TextSpec):
-    return QgsProcessingParameterString(spec.name, spec.label, spec.value, optional=spec.optional)
-
-
-@_parameter.register
-def _(spec: specs.ColumnsSpec):
-    parameter = QgsProcessingParameterString(spec.name, spec.label, spec.value, optional=spec.optional)
-    parameter.setMetadata(COLUMNS_WIDGET)
-    return parameter
-
-
-@_parameter.register
-def _(spec: specs.ExpressionSpec):
-    return QgsProcessingParameterExpression(spec.name, spec.label, spec.value, spec.layer, optional=spec.optional)
-
-
-@_parameter.register
-def _(spec: specs.CrsSpec):
-    return QgsProcessingParameterCrs(spec.name, spec.label, spec.value, optional=spec.optional)
-
-
-@_parameter.register
-def _(spec: specs.PointCloudsSpec):
-    parameter = PointCloudFiles(spec.name, spec.label, SourceType.TypeFile, optional=spec.optional)
-    parameter.setMetadata(CLOUDS_WIDGET)
-    return parameter
-
-
-@_parameter.register
-def _(spec: specs.CloudSpec):
-    return QgsProcessingParameterFile(spec.name, spec.label, fileFilter=CLOUD_FILTER, optional=spec.optional)
-
-
-@_parameter.register
-def _(spec: specs.FileSpec):
-    return QgsProcessingParameterFile(spec.name, spec.label, fileFilter=spec.file_filter, optional=spec.optional)
-
-
-@_parameter.register
-def _(spec: specs.FolderSpec):
-    return QgsProcessingParameterFile(spec.name, spec.label, Qgis.ProcessingFileParameterBehavior.Folder, optional=spec.optional)
-
-
-@_parameter.register
-def _(spec: specs.TrajectorySpec):
-    parameter = QgsProcessingParameterFeatureSource(spec.name, spec.label, [_source_type(spec.geometry)], optional=spec.optional)
-    parameter.setMetadata(TRAJECTORY_WIDGET)
-    return parameter
-
-
-@_parameter.register
-def _(spec: specs.LayerSpec):
-    return QgsProcessingParameterFeatureSource(spec.name, spec.label, [_source_type(spec.geometry)], optional=spec.optional)
-
-
-@_parameter.register
-def _(spec: specs.RasterSpec):
-    return QgsProcessingParameterRasterLayer(spec.name, spec.label, optional=spec.optional)
-
-
-@_parameter.register
-def _(spec: specs.PaintedSpec):
-    return QgsProcessingParameterMapLayer(spec.name, spec.label, None, spec.optional, PAINTED)
-
-
-@_parameter.register
-def _(spec: specs.LayerOutput):
-    return QgsProcessingParameterFeatureSink(spec.name, spec.label, _source_type(spec.geometry), None, spec.optional, spec.by_default)
-
-
-@_parameter.register
-def _(spec: specs.CloudOutput):
-    return QgsProcessingParameterFileDestination(spec.name, spec.label, LAZ_FILTER, None, spec.optional, spec.by_default)
-
-
-@_parameter.register
-def _(spec: specs.ReportOutput):
-    return QgsProcessingParameterFileDestination(spec.name, spec.label, HTML_FILTER, None, spec.optional, spec.by_default)
-
-
-@_parameter.register
-def _(spec: specs.FileOutput):
-    return QgsProcessingParameterFileDestination(spec.name, spec.label, spec.file_filter, None, spec.optional, spec.by_default)
-
-
-@_parameter.register
-def _(spec: specs.RasterOutput):
-    return QgsProcessingParameterRasterDestination(spec.name, spec.label, None, spec.optional, spec.by_default)

@@ -1,5 +1,6 @@
 """Loads the checkout under the name QGIS gives it, whatever its folder is called."""
 
+import hashlib
 import importlib.util
 import os
 import shutil
@@ -60,6 +61,28 @@ def made_once(tmp_path_factory):
                 make(unfinished)
                 unfinished.rename(folder)
         return folder
+    return made
+
+
+@pytest.fixture(scope="session", autouse=True)
+def no_qgis():
+    """`make test` runs these tests where qgis cannot be imported; every process of them sees that it is so."""
+    if os.environ.get("LANEWRIGHT_WITHOUT_QGIS"):
+        for name in ("qgis", "qgis.core"):
+            with pytest.raises(ImportError):
+                importlib.import_module(name)
+        assert not any(name.startswith("qgis.") for name in sys.modules)
+
+
+@pytest.fixture(scope="session")
+def made_survey(made_once):
+    """`made_survey(length=60.0, …)` is a sample survey, and its cloud, which is written once for all tests."""
+    from lanewright.simulator.survey import SampleSettings, make_sample_survey
+
+    def made(**settings):
+        sample = make_sample_survey(SampleSettings(**settings))
+        name = hashlib.sha256(repr(sample.settings).encode()).hexdigest()[:16]
+        return sample, made_once(name, lambda folder: sample.write_cloud(folder / "survey.las")) / "survey.las"
     return made
 
 

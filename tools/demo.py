@@ -92,8 +92,8 @@ def percent(share):
 def accuracy():
     """Print how far the result is from the truth of the sample survey."""
     load()
-    from lanewright.core.assess.driving_lines import compare_lines
-    from lanewright.core.assess.markings import assess_markings
+    from lanewright.products.assess.driving_lines import compare_lines
+    from lanewright.products.assess.markings import assess_markings
 
     area = road_area()
     edges = compare_lines(geometries(PACKAGE, "road_edges")[0], _curbs(), area=area)

@@ -107,9 +107,9 @@ def _trajectories(folder):
 
 
 def _images(folder):
-    from lanewright.core.overlay.control_points import read_control_points
-    from lanewright.core.overlay.rough_place import read_position_tags
-    from lanewright.core.overlay.source_image import SourceImage, open_image
+    from lanewright.products.overlay.control_points import read_control_points
+    from lanewright.products.overlay.rough_place import read_position_tags
+    from lanewright.products.overlay.source_image import SourceImage, open_image
     from osgeo import gdal
 
     def points(path):
@@ -138,8 +138,8 @@ def _images(folder):
 
 
 def _maps():
-    from lanewright.core.export.lanelet_map import read_lanelet2
-    from lanewright.core.export.opendrive.xodr import read_opendrive
+    from lanewright.products.export.lanelet_map import read_lanelet2
+    from lanewright.products.export.opendrive.xodr import read_opendrive
     from map_files import geometry, lanelet_street, opendrive, road
 
     shapes = ["<line/>", '<arc curvature="0.01"/>', '<spiral curvStart="0" curvEnd="0.02"/>',

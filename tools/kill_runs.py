@@ -29,7 +29,7 @@ def run(folder, trajectory, output):
 
 
 def is_writing(folder):
-    return any(".unfinished" in name or name.endswith(("-journal", "-wal", ".previous")) for name in os.listdir(folder))
+    return any(".unfinished" in name or name.endswith(("-journal", "-wal")) for name in os.listdir(folder))
 
 
 def times(folder, output):

@@ -15,7 +15,7 @@ fi
 "$lint/bin/mypy" --no-error-summary --python-executable "$LANEWRIGHT_BUILD/venv/bin/python"
 # what is gone from Qt 6 or QGIS 4; QGS105: the interface is handed on, so that a test can hand on another
 git ls-files -z '*.py' ':!tests' | xargs -0 "$lint/bin/flake8" --select QGS1,QGS4 --extend-ignore QGS105
-git ls-files -z '*.py' ':!core' ':!tests/core' | xargs -0 "$lint/bin/python" tools/qt6_names.py
+git ls-files -z '*.py' ':!core' ':!products' ':!simulator' ':!tests/core' ':!tests/products' ':!tests/simulator' | xargs -0 "$lint/bin/python" tools/qt6_names.py
 "$lint/bin/bandit" -q -c pyproject.toml -r .
 git ls-files -z | xargs -0 "$lint/bin/detect-secrets-hook"
 echo "No complaints."

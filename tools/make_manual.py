@@ -83,7 +83,7 @@ def page(algorithm, language):
     lines += [part + "\n" for part in algorithm.declaration.help_paragraphs()]
     if (PAGES / "img" / f"{algorithm.name()}.png").exists():
         lines += [f"![{algorithm.declaration.title()}]({'../' if language else ''}img/{algorithm.name()}.png)", ""]
-    definitions = algorithm.parameterDefinitions()
+    definitions = [definition for definition in algorithm.parameterDefinitions() if definition.name() not in algorithm.declaration.RETIRED]
     inputs = [d for d in definitions if not d.isDestination()]
     plain = [d for d in inputs if not advanced(d)]
     folded = [d for d in inputs if advanced(d)]
@@ -220,10 +220,9 @@ def write(folder, language):
     application.initQgis()
     try:
         if language:
-            from lanewright.processing_provider.texts import install_translator
+            from lanewright.processing_provider.texts import speak
 
-            translator = install_translator(language)  # Qt keeps none
-            assert translator is not None, f"there is no translation to {language}: run make translations"
+            assert speak(language), f"there is no translation to {language}: run make translations"
         from lanewright.algorithms.catalogue import ALGORITHMS
 
         folder.mkdir(parents=True, exist_ok=True)

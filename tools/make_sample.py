@@ -42,8 +42,8 @@ def main():
     parser.add_argument("folder", type=Path)
     load()
     from lanewright.core.common.errors import RoadExtractionError
-    from lanewright.core.sample.scenes import SCENES
-    from lanewright.core.sample.survey import SampleSettings, make_sample_survey
+    from lanewright.simulator.scenes import SCENES
+    from lanewright.simulator.survey import SampleSettings, make_sample_survey
 
     default = SampleSettings()
     parser.add_argument("--scene", choices=SCENES, default=default.scene)

@@ -21,7 +21,7 @@ COLOURS = {15.0: "#1f6fb2", 45.0: "#c8502c"}
 
 def make(folder, speed, length):
     """A sample survey of a street at one speed; (cloud, SampleSurvey)."""
-    from lanewright.core.sample.survey import SampleSettings, make_sample_survey
+    from lanewright.simulator.survey import SampleSettings, make_sample_survey
 
     sample = make_sample_survey(SampleSettings(length=length, speed_kmh=speed, rotation_rate=ROTATION, pulse_rate=150_000.0))
     cloud = folder / f"street_{speed:.0f}.laz"
@@ -48,10 +48,10 @@ def thinned(cloud, keep):
 
 def measure(survey, sample, interval):
     """F1 and the errors of scanline boundaries against the sample's truth."""
-    from lanewright.core.assess.boundaries import assess_boundaries
     from lanewright.core.road.edges.fit import fit_road_edges
     from lanewright.core.road.scanlines.detect import SurveyScanlines, curbs_from_scanlines
     from lanewright.core.road.scanlines.section_planes import ScanlineSettings
+    from lanewright.products.assess.boundaries import assess_boundaries
 
     edges = fit_road_edges(curbs_from_scanlines(SurveyScanlines(survey, ScanlineSettings(interval=interval))), survey.frame)
     truth, dropped = [], []

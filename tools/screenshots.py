@@ -168,8 +168,8 @@ def corrections(dock):
 
 def pairs():
     """The UAV image of the sample survey and the intensity image of its road map: pairs of cut-outs, accepted and refused."""
-    from lanewright.core.sample.orthophoto import write_uav_image
-    from lanewright.core.sample.survey import make_sample_survey
+    from lanewright.simulator.orthophoto import write_uav_image
+    from lanewright.simulator.survey import make_sample_survey
 
     path = Path(tempfile.mkdtemp()) / "flight_0031.tif"
     write_uav_image(make_sample_survey(), path)

@@ -16,7 +16,7 @@ from plugin_package import ROOT, load
 
 load()
 
-from lanewright.core.sample.scenes import SCENES  # noqa: E402
+from lanewright.simulator.scenes import SCENES  # noqa: E402
 
 CLOUDS = ("cloud.laz", "cloud.copc.laz", "cloud.las")
 TRAJECTORY = "trajectory.csv"

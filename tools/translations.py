@@ -1,9 +1,7 @@
-"""Collects what the user reads into resources/i18n/lanewright_*.ts: translations.py [LANGUAGE ...]
+"""Collects what the user reads into resources/i18n, English and translation side by side: translations.py [LANGUAGE ...]
 
-The usual chain: this finds the texts (Qt's own lupdate reads no Python, and pylupdate no texts that stand in
-a class), Qt Linguist or any editor translates the .ts, lrelease makes the .qm that QGIS loads. Texts that were
-translated keep their translation; those that are gone go. What the core says stands in core_*.json, English and translation
-side by side, with {} for numbers and names in the same order.
+Texts of the code stand in lanewright_*.json, sentences of the core in core_*.json, with {} for numbers and names in the same order. An
+empty translation is none yet. Texts that were translated keep their translation; those that are gone go.
 """
 
 import ast
@@ -18,16 +16,15 @@ from models import RECIPES
 
 ROOT = Path(__file__).resolve().parents[1]
 FOLDER = ROOT / "resources" / "i18n"
-TEMPLATES = ROOT / "core" / "report" / "templates"
+TEMPLATES = ROOT / "products" / "report" / "templates"
 SCHEMAS = ROOT / "core" / "common" / "features.py"
-CONTEXT = "Lanewright"
-FOLDERS = ("algorithms", "processing_provider", "desktop", "core", "library")
+FOLDERS = ("algorithms", "processing_provider", "desktop", "core", "products", "simulator", "library")
 FEWEST_LETTERS = 8  # of a sentence of the core: what is shorter would be found in anything
 FEWEST_WORDS = 3  # of a phrase of the core that is put into a sentence elsewhere
 # Errors that tell a programmer, not a user
 OF_PROGRAMMERS = {"ValueError", "TypeError", "KeyError", "IndexError", "AttributeError", "AssertionError", "RuntimeError", "OSError"}
 # The texts of the first are translated as those of a dialog, the last holds names of columns in many languages
-NO_SENTENCES = ("core/report", "core/common/features.py", "core/common/texts.py", "core/survey/trajectory/columns.py")
+NO_SENTENCES = ("products/report", "core/common/features.py", "core/common/texts.py", "core/survey/trajectory/columns.py")
 # Patterns, XML, CRSs, names of columns, commands
 NO_PROSE = re.compile(r"[\\]|<[?x!]|^ *<[A-Za-z]|^[+]proj=|^[A-Z_]+\[|"
                       r"^(pixel|line|mapx|mapy|mapz|name|enable|check) \w+ \w+|^pip |^1 hit|^SELECT |lanewright [A-Z{l]")
@@ -111,7 +108,7 @@ def core_messages():
     What is said at once comes first, then the sentences and phrases that are put together elsewhere.
     """
     said, phrases = {}, {}
-    for path in sorted(path for folder in ("core", "library") for path in (ROOT / folder).rglob("*.py")):
+    for path in sorted(path for folder in ("core", "products", "simulator", "library") for path in (ROOT / folder).rglob("*.py")):
         file, tree = path.relative_to(ROOT).as_posix(), ast.parse(path.read_text(encoding="utf-8"))
         for node in ast.walk(tree):
             argument = said_in(node)
@@ -173,52 +170,21 @@ def template_of(node):
     return None
 
 
-def update_core(language):
-    """Bring the sentences of the core in one language up to date; how many there are and how many lack a translation."""
-    path = FOLDER / f"core_{language}.json"
+def update(name, found):
+    """Bring one file up to date; how many texts it has and how many lack a translation."""
+    path = FOLDER / f"{name}.json"
     known = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
-    found = {text: known.get(text, "") for text in core_messages()}
-    path.write_text(json.dumps(found, ensure_ascii=False, indent=1) + "\n", encoding="utf-8")
-    return len(found), sum(not target for target in found.values())
-
-
-def update(language, found):
-    """Bring one .ts up to date; how many texts it has and how many lack a translation."""
-    path = FOLDER / f"lanewright_{language}.ts"
-    known = translated(path) if path.exists() else {}
-    root = ET.Element("TS", version="2.1", language=language, sourcelanguage="en")
-    context = ET.SubElement(root, "context")
-    ET.SubElement(context, "name").text = CONTEXT
-    for text, file in found.items():
-        message = ET.SubElement(context, "message")
-        ET.SubElement(message, "location", filename=f"../../{file}")
-        ET.SubElement(message, "source").text = text
-        target = ET.SubElement(message, "translation")
-        if text in known:
-            target.text = known[text]
-        else:
-            target.set("type", "unfinished")
-    ET.indent(root, "    ")
-    FOLDER.mkdir(parents=True, exist_ok=True)
-    path.write_text('<?xml version="1.0" encoding="utf-8"?>\n<!DOCTYPE TS>\n' + ET.tostring(root, encoding="unicode") + "\n", encoding="utf-8")
-    return len(found), len(set(found) - set(known))
-
-
-def translated(path):
-    """Source text -> translation, of those that are finished."""
-    messages = ET.parse(path).getroot().iter("message")
-    return {message.findtext("source"): message.findtext("translation") for message in messages
-            if message.find("translation").get("type") != "unfinished" and message.findtext("translation")}
+    kept = {text: known.get(text, "") for text in found}
+    path.write_text(json.dumps(kept, ensure_ascii=False, indent=1) + "\n", encoding="utf-8")
+    return len(kept), sum(not target for target in kept.values())
 
 
 def main():
-    languages = sys.argv[1:] or sorted(path.stem.split("_", 1)[1] for path in FOLDER.glob("lanewright_*.ts"))
-    found = texts()
+    languages = sys.argv[1:] or sorted(path.stem.split("_", 1)[1] for path in FOLDER.glob("lanewright_*.json"))
     for language in languages:
-        total, missing = update(language, found)
-        print(f"{language}: {total} texts, {missing} without translation")
-        total, missing = update_core(language)
-        print(f"{language}: {total} sentences of the core, {missing} without translation")
+        for name, found in ((f"lanewright_{language}", texts()), (f"core_{language}", core_messages())):
+            total, missing = update(name, found)
+            print(f"{name}: {total} texts, {missing} without translation")
 
 
 if __name__ == "__main__":

@@ -2,7 +2,7 @@
 
 from ...core.common.features import ASSESSED_BOUNDARIES
 from ..algorithm import Algorithm
-from ..parameters import ChoiceSpec, SettingSpec, settings_class
+from ..parameters import SettingSpec
 from ..texts import tr
 from .inputs import (
     add_area,
@@ -17,7 +17,7 @@ from .inputs import (
     tolerances,
 )
 
-BOUNDARY = "assess.boundaries:BoundaryAccuracySettings"
+BOUNDARY = "products.assess.boundaries:BoundaryAccuracySettings"
 
 EDGES = ("automatic", "all", "curbs")
 BOUNDARY_SETTINGS = (
@@ -35,16 +35,6 @@ BOUNDARY_SETTINGS = (
     ),
 )
 
-NUMBERS = (
-    ("PRECISION", tr("Precision (%)")), ("RECALL", tr("Recall (%)")), ("F1", tr("F (%)")), ("IOU", tr("Intersection over union (%)")),
-    ("CORRECT", tr("Correct intervals")), ("MISSED", tr("Missed intervals")), ("FALSE", tr("False intervals")),
-    ("EXCLUDED_INTERVALS", tr("Intervals that were not judged")),
-    ("MEAN", tr("Mean lateral error (m)")), ("RMSE", tr("RMSE across (m)")), ("P95", tr("95th percentile of the lateral error (m)")),
-    ("MAXIMUM", tr("Largest lateral error (m)")), ("HEIGHT_MEAN", tr("Mean height error (m)")), ("HEIGHT_RMSE", tr("RMSE in height (m)")),
-    ("HEIGHT_P95", tr("95th percentile of the height error (m)")), ("HEIGHT_MAXIMUM", tr("Largest height error (m)")),
-    *((f"{rate}_{side.upper()}", tr("{rate}, {side} (%)").format(rate=rate.capitalize(), side=side))
-      for side in ("left", "right") for rate in ("PRECISION", "RECALL", "F1")),
-)
 
 
 class AssessBoundaries(Algorithm):
@@ -54,35 +44,41 @@ class AssessBoundaries(Algorithm):
             "A layer in another CRS is reprojected. Where a layer tells tops from bottoms in a field part, bottoms count.")
     TAGS = ("accuracy", "precision", "recall", "validation", "curb", "reference", "ground truth")
     LOOKS = {"OUTPUT": "ASSESSED_LINES"}
+    NUMBERS = (
+        ("PRECISION", tr("Precision (%)")), ("RECALL", tr("Recall (%)")), ("F1", tr("F (%)")), ("IOU", tr("Intersection over union (%)")),
+        ("CORRECT", tr("Correct intervals")), ("MISSED", tr("Missed intervals")), ("FALSE", tr("False intervals")),
+        ("EXCLUDED_INTERVALS", tr("Intervals that were not judged")),
+        ("MEAN", tr("Mean lateral error (m)")), ("RMSE", tr("RMSE across (m)")), ("P95", tr("95th percentile of the lateral error (m)")),
+        ("MAXIMUM", tr("Largest lateral error (m)")), ("HEIGHT_MEAN", tr("Mean height error (m)")), ("HEIGHT_RMSE", tr("RMSE in height (m)")),
+        ("HEIGHT_P95", tr("95th percentile of the height error (m)")), ("HEIGHT_MAXIMUM", tr("Largest height error (m)")),
+        *((f"{rate}_{side.upper()}", tr("{rate}, {side} (%)").format(rate=rate.capitalize(), side=side))
+          for side in ("left", "right") for rate in ("PRECISION", "RECALL", "F1")),
+    )
 
     def declare(self):
-        self.add_layer("INPUT", tr("Boundaries to assess"), tr("Lines that were extracted, such as road edges."), "LineStringZ")
-        self.add_layer("REFERENCE", tr("Reference boundaries"), tr(
+        self.add_input("layer", "INPUT", tr("Boundaries to assess"), tr("Lines that were extracted, such as road edges."), "LineStringZ")
+        self.add_input("layer", "REFERENCE", tr("Reference boundaries"), tr(
             "Lines that are known to be right, one on each side of the road, such as the feet of the curbs."), "LineStringZ")
         self.add_trajectory(optional=True)
-        settings = settings_class(BOUNDARY)
-        if settings is not None:
-            add_tolerances(self, settings(), tr("Tolerances (m)"), tr(
-                "Distances to either side within which a line is right, with commas between them. The report has a row for each."))
+        add_tolerances(self, BOUNDARY, tr("Tolerances (m)"), tr(
+            "Distances to either side within which a line is right, with commas between them. The report has a row for each."))
         self.add_settings(BOUNDARY_SETTINGS)
-        self.add(ChoiceSpec(
-            "EDGES", tr("Edges to judge"),
+        self.add_input(
+            "choice", "EDGES", tr("Edges to judge"),
             tr("Road edges hold curbs and, where there is no curb, edges of the pavement. Curbs judges curbs alone; all judges whatever both layers "
                "hold. Automatic leaves edges of the pavement out where the field edge or kind of the reference says that it holds curbs alone: "
                "such a reference cannot tell whether they are right."),
-            value=EDGES[0], choices=EDGES,
-        ))
+            default=EDGES[0], choices=EDGES,
+        )
         add_excluded(self)
         add_area(self)
         self.add_sink("OUTPUT", tr("Boundaries by outcome"), tr("One line an interval and outcome."), fields=ASSESSED_BOUNDARIES,
                       geometry="MultiLineStringZ")
         self.add_report()
-        for name, label in NUMBERS:
-            self.add_number(name, label)
 
     def work(self, call, progress):
-        from ...core.assess.boundaries import assess_boundaries
-        from ...core.assess.inputs import (
+        from ...products.assess.boundaries import assess_boundaries
+        from ...products.assess.inputs import (
             along_the_road_only,
             bottoms_only,
             check_kind,
@@ -93,32 +89,26 @@ class AssessBoundaries(Algorithm):
             in_crs,
             without_stray_vertices,
         )
-        from ...core.assess.layers import boundary_layer
-        from ...core.report.assessment import boundary_report
+        from ...products.assess.layers import boundary_layer
+        from ...products.report.assessment import boundary_report
 
         settings = call.settings(BOUNDARY_SETTINGS, tolerances=tolerances(call))
-        warnings = []
-
-        def warn(text):
-            warnings.append(text)
-            progress.warn(text)
-
         result, (reference, excluded, kinds) = layer_of(call, "INPUT"), layer_and_excluded(call, "REFERENCE")
         for layer in (result, reference):
             check_kind(layer, ("LineString", "Polygon"), tr("lines"))
         crs = common_crs((reference, result))
-        result, reference = (without_stray_vertices(in_crs(layer, crs, warn), warn) for layer in (result, reference))
+        result, reference = (without_stray_vertices(in_crs(layer, crs, progress.warn), progress.warn) for layer in (result, reference))
         check_overlap(result, reference)
         progress.report(0.2)
-        frame, area = frame_of_drive(call, crs), area_of(call, crs, warn)
+        frame, area = frame_of_drive(call, crs), area_of(call, crs, progress.warn)
         for choose in (bottoms_only, along_the_road_only):
-            result, _ = choose(result, warn)
-            reference, kept = choose(reference, warn)
+            result, _ = choose(result, progress.warn)
+            reference, kept = choose(reference, progress.warn)
             excluded, kinds = ([values[k] for k in kept] for values in (excluded, kinds))
-        result, reference, kept = edges_that_compare(result, reference, call.choice("EDGES"), warn)
+        result, reference, kept = edges_that_compare(result, reference, call.value("EDGES"), progress.warn)
         excluded, kinds = ([values[k] for k in kept] for values in (excluded, kinds))
         judged = reference.subset([not x for x in excluded])
-        check_reference(judged, result, frame, area, settings.corridor, warn)
+        check_reference(judged, result, frame, area, settings.corridor, progress.warn)
         progress.report(0.4)
         accuracy = assess_boundaries(
             result.geometries, judged.geometries, settings, frame, reference.subset(excluded).geometries,
@@ -127,7 +117,7 @@ class AssessBoundaries(Algorithm):
         layer = boundary_layer(accuracy, crs, progress.part(0.8, 0.95))
         call.layer("OUTPUT", layer)
         if call.wants("REPORT"):
-            call.text("REPORT", boundary_report(accuracy, layer, (call.layer_name("INPUT"), call.layer_name("REFERENCE")), warnings))
+            call.text("REPORT", boundary_report(accuracy, layer, (call.layer_name("INPUT"), call.layer_name("REFERENCE")), progress.texts))
         numbers = found_numbers(_numbers(accuracy))
         progress.info(tr("Intervals within {tolerance:g} cm: {correct:.0f} correct, {missed:.0f} missed, {false:.0f} false; {rates}.").format(
             correct=numbers["CORRECT"], missed=numbers["MISSED"], false=numbers["FALSE"], tolerance=100 * settings.tolerance,

@@ -4,11 +4,11 @@ from dataclasses import replace
 
 from ...core.common.features import ASSESSED_DRIVING_LINES
 from ..algorithm import Algorithm
-from ..parameters import ChoiceSpec, SettingSpec, settings_class
+from ..parameters import SettingSpec, settings_class
 from ..texts import tr
 from .inputs import add_area, add_tolerances, area_of, found_numbers, frame_of_drive, layer_of, shares_of, tolerances
 
-LINES = "assess.driving_lines:LineAccuracySettings"
+LINES = "products.assess.driving_lines:LineAccuracySettings"
 WIDTHS = ("half-width", "total-width")
 
 LINE_SETTINGS = (
@@ -24,15 +24,6 @@ LINE_SETTINGS = (
     ),
 )
 
-NUMBERS = (
-    ("COMPLETENESS", tr("Completeness (%)")), ("CORRECTNESS", tr("Correctness (%)")),
-    ("QUALITY", tr("Quality (%)")), ("MISCODING", tr("Miscoding (%)")),
-    ("PRECISION", tr("Precision, the same as correctness (%)")), ("RECALL", tr("Recall, the same as completeness (%)")), ("F1", tr("F1 (%)")),
-    ("MEAN", tr("Mean lateral error (m)")), ("RMSE", tr("RMSE across (m)")), ("P95", tr("95th percentile of the lateral error (m)")),
-    ("MAXIMUM", tr("Largest lateral error (m)")), ("HEIGHT_RMSE", tr("RMSE in height (m)")), ("GAPS_PER_KM", tr("Gaps per km")),
-    ("MEAN_GAP", tr("Mean length of the gaps (m)")), ("RESULT_LENGTH", tr("Length of the result (m)")),
-    ("REFERENCE_LENGTH", tr("Length of the reference (m)")),
-)
 
 
 class AssessDrivingLines(Algorithm):
@@ -42,52 +33,51 @@ class AssessDrivingLines(Algorithm):
             "A layer in another CRS is reprojected. Miscoding is the share of the result outside the buffer of the reference.")
     TAGS = ("accuracy", "miscoding", "completeness", "correctness", "buffer", "validation", "reference", "ground truth")
     LOOKS = {"OUTPUT": "ASSESSED_LINES"}
+    NUMBERS = (
+        ("COMPLETENESS", tr("Completeness (%)")), ("CORRECTNESS", tr("Correctness (%)")),
+        ("QUALITY", tr("Quality (%)")), ("MISCODING", tr("Miscoding (%)")),
+        ("PRECISION", tr("Precision, the same as correctness (%)")), ("RECALL", tr("Recall, the same as completeness (%)")), ("F1", tr("F1 (%)")),
+        ("MEAN", tr("Mean lateral error (m)")), ("RMSE", tr("RMSE across (m)")), ("P95", tr("95th percentile of the lateral error (m)")),
+        ("MAXIMUM", tr("Largest lateral error (m)")), ("HEIGHT_RMSE", tr("RMSE in height (m)")), ("GAPS_PER_KM", tr("Gaps per km")),
+        ("MEAN_GAP", tr("Mean length of the gaps (m)")), ("RESULT_LENGTH", tr("Length of the result (m)")),
+        ("REFERENCE_LENGTH", tr("Length of the reference (m)")),
+    )
 
     def declare(self):
-        self.add_layer("INPUT", tr("Driving lines to assess"), tr("Lines that were made."), "LineStringZ")
-        self.add_layer("REFERENCE", tr("Reference lines"), tr(
+        self.add_input("layer", "INPUT", tr("Driving lines to assess"), tr("Lines that were made."), "LineStringZ")
+        self.add_input("layer", "REFERENCE", tr("Reference lines"), tr(
             "Lines that are known to be right, such as those drawn over an orthoimage."), "LineStringZ")
         self.add_trajectory(optional=True)
-        settings = settings_class(LINES)
-        if settings is not None:
-            add_tolerances(self, settings(), tr("Tolerances (m)"), tr(
-                "Sizes of the buffer, with commas between them. The report has a row for each."))
-        self.add(ChoiceSpec(
-            "WIDTH", tr("Tolerances are"),
+        add_tolerances(self, LINES, tr("Tolerances (m)"), tr(
+            "Sizes of the buffer, with commas between them. The report has a row for each."))
+        self.add_input(
+            "choice", "WIDTH", tr("Tolerances are"),
             tr("Half-width: from the line to the rim of its buffer. Total-width: from rim to rim, so that 0.20 lets a line be 0.10 m off. Published "
                "figures seldom say which they mean; the report shows both."),
-            value=WIDTHS[0], choices=WIDTHS,
-        ))
+            default=WIDTHS[0], choices=WIDTHS,
+        )
         self.add_settings(LINE_SETTINGS)
         add_area(self)
         self.add_sink("OUTPUT", tr("Driving lines by outcome"), tr("The lines cut where the outcome changes: false pieces lie outside the buffer."),
                       fields=ASSESSED_DRIVING_LINES, geometry="MultiLineStringZ")
         self.add_report()
-        for name, label in NUMBERS:
-            self.add_number(name, label)
 
     def work(self, call, progress):
-        from ...core.assess.driving_lines import match_lines
-        from ...core.assess.inputs import check_kind, check_overlap, check_reference, common_crs, in_crs, without_stray_vertices
-        from ...core.assess.layers import driving_line_layer
-        from ...core.assess.matching import stations_of_match
-        from ...core.report.assessment import driving_report
+        from ...products.assess.driving_lines import match_lines
+        from ...products.assess.inputs import check_kind, check_overlap, check_reference, common_crs, in_crs, without_stray_vertices
+        from ...products.assess.layers import driving_line_layer
+        from ...products.assess.matching import stations_of_match
+        from ...products.report.assessment import driving_report
 
         settings = self._settings(call)
-        warnings = []
-
-        def warn(text):
-            warnings.append(text)
-            progress.warn(text)
-
         result, reference = layer_of(call, "INPUT"), layer_of(call, "REFERENCE")
         for layer in (result, reference):
             check_kind(layer, ("LineString", "Polygon"), tr("lines"))
         crs = common_crs((reference, result))
-        result, reference = (without_stray_vertices(in_crs(layer, crs, warn), warn) for layer in (result, reference))
+        result, reference = (without_stray_vertices(in_crs(layer, crs, progress.warn), progress.warn) for layer in (result, reference))
         check_overlap(result, reference)
-        frame, area = frame_of_drive(call, crs), area_of(call, crs, warn)
-        check_reference(reference, result, frame, area, warn=warn)
+        frame, area = frame_of_drive(call, crs), area_of(call, crs, progress.warn)
+        check_reference(reference, result, frame, area, warn=progress.warn)
         progress.report(0.3)
         match = match_lines(result.geometries, reference.geometries, area, settings.max_angle, progress.part(0.3, 0.7))
         accuracy = match.accuracy(settings.tolerances)
@@ -98,7 +88,7 @@ class AssessDrivingLines(Algorithm):
             station, along = stations_of_match(match, frame)
             call.text("REPORT", driving_report(
                 match, accuracy, settings, layer, (call.layer_name("INPUT"), call.layer_name("REFERENCE")), station, along,
-                call.choice("WIDTH") == "total-width", warnings))
+                call.value("WIDTH") == "total-width", progress.texts))
         numbers = found_numbers(_numbers(accuracy, settings.tolerance))
         progress.info(tr("Within {tolerance:g} cm to either side: {rates}.").format(
             tolerance=100 * settings.tolerance, rates=shares_of(numbers, ("COMPLETENESS", "CORRECTNESS", "MISCODING"))))
@@ -106,14 +96,14 @@ class AssessDrivingLines(Algorithm):
 
     def _settings(self, call):
         """The core works with half-widths."""
-        share = 0.5 if call.choice("WIDTH") == "total-width" else 1.0
-        given = {spec.field: call.setting(spec) for spec in LINE_SETTINGS}
+        share = 0.5 if call.value("WIDTH") == "total-width" else 1.0
+        given = {spec.field: call.value(spec.name) for spec in LINE_SETTINGS}
         widths = tuple(share * width for width in tolerances(call))
         return replace(settings_class(LINES)(), **(given | {"tolerance": share * given["tolerance"], "tolerances": widths}))
 
 
 def _numbers(accuracy, tolerance):
-    from ...core.assess.metrics import f1_of
+    from ...products.assess.metrics import f1_of
 
     complete, correct = 100 * accuracy.completeness[tolerance], 100 * accuracy.correctness[tolerance]
     return {

@@ -2,11 +2,11 @@
 
 from ...core.common.features import ASSESSED_MARKINGS
 from ..algorithm import Algorithm
-from ..parameters import PaintedSpec, SettingSpec, TextSpec, settings_class
+from ..parameters import SettingSpec
 from ..texts import tr
 from .inputs import add_area, add_tolerances, area_of, found_numbers, frame_of_drive, painted_of, shares_of, tolerances
 
-MARKINGS = "assess.markings:MarkingAccuracySettings"
+MARKINGS = "products.assess.markings:MarkingAccuracySettings"
 
 MARKING_SETTINGS = (
     SettingSpec(
@@ -21,20 +21,8 @@ MARKING_SETTINGS = (
         "LINE_WIDTH", MARKINGS, "line_width", tr("Width of lines (m)"),
         tr("How wide paint is where a layer of lines has no field width_m or width."), advanced=True,
     ),
-    SettingSpec(
-        "FOUND_SHARE", MARKINGS, "found_share", tr("Share of an object that makes it found (0-1)"),
-        tr("Higher asks for more of an object before it counts as found, or as right."), advanced=True,
-    ),
 )
 
-NUMBERS = (
-    *((name, tr("{what} (%)").format(what=what)) for name, what in (
-        ("PRECISION", "Precision of cells, strict"), ("RECALL", "Recall of cells, strict"), ("F1", "F1 of cells, strict"),
-        ("IOU", "Intersection over union of cells, strict"), ("PRECISION_TOLERANT", "Precision of cells with tolerance"),
-        ("RECALL_TOLERANT", "Recall of cells with tolerance"), ("F1_TOLERANT", "F1 of cells with tolerance"),
-        ("OBJECT_PRECISION", "Precision of objects"), ("OBJECT_RECALL", "Recall of objects"), ("OBJECT_F1", "F1 of objects"))),
-    ("HITS", tr("Cells that are right")), ("MISSES", tr("Cells that were missed")), ("FALSE_ALARMS", tr("Cells that are false")),
-)
 
 
 class AssessMarkings(Algorithm):
@@ -44,52 +32,51 @@ class AssessMarkings(Algorithm):
             "is reprojected.")
     TAGS = ("accuracy", "precision", "recall", "iou", "validation", "road marking", "reference", "ground truth")
     LOOKS = {"OUTPUT": "ASSESSED_POLYGONS", "CELLS": "ASSESSED_CELLS"}
+    NUMBERS = (
+        *((name, tr("{what} (%)").format(what=what)) for name, what in (
+            ("PRECISION", "Precision of cells, strict"), ("RECALL", "Recall of cells, strict"), ("F1", "F1 of cells, strict"),
+            ("IOU", "Intersection over union of cells, strict"), ("PRECISION_TOLERANT", "Precision of cells with tolerance"),
+            ("RECALL_TOLERANT", "Recall of cells with tolerance"), ("F1_TOLERANT", "F1 of cells with tolerance"),
+            ("OBJECT_PRECISION", "Precision of objects"), ("OBJECT_RECALL", "Recall of objects"), ("OBJECT_F1", "F1 of objects"))),
+        ("HITS", tr("Cells that are right")), ("MISSES", tr("Cells that were missed")), ("FALSE_ALARMS", tr("Cells that are false")),
+    )
+    RETIRED = ("FOUND_SHARE",)
 
     def declare(self):
-        self.add(PaintedSpec("INPUT", tr("Markings to assess"), tr("Polygons, lines with a width, or a mask.")))
-        self.add(PaintedSpec("REFERENCE", tr("Reference markings"),
-                             tr("Polygons, lines or a raster of what is painted; the values of a raster are its classes.")))
+        self.add_input("painted", "INPUT", tr("Markings to assess"), tr("Polygons, lines with a width, or a mask."))
+        self.add_input("painted", "REFERENCE", tr("Reference markings"),
+                       tr("Polygons, lines or a raster of what is painted; the values of a raster are its classes."))
         self.add_trajectory(optional=True)
-        settings = settings_class(MARKINGS)
-        if settings is not None:
-            add_tolerances(self, settings(), tr("Tolerances (cells)"), tr(
-                "Cells by which the other layer is widened before it is asked, with commas between them; 0 is strict."))
+        add_tolerances(self, MARKINGS, tr("Tolerances (cells)"), tr(
+            "Cells by which the other layer is widened before it is asked, with commas between them; 0 is strict."))
         self.add_settings(MARKING_SETTINGS)
-        self.add(TextSpec("CLASS_FIELD", tr("Field with the class"),
-                          tr("Looked for in both layers; a layer without it has no classes. Fields named mark_class and kind are found too."),
-                          optional=True, advanced=True, value="class"))
+        self.add_input("text", "CLASS_FIELD", tr("Field with the class"),
+                       tr("Looked for in both layers; a layer without it has no classes. Fields named mark_class and kind are found too."),
+                       optional=True, advanced=True, default="class")
         add_area(self)
-        self.add_layer_raster(
-            "IMAGE", tr("Image that shows what was scanned"),
+        self.add_input(
+            "raster", "IMAGE", tr("Image that shows what was scanned"),
             tr("Where this raster, such as the intensity image, is empty nothing is judged, and the report's map lies over it. It hides what was "
                "never scanned, but also what the road surface left out: leave it empty to hold that against the result."), optional=True)
         self.add_sink("OUTPUT", tr("Markings by outcome"), tr("Objects of the reference, correct or missed, and the false ones of the result."),
                       fields=ASSESSED_MARKINGS, geometry="MultiPolygonZ")
-        self.add_raster("CELLS", tr("Hits, misses and false alarms"), tr(
+        self.add_output("raster", "CELLS", tr("Hits, misses and false alarms"), tr(
             "1 hit, 2 missed, 3 false, 4 missed beside a hit (within the tolerance), 5 false beside paint."), optional=True, by_default=False)
         self.add_report()
-        for name, label in NUMBERS:
-            self.add_number(name, label)
 
     def work(self, call, progress):
-        from ...core.assess.inputs import check_marking_reference, check_overlap, classes_of, common_crs, in_crs, marking_polygons
-        from ...core.assess.layers import marking_layer
-        from ...core.assess.markings import OutcomeRaster, assess_markings
+        from ...products.assess.inputs import check_marking_reference, check_overlap, classes_of, common_crs, in_crs, marking_polygons
+        from ...products.assess.layers import marking_layer
+        from ...products.assess.markings import OutcomeRaster, assess_markings
 
         settings = call.settings(MARKING_SETTINGS, tolerances=tolerances(call))
-        warnings = []
-
-        def warn(text):
-            warnings.append(text)
-            progress.warn(text)
-
         layers = [painted_of(call, name, progress.part(*part))[0] for name, part in (("INPUT", (0.0, 0.15)), ("REFERENCE", (0.15, 0.3)))]
         crs = common_crs(layers[::-1])
-        field = call.string("CLASS_FIELD")
-        result, reference = (marking_polygons(in_crs(layer, crs, warn), settings.line_width) for layer in layers)
+        field = call.value("CLASS_FIELD")
+        result, reference = (marking_polygons(in_crs(layer, crs, progress.warn), settings.line_width) for layer in layers)
         check_overlap(result, reference)
-        frame, area = frame_of_drive(call, crs), area_of(call, crs, warn)
-        check_marking_reference(reference, result, area, warn)
+        frame, area = frame_of_drive(call, crs), area_of(call, crs, progress.warn)
+        check_marking_reference(reference, result, area, progress.warn)
         classes = [classes_of(layer, field) for layer in (result, reference)]
         image = call.raster_in("IMAGE", crs)
         cells = None
@@ -102,7 +89,7 @@ class AssessMarkings(Algorithm):
         layer = marking_layer(accuracy, result.geometries, reference.geometries, *classes, crs)
         call.layer("OUTPUT", layer)
         if call.wants("REPORT"):
-            self._report(call, accuracy, layer, frame, image, warnings)
+            self._report(call, accuracy, layer, frame, image, progress.texts)
         numbers = found_numbers(_numbers(accuracy))
         progress.info(tr("Cells, strict: {strict}; with a tolerance of {cells}: {tolerant}.").format(
             cells=settings.tolerance, strict=shares_of(numbers, ("PRECISION", "RECALL", "F1")),
@@ -110,8 +97,8 @@ class AssessMarkings(Algorithm):
         return numbers
 
     def _report(self, call, accuracy, layer, frame, image, warnings):
-        from ...core.assess.matching import stations_of_blocks
-        from ...core.report.assessment import marking_report
+        from ...products.assess.matching import stations_of_blocks
+        from ...products.report.assessment import marking_report
 
         station, along = stations_of_blocks(accuracy.blocks, frame)
         names = call.layer_name("INPUT"), call.layer_name("REFERENCE")

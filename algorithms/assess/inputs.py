@@ -3,41 +3,39 @@
 import re
 
 from ...core.common.errors import RoadExtractionError
-from ..parameters import ExpressionSpec, TextSpec
+from ..parameters import settings_class
 from ..texts import tr
 
 NOT_THERE = ("dropped", "none")  # values of the field `edge` or `kind` of a reference that mean: no curb to be found here
 
 
 def add_excluded(algorithm):
-    algorithm.add(ExpressionSpec(
-        "EXCLUDED", tr("Rows of the reference that are not judged"),
+    algorithm.add_input(
+        "expression", "EXCLUDED", tr("Rows of the reference that are not judged"),
         tr("An expression, such as \"type\" = 'driveway': where it holds, a result is neither right nor wrong. Empty leaves out the rows "
            "whose field edge or kind says dropped or none."),
-        optional=True, advanced=True, value="", layer="REFERENCE",
-    ))
+        optional=True, advanced=True, default="", of="REFERENCE",
+    )
 
 
 def add_area(algorithm):
-    algorithm.add_layer(
-        "AREA", tr("Area"),
+    algorithm.add_input(
+        "layer", "AREA", tr("Area"),
         tr("Polygons. What lies outside is left out of both layers; without it a result beyond the ends of the reference is false."),
         "PolygonZ", optional=True,
     )
 
 
 def add_tolerances(algorithm, settings, label, text):
-    """The list of tolerances as text: a model can hand it on, and any number of them will do."""
-    algorithm.add(TextSpec("TOLERANCES", label, text, value=listed(settings.tolerances)))
-
-
-def listed(numbers):
-    return ", ".join(f"{number:g}" for number in numbers)
+    """The list of tolerances as text: a model can hand it on, and any number of them will do. `settings` names the class, as in SettingSpec."""
+    owner = settings_class(settings)
+    if owner is not None:
+        algorithm.add_input("text", "TOLERANCES", label, text, default=", ".join(f"{number:g}" for number in owner().tolerances))
 
 
 def tolerances(call, name="TOLERANCES"):
     """The numbers of a list such as 0.05, 0.10 or 0,05; 0,10."""
-    text = call.string(name)
+    text = call.value(name)
     if ";" in text or re.fullmatch(r"\s*\d+,\d+\s*", text) and text.strip().startswith("0,"):
         text = text.replace(",", ".")
     parts = [part for part in re.split(r"[;,\s]+", text) if part]
@@ -73,7 +71,7 @@ def _read(source):
     """(AssessedLayer, place of each of its rows among those of the source)."""
     import shapely
 
-    from ...core.assess.inputs import AssessedLayer
+    from ...products.assess.inputs import AssessedLayer
 
     layer, places = AssessedLayer(source.label, [], [], source.crs), []
     for place, (wkb, values) in enumerate(source.rows()):
@@ -88,8 +86,8 @@ def painted_of(call, name, progress):
     """(AssessedLayer of polygons and lines, whether it was a raster) of a vector or raster layer."""
     import shapely
 
-    from ...core.assess.inputs import AssessedLayer, polygons_of_raster
     from ...core.io.crs import in_metres
+    from ...products.assess.inputs import AssessedLayer, polygons_of_raster
 
     source, path, crs = call.painted(name)
     if source is not None:
@@ -117,7 +115,7 @@ def area_of(call, crs, warn):
     """The union of AREA's polygons in the CRS; None where it was not given."""
     import shapely
 
-    from ...core.assess.inputs import check_kind, in_crs
+    from ...products.assess.inputs import check_kind, in_crs
 
     layer = layer_of(call, "AREA")
     if layer is None:

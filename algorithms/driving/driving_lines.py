@@ -7,7 +7,7 @@ from ..parameters import SettingSpec
 from ..survey_input import frame_of, road_points_of
 from ..texts import tr
 
-DRIVING = "driving.settings:DrivingSettings"
+DRIVING = "core.driving.settings:DrivingSettings"
 
 DRIVING_SETTINGS = (
     SettingSpec(
@@ -32,19 +32,6 @@ DRIVING_SETTINGS = (
            "drove, and by lines that part the directions. A side named here counts more than the drive."),
         choices=("automatic", "right", "left"),
     ),
-    SettingSpec(
-        "MAX_BRIDGE", DRIVING, "max_bridge", tr("Longest gap of all lines bridged (m)"),
-        tr("Longer leads lanes through wider crossings; shorter leaves them open."), advanced=True,
-    ),
-    SettingSpec(
-        "MAX_INFERRED", DRIVING, "max_inferred", tr("Longest gap beside other lines closed (m)"),
-        tr("Where another line of the road goes on, a lane is led along it through a gap up to this length."),
-        advanced=True,
-    ),
-    SettingSpec(
-        "SHORTEST", DRIVING, "shortest", tr("Shortest driving line (m)"),
-        tr("Shorter keeps stubs at the ends of the survey."), advanced=True,
-    ),
 )
 
 
@@ -52,19 +39,20 @@ class DrivingLines(Algorithm):
     ID, TITLE, GROUP = "drivinglines", "Driving lines", "Driving"
     SUMMARY = "Draws the line to drive in every lane, in the direction of travel, and tabulates the elements of its curves."
     TAGS = ("lane", "centre line", "hd map", "curve elements", "radius")
+    RETIRED = ("MAX_BRIDGE", "MAX_INFERRED", "SHORTEST")
 
     def declare(self):
-        self.add_layer("MARKING_LINES", tr("Marking lines"), tr("The layer written by Fit marking lines."), "LineStringZ")
+        self.add_input("layer", "MARKING_LINES", tr("Marking lines"), tr("The layer written by Fit marking lines."), "LineStringZ")
         self.add_trajectory()
-        self.add_layer(
-            "MARKINGS", tr("Markings"),
+        self.add_input(
+            "layer", "MARKINGS", tr("Markings"),
             tr("With it a lane continues through zebra crossings and past stop lines, and kinds of gaps are distinguished."),
             "PolygonZ", optional=True,
         )
-        self.add_layer(
-            "ROAD_EDGES", tr("Road edges"), tr("With it lanes without an outer line end at the edge."), "LineStringZ", optional=True
+        self.add_input(
+            "layer", "ROAD_EDGES", tr("Road edges"), tr("With it lanes without an outer line end at the edge."), "LineStringZ", optional=True
         )
-        self.add_cloud("ROAD_POINTS", tr("Road points"), tr("With it heights are the road's own."), optional=True)
+        self.add_input("cloud", "ROAD_POINTS", tr("Road points"), tr("With it heights are the road's own."), optional=True)
         self.add_settings(DRIVING_SETTINGS)
         self.add_sink("DRIVING_LINES", tr("Driving lines"), fields=DRIVING_LINES, geometry="LineStringZ")
         self.add_sink("LANES", tr("Lanes"), fields=LANES, geometry="PolygonZ", optional=True,

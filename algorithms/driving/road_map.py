@@ -17,13 +17,12 @@ from ..algorithm import Algorithm
 from ..corrections import add_corrections, corrections_of
 from ..markings.cluster_markings import CLUSTER_SETTINGS
 from ..markings.correct_intensity import INTENSITY_SETTINGS
-from ..markings.extract_markings import MARKING_SETTINGS
+from ..markings.extract_markings import METHOD as MARKING_METHOD
+from ..markings.extract_markings import marking_settings
 from ..markings.fit_marking_lines import LINE_SETTINGS
 from ..markings.intensity_image import IMAGE_SETTINGS
 from ..markings.remove_outliers import OUTLIER_SETTINGS
-from ..parameters import FlagSpec
-from ..road.boundaries_from_scanlines import SCANLINE_METHOD_SETTINGS
-from ..road.detect_boundaries import METHOD_SETTING, PLANE_SETTINGS
+from ..road.detect_boundaries import METHOD_SETTING, SCANLINE_METHOD_SETTINGS
 from ..road.detect_curbs import CURB_SETTINGS
 from ..road.extract_road_surface import SURFACE_SETTINGS
 from ..road.fit_road_edges import EDGE_SETTINGS
@@ -35,13 +34,11 @@ from .road_map_numbers import NUMBERS, road_map_numbers
 # Field of RoadMapSettings -> its settings
 STAGES = {
     "curbs": CURB_SETTINGS,
-    "planes": PLANE_SETTINGS,
     "scanlines": SCANLINE_METHOD_SETTINGS,
     "edges": EDGE_SETTINGS,
     "surface": SURFACE_SETTINGS,
     "intensity": INTENSITY_SETTINGS,
     "image": IMAGE_SETTINGS,
-    "markings": MARKING_SETTINGS,
     "outliers": OUTLIER_SETTINGS,
     "clusters": CLUSTER_SETTINGS,
     "lines": LINE_SETTINGS,
@@ -49,8 +46,8 @@ STAGES = {
 }
 
 # Settings of the stages that one turns now and then; the rest is left to the single algorithms
-OFFERED = ("BLOCK_LENGTH", "MIN_HEIGHT", "MAX_HEIGHT", "SLOPE", "INTERVAL", "SCANLINE_MIN_HEIGHT", "MAX_GAP", "FALLBACK_WIDTH", "MAX_WIDTH",
-           "CELL_SIZE", "METHOD", "CURVE", "DEGREE", "COUNTRY", "LANE_WIDTH", "TRAFFIC_SIDE", "LINE_DISTANCE")
+OFFERED = ("BLOCK_LENGTH", "MIN_HEIGHT", "MAX_HEIGHT", "SLOPE", "MAX_GAP", "FALLBACK_WIDTH", "MAX_WIDTH", "CELL_SIZE", "CURVE", "DEGREE",
+           "COUNTRY", "LANE_WIDTH", "TRAFFIC_SIDE")
 
 LAYERS = (
     ("ROAD_EDGES", "edges", "LineStringZ", ROAD_EDGES, tr("Road edges")),
@@ -74,6 +71,8 @@ class RoadMap(Algorithm):
     TAGS = ("hd map", "lane", "driving line", "road marking", "curb", "kerb")
     WHOLE_MAP = True
     NEEDS_GDAL = True  # the stages hand the intensity image on as a GeoTIFF
+    NUMBERS = NUMBERS
+    RETIRED = ("INTERVAL", "SCANLINE_MIN_HEIGHT", "LINE_DISTANCE")
 
     def declare(self):
         # the dialog shows clouds, trajectory and where to save; all else is folded away, in the order of the stages
@@ -81,13 +80,15 @@ class RoadMap(Algorithm):
         self.add_settings((METHOD_SETTING,), advanced=True)
         for stage, specs in STAGES.items():
             if stage == "intensity":
-                self.add(FlagSpec(
-                    "CORRECT_INTENSITY", tr("Correct intensity first"),
+                self.add_input(
+                    "flag", "CORRECT_INTENSITY", tr("Correct intensity first"),
                     tr("Evens out range, incidence and the difference between scanners. Switch it off for clouds whose "
                        "intensity was corrected already."),
-                    value=True, advanced=True,
-                ))
+                    default=True, advanced=True,
+                )
             self.add_settings(specs, only=OFFERED, advanced=True)
+            if stage == "image":
+                self.add_settings((MARKING_METHOD,), advanced=True)
         self.add_settings(SURVEY_SETTINGS)
         add_corrections(self)
         add_execution(self)
@@ -96,23 +97,22 @@ class RoadMap(Algorithm):
         self.add_sink("PASSES", tr("Passes (the trajectory)"), tr("Where the vehicle drove, as this run used it: one line a pass."), fields=PASSES,
                       geometry="LineStringZ", optional=True)
         self.add_sink("CURB_POINTS", tr("Curb points"), fields=CURB_POINTS, geometry="PointZ", optional=True, by_default=False)
-        self.add_laz(
-            "ROAD_POINTS", tr("Road points"), tr("Class 11, with the fields the single stages need."), optional=True, by_default=False
+        self.add_output(
+            "cloud", "ROAD_POINTS", tr("Road points"), tr("Class 11, with the fields the single stages need."), optional=True, by_default=False
         )
-        self.add_raster("INTENSITY_IMAGE", tr("Intensity image"), optional=True)
+        self.add_output("raster", "INTENSITY_IMAGE", tr("Intensity image"), optional=True)
         self.add_report()
-        for name, label in NUMBERS:
-            self.add_number(name, label)
 
     def work(self, call, progress):
         from ...core.pipeline.road_map import RoadMapSettings, make_road_map
         from ...core.survey.road_points_las import write_road_points
 
         settings = RoadMapSettings(
-            correct=call.flag("CORRECT_INTENSITY"),
-            boundary_method=call.setting(METHOD_SETTING),
+            correct=call.value("CORRECT_INTENSITY"),
+            boundary_method=call.value("BOUNDARY_METHOD"),
             survey=call.settings(SURVEY_SETTINGS, crs=call.crs()),
             execution=execution_of(call),
+            markings=marking_settings(call),
             **{field: call.settings(specs) for field, specs in STAGES.items()},
         )
         if not any(call.wants(one.name) for one in self.outputs()):
@@ -141,7 +141,7 @@ class RoadMap(Algorithm):
             call.layer("PASSES", passes_to_features(road_map.frame, road_map.crs))
         call.layer("CURB_POINTS", road_map.layer("curb_points"))
         if call.wants("REPORT"):
-            from ...core.report.road_map import road_map_report
+            from ...products.report.road_map import road_map_report
 
             call.text("REPORT", road_map_report(road_map, image_path))
         return road_map_numbers([road.length for road in road_map.frame.roads],

@@ -3,14 +3,12 @@
 from ...core.common.errors import RoadExtractionError
 from ...core.common.features import MAP_FINDINGS
 from ..algorithm import Algorithm
-from ..parameters import CrsSpec
 from ..texts import told, tr
 from .inputs import add_map_file, map_file
 
 MAP_FILTER = "HD maps (*.xodr *.osm *.XODR *.OSM *.xml);;All files (*.*)"
 ROWS_IN_LOG, PLACES_IN_LOG = 50, 3   # of findings that the log tells, and of the places of each
-NUMBERS = (("FINDINGS", tr("Findings")), ("FAULTS", tr("Kinds of faults")), ("LANES", tr("Driven lanes and pieces")),
-           ("SUCCESSORS", tr("Links from one lane to the next")), ("NEIGHBOURS", tr("Pairs of lanes side by side")))
+
 
 
 class CheckMap(Algorithm):
@@ -26,21 +24,21 @@ class CheckMap(Algorithm):
             "the fewest places come first. A schema validator looks at other things; use both.")
     TAGS = ("OpenDRIVE", "Lanelet2", "HD map", "validation", "topology", "routing")
     LOOKS = {"OUTPUT": "FINDINGS"}
+    NUMBERS = (("FINDINGS", tr("Findings")), ("FAULTS", tr("Kinds of faults")), ("LANES", tr("Driven lanes and pieces")),
+               ("SUCCESSORS", tr("Links from one lane to the next")), ("NEIGHBOURS", tr("Pairs of lanes side by side")))
 
     def declare(self):
         add_map_file(self, tr("Map file"), tr("An OpenDRIVE (.xodr) or Lanelet2 (.osm) map; what is in it decides."), MAP_FILTER)
-        self.add(CrsSpec("CRS", tr("CRS of the findings"), tr(
+        self.add_input("crs", "CRS", tr("CRS of the findings"), tr(
             "OpenDRIVE: only where the file does not say it. Lanelet2: projected, such as that of the survey; empty takes the UTM zone of the map."),
-            optional=True))
+            optional=True)
         self.add_sink("OUTPUT", tr("Findings"), tr(
             "A point for each finding, with the row of the report in which the same findings are one. Heights are the map's."),
             fields=MAP_FINDINGS, geometry="PointZ")
         self.add_report()
-        for name, label in NUMBERS:
-            self.add_number(name, label)
 
     def work(self, call, progress):
-        from ...core.report.hd_map import map_check_report, places_of_findings
+        from ...products.report.hd_map import map_check_report, places_of_findings
 
         path = map_file(call)
         found, note = (_lanelets if _is_lanelet2(path) else _roads)(path, call.crs(), progress)
@@ -74,9 +72,9 @@ def _is_lanelet2(path):
 
 
 def _roads(path, crs, progress):
-    from ...core.export.check.roads import check_opendrive
-    from ...core.export.map_layers import crs_of_reference
-    from ...core.export.opendrive.xodr import read_opendrive
+    from ...products.export.check.roads import check_opendrive
+    from ...products.export.map_layers import crs_of_reference
+    from ...products.export.opendrive.xodr import read_opendrive
 
     whole = read_opendrive(path, progress.part(0.0, 0.4))
     crs, note = crs_of_reference(whole.reference, crs)
@@ -84,8 +82,8 @@ def _roads(path, crs, progress):
 
 
 def _lanelets(path, crs, progress):
-    from ...core.export.check.lanelets import check_lanelets
-    from ...core.export.lanelet_map import node_places, read_lanelet2
+    from ...products.export.check.lanelets import check_lanelets
+    from ...products.export.lanelet_map import node_places, read_lanelet2
 
     whole = read_lanelet2(path, progress.part(0.0, 0.4))
     return check_lanelets(whole, *node_places(whole, crs), progress.part(0.4, 0.95)), ""

@@ -2,18 +2,18 @@
 
 from ...core.common.errors import RoadExtractionError
 from ..algorithm import Algorithm
-from ..parameters import ChoiceSpec, SettingSpec
+from ..parameters import SettingSpec
 from ..texts import told, tr
 from .inputs import add_road_map_layers, road_map_source
 
-ROADS = "export.opendrive.exporter:OpenDriveSettings"
+ROADS = "products.export.opendrive.exporter:OpenDriveSettings"
 FORMATS = ("dxf", "landxml")
 SUFFIXES = {"dxf": (".dxf",), "landxml": (".xml", ".landxml")}
 CAD_SETTINGS = (
     SettingSpec("TOLERANCE", ROADS, "tolerance", tr("Tolerance (m)"),
                 tr("LandXML: how far a line may be missed by its elements, in plan and in height. DXF has every vertex.")),
 )
-NUMBERS = (("LINES", tr("Lines")), ("ALIGNMENTS", tr("Alignments")), ("MISSED", tr("Largest distance of a line from its elements (m)")))
+
 
 
 class ExportCad(Algorithm):
@@ -25,22 +25,21 @@ class ExportCad(Algorithm):
             "DXF has no place for the CRS; LandXML names it. Both have the units of the layers' CRS, such as US "
             "survey feet. Cross-sections, surfaces and texts are not there.")
     TAGS = ("DXF", "LandXML", "CAD", "alignment", "profile")
+    NUMBERS = (("LINES", tr("Lines")), ("ALIGNMENTS", tr("Alignments")), ("MISSED", tr("Largest distance of a line from its elements (m)")))
 
     def declare(self):
         add_road_map_layers(self)
-        self.add(ChoiceSpec("FORMAT", tr("Format"), tr("dxf is drawn by every CAD program, landxml is taken over by programs for road design."),
-                            value=FORMATS[0], choices=FORMATS))
+        self.add_input("choice", "FORMAT", tr("Format"), tr("dxf is drawn by every CAD program, landxml is taken over by programs for road design."),
+                       default=FORMATS[0], choices=FORMATS)
         self.add_settings(CAD_SETTINGS)
-        self.add_file("OUTPUT", tr("CAD file"), tr("With the ending .dxf, or .xml for LandXML."), (".dxf", ".xml", ".landxml"),
-                      "DXF (*.dxf);;LandXML (*.xml *.landxml)")
+        self.add_output("file", "OUTPUT", tr("CAD file"), tr("With the ending .dxf, or .xml for LandXML."),
+                        suffixes=(".dxf", ".xml", ".landxml"), file_filter="DXF (*.dxf);;LandXML (*.xml *.landxml)")
         self.add_report()
-        for name, label in NUMBERS:
-            self.add_number(name, label)
 
     def work(self, call, progress):
-        from ...core.report.hd_map import map_export_report
+        from ...products.report.hd_map import map_export_report
 
-        kind = call.choice("FORMAT")
+        kind = call.value("FORMAT")
         self._check_name(call, kind)
         source = road_map_source(call, progress.part(0.0, 0.2))
         for note in source.notes:
@@ -62,7 +61,7 @@ class ExportCad(Algorithm):
 def _dxf(call, source, progress):
     from collections import Counter
 
-    from ...core.export.cad.dxf import dxf_lines, write_dxf
+    from ...products.export.cad.dxf import dxf_lines, write_dxf
 
     lines = dxf_lines(source)
     write_dxf(lines, call.new_file("OUTPUT"), source.lanes.crs)
@@ -75,9 +74,9 @@ def _landxml(call, source, progress):
     from datetime import datetime
     from pathlib import Path
 
-    from ...core.export.cad.landxml import alignments_of, landxml_text
+    from ...products.export.cad.landxml import alignments_of, landxml_text
 
-    tolerance = call.setting(CAD_SETTINGS[0])
+    tolerance = call.value("TOLERANCE")
     found = alignments_of(source, tolerance)
     now = datetime.now()
     text = landxml_text(found, source.lanes.crs, call.layer_name("LANES"), now.strftime("%Y-%m-%d"), now.strftime("%H:%M:%S"))

@@ -1,18 +1,17 @@
 """Lanes written as Lanelet2."""
 
 from ..algorithm import Algorithm
-from ..parameters import ChoiceSpec, FlagSpec, SettingSpec
+from ..parameters import SettingSpec
 from ..texts import told, tr
 from .inputs import add_road_map_layers, road_map_source
 
-LANELETS = "export.lanelet_export:LaneletSettings"
+LANELETS = "products.export.lanelet_export:LaneletSettings"
 LOCATIONS = ("urban", "nonurban")
 LANELET_SETTINGS = (
     SettingSpec("SPEED_LIMIT", LANELETS, "speed_limit", tr("Speed limit (km/h)"),
                 tr("Written to every lanelet for vehicles. 0 writes none: the survey does not know it.")),
 )
-NUMBERS = (("LANELETS", tr("Lanelets")), ("WAYS", tr("Ways")), ("NODES", tr("Nodes")), ("SUCCESSORS", tr("Links from one lane to the next")),
-           ("FINDINGS", tr("Findings of the check")))
+
 
 
 class ExportLanelet2(Algorithm):
@@ -26,35 +25,35 @@ class ExportLanelet2(Algorithm):
             "The file is read back and checked before it is handed over; the report names the transformation to latitude and longitude and what "
             "the heights are. Traffic lights, signs, right of way and regulatory elements are not there.")
     TAGS = ("Lanelet2", "osm", "HD map", "Autoware", "planner")
+    NUMBERS = (("LANELETS", tr("Lanelets")), ("WAYS", tr("Ways")), ("NODES", tr("Nodes")), ("SUCCESSORS", tr("Links from one lane to the next")),
+               ("FINDINGS", tr("Findings of the check")))
 
     def declare(self):
         add_road_map_layers(self)
         self.add_settings(LANELET_SETTINGS)
-        self.add(ChoiceSpec("LOCATION", tr("Location"), tr("Whether the roads are in a town; planners draw traffic rules from it."),
-                            value=LOCATIONS[0], choices=LOCATIONS))
-        self.add(FlagSpec("LOCAL_COORDINATES", tr("Write local_x and local_y"), tr(
-            "Autoware reads these metres within a square of 100 km instead of latitude and longitude."), value=False))
-        self.add_file("OUTPUT", tr("Lanelet2 file"), tr("The map."), (".osm",), "Lanelet2 (*.osm)")
+        self.add_input("choice", "LOCATION", tr("Location"), tr("Whether the roads are in a town; planners draw traffic rules from it."),
+                       default=LOCATIONS[0], choices=LOCATIONS)
+        self.add_input("flag", "LOCAL_COORDINATES", tr("Write local_x and local_y"), tr(
+            "Autoware reads these metres within a square of 100 km instead of latitude and longitude."), default=False)
+        self.add_output("file", "OUTPUT", tr("Lanelet2 file"), tr("The map."), suffixes=(".osm",), file_filter="Lanelet2 (*.osm)")
         self.add_report()
-        for name, label in NUMBERS:
-            self.add_number(name, label)
 
     def work(self, call, progress):
         from pathlib import Path
 
-        from ...core.export.check.lanelets import check_lanelets
-        from ...core.export.inferred_ways import with_inferred_ways
-        from ...core.export.lanelet_export import draft_lanelets, lanelet2_text, to_degrees
-        from ...core.export.lanelet_map import layers_of_lanelets, node_places, read_lanelet2
-        from ...core.export.shared_borders import with_shared_borders
-        from ...core.report.hd_map import map_export_report
+        from ...products.export.check.lanelets import check_lanelets
+        from ...products.export.inferred_ways import with_inferred_ways
+        from ...products.export.lanelet_export import draft_lanelets, lanelet2_text, to_degrees
+        from ...products.export.lanelet_map import layers_of_lanelets, node_places, read_lanelet2
+        from ...products.export.shared_borders import with_shared_borders
+        from ...products.report.hd_map import map_export_report
 
         source = with_shared_borders(with_inferred_ways(road_map_source(call, progress.part(0.0, 0.2))))
         progress.report(0.2)
-        draft = draft_lanelets(source, call.settings(LANELET_SETTINGS, location=call.choice("LOCATION")))
+        draft = draft_lanelets(source, call.settings(LANELET_SETTINGS, location=call.value("LOCATION")))
         degrees = to_degrees(draft.nodes, source.lanes.crs)
         path = call.new_file("OUTPUT")
-        Path(path).write_text(lanelet2_text(draft, degrees, call.flag("LOCAL_COORDINATES")), encoding="utf-8")
+        Path(path).write_text(lanelet2_text(draft, degrees, call.value("LOCAL_COORDINATES")), encoding="utf-8")
         progress.report(0.6)
         whole = read_lanelet2(path)
         found = check_lanelets(whole, *node_places(whole, source.lanes.crs))

@@ -1,21 +1,17 @@
 """Lanes written as OpenDRIVE."""
 
 from ..algorithm import Algorithm
-from ..parameters import ChoiceSpec, SettingSpec
+from ..parameters import SettingSpec
 from ..texts import told, tr
-from .inputs import OPENDRIVE_FILTER, add_road_map_layers, road_map_source
+from .inputs import add_road_map_layers, road_map_source
 
-ROADS = "export.opendrive.exporter:OpenDriveSettings"
+ROADS = "products.export.opendrive.exporter:OpenDriveSettings"
 VERSIONS, SIDES = ("1.7", "1.8"), ("automatic", "right", "left")
 ROAD_SETTINGS = (
     SettingSpec("TOLERANCE", ROADS, "tolerance", tr("Tolerance (m)"),
                 tr("How far borders may be missed, across and in height. Smaller follows the survey more closely with more and shorter elements.")),
 )
-NUMBERS = (("ROADS", tr("Roads")), ("JUNCTIONS", tr("Junctions")), ("SUCCESSORS", tr("Links from one lane to the next")),
-           ("BORDER_MAXIMUM", tr("Largest distance of a border from the survey's (m)")),
-           ("HEIGHT_MAXIMUM", tr("Largest difference in height of a border (m)")),
-           ("DRIVING_LINE_P95", tr("95th percentile of the distance of driving lines from the middles of lanes (m)")),
-           ("FINDINGS", tr("Findings of the check")))
+
 
 
 class ExportOpenDrive(Algorithm):
@@ -30,31 +26,34 @@ class ExportOpenDrive(Algorithm):
             "stores no line to drive on; the report also says how far the middles of the lanes are from the driving lines. Signals, signs, "
             "speed limits and buildings are not there.")
     TAGS = ("OpenDRIVE", "xodr", "HD map", "simulator", "CARLA", "esmini")
+    NUMBERS = (("ROADS", tr("Roads")), ("JUNCTIONS", tr("Junctions")), ("SUCCESSORS", tr("Links from one lane to the next")),
+               ("BORDER_MAXIMUM", tr("Largest distance of a border from the survey's (m)")),
+               ("HEIGHT_MAXIMUM", tr("Largest difference in height of a border (m)")),
+               ("DRIVING_LINE_P95", tr("95th percentile of the distance of driving lines from the middles of lanes (m)")),
+               ("FINDINGS", tr("Findings of the check")))
 
     def declare(self):
         add_road_map_layers(self)
-        self.add(ChoiceSpec("VERSION", tr("Version"), tr("Of the format; older simulators read 1.7."), value=VERSIONS[0], choices=VERSIONS))
+        self.add_input("choice", "VERSION", tr("Version"), tr("Of the format; older simulators read 1.7."), default=VERSIONS[0], choices=VERSIONS)
         self.add_settings(ROAD_SETTINGS)
-        self.add(ChoiceSpec("TRAFFIC_SIDE", tr("Side of traffic"), tr(
-            "Automatic takes it from roads with lanes in both directions; choose it where all roads are one-way."), value=SIDES[0], choices=SIDES))
-        self.add_file("OUTPUT", tr("OpenDRIVE file"), tr("The map."), (".xodr",), OPENDRIVE_FILTER.split(" *.XODR")[0] + ")")
+        self.add_input("choice", "TRAFFIC_SIDE", tr("Side of traffic"), tr(
+            "Automatic takes it from roads with lanes in both directions; choose it where all roads are one-way."), default=SIDES[0], choices=SIDES)
+        self.add_output("file", "OUTPUT", tr("OpenDRIVE file"), tr("The map."), suffixes=(".xodr",), file_filter="OpenDRIVE (*.xodr)")
         self.add_report()
-        for name, label in NUMBERS:
-            self.add_number(name, label)
 
     def work(self, call, progress):
         from pathlib import Path
 
-        from ...core.export.check.roads import check_opendrive
-        from ...core.export.inferred_ways import with_inferred_ways
-        from ...core.export.map_layers import border_misses, driving_line_misses, reference_of_crs
-        from ...core.export.opendrive.exporter import draft_opendrive
-        from ...core.export.opendrive.layers import layers_of_opendrive
-        from ...core.export.opendrive.xodr import opendrive_text, read_opendrive
-        from ...core.export.shared_borders import with_shared_borders
+        from ...products.export.check.roads import check_opendrive
+        from ...products.export.inferred_ways import with_inferred_ways
+        from ...products.export.map_layers import border_misses, driving_line_misses, reference_of_crs
+        from ...products.export.opendrive.exporter import draft_opendrive
+        from ...products.export.opendrive.layers import layers_of_opendrive
+        from ...products.export.opendrive.xodr import opendrive_text, read_opendrive
+        from ...products.export.shared_borders import with_shared_borders
 
         source = with_shared_borders(with_inferred_ways(road_map_source(call, progress.part(0.0, 0.2))))
-        settings = call.settings(ROAD_SETTINGS, version=call.choice("VERSION"), traffic_side=call.choice("TRAFFIC_SIDE"))
+        settings = call.settings(ROAD_SETTINGS, version=call.value("VERSION"), traffic_side=call.value("TRAFFIC_SIDE"))
         draft = draft_opendrive(source, settings, progress.part(0.2, 0.7))
         draft.map.reference = reference_of_crs(source.lanes.crs)
         path = call.new_file("OUTPUT")
@@ -90,7 +89,7 @@ def _report(call, whole, found, shown, misses, notes):
     from collections import defaultdict
 
     from ...core.common.texts import word
-    from ...core.report.hd_map import map_export_report
+    from ...products.report.hd_map import map_export_report
 
     lengths = defaultdict(float)
     for road in whole.roads:

@@ -2,7 +2,7 @@
 
 from ..algorithm import Algorithm
 from ..texts import tr
-from .inputs import LANELET_FILTER, add_map_crs, add_map_file, add_map_layers, map_file, write_map_layers
+from .inputs import LANELET_FILTER, MAP_NUMBERS, add_map_crs, add_map_file, add_map_layers, map_file, write_map_layers
 
 
 class ImportLanelet2(Algorithm):
@@ -13,6 +13,7 @@ class ImportLanelet2(Algorithm):
             "Latitude and longitude are taken as WGS 84. A map with local_x and local_y alone, or whose latitudes and longitudes are all about 0, "
             "gets layers in local coordinates, without CRS.")
     TAGS = ("Lanelet2", "osm", "HD map", "Autoware", "planner")
+    NUMBERS = MAP_NUMBERS
 
     def declare(self):
         add_map_file(self, tr("Lanelet2 file"), tr("A map with the ending .osm."), LANELET_FILTER)
@@ -20,7 +21,7 @@ class ImportLanelet2(Algorithm):
         add_map_layers(self)
 
     def work(self, call, progress):
-        from ...core.export.lanelet_map import layers_of_lanelets, read_lanelet2
+        from ...products.export.lanelet_map import layers_of_lanelets, read_lanelet2
 
         found = read_lanelet2(map_file(call), progress.part(0.0, 0.5))
         return write_map_layers(call, layers_of_lanelets(found, call.crs(), progress.part(0.5, 0.95)), progress)

@@ -2,7 +2,7 @@
 
 from ..algorithm import Algorithm
 from ..texts import tr
-from .inputs import OPENDRIVE_FILTER, add_map_crs, add_map_file, add_map_layers, map_file, write_map_layers
+from .inputs import MAP_NUMBERS, OPENDRIVE_FILTER, add_map_crs, add_map_file, add_map_layers, map_file, write_map_layers
 
 
 class ImportOpenDrive(Algorithm):
@@ -14,6 +14,7 @@ class ImportOpenDrive(Algorithm):
             "begins, with the height of its curb. Gaps of reference lines, borders that fold back in a tight curve, and widths below 0 are named "
             "with their road; folds are cut off. Files that declare entities, or are not what a map can be, are refused.")
     TAGS = ("OpenDRIVE", "xodr", "HD map", "simulator", "CARLA", "esmini")
+    NUMBERS = MAP_NUMBERS
 
     def declare(self):
         add_map_file(self, tr("OpenDRIVE file"), tr("A map with the ending .xodr."), OPENDRIVE_FILTER)
@@ -21,9 +22,9 @@ class ImportOpenDrive(Algorithm):
         add_map_layers(self)
 
     def work(self, call, progress):
-        from ...core.export.map_layers import crs_of_reference
-        from ...core.export.opendrive.layers import layers_of_opendrive
-        from ...core.export.opendrive.xodr import read_opendrive
+        from ...products.export.map_layers import crs_of_reference
+        from ...products.export.opendrive.layers import layers_of_opendrive
+        from ...products.export.opendrive.xodr import read_opendrive
 
         found = read_opendrive(map_file(call), progress.part(0.0, 0.5))
         crs, note = crs_of_reference(found.reference, call.crs())

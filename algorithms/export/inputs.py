@@ -2,7 +2,6 @@
 
 from ...core.common.features import DRIVING_LINES, LANES, MARKING_LINES, MARKINGS, ROAD_EDGES
 from ..call import existing_file
-from ..parameters import CrsSpec, FileSpec
 from ..survey_input import road_points_of
 from ..texts import tr
 
@@ -15,22 +14,21 @@ MAP_LAYERS = (
     ("MARKING_LINES", tr("Marking lines"), tr("Borders that are painted."), MARKING_LINES, "LineStringZ", "marking_lines"),
     ("ROAD_EDGES", tr("Road edges"), tr("Curbs and borders of the road."), ROAD_EDGES, "LineStringZ", "road_edges"),
 )
+MAP_NUMBERS = (("LANE_COUNT", tr("Lanes and pieces")), ("LENGTH", tr("Length of the driven lanes (m)")))
 
 
 def add_map_file(algorithm, label, text, file_filter):
-    algorithm.add(FileSpec("INPUT", label, text, file_filter=file_filter))
+    algorithm.add_input("file", "INPUT", label, text, file_filter=file_filter)
 
 
 def add_map_crs(algorithm, text):
-    algorithm.add(CrsSpec("CRS", tr("CRS of the layers"), text, optional=True))
+    algorithm.add_input("crs", "CRS", tr("CRS of the layers"), text, optional=True)
 
 
 def add_map_layers(algorithm):
     """The layers that a map is read into."""
     for name, label, text, fields, geometry, _ in MAP_LAYERS:
         algorithm.add_sink(name, label, text, fields=fields, geometry=geometry, optional=True)
-    algorithm.add_number("LANE_COUNT", tr("Lanes and pieces"))
-    algorithm.add_number("LENGTH", tr("Length of the driven lanes (m)"))
 
 
 def map_file(call):
@@ -59,14 +57,14 @@ MARKING_FIELDS = tuple(field for field in MARKINGS if field.name in ("road", "cl
 
 def add_road_map_layers(algorithm):
     """The layers of the road map that an export takes."""
-    algorithm.add_layer("LANES", tr("Lanes"), tr("Made by Driving lines or Road map, with its fields and heights."), "PolygonZ")
-    algorithm.add_layer("DRIVING_LINES", tr("Driving lines"), tr(
+    algorithm.add_input("layer", "LANES", tr("Lanes"), tr("Made by Driving lines or Road map, with its fields and heights."), "PolygonZ")
+    algorithm.add_input("layer", "DRIVING_LINES", tr("Driving lines"), tr(
         "Held against the middles of the lanes: the report says how far apart they are. The uncertainty of every lane comes from "
         "them."), "LineStringZ", optional=True)
-    algorithm.add_layer("MARKING_LINES", tr("Marking lines"), tr("The widths of the painted borders."), "LineStringZ", optional=True)
-    algorithm.add_layer("ROAD_EDGES", tr("Road edges"), tr("The heights of curbs."), "LineStringZ", optional=True)
-    algorithm.add_layer("MARKINGS", tr("Markings"), tr("Zebra crossings, stop lines, arrows and hatched areas."), "PolygonZ", optional=True)
-    algorithm.add_cloud("ROAD_POINTS", tr("Road points"), tr("With it the borders have the heights of the road's surface."), optional=True)
+    algorithm.add_input("layer", "MARKING_LINES", tr("Marking lines"), tr("The widths of the painted borders."), "LineStringZ", optional=True)
+    algorithm.add_input("layer", "ROAD_EDGES", tr("Road edges"), tr("The heights of curbs."), "LineStringZ", optional=True)
+    algorithm.add_input("layer", "MARKINGS", tr("Markings"), tr("Zebra crossings, stop lines, arrows and hatched areas."), "PolygonZ", optional=True)
+    algorithm.add_input("cloud", "ROAD_POINTS", tr("Road points"), tr("With it the borders have the heights of the road's surface."), optional=True)
 
 
 def road_map_source(call, progress):
@@ -74,7 +72,7 @@ def road_map_source(call, progress):
     from dataclasses import replace
 
     from ...core.driving.layers import Lanes
-    from ...core.export.sources import RoadMapSource, checked
+    from ...products.export.sources import RoadMapSource, checked
 
     source = RoadMapSource(
         Lanes.from_features(call.features("LANES", LANES, "PolygonZ")), call.features("DRIVING_LINES", LINE_FIELDS, "LineStringZ"),
@@ -82,7 +80,7 @@ def road_map_source(call, progress):
         call.features("MARKINGS", MARKING_FIELDS, "PolygonZ"))
     source = checked(source)
     if call.cloud("ROAD_POINTS"):
-        from ...core.export.sources import with_surface_heights
+        from ...products.export.sources import with_surface_heights
 
         road_points = road_points_of(call, "ROAD_POINTS", progress)
         lanes, share = with_surface_heights(source.lanes, road_points)

@@ -8,7 +8,7 @@ from ..survey_input import READING_SETTINGS
 from ..texts import tr
 from .survey_with_borders import add_borders, survey_with_borders
 
-SECTIONS = "inventory.settings:CrossSectionSettings"
+SECTIONS = "products.inventory.settings:CrossSectionSettings"
 ABOVE_ROAD = 12.0  # m of height above the road that are read: more than any clearance that a rule asks for
 
 SECTION_SETTINGS = (
@@ -51,6 +51,10 @@ class CrossSections(Algorithm):
             "count as hanging above it.")
     TAGS = ("profile", "rutting", "crossfall", "superelevation", "clearance", "road condition", "width")
     LOOKS = {"OUTPUT": "CROSS_SECTIONS"}
+    NUMBERS = (("SECTIONS", tr("Sections")),
+               ("EXCEEDED", tr("Lanes and carriageways that exceed a limit")),
+               ("LARGEST_RUT", tr("Greatest rut depth (mm)")),
+               ("LEAST_CLEARANCE", tr("Least clearance (m)")))
 
     def declare(self):
         self.add_survey()
@@ -66,14 +70,10 @@ class CrossSections(Algorithm):
         self.add_sink("TABLE", tr("Table of the cross-sections"), tr("The same rows without lines, for spreadsheets."), fields=CROSS_SECTIONS,
                       geometry="None", optional=True, by_default=False)
         self.add_report()
-        self.add_number("SECTIONS", tr("Sections"))
-        self.add_number("EXCEEDED", tr("Lanes and carriageways that exceed a limit"))
-        self.add_number("LARGEST_RUT", tr("Greatest rut depth (mm)"))
-        self.add_number("LEAST_CLEARANCE", tr("Least clearance (m)"))
 
     def work(self, call, progress):
-        from ...core.inventory.cross_sections import measure_cross_sections, sections_to_features
-        from ...core.report.inventory import cross_section_report
+        from ...products.inventory.cross_sections import measure_cross_sections, sections_to_features
+        from ...products.report.inventory import cross_section_report
 
         settings = call.settings(SECTION_SETTINGS)
         survey, layers = survey_with_borders(call, progress.part(0.0, 0.5), ABOVE_ROAD)

@@ -8,7 +8,7 @@ from ..survey_input import READING_SETTINGS
 from ..texts import tr
 from .survey_with_borders import add_borders, survey_with_borders
 
-ROADSIDE_OF = "inventory.settings:RoadsideSettings"
+ROADSIDE_OF = "products.inventory.settings:RoadsideSettings"
 ABOVE_ROAD = 8.0  # m of height above the road that are read: buildings reach higher than anything that is looked for
 
 ROADSIDE_SETTINGS = (
@@ -45,6 +45,8 @@ class Roadside(Algorithm):
             "along an edge that the road falls to; the higher side of a road has none.")
     TAGS = ("guard rail", "barrier", "noise wall", "fence", "hedge", "pole", "sign", "tree", "asset", "street furniture")
     LOOKS = {"OUTPUT": "ROADSIDE", "OBJECTS": "ROADSIDE_OBJECTS"}
+    NUMBERS = (("LENGTH", tr("Length of all lines but gutters (m)")),
+               ("POLES", tr("Poles, signs and trunks")))
 
     def declare(self):
         self.add_survey()
@@ -59,13 +61,11 @@ class Roadside(Algorithm):
                       fields=ROADSIDE, geometry="LineStringZ")
         self.add_sink("OBJECTS", tr("Poles, signs and trunks"), fields=ROADSIDE_OBJECTS, geometry="PointZ", optional=True)
         self.add_report()
-        self.add_number("LENGTH", tr("Length of all lines but gutters (m)"))
-        self.add_number("POLES", tr("Poles, signs and trunks"))
 
     def work(self, call, progress):
-        from ...core.inventory.roadside.find import find_roadside
-        from ...core.inventory.roadside.result import roadside_to_features
-        from ...core.report.inventory import roadside_report
+        from ...products.inventory.roadside.find import find_roadside
+        from ...products.inventory.roadside.result import roadside_to_features
+        from ...products.report.inventory import roadside_report
 
         settings = call.settings(ROADSIDE_SETTINGS)
         survey, layers = survey_with_borders(call, progress.part(0.0, 0.6), ABOVE_ROAD)

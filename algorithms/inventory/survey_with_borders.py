@@ -16,7 +16,7 @@ BORDER_LAYERS = {
 def add_borders(algorithm, *helps):
     """Declare the layers of the road map, each with what it is good for."""
     for (name, (label, _, geometry)), text in zip(BORDER_LAYERS.items(), helps, strict=True):
-        algorithm.add_layer(name, label, text, geometry, optional=True)
+        algorithm.add_input("layer", name, label, text, geometry, optional=True)
 
 
 def survey_with_borders(call, progress, above_road):
@@ -26,8 +26,8 @@ def survey_with_borders(call, progress, above_road):
     """
     from shapely import get_coordinates
 
-    from ...core.inventory.borders import BorderLayers
     from ...core.io.crs import check_same_crs
+    from ...products.inventory.borders import BorderLayers
 
     layers = {name: call.features(name, schema, geometry) for name, (_, schema, geometry) in BORDER_LAYERS.items()}
     for name, features in layers.items():

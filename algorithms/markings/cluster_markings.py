@@ -6,16 +6,12 @@ from ..parameters import SettingSpec
 from ..survey_input import frame_of, paint_of
 from ..texts import tr
 
-CLUSTERS = "markings.objects.cluster:ClusterSettings"
+CLUSTERS = "core.markings.objects.cluster:ClusterSettings"
 
 CLUSTER_SETTINGS = (
     SettingSpec(
         "DISTANCE", CLUSTERS, "distance", tr("Distance that joins points (m)"),
         tr("Larger joins worn paint into one marking, but also neighbouring markings; smaller keeps them apart."),
-    ),
-    SettingSpec(
-        "MIN_POINTS", CLUSTERS, "min_points", tr("Fewest points of a marking (points)"),
-        tr("Fewer keeps tiny remains of paint, and specks that are none."), advanced=True,
     ),
 )
 
@@ -31,13 +27,14 @@ class ClusterMarkings(Algorithm):
     )
     TAGS = ("road marking", "lane marking", "cluster", "give-way line", "zigzag line", "zebra crossing", "stop line", "arrow",
             "bicycle symbol", "bus lane")
+    RETIRED = ("MIN_POINTS",)
 
     def declare(self):
-        self.add_cloud("MARKING_POINTS", tr("Marking points"), tr("The file written by Remove outliers or Extract markings."))
+        self.add_input("cloud", "MARKING_POINTS", tr("Marking points"), tr("The file written by Remove outliers or Extract markings."))
         self.add_trajectory()
         self.add_settings(CLUSTER_SETTINGS)
         self.add_sink("MARKINGS", tr("Markings"), fields=MARKINGS, geometry="PolygonZ")
-        self.add_laz("CLUSTERED_POINTS", tr("Clustered points"), tr("The points with the extra field cluster."))
+        self.add_output("cloud", "CLUSTERED_POINTS", tr("Clustered points"), tr("The points with the extra field cluster."))
 
     def work(self, call, progress):
         from ...core.markings.objects.cluster import cluster_markings

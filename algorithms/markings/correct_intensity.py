@@ -5,7 +5,7 @@ from ..parameters import SettingSpec
 from ..survey_input import bright_road_points_of, frame_of
 from ..texts import tr
 
-INTENSITY = "intensity.correction:IntensitySettings"
+INTENSITY = "core.intensity.correction:IntensitySettings"
 
 INTENSITY_SETTINGS = (
     SettingSpec(
@@ -24,16 +24,16 @@ class CorrectIntensity(Algorithm):
     TAGS = ("intensity", "range correction", "calibration")
 
     def declare(self):
-        self.add_cloud("ROAD_POINTS", tr("Road points"), tr("The file written by Extract road surface."))
+        self.add_input("cloud", "ROAD_POINTS", tr("Road points"), tr("The file written by Extract road surface."))
         self.add_trajectory()
         self.add_settings(INTENSITY_SETTINGS)
-        self.add_laz("OUTPUT", tr("Corrected road points"))
+        self.add_output("cloud", "OUTPUT", tr("Corrected road points"))
         self.add_report()
 
     def work(self, call, progress):
         from ...core.intensity.correction import correct_intensity
-        from ...core.report.page import html_page
         from ...core.survey.road_points_las import write_road_points
+        from ...products.report.page import html_page
 
         road_points = bright_road_points_of(call, "ROAD_POINTS", progress.part(0.0, 0.2))
         frame = frame_of(call, road_points.crs, progress, road_points)

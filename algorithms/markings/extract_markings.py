@@ -1,114 +1,54 @@
 """Points of paint."""
 
 from ..algorithm import Algorithm
-from ..parameters import SettingSpec
+from ..parameters import ParameterSpec, SettingSpec
 from ..survey_input import bright_road_points_of, frame_of
 from ..texts import tr
 
-EXTRACTION = "markings.paint.settings:MarkingSettings"
-PEAKS = "markings.paint.settings:PeakSettings"
-SEGMENTS = "markings.paint.settings:SegmentSettings"
+EXTRACTION = "core.markings.paint.settings:MarkingSettings"
+
+METHOD = ParameterSpec(
+    "choice", "METHOD", tr("Method"),
+    tr("multi-threshold sets a threshold for every strip along the road on the intensity image: the one to map with. The "
+       "other two are published methods to compare with. intensity-peaks looks for narrow peaks in profiles across the "
+       "road and finds lines only; point-segments sets thresholds on the points and keeps the dense ones. Neither "
+       "tells concrete gutters from paint."),
+    default="multi-threshold", choices=("multi-threshold", "intensity-peaks", "point-segments"),
+)
 
 MARKING_SETTINGS = (
-    SettingSpec(
-        "METHOD", EXTRACTION, "method", tr("Method"),
-        tr("multi-threshold sets a threshold for every strip along the road on the intensity image: the one to map with. The "
-           "other two are published methods to compare with. intensity-peaks looks for narrow peaks in profiles across the "
-           "road and finds lines only; point-segments sets thresholds on the points and keeps the dense ones. Neither "
-           "tells concrete gutters from paint."),
-        choices=("multi-threshold", "intensity-peaks", "point-segments"),
-    ),
     SettingSpec(
         "SEPARATION", EXTRACTION, "separation", tr("Multi-threshold: least distance of paint from asphalt (σ)"),
         tr("How many spreads of asphalt the paint of a strip must lie above it before the strip counts as painted. Lower "
            "finds fainter paint, but also gutters, patches and noise."),
         advanced=True,
     ),
-    SettingSpec(
-        "SHORTEST_PAINT", EXTRACTION, "shortest", tr("Multi-threshold: shortest run of paint along the road (m)"),
-        tr("Longer removes specks, but also worn remains of dashes."), advanced=True,
-    ),
-    SettingSpec(
-        "CLOSE", EXTRACTION, "close", tr("Multi-threshold: gap in paint closed along the road (m)"),
-        tr("Longer joins worn paint, but also neighbouring bars and letters."), advanced=True,
-    ),
 )
 
-PEAK_SETTINGS = (
-    SettingSpec(
-        "PROFILE_LENGTH", PEAKS, "profile_length", tr("Intensity peaks: length of a profile (m)"),
-        tr("Longer holds more points and less noise, but blurs lines that are not parallel to the road. It should hold a "
-           "scan line or two."), advanced=True,
-    ),
-    SettingSpec(
-        "PROMINENCE", PEAKS, "prominence", tr("Intensity peaks: least prominence of a peak (MAD)"),
-        tr("How far a peak must rise above both its feet, in median absolute deviations of its profile. Lower finds fainter "
-           "and worn lines, but also seams and noise."), advanced=True,
-    ),
-    SettingSpec(
-        "NARROWEST", PEAKS, "narrowest", tr("Intensity peaks: narrowest line (m)"),
-        tr("Narrower peaks are no lines. Lower finds worn lines, but also cracks filled with light sealant."),
-        advanced=True,
-    ),
-    SettingSpec(
-        "WIDEST", PEAKS, "widest", tr("Intensity peaks: widest line (m)"),
-        tr("Broader peaks are no lines. Higher finds broad lines and zebra bars, but also pale repairs and gutters."),
-        advanced=True,
-    ),
-    SettingSpec(
-        "JUMP", PEAKS, "jump", tr("Intensity peaks: shift between profiles (m)"),
-        tr("How far across a peak may lie from the last one of its line. Larger follows slanting lines, but also joins "
-           "what only happens to lie near."), advanced=True,
-    ),
-    SettingSpec(
-        "PEAK_GAP", PEAKS, "gap", tr("Intensity peaks: gap along a line (m)"),
-        tr("Longer follows worn lines, but also joins specks. At least the length of a profile."),
-        advanced=True,
-    ),
-    SettingSpec(
-        "SHORTEST_LINE", PEAKS, "shortest", tr("Intensity peaks: shortest line (m)"),
-        tr("Longer removes specks, but also short and worn dashes."), advanced=True,
-    ),
-)
 
-SEGMENT_SETTINGS = (
-    SettingSpec(
-        "SEGMENT_LENGTH", SEGMENTS, "length", tr("Point segments: length of a segment (m)"),
-        tr("Longer holds more asphalt and steadies the threshold, but averages over patches and worn stretches."),
-        advanced=True,
-    ),
-    SettingSpec(
-        "SEGMENT_WIDTH", SEGMENTS, "width", tr("Point segments: width of a segment (m)"),
-        tr("Narrower is scanned more alike, but may hold little asphalt beside the paint."),
-        advanced=True,
-    ),
-    SettingSpec(
-        "SEGMENT_SEPARATION", SEGMENTS, "separation", tr("Point segments: least distance of paint from asphalt (σ)"),
-        tr("How many spreads of asphalt the bright points of a segment must lie above the rest before it counts as "
-           "painted. Lower finds fainter paint, but takes patches and noise for it."), advanced=True,
-    ),
-    SettingSpec(
-        "NEIGHBOUR_RADIUS", SEGMENTS, "radius", tr("Point segments: radius in which bright points are counted (m)"),
-        tr("Larger suits sparse surveys; smaller keeps narrow paint beside asphalt."),
-        advanced=True,
-    ),
-)
+def marking_settings(call):
+    """MarkingSettings with the method that the user chose."""
+    from ...products.published_markings import METHODS
+
+    return call.settings(MARKING_SETTINGS, method=METHODS[call.value("METHOD")])
 
 
 class ExtractMarkings(Algorithm):
     ID, TITLE, GROUP = "extractmarkings", "Extract markings", "Markings"
     SUMMARY = "Separates paint from asphalt by intensity and keeps the points of the paint."
     TAGS = ("road marking", "lane marking", "paint", "threshold", "otsu", "intensity peak", "density")
+    RETIRED = ("SHORTEST_PAINT", "CLOSE", "PROFILE_LENGTH", "PROMINENCE", "NARROWEST", "WIDEST", "JUMP", "PEAK_GAP", "SHORTEST_LINE",
+               "SEGMENT_LENGTH", "SEGMENT_WIDTH", "SEGMENT_SEPARATION", "NEIGHBOUR_RADIUS")
 
     def declare(self):
-        self.add_cloud("ROAD_POINTS", tr("Road points"), tr("The file that the intensity image was made from."))
-        self.add_layer_raster("INTENSITY_IMAGE", tr("Intensity image"), tr("The GeoTIFF written by Intensity image."))
+        self.add_input("cloud", "ROAD_POINTS", tr("Road points"), tr("The file that the intensity image was made from."))
+        self.add_input("raster", "INTENSITY_IMAGE", tr("Intensity image"), tr("The GeoTIFF written by Intensity image."))
         self.add_trajectory()
-        for specs in (MARKING_SETTINGS, PEAK_SETTINGS, SEGMENT_SETTINGS):
-            self.add_settings(specs)
-        self.add_laz("MARKING_POINTS", tr("Marking points"))
-        self.add_raster(
-            "MARKING_MASK", tr("Marking mask"), tr("1 where a pixel is paint, 0 where it is not."), optional=True, by_default=False
+        self.add(METHOD)
+        self.add_settings(MARKING_SETTINGS)
+        self.add_output("cloud", "MARKING_POINTS", tr("Marking points"))
+        self.add_output(
+            "raster", "MARKING_MASK", tr("Marking mask"), tr("1 where a pixel is paint, 0 where it is not."), optional=True, by_default=False
         )
 
     def work(self, call, progress):
@@ -121,9 +61,6 @@ class ExtractMarkings(Algorithm):
         frame = frame_of(call, road_points.crs, progress, road_points)
         image = IntensityImage.open(call.raster("INTENSITY_IMAGE"))
         check_image_shows(image, road_points)
-        settings = call.settings(MARKING_SETTINGS, peaks=call.settings(PEAK_SETTINGS), segments=call.settings(SEGMENT_SETTINGS))
         markings = extract_markings(
-            road_points, image, frame, settings, progress.part(0.2, 0.95),
-            mask_path=call.new_file("MARKING_MASK") or None,
-        )
+            road_points, image, frame, marking_settings(call), progress.part(0.2, 0.95), mask_path=call.new_file("MARKING_MASK") or None)
         write_road_points(markings, call.new_file("MARKING_POINTS"), progress.part(0.95, 1.0))

@@ -7,7 +7,7 @@ from ..parameters import SettingSpec
 from ..survey_input import check_layers_on_roads, frame_of, paint_of, road_points_of
 from ..texts import tr
 
-LINES = "markings.lines.fit:MarkingLineSettings"
+LINES = "core.markings.lines.fit:MarkingLineSettings"
 
 LINE_SETTINGS = (
     SettingSpec(
@@ -25,20 +25,6 @@ LINE_SETTINGS = (
         "DEGREE", LINES, "degree", tr("Degree of the polynomial (0-9)"),
         tr("Used with polynomial only. Higher follows more bends, but swings between its points."),
     ),
-    SettingSpec(
-        "LINK_GAP", LINES, "max_gap", tr("Longest gap between dashes linked (m)"),
-        tr("Longer links dashes that stand far apart, but also lines that end and begin anew."),
-        advanced=True,
-    ),
-    SettingSpec(
-        "LINK_BRIDGE", LINES, "max_bridge", tr("Longest gap linked by rhythm (m)"),
-        tr("Up to here a line goes on where its own rhythm of dashes or a line beside it carries over; flagged as bridged."),
-        advanced=True,
-    ),
-    SettingSpec(
-        "MIN_PAINT", LINES, "min_paint", tr("Least paint of a line (m)"),
-        tr("Less makes lines of short remains, and of marks that are none."), advanced=True,
-    ),
 )
 
 
@@ -47,13 +33,16 @@ class FitMarkingLines(Algorithm):
     SUMMARY = "Links dashes along the road and fits a curve to every painted line."
     LOOKS = {"NAMED_MARKINGS": "MARKINGS"}
     TAGS = ("lane line", "curve fitting", "circle", "clothoid", "spline")
+    RETIRED = ("LINK_GAP", "LINK_BRIDGE", "MIN_PAINT")
 
     def declare(self):
-        self.add_cloud("CLUSTERED_POINTS", tr("Clustered points"), tr("The file written by Cluster markings."))
-        self.add_layer("MARKINGS", tr("Markings"), tr("The layer written by Cluster markings together with the points."), "PolygonZ")
+        self.add_input("cloud", "CLUSTERED_POINTS", tr("Clustered points"), tr("The file written by Cluster markings."))
+        self.add_input("layer", "MARKINGS", tr("Markings"), tr("The layer written by Cluster markings together with the points."), "PolygonZ")
         self.add_trajectory()
-        self.add_layer("ROAD_EDGES", tr("Road edges"), tr("With it curbs help to tell edge lines from lane lines."), "LineStringZ", optional=True)
-        self.add_cloud("ROAD_POINTS", tr("Road points"), tr("With it the width of the road helps to tell what a line separates."), optional=True)
+        self.add_input("layer", "ROAD_EDGES", tr("Road edges"), tr("With it curbs help to tell edge lines from lane lines."),
+                       "LineStringZ", optional=True)
+        self.add_input("cloud", "ROAD_POINTS", tr("Road points"),
+                       tr("With it the width of the road helps to tell what a line separates."), optional=True)
         self.add_settings(LINE_SETTINGS)
         self.add_sink("MARKING_LINES", tr("Marking lines"), fields=MARKING_LINES, geometry="LineStringZ")
         self.add_sink("NAMED_MARKINGS", tr("Markings named by their lines"), fields=MARKINGS, geometry="PolygonZ", optional=True, by_default=False,

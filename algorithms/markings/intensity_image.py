@@ -5,25 +5,12 @@ from ..parameters import SettingSpec
 from ..survey_input import bright_road_points_of
 from ..texts import tr
 
-IMAGE = "intensity.image:ImageSettings"
+IMAGE = "core.intensity.image:ImageSettings"
 
 IMAGE_SETTINGS = (
     SettingSpec(
         "CELL_SIZE", IMAGE, "cell_size", tr("Cell size (m)"),
         tr("Smaller shows narrow lines more sharply while the cloud is dense enough; larger fills gaps and makes smaller files."),
-    ),
-    SettingSpec(
-        "POWER", IMAGE, "power", tr("Power of the distance (0-9)"),
-        tr("Higher lets the nearest point decide, lower averages more."), advanced=True,
-    ),
-    SettingSpec(
-        "BETA", IMAGE, "beta", tr("Share of the weight that follows brightness (0-1)"),
-        tr("0 is plain inverse distance; higher lets bright points count more and fattens paint by up to half a cell."),
-        advanced=True,
-    ),
-    SettingSpec(
-        "RADIUS_CELLS", IMAGE, "radius_cells", tr("Reach of a point (cells)"),
-        tr("Larger fills sparse far pixels, but blurs."), advanced=True,
     ),
 )
 
@@ -32,16 +19,17 @@ class IntensityImage(Algorithm):
     ID, TITLE, GROUP = "intensityimage", "Intensity image", "Markings"
     SUMMARY = "Interpolates the intensity of road points into a GeoTIFF: near and bright points count more."
     TAGS = ("intensity", "image", "raster", "orthophoto")
+    RETIRED = ("POWER", "BETA", "RADIUS_CELLS")
 
     def declare(self):
-        self.add_cloud(
-            "ROAD_POINTS", tr("Road points"),
+        self.add_input(
+            "cloud", "ROAD_POINTS", tr("Road points"),
             tr("The file written by Correct intensity, or by Extract road surface for the raw intensity."),
         )
         self.add_settings(IMAGE_SETTINGS)
-        self.add_raster("INTENSITY_IMAGE", tr("Intensity image"))
-        self.add_raster(
-            "DISPLAY_IMAGE", tr("Intensity image, 8 bit"),
+        self.add_output("raster", "INTENSITY_IMAGE", tr("Intensity image"))
+        self.add_output(
+            "raster", "DISPLAY_IMAGE", tr("Intensity image, 8 bit"),
             tr("The same for viewing: stretched to 256 grey values, for programs that show no floating-point images."),
             optional=True, by_default=False,
         )

@@ -5,7 +5,7 @@ from ..parameters import SettingSpec
 from ..survey_input import paint_of
 from ..texts import tr
 
-OUTLIERS = "markings.outliers:OutlierSettings"
+OUTLIERS = "core.markings.outliers:OutlierSettings"
 
 OUTLIER_SETTINGS = (
     SettingSpec(
@@ -31,9 +31,9 @@ class RemoveOutliers(Algorithm):
     TAGS = ("outlier", "noise", "sor")
 
     def declare(self):
-        self.add_cloud("INPUT", tr("Marking points"), tr("The file written by Extract markings."))
+        self.add_input("cloud", "INPUT", tr("Marking points"), tr("The file written by Extract markings."))
         self.add_settings(OUTLIER_SETTINGS)
-        self.add_laz("OUTPUT", tr("Marking points without outliers"))
+        self.add_output("cloud", "OUTPUT", tr("Marking points without outliers"))
 
     def work(self, call, progress):
         from ...core.markings.outliers import remove_outliers

@@ -19,7 +19,7 @@ def read_control_point_layer(source, image, crs=""):
     RoadExtractionError
         If the layer holds lines or polygons, or lacks a field.
     """
-    from ...core.overlay.control_points import control_points
+    from ...products.overlay.control_points import control_points
 
     if source.kind in (LINE, POLYGON):
         raise RoadExtractionError(

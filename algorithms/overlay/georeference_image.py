@@ -3,11 +3,11 @@
 from ...core.common.errors import RoadExtractionError
 from ...core.common.features import RESIDUALS
 from ..algorithm import Algorithm
-from ..parameters import CrsSpec, FileSpec, SettingSpec
+from ..parameters import SettingSpec
 from ..texts import tr
 from .control_point_layer import read_control_point_layer
 
-GEOREFERENCE = "overlay.georeference:GeoreferenceSettings"
+GEOREFERENCE = "products.overlay.georeference:GeoreferenceSettings"
 POINTS_FILTER = "Control points (*.points *.csv *.txt *.POINTS *.CSV *.TXT);;All files (*.*)"
 
 GEOREFERENCE_SETTINGS = (
@@ -41,15 +41,6 @@ GEOREFERENCE_SETTINGS = (
     ),
 )
 
-NUMBERS = (
-    ("POINTS", tr("Control points")),
-    ("RMSE", tr("RMSE of the control points (m)")),
-    ("LEFT_OUT_RMSE", tr("RMSE of the control points, each left out in turn (m)")),
-    ("CHECK_POINTS", tr("Check points")),
-    ("CHECK_RMSE", tr("RMSE of the check points (m)")),
-    ("LARGEST", tr("Largest residual of a control point (m)")),
-    ("OUTSIDE", tr("Image outside the hull of the control points (%)")),
-)
 
 
 class GeoreferenceImage(Algorithm):
@@ -63,36 +54,44 @@ class GeoreferenceImage(Algorithm):
             "well the image fits the cloud, not how well either fits the ground.")
     TAGS = ("UAV", "drone", "orthoimage", "GCP", "georeferencer", "polynomial", "warp")
     LOOKS = {"OUTPUT": "ORTHOIMAGE"}
+    NUMBERS = (
+        ("POINTS", tr("Control points")),
+        ("RMSE", tr("RMSE of the control points (m)")),
+        ("LEFT_OUT_RMSE", tr("RMSE of the control points, each left out in turn (m)")),
+        ("CHECK_POINTS", tr("Check points")),
+        ("CHECK_RMSE", tr("RMSE of the check points (m)")),
+        ("LARGEST", tr("Largest residual of a control point (m)")),
+        ("OUTSIDE", tr("Image outside the hull of the control points (%)")),
+    )
 
     def declare(self):
-        self.add_layer_raster("IMAGE", tr("Image"), tr("TIFF, JPEG, PNG or any other raster, with a position on the map or without."))
-        self.add_layer(
-            "GCPS", tr("Control points (layer)"),
+        self.add_input("raster", "IMAGE", tr("Image"), tr("TIFF, JPEG, PNG or any other raster, with a position on the map or without."))
+        self.add_input(
+            "layer", "GCPS", tr("Control points (layer)"),
             tr("A point layer with the fields pixel and line, or a table that also has easting and northing. A field role (control or check) "
                "sets points aside that only judge the result, a field enable switches points off."),
             optional=True,
         )
-        self.add(FileSpec(
-            "GCP_FILE", tr("Control points (file)"),
+        self.add_input(
+            "file", "GCP_FILE", tr("Control points (file)"),
             tr("In place of a layer: the .points file of QGIS's georeferencer, the gcp_list.txt of OpenDroneMap, or a CSV with the columns pixel, "
                "line, easting, northing in any order. Where rows name images, those of this image are used."),
             optional=True, file_filter=POINTS_FILTER,
-        ))
-        self.add(CrsSpec("CRS", tr("CRS of the control points"),
-                         tr("Only for control points that name none of their own. It must be projected."), optional=True))
+        )
+        self.add_input("crs", "CRS", tr("CRS of the control points"),
+                       tr("Only for control points that name none of their own. It must be projected."), optional=True)
         self.add_settings(GEOREFERENCE_SETTINGS)
-        self.add_raster("OUTPUT", tr("Georeferenced image"), tr("GeoTIFF with overviews; transparent or without data where the image ends."))
+        self.add_output("raster", "OUTPUT", tr("Georeferenced image"),
+                        tr("GeoTIFF with overviews; transparent or without data where the image ends."))
         self.add_sink("RESIDUALS", tr("Residuals"), tr("From where the polynomial puts each point to where it was measured."), "LineStringZ",
                       optional=True, fields=RESIDUALS)
         self.add_report()
-        for name, label in NUMBERS:
-            self.add_number(name, label)
 
     def work(self, call, progress):
-        from ...core.overlay.georeference import georeference, residual_vectors
-        from ...core.overlay.source_image import open_image
-        from ...core.overlay.warp import draw_image
-        from ...core.report.overlay import georeferencing_report
+        from ...products.overlay.georeference import georeference, residual_vectors
+        from ...products.overlay.source_image import open_image
+        from ...products.overlay.warp import draw_image
+        from ...products.report.overlay import georeferencing_report
 
         image = open_image(call.raster("IMAGE"))
         if image.geotransform is None:
@@ -118,7 +117,7 @@ class GeoreferenceImage(Algorithm):
 def _control_points(call, image, progress):
     """From the layer or the file, whichever was given."""
     from ...core.io.crs import horizontal_part, parse_crs, same_crs
-    from ...core.overlay.control_points import read_control_points
+    from ...products.overlay.control_points import read_control_points
 
     given = call.crs()
     path = call.file("GCP_FILE")
@@ -138,7 +137,7 @@ def _control_points(call, image, progress):
 
 
 def _numbers(found):
-    from ...core.overlay.control_points import CHECK, CONTROL
+    from ...products.overlay.control_points import CHECK, CONTROL
 
     lengths = [float((dx * dx + dy * dy) ** 0.5) for dx, dy in found.errors[found.points.having(CONTROL)]]
     values = {

@@ -6,7 +6,7 @@ from ..parameters import SettingSpec
 from ..texts import tr
 from .control_point_layer import read_control_point_layer
 
-PROPOSE = "overlay.matching.propose:ProposalSettings"
+PROPOSE = "products.overlay.matching.propose:ProposalSettings"
 
 PROPOSE_SETTINGS = (
     SettingSpec(
@@ -33,13 +33,6 @@ PROPOSE_SETTINGS = (
     ),
 )
 
-NUMBERS = (
-    ("PROPOSED", tr("Pairs proposed")),
-    ("ACCEPTED", tr("Pairs accepted")),
-    ("RMSE", tr("RMSE of the accepted pairs, each left out in turn (m)")),
-    ("GROUND_PIXEL", tr("Pixel of the image on the ground (m)")),
-    ("TURN", tr("Turn of the image, from its rows to east (°)")),
-)
 
 
 class ProposeControlPoints(Algorithm):
@@ -55,12 +48,19 @@ class ProposeControlPoints(Algorithm):
             "The pairs tell how well the image fits the point cloud, not how well either fits the ground. They lie on the road, so that the "
             "image is reliable there and less so beside it. Sun, shadow and dark paint do no harm; paint renewed between the two surveys does.")
     TAGS = ("UAV", "drone", "GCP", "control points", "matching", "registration", "orthoimage", "georeferencer")
+    NUMBERS = (
+        ("PROPOSED", tr("Pairs proposed")),
+        ("ACCEPTED", tr("Pairs accepted")),
+        ("RMSE", tr("RMSE of the accepted pairs, each left out in turn (m)")),
+        ("GROUND_PIXEL", tr("Pixel of the image on the ground (m)")),
+        ("TURN", tr("Turn of the image, from its rows to east (°)")),
+    )
 
     def declare(self):
-        self.add_layer_raster("IMAGE", tr("Image"), tr("TIFF, JPEG, PNG or any other raster that looks straight down, of up to 500 m of ground."))
-        self.add_layer_raster("INTENSITY_IMAGE", tr("Intensity image"), tr("As Intensity image and Road map write it."))
-        self.add_layer(
-            "ROUGH_POINTS", tr("Two rough points"),
+        self.add_input("raster", "IMAGE", tr("Image"), tr("TIFF, JPEG, PNG or any other raster that looks straight down, of up to 500 m of ground."))
+        self.add_input("raster", "INTENSITY_IMAGE", tr("Intensity image"), tr("As Intensity image and Road map write it."))
+        self.add_input(
+            "layer", "ROUGH_POINTS", tr("Two rough points"),
             tr("Where the image has no position: a layer with the fields pixel and line of two or more points far apart, right to some "
                "metres."),
             optional=True,
@@ -68,15 +68,13 @@ class ProposeControlPoints(Algorithm):
         self.add_settings(PROPOSE_SETTINGS)
         self.add_sink("CONTROL_POINTS", tr("Control points"), tr("As Georeference image takes them."), "PointZ", fields=PROPOSED_POINTS)
         self.add_report()
-        for name, label in NUMBERS:
-            self.add_number(name, label)
 
     def work(self, call, progress):
         from ...core.io.geotiff import IntensityImage
-        from ...core.overlay.matching.propose import propose_control_points
-        from ...core.overlay.rough_place import rough_place
-        from ...core.overlay.source_image import open_image
-        from ...core.report.overlay import proposed_points_report
+        from ...products.overlay.matching.propose import propose_control_points
+        from ...products.overlay.rough_place import rough_place
+        from ...products.overlay.source_image import open_image
+        from ...products.report.overlay import proposed_points_report
 
         image = open_image(call.raster("IMAGE"))
         intensity = IntensityImage.open(call.raster("INTENSITY_IMAGE"))
@@ -101,7 +99,7 @@ def _rough_points(call, image, crs):
     """Given points in the CRS of the intensity image, None where there are none."""
     from dataclasses import replace
 
-    from ...core.overlay.rough_place import to_map
+    from ...products.overlay.rough_place import to_map
 
     source = call.source("ROUGH_POINTS")
     if source is None:

@@ -1,26 +1,24 @@
 """Road edges from the point clouds in one step, by either method."""
 
-from dataclasses import replace
-
 from ...core.common.features import ROAD_EDGES
 from ..algorithm import Algorithm
 from ..parameters import SettingSpec
 from ..survey_input import SURVEY_SETTINGS, add_execution, open_survey_of
 from ..texts import tr
-from .boundaries_from_scanlines import SCANLINE_METHOD_SETTINGS
+from .boundaries_from_scanlines import BOUNDARY_SETTINGS
 from .detect_curbs import CURB_SETTINGS
 from .fit_road_edges import EDGE_SETTINGS
-from .normalized_scanlines import SCANLINE_SETTINGS
 
 METHOD_SETTING = SettingSpec(
-    "BOUNDARY_METHOD", "road.detect_boundaries:BoundarySettings", "method", tr("Boundary method"),
+    "BOUNDARY_METHOD", "core.road.detect_boundaries:BoundarySettings", "method", tr("Boundary method"),
     tr("Profiles looks for the curb in slices across the road; scanlines meets the planes of road, curb face and sidewalk; both "
        "lets the two check each other: at every place the one that measures better is drawn, agree_cm says how far apart they are, "
        "and it takes as long as the two together."),
     choices=("profiles", "scanlines", "both"),
 )
-# Where scanlines lie; their corridor is the survey's
-PLANE_SETTINGS = tuple(replace(spec, advanced=True) for spec in SCANLINE_SETTINGS if spec.name != "CORRIDOR")
+# Both methods ask for one least height
+SCANLINE_METHOD_SETTINGS = tuple(spec for spec in BOUNDARY_SETTINGS if spec.name == "MIN_HEIGHT")
+OFFERED = ("BLOCK_LENGTH", "SLOPE", "MIN_HEIGHT", "MAX_HEIGHT")
 
 
 class DetectBoundaries(Algorithm):
@@ -30,14 +28,14 @@ class DetectBoundaries(Algorithm):
             "higher or lower than the road before them. The field edge tells the two apart (curb, pavement). Where nothing separates the "
             "road from what lies beside it, no edge is made up.")
     TAGS = ("curb", "kerb", "road edge", "boundary", "scanline")
+    RETIRED = ("PROFILE_WIDTH", "POINT_SPACING", "LAYER_JUMP", "INTERVAL", "ROTATION_FREQUENCY", "SCANLINE_MIN_HEIGHT", "SEARCH_WIDTH",
+               "SENSOR_HEIGHT", "CLIPPING_HEIGHT", "DISTANCE_ACROSS", "DISTANCE_ALONG", "RANSAC_DISTANCE", "VERTICAL_ANGLE", "HORIZONTAL_ANGLE")
 
     def declare(self):
         self.add_survey()
         self.add_settings((METHOD_SETTING,))
-        self.add_settings(CURB_SETTINGS)
+        self.add_settings(CURB_SETTINGS, only=OFFERED)
         self.add_settings(EDGE_SETTINGS)
-        self.add_settings(PLANE_SETTINGS)
-        self.add_settings(SCANLINE_METHOD_SETTINGS)
         self.add_settings(SURVEY_SETTINGS)
         add_execution(self)
         self.add_sink("ROAD_EDGES", tr("Road edges"), fields=ROAD_EDGES, geometry="LineStringZ")
@@ -45,8 +43,7 @@ class DetectBoundaries(Algorithm):
     def work(self, call, progress):
         from ...core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
 
-        settings = BoundarySettings(call.setting(METHOD_SETTING), call.settings(CURB_SETTINGS), call.settings(SCANLINE_METHOD_SETTINGS),
-                                    call.settings(PLANE_SETTINGS))
+        settings = BoundarySettings(call.value("BOUNDARY_METHOD"), call.settings(CURB_SETTINGS), call.settings(SCANLINE_METHOD_SETTINGS))
         survey = open_survey_of(call, progress.part(0.0, 0.5))
         found = find_curb_points(survey, settings, progress.part(0.5, 0.95))
         boundaries = draw_boundaries(found, survey.frame, call.settings(EDGE_SETTINGS), progress.part(0.95, 1.0), survey)

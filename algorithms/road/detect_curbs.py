@@ -6,7 +6,7 @@ from ..parameters import SettingSpec
 from ..survey_input import SURVEY_SETTINGS, open_survey_of
 from ..texts import tr
 
-CURBS = "road.profiles.detect:CurbSettings"
+CURBS = "core.road.profiles.detect:CurbSettings"
 
 CURB_SETTINGS = (
     SettingSpec(

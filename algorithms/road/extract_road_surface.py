@@ -6,18 +6,13 @@ from ..parameters import SettingSpec
 from ..survey_input import SURVEY_SETTINGS, check_layers_on_roads, open_survey_of
 from ..texts import tr
 
-SURFACE = "road.surface.extract:SurfaceSettings"
+SURFACE = "core.road.surface.extract:SurfaceSettings"
 
 SURFACE_SETTINGS = (
     SettingSpec(
         "MAX_WIDTH", SURFACE, "max_width", tr("Farthest surface from the trajectory (m)"),
         tr("On a side without an edge the surface grows outward while it stays smooth, at most this far. Wider reaches "
            "the far lanes of a broad road, but also yards and forecourts."),
-    ),
-    SettingSpec(
-        "HEIGHT_TOLERANCE", SURFACE, "height_tolerance", tr("Height about the road's own surface (m)"),
-        tr("Wider keeps noisy points and ruts, but also the feet of cars and curbs; where the scanner's noise allows, less is taken."),
-        advanced=True,
     ),
 )
 
@@ -26,18 +21,19 @@ class ExtractRoadSurface(Algorithm):
     ID, TITLE, GROUP = "extractroadsurface", "Extract road surface", "Road"
     SUMMARY = "Keeps the points of the road surface: between the road edges, or as far as the ground stays smooth."
     TAGS = ("road surface", "ground")
+    RETIRED = ("HEIGHT_TOLERANCE",)
 
     def declare(self):
         self.add_survey()
-        self.add_layer(
-            "ROAD_EDGES", tr("Road edges"),
+        self.add_input(
+            "layer", "ROAD_EDGES", tr("Road edges"),
             tr("The layer written by Fit road edges. Without it the surface is grown on both sides."),
             "LineStringZ", optional=True,
         )
         self.add_settings(SURFACE_SETTINGS)
         self.add_settings(SURVEY_SETTINGS)
-        self.add_laz(
-            "ROAD_POINTS", tr("Road points"),
+        self.add_output(
+            "cloud", "ROAD_POINTS", tr("Road points"),
             tr("Class 11, with the extra fields road, pass, station_m, offset_m, half_width and covered for the stages that follow."),
         )
         self.add_sink("ROAD_SURFACE", tr("Road surface"), fields=ROAD_SURFACE, geometry="PolygonZ", optional=True)

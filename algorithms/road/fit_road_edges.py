@@ -6,7 +6,7 @@ from ..parameters import SettingSpec
 from ..survey_input import frame_of
 from ..texts import tr
 
-EDGES = "road.edges.fit:EdgeSettings"
+EDGES = "core.road.edges.fit:EdgeSettings"
 
 EDGE_SETTINGS = (
     SettingSpec(
@@ -29,7 +29,7 @@ class FitRoadEdges(Algorithm):
     TAGS = ("curb", "kerb", "road edge", "spline")
 
     def declare(self):
-        self.add_layer("CURB_POINTS", tr("Curb points"), tr("The layer written by Detect curbs."), "PointZ")
+        self.add_input("layer", "CURB_POINTS", tr("Curb points"), tr("The layer written by Detect curbs."), "PointZ")
         self.add_trajectory()
         self.add_settings(EDGE_SETTINGS)
         self.add_sink("ROAD_EDGES", tr("Road edges"), fields=ROAD_EDGES, geometry="LineStringZ")

@@ -8,7 +8,7 @@ from ..parameters import SettingSpec
 from ..survey_input import SURVEY_SETTINGS, add_execution, open_survey_of
 from ..texts import tr
 
-PLANES = "road.scanlines.section_planes:ScanlineSettings"
+PLANES = "core.road.scanlines.section_planes:ScanlineSettings"
 
 SCANLINE_SETTINGS = (
     SettingSpec(
@@ -28,13 +28,13 @@ SCANLINE_SETTINGS = (
 )
 LAYER_SETTINGS = (
     SettingSpec(
-        "SIMPLIFY", "road.scanlines.layer:ScanlineLayerSettings", "simplify", tr("Deviation allowed in thinning the scanlines (m)"),
+        "SIMPLIFY", "products.scanline_layer:ScanlineLayerSettings", "simplify", tr("Deviation allowed in thinning the scanlines (m)"),
         tr("Larger draws and writes faster and shows less of the surface; 0 keeps every vertex."),
     ),
 )
 POINT_SETTINGS = (
     SettingSpec(
-        "RESAMPLED_SPACING", "road.scanlines.layer:ResamplingSettings", "spacing", tr("Spacing of resampled points along a scanline (m)"),
+        "RESAMPLED_SPACING", "products.scanline_layer:ResamplingSettings", "spacing", tr("Spacing of resampled points along a scanline (m)"),
         tr("Smaller gives more points, without more being known of the surface."),
         advanced=True,
     ),
@@ -58,11 +58,12 @@ class NormalizedScanlines(Algorithm):
         add_execution(self)
         self.add_sink("SCANLINES", tr("Normalized scanlines"),
                       tr("Lines with height (Z) and intensity (M)."), fields=SCANLINES, geometry="LineStringZM", optional=True)
-        self.add_laz("RESAMPLED_POINTS", tr("Resampled points"), tr("Points at equal steps along the scanlines, with intensity, station and "
-                     "offset: a cloud of even density."), optional=True, by_default=False)
+        self.add_output("cloud", "RESAMPLED_POINTS", tr("Resampled points"), tr(
+            "Points at equal steps along the scanlines, with intensity, station and offset: a cloud of even density."),
+            optional=True, by_default=False)
 
     def work(self, call, progress):
-        from ...core.road.scanlines.layer import ResampledPoints, write_scanlines
+        from ...products.scanline_layer import ResampledPoints, write_scanlines
 
         survey = open_survey_of(call, progress.part(0.0, 0.5))
         points = nullcontext()

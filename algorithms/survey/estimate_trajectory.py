@@ -8,13 +8,6 @@ from ..trajectory_source import trajectory_features
 
 SCANNER_SETTING = tuple(spec for spec in SURVEY_SETTINGS if spec.name == "SCANNER_FIELD")
 
-NUMBERS = (
-    ("ROWS", tr("Positions")),
-    ("LENGTH", tr("Length driven (m)")),
-    ("SCANNERS", tr("Scanners that took part")),
-    ("SIGMA", tr("Uncertainty of the place, median (m)")),
-    ("SIGMA_Z", tr("Uncertainty of the height, median (m)")),
-)
 
 
 class EstimateTrajectory(Algorithm):
@@ -35,6 +28,13 @@ class EstimateTrajectory(Algorithm):
         "are those that lack the road under the vehicle and files of drives whose clocks overlap."
     )
     TAGS = ("trajectory", "no trajectory", "scanner position", "rotating mirror", "gps time")
+    NUMBERS = (
+        ("ROWS", tr("Positions")),
+        ("LENGTH", tr("Length driven (m)")),
+        ("SCANNERS", tr("Scanners that took part")),
+        ("SIGMA", tr("Uncertainty of the place, median (m)")),
+        ("SIGMA_Z", tr("Uncertainty of the height, median (m)")),
+    )
 
     def declare(self):
         self.add_point_clouds()
@@ -42,16 +42,14 @@ class EstimateTrajectory(Algorithm):
         self.add_settings(SCANNER_SETTING)
         self.add_sink("TRAJECTORY", tr("Trajectory"), fields=ESTIMATED_TRAJECTORY, geometry="PointZ")
         self.add_report()
-        for name, label in NUMBERS:
-            self.add_number(name, label)
 
     def work(self, call, progress):
         import numpy as np
 
-        from ...core.report.survey import estimated_trajectory_report
         from ...core.survey.estimation import estimate_trajectory
+        from ...products.report.survey import estimated_trajectory_report
 
-        found = estimate_trajectory(call.point_clouds(), call.crs(), call.setting(SCANNER_SETTING[0]), progress)
+        found = estimate_trajectory(call.point_clouds(), call.crs(), call.value("SCANNER_FIELD"), progress)
         for note in found.cloud_notes + found.notes:
             progress.warn(note)
         track = found.trajectory
@@ -59,4 +57,4 @@ class EstimateTrajectory(Algorithm):
         call.layer("TRAJECTORY", trajectory_features(track, sigma_m=found.sigma, sigma_z_m=found.sigma_height))
         call.text("REPORT", estimated_trajectory_report(found))
         values = len(track), found.length, len(found.scanners), float(np.median(found.sigma)), float(np.median(found.sigma_height))
-        return {name: value for (name, _), value in zip(NUMBERS, values)}
+        return {name: value for (name, _), value in zip(self.NUMBERS, values)}

@@ -2,7 +2,6 @@
 
 from ...core.common.features import TRAJECTORY
 from ..algorithm import Algorithm
-from ..parameters import ColumnsSpec, CrsSpec, PointCloudsSpec, TrajectorySpec
 from ..survey_input import SURVEY_SETTINGS, imported_trajectory
 from ..texts import tr
 from ..trajectory_source import trajectory_features
@@ -20,29 +19,29 @@ class ImportTrajectory(Algorithm):
         "of its date. Other clock times, and seconds since 1970, are refused, as their leap seconds are unknown."
     )
     TAGS = ("trajectory", "sbet", "applanix", "csv", "gps time", "nmea", "gpx", "rtklib")
+    NUMBERS = (("ROWS", tr("Positions")),)
 
     def declare(self):
-        self.add(TrajectorySpec("INPUT", tr("Trajectory file or layer"),
-                                tr("A CSV or TXT file, an SBET (.out), a log (NMEA, RTKLIB, NovAtel), a GPX or KML track, or a layer of points or "
-                                   "lines with heights.")))
-        self.add(ColumnsSpec(
-            "COLUMNS", tr("Columns"),
+        self.add_input("trajectory", "INPUT", tr("Trajectory file or layer"),
+                       tr("A CSV or TXT file, an SBET (.out), a log (NMEA, RTKLIB, NovAtel), a GPX or KML track, or a layer of points or "
+                          "lines with heights."))
+        self.add_input(
+            "columns", "COLUMNS", tr("Columns"),
             tr("Of a text file, one word a column from the left: time, x, y, z, roll, pitch, heading, lon, lat, or - for a column that is left out; "
                "such as time,y,x,z. A column of clock times is gps or utc, by what its clock shows, and week or date where these stand apart. Empty "
-               "recognises them by their names, or by their numbers where they have none."), optional=True, value=""))
-        self.add(CrsSpec("INPUT_CRS", tr("CRS of the trajectory"),
-                         tr("Where the file does not say it. An SBET is in WGS 84 unless another is chosen."), optional=True))
-        self.add(CrsSpec(
-            "TARGET_CRS", tr("CRS to bring it to"),
+               "recognises them by their names, or by their numbers where they have none."), optional=True, default="")
+        self.add_input("crs", "INPUT_CRS", tr("CRS of the trajectory"),
+                       tr("Where the file does not say it. An SBET is in WGS 84 unless another is chosen."), optional=True)
+        self.add_input(
+            "crs", "TARGET_CRS", tr("CRS to bring it to"),
             tr("That of the point clouds. Empty takes it from the point clouds below, or leaves the trajectory as it is."), optional=True,
-        ))
-        self.add(PointCloudsSpec(
-            "POINT_CLOUDS", tr("Point clouds"),
+        )
+        self.add_input(
+            "clouds", "POINT_CLOUDS", tr("Point clouds"),
             tr("With them the time system is told apart, and the trajectory is written on the clouds' clock."), optional=True,
-        ))
+        )
         self.add_settings(TIME_SETTING)
         self.add_sink("OUTPUT", tr("Imported trajectory"), fields=TRAJECTORY, geometry="PointZ")
-        self.add_number("ROWS", tr("Positions"))
 
     def work(self, call, progress):
         from ...core.survey.trajectory.trajectory import clean_trajectory

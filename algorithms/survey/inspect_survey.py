@@ -4,30 +4,15 @@ from ..algorithm import Algorithm
 from ..parameters import SettingSpec
 from ..texts import tr
 
-INSPECTION = "survey.inspection:InspectionSettings"
+INSPECTION = "products.inspection:InspectionSettings"
 
 INSPECTION_SETTINGS = (
     SettingSpec(
         "CELL_SIZE", INSPECTION, "cell_size", tr("Cell of the density raster (m)"),
         tr("Smaller shows single scan lines, larger the broad picture."), advanced=True,
     ),
-    SettingSpec(
-        "CUBE_SIZE", INSPECTION, "cube_size", tr("Cube that the density in space is counted in (m)"),
-        tr("1 gives points per cubic metre as they are published; smaller ones follow surfaces more closely."),
-        advanced=True,
-    ),
 )
 
-NUMBERS = (
-    ("POINTS", tr("Points")),
-    ("POINTS_PER_M2", tr("Points per m², mean of occupied cells")),
-    ("POINTS_PER_M3", tr("Points per m³, mean of occupied cubes")),
-    ("FIRST_TIME", tr("First gps_time (s)")),
-    ("LAST_TIME", tr("Last gps_time (s)")),
-    ("SCANNERS", tr("Scanners")),
-    ("NEAR_TRAJECTORY", tr("Points near the trajectory (%)")),
-    ("TIME_COVERED", tr("Scan time covered by the trajectory (%)")),
-)
 
 
 class InspectSurvey(Algorithm):
@@ -35,18 +20,27 @@ class InspectSurvey(Algorithm):
     SUMMARY = "Reports what point clouds and trajectory contain, and whether they fit together, before any processing."
     HELP = "What the road map would stumble over, such as a geographic CRS or two clocks, is said with a way on."
     TAGS = ("density", "report", "las", "header", "overlap")
+    NUMBERS = (
+        ("POINTS", tr("Points")),
+        ("POINTS_PER_M2", tr("Points per m², mean of occupied cells")),
+        ("POINTS_PER_M3", tr("Points per m³, mean of occupied cubes")),
+        ("FIRST_TIME", tr("First gps_time (s)")),
+        ("LAST_TIME", tr("Last gps_time (s)")),
+        ("SCANNERS", tr("Scanners")),
+        ("NEAR_TRAJECTORY", tr("Points near the trajectory (%)")),
+        ("TIME_COVERED", tr("Scan time covered by the trajectory (%)")),
+    )
+    RETIRED = ("CUBE_SIZE",)
 
     def declare(self):
         self.add_survey(trajectory_optional=True)
         self.add_settings(INSPECTION_SETTINGS)
         self.add_report(optional=False)
-        self.add_raster("DENSITY", tr("Point density"), tr("Points per m² in every cell."), optional=True, by_default=False)
-        for name, label in NUMBERS:
-            self.add_number(name, label)
+        self.add_output("raster", "DENSITY", tr("Point density"), tr("Points per m² in every cell."), optional=True, by_default=False)
 
     def work(self, call, progress):
-        from ...core.report.survey import inspection_report
-        from ...core.survey.inspection import NEAR_TRAJECTORY, inspect_survey, write_density
+        from ...products.inspection import NEAR_TRAJECTORY, inspect_survey, write_density
+        from ...products.report.survey import inspection_report
 
         found = inspect_survey(
             call.point_clouds(), call.trajectory(), call.settings(INSPECTION_SETTINGS), call.crs(), progress.part(0.0, 0.95)
@@ -68,7 +62,7 @@ class InspectSurvey(Algorithm):
             found.count, found.per_area["mean"], found.per_volume["mean"], first, last, len(found.scanners),
             _percent(found.near_share), _percent(found.in_time_share),
         )
-        return {name: float(value) for (name, _), value in zip(NUMBERS, values) if value is not None}
+        return {name: float(value) for (name, _), value in zip(self.NUMBERS, values) if value is not None}
 
 
 def _percent(share):

@@ -2,11 +2,11 @@
 
 from ...core.common.features import CONTROL_POINTS, TRAJECTORY
 from ..algorithm import Algorithm
-from ..parameters import CrsSpec, SettingSpec
+from ..parameters import SettingSpec
 from ..texts import tr
 from ..trajectory_source import trajectory_features
 
-SAMPLE = "sample.survey:SampleSettings"
+SAMPLE = "simulator.survey:SampleSettings"
 
 SAMPLE_SETTINGS = (
     SettingSpec(
@@ -43,22 +43,8 @@ SAMPLE_SETTINGS = (
         tr("More brings the lines closer together, with fewer points on each."), advanced=True,
     ),
     SettingSpec(
-        "MOUNT_YAW", SAMPLE, "mount_yaw", tr("Scanners' planes turned from straight across (°)"),
-        tr("0 scans straight across the road; more sees the faces of things from ahead and behind, one scanner either way."),
-        advanced=True,
-    ),
-    SettingSpec(
         "RADIUS", SAMPLE, "radius", tr("Radius of the bends (m)"),
         tr("Smaller makes sharper bends; motorway, serpentine, crossing and roundabout have bends of their own."),
-        advanced=True,
-    ),
-    SettingSpec(
-        "CURB_HEIGHT", SAMPLE, "curb_height", tr("Height of the curbs (m)"), tr("Lower is harder to find."),
-        advanced=True,
-    ),
-    SettingSpec(
-        "GUTTER", SAMPLE, "gutter", tr("Width of a concrete gutter along the curbs (m)"),
-        tr("A gutter is as bright as paint and is not to be taken for it; 0 leaves it out."),
         advanced=True,
     ),
 )
@@ -78,44 +64,45 @@ class SampleSurvey(Algorithm):
     SUMMARY = "Simulates a mobile laser scanning survey of a street, motorway, junction or mountain road, together with its known truth."
     HELP = "Every pulse of two scanners is followed to what it meets first. Figures reached on it are figures on simulated data."
     TAGS = ("sample", "simulation", "test data")
+    NUMBERS = (("POINTS", tr("Points")),)
+    RETIRED = ("MOUNT_YAW", "CURB_HEIGHT", "GUTTER")
 
     def declare(self):
         self.add_settings(SAMPLE_SETTINGS)
-        self.add(CrsSpec(
-            "CRS", tr("CRS of the survey"),
+        self.add_input(
+            "crs", "CRS", tr("CRS of the survey"),
             tr("A projected CRS in metres. The coordinates are the same in each; it only says where on earth they are."),
-            optional=True, advanced=True, value="EPSG:32650",
-        ))
-        self.add_laz("POINT_CLOUD", tr("Point cloud"))
+            optional=True, advanced=True, default="EPSG:32650",
+        )
+        self.add_output("cloud", "POINT_CLOUD", tr("Point cloud"))
         self.add_sink("TRAJECTORY", tr("Trajectory"), fields=TRAJECTORY, geometry="PointZ")
         for name, _, geometry, label in TRUTHS:
             self.add_sink(name, label, geometry=geometry, optional=True)
-        self.add_raster(
-            "UAV_IMAGE", tr("UAV image"),
+        self.add_output(
+            "raster", "UAV_IMAGE", tr("UAV image"),
             tr("What a UAV sees of the first 150 m: a TIFF of 4 cm pixels without a place on the map, with the distortion of its camera and "
                "the position tags of a drone. Propose control points and Georeference image find its place. "
                "There is none of motorway, serpentine, crossing and roundabout."), optional=True, by_default=False)
         self.add_sink("UAV_GCPS", tr("Ground control points of the UAV image"), geometry="PointZ", optional=True, by_default=False,
                       fields=CONTROL_POINTS)
-        self.add_number("POINTS", tr("Points"))
 
     def work(self, call, progress):
-        from ...core.sample.survey import make_sample_survey
+        from ...simulator.survey import make_sample_survey
 
         settings = call.settings(SAMPLE_SETTINGS, **({"crs": call.crs()} if call.crs() else {}))
         survey = make_sample_survey(settings, progress.part(0.0, 0.1))
         if call.wants("UAV_IMAGE") or call.wants("UAV_GCPS"):
-            from ...core.sample.orthophoto import seen_from_above
+            from ...simulator.orthophoto import seen_from_above
 
             seen_from_above(survey)
         count = survey.write_cloud(call.new_file("POINT_CLOUD"), progress.part(0.1, 0.9 if call.wants("UAV_IMAGE") else 1.0))
         progress.info(tr("Sample survey: {count} points along {length:.0f} m of road.").format(count=count, length=settings.length))
         if call.wants("UAV_IMAGE"):
-            from ...core.sample.orthophoto import write_uav_image
+            from ...simulator.orthophoto import write_uav_image
 
             write_uav_image(survey, call.new_file("UAV_IMAGE"), progress.part(0.9, 1.0))
         if call.wants("UAV_GCPS"):
-            from ...core.sample.orthophoto import uav_control_points
+            from ...simulator.orthophoto import uav_control_points
 
             call.layer("UAV_GCPS", uav_control_points(survey))
         call.layer("TRAJECTORY", trajectory_features(survey.trajectory))

@@ -20,14 +20,14 @@ from ..common.errors import RoadExtractionError
 from ..common.parallel import ordered_map
 from ..common.progress import Progress
 
-CORE = __name__.rpartition(".execution.")[0]   # name of the package `core`
+PACKAGE = __name__.rpartition(".core.")[0]   # whose functions are sent: the package of `core` and `products`
 
 
 @dataclass(frozen=True)
 class Recipe:
     """How a source is opened in another process.
 
-    function : "module:name" within core
+    function : "module:name" within the package
     arguments : by name: plain values, or the Recipe of another source
     """
 
@@ -56,14 +56,14 @@ class NoSource:
     """What phases read from whose items hold all that they need, which is little."""
 
     def recipe(self, folder: Path) -> Recipe:
-        return Recipe("execution.phase:NoSource", {})
+        return Recipe("core.execution.phase:NoSource", {})
 
 
 @dataclass(frozen=True)
 class Phase:
     """One step of the work, the same for all sections of road.
 
-    function : public function of a module of core, called as `function(source, item, *arguments)`. It changes nothing; its
+    function : public function of a module of the package, called as `function(source, item, *arguments)`. It changes nothing; its
         result, an item and the arguments are plain values (see plain.py)
     source : what it reads from, open in this process; its `recipe(folder)` puts into the folder what another process needs, unless it is
         there, and gives the Recipe
@@ -135,27 +135,27 @@ class Executor:
 
 
 def name_of(function: Any) -> str:
-    """ "module:name" of a function or class of core.
+    """ "module:name" of a function or class of the package.
 
     Raises
     ------
     TypeError
-        If it is not a public one of a module of core.
+        If it is not a public one of a module of the package.
     """
-    package, _, module = function.__module__.partition(f"{CORE}.")
+    package, _, module = function.__module__.partition(f"{PACKAGE}.")
     if package or not module or "." in function.__qualname__ or function.__qualname__.startswith("<"):
-        raise TypeError(f"{function.__module__}.{function.__qualname__} cannot be sent: it is not named in a module of {CORE}.")
+        raise TypeError(f"{function.__module__}.{function.__qualname__} cannot be sent: it is not named in a module of {PACKAGE}.")
     return f"{module}:{function.__qualname__}"
 
 
 def named(name: str) -> Any:
     module, _, attribute = name.partition(":")
-    return getattr(import_module(f"{CORE}.{module}"), attribute)
+    return getattr(import_module(f"{PACKAGE}.{module}"), attribute)
 
 
-# Plain values in a file: numbers, texts, arrays, their lists and dictionaries, and objects of core that consist of these.
+# Plain values in a file: numbers, texts, arrays, their lists and dictionaries, and objects of the package that consist of these.
 #
-# Reading such a file runs nothing that it holds: it names classes of core and the values of their attributes.
+# Reading such a file runs nothing that it holds: it names classes of the package and the values of their attributes.
 
 # A file: FORMAT, the CRC-32 of all that follows, the length of a JSON text, that text (how the arrays belong together; kind, shape and order
 # of each), the bytes of the arrays. An .npz, whose arrays have headers and checksums of their own, takes nine times as long to write
@@ -172,7 +172,7 @@ def write_plain(path: Path, value: Any, unfinished_in: Path | None = None) -> No
     ----------
     path : of the file
     value : None, bool, int, float, str, numpy arrays and numbers, lists, tuples and dicts of these, and objects of classes of
-        core whose attributes are such values. A class may leave attributes out by `__getstate__`
+        the package whose attributes are such values. A class may leave attributes out by `__getstate__`
     unfinished_in : folder on the same disk that has the unfinished file; by default that of the file
 
     Raises

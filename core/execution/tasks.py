@@ -42,7 +42,7 @@ def items_together(phase: Phase, count: int, workers: int, usual: int = 1) -> in
 class ShippedPhase:
     """A Phase in a file.
 
-    function : "module:name" within core
+    function : "module:name" within the package
     source : Recipe
     arguments : plain values
     """

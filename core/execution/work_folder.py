@@ -132,9 +132,9 @@ class KeptResults(Executor):
 
 @lru_cache(maxsize=1)
 def code_digest() -> str:
-    """A digest of the code of core: other code may give other results."""
-    core = Path(__file__).resolve().parents[1]
+    """A digest of the code that phases run: other code may give other results."""
+    package = Path(__file__).resolve().parents[2]
     found = hashlib.sha256()
-    for path in sorted(core.rglob("*.py")):
-        found.update(path.relative_to(core).as_posix().encode() + path.read_bytes())
+    for path in sorted(path for folder in ("core", "products") for path in (package / folder).rglob("*.py")):
+        found.update(path.relative_to(package).as_posix().encode() + path.read_bytes())
     return found.hexdigest()

@@ -52,7 +52,7 @@ class TiledImage(IntensityImage):
         for tile in self._tiles.values():
             place, packing = cast(StoredColumn, tile.values)[:2]
             rows.append((tile.column, tile.row, *tile.shape, place, packing.least, sum(packing.widths)))
-        return Recipe("intensity.tiled_image:_shared_image", dict(
+        return Recipe("core.intensity.tiled_image:_shared_image", dict(
             file=str(self._file.path) if self._file else "", tiles=np.array(rows, np.int64).reshape(-1, 7),
             geotransform=[float(number) for number in self.geotransform], width=int(self.width), height=int(self.height), crs=self.crs))
 

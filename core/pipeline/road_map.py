@@ -14,7 +14,6 @@ from typing import Any
 
 import numpy as np
 
-from ..assess.curvature import marking_curvature
 from ..common.features import Features
 from ..common.layer_rows import LayerRows
 from ..common.parallel import trim_heap
@@ -29,6 +28,7 @@ from ..intensity.correction import IntensitySettings, correct_intensity
 from ..intensity.image import ImageSettings, check_fits, make_intensity_image
 from ..io.crs import check_projected
 from ..io.geotiff import IntensityImage
+from ..markings.lines.curvature import marking_curvature
 from ..markings.lines.fit import MarkingLineSettings, fit_marking_lines, named_by_estimate, named_by_lines
 from ..markings.objects.cluster import ClusterSettings, cluster_markings
 from ..markings.outliers import OutlierSettings, remove_outliers
@@ -43,9 +43,9 @@ from ..road.scanlines.candidates import ScanlineBoundarySettings
 from ..road.scanlines.section_planes import ScanlineSettings
 from ..road.surface.extract import SurfaceSettings, extract_road_surface
 from ..road.surface.road_surface import SurfaceOutlines
+from ..survey.density import CubeDensity, cube_densities
 from ..survey.frame.road import CORRIDOR
 from ..survey.frame.road_frame import RoadFrame
-from ..survey.inspection import CubeDensity, cube_densities
 from ..survey.las.reader import read_headers
 from ..survey.open_survey import SurveySettings, open_survey
 from ..survey.store.records import Points

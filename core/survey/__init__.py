@@ -6,7 +6,6 @@ In: point cloud files and a trajectory. Out: a `Survey`, whose points lie in the
 from ..lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "inspection": ("inspect_survey",),
     "road_points_las": ("read_road_points", "write_road_points"),
     "survey": ("Survey", "SurveySettings"),
 })

@@ -110,7 +110,7 @@ class Survey:
             own = folder / SURVEY_FOLDER
             own.mkdir()
             self.move_to(own)
-        return Recipe("survey.survey:survey_in_folder", dict(folder=str(self.folder)))
+        return Recipe("core.survey.survey:survey_in_folder", dict(folder=str(self.folder)))
 
     def move_to(self, folder: Path, executor: Executor = THREADS, progress: Progress = Progress()) -> None:
         """Keep the points, in order, in an empty folder from now on, from where `survey_in_folder` opens the survey, here and elsewhere."""

@@ -236,7 +236,7 @@ class _PartsOfFiles:
         """How other processes read the same."""
         store = self.store
         files = [replace(file, path=os.path.abspath(file.path), crs="") for file in self.files]
-        return Recipe("survey.survey_reader:_parts_of_files", dict(
+        return Recipe("core.survey.survey_reader:_parts_of_files", dict(
             files=files, frame=self.reader.frame, columns=[list(column) for column in store.dtype.descr], section_length=store.section_length,
             memory_limit=store.memory_limit, folder=str(store.folder), choice=self.reader.choice, slots=self.reader.slots, drop=self.drop,
             ranges=self.ranges, block=self.block))
@@ -313,7 +313,7 @@ class UnorderedPoints:
 
     def recipe(self, folder: Path) -> Recipe:
         """How other processes open the points."""
-        return Recipe("survey.survey_reader:_unordered_points", dict(contents=self.store.contents(), points_folder=str(self.store.folder),
+        return Recipe("core.survey.survey_reader:_unordered_points", dict(contents=self.store.contents(), points_folder=str(self.store.folder),
                                                                finishing=self.finishing, folder=str(self.folder)))
 
     def put_in_order(self, executor: Executor, place: Callable[[int, float, float], str], progress: Progress) -> None:

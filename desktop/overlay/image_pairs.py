@@ -10,12 +10,12 @@ from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtGui import QImage, QPainter, QPen, QPixmap
 
 from ...core.io.geotiff import IntensityImage
-from ...core.overlay.control_points import REQUIRED_COLUMNS
-from ...core.overlay.matching.placement import highest_order, left_out_residuals
-from ...core.overlay.matching.propose import AMBIGUOUS, AWAY, REPEATS, WEAK
-from ...core.overlay.pair_cutouts import pair_cutouts
-from ...core.overlay.source_image import open_image
 from ...processing_provider.texts import tr
+from ...products.overlay.control_points import REQUIRED_COLUMNS
+from ...products.overlay.matching.placement import highest_order, left_out_residuals
+from ...products.overlay.matching.propose import AMBIGUOUS, AWAY, REPEATS, WEAK
+from ...products.overlay.pair_cutouts import pair_cutouts
+from ...products.overlay.source_image import open_image
 
 SIDE = 116       # px, of a cut-out
 GAP = 4          # px, between the two of a pair

@@ -7,8 +7,8 @@ from qgis.gui import QgsMapCanvas, QgsMapToolEmitPoint, QgsVertexMarker
 from qgis.PyQt.QtGui import QColor
 from qgis.PyQt.QtWidgets import QDialog, QDialogButtonBox, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 
-from ...core.overlay.source_image import SourceImage, open_image
 from ...processing_provider.texts import tr
+from ...products.overlay.source_image import SourceImage, open_image
 
 COLOURS = ("#ff00c8", "#00c8ff")  # of the first and the second point
 NEEDED = len(COLOURS)

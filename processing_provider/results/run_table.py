@@ -68,6 +68,6 @@ def run_table() -> str:
     """An HTML page with these tables; "" where there was no run."""
     if not _runs:
         return ""
-    from ...core.report.page import html_page
+    from ...products.report.page import html_page
 
     return html_page("runs", tables=run_tables())

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import laspy
 import pytest
-from lanewright.core.sample.scenes import SCENES
+from lanewright.simulator.scenes import SCENES
 
 pytestmark = pytest.mark.slow
 

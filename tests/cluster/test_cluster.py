@@ -29,12 +29,12 @@ from lanewright.core.execution.tasks import versions
 from lanewright.core.execution.work_folder import KeptResults, WorkFolder
 from lanewright.core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
 from lanewright.core.road.scanlines.section_planes import all_scanlines
-from lanewright.core.sample import SampleSettings, make_sample_survey
 from lanewright.core.survey import survey_reader
 from lanewright.core.survey.blocks import sensor_height_of
 from lanewright.core.survey.open_survey import open_survey
 from lanewright.core.survey.survey import SurveySettings
 from lanewright.library import run
+from lanewright.simulator import SampleSettings, make_sample_survey
 
 ROOT = Path(__file__).resolve().parents[2]
 PHASES = ["steps_of_section", "corners_of_section", "plan_steps_of_section"]

@@ -45,7 +45,7 @@ def test_links_and_pictures_lead_somewhere():
 
 def test_the_troubleshooting_quotes_what_is_really_said():
     """Every message of the page is a sentence of the code, with gaps for the numbers."""
-    folders = ("core", "algorithms", "processing_provider")
+    folders = ("core", "products", "simulator", "algorithms", "processing_provider")
     code = "".join(path.read_text(encoding="utf-8") for folder in folders for path in (ROOT / folder).rglob("*.py"))
     # Sentences in the code are cut into strings, and hold braces where the page has …
     said = re.sub(r'"\s*\n?\s*f?"', "", code)

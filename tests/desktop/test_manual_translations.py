@@ -1,15 +1,15 @@
 """The manual in other languages: generated pages up to date, pages written by hand paragraph by paragraph beside the English ones."""
 
+import json
 import re
 import subprocess
 import sys
-import xml.etree.ElementTree as ET
 from pathlib import Path
 
 import pytest
 from lanewright.algorithms.catalogue import ALGORITHMS
+from lanewright.algorithms.texts import TRANSLATIONS
 from lanewright.desktop.manual import PAGES, page_path
-from lanewright.processing_provider.texts import TRANSLATIONS
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools"))
@@ -57,8 +57,7 @@ def test_commands_are_the_same_in_every_language(language, name):
 
 @pytest.mark.parametrize(("language", "name"), BY_HAND)
 def test_what_stands_on_buttons_and_in_lists_is_called_as_the_translated_plugin_calls_it(language, name):
-    words = {message.findtext("source"): message.findtext("translation")
-             for message in ET.parse(TRANSLATIONS / f"lanewright_{language}.ts").getroot().iter("message")}
+    words = json.loads((TRANSLATIONS / f"lanewright_{language}.json").read_text(encoding="utf-8"))
     for here, there in zip(translations.page(name), translations.page(name, language)):
         there = " ".join(there.split())
         for named in re.findall(r"(?<!\*)\*([^*]+)\*(?!\*)", " ".join(here.split())):
@@ -82,7 +81,7 @@ def test_links_and_pictures_lead_somewhere_and_stay_in_the_language(language):
 
 
 def test_the_troubleshooting_quotes_what_is_said_in_german():
-    said = (TRANSLATIONS / "core_de.json").read_text(encoding="utf-8") + (TRANSLATIONS / "lanewright_de.ts").read_text(encoding="utf-8")
+    said = (TRANSLATIONS / "core_de.json").read_text(encoding="utf-8") + (TRANSLATIONS / "lanewright_de.json").read_text(encoding="utf-8")
     for message in re.findall(r"^### (.+)$", (PAGES / "de" / "troubleshooting.md").read_text(encoding="utf-8"), re.M):
         for part in (part.strip(" .") for part in message.split("…")):
             assert part in said, f"{message}: {part}"

@@ -1,12 +1,9 @@
 """The command line and the library in another language, without QGIS."""
 
-import xml.etree.ElementTree as ET
-
 import pytest
 from lanewright import library
 from lanewright.core.common.texts import language, told, tr
 from lanewright.library import command_line
-from lanewright.library.language import TRANSLATIONS, translations
 
 
 @pytest.fixture
@@ -48,9 +45,3 @@ def test_a_script_hears_german_once_it_asked_for_it(german):
     assert library.algorithms()["detectcurbs"].title() == "Bordsteine erkennen"
     assert told("Detecting curbs …") == "Bordsteine werden gesucht …"
     assert library.algorithms()["detectcurbs"].parameter("MAX_HEIGHT").label.startswith("Größte Bordsteinhöhe")
-
-
-def test_the_translations_are_read_as_qt_reads_them():
-    path = TRANSLATIONS / "lanewright_de.ts"
-    messages = {message.findtext("source"): message.findtext("translation") for message in ET.parse(path).getroot().iter("message")}
-    assert translations(path) == messages

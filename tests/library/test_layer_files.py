@@ -11,9 +11,9 @@ from lanewright.algorithms.vector_source import in_file_units, read_features, sc
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.features import CURVE_ELEMENTS, MARKINGS, ROAD_EDGES, SCANLINES, TRAJECTORY, Features
 from lanewright.core.io.crs import in_metres, parse_crs, same_crs
-from lanewright.core.road.scanlines.layer import LineSpool
 from lanewright.library import gdal_module, measured_lines
 from lanewright.library.layer_files import LayerFile, file_and_table, write_layer
+from lanewright.products.scanline_layer import LineSpool
 from pyproj import CRS
 
 UTM = CRS.from_epsg(32650).to_wkt()

@@ -1,8 +1,8 @@
 """A report says first which survey it is about, and how it was made."""
 
 from lanewright.algorithms.provenance import own_version
-from lanewright.core.report.page import html_page, with_facts
 from lanewright.library import run
+from lanewright.products.report.page import html_page, with_facts
 
 
 def test_a_report_names_survey_files_crs_time_version_and_what_was_set(tmp_path):

@@ -55,3 +55,9 @@ def test_what_cannot_be_is_refused_in_one_sentence(algorithm, given, says):
 def test_an_empty_raster_is_not_taken_for_a_default():
     with pytest.raises(RoadExtractionError, match=r"Image \(IMAGE\) was not given"):
         values("georeferenceimage", IMAGE="")
+
+
+def test_a_retired_parameter_is_taken_though_no_algorithm_asks_for_it():
+    """A script of an earlier version goes on; the run says once that the parameter may be left out."""
+    assert values("samplesurvey", GUTTER="0.5")["GUTTER"] == "0.5"
+    assert algorithms()["samplesurvey"].parameter("GUTTER") is None

@@ -19,7 +19,7 @@ def lanewright(tmp_path_factory):
     """`lanewright(arguments, folder)` runs the program of a fresh installation; its stdout."""
     folder = tmp_path_factory.mktemp("installed")
     source = folder / "source"  # building leaves files where it builds
-    for name in ("core", "algorithms", "library"):
+    for name in ("core", "products", "simulator", "algorithms", "library"):
         shutil.copytree(ROOT / name, source / name, ignore=shutil.ignore_patterns("__pycache__"))
     shutil.copytree(ROOT / "resources" / "i18n", source / "resources" / "i18n")
     for name in ("__init__.py", "plugin.py", "setup.py", "pyproject.toml", "metadata.txt", "README.md", "LICENSE"):
@@ -44,8 +44,9 @@ def lanewright(tmp_path_factory):
 def test_the_package_holds_what_works_without_qgis(lanewright, tmp_path):
     packages = list((lanewright.folder / "venv/lib").glob("python*/site-packages/lanewright"))
     assert len(packages) == 1
-    assert {path.name for path in packages[0].iterdir()} - {"__pycache__"} == {"__init__.py", "core", "algorithms", "library", "resources"}
-    assert {path.suffix for path in packages[0].glob("resources/*/*")} == {".ts", ".json"}
+    assert {path.name for path in packages[0].iterdir()} - {"__pycache__"} == {
+        "__init__.py", "core", "products", "simulator", "algorithms", "library", "resources"}
+    assert {path.suffix for path in packages[0].glob("resources/*/*")} == {".json"}
     version = next(line.partition("=")[2] for line in (ROOT / "metadata.txt").read_text().splitlines() if line.startswith("version="))
     assert lanewright("--version", cwd=tmp_path) == f"lanewright {version}\n"
     assert "Punktwolken" in lanewright("roadmap", "--help", "--lang=de", cwd=tmp_path)

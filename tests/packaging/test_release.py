@@ -121,7 +121,7 @@ def test_no_program_is_started_but_a_python_that_runs_the_worker():
 
 
 def test_the_core_the_declarations_and_the_library_never_import_qgis():
-    files = [path for folder in ("core", "algorithms", "library") for path in (ROOT / folder).rglob("*.py")]
+    files = [path for folder in ("core", "products", "simulator", "algorithms", "library") for path in (ROOT / folder).rglob("*.py")]
     found = [path for path in files if re.search(r"^\s*(import|from) qgis", path.read_text(encoding="utf-8"), re.M)]
     assert not found
 
@@ -146,7 +146,7 @@ def test_libraries_are_looked_for_after_those_of_qgis(monkeypatch, tmp_path):
 
 def shipped():
     """The code users get."""
-    folders = [ROOT / folder for folder in ("core", "algorithms", "library", "processing_provider", "desktop")]
+    folders = [ROOT / folder for folder in ("core", "products", "simulator", "algorithms", "library", "processing_provider", "desktop")]
     return [ROOT / "__init__.py", ROOT / "plugin.py", *(file for folder in folders for file in folder.rglob("*.py"))]
 
 

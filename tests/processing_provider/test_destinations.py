@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from drives import write_cloud
 from lanewright.algorithms import destinations
-from lanewright.algorithms.destinations import UnfinishedFiles, UnfinishedLayers, bring_back, check_suffix, check_writable, destination_path, table_of
+from lanewright.algorithms.destinations import Unfinished, check_suffix, check_writable, destination_path, table_of
 from lanewright.algorithms.driving.road_map import RoadMap
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.io.local_files import ABANDONED_TIME
@@ -21,7 +21,7 @@ from qgis.core import QgsProcessingContext, QgsProcessingFeedback, QgsProcessing
 def test_yesterdays_result_stands_until_todays_is_complete(tmp_path):
     result = tmp_path / "road.laz"
     result.write_text("yesterday")
-    files = UnfinishedFiles()
+    files = Unfinished()
     with open(files.begin(result), "w") as stream:
         stream.write("today")
     assert result.read_text() == "yesterday"
@@ -30,7 +30,7 @@ def test_yesterdays_result_stands_until_todays_is_complete(tmp_path):
 
 
 def test_a_run_that_fails_leaves_no_half_file(tmp_path):
-    files = UnfinishedFiles()
+    files = Unfinished()
     with open(files.begin(tmp_path / "road.laz"), "w") as stream:
         stream.write("half")
     files.discard()
@@ -38,25 +38,27 @@ def test_a_run_that_fails_leaves_no_half_file(tmp_path):
 
 
 def test_a_message_names_the_file_as_the_user_does(tmp_path):
-    files = UnfinishedFiles()
+    files = Unfinished()
     said = files.in_users_names(f"{files.begin(tmp_path / 'road.laz')} cannot be written.")
     files.discard()
     assert said == f"{tmp_path / 'road.laz'} cannot be written."
 
 
 def test_statistics_beside_an_image_go_with_it(tmp_path):
-    files = UnfinishedFiles()
+    files = Unfinished()
     name = files.begin(tmp_path / "image.tif")
-    open(f"{name}.aux.xml", "w").close()
+    name.touch()
+    Path(f"{name}.aux.xml").touch()
     files.commit()
     assert sorted(os.listdir(tmp_path)) == ["image.tif", "image.tif.aux.xml"]
 
 
-def test_the_temporary_name_ends_as_the_file_does_since_drivers_go_by_it(tmp_path):
-    files = UnfinishedFiles()
-    assert files.begin(tmp_path / "a.tif").endswith(".tif")
-    assert files.begin(tmp_path / "b.copc.laz").endswith(".copc.laz")
-    assert files.begin(tmp_path / "v1.2.laz").endswith(".laz")
+def test_a_drawing_whose_name_ends_as_statistics_do_replaces_yesterdays(tmp_path):
+    (tmp_path / "road.xml").write_text("yesterday")
+    files = Unfinished()
+    files.begin(tmp_path / "road.xml").write_text("today")
+    files.commit()
+    assert (tmp_path / "road.xml").read_text() == "today" and os.listdir(tmp_path) == ["road.xml"]
 
 
 @pytest.mark.parametrize("value, path", [
@@ -123,7 +125,7 @@ def write(folder, names, text):
 @pytest.mark.parametrize("files", LAYERS)
 def test_a_layer_that_cannot_be_written_leaves_yesterdays(tmp_path, files):
     write(tmp_path, files, "yesterday")
-    layers = UnfinishedLayers()
+    layers = Unfinished()
     main = next(name for name in files if name != "edges.dbf" and name != "edges.shx")
     write(layers.begin(tmp_path / main).parent, files[:1], "half")
     assert all((tmp_path / name).read_text() == "yesterday" for name in files)
@@ -134,7 +136,7 @@ def test_a_layer_that_cannot_be_written_leaves_yesterdays(tmp_path, files):
 @pytest.mark.parametrize("files", LAYERS)
 def test_a_layer_that_was_written_is_todays_in_all_its_parts(tmp_path, files):
     write(tmp_path, files, "yesterday")
-    layers = UnfinishedLayers()
+    layers = Unfinished()
     main = next(name for name in files if name != "edges.dbf" and name != "edges.shx")
     write(layers.begin(tmp_path / main).parent, files, "today")
     layers.commit()
@@ -144,7 +146,7 @@ def test_a_layer_that_was_written_is_todays_in_all_its_parts(tmp_path, files):
 
 def test_of_a_shapefile_no_parts_of_two_layers_are_ever_read_as_one(tmp_path, monkeypatch):
     write(tmp_path, LAYERS[1], "yesterday")
-    layers, seen = UnfinishedLayers(), []
+    layers, seen = Unfinished(), []
     write(layers.begin(tmp_path / "edges.shp").parent, LAYERS[1], "today")
 
     def looked(unfinished, path, finish=destinations.finish_file):
@@ -170,7 +172,7 @@ def test_what_a_journal_holds_is_not_played_into_the_next_database_of_that_name(
             Path(f"{path}{suffix}").write_bytes(content)
 
     database(tmp_path / "map.gpkg", 500, leave_journal=True)
-    layers = UnfinishedLayers()
+    layers = Unfinished()
     copied = layers.begin_copy(tmp_path / "map.gpkg")
     with closing(sqlite3.connect(copied)) as copy:
         assert copy.execute("SELECT count(*) FROM lanes").fetchone() == (500,), "the table to which another is added is whole"
@@ -182,21 +184,14 @@ def test_what_a_journal_holds_is_not_played_into_the_next_database_of_that_name(
         assert whole.execute("SELECT count(*) FROM edges").fetchone() == (0,)
 
 
-def test_a_layer_that_a_killed_run_had_set_aside_gets_its_name_back(tmp_path):
-    write(tmp_path, [".edges.shp.previous", ".edges.dbf.previous", ".map.gpkg.previous", "map.gpkg"], "yesterday")
-    bring_back(tmp_path / "edges.shp")
-    bring_back(tmp_path / "map.gpkg")
-    assert sorted(os.listdir(tmp_path)) == [".map.gpkg.previous", "edges.dbf", "edges.shp", "map.gpkg"]
-
-
 def test_what_killed_runs_left_goes_after_a_day_and_what_a_run_of_today_writes_stays(tmp_path):
-    left = [UnfinishedLayers().begin(tmp_path / "map.gpkg") for _ in range(2)]
+    left = [Unfinished().begin(tmp_path / "map.gpkg") for _ in range(2)]
     for path in left:
         path.write_text("half")
     long_ago = time.time() - 2 * ABANDONED_TIME
     for path in (left[0], left[0].parent):
         os.utime(path, (long_ago, long_ago))
-    UnfinishedLayers().begin(tmp_path / "map.gpkg")
+    Unfinished().begin(tmp_path / "map.gpkg")
     assert not left[0].parent.exists() and left[1].exists()
 
 

@@ -13,10 +13,10 @@ BESIDE = {
     ("ScanlineBoundarySettings", "min_height"): {"clipping_height": 2.0},
     ("ScanlineBoundarySettings", "clipping_height"): {"min_height": 0.01},
     ("ScanlineBoundarySettings", "vertical_angle"): {"horizontal_angle": 1.0},
-    ("PeakSettings", "narrowest"): {"widest": 2.0},
-    ("PeakSettings", "widest"): {"narrowest": 0.0},
-    ("PeakSettings", "profile_length"): {"gap": 10.0},
-    ("PeakSettings", "gap"): {"profile_length": 0.02},
+    ("IntensityPeaks", "narrowest"): {"widest": 2.0},
+    ("IntensityPeaks", "widest"): {"narrowest": 0.0},
+    ("IntensityPeaks", "profile_length"): {"gap": 10.0},
+    ("IntensityPeaks", "gap"): {"profile_length": 0.02},
     ("MarkingLineSettings", "max_gap"): {"max_bridge": 200.0},
     ("MarkingLineSettings", "max_bridge"): {"max_gap": 0.1},
     ("CrossSectionSettings", "min_crossfall"): {"max_crossfall": 20.0},
@@ -30,7 +30,7 @@ def numbers(provider):
     for declaration in ALGORITHMS:
         algorithm = LanewrightAlgorithm(declaration()).create()
         for spec in algorithm.declaration.parameters:
-            if isinstance(spec, SettingSpec) and spec.kind() in ("whole", "number"):
+            if isinstance(spec, SettingSpec) and spec.kind in ("whole", "number"):
                 found.append((algorithm.name(), spec, algorithm.parameterDefinition(spec.name).clone()))
     return found
 

@@ -20,7 +20,7 @@ from lanewright.processing_provider.embedded_style import embed_style
 from lanewright.processing_provider.layers import qgis_fields
 from lanewright.processing_provider.results.runs import Run
 from lanewright.processing_provider.styling import LOOKS, STYLES, Styler, apply_style, style_on_load
-from lanewright.processing_provider.texts import install_translator, remove_translator
+from lanewright.processing_provider.texts import speak
 from osgeo import gdal
 from qgis.core import (
     QgsExpression,
@@ -111,13 +111,13 @@ def test_every_type_of_lane_has_a_look_of_its_own(qgis_app):
 
 
 def test_the_legend_speaks_the_language_of_the_user(qgis_app):
-    german = install_translator("de")
+    speak("de")
     try:
         layer, lines = layer_of("LineStringZ", ROAD_EDGES), layer_of("LineStringZ", MARKING_LINES)
         apply_style(layer, STYLES / "road_edges.qml")
         apply_style(lines, STYLES / "marking_lines.qml")
     finally:
-        remove_translator(german)
+        speak("en")
     assert layer.renderer().categories()[0].label() == "Links, gemessen"
     assert {rule.label() for rule in lines.renderer().rootRule().descendants()} >= {"Überbrückt"}
 

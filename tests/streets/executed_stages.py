@@ -25,9 +25,9 @@ from lanewright.core.markings.paint.extract import extract_markings
 from lanewright.core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
 from lanewright.core.road.surface import extract, ground_grid
 from lanewright.core.road.surface.extract import extract_road_surface
-from lanewright.core.survey import inspection as point_density
+from lanewright.core.survey import density as point_density
 from lanewright.core.survey import open_survey as opening
-from lanewright.core.survey.inspection import cube_densities
+from lanewright.core.survey.density import cube_densities
 
 PHASES = ["ground_of_windows", "surface_points", "cubes_of_stretch", "levels_of_stretch", "corrected_of_stretch", "windows_of_image",
           "sums_of_pieces", "scatter_of_windows", "levels_of_windows", "paint_of_windows", "kept_of_windows", "links_of_windows",

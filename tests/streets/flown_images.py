@@ -1,8 +1,8 @@
 """Images whose place on the map is known: a chequered ground, seen by a tilted camera."""
 
 import numpy as np
-from lanewright.core.overlay.control_points import control_points
-from lanewright.core.overlay.source_image import SourceImage
+from lanewright.products.overlay.control_points import control_points
+from lanewright.products.overlay.source_image import SourceImage
 from osgeo import gdal
 
 gdal.UseExceptions()

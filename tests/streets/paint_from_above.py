@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 from lanewright.core.io.geotiff import IntensityImage, new_geotiff
-from lanewright.core.overlay.rough_place import RoughPlace
-from lanewright.core.overlay.source_image import open_image
+from lanewright.products.overlay.rough_place import RoughPlace
+from lanewright.products.overlay.source_image import open_image
 from osgeo import gdal
 from pyproj import CRS
 

@@ -22,7 +22,7 @@ from lanewright.core.curves import robust  # noqa: E402
 from lanewright.core.markings.lines import selection  # noqa: E402
 from lanewright.core.road.common.corners import CurbSteps  # noqa: E402
 from lanewright.core.road.common.curb_limits import CurbLimits  # noqa: E402
-from lanewright.core.sample.survey import SampleSettings  # noqa: E402
+from lanewright.simulator.survey import SampleSettings  # noqa: E402
 
 
 @pytest.mark.parametrize("switch", SWITCHES.values(), ids=SWITCHES)

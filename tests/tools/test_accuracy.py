@@ -13,7 +13,7 @@ from accuracy.page import page  # noqa: E402
 from accuracy.results import results  # noqa: E402
 from accuracy.surveys import _make_sample, read_case, surveys_in  # noqa: E402
 from lanewright.core.common.features import Features, Field  # noqa: E402
-from lanewright.core.sample.survey import SampleSettings  # noqa: E402
+from lanewright.simulator.survey import SampleSettings  # noqa: E402
 from make_sample import write_layers  # noqa: E402
 from results_table import Results  # noqa: E402
 

@@ -15,7 +15,7 @@ from accuracy.page import page  # noqa: E402
 from accuracy.results import results  # noqa: E402
 from accuracy.streets import harmonic, judged, percent, pooled  # noqa: E402
 from accuracy.variants import VARIANTS, Variant  # noqa: E402
-from lanewright.core.sample.survey import SampleSettings, make_sample_survey  # noqa: E402
+from lanewright.simulator.survey import SampleSettings, make_sample_survey  # noqa: E402
 
 CENTRE = np.array([100.0, 200.0])
 TRACK = np.column_stack([np.arange(0.0, 100.0, 0.5), np.full(200, -1.75)])

@@ -68,7 +68,7 @@ def _chosen(names, known, what):
 def _surveys(arguments):
     """Folders of the surveys, one after the other; a sample scene is made where it is not there yet."""
     scenes = [] if arguments.scenes == "none" else _chosen(arguments.scenes, {**SAMPLES, **OTHERS}, "scene")
-    made, code = arguments.results / "surveys", _code(CORE / "sample")
+    made, code = arguments.results / "surveys", _code(CORE.parent / "simulator")
     for name in scenes:
         made_by = made / name / "made_by.txt"
         if not made_by.exists() or made_by.read_text() != code:

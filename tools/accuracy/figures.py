@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 from lanewright.core.io.geotiff import IntensityImage
 from lanewright.core.markings.paint.extract import extract_markings
-from lanewright.core.markings.paint.settings import MARKING_METHODS
 from lanewright.core.pipeline.road_map import RoadMapSettings
 from lanewright.core.road.detect_boundaries import draw_boundaries
 from lanewright.core.survey.open_survey import open_survey
 from lanewright.core.survey.trajectory.reader import read_trajectory
+from lanewright.products.published_markings import METHODS
 
 from . import judge
 from .chain import Work, run, set_in
@@ -90,15 +90,15 @@ def marking_methods(case, work):
     if "markings" not in case.truth.has:
         return {}
     found = {}
-    for method in MARKING_METHODS:
+    for name, method in METHODS.items():
         settings = set_in(DEFAULT, "markings", method=method)
-        mask = work.scratch / f"{method}.tif"
+        mask = work.scratch / f"{name}.tif"
         one = work.copy()
         began = time.perf_counter()
         one.points = extract_markings(one.bright, IntensityImage.open(one.image_path), one.frame, settings.markings, mask_path=mask)
         seconds = time.perf_counter() - began
         one = run(one, "outliers", "clusters", settings)
-        found[method] = dict(mask=judge.mask(case, mask), polygons=judge.markings(case, one.markings), seconds=seconds)
+        found[name] = dict(mask=judge.mask(case, mask), polygons=judge.markings(case, one.markings), seconds=seconds)
     return found
 
 

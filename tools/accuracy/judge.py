@@ -1,9 +1,9 @@
-"""How right a result is: core/assess with one set of settings for everything."""
+"""How right a result is: products/assess with one set of settings for everything."""
 
-from lanewright.core.assess.boundaries import BoundaryAccuracySettings, assess_boundaries
-from lanewright.core.assess.driving_lines import compare_lines
-from lanewright.core.assess.inputs import polygons_of_raster
-from lanewright.core.assess.markings import assess_markings
+from lanewright.products.assess.boundaries import BoundaryAccuracySettings, assess_boundaries
+from lanewright.products.assess.driving_lines import compare_lines
+from lanewright.products.assess.inputs import polygons_of_raster
+from lanewright.products.assess.markings import assess_markings
 
 BUFFERS = (0.05, 0.10, 0.15, 0.20)   # m, half-widths
 TOLERANCES = (0.05, 0.10, 0.20)      # m

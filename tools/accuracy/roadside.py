@@ -1,10 +1,10 @@
 """How right the lines beside the road are, by length and kind."""
 
-from lanewright.core.inventory.borders import BorderLayers
-from lanewright.core.inventory.roadside.find import find_roadside
-from lanewright.core.inventory.roadside.result import roadside_to_features
 from lanewright.core.survey.open_survey import SurveySettings, open_survey
 from lanewright.core.survey.trajectory.reader import read_trajectory
+from lanewright.products.inventory.borders import BorderLayers
+from lanewright.products.inventory.roadside.find import find_roadside
+from lanewright.products.inventory.roadside.result import roadside_to_features
 
 from .streets import distance, sampled
 

@@ -17,8 +17,8 @@ from pathlib import Path
 import numpy as np
 import shapely
 from lanewright.core.io.geotiff import new_geotiff
-from lanewright.core.sample.parts.materials import CARRIAGEWAY_LABELS
-from lanewright.core.sample.survey import SampleSettings, make_sample_survey
+from lanewright.simulator.parts.materials import CARRIAGEWAY_LABELS
+from lanewright.simulator.survey import SampleSettings, make_sample_survey
 
 # What a truth layer may be called; the first is the name in the sample survey
 LAYERS = dict(boundaries=("boundaries", "curb_bottom"), markings=("markings",), driving_lines=("driving_lines",),

@@ -37,7 +37,7 @@ def trajectory_of(name, size="full"):
 
 def make_surveys(size, say=print):
     """Make the surveys that are not there yet; each appears when it is whole."""
-    from lanewright.core.sample.survey import SampleSettings, make_sample_survey
+    from lanewright.simulator.survey import SampleSettings, make_sample_survey
 
     for name, settings in SETTINGS[size].items():
         folder = SURVEYS / size / name

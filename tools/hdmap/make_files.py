@@ -25,13 +25,13 @@ def main():
 
 def write(folder, name, one):
     """The files of one road map, and the JSON with what must be found in them."""
-    from lanewright.core.export.cad.dxf import dxf_lines, write_dxf
-    from lanewright.core.export.inferred_ways import with_inferred_ways
-    from lanewright.core.export.lanelet_export import draft_lanelets, lanelet2_text, to_degrees
-    from lanewright.core.export.map_layers import reference_of_crs
-    from lanewright.core.export.opendrive.exporter import OpenDriveSettings, draft_opendrive
-    from lanewright.core.export.opendrive.xodr import opendrive_text
-    from lanewright.core.export.shared_borders import with_shared_borders
+    from lanewright.products.export.cad.dxf import dxf_lines, write_dxf
+    from lanewright.products.export.inferred_ways import with_inferred_ways
+    from lanewright.products.export.lanelet_export import draft_lanelets, lanelet2_text, to_degrees
+    from lanewright.products.export.map_layers import reference_of_crs
+    from lanewright.products.export.opendrive.exporter import OpenDriveSettings, draft_opendrive
+    from lanewright.products.export.opendrive.xodr import opendrive_text
+    from lanewright.products.export.shared_borders import with_shared_borders
 
     source = with_shared_borders(with_inferred_ways(one.source))
     lanes, crs = source.lanes, source.lanes.crs or SOME_CRS
@@ -59,8 +59,8 @@ def write(folder, name, one):
 
 def borders(path):
     """[road, section, lane, [[x, y], ...]] of every outer border as our own reader has it."""
-    from lanewright.core.export.opendrive.model import RoadSurface
-    from lanewright.core.export.opendrive.xodr import read_opendrive
+    from lanewright.products.export.opendrive.model import RoadSurface
+    from lanewright.products.export.opendrive.xodr import read_opendrive
 
     found = []
     for road in read_opendrive(str(path)).roads:
@@ -77,8 +77,8 @@ def borders(path):
 def driven_lanes(path):
     """Every driven lane of a section as our own reader has it: its road and number, stations along the road, way it is driven (1 along), middle
     [[x, y, z], ...] in the file's coordinates, and the (road, number) of the lanes that follow it."""
-    from lanewright.core.export.opendrive.model import DRIVEN_TYPES, LaneNetwork, RoadSurface, travel
-    from lanewright.core.export.opendrive.xodr import read_opendrive
+    from lanewright.products.export.opendrive.model import DRIVEN_TYPES, LaneNetwork, RoadSurface, travel
+    from lanewright.products.export.opendrive.xodr import read_opendrive
 
     whole = read_opendrive(str(path))
     network, found = LaneNetwork(whole), []

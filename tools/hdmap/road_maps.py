@@ -15,7 +15,7 @@ from plugin_package import load  # noqa: E402
 load()
 
 from lanewright.core.common.errors import RoadExtractionError  # noqa: E402
-from lanewright.core.export.sources import RoadMapSource, checked  # noqa: E402
+from lanewright.products.export.sources import RoadMapSource, checked  # noqa: E402
 
 LAYERS = {"LANES": "lanes.gpkg", "DRIVING_LINES": "driving.gpkg", "MARKING_LINES": "lines.gpkg", "ROAD_EDGES": "edges.gpkg",
           "MARKINGS": "markings.gpkg"}

@@ -9,5 +9,5 @@ from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
     "extract": ("extract_markings",),
-    "settings": ("MarkingSettings", "PeakSettings", "SegmentSettings"),
+    "settings": ("MarkingSettings", "PaintMethod"),
 })

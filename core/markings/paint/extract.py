@@ -22,8 +22,7 @@ from ...survey.store.records import COORDINATE_SCALE, Points, join_columns
 from ...survey.store.road_points import RoadPoints
 from ...survey.store.section_store import SectionStore
 from ..road_grid import CELL_UNITS
-from .published import points_in_segments, points_on_peaks
-from .settings import MarkingSettings
+from .settings import MarkingSettings, PaintMethod
 from .windows import (
     THRESHOLD_WINDOW,
     Bins,
@@ -50,7 +49,7 @@ def extract_markings(road_points: RoadPoints, image: IntensityImage, frame: Road
     Parameters
     ----------
     road_points : RoadPoints, corrected or not
-    image : IntensityImage of the same points, in memory or on disk; the methods on points need it for the mask alone
+    image : IntensityImage of the same points, in memory or on disk; a method on points needs it for the mask alone
     mask_path : where to write the mask of markings as GeoTIFF in the image's own pixels, or None
 
     Raises
@@ -67,27 +66,22 @@ def extract_markings(road_points: RoadPoints, image: IntensityImage, frame: Road
     if saturated:
         progress.warn(saturated)
     with marking_mask(mask_path, image, frame.origin) if mask_path else nullcontext() as burn:
-        if settings.method == "multi-threshold":
+        if settings.method is None:
             paint = _extract_from_image(road_points, image, frame, settings, progress, burn)
         else:
-            paint = _extract_from_points(road_points, settings, progress)
+            paint = _extract_from_points(road_points, settings.method, progress)
             if burn is not None:
                 burn_points(burn, paint, image, frame)
     progress.info(f"Paint: {len(paint):,} of {len(road_points):,} road points lie on it.")
     return paint
 
 
-def _extract_from_points(road_points: RoadPoints, settings: MarkingSettings, progress: Progress) -> RoadPoints:
-    """Paint by the methods that use the points and not the image."""
+def _extract_from_points(road_points: RoadPoints, method: PaintMethod, progress: Progress) -> RoadPoints:
+    """Paint by a method that uses the points and not the image."""
     paint = RoadPoints.empty_like(road_points)
     roads = road_points.roads()
     for k, road in enumerate(roads):
-        part = progress.part(k / len(roads), (k + 1) / len(roads))
-        if settings.method == "intensity-peaks":
-            found = points_on_peaks(road_points, road, settings.peaks, part)
-        else:
-            found = points_in_segments(road_points, road, settings.segments, part)
-        for records in found:
+        for records in method.paint_of(road_points, road, progress.part(k / len(roads), (k + 1) / len(roads))):
             paint.store.append(road, records)
     return paint
 

@@ -90,7 +90,7 @@ class PaintSource:
 
     def recipe(self, folder: Path) -> Recipe:
         """How other processes open points and image."""
-        return Recipe("markings.paint.windows:PaintSource", dict(road_points=self.road_points.recipe(folder), image=self.image.recipe(folder)))
+        return Recipe("core.markings.paint.windows:PaintSource", dict(road_points=self.road_points.recipe(folder), image=self.image.recipe(folder)))
 
 
 def levels_of_windows(source: PaintSource, windows: Windows, settings: MarkingSettings, noisy: dict[int, list[int]]) -> list[Bins]:

@@ -71,7 +71,7 @@ class PointDecimation:
 
     def recipe(self, folder: Path) -> Recipe:
         """How other processes open the points; they decide anew, which gives the same selection."""
-        return Recipe("road.common.decimation:PointDecimation", dict(survey=self.survey.recipe(folder), width=self.width, spacing=self.spacing,
+        return Recipe("core.road.common.decimation:PointDecimation", dict(survey=self.survey.recipe(folder), width=self.width, spacing=self.spacing,
                                                                      min_step=self.min_step))
 
     def close(self) -> None:
@@ -216,7 +216,8 @@ class LevelGround:
 
     def recipe(self, folder: Path) -> Recipe:
         """How other processes open it."""
-        return Recipe("road.common.decimation:LevelGround", dict(decimation=self.decimation.recipe(folder), across=self.across, along=self.along))
+        return Recipe("core.road.common.decimation:LevelGround",
+                      dict(decimation=self.decimation.recipe(folder), across=self.across, along=self.along))
 
 
 def _blocks_of_profiles(points: Points, start: float, width: float) -> list[Points]:

@@ -8,6 +8,5 @@ from ...lazy import public
 __getattr__, __all__ = public(__name__, {
     "detect": ("LayerScanlines", "ScanlineBoundarySettings", "SurveyScanlines", "boundary_lines", "curbs_from_scanlines"),
     "grid": ("Scanlines",),
-    "layer": ("ResampledPoints", "ResamplingSettings", "ScanlineLayerSettings", "scanlines_from_features", "write_scanlines"),
     "section_planes": ("ScanlineSettings", "all_scanlines", "scanlines_of"),
 })

@@ -375,7 +375,7 @@ class SurveyScanlines:
     def recipe(self, folder: Path) -> Recipe:
         """How other processes open the scanlines."""
         level = None if self.level is None else self.level.recipe(folder)
-        return Recipe("road.scanlines.detect:SurveyScanlines", dict(survey=self.survey.recipe(folder), settings=self.settings, level=level,
+        return Recipe("core.road.scanlines.detect:SurveyScanlines", dict(survey=self.survey.recipe(folder), settings=self.settings, level=level,
                                                                     sensor_height=self.sensor_height, lattice=self.lattice))
 
     def stretch(self, road: int, start: float, end: float) -> str:

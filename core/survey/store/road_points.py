@@ -52,7 +52,7 @@ class RoadPoints:
         overlay = self.store.shared() if isinstance(self.store, ColumnOverlay) else None
         subset: Any = self.store.points if isinstance(self.store, ColumnOverlay) else self.store
         arguments = dict(survey=self.survey.recipe(folder), subset=subset.shared(), corrected=overlay)
-        return Recipe("survey.store.road_points:_shared_road_points", arguments)
+        return Recipe("core.survey.store.road_points:_shared_road_points", arguments)
 
     @classmethod
     def empty_like(cls, other: RoadPoints | None = None, origin: Any = None, crs: str = "") -> RoadPoints:

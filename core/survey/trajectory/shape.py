@@ -15,7 +15,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline, CubicSpline
-from scipy.signal import savgol_filter
 
 from ...curves.robust import MAD_TO_SIGMA
 from .trajectory import Trajectory
@@ -88,10 +87,12 @@ def _smoothed_track(trajectory: Trajectory) -> _TrackShape:
 
 def _smooth(columns, piece, step):
     """Smooth a piece of columns in place, with rows so many seconds apart; the share of the noise that is left."""
+    from scipy.signal import savgol_filter  # slow to load, and noisy trajectories alone use it
+
     rows = min(_odd(SMOOTH_TIME / step), _odd(piece.stop - piece.start - 1))
     for values in columns.values():
         values[piece] = savgol_filter(values[piece], rows, 3)
-    return float(np.sqrt(_cubic_leverage(rows)))
+    return float(np.sqrt(_cubic_weights(rows).max()))
 
 
 def _curved_track(trajectory: Trajectory) -> _TrackShape:
@@ -156,16 +157,22 @@ def _even(time):
     return _odd(NOISE_TIME / usual) >= MIN_CUBIC_ROWS and float(np.quantile(np.abs(step - usual), 0.95)) <= EVEN_STEPS * usual
 
 
-def _cubic_leverage(rows):
-    """Share of the variance of a row's noise that is left in the middle of a cubic over so many rows."""
-    return (9.0 * rows**2 - 21.0) / (4.0 * rows * (rows**2 - 4.0))
+def _cubic_weights(rows):
+    """(rows,) weights by which the cubic through so many even rows gives its value in the middle (Savitzky & Golay 1964).
+
+    That of the middle is the largest, and the share of the variance of a row's noise that is left there.
+    """
+    half = rows // 2
+    away = np.arange(-half, half + 1.0)
+    return 3.0 * (3 * half**2 + 3 * half - 1 - 5 * away**2) / ((2 * half - 1) * (2 * half + 1) * (2 * half + 3))
 
 
 def _noise(trajectory, piece):
     """m, one sigma of a position of a piece along one axis on the map, against a cubic over NOISE_TIME."""
     rows = min(_odd(NOISE_TIME / _step(trajectory.time[piece])), _odd(piece.stop - piece.start - 1))
-    off = [getattr(trajectory, name)[piece] - savgol_filter(getattr(trajectory, name)[piece], rows, 3) for name in "xy"]
-    return MAD_TO_SIGMA * float(np.median(np.abs(off))) / np.sqrt(1.0 - _cubic_leverage(rows))
+    weights, inner = _cubic_weights(rows), slice(rows // 2, -(rows // 2))
+    off = [values[inner] - np.convolve(values, weights, "valid") for values in (getattr(trajectory, name)[piece] for name in "xy")]
+    return MAD_TO_SIGMA * float(np.median(np.abs(off))) / np.sqrt(1.0 - weights.max())
 
 
 def _sagittas(rows):

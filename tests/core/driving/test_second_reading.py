@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 from lanewright.core.common.features import MARKINGS, ROAD_EDGES, Features
-from lanewright.core.sample.parts.paint import straight_arrow
+from lanewright.simulator.parts.paint import straight_arrow
 from lined_streets import HEIGHT, Street
 from shapely.geometry import LineString, Polygon
 

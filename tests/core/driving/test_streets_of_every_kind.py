@@ -7,7 +7,7 @@ from lanewright.core.common.progress import Progress
 from lanewright.core.driving.driving_lines import make_driving_lines
 from lanewright.core.markings.lines.painted_lines import PaintedLines
 from lanewright.core.markings.objects.marking_objects import MarkingObjects
-from lanewright.core.sample.parts.paint import straight_arrow
+from lanewright.simulator.parts.paint import straight_arrow
 from lined_streets import EAST, HEIGHT, Street
 from shapely.geometry import LineString, Polygon
 

@@ -9,12 +9,12 @@ from lanewright.core.common.progress import Progress
 from lanewright.core.intensity import correction as intensity
 from lanewright.core.intensity.asphalt_model import UNKNOWN_DISTANCE, VehicleDistances
 from lanewright.core.intensity.correction import IntensitySettings, correct_intensity
-from lanewright.core.report.page import html_page
 from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.store.records import ROAD_POINT, Points, to_units
 from lanewright.core.survey.store.road_points import RoadPoints
 from lanewright.core.survey.store.section_store import SectionStore
 from lanewright.core.survey.trajectory.trajectory import Trajectory
+from lanewright.products.report.page import html_page
 
 LENGTH, HEIGHT = 60.0, 2.5
 

@@ -6,10 +6,10 @@ from contextlib import contextmanager
 import numpy as np
 import pytest
 import shapely
-from lanewright.core.assess.inputs import AssessedLayer, in_crs
 from lanewright.core.intensity.asphalt_model import _mixed
 from lanewright.core.io.crs import parse_crs, same_crs
 from lanewright.core.io.text_table import _parse
+from lanewright.products.assess.inputs import AssessedLayer, in_crs
 
 
 @contextmanager

@@ -6,10 +6,10 @@ import laspy
 import numpy as np
 import pytest
 import shapely
-from lanewright.core.assess.driving_lines import compare_lines
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.pipeline.road_map import make_road_map
 from lanewright.core.survey.trajectory.trajectory import clean_trajectory
+from lanewright.products.assess.driving_lines import compare_lines
 
 pytestmark = pytest.mark.slow
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from drives import EAST, NORTH, ahead, bend, chain, drive, joined, surveyed_points, write_cloud
-from lanewright.core.survey.inspection import cube_density
+from lanewright.core.survey.density import cube_density
 from lanewright.core.survey.open_survey import SurveySettings, open_survey
 from lanewright.core.survey.road_points_las import read_road_points, scale_for, write_road_points
 from lanewright.core.survey.store.road_points import RoadPoints

@@ -7,12 +7,12 @@ import laspy
 import numpy as np
 import pytest
 import shapely
-from lanewright.core.assess.driving_lines import compare_lines
-from lanewright.core.assess.markings import assess_markings
 from lanewright.core.common.errors import Cancelled, RoadExtractionError
 from lanewright.core.pipeline import road_map as chain
 from lanewright.core.pipeline.road_map import RoadMapSettings, make_road_map
 from lanewright.core.survey.open_survey import SurveySettings, open_survey
+from lanewright.products.assess.driving_lines import compare_lines
+from lanewright.products.assess.markings import assess_markings
 
 pytestmark = pytest.mark.slow
 

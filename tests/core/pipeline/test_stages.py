@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from lanewright.core.common.progress import Progress
 from lanewright.core.pipeline.road_map import INTENSITY_STAGES, STAGE_NAMES, Extent, Stages
-from lanewright.core.sample.survey import SampleSettings, make_sample_survey
 from lanewright.core.survey.trajectory.trajectory import Trajectory
+from lanewright.simulator.survey import SampleSettings, make_sample_survey
 
 DENSE, LONG = Extent(18.4, 0.23), Extent(18.4, 2.03)
 

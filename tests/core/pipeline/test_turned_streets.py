@@ -4,10 +4,10 @@ import laspy
 import numpy as np
 import pytest
 import shapely
-from lanewright.core.assess.driving_lines import compare_lines
-from lanewright.core.assess.markings import assess_markings
 from lanewright.core.pipeline.road_map import make_road_map
 from lanewright.core.survey.trajectory.trajectory import Trajectory
+from lanewright.products.assess.driving_lines import compare_lines
+from lanewright.products.assess.markings import assess_markings
 
 pytestmark = pytest.mark.slow
 

@@ -17,7 +17,7 @@ from lanewright.core.execution.phase import NoSource, Phase, Threads
 from lanewright.core.execution.processes import WorkerProcesses
 from lanewright.core.markings.objects.figures import figures_of_group
 from lanewright.core.survey.blocks import sensor_height_of
-from lanewright.core.survey.inspection import cubes_of_stretch
+from lanewright.core.survey.density import cubes_of_stretch
 from lanewright.core.survey.store.road_points import RoadPoints
 
 

@@ -6,8 +6,8 @@ import pytest
 from drives import ahead, chain, contents, drive, surveyed_points, write_cloud
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.progress import Progress
-from lanewright.core.survey.inspection import inspect_survey
 from lanewright.core.survey.open_survey import SurveySettings, open_survey
+from lanewright.products.inspection import inspect_survey
 
 CRS = "EPSG:32632"
 BRIGHTEST = 255 * 256

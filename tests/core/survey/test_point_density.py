@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.survey.inspection import cube_density
+from lanewright.core.survey.density import cube_density
 from lanewright.core.survey.store.records import SURVEY_POINT, Points, to_units
 
 

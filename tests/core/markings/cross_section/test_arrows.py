@@ -5,7 +5,7 @@ import pytest
 from lanewright.core.common.features import MARKINGS, Features
 from lanewright.core.markings.cross_section.roads import arrows_of
 from lanewright.core.markings.objects.marking_objects import MarkingObjects
-from lanewright.core.sample.parts.paint import left_arrow, straight_arrow, turn_arrow
+from lanewright.simulator.parts.paint import left_arrow, straight_arrow, turn_arrow
 from lined_streets import HEIGHT, Street
 from shapely.geometry import Polygon
 

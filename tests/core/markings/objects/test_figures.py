@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import shapely
 from clustered_marks import FRAME, classes, layer_of, markings_of
-from lanewright.core.sample.parts.paint import straight_arrow
-from lanewright.core.sample.parts.symbols import bicycle, bus_word
+from lanewright.simulator.parts.paint import straight_arrow
+from lanewright.simulator.parts.symbols import bicycle, bus_word
 from painted_streets import paint, road_points, strip
 
 

@@ -11,12 +11,13 @@ from lanewright.core.intensity.image import make_intensity_image, write_intensit
 from lanewright.core.io.geotiff import IntensityImage
 from lanewright.core.markings.paint import windows
 from lanewright.core.markings.paint.extract import extract_markings
-from lanewright.core.markings.paint.settings import MARKING_METHODS, MarkingSettings
+from lanewright.core.markings.paint.settings import MarkingSettings
 from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.store.records import ROAD_POINT, to_units
 from lanewright.core.survey.store.road_points import RoadPoints
 from lanewright.core.survey.store.section_store import SectionStore
 from lanewright.core.survey.trajectory.trajectory import Trajectory
+from lanewright.products.published_markings import METHODS
 from painted_streets import ASPHALT, DENSITY, assert_same_points, drive, records_at, road_points, shuffled, street, strewn, strip
 
 gdal = pytest.importorskip("osgeo.gdal")
@@ -238,7 +239,7 @@ def test_the_mask_lies_on_the_image_and_covers_the_paint(tmp_path):
     assert painted[covered].mean() > 0.85
 
 
-@pytest.mark.parametrize("wrong", [dict(method="magic"), dict(lowest=0.0), dict(lowest=6.0, highest=5.0), dict(close=-1.0)])
+@pytest.mark.parametrize("wrong", [dict(lowest=0.0), dict(lowest=6.0, highest=5.0), dict(close=-1.0)])
 def test_settings_without_sense_are_refused(wrong):
     with pytest.raises(RoadExtractionError):
         MarkingSettings(**wrong)
@@ -312,7 +313,7 @@ def test_a_noisy_scanner_that_measured_forty_metres_of_a_quiet_street_is_known_t
     assert BAR(paint.s, paint.d).mean() > 0.75
 
 
-@pytest.mark.parametrize("method", MARKING_METHODS)
+@pytest.mark.parametrize("method", METHODS.values(), ids=METHODS)
 def test_points_without_a_corrected_intensity_among_corrected_ones_hide_no_paint(tmp_path, method):
     line = strip(10, 70, 1.0, 1.15)
     records = street(FRAME, [line])

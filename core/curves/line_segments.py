@@ -1,0 +1,154 @@
+"""Nearest points on lines, and places along them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import shapely
+
+from ..common.arrays import Rows
+from ..common.parallel import check_cancelled
+from ..common.progress import Progress
+
+HEADING_BASE = 0.5         # m to either side over which the direction of a line is measured: vertices a decimetre apart are noisy
+QUERY_BATCH = 20_000       # points queried at a time: each may have many neighbours
+
+
+def single_lines(geometries: Sequence[Any]) -> tuple[list[shapely.LineString], np.ndarray]:
+    """The lines of any mix of geometries: parts of multi-lines and outlines of polygons, without those of no length.
+
+    Returns
+    -------
+    lines : list of LineString
+    owner : (N,) index of the geometry each line comes from
+    """
+    shapes = np.asarray(geometries, object)
+    parts, owner = shapely.get_parts(shapes, return_index=True) if len(shapes) else (shapes, np.empty(0, int))
+    is_area = shapely.get_type_id(parts) == shapely.GeometryType.POLYGON
+    parts[is_area] = shapely.get_exterior_ring(parts[is_area])
+    is_line = np.isin(shapely.get_type_id(parts), (shapely.GeometryType.LINESTRING, shapely.GeometryType.LINEARRING))
+    valid = is_line & (shapely.length(parts) > 0)
+    return list(parts[valid]), owner[valid]
+
+
+@dataclass(frozen=True)
+class NearestPoints(Rows):
+    """The nearest points on some lines of N points; distance inf and the rest NaN or -1 if there is none.
+
+    distance : (N,) metres
+    side : (N,) +1 if the point lies left of the line as drawn, -1 right of it
+    xy : (N, 2) the nearest point, metres
+    z : (N,) its height, metres
+    line : (N,) index of its line
+    station : (N,) metres along that line
+    """
+
+    distance: np.ndarray
+    side: np.ndarray
+    xy: np.ndarray
+    z: np.ndarray
+    line: np.ndarray
+    station: np.ndarray
+
+
+class SegmentIndex:
+    """Spatial index of the straight segments of LineStrings."""
+
+    def __init__(self, lines: Sequence[shapely.LineString]) -> None:
+        points, owner = shapely.get_coordinates(np.asarray(lines, object), include_z=True, return_index=True)
+        run = np.hypot(*np.diff(points[:, :2], axis=0).T) if len(points) > 1 else np.empty(0)
+        along = np.r_[0.0, np.cumsum(run)] if len(points) else run
+        own = np.flatnonzero((owner[1:] == owner[:-1]) & (run > 0)) if len(points) > 1 else np.empty(0, int)
+        begins = np.searchsorted(owner, np.arange(len(lines)))
+        self.a, self.b, self.line = points[own], points[own + 1], owner[own]
+        self.length = run[own]
+        self.start = along[own] - along[begins[self.line]] if len(own) else np.empty(0)
+        self._along = along[own] if len(own) else np.empty(0)
+        self._line_start = along[begins] if len(points) else np.empty(0)
+        ends = np.searchsorted(owner, np.arange(len(lines)), side="right") - 1
+        self._line_length = along[ends] - self._line_start if len(points) else np.empty(0)
+        self._heading: np.ndarray | None = None
+        self._tree: shapely.STRtree | None = None
+
+    def at(self, line: np.ndarray, station: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """(xy (N, 2), z (N,)) at stations, metres, along the lines of these indices."""
+        k = np.clip(np.searchsorted(self._along, self._line_start[line] + station, side="right") - 1, 0, len(self.a) - 1)
+        share = np.clip((station - self.start[k]) / self.length[k], 0.0, 1.0)[:, None]
+        spot = self.a[k] + share * (self.b[k] - self.a[k])
+        return spot[:, :2], spot[:, 2]
+
+    def heading_at(self, line: np.ndarray, station: np.ndarray) -> np.ndarray:
+        """(N,) directions of the lines there, radians, over HEADING_BASE metres behind and ahead."""
+        behind, ahead = np.maximum(station - HEADING_BASE, 0.0), np.minimum(station + HEADING_BASE, self._line_length[line])
+        step = self.at(line, ahead)[0] - self.at(line, behind)[0]
+        return np.arctan2(step[:, 1], step[:, 0])
+
+    def nearest(self, xy: np.ndarray, heading: np.ndarray | None = None, max_angle: float | None = None, reach: float = np.inf,
+                progress: Progress = Progress()) -> NearestPoints:
+        """Nearest points on the lines.
+
+        Parameters
+        ----------
+        xy : (N, 2) metres
+        heading : (N,) radians; only with `max_angle`
+        max_angle : radians; only segments within this angle of `heading`, in either direction, count; None: all
+        reach : metres; only with `max_angle`
+        progress : Progress
+
+        Returns
+        -------
+        NearestPoints
+        """
+        if not len(self.a) or not len(xy):
+            return _no_nearest_points(len(xy))
+        if self._tree is None:
+            self._tree = shapely.STRtree(shapely.linestrings(np.stack([self.a[:, :2], self.b[:, :2]], axis=1)))
+        parts = []
+        for k in range(0, len(xy), QUERY_BATCH):
+            progress.report(k / len(xy))
+            check_cancelled()
+            some = slice(k, k + QUERY_BATCH)
+            if max_angle is not None and self._heading is None:
+                self._heading = self.heading_at(self.line, self.start + self.length / 2)
+            if max_angle is None:
+                pairs = self._tree.query_nearest(shapely.points(xy[some]), all_matches=False)
+            else:
+                pairs = self._parallel(xy[some], np.asarray(heading)[some], max_angle, reach)
+            parts.append(self._nearest_points(xy[some], *pairs))
+        return NearestPoints.join(parts)
+
+    def _parallel(self, xy, heading, max_angle, reach):
+        """(point, segment) pairs: of the segments within reach that run the same way, the nearest."""
+        point, segment = self._tree.query(shapely.points(xy), predicate="dwithin", distance=reach)
+        turned = np.abs((heading[point] - self._heading[segment] + np.pi / 2) % np.pi - np.pi / 2)
+        point, segment = point[turned <= max_angle], segment[turned <= max_angle]
+        order = np.lexsort((segment, self._project(xy[point], segment)[2], point))
+        first = order[np.unique(point[order], return_index=True)[1]]
+        return point[first], segment[first]
+
+    def _project(self, xy, segment):
+        a, b = self.a[segment], self.b[segment]
+        step = b - a
+        share = np.clip(((xy - a[:, :2]) * step[:, :2]).sum(axis=1) / self.length[segment]**2, 0.0, 1.0)
+        nearest_xyz = a + share[:, None] * step
+        off = xy - nearest_xyz[:, :2]
+        return nearest_xyz, share, np.hypot(off[:, 0], off[:, 1])
+
+    def _nearest_points(self, xy, point, segment):
+        found = _no_nearest_points(len(xy))
+        nearest_xyz, share, distance = self._project(xy[point], segment)
+        step, off = (self.b - self.a)[segment], xy[point] - self.a[segment, :2]
+        found.distance[point] = distance
+        found.side[point] = np.where(step[:, 0] * off[:, 1] - step[:, 1] * off[:, 0] >= 0, 1.0, -1.0)
+        found.xy[point], found.z[point] = nearest_xyz[:, :2], nearest_xyz[:, 2]
+        found.line[point] = self.line[segment]
+        found.station[point] = self.start[segment] + share * self.length[segment]
+        return found
+
+
+def _no_nearest_points(count):
+    return NearestPoints(np.full(count, np.inf), np.full(count, np.nan), np.full((count, 2), np.nan), np.full(count, np.nan),
+                np.full(count, -1), np.full(count, np.nan))

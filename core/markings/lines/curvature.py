@@ -1,0 +1,197 @@
+"""Mean curvature of marking points before and after lines were fitted."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import shapely
+from scipy.spatial import cKDTree
+
+from ...common.parallel import check_cancelled
+from ...curves.line_segments import SegmentIndex, single_lines
+from ...survey.store.records import Points
+
+CURVATURE_KERNEL = 0.2       # m, radius of the neighbourhood, as in the driving-line thesis
+MAX_CANDIDATES = 1800        # marking points, evenly spread, that are tested for being beside a line,
+MAX_CURVATURE_POINTS = 600   # and of which so many have their curvature computed
+MIN_KERNEL_POINTS = 12       # neighbours, twice the coefficients of a quadric
+MIN_WIDTH_RATIO = 0.03       # of the variances along the second and the first principal direction: below, the neighbours lie in a line
+MAX_QUADRIC_CONDITION = 1e3  # condition number of the normal equations of the quadric
+MAX_PAINT_DISTANCE = 0.25    # m from a fitted line within which a point is its paint
+KERNELS_PER_BATCH = 100      # neighbourhoods solved at a time
+HASHED_CELLS = 2**20         # hash values of cells of the kernel's size
+POINTS_LOOKED_AT = 2**18     # marking points looked at together
+
+
+@dataclass(frozen=True)
+class MarkingCurvature:
+    """Mean absolute mean curvature of marking points in a kernel of 0.2 m.
+
+    before : of the points as measured, 1/m
+    after : of the same points at the height of the line fitted to them, 1/m
+    points : number of points
+    """
+
+    before: float
+    after: float
+    points: int
+
+
+def marking_curvature(points: Points, lines: Sequence[Any], origin: Sequence[float]) -> MarkingCurvature | None:
+    """Roughness of line markings before and after fitting.
+
+    The mean curvature of the quadric z = f(x, y) through the neighbours of each point, in the frame of their own
+    plane, as point cloud software computes it and the thesis shows it for its fitted markings. It measures how
+    rough the markings are, not how the road curves.
+
+    Parameters
+    ----------
+    points : Points on paint; of a few of them columns are read, and all others some at a time
+    lines : fitted lines with Z in map coordinates
+    origin : (3,) map coordinates of the local origin
+
+    Returns
+    -------
+    MarkingCurvature, or None without a line or with too few points beside one
+    """
+    lines, _ = single_lines(lines)
+    if not lines or not len(points):
+        return None
+    shift = np.asarray(origin, float)
+    local = shapely.transform(np.asarray(lines, object), lambda xyz: xyz - shift, include_z=True)
+    segments = SegmentIndex(local)
+    which = _spread(len(points), MAX_CANDIDATES)
+    some = points[which]
+    nearest = segments.nearest(np.c_[some.x, some.y])
+    beside = np.flatnonzero((nearest.distance <= MAX_PAINT_DISTANCE) & np.isfinite(nearest.z))
+    if len(beside) < MIN_KERNEL_POINTS:
+        return None
+    beside = beside[_spread(len(beside), MAX_CURVATURE_POINTS)]
+    near = _near(points, which[beside])
+    around = points[near]
+    xyz = np.c_[around.x, around.y, around.z]
+    before, after = _before_and_after(xyz, np.searchsorted(near, which[beside]), nearest[beside], segments)
+    known = np.isfinite(before) & np.isfinite(after)
+    if not known.any():
+        return None
+    return MarkingCurvature(float(np.abs(before[known]).mean()), float(np.abs(after[known]).mean()), int(known.sum()))
+
+
+def _spread(count, most):
+    """At most so many of `count` rows, evenly spread."""
+    return np.unique(np.linspace(0, count - 1, min(count, most)).astype(int))
+
+
+def _near(points, which):
+    """Ascending rows of all points within the kernel of those at the rows `which`, and of some more."""
+    column, row = _cells(points[which])
+    marked = np.zeros(HASHED_CELLS, bool)
+    for right in (-1, 0, 1):
+        for up in (-1, 0, 1):
+            marked[_cell(column + np.int32(right), row + np.int32(up))] = True
+    found = [np.empty(0, np.intp)]
+    for first in range(0, len(points), POINTS_LOOKED_AT):
+        found.append(first + np.flatnonzero(marked.take(_cell(*_cells(points[first:first + POINTS_LOOKED_AT])))))
+    return np.concatenate(found)
+
+
+def _cells(points):
+    """(N,) int32 column and row of the cells of the kernel's size that points lie in."""
+    return [np.floor(axis * (1.0 / CURVATURE_KERNEL)).astype(np.int32) for axis in (points.x, points.y)]
+
+
+def _cell(column, row):
+    """Hash of a cell of the map; some cells that are far apart share it."""
+    return (column * np.int32(1031) + row) & np.int32(HASHED_CELLS - 1)
+
+
+def _before_and_after(xyz, which, nearest, segments):
+    """Mean curvature at the rows `which`, (K,) each: of the points, and of these at the height of the line beside them.
+
+    Points in the kernel are brought to the line that is nearest to the middle of the kernel, which on
+    0.2 m is as good as the line nearest to each.
+    """
+    tree, found = _tree(xyz), np.full((2, len(which)), np.nan)
+    heading = segments.heading_at(nearest.line, nearest.station)
+    ahead = np.stack([np.cos(heading), np.sin(heading)], axis=1)
+    for first in range(0, len(which), KERNELS_PER_BATCH):
+        check_cancelled()
+        rows = np.arange(first, min(first + KERNELS_PER_BATCH, len(which)))
+        owner, member = _around(tree, xyz, which[rows], CURVATURE_KERNEL)
+        own = rows[owner]
+        step = xyz[member, :2] - nearest.xy[own]
+        beside = np.abs(step[:, 1] * ahead[own, 0] - step[:, 0] * ahead[own, 1]) <= MAX_PAINT_DISTANCE
+        owner, member, own, step = owner[beside], member[beside], own[beside], step[beside]
+        count = np.bincount(owner, minlength=len(rows))
+        off = xyz[member] - xyz[which[own]]
+        found[0, rows] = _quadrics(off, count, CURVATURE_KERNEL)
+        _, height = segments.at(nearest.line[own], nearest.station[own] + (step * ahead[own]).sum(axis=1))
+        found[1, rows] = _quadrics(np.c_[off[:, :2], height - nearest.z[own]], count, CURVATURE_KERNEL)
+    return found
+
+
+def mean_curvature(xyz: np.ndarray, which: np.ndarray, radius: float = CURVATURE_KERNEL) -> np.ndarray:
+    """Mean curvature of a surface of points.
+
+    ::
+
+        H = ((1 + fx²) fyy - 2 fx fy fxy + (1 + fy²) fxx) / (2 (1 + fx² + fy²)^1.5)
+
+    of f(x, y) = a + b x + c y + d x² + e xy + g y², fitted in the frame of the neighbours' principal directions.
+
+    Parameters
+    ----------
+    xyz : (N, 3) metres
+    which : (K,) rows whose curvature is computed
+    radius : of the neighbourhood, metres
+
+    Returns
+    -------
+    (K,) 1/m; NaN with fewer than 12 neighbours, or if these lie in one or two lines
+    """
+    tree, found = _tree(xyz), np.full(len(which), np.nan)
+    for first in range(0, len(which), KERNELS_PER_BATCH):
+        some = which[first:first + KERNELS_PER_BATCH]
+        owner, member = _around(tree, xyz, some, radius)
+        found[first:first + KERNELS_PER_BATCH] = _quadrics(xyz[member] - xyz[some][owner], np.bincount(owner, minlength=len(some)), radius)
+    return found
+
+
+def _tree(xyz):
+    return cKDTree(xyz, balanced_tree=False, compact_nodes=False)
+
+
+def _around(tree, xyz, which, radius):
+    """(owner, member): which of the rows `which` has which point in its kernel, owner by owner."""
+    around = tree.query_ball_point(xyz[which], radius)
+    return np.repeat(np.arange(len(which)), [len(rows) for rows in around]), np.concatenate(around).astype(int)
+
+
+def _quadrics(off, count, radius):
+    """Mean curvature of neighbourhoods: (N, 3) points about each one's point, `count` (K,) of them after each other, none empty."""
+    values, normal, right = np.empty((len(count), 3)), np.empty((len(count), 6, 6)), np.empty((len(count), 6))
+    terms, scale = np.ones((7, int(count.max()))), np.array([[radius], [radius], [1.0]])
+    # hundreds of neighbours each: a matrix product of a neighbourhood is faster than sums over all of them
+    for k, (first, number) in enumerate(zip(np.cumsum(count) - count, count)):
+        own = off[first:first + number]
+        centred = own - own.mean(axis=0)
+        values[k], frame = np.linalg.eigh(centred.T @ centred)
+        some = terms[:, :number]
+        # in units of the kernel, so that the six columns weigh alike
+        u, v, w = (frame.T[::-1] / scale) @ own.T
+        some[1], some[2], some[6] = u, v, w
+        np.multiply(u, u, out=some[3])
+        np.multiply(u, v, out=some[4])
+        np.multiply(v, v, out=some[5])
+        product = some @ some.T
+        normal[k], right[k] = product[:6, :6], product[:6, 6]
+    normal += 1e-9 * np.eye(6)
+    _, b, c, d, e, g = np.linalg.solve(normal, right[:, :, None])[:, :, 0].T
+    fx, fy, fxx, fxy, fyy = b / radius, c / radius, 2 * d / radius**2, e / radius**2, 2 * g / radius**2
+    bend = ((1 + fx**2) * fyy - 2 * fx * fy * fxy + (1 + fy**2) * fxx) / (2 * (1 + fx**2 + fy**2)**1.5)
+    wide = values[:, 1] > MIN_WIDTH_RATIO * np.maximum(values[:, 2], 1e-12)
+    enough = (count >= MIN_KERNEL_POINTS) & wide & (np.linalg.cond(normal) < MAX_QUADRIC_CONDITION)
+    return np.where(enough, bend, np.nan)

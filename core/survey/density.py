@@ -1,0 +1,117 @@
+"""Point density in cubes of 1 m, counted section by section."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..common.parallel import ordered_map
+from ..common.progress import Progress
+from ..execution.phase import Phase
+from .store.records import Points
+from .store.road_points import RoadPoints
+from .store.section_store import STRETCH_POINTS, Stretch
+from .survey import Survey
+
+CUBE_SIDE = 10_000       # units of 0.1 mm: 1 m
+POINTS_PER_CHUNK = 1 << 15   # points counted at a time: fits the processor cache
+
+
+@dataclass(frozen=True)
+class CubeDensity:
+    """Point density in cubes of 1 m.
+
+    points : number of points
+    mean : points per m³, mean over occupied cubes
+    of_a_point : points per m³, mean over points of the density of their own cube
+    """
+
+    points: int
+    mean: float
+    of_a_point: float
+
+
+def cube_density(sections: Iterable[Any], points_of: Callable[[Any], Points] = lambda section: section,
+                 progress: Progress = Progress()) -> CubeDensity:
+    """Density of points in cubes aligned with the local coordinates, so that a cube shared by two sections counts once.
+
+    Parameters
+    ----------
+    sections : one entry per section of road
+    points_of : function of an entry that returns its Points
+    """
+    return _density_of_parts(ordered_map(lambda section: _counted(points_of(section))[0], sections, progress))
+
+
+def cube_densities(road_points: RoadPoints, progress: Progress = Progress()) -> tuple[CubeDensity, CubeDensity]:
+    """`cube_density` of all points of a survey and of those on its road, counted together by the executor of the road points.
+
+    Parameters
+    ----------
+    road_points : RoadPoints of a survey, `RoadPoints.subset_of`
+    """
+    survey: Survey = road_points.survey
+    length: float = survey.store.section_length
+    phase = Phase(cubes_of_stretch, road_points, (), lambda item: survey.stretch(item[0], item[1] * length, item[2] * length))
+    stretches = survey.store.stretches(STRETCH_POINTS if road_points.executor.folder else 0)
+    parts = list(road_points.executor.run(phase, stretches, progress))
+    of_survey, of_road = (_density_of_parts(found[k] for part in parts for found in part) for k in (0, 1))
+    return of_survey, of_road
+
+
+def cubes_of_stretch(road_points: RoadPoints, stretch: Stretch) -> list[list[tuple[np.ndarray, np.ndarray] | None]]:
+    """The phase that counts points in cubes, section by section.
+
+    Returns
+    -------
+    for each section of the survey [(keys of the occupied cubes, their counts)] of all points and of those on the road; None without points
+    """
+    store: Any = road_points.store
+    return [_counted(road_points.survey.section(*key), store.rows(*key)) for key in road_points.survey.store.in_stretch(stretch)]
+
+
+def _density_of_parts(parts):
+    """CubeDensity of the counts of sections."""
+    known = [found for found in parts if found is not None]
+    if not known:
+        return CubeDensity(0, float("nan"), float("nan"))
+    keys, counts = zip(*known)
+    _, place = np.unique(np.concatenate(keys), return_inverse=True)
+    number = np.bincount(place.ravel(), np.concatenate(counts))
+    total = int(number.sum())
+    return CubeDensity(total, float(number.mean()), float((number**2).sum() / number.sum()))
+
+
+def _counted(points, *subsets):
+    """[(keys of the occupied cubes, their counts)] of points and of some of them, rows in ascending order; None without points."""
+    if not len(points):
+        return [None] * (1 + len(subsets))
+    low, size = [], []
+    for axis in (points.records[name] for name in "xyz"):
+        low.append(int(axis.min()) // CUBE_SIDE)
+        size.append(int(axis.max()) // CUBE_SIDE - low[-1] + 1)
+    counts = np.zeros((1 + len(subsets), size[0] * size[1] * size[2]), np.int64)
+    for first in range(0, len(points), POINTS_PER_CHUNK):
+        x, y, z = (points.records[name][first:first + POINTS_PER_CHUNK] // np.int32(CUBE_SIDE) - np.int32(least) for name, least in zip("xyz", low))
+        z *= np.int32(size[1])
+        z += y
+        z *= np.int32(size[0])
+        z += x
+        for count, rows in zip(counts, (None, *subsets)):
+            own = z if rows is None else z.take(rows[slice(*np.searchsorted(rows, (first, first + len(z))))] - first)
+            some = np.bincount(own)
+            count[:len(some)] += some
+    return [_occupied(count, low, size) for count in counts]
+
+
+def _occupied(count, low, size):
+    """Keys of the cubes that hold points, and how many these are; None where none does."""
+    held = np.flatnonzero(count)
+    if not len(held):
+        return None
+    x, y, z = held % size[0] + low[0], held // size[0] % size[1] + low[1], held // (size[0] * size[1]) + low[2]
+    half = 2**22   # 4,000 km either side, and 32 km up or down
+    return ((z + 2**15) << 46) | ((y + half) << 23) | (x + half), count[held]

@@ -1,0 +1,322 @@
+"""Road boundaries against a reference, in intervals of 2 m and by side.
+
+The protocol of the scanline paper, completed by the tolerance that it does not state: an interval is correct
+if result lines cover at least half of it and four fifths of them lie within the tolerance of the
+reference. Otherwise the line is false and the reference is missed; an occluded curb that was not found is missed
+like any other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import shapely
+
+from ...core.common.errors import RoadExtractionError
+from ...core.common.progress import Progress
+from ...core.common.setting import check_limits, setting
+from ...core.curves.line_segments import SegmentIndex, single_lines
+from .driving_lines import checked_tolerances
+from .matching import (
+    LinePoints,
+    ReferenceStationing,
+    Stations,
+    TrajectoryStationing,
+    constant_runs,
+    cut_runs,
+    sample_lines,
+)
+from .metrics import NAN, Errors, Rates
+
+SIDE_NAMES = {1: "left", -1: "right", 0: ""}
+COVERAGE_BIN = 0.1         # m of station in which a line is present or not
+MIN_FALSE_SHARE = 0.25     # share of an interval without reference that a result must exceed to be a false line
+MIN_EXCLUDED_SHARE = 0.15  # share of an interval along an excluded reference that excludes the interval
+EXCLUDED_DISTANCE = 0.30   # m from an excluded reference within which a result is not judged
+MAX_TOLERANCE = 2.0        # m
+MAX_ERROR_DISTANCE = 0.25  # m; a result farther from the reference in a correct interval is another line
+
+
+@dataclass(frozen=True)
+class BoundaryAccuracySettings:
+    """How boundaries are judged."""
+
+    tolerances: tuple[float, ...] = (0.05, 0.10, 0.20)   # m
+    tolerance: float = setting(0.10, 0.001, MAX_TOLERANCE, "The tolerance", "m")  # the one that intervals are drawn for
+    interval: float = setting(2.0, 0.5, 100.0, "The interval", "m")  # along the trajectory or the reference
+    coverage: float = 0.5                    # share of an interval that lines must cover
+    agreement: float = 0.8                   # share of these that must lie within the tolerance
+    corridor: float = setting(30.0, 1.0, 200.0, "The corridor", "m")  # either side of the trajectory
+
+    def __post_init__(self) -> None:
+        check_limits(self)
+        object.__setattr__(self, "tolerances", checked_tolerances(self.tolerances, self.tolerance, MAX_TOLERANCE))
+        for name in ("coverage", "agreement"):
+            if not 0 < getattr(self, name) <= 1:
+                raise RoadExtractionError(f"The share {name} is {getattr(self, name)}; it must be above 0 and at most 1.")
+
+
+@dataclass(frozen=True)
+class _SideAccuracy:
+    """Rates in intervals, and the lateral and height Errors, metres, over the correct intervals."""
+
+    rates: Rates
+    lateral: Errors
+    height: Errors
+
+
+@dataclass(frozen=True)
+class _BoundaryIntervals:
+    """A table with one row per interval.
+
+    unit : (N,) index of the road or reference line
+    side : (N,) 1 left, -1 right, 0 unknown
+    station : (N,) start of the interval, metres
+    reference, covered : (N,) metres of reference and of result in it
+    excluded : (N,) text, why it is not judged; "" if it is
+    judged : (N,) bool, whether it is judged and has a reference
+    hit, false : (N, T) bool, by tolerance
+    lateral : (N,) signed mean of the deviations across, metres
+    largest : (N,) largest absolute deviation across, metres
+    height : (N,) mean deviation in height, metres
+    """
+
+    unit: np.ndarray
+    side: np.ndarray
+    station: np.ndarray
+    reference: np.ndarray
+    covered: np.ndarray
+    excluded: np.ndarray
+    judged: np.ndarray
+    hit: np.ndarray
+    false: np.ndarray
+    lateral: np.ndarray
+    largest: np.ndarray
+    height: np.ndarray
+
+
+@dataclass(frozen=True)
+class BoundaryAccuracy:
+    """The accuracy of boundary lines.
+
+    by_side : side ("left", "right", "" unknown) to tolerance to _SideAccuracy
+    total : tolerance to _SideAccuracy
+    intervals : the table of all intervals
+    beyond : metres of result farther from the trajectory than the corridor, not judged
+    along : TrajectoryStationing or ReferenceStationing
+    result_group, reference_group, excluded_group : lines with their points and intervals
+    lateral : (N,) signed deviations of the result's points, metres
+    """
+
+    by_side: dict[str, dict[float, _SideAccuracy]]
+    total: dict[float, _SideAccuracy]
+    intervals: _BoundaryIntervals
+    beyond: float
+    settings: BoundaryAccuracySettings
+    along: TrajectoryStationing | ReferenceStationing
+    result_group: _LineGroup = field(repr=False)
+    reference_group: _LineGroup = field(repr=False)
+    excluded_group: _LineGroup = field(repr=False)
+    lateral: np.ndarray = field(repr=False)
+
+
+@dataclass(frozen=True)
+class _LineGroup:
+    """Lines with their points, and for each point its station and its interval (-1: none)."""
+
+    lines: list[Any]
+    owner: np.ndarray
+    points: LinePoints
+    stations: Stations
+    interval: np.ndarray
+
+
+def assess_boundaries(result: Sequence[Any], reference: Sequence[Any], settings: BoundaryAccuracySettings = BoundaryAccuracySettings(),
+                      frame: Any = None, excluded: Sequence[Any] = (), reasons: Sequence[str] = (), area: Any = None,
+                      sides: Sequence[str | None] | None = None, progress: Progress = Progress()) -> BoundaryAccuracy:
+    """Assess boundary lines against reference lines.
+
+    Parameters
+    ----------
+    result, reference : lists of shapely lines in one metric CRS, single or multi-part, 2D or 3D, drawn in either
+        direction; one line per side, such as the curb bottoms
+    settings : BoundaryAccuracySettings
+    frame : RoadFrame of the trajectory in that CRS; None measures along the reference lines
+    excluded, reasons : reference lines along which nothing is judged, such as dropped curbs, and why
+    area : shapely polygon; what lies outside is not judged, or None
+    sides : "left", "right" or None of each reference geometry, used without a frame
+    progress : Progress
+
+    Returns
+    -------
+    BoundaryAccuracy
+    """
+    result_lines, result_owner = single_lines(result)
+    reference_lines, reference_owner = single_lines(reference)
+    excluded_lines, excluded_owner = single_lines(excluded)
+    known = None if sides is None else [{"left": 1, "right": -1}.get(sides[k] or "", 0) for k in reference_owner]
+    known = known if known and any(known) else None
+    along = TrajectoryStationing(frame, settings.corridor) if frame is not None else ReferenceStationing(reference_lines, known)
+    reference_index, excluded_index = SegmentIndex(reference_lines), SegmentIndex(excluded_lines)
+    result_points = sample_lines(result_lines).inside(area)
+    # an excluded line counts only where no judged line is nearer, so both are searched
+    excluded_distance = excluded_index.nearest(result_points.xy, progress=progress.part(0.0, 0.2)).distance
+    nearest = reference_index.nearest(result_points.xy, progress=progress.part(0.2, 0.4))
+    judged = ~((excluded_distance < EXCLUDED_DISTANCE) & (excluded_distance < nearest.distance))
+    result_points = result_points[judged]
+    nearest = nearest[judged]
+    reference_points, excluded_points = sample_lines(reference_lines).inside(area), sample_lines(excluded_lines).inside(area)
+    stations = [along.of_result(result_points, nearest), along.of_reference(reference_points),
+                _of_excluded(along, excluded_points, reference_index)]
+    progress.report(0.6)
+    keys, intervals = _intervals(stations, settings.interval)
+    groups = [_LineGroup(*group) for group in zip((result_lines, reference_lines, excluded_lines), (result_owner, reference_owner, excluded_owner),
+                                                  (result_points, reference_points, excluded_points), stations, intervals)]
+    signed = np.where(np.isfinite(nearest.distance), along.outward(result_points, nearest, stations[0]) * nearest.distance, NAN)
+    table = _judge(keys, groups, nearest, signed, settings, reasons)
+    progress.report(0.9)
+    beyond = float(result_points.length[groups[0].interval < 0].sum())
+    by_side, total = _summary(table, groups[0], nearest, signed, settings)
+    return BoundaryAccuracy(by_side, total, table, beyond, settings, along, groups[0], groups[1], groups[2], signed)
+
+
+def _of_excluded(along, points, segments):
+    """Stations of excluded lines, along the judged reference beside them."""
+    if isinstance(along, TrajectoryStationing):
+        return along.of_reference(points)
+    return along.of_result(points, segments.nearest(points.xy))
+
+
+def _intervals(placed, step):
+    """Unique (unit, side, number) of all points, and for each group the row of every point (-1: none)."""
+    sizes = np.cumsum([len(stations.unit) for stations in placed])
+    unit, side = (np.concatenate([getattr(stations, name) for stations in placed]) for name in ("unit", "side"))
+    station = np.concatenate([stations.station for stations in placed])
+    known = (unit >= 0) & np.isfinite(station)
+    number = np.where(known, np.floor(np.nan_to_num(station) / step), 0).astype(int)
+    keys, inverse = np.unique(np.c_[unit, side, number][known], axis=0, return_inverse=True)
+    rows = np.full(len(unit), -1)
+    rows[known] = inverse.ravel()
+    return keys, np.split(rows, sizes[:-1])
+
+
+def _judge(keys, groups, nearest, signed, settings, reasons):
+    result_group, reference_group, excluded_group = groups
+    count, step = len(keys), settings.interval
+    inside = result_group.interval >= 0
+    rows = result_group.interval[inside]
+    number, distance = np.bincount(rows, minlength=count), nearest.distance[inside]
+    covered = np.bincount(_bins(result_group)[0], minlength=count) * COVERAGE_BIN
+    known = reference_group.interval >= 0
+    reference = np.bincount(reference_group.interval[known], reference_group.points.length[known], count)
+    has, partial = reference >= settings.coverage * step, (reference > 0) & (reference < settings.coverage * step)
+    why = np.full(count, "", object)
+    why[partial] = "the reference covers less than half of the interval"
+    left_out, cause = _excluded(reference_group, excluded_group, count, step)
+    for k in np.flatnonzero(left_out):
+        reason = reasons[cause[k]] if len(reasons) else ""
+        why[k] = f"excluded in the reference{f' ({reason})' if reason else ''}"
+    judged = why == ""
+    hit, false = np.zeros((count, len(settings.tolerances)), bool), np.zeros((count, len(settings.tolerances)), bool)
+    for k, tolerance in enumerate(settings.tolerances):
+        within = np.bincount(rows, distance <= tolerance, count)
+        good = (covered >= settings.coverage * step - 1e-9) & (within >= settings.agreement * np.maximum(number, 1))
+        hit[:, k] = judged & has & good
+        long = np.bincount(rows, result_group.points.length[inside], count) > MIN_FALSE_SHARE * step
+        false[:, k] = judged & np.where(has, ~good & (number > 0), long)
+    size = np.abs(signed[inside])
+    largest = np.full(count, -np.inf)
+    np.maximum.at(largest, rows, np.where(np.isfinite(size), size, -np.inf))
+    largest[~np.isfinite(largest)] = NAN
+    rise = (result_group.points.z - nearest.z)[inside]
+    return _BoundaryIntervals(keys[:, 0], keys[:, 1], keys[:, 2] * step, reference, np.minimum(covered, step), why,
+                             judged & has, hit, false, _mean(rows, signed[inside], count), largest, _mean(rows, rise, count))
+
+
+def _mean(rows, values, count):
+    known = np.isfinite(values)
+    total = np.bincount(rows[known], values[known], count)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return total / np.bincount(rows[known], minlength=count)
+
+
+def _bins(group):
+    """(interval, a point in it) of every tenth of a metre of station in which the group has a point."""
+    known = np.flatnonzero(group.interval >= 0)
+    pairs = np.c_[group.interval[known], np.floor(group.stations.station[known] / COVERAGE_BIN).astype(int)]
+    found, first = np.unique(pairs, axis=0, return_index=True) if len(known) else (pairs, known)
+    return found[:, 0], found[:, 1], known[first]
+
+
+def _excluded(reference_group, excluded_group, count, step):
+    """Intervals of which excluded lines cover a share that no judged reference has, and which line does."""
+    interval, tenth, point = _bins(excluded_group)
+    covered = set(zip(*(column.tolist() for column in _bins(reference_group)[:2])))
+    alone = np.array([pair not in covered for pair in zip(interval.tolist(), tenth.tolist())], bool)
+    cause = np.full(count, -1)
+    if not len(alone):
+        return np.zeros(count, bool), cause
+    cause[interval[alone]] = excluded_group.owner[excluded_group.points.line[point[alone]]]
+    return np.bincount(interval[alone], minlength=count) * COVERAGE_BIN > MIN_EXCLUDED_SHARE * step + 1e-9, cause
+
+
+def _summary(table, result_group, nearest, signed, settings):
+    rise = result_group.points.z - nearest.z
+    sides = [side for side in (1, -1, 0) if (table.side[table.excluded == ""] == side).any()]
+    by_side = {SIDE_NAMES[side]: {} for side in sides}
+    total = {}
+    for k, tolerance in enumerate(settings.tolerances):
+        def accuracy(rows):
+            rates = Rates(int(table.hit[rows, k].sum()), int(table.false[rows, k].sum()),
+                          int((table.judged & ~table.hit[:, k])[rows].sum()))
+            good = np.append(table.hit[:, k] & rows, False)[result_group.interval] & (nearest.distance <= max(tolerance, MAX_ERROR_DISTANCE))
+            return _SideAccuracy(rates, Errors.of(signed[good], result_group.points.length[good]),
+                                Errors.of(rise[good], result_group.points.length[good]))
+
+        total[tolerance] = accuracy(np.ones(len(table.side), bool))
+        for side in sides:
+            by_side[SIDE_NAMES[side]][tolerance] = accuracy(table.side == side)
+    return by_side, total
+
+
+def interval_lines(accuracy: BoundaryAccuracy, tolerance: float) -> Iterator[tuple[str, int, Any]]:
+    """The intervals as lines, by outcome at one of the tolerances.
+
+    Parameters
+    ----------
+    accuracy : BoundaryAccuracy
+    tolerance : metres, one of those of its settings
+
+    Yields
+    ------
+    outcome : "correct", "missed", "excluded" (drawn along the reference) or "false" (along the result)
+    interval : row of `accuracy.intervals`
+    geometry : LineString or MultiLineString
+    """
+    table, k = accuracy.intervals, accuracy.settings.tolerances.index(tolerance)
+    outcome = np.where(table.excluded != "", "excluded", np.where(table.hit[:, k], "correct", np.where(table.judged, "missed", "")))
+    drawn = _by_interval(accuracy.reference_group)
+    beside = _by_interval(accuracy.excluded_group)
+    result = _by_interval(accuracy.result_group)
+    for row in range(len(table.unit)):
+        shape = beside.get(row, []) + drawn.get(row, []) if outcome[row] == "excluded" else drawn.get(row, [])
+        if outcome[row] and shape:
+            yield str(outcome[row]), row, _joined(shape)
+        if table.false[row, k] and row in result:
+            yield "false", row, _joined(result[row])
+
+
+def _by_interval(group):
+    first, last = constant_runs(group.points, group.interval)
+    found = {}
+    for row, piece in zip(group.interval[first], cut_runs(group.lines, group.points, first, last)):
+        if row >= 0:
+            found.setdefault(int(row), []).append(piece)
+    return found
+
+
+def _joined(pieces):
+    return pieces[0] if len(pieces) == 1 else shapely.MultiLineString(pieces)

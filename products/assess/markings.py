@@ -1,0 +1,373 @@
+"""Markings against a reference, cell by cell and object by object."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import shapely
+
+from ...core.common.errors import RoadExtractionError
+from ...core.common.progress import Progress
+from ...core.common.setting import check_limits, setting
+from ...core.io.crs import NO_PLACE, place_of_raster, place_raster
+from ...core.io.local_files import gdal_exceptions, open_raster
+from ...core.lazy import cv2
+from .metrics import Rates
+
+HIT, MISSED, FALSE, MISSED_BESIDE, FALSE_BESIDE = 1, 2, 3, 4, 5  # values of the outcome raster
+CHART_BLOCK = 16  # cells, side of the blocks summed up for the chart along the road
+
+
+@dataclass(frozen=True)
+class MarkingAccuracySettings:
+    """How markings are judged."""
+
+    cell_size: float = setting(0.04, 0.005, 1.0, "The cell size", "m")
+    tolerances: tuple[int, ...] = (0, 1)  # cells by which the other side is widened
+    tolerance: int = setting(1, 0, 10, "The tolerance", "cells")  # the one that objects are judged and drawn with
+    found_share: float = setting(0.5, 0.01, 1.0, "The share that makes an object found")  # share of an object's cells that makes it found, or right
+    line_width: float = setting(0.15, 0.01, 10.0, "The width of lines", "m")  # of lines without a width of their own
+
+    def __post_init__(self) -> None:
+        check_limits(self)
+        tolerances = tuple(sorted({0, self.tolerance, *self.tolerances}))
+        if any(t != int(t) or not 0 <= t <= 10 for t in tolerances):
+            said = ", ".join(f"{t:g}" for t in tolerances)
+            raise RoadExtractionError(f"The tolerances are {said}; give whole numbers of cells from 0 to 10, such as 0, 1.")
+        object.__setattr__(self, "tolerances", tuple(int(t) for t in tolerances))
+
+
+@dataclass(frozen=True)
+class _ClassAccuracy:
+    """Counts of cells of one class.
+
+    reference : cells of the reference,
+    found : of which the result has paint of any class,
+    found_beside : or has some within the tolerance
+    result : cells of the result,
+    right : of which the reference has paint of any class,
+    right_beside : or has some within the tolerance
+    same : cells of this class in both
+    """
+
+    reference: int
+    found: int
+    found_beside: int
+    result: int
+    right: int
+    right_beside: int
+    same: int
+
+    @property
+    def rates(self) -> Rates:
+        """Rates of the class itself: a cell of another class is wrong."""
+        return Rates(self.same, self.result - self.same, self.reference - self.same)
+
+
+@dataclass(frozen=True)
+class MarkingAccuracy:
+    """The accuracy of markings.
+
+    rates : tolerance (cells) to Rates in cells
+    objects : Rates in objects, with the tolerance of the settings
+    by_class : class to _ClassAccuracy, of all classes in the reference or the result
+    reference_cells, reference_found, result_cells, result_right : (N,) judged cells of every object
+    blocks : (N, 5) x, y (metres) and numbers of cells hit, missed and false of every block with any, with the tolerance
+    """
+
+    rates: dict[int, Rates]
+    objects: Rates
+    by_class: dict[str, _ClassAccuracy]
+    reference_cells: np.ndarray = field(repr=False)
+    reference_found: np.ndarray = field(repr=False)
+    result_cells: np.ndarray = field(repr=False)
+    result_right: np.ndarray = field(repr=False)
+    blocks: np.ndarray = field(repr=False)
+    settings: MarkingAccuracySettings = MarkingAccuracySettings()
+
+    @property
+    def strict(self) -> Rates:
+        """Rates without tolerance."""
+        return self.rates[0]
+
+    @property
+    def tolerant(self) -> Rates:
+        """Rates with the tolerance of the settings."""
+        return self.rates[self.settings.tolerance]
+
+    def outcomes(self) -> tuple[np.ndarray, np.ndarray]:
+        """("correct" | "missed" | "excluded" of every reference object, "correct" | "false" | "excluded" of every result object)."""
+        share = self.settings.found_share
+        return (_outcome(self.reference_cells, self.reference_found, share, "missed"),
+                _outcome(self.result_cells, self.result_right, share, "false"))
+
+
+def assess_markings(result: Sequence[Any], reference: Sequence[Any], settings: MarkingAccuracySettings = MarkingAccuracySettings(),
+                    result_classes: Sequence[Any] | None = None, reference_classes: Sequence[Any] | None = None, area: Any = None,
+                    seen: str | None = None, outcome_raster: Any = None, progress: Progress = Progress()) -> MarkingAccuracy:
+    """Assess painted polygons cell by cell and object by object.
+
+    Parameters
+    ----------
+    result, reference : lists of shapely polygons in one metric CRS (`inputs` makes them from lines and rasters)
+    settings : MarkingAccuracySettings
+    result_classes, reference_classes : class of every polygon, or None
+    area : shapely polygon; what lies outside is not judged, or None
+    seen : path of a raster in the same CRS whose empty cells are not judged, or None
+    outcome_raster : object with `write(tile, values)`, called with (BURN_TILE, BURN_TILE) uint8 of HIT and so on, or None
+    progress : Progress
+
+    Returns
+    -------
+    MarkingAccuracy
+    """
+    classes = sorted({str(name) for name in (*(result_classes or ()), *(reference_classes or ())) if name is not None})
+    counts = _CellCounts(len(result), len(reference), _numbers(result_classes, len(result), classes),
+                         _numbers(reference_classes, len(reference), classes), len(classes), settings)
+    margin = max(settings.tolerances)
+    burners = _PolygonRasteriser(result), _PolygonRasteriser(reference)
+    valid: list[_PolygonRasteriser | _DataMask] = [_PolygonRasteriser([area])] if area is not None else []
+    valid += [_DataMask(seen)] if seen else []
+    tiles = _covering_tiles([*result, *reference], settings.cell_size, margin)
+    shape = (BURN_TILE + 2 * margin,) * 2
+    inner = slice(margin, margin + BURN_TILE)
+    for number, tile in enumerate(tiles):
+        progress.report(number / len(tiles))
+        bounds = _tile_bounds(tile, settings.cell_size, margin)
+        result_ids, reference_ids = (burner.burn(bounds, shape) for burner in burners)
+        judged = np.logical_and.reduce([raster.burn(bounds, shape)[inner, inner] > 0 for raster in valid]) if valid else True
+        beside = {t: [_dilated(ids > 0, t)[inner, inner] for ids in (result_ids, reference_ids)] for t in settings.tolerances}
+        values = counts.add(result_ids[inner, inner], reference_ids[inner, inner], beside, judged)
+        counts.add_blocks(values, tile, settings.cell_size)
+        if outcome_raster is not None and values.any():
+            outcome_raster.write(tile, values)
+    return counts.accuracy(classes, settings)
+
+
+class _CellCounts:
+    """Counts over the tiles."""
+
+    def __init__(self, results, references, result_class, reference_class, classes, settings):
+        self.tolerance, self.totals = settings.tolerance, np.zeros(2, np.int64)
+        self.cells = {t: np.zeros(2, np.int64) for t in settings.tolerances}  # right of the result, found of the reference
+        self.result_class, self.reference_class = result_class, reference_class
+        self.result_cells, self.result_right = np.zeros(results + 1, np.int64), np.zeros(results + 1, np.int64)
+        self.reference_cells, self.reference_found = np.zeros(references + 1, np.int64), np.zeros(references + 1, np.int64)
+        self.by_class = np.zeros((7, classes + 1), np.int64)
+        self.blocks = []
+
+    def add(self, result_ids, reference_ids, beside, judged):
+        """Count one tile and return its outcomes. `beside`: tolerance to the masks of result and reference widened by it."""
+        r, t = np.nonzero((result_ids > 0) & judged), np.nonzero((reference_ids > 0) & judged)
+        m, k = result_ids[r], reference_ids[t]
+        self.totals += len(m), len(k)
+        for tolerance, (near_result, near_reference) in beside.items():
+            self.cells[tolerance] += near_reference[r].sum(), near_result[t].sum()
+        near_result, near_reference = beside[self.tolerance]
+        right, right_beside = reference_ids[r] > 0, near_reference[r]
+        found, found_beside = result_ids[t] > 0, near_result[t]
+        _add(self.result_cells, m), _add(self.result_right, m[right_beside])
+        _add(self.reference_cells, k), _add(self.reference_found, k[found_beside])
+        rc, tc = self.result_class[m], self.reference_class[k]
+        for row, values in enumerate((tc, tc[found], tc[found_beside], rc, rc[right], rc[right_beside],
+                                      rc[right][rc[right] == self.reference_class[reference_ids[r][right]]])):
+            _add(self.by_class[row], values)
+        values = np.zeros(result_ids.shape, np.uint8)
+        values[r] = np.where(right, HIT, np.where(right_beside, FALSE_BESIDE, FALSE))
+        lost = ~found
+        values[t[0][lost], t[1][lost]] = np.where(found_beside[lost], MISSED_BESIDE, MISSED)
+        return values
+
+    def add_blocks(self, values, tile, cell_size):
+        n = BURN_TILE // CHART_BLOCK
+        cut = values.reshape(n, CHART_BLOCK, n, CHART_BLOCK)
+        hit, missed, false = (sum((cut == value).sum(axis=(1, 3)) for value in group)
+                              for group in ((HIT, MISSED_BESIDE, FALSE_BESIDE), (MISSED,), (FALSE,)))
+        row, column = np.nonzero(hit + missed + false)
+        x0, _, _, y1 = _tile_bounds(tile, cell_size)
+        size = CHART_BLOCK * cell_size
+        self.blocks.append(np.c_[x0 + (column + 0.5) * size, y1 - (row + 0.5) * size,
+                                 hit[row, column], missed[row, column], false[row, column]])
+
+    def accuracy(self, classes, settings):
+        result_ids, reference_ids = self.totals.tolist()
+        rates = {t: Rates(int(right), result_ids - int(right), reference_ids - int(found), int(found)) for t, (right, found) in self.cells.items()}
+        by_class = {name: _ClassAccuracy(*self.by_class[:, number].tolist()) for number, name in enumerate(classes, start=1)}
+        objects = [self.reference_cells[1:], self.reference_found[1:], self.result_cells[1:], self.result_right[1:]]
+        was_found, was_right = (_outcome(objects[k], objects[k + 1], settings.found_share, "wrong") for k in (0, 2))
+        counts = [int((outcome == value).sum()) for outcome in (was_right, was_found) for value in ("correct", "wrong")]
+        return MarkingAccuracy(
+            rates, Rates(counts[0], counts[1], counts[3], counts[2]), by_class, *objects,
+            np.concatenate(self.blocks) if self.blocks else np.empty((0, 5)), settings)
+
+
+def _numbers(names, count, classes):
+    """Class number by polygon number; 0 for none."""
+    if names is None:
+        return np.zeros(count + 1, int)
+    number_of = {name: number for number, name in enumerate(classes, start=1)}
+    return np.array([0, *(0 if name is None else number_of[str(name)] for name in names)])
+
+
+def _dilated(mask, cells):
+    """The mask and what lies within so many cells of it, corners included."""
+    side = 2 * cells + 1
+    return cv2.dilate(mask.astype(np.uint8), np.ones((side, side), np.uint8)).astype(bool) if cells else mask
+
+
+def _add(counts, numbers):
+    counts += np.bincount(numbers, minlength=len(counts))
+
+
+def _outcome(cells, good, share, otherwise):
+    found = np.where(good >= share * cells, "correct", otherwise)
+    return np.where(cells > 0, found, "excluded")
+
+
+# Polygons rasterised in tiles of small cells, on one grid through the map's origin, and the raster of outcomes.
+
+BURN_TILE = 2048  # cells, side of a tile
+
+
+class _PolygonRasteriser:
+    """Rasterises numbered polygons tile by tile: a cell belongs to a polygon if its centre does."""
+
+    @gdal_exceptions()
+    def __init__(self, polygons: Sequence[Any]) -> None:
+        from osgeo import ogr
+
+        self._source = ogr.GetDriverByName("Memory").CreateDataSource("polygons")
+        self._layer = self._source.CreateLayer("polygons", None, ogr.wkbUnknown)
+        self._layer.CreateField(ogr.FieldDefn("number", ogr.OFTInteger))
+        definition = self._layer.GetLayerDefn()
+        for number, wkb in enumerate(shapely.to_wkb(np.asarray(polygons, object), output_dimension=2), start=1):
+            feature = ogr.Feature(definition)
+            feature.SetField(0, number)
+            feature.SetGeometryDirectly(ogr.CreateGeometryFromWkb(wkb))
+            self._layer.CreateFeature(feature)
+
+    @gdal_exceptions()
+    def burn(self, bounds: tuple[float, float, float, float], shape: tuple[int, int]) -> np.ndarray:
+        """Rasterise the polygons.
+
+        Parameters
+        ----------
+        bounds : (min x, min y, max x, max y), metres
+        shape : (rows, columns)
+
+        Returns
+        -------
+        (rows, columns) int32 numbers of polygons, from 1 on; 0 elsewhere. The later of two overlapping polygons wins.
+        """
+        from osgeo import gdal
+
+        rows, columns = shape
+        raster = gdal.GetDriverByName("MEM").Create("", columns, rows, 1, gdal.GDT_Int32)
+        size = (bounds[2] - bounds[0]) / columns
+        raster.SetGeoTransform((bounds[0], size, 0.0, bounds[3], 0.0, -size))
+        self._layer.SetSpatialFilterRect(*bounds)
+        # GDAL warns, tile by tile, that two layers without CRS match
+        gdal.PushErrorHandler("CPLQuietErrorHandler")
+        try:
+            gdal.RasterizeLayer(raster, [1], self._layer, options=["ATTRIBUTE=number"])
+        finally:
+            gdal.PopErrorHandler()
+        return np.frombuffer(raster.ReadRaster(), np.int32).reshape(shape)
+
+
+class _DataMask:
+    """The cells in which a raster has data: where nothing was scanned, nothing can be judged."""
+
+    @gdal_exceptions()
+    def __init__(self, path: str) -> None:
+        from osgeo import gdal
+
+        self._raster = open_raster(path)
+        self._inverse = gdal.InvGeoTransform(place_of_raster(self._raster)[0] or NO_PLACE)
+
+    @gdal_exceptions()
+    def burn(self, bounds: tuple[float, float, float, float], shape: tuple[int, int]) -> np.ndarray:
+        """(rows, columns) bool: whether the raster has a value at the centre of each cell. Parameters as of `_PolygonRasteriser.burn`."""
+        from osgeo import gdal
+
+        size = (bounds[2] - bounds[0]) / shape[1]
+        x = bounds[0] + (np.arange(shape[1]) + 0.5) * size
+        y = bounds[3] - (np.arange(shape[0]) + 0.5) * size
+        column = np.floor(self._inverse[0] + self._inverse[1] * x).astype(int)
+        row = np.floor(self._inverse[3] + self._inverse[5] * y).astype(int)
+        column_inside = (column >= 0) & (column < self._raster.RasterXSize)
+        row_inside = (row >= 0) & (row < self._raster.RasterYSize)
+        found = np.zeros(shape, bool)
+        if not column_inside.any() or not row_inside.any():
+            return found
+        column, row = column[column_inside], row[row_inside]
+        first, above = int(column.min()), int(row.min())
+        wide, high = int(column.max()) - first + 1, int(row.max()) - above + 1
+        band = self._raster.GetRasterBand(1)
+        data = np.frombuffer(band.ReadRaster(first, above, wide, high, buf_type=gdal.GDT_Float64), np.float64).reshape(high, wide)
+        known = np.isfinite(data)
+        if band.GetNoDataValue() is not None:
+            known &= data != band.GetNoDataValue()
+        found[np.ix_(row_inside, column_inside)] = known[np.ix_(row - above, column - first)]
+        return found
+
+
+def _covering_tiles(polygons: Sequence[Any], cell_size: float, margin: int) -> list[tuple[int, int]]:
+    """Sorted (column, row) of the tiles, counted from the map's origin, that polygons widened by `margin` cells touch."""
+    side = BURN_TILE * cell_size
+    low, high = np.full((0, 2), 0), np.full((0, 2), 0)
+    if len(polygons):
+        bounds = shapely.bounds(np.asarray(polygons, object)) + margin * cell_size * np.array([-1, -1, 1, 1])
+        low, high = np.floor(bounds[:, :2] / side).astype(int), np.floor(bounds[:, 2:] / side).astype(int)
+    found: set[tuple[int, int]] = set()
+    for (a, b), (c, d) in zip(low.tolist(), high.tolist()):
+        found.update((column, row) for column in range(a, c + 1) for row in range(b, d + 1))
+    return sorted(found)
+
+
+def _tile_bounds(tile: tuple[int, int], cell_size: float, margin: int = 0) -> tuple[float, float, float, float]:
+    """(min x, min y, max x, max y) of a tile with `margin` cells around it."""
+    side, more = BURN_TILE * cell_size, margin * cell_size
+    return tile[0] * side - more, tile[1] * side - more, (tile[0] + 1) * side + more, (tile[1] + 1) * side + more
+
+
+class OutcomeRaster:
+    """A GeoTIFF of the outcomes of `assess_markings`: HIT and so on, 0 where neither side is painted.
+
+    Parameters
+    ----------
+    path : of the .tif
+    polygons : of result and reference together; the raster covers their extent
+    cell_size : metres
+    crs : WKT, "" if unknown
+    margin : cells by which polygons are widened
+    """
+
+    @gdal_exceptions()
+    def __init__(self, path: str, polygons: Iterable[Any], cell_size: float, crs: str, margin: int = 0) -> None:
+        from osgeo import gdal
+
+        tiles = np.array(_covering_tiles(list(polygons), cell_size, margin) or [(0, 0)])
+        (self._west, south), (east, self._north) = tiles.min(axis=0), tiles.max(axis=0)
+        columns, rows = (east - self._west + 1) * BURN_TILE, (self._north - south + 1) * BURN_TILE
+        self._raster = gdal.GetDriverByName("GTiff").Create(
+            str(path), int(columns), int(rows), 1, gdal.GDT_Byte, ["TILED=YES", "COMPRESS=DEFLATE", "SPARSE_OK=TRUE", "BIGTIFF=IF_SAFER"])
+        x0, _, _, y1 = _tile_bounds((self._west, self._north), cell_size)
+        place_raster(self._raster, (x0, cell_size, 0.0, y1, 0.0, -cell_size), crs)
+        band = self._raster.GetRasterBand(1)
+        band.SetNoDataValue(0)
+        band.SetDescription("1 hit, 2 missed, 3 false, 4 missed beside a hit, 5 false beside paint")
+
+    @gdal_exceptions()
+    def write(self, tile: tuple[int, int], values: np.ndarray) -> None:
+        """Write one tile of (BURN_TILE, BURN_TILE) values."""
+        column, row = (tile[0] - self._west) * BURN_TILE, (self._north - tile[1]) * BURN_TILE
+        self._raster.GetRasterBand(1).WriteRaster(int(column), int(row), BURN_TILE, BURN_TILE, np.ascontiguousarray(values, np.uint8).tobytes())
+
+    @gdal_exceptions()
+    def close(self) -> None:
+        """Finish the file."""
+        self._raster = None

@@ -1,0 +1,17 @@
+"""From the road map to the formats of simulators, planners and design offices, back again, and their check.
+
+In: `Lanes` with the layers of the road map, or a file of OpenDRIVE or Lanelet2. Out: such a file, DXF or LandXML; lanes and lines like
+ours; findings on a map.
+"""
+
+from ...core.lazy import public
+
+__getattr__, __all__ = public(__name__, {
+    "inferred_ways": ("with_inferred_ways",),
+    "lanelet_export": ("Degrees", "LaneletDraft", "LaneletSettings", "draft_lanelets", "lanelet2_text", "to_degrees"),
+    "lanelet_map": ("Lanelet", "LaneletMap", "LaneletNetwork", "Way", "layers_of_lanelets", "read_lanelet2"),
+    "map_layers": ("MapLayers", "MapLine", "Misses", "border_misses", "driving_line_misses"),
+    "shared_borders": ("SharedBorders", "meet_lanes", "share_borders", "with_shared_borders"),
+    "sources": ("RoadMapSource", "checked", "stop_lines", "walked_crossings", "with_surface_heights"),
+    "xml_tree": ("XmlElement", "read_xml", "xml_text"),
+})

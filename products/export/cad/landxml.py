@@ -1,0 +1,269 @@
+"""Writes LandXML 1.2: alignments with their elements and profiles.
+
+References
+----------
+LandXML-1.2 schema (landxml.org): CoordGeom, Profile. Places are northing, easting.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import shapely
+
+from ....core.io.crs import FOOT, SAME_UNIT, US_SURVEY_FOOT, FileUnits, as_in_file, horizontal_part, parse_crs
+from ..opendrive.exporter import OpenDriveSettings, draft_opendrive
+from ..opendrive.geometry import PlanElement, PlanView
+from ..opendrive.reference_line import fit_reference
+from ..sources import RoadMapSource
+from ..xml_tree import XmlElement, xml_text
+
+FEET_IN_LANDXML = {"USSurveyFoot": US_SURVEY_FOOT, "foot": FOOT}
+NAMESPACE = "http://www.landxml.org/schema/LandXML-1.2"
+
+
+def landxml_text(alignments: Sequence[Alignment], crs: str = "", name: str = "Road map", date: str = "2000-01-01", time: str = "00:00:00") -> str:
+    """The file as text.
+
+    Parameters
+    ----------
+    alignments : list of Alignment
+    crs : WKT, metric, "" where unknown; where it is that of a survey in feet, so is the file, heights too
+    name : of the project
+    date, time : of the file, ISO 8601
+    """
+    root = XmlElement("LandXML", {"xmlns": NAMESPACE, "version": "1.2", "date": date, "time": time, "language": "English", "readOnly": "false"})
+    file_wkt, units = as_in_file(crs)
+    unit = next((name for name, foot in FEET_IN_LANDXML.items() if abs(units.across / foot - 1) < SAME_UNIT), "")
+    if unit:
+        crs = file_wkt
+        root.add("Units").add("Imperial", areaUnit="squareFoot", linearUnit=unit, volumeUnit="cubicFeet", temperatureUnit="fahrenheit",
+                              pressureUnit="inHG", angularUnit="decimal degrees", directionUnit="decimal degrees")
+        alignments = [one.in_file(units) for one in alignments]
+    else:
+        root.add("Units").add("Metric", areaUnit="squareMeter", linearUnit="meter", volumeUnit="cubicMeter", temperatureUnit="celsius",
+                              pressureUnit="milliBars", angularUnit="decimal degrees", directionUnit="decimal degrees")
+    _add_crs(root, horizontal_part(parse_crs(crs)))
+    root.add("Project", name=name)
+    root.add("Application", name="Lanewright")
+    group = root.add("Alignments", name=name)
+    for one in alignments:
+        element = group.add("Alignment", name=one.name, length=one.length, staStart=0.0, desc=one.description)
+        geometry = element.add("CoordGeom")
+        if one.plan is None:
+            _irregular(geometry, one.places)
+        else:
+            for piece in elements_without_reversal(one.plan):
+                _element(geometry, piece)
+        profile = element.add("Profile", name=one.name).add("ProfAlign", name=one.name)
+        for station, height in one.profile:
+            profile.add("PVI", f"{station:.4f} {height:.4f}")
+    return xml_text(root)
+
+
+def _add_crs(root, known):
+    if known is not None:
+        authority = known.to_authority()
+        code = authority[1] if authority and authority[0] == "EPSG" else None
+        root.add("CoordinateSystem", desc=known.name, epsgCode=code, ogcWktCode=known.to_wkt())
+
+
+def _place(point: np.ndarray) -> str:
+    return f"{point[1]:.5f} {point[0]:.5f}"
+
+
+def _irregular(geometry, places):
+    line = geometry.add("IrregularLine", length=float(np.hypot(*np.diff(places[:, :2], axis=0).T).sum()))
+    line.add("Start", _place(places[0]))
+    line.add("End", _place(places[-1]))
+    line.add("PntList2D", " ".join(_place(place) for place in places))
+
+
+def _element(geometry: XmlElement, piece: PlanElement) -> None:
+    (start, end), headings, _ = piece.at(np.array([0.0, piece.length]))
+    if piece.kind == "line":
+        line = geometry.add("Line", length=piece.length, staStart=piece.s, dir=_azimuth(headings[0]))
+        line.add("Start", _place(start))
+        line.add("End", _place(end))
+    elif piece.kind == "arc":
+        bend = piece.values[0]
+        centre = start + np.array([-np.sin(headings[0]), np.cos(headings[0])]) / bend
+        curve = geometry.add("Curve", rot="ccw" if bend > 0 else "cw", crvType="arc", radius=abs(1 / bend), length=piece.length, staStart=piece.s,
+                             chord=float(np.hypot(*(end - start))), delta=float(np.degrees(abs(bend) * piece.length)),
+                             dirStart=_azimuth(headings[0]), dirEnd=_azimuth(headings[1]))
+        for tag, point in (("Start", start), ("Center", centre), ("End", end)):
+            curve.add(tag, _place(point))
+    else:
+        bends = piece.values
+        turn = sum(bends)
+        spiral = geometry.add("Spiral", length=piece.length, radiusStart=_radius(bends[0]), radiusEnd=_radius(bends[1]),
+                              rot="ccw" if turn > 0 else "cw", spiType="clothoid", staStart=piece.s,
+                              theta=float(np.degrees(abs(headings[1] - headings[0]))), dirStart=_azimuth(headings[0]), dirEnd=_azimuth(headings[1]))
+        for tag, point in (("Start", start), ("PI", _intersection(start, headings[0], end, headings[1])), ("End", end)):
+            spiral.add(tag, _place(point))
+
+
+def _radius(bend: float) -> str:
+    return "INF" if abs(bend) < 1e-9 else f"{abs(1 / bend):.6f}"
+
+
+def _azimuth(heading: float) -> float:
+    """Degrees clockwise from north."""
+    return float((90.0 - np.degrees(heading)) % 360.0)
+
+
+def _intersection(start, first, end, last):
+    """Where the tangents at both ends meet; half-way where they are parallel."""
+    turn = np.sin(last - first)
+    if abs(turn) < 1e-9:
+        return (start + end) / 2
+    away = end - start
+    return start + np.array([np.cos(first), np.sin(first)]) * (away[0] * np.sin(last) - away[1] * np.cos(last)) / turn
+
+
+# Axes of roads and driving lines as elements: lines, arcs and spirals, and a profile of tangents.
+
+NEAREST_PLACES = 0.005   # m between places of a line
+JOINT = 0.01             # m between pieces of one line that go on
+AXIS_STEP = 1.0       # m between heights of an axis
+
+
+@dataclass(frozen=True)
+class Alignment:
+    """A line for construction.
+
+    name : of the road or lane; description : what it is
+    plan : PlanView in map coordinates; None where no short elements follow the line: `places` then holds it
+    places : (N, 3) map coordinates
+    profile : (M, 2) station and height, metres, of the tangents' intersections
+    missed : metres that a place lies beside the elements at most
+    """
+
+    name: str
+    description: str
+    plan: PlanView | None
+    places: np.ndarray
+    profile: np.ndarray
+    missed: float = 0.0
+
+    def in_file(self, units: FileUnits) -> Alignment:
+        """The same in the units of a file; its heights have those of x and y."""
+        if units.metric:
+            return self
+        per_metre = 1.0 / units.across
+        plan = None if self.plan is None else PlanView(tuple(
+            replace(one, s=one.s * per_metre, x=one.x * per_metre, y=one.y * per_metre, length=one.length * per_metre,
+                    values=tuple(bend / per_metre for bend in one.values)) for one in self.plan.elements))
+        return replace(self, plan=plan, places=self.places * per_metre, profile=self.profile * per_metre)
+
+    @property
+    def length(self) -> float:
+        """In plan."""
+        return self.plan.length if self.plan is not None else float(np.hypot(*np.diff(self.places[:, :2], axis=0).T).sum())
+
+
+def alignments_of(source: RoadMapSource, tolerance: float) -> list[Alignment]:
+    """The axis of every road, and every driving line.
+
+    Parameters
+    ----------
+    source : RoadMapSource, checked; without driving lines the middles of the lanes are taken
+    tolerance : metres that a line may be missed in plan and in height
+
+    Returns
+    -------
+    list of Alignment
+    """
+    draft = draft_opendrive(source, OpenDriveSettings(tolerance))
+    origin = np.array(draft.map.offset[:2])
+    found = []
+    for road in draft.map.roads:
+        if road.junction != "-1":
+            continue
+        s = np.linspace(0.0, road.length, max(int(road.length / AXIS_STEP), 1) + 1)
+        places = np.c_[road.plan.at(s)[0] + origin, road.elevation.at(s)]
+        fitted = all(element.kind != "paramPoly3" for element in road.plan.elements)
+        found.append(Alignment(f"Road {road.id}", f"Axis of {road.name.lower()}", _moved(road.plan, origin) if fitted else None, places,
+                               _tangents(s, places[:, 2], tolerance)))
+    for name, places in _driven(source):
+        found.append(_fitted(name, places, tolerance))
+    return found
+
+
+def _driven(source):
+    """(name, (N, 3) places) of every driving line, its pieces joined."""
+    layer, lanes = source.driving_lines, source.lanes
+    if layer is None or not len(layer):
+        for k in np.flatnonzero(np.isin(lanes.type.astype(str), ("driving", "connector"))):
+            yield f"Lane {lanes.lane_id[k]}", sum(lanes.borders(k)) / 2
+        return
+    lines: dict[tuple[int, int], list[np.ndarray]] = {}
+    for geometry, row in layer:
+        pieces = lines.setdefault((row.get("road") or 0, row.get("lane") or 0), [])
+        pieces += [] if geometry is None else [shapely.get_coordinates(geometry, include_z=True)]
+    for (road, lane), pieces in sorted(lines.items()):
+        for number, places in enumerate(_joined(pieces), start=1):
+            yield f"Lane {road}.{lane}" + (f" part {number}" if number > 1 else ""), places
+
+
+def _joined(pieces):
+    """Pieces that go on end to end as one; rows of one lane may come in any order."""
+    waiting = list(pieces)
+    while waiting:
+        line = waiting.pop(0)
+        grown = True
+        while grown:
+            grown = False
+            for k, other in enumerate(waiting):
+                if np.hypot(*(other[0] - line[-1])[:2]) < JOINT:
+                    line, grown = np.concatenate([line, other[1:]]), True
+                elif np.hypot(*(other[-1] - line[0])[:2]) < JOINT:
+                    line, grown = np.concatenate([other, line[1:]]), True
+                if grown:
+                    waiting.pop(k)
+                    break
+        yield line
+
+
+def _fitted(name, places, tolerance):
+    keep = np.append(True, np.hypot(*np.diff(places[:, :2], axis=0).T) > NEAREST_PLACES)
+    places = places[keep]
+    origin = np.floor(places[0, :2])
+    plan = fit_reference(places[:, :2] - origin, tolerance) if len(places) > 1 else None
+    along = np.append(0.0, np.cumsum(np.hypot(*np.diff(places[:, :2], axis=0).T)))
+    missed = 0.0
+    if plan is not None:
+        along = along * plan.length / along[-1]
+        on, heading, _ = plan.at(along)
+        away = places[:, :2] - origin - on
+        missed = float(np.abs(away[:, 1] * np.cos(heading) - away[:, 0] * np.sin(heading)).max())
+        plan = _moved(plan, origin)
+    return Alignment(name, "Driving line", plan, places, _tangents(along, places[:, 2], tolerance), missed)
+
+
+def _moved(plan, origin):
+    return PlanView(tuple(replace(element, x=element.x + origin[0], y=element.y + origin[1]) for element in plan.elements))
+
+
+def _tangents(s, z, tolerance):
+    """(M, 2) the fewest of the heights whose polygon misses none by more than the tolerance."""
+    line = shapely.simplify(shapely.linestrings(np.c_[s, z]), tolerance)
+    return shapely.get_coordinates(line)
+
+
+def elements_without_reversal(plan: PlanView) -> list[PlanElement]:
+    """The elements, with spirals that turn from left to right cut where they are straight: formats of design know none such."""
+    found = []
+    for element in plan.elements:
+        if element.kind != "spiral" or element.values[0] * element.values[1] >= 0:
+            found.append(element)
+            continue
+        first, last = element.values
+        cut = element.length * first / (first - last)
+        place, heading, _ = element.at(np.array([cut]))
+        found.append(replace(element, length=cut, values=(first, 0.0)))
+        at = element.s + cut, float(place[0, 0]), float(place[0, 1]), float(heading[0])
+        found.append(PlanElement(*at, element.length - cut, "spiral", (0.0, last)))
+    return found

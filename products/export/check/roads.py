@@ -1,0 +1,671 @@
+"""The check of an OpenDRIVE map: numbers first, then what is linked to what, and what the file states that the format does not have.
+
+References
+----------
+ASAM OpenDRIVE 1.7 and 1.8, the tables of attributes and the rules at the end of each section.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+import shapely
+
+from ....core.common.errors import RoadExtractionError
+from ....core.common.progress import Progress
+from ..map_layers import metric_wkt
+from ..opendrive.model import (
+    DRIVEN_TYPES,
+    MARK_TYPES,
+    OPEN_END,
+    ROAD_LANE_TYPES,
+    LaneKey,
+    LaneNetwork,
+    MapRoad,
+    OpenDriveMap,
+    RoadLink,
+    RoadSurface,
+    travel,
+)
+from ..opendrive.xodr import GEOMETRIES
+from ..sources import wrapped
+from ..xml_tree import XmlElement
+from .findings import Findings, metres
+
+MAX_GAP_IN_ROAD = 0.01       # m: simulators of wheels feel more
+MAX_KINK = 0.01              # rad between two geometries of one road
+MAX_LENGTH_ERROR = 0.01     # m between the s of a geometry and the length before it
+MAX_HEIGHT_STEP = 0.02       # m within a road
+MAX_WIDTH_STEP = 0.02        # m of a border within a road
+LEAST_OVERLAP = 0.3          # share of the smaller of two roads that lies on the other
+FARTHEST_BOUND = 50.0        # m by which roads may reach beyond the bounds of the header
+FOLD_STEP = 1.0              # m between the places at which borders are held against the curvature
+
+
+def check_opendrive(whole: OpenDriveMap, crs: str = "", progress: Progress = Progress()) -> Findings:
+    """Everything that is wrong with a map.
+
+    Parameters
+    ----------
+    whole : OpenDriveMap
+    crs : WKT of its coordinates, "" where unknown
+    progress : told of the share of the roads
+
+    Returns
+    -------
+    Findings
+    """
+    report = _RoadCheck(whole, Findings(crs=crs))
+    seen: set[str] = set()
+    for line, text in whole.problems:
+        report.add("unreadable", f"line {line}", text, None, 0.0)
+    for count, road in enumerate(whole.roads):
+        if road.id in seen:
+            report.add("id twice", f"road {road.id}", "There is another road of this id.", road, 0.0)
+        seen.add(road.id)
+        report.plan(road)
+        report.profile(road)
+        report.sections(road)
+        report.objects(road)
+        progress.report(0.6 * (count + 1) / len(whole.roads))
+    report.statements()
+    report.overlaps()
+    _check_links(whole, report.findings)
+    progress.report(1.0)
+    return report.findings
+
+
+class _RoadCheck:
+    """Looks at one road after the other."""
+
+    def __init__(self, whole: OpenDriveMap, findings: Findings) -> None:
+        self.whole, self.findings = whole, findings
+        self.areas: dict[str, shapely.Geometry] = {}
+
+    def add(self, fault, element, text, road, s):
+        place = np.zeros(3)
+        if road is not None:
+            at = np.array([min(max(s, 0.0), road.plan.length)])
+            place = self.whole.placed(np.c_[road.plan.at(at)[0], road.elevation.at(at)])[0]
+        self.findings.add(fault, element, text, place)
+
+    def statements(self) -> None:
+        """What the file says that the format does not have, and whether its header fits the roads."""
+        if self.whole.tree is not None:
+            for fault, element, text, road, s in statements(self.whole.tree):
+                self.add(fault, element, text, self.whole.road(road), s)
+        if self.whole.reference:
+            try:
+                metric_wkt(self.whole.reference, "The map")
+            except RoadExtractionError as problem:
+                self.add("reference", "header", str(problem), None, 0.0)
+        if self.whole.bounds is not None and self.whole.roads:
+            self._bounds(*self.whole.bounds)
+
+    def _bounds(self, west, south, east, north):
+        places = np.concatenate([road.plan.at(np.array([0.0, road.plan.length]))[0] for road in self.whole.roads])
+        outside = (places < np.array([west, south]) - FARTHEST_BOUND) | (places > np.array([east, north]) + FARTHEST_BOUND)
+        if (east > west or north > south) and outside.any():
+            x, y = places[np.flatnonzero(outside.any(1))[0]]
+            self.add("bounds", "header", f"A road begins or ends at x {x:.1f}, y {y:.1f}, outside of them.", None, 0.0)
+
+    def plan(self, road: MapRoad) -> None:
+        name, along, last = f"road {road.id}", 0.0, None
+        for element in road.plan.elements:
+            if element.length <= 0:
+                self.add("station", name, f"A geometry at s = {element.s:g} has the length {element.length:g} m.", road, element.s)
+            if abs(element.s - along) > MAX_LENGTH_ERROR:
+                self.add("station", name, f"A geometry says s = {element.s:.3f}; before it there are {along:.3f} m.", road, along)
+            if last is not None:
+                gap = float(np.hypot(element.x - last[0], element.y - last[1]))
+                if gap > MAX_GAP_IN_ROAD:
+                    self.add("gap", name, f"{metres(gap)} between two geometries at s = {element.s:.2f}.", road, element.s)
+                turn = abs(float(wrapped(element.heading - last[2])))
+                if turn > MAX_KINK:
+                    self.add("kink", name, f"The direction jumps by {turn:.3f} rad at s = {element.s:.2f}.", road, element.s)
+            last, along = element.end(), along + element.length
+        if abs(road.length - along) > MAX_LENGTH_ERROR:
+            self.add("road length", name, f"The road says {road.length:.3f} m; its geometries are {along:.3f} m.", road, along)
+
+    def profile(self, road: MapRoad) -> None:
+        for cubics, fault, what in ((road.elevation, "height step", "height"), (road.superelevation, "crossfall step", "crossfall")):
+            for s, step in zip(*cubics.steps()):
+                if step > MAX_HEIGHT_STEP:
+                    self.add(fault, f"road {road.id}", f"The {what} jumps by {step:.3f} at s = {s:.2f}.", road, s)
+        if road.rule not in ("RHT", "LHT"):
+            self.add("traffic rule", f"road {road.id}", f"The rule is {road.rule!r}.", road, 0.0)
+
+    def sections(self, road: MapRoad) -> None:
+        if not road.sections:
+            return
+        starts = [section.s for section in road.sections]
+        if abs(starts[0]) > MAX_LENGTH_ERROR or (np.diff(starts) <= 0).any() or starts[-1] >= road.length:
+            self.add("section order", f"road {road.id}", f"Sections begin at {', '.join(f'{s:g}' for s in starts[:8])}.", road, 0.0)
+            return
+        surface = RoadSurface(road)
+        outlines = []
+        for number, section in enumerate(road.sections):
+            self._numbering(road, section)
+            for lane in section.lanes.values():
+                self._lane(road, section.s, lane, f"road {road.id}, section {number}, lane {lane.id}", road.section_end(number) - section.s)
+            outlines.append(self._borders(road, surface, number))
+        self._offset_steps(road, starts)
+        if road.junction == "-1":
+            self.areas[road.id] = shapely.union_all(outlines)
+
+    def _offset_steps(self, road, starts):
+        for s, step in zip(*road.lane_offset.steps()):
+            if step > MAX_WIDTH_STEP and s not in starts:
+                self.add("width step", f"road {road.id}", f"The lane offset jumps by {metres(step)} at s = {s:.2f}.", road, s)
+
+    def _lane(self, road, start, lane, name, length):
+        if lane.type not in ROAD_LANE_TYPES:
+            self.add("lane type", name, f"The type is {lane.type!r}.", road, start)
+        for mark in lane.marks:
+            if mark.type not in MARK_TYPES:
+                self.add("road mark type", name, f"The type is {mark.type!r}.", road, start + mark.s)
+        if lane.id == 0 or lane.border:
+            return
+        least, where = lane.width.least(length)
+        if least < -1e-6:
+            self.add("width below zero", name, f"{least:.3f} m at s = {start + where:.2f}.", road, start + where)
+        for s, step in zip(*lane.width.steps()):
+            if step > MAX_WIDTH_STEP:
+                self.add("width step", name, f"The width jumps by {metres(step)} at s = {start + s:.2f}.", road, start + s)
+
+    def _numbering(self, road, section):
+        name = f"road {road.id}, section at {section.s:g}"
+        centre = section.lanes.get(0)
+        if centre is None or len(centre.width):
+            self.add("centre lane", name, "There is no lane 0." if centre is None else "Lane 0 has a width.", road, section.s)
+        ids = [id for id in section.order if id]
+        expected = sorted((id for id in ids if id > 0), reverse=True) + sorted((id for id in ids if id < 0), reverse=True)
+        left, right = max(ids, default=0), min(ids, default=0)
+        if ids != expected or set(ids) != set(range(right, left + 1)) - {0}:
+            self.add("lane order", name, f"The lanes are {', '.join(map(str, section.order))}.", road, section.s)
+        if len(set(section.order)) != len(section.order):
+            self.add("id twice", name, f"The lanes are {', '.join(map(str, section.order))}.", road, section.s)
+
+    def _borders(self, road, surface, number):
+        """The outline of a section's driven lanes; whether its borders fold."""
+        s = surface.stations(number, FOLD_STEP)
+        offsets = surface.offsets(number, s)
+        bend = road.plan.at(s)[2]
+        for id, t in offsets.items():
+            folded = np.flatnonzero(1 - bend * t <= 0)
+            if len(folded):
+                at = s[folded[0]]
+                self.add("border folds", f"road {road.id}, lane {id}",
+                         f"{abs(t[folded[0]]):.1f} m beside a curve of {1 / abs(bend[folded[0]]):.1f} m at s = {at:.2f}.", road, at)
+                return None
+        driven = [id for id in offsets if id and road.sections[number].lanes[id].type in DRIVEN_TYPES]
+        if not driven:
+            return None
+        rings = [np.concatenate([inner, outer[::-1]])[:, :2] for inner, outer in (surface.borders(number, id, s, offsets) for id in driven)]
+        return shapely.union_all(shapely.make_valid(np.array([shapely.Polygon(ring) for ring in rings], object)))
+
+    def objects(self, road: MapRoad) -> None:
+        for item in road.objects:
+            if not -MAX_LENGTH_ERROR <= item["s"] <= road.length + MAX_LENGTH_ERROR:
+                self.add("object off the road", f"road {road.id}, object {item['id']}", f"It is at s = {item['s']:.2f} of {road.length:.2f} m.",
+                         road, item["s"])
+
+    def overlaps(self) -> None:
+        ids, shapes = list(self.areas), np.array(list(self.areas.values()), object)
+        if not len(ids):
+            return
+        tree = shapely.STRtree(shapes)
+        for first, second in tree.query(shapes, predicate="intersects").T:
+            if first >= second:
+                continue
+            least = min(shapes[first].area, shapes[second].area)
+            common = shapes[first].intersection(shapes[second])
+            if least > 0 and common.area > LEAST_OVERLAP * least and abs(self._height(ids[first]) - self._height(ids[second])) < 2.0:
+                x, y = common.representative_point().coords[0]
+                self.findings.add("two at one place", f"roads {ids[first]} and {ids[second]}", f"They share {common.area:.0f} m².",
+                                  self.whole.placed(np.array([[x, y, 0.0]]))[0])
+
+    def _height(self, id):
+        road = self.whole.road(id)
+        return float(road.elevation.at(road.length / 2)) if road is not None else 0.0
+
+
+# Links of an OpenDRIVE map: they lead somewhere, both ways, and what they join touches.
+
+MAX_GAP_AT_LINK = 0.05      # m between the borders of linked lanes
+MAX_KINK_AT_LINK = 0.05     # rad: 3 degrees, which a vehicle cannot follow at once
+MAX_HEIGHT_AT_LINK = 0.05   # m
+LEAST_LANE = 0.5            # m: a lane that is narrower where it ends has tapered away
+END_STEP = 0.05             # m before an end, from which its direction is taken
+
+
+def _check_links(whole: OpenDriveMap, findings: Findings) -> None:
+    """Add what is wrong with the links of roads, lanes and junctions, and count the routing network."""
+    check = _Links(whole, findings)
+    check.junctions()
+    for road in whole.roads:
+        check.road(road)
+        for number, section in enumerate(road.sections):
+            for id in section.lanes:
+                if id:
+                    check.lane((road.id, number, id))
+            driven = [id for id, lane in section.lanes.items() if lane.type in DRIVEN_TYPES]
+            findings.lanes += len(driven)
+            findings.neighbours += sum(1 for id in driven if id + 1 in driven or id == -1 and 1 in driven)
+            findings.successors += sum(len(check.network.following((road.id, number, id))) for id in driven)
+
+
+class _Links:
+    def __init__(self, whole: OpenDriveMap, findings: Findings) -> None:
+        self.whole, self.findings, self.network = whole, findings, LaneNetwork(whole)
+        self.known = {junction.id for junction in whole.junctions}
+        self.touched = self.network.touched()
+        self.ends: dict[tuple[LaneKey, str], tuple[np.ndarray, np.ndarray, np.ndarray]] = {}
+
+    def place(self, road: MapRoad, end: str) -> np.ndarray:
+        at = np.array([0.0 if end == "start" else road.plan.length])
+        return self.whole.placed(np.c_[road.plan.at(at)[0], road.elevation.at(at)])[0]
+
+    def road(self, road: MapRoad) -> None:
+        for end in ("start", "end"):
+            link = road.link(end)
+            if link is not None:
+                fault, text = self._to_junction(road, link) if link.element == "junction" else self._to_road(road, end, link)
+                if fault:
+                    self.findings.add(fault, f"road {road.id}, {end}", text, self.place(road, end))
+
+    def _to_junction(self, road, link):
+        """(fault, what was seen) of a road's link to a junction, ("", "") where it is right."""
+        if link.id not in self.known:
+            return "road link", f"There is no junction {link.id}."
+        if road.junction == "-1" and not self.network.connections.get((link.id, road.id)) and not self._is_left_by(link.id, road.id):
+            return "one-sided link", f"Junction {link.id} has no connection with it."
+        return "", ""
+
+    def _to_road(self, road, end, link):
+        """The same of its link to another road."""
+        other = self.network.roads.get(link.id)
+        if link.element != "road" or other is None:
+            return "road link", f"There is no {link.element or 'element'} {link.id}."
+        if link.contact not in ("start", "end"):
+            return "road link", f"It touches the {link.contact or 'unnamed'} end of road {link.id}."
+        if road.junction == other.junction == "-1" and other.link(link.contact) != RoadLink("road", road.id, end):
+            return "one-sided link", f"Road {link.id} is not linked back."
+        return "", ""
+
+    def _is_left_by(self, junction: str, road: str) -> bool:
+        """Whether a connecting road of a junction leads to a road."""
+        for other in self.whole.roads:
+            if other.junction == junction and any(link is not None and link.element == "road" and link.id == road
+                                                  for link in (other.predecessor, other.successor)):
+                return True
+        return False
+
+    def junctions(self) -> None:
+        reached = {(junction.id, connection.connecting) for junction in self.whole.junctions for connection in junction.connections}
+        for road in self.whole.roads:
+            self._inside(road, reached)
+        seen = set()
+        for junction in self.whole.junctions:
+            if junction.id in seen:
+                self.findings.add("id twice", f"junction {junction.id}", "There is another junction of this id.", np.zeros(3))
+            seen.add(junction.id)
+            for connection in junction.connections:
+                self._connection(junction.id, connection)
+
+    def _inside(self, road, reached):
+        """A road of a junction leads somewhere at both ends, and is one of (junction, road) that connections name."""
+        for end in ("start", "end") if road.junction in self.known else ():
+            if road.link(end) is None:
+                self.findings.add("road link", f"road {road.id}, {end}", "It lies in a junction and leads nowhere.", self.place(road, end))
+        if road.junction != "-1" and (road.junction, road.id) not in reached:
+            self.findings.add("unused junction road", f"road {road.id}", f"Junction {road.junction} has no connection to it.",
+                              self.place(road, "start"))
+
+    def _connection(self, junction, connection):
+        name, missing = f"junction {junction}, connection {connection.id}", [
+            id for id in (connection.incoming, connection.connecting) if id not in self.network.roads]
+        if missing:
+            self.findings.add("connection", name, f"There is no road {missing[0]}.", np.zeros(3))
+            return
+        incoming, connecting = self.network.roads[connection.incoming], self.network.roads[connection.connecting]
+        place = self.place(connecting, "end" if connection.contact == "end" else "start")
+        for text in _connection_faults(junction, connection, incoming, connecting):
+            self.findings.add("connection", name, text, place)
+
+    def lane(self, key: LaneKey) -> None:
+        road, lane = self.network.roads[key[0]], self.network.lane(key)
+        if lane is None:
+            return
+        name, driven = f"road {key[0]}, section {key[1]}, lane {key[2]}", lane.type in DRIVEN_TYPES
+        way = travel(road, key[2])
+        for end in ("start", "end"):
+            own = self._end(key, end)
+            touching = self.network.touching(key, end)
+            for other, there in touching:
+                target = self.network.lane(other)
+                if target is None or not other[2]:   # lane 0 is a line
+                    self.findings.add("lane link", name, f"At its {end} there is no such lane {other[2]} of road {other[0]}.", own[0])
+                    continue
+                self._joined(name, key, end, own, other, there, target, driven)
+            said = end in lane.data.get(OPEN_END, "").split()
+            if self.network.is_open(key, end, self.touched) and not said and self._width(own) > LEAST_LANE:
+                leaves = (end == "end") == (way > 0)
+                self.findings.add("dead end" if leaves else "no way in", name, f"At its {end} it is linked to no driven lane.", own[0])
+
+    def _joined(self, name, key, end, own, other, there, target, driven):
+        theirs = self._end(other, there)
+        # seen along the road, an end that touches another end has left and right swapped
+        turned = end == there
+        pairs = ((own[0], theirs[1] if turned else theirs[0]), (own[1], theirs[0] if turned else theirs[1]))
+        apart = [pair[0] - pair[1] for pair in pairs]
+        gap, rise = max(float(np.hypot(*d[:2])) for d in apart), max(abs(float(d[2])) for d in apart)
+        kink = abs(float(np.arctan2(*(_cross_dot(own[2], theirs[2] if end != there else -theirs[2])))))
+        for fault, size, most, text in (("gap at a link", gap, MAX_GAP_AT_LINK, metres(gap)),
+                                        ("height step at a link", rise, MAX_HEIGHT_AT_LINK, metres(rise)),
+                                        ("kink at a link", kink * driven, MAX_KINK_AT_LINK, f"{kink:.3f} rad")):
+            if size > most:
+                self.findings.add(fault, name, f"{text} between it and lane {other[2]} of road {other[0]} at its {end}.", own[0])
+        self._driven_on(name, key, end, own[0], other, there, target, driven)
+
+    def _driven_on(self, name, key, end, place, other, there, target, driven):
+        """Linked lanes are driven the same way, and linked back but for lanes of a junction."""
+        road, to = self.network.roads[key[0]], self.network.roads[other[0]]
+        if driven and target.type in DRIVEN_TYPES:
+            leaves, enters = (end == "end") == (travel(road, key[2]) > 0), (there == "start") == (travel(to, other[2]) > 0)
+            if leaves != enters:
+                self.findings.add("direction at a link", name, f"Lane {other[2]} of road {other[0]} is driven against it.", place)
+        if key[0] == other[0] or road.junction == "-1" and to.junction == "-1":
+            if not any(back == key for back, _ in self.network.touching(other, there)):
+                self.findings.add("one-sided link", name, f"Lane {other[2]} of road {other[0]} is not linked back.", place)
+
+    def _end(self, key, end):
+        """(left, right) end of a lane's borders along the road, (3,) each, and (2,) the direction there."""
+        found = self.ends.get((key, end))
+        if found is None:
+            road = self.network.roads[key[0]]
+            first, last = road.sections[key[1]].s, road.section_end(key[1])
+            step = min(END_STEP, (last - first) / 2)
+            s = np.array([first, first + step]) if end == "start" else np.array([last - step, last - 1e-6])
+            surface = RoadSurface(road)
+            # the functions of a section hold up to its end: those of the next begin at the same s
+            inner, outer = (self.whole.placed(line) for line in surface.borders(key[1], key[2], s, surface.offsets(key[1], s)))
+            left, right = (inner, outer) if key[2] < 0 else (outer, inner)
+            at = 0 if end == "start" else 1
+            way = (left[1] - left[0] + right[1] - right[0])[:2]
+            found = self.ends[key, end] = left[at], right[at], way
+        return found
+
+    def _width(self, end):
+        return float(np.hypot(*(end[0] - end[1])[:2]))
+
+
+def _connection_faults(junction, connection, incoming, connecting):
+    """What is wrong with a connection between two roads."""
+    if connecting.junction != junction:
+        yield f"Road {connecting.id} belongs to junction {connecting.junction}."
+    if connection.contact not in ("start", "end"):
+        yield f"It touches the {connection.contact or 'unnamed'} end of road {connecting.id}."
+        return
+    here = [incoming.lanes_at(end) for end in ("start", "end") if _leads_into(incoming, end, junction)]
+    if not here:
+        yield f"Road {incoming.id} does not lead into this junction."
+        return
+    if not connection.lanes:
+        yield "It links no lanes."
+    there = connecting.lanes_at(connection.contact)
+    for start, to in connection.lanes:
+        if to not in there or start not in set().union(*here):
+            yield f"There is no lane {start} or no lane {to} where it links them."
+
+
+def _leads_into(road, end, junction):
+    link = road.link(end)
+    return link is not None and (link.element, link.id) == ("junction", junction)
+
+
+def _cross_dot(a, b):
+    return float(a[0] * b[1] - a[1] * b[0]), float(a @ b)
+
+
+# What the file states, held against what the format allows: words, ranges of numbers, order of records, what excludes what.
+
+MINORS = range(9)                # of version 1
+STATED_NEAR = 0.01               # m by which a record may lie beyond its end
+FARTHEST_OBJECT = 100.0          # m beside the reference line
+
+
+class Allowed(NamedTuple):
+    """What an attribute may be: words, or numbers from `least` to `most`, `least` itself or not; numbers count since version 1.since."""
+
+    words: tuple[str, ...] = ()
+    least: float = np.inf
+    most: float = np.inf
+    itself: bool = True
+    since: int = 0
+
+    def holds(self, element: XmlElement, name: str, minor: float) -> bool:
+        """Whether the attribute of this name is allowed in a file of version 1.minor."""
+        if element.get(name) in self.words or minor < self.since:
+            return True
+        value = _number(element, name, np.nan)
+        return bool(self.least < value <= self.most or self.itself and value == self.least)
+
+
+POSITIVE, NOT_NEGATIVE = Allowed(least=0.0, itself=False), Allowed(least=0.0)
+MARK_COLOURS = ("standard", "blue", "green", "red", "white", "yellow", "orange", "violet", "black")
+ROAD_TYPES = ("unknown", "rural", "motorway", "town", "lowSpeed", "pedestrian", "bicycle", "townExpressway", "townCollector", "townArterial",
+              "townPrivate", "townLocal", "townPlayStreet")
+OBJECT_TYPES = ("", "-1", "none", "obstacle", "car", "pole", "tree", "vegetation", "barrier", "building", "parkingSpace", "patch", "railing",
+                "trafficIsland", "crosswalk", "streetLamp", "gantry", "soundBarrier", "van", "bus", "trailer", "bike", "motorbike", "tram", "train",
+                "pedestrian", "wind", "roadMark", "roadSurface")
+ORIENTATIONS = ("+", "-", "none")
+# tag -> attribute -> what it may be; what is not stated has a default
+ATTRIBUTES = {
+    "type": {"type": Allowed(ROAD_TYPES)},
+    "speed": {"unit": Allowed(("m/s", "mph", "km/h")), "max": Allowed(("no limit", "undefined"), 0.0)},
+    "paramPoly3": {"pRange": Allowed(("arcLength", "normalized"))},
+    "roadMark": {"color": Allowed(MARK_COLOURS), "weight": Allowed(("standard", "bold")),
+                 "laneChange": Allowed(("increase", "decrease", "both", "none")), "width": NOT_NEGATIVE},
+    "line": {"length": POSITIVE, "space": NOT_NEGATIVE, "width": NOT_NEGATIVE},
+    # before 1.7 the sizes of objects are any numbers
+    "object": {"type": Allowed(OBJECT_TYPES), "orientation": Allowed(ORIENTATIONS), "length": POSITIVE._replace(since=7),
+               "width": POSITIVE._replace(since=7), "height": NOT_NEGATIVE._replace(since=7), "radius": NOT_NEGATIVE._replace(since=7)},
+    "signal": {"orientation": Allowed(ORIENTATIONS), "dynamic": Allowed(("yes", "no")), "s": NOT_NEGATIVE},
+    "superelevation": {"a": Allowed(least=-np.pi / 2, most=np.pi / 2)},
+    "width": {"a": Allowed(least=-1.0, most=50.0)},
+}
+NEEDED_ATTRIBUTES = {"object": ("id", "s", "t"), "signal": ("id", "s", "t"), "lane": ("id", "type"), "connection": ("id",)}
+# (where they are in a road or lane, whether the first must be at 0) of records that go on from s to s
+ROAD_RECORDS = ((("type",), False), (("planView", "geometry"), True), (("elevationProfile", "elevation"), True),
+                (("lateralProfile", "superelevation"), True), (("lanes", "laneOffset"), True))
+LANE_RECORDS = (("width", True), ("border", True), ("roadMark", False), ("height", False), ("speed", False))
+
+
+class _Statement(NamedTuple):
+    """A fault of FAULTS, what it is about, what was seen, and where: the id of a road, "" for none, and metres along it."""
+
+    fault: str
+    element: str
+    text: str
+    road: str
+    s: float
+
+
+def statements(root: XmlElement) -> Iterator[_Statement]:
+    """Every statement of a file that the format does not allow.
+
+    Parameters
+    ----------
+    root : the element <OpenDRIVE>
+    """
+    header = root.find("header")
+    if header is not None:
+        yield from _header(header)
+    minor = _number(header, "revMinor", MINORS[-1]) if header is not None else MINORS[-1]
+    seen: dict[str, set[str]] = {"object": set(), "signal": set()}
+    for road in root.all("road"):
+        yield from _road(road, seen, minor)
+    for junction in root.all("junction"):
+        yield from _junction(junction)
+
+
+def _header(header):
+    try:
+        major, minor = header.number("revMajor"), header.number("revMinor")
+    except RoadExtractionError as problem:
+        yield _Statement("value", "header", str(problem), "", 0.0)
+    else:
+        if major != 1 or minor not in MINORS:
+            yield _Statement("value", "header", f"The version is {major:g}.{minor:g}; there are 1.0 to 1.{MINORS[-1]}.", "", 0.0)
+    south, north, west, east = (_number(header, name, 0.0) for name in ("south", "north", "west", "east"))
+    if south > north or west > east:
+        yield _Statement("bounds", "header", f"South {south:g} to north {north:g}, west {west:g} to east {east:g}.", "", 0.0)
+
+
+def _road(road, seen, minor):
+    id, length = road.get("id"), _number(road, "length", 0.0)
+    lanes = list(_lanes(road, length))
+    for found in (_records(road, length), _plan(road), _of_lanes(lanes), _of_objects(road, length, lanes, seen),
+                  (("value", "", text, 0.0) for one in _within(road) for text in _values(one, minor))):
+        for fault, what, text, s in found:
+            yield _Statement(fault, f"road {id}, {what}" if what else f"road {id}", text, id, s)
+
+
+# The statements of a road, each (fault, what, text, s).
+
+def _records(road, length):
+    for path, zero in ROAD_RECORDS:
+        for text in _order(road, path, "s", length, zero):
+            yield "record order", path[-1], text, 0.0
+    shapes = [(_number(one, "s", 0.0), _number(one, "t", 0.0)) for one in road.all("lateralProfile", "shape")]
+    if shapes != sorted(shapes):
+        yield "record order", "shape", "The shapes do not go on from s to s and from t to t.", 0.0
+
+
+def _lanes(road, length):
+    """(start of the section, its length, lane) of every lane."""
+    sections = list(road.all("lanes", "laneSection"))
+    starts = [*(_number(section, "s", 0.0) for section in sections), length]
+    for section, start, end in zip(sections, starts[:-1], starts[1:]):
+        for side in ("left", "center", "right"):
+            for lane in section.all(side, "lane"):
+                yield start, end - start, lane
+
+
+def _of_lanes(lanes):
+    for start, length, lane in lanes:
+        for fault, text in _lane(lane, length):
+            yield fault, f"section at {start:g}, lane {lane.get('id')}", text, start
+
+
+def _of_objects(road, length, lanes, seen):
+    numbers = {int(_number(lane, "id", 0.0)) for _, _, lane in lanes}
+    for kind in seen:
+        for one in road.all(f"{kind}s", kind):
+            for fault, text, s in _beside(one, kind, length, numbers, seen[kind]):
+                yield fault, f"{kind} {one.get('id')}", text, s
+
+
+def _plan(road):
+    for one in road.all("planView", "geometry"):
+        shapes = [child for child in one.children if child.tag in GEOMETRIES]
+        s = _number(one, "s", 0.0)
+        if len(shapes) > 1:
+            yield "two at once", "geometry", f"The geometry at s = {s:g} is {' and '.join(child.tag for child in shapes)}.", s
+        for child in shapes:
+            if child.tag == "arc" and _number(child, "curvature", 1.0) == 0:
+                yield "value", "geometry", f"The arc at s = {s:g} has no curvature; it is a line.", s
+
+
+def _lane(lane, length):
+    """(fault, text) of a lane of a section of some length."""
+    for tag, zero in LANE_RECORDS:
+        for text in _order(lane, (tag,), "sOffset", length, zero):
+            yield "record order", f"{tag}: {text}"
+    if lane.find("width") is not None and lane.find("border") is not None:
+        yield "two at once", "It has widths and borders; only the widths are read."
+    if _number(lane, "id", 0.0) % 1:
+        yield "value", f"Its number is {lane.get('id')}."
+
+
+def _beside(one, kind, length, numbers, seen):
+    """(fault, text, s) of an object or signal."""
+    s, t = _number(one, "s", 0.0), _number(one, "t", 0.0)
+    if one.get("id") in seen:
+        yield "id twice", f"There is another {kind} of this id.", s
+    seen.add(one.get("id"))
+    if abs(t) > FARTHEST_OBJECT:
+        yield "object off the road", f"It is {abs(t):.0f} m beside the reference line.", s
+    if kind == "signal" and not -STATED_NEAR <= s <= length + STATED_NEAR:
+        yield "object off the road", f"It is at s = {s:.2f} of {length:.2f} m.", s
+    for validity in one.all("validity"):
+        first, last = _number(validity, "fromLane", 0.0), _number(validity, "toLane", 0.0)
+        if first > last or not numbers.issuperset((first, last)):
+            yield "lane link", f"It is valid from lane {first:g} to lane {last:g}, which the road does not have.", s
+    for corners in _corners(one):
+        if 0 < corners < 3:
+            yield "value", f"Its outline has {corners} corners.", s
+
+
+def _corners(one):
+    """How many corners each closed outline of an object has."""
+    for outline in [*one.all("outlines", "outline"), *one.all("outline")]:
+        if outline.get("closed", "true") != "false":
+            yield sum(child.tag in ("cornerRoad", "cornerLocal") for child in outline.children)
+
+
+def _junction(junction):
+    name, seen = f"junction {junction.get('id')}", set()
+    for one in junction.all("connection"):
+        what = f"{name}, connection {one.get('id')}"
+        if one.get("id") in seen:
+            yield _Statement("id twice", what, "There is another connection of this id.", one.get("connectingRoad"), 0.0)
+        seen.add(one.get("id"))
+        links = [(link.get("from"), link.get("to")) for link in one.all("laneLink")]
+        if len(set(links)) < len(links):
+            yield _Statement("connection", what, "It links the same lanes twice.", one.get("connectingRoad"), 0.0)
+
+
+def _order(parent, path, key, length, zero):
+    """Sentences on records that begin late, go back, or lie beyond the end."""
+    at = [_number(one, key, 0.0) for one in parent.all(*path)]
+    if not at:
+        return
+    if zero and at[0] > STATED_NEAR:
+        yield f"The first begins at {at[0]:g} m."
+    if (np.diff(at) < 0).any():
+        yield f"They begin at {', '.join(f'{one:g}' for one in at[:8])} m."
+    if min(at) < -STATED_NEAR or max(at) > length + STATED_NEAR:
+        yield f"One begins at {max(at) if max(at) > length else min(at):g} m of {length:g} m."
+
+
+def _values(one, minor):
+    """Sentences on words and numbers of an element of a file of version 1.minor."""
+    if one.tag != "type" or "s" in one.attributes:   # a road mark has a type too
+        for name, allowed in ATTRIBUTES.get(one.tag, {}).items():
+            if name in one.attributes and not allowed.holds(one, name, minor):
+                yield f"Line {one.line}: {name} of <{one.tag}> is {one.get(name)[:40]!r}."
+    for name in NEEDED_ATTRIBUTES.get(one.tag, ()):
+        if name not in one.attributes:
+            yield f"Line {one.line}: <{one.tag}> has no {name}."
+
+
+def _within(element):
+    """The elements within an element, at any depth, but for the user's own."""
+    stack = list(element.children)
+    while stack:
+        one = stack.pop()
+        if one.tag != "userData":
+            yield one
+            stack += one.children
+
+
+def _number(element, name, missing):
+    """A number, NaN where it is none."""
+    try:
+        return element.number(name, missing)
+    except RoadExtractionError:
+        return np.nan

@@ -1,0 +1,395 @@
+"""A map of Lanelet2: its nodes, ways and lanelets as objects, read from a file, and as layers like ours."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ...core.common.errors import RoadExtractionError
+from ...core.common.progress import Progress
+from ...core.driving.layers import Lanes
+from ...core.io.crs import parse_crs
+from .map_layers import LOCAL_CRS, MapLayers, MapLine, metric_wkt, utm_of, without_repeats
+from .xml_tree import XmlElement, read_xml
+
+
+@dataclass
+class Way:
+    """A line of nodes, by their ids. line : in the file, 0 where made."""
+
+    id: int
+    nodes: list[int]
+    tags: dict[str, str] = field(default_factory=dict)
+    line: int = 0
+
+
+@dataclass
+class Lanelet:
+    """A relation: members by role, each a list of (type, id); a lanelet has one way left and one right."""
+
+    id: int
+    tags: dict[str, str] = field(default_factory=dict)
+    members: dict[str, list[tuple[str, int]]] = field(default_factory=dict)
+    line: int = 0
+
+    def way(self, role: str) -> int | None:
+        """The id of the only way of a role, None where there is none or more than one."""
+        found = [id for kind, id in self.members.get(role, ()) if kind == "way"]
+        return found[0] if len(found) == 1 else None
+
+
+@dataclass
+class LaneletMap:
+    """A whole file.
+
+    node_ids : (N,) int in order of the file; degrees : (N, 2) longitude, latitude; heights : (N,) metres, NaN where a node has none
+    local : (N, 2) metres of the tags local_x and local_y, NaN where a node has none
+    ways, lanelets, others : by id; others are the remaining relations, such as regulatory elements
+    twice : ids that were there more than once
+    tags : of the file, such as those of MetaInfo
+    tags_twice : (kind of element, id, key) of tags that an element has more than once
+    """
+
+    node_ids: np.ndarray = field(default_factory=lambda: np.empty(0, np.int64))
+    degrees: np.ndarray = field(default_factory=lambda: np.empty((0, 2)))
+    heights: np.ndarray = field(default_factory=lambda: np.empty(0))
+    local: np.ndarray = field(default_factory=lambda: np.empty((0, 2)))
+    ways: dict[int, Way] = field(default_factory=dict)
+    lanelets: dict[int, Lanelet] = field(default_factory=dict)
+    others: dict[int, Lanelet] = field(default_factory=dict)
+    twice: list[tuple[str, int, int]] = field(default_factory=list)
+    tags_twice: list[tuple[str, int, str]] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.row_of = {int(id): k for k, id in enumerate(self.node_ids)}
+
+    def rows(self, way: Way) -> np.ndarray:
+        """Rows of a way's nodes; nodes that are missing are left out."""
+        return np.array([self.row_of[id] for id in way.nodes if id in self.row_of], int)
+
+
+# The lanelets of a map as places and as a network: which follows which, which lies beside which.
+
+NEVER_DRIVEN = ("crosswalk", "walkway", "stairs")
+
+
+class LaneletNetwork:
+    """Lanelets with borders in the direction of travel.
+
+    Parameters
+    ----------
+    whole : LaneletMap
+    places : (N, 3) metres of its nodes
+
+    Attributes
+    ----------
+    left, right : id -> rows of nodes, in the direction of travel
+    reversed_left, reversed_right : id -> whether the way runs against the direction of travel
+    """
+
+    def __init__(self, whole: LaneletMap, places: np.ndarray) -> None:
+        self.whole, self.places = whole, places
+        self.left: dict[int, np.ndarray] = {}
+        self.right: dict[int, np.ndarray] = {}
+        self.reversed_left: dict[int, bool] = {}
+        self.reversed_right: dict[int, bool] = {}
+        for lanelet in whole.lanelets.values():
+            self._place(lanelet)
+        starts, by_border = defaultdict(list), defaultdict(list)
+        for id in self.left:
+            starts[self.ends(id)[0]].append(id)
+            for role in ("left", "right"):
+                by_border[whole.lanelets[id].way(role)].append((id, role))
+        self._starts, self._by_border = starts, by_border
+
+    def _place(self, lanelet: Lanelet) -> None:
+        ids = lanelet.way("left"), lanelet.way("right")
+        left, right = (self.whole.rows(self.whole.ways[id]) if id in self.whole.ways else np.empty(0, int) for id in ids)
+        if len(left) < 2 or len(right) < 2:
+            return
+        turned_right = not same_way(self.places[left], self.places[right])
+        area = _signed_area(self.places[left], self.places[right[::-1] if turned_right else right])
+        turned = area > 0   # left then lies to the right: the lanelet is driven the other way
+        self.left[lanelet.id] = left[::-1] if turned else left
+        self.right[lanelet.id] = right[::-1] if turned_right != turned else right
+        self.reversed_left[lanelet.id], self.reversed_right[lanelet.id] = turned, turned_right != turned
+
+    def ends(self, id: int) -> tuple[tuple[int, int], tuple[int, int]]:
+        """((left, right) row of the first nodes, of the last nodes)."""
+        left, right = self.left[id], self.right[id]
+        return (int(left[0]), int(right[0])), (int(left[-1]), int(right[-1]))
+
+    def following(self, id: int) -> list[int]:
+        """Lanelets that begin with the two nodes at which this one ends."""
+        return [other for other in self._starts.get(self.ends(id)[1], ()) if other != id]
+
+    def head_on(self) -> list[tuple[int, int]]:
+        """Pairs of lanelets that end, or begin, on the same two nodes from either side: no traffic flows so."""
+        found = []
+        for end in (0, 1):
+            at = defaultdict(list)
+            for id in self.left:
+                at[self.ends(id)[end]].append(id)
+            for (left, right), ids in at.items():
+                if left < right:
+                    found += [(id, other) for id in ids for other in at.get((right, left), ())]
+        return found
+
+    def beside(self, id: int) -> list[int]:
+        """Lanelets that share a border with this one."""
+        lanelet = self.whole.lanelets[id]
+        return [other for role in ("left", "right") for other, _ in self._by_border[lanelet.way(role)] if other != id]
+
+    def driven(self, id: int) -> bool:
+        """Whether vehicles use it."""
+        return self.whole.lanelets[id].tags.get("subtype", "road") not in NEVER_DRIVEN
+
+
+def same_way(first: np.ndarray, second: np.ndarray) -> bool:
+    """Whether two lines beside each other, (N, 2+) and (M, 2+), are drawn the same way."""
+    along = np.hypot(*(first[0, :2] - second[0, :2])) + np.hypot(*(first[-1, :2] - second[-1, :2]))
+    against = np.hypot(*(first[0, :2] - second[-1, :2])) + np.hypot(*(first[-1, :2] - second[0, :2]))
+    return bool(along <= against)
+
+
+def _signed_area(left: np.ndarray, right: np.ndarray) -> float:
+    """Square metres between two borders drawn the same way; negative where the first lies to the left."""
+    x, y = np.concatenate([left, right[::-1]])[:, :2].T
+    x, y = x - x[0], y - y[0]
+    return float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y) / 2)
+
+
+# Reading from the XML of OpenStreetMap.
+
+OSM_KIND = "a Lanelet2 map in the XML of OpenStreetMap"
+MAX_ID = 2**63   # ids are whole numbers of 64 bits with a sign; those that editors give to what is new are negative
+ALL_IDS = 2**64   # of 64 bits; without a sign, as some programs write them, the larger ones are negative ones
+
+
+def read_lanelet2(path: str, progress: Progress = Progress()) -> LaneletMap:
+    """Read a file.
+
+    Parameters
+    ----------
+    path : of the .osm file
+    progress : told of the share that was read
+
+    Returns
+    -------
+    LaneletMap
+
+    Raises
+    ------
+    RoadExtractionError
+        If the file is no map of this kind, hostile, or has no lanelet.
+    """
+    found = _lanelets_of(read_xml(path, "osm", OSM_KIND, progress))
+    if not found.lanelets:
+        raise RoadExtractionError(f"{path} has no relation of type lanelet. Maps of OpenStreetMap have roads without lanes; choose a Lanelet2 map.")
+    return found
+
+
+def _lanelets_of(root: XmlElement) -> LaneletMap:
+    """The map of the element <osm>."""
+    ids, places, local, twice, ways = [], [], [], [], {}
+    tags_twice: list[tuple[str, int, str]] = []
+    lanelets: dict[int, Lanelet] = {}
+    others: dict[int, Lanelet] = {}
+    seen = set()
+    for element in root.children:
+        if element.tag not in ("node", "way", "relation") or element.get("action") == "delete":
+            continue
+        id, tags = _id(element, "id"), _tags(element)
+        tags_twice += [(element.tag, id, key) for key in _repeated_tags(element, tags)]
+        if (element.tag, id) in seen:
+            twice.append((element.tag, id, element.line))
+            continue
+        seen.add((element.tag, id))
+        if element.tag == "node":
+            ids.append(id)
+            places.append((_degrees(element, "lon"), _degrees(element, "lat"), _tag_number(tags, "ele", element)))
+            local.append((_tag_number(tags, "local_x", element), _tag_number(tags, "local_y", element)))
+        elif element.tag == "way":
+            ways[id] = Way(id, [_id(child, "ref") for child in element.all("nd")], tags, element.line)
+        else:
+            (lanelets if tags.get("type") == "lanelet" else others)[id] = Lanelet(id, tags, _members(element), element.line)
+    places_array = np.array(places, float).reshape(-1, 3)
+    _check_degrees(places_array, ids)
+    return LaneletMap(np.array(ids, np.int64), places_array[:, :2], places_array[:, 2], np.array(local, float).reshape(-1, 2), ways, lanelets,
+                      others, twice, tags_twice)
+
+
+def _repeated_tags(element, tags):
+    keys = [child.get("k") for child in element.all("tag")] if element.children else []
+    return [key for key in tags if keys.count(key) > 1] if len(keys) > len(tags) else []
+
+
+def _degrees(element, name):
+    """NaN where there are none: maps in local coordinates leave latitude and longitude out, or empty."""
+    return element.number(name, np.nan) if element.get(name) else np.nan
+
+
+def _members(element):
+    members: dict[str, list[tuple[str, int]]] = {}
+    for child in element.all("member"):
+        members.setdefault(child.get("role"), []).append((child.get("type"), _id(child, "ref")))
+    return members
+
+
+def _id(element, name):
+    text = element.get(name)
+    try:
+        value = int(text) if len(text) <= 20 else ALL_IDS
+    except ValueError:
+        value = ALL_IDS
+    if not -MAX_ID < value < ALL_IDS:
+        raise RoadExtractionError(f"Line {element.line}: {name} of <{element.tag}> is {text[:40]!r}; a whole number of 64 bits is needed.")
+    return value if value < MAX_ID else value - ALL_IDS
+
+
+def _tags(element):
+    return {child.get("k"): child.get("v") for child in element.all("tag")}
+
+
+def _tag_number(tags, name, element):
+    """A tag's number, NaN where there is none."""
+    if name not in tags:
+        return np.nan
+    made = XmlElement("tag", None, "", element.line)
+    made.attributes[name] = tags[name]
+    return made.number(name)
+
+
+def _check_degrees(places, ids):
+    wrong = np.flatnonzero((np.abs(places[:, 0]) > 180) | (np.abs(places[:, 1]) > 90))
+    if len(wrong):
+        lon, lat = places[wrong[0], :2]
+        raise RoadExtractionError(f"Node {ids[wrong[0]]} lies at lon {lon:g}, lat {lat:g}; degrees up to 180 and 90 are needed. "
+                                  "Is the map in another CRS?")
+
+
+# The lanelets and lines of a Lanelet2 map as layers like ours.
+
+PATTERN_OF_WAY = {"solid": "solid", "dashed": "dashed", "solid_solid": "double-solid",
+                  "dashed_dashed": "double-dashed", "solid_dashed": "solid-dashed", "dashed_solid": "dashed-solid"}
+PAINTED_WAYS = ("line_thin", "line_thick")
+EDGE_WAYS = ("curbstone", "road_border", "guard_rail", "wall", "fence")
+NO_LAND = 1.0   # degrees from latitude and longitude 0
+LANE_TYPE_OF_LANELET = {"bicycle_lane": "bicycle", "emergency_lane": "shoulder", "parking": "parking", "road_shoulder": "shoulder"}
+
+
+def node_places(whole: LaneletMap, crs: str = "") -> tuple[np.ndarray, str]:
+    """The nodes in metres.
+
+    Parameters
+    ----------
+    whole : LaneletMap
+    crs : WKT or EPSG:n to compute them in; "" takes the UTM zone of the map
+
+    Returns
+    -------
+    places : (N, 3) metres; a height of 0 where a node has none. A map without latitudes, or with all of them about 0, where there is nothing
+        but sea, has local coordinates: local_x and local_y, or metres from latitude and longitude 0
+    crs : WKT, "" where coordinates are local
+
+    Raises
+    ------
+    RoadExtractionError
+        If the CRS is not in metres, or nodes have neither latitude nor local coordinates.
+    """
+    from pyproj import Transformer
+
+    known = np.isfinite(whole.degrees).all(1)
+    heights = np.nan_to_num(whole.heights)
+    at_sea = known.any() and np.abs(whole.degrees[known]).max() < NO_LAND
+    if not known.all() or at_sea:
+        if np.isfinite(whole.local).all():
+            return np.c_[whole.local, heights], ""
+        if not known.all():
+            raise RoadExtractionError(f"Node {whole.node_ids[~known][0]} has neither lat and lon nor local_x and local_y. Export the map with them.")
+        if not crs:
+            x, y = Transformer.from_crs("EPSG:4326", LOCAL_CRS, always_xy=True).transform(*whole.degrees.T)
+            return np.c_[x, y, heights], ""
+    target = metric_wkt(crs, "The chosen CRS") if crs else utm_of(*whole.degrees.mean(0))
+    x, y = Transformer.from_crs("EPSG:4326", parse_crs(target), always_xy=True).transform(*whole.degrees.T)
+    places = np.c_[x, y, heights]
+    if not np.isfinite(places).all():
+        raise RoadExtractionError("The map does not lie where the chosen CRS holds. Choose the CRS of its country, or leave it empty.")
+    return places, target
+
+
+def layers_of_lanelets(whole: LaneletMap, crs: str = "", progress: Progress = Progress()) -> MapLayers:
+    """Lanes, painted borders and edges of a map.
+
+    Parameters
+    ----------
+    whole : LaneletMap
+    crs : WKT or EPSG:n of the layers; "" takes the UTM zone of the map
+    progress : told of the share of the lanelets
+
+    Returns
+    -------
+    MapLayers. `lane_id` of a lane is the lanelet's id; footways are left out; a way of the type of a line is a marking line, curbs and
+    borders of the road are edges
+
+    Raises
+    ------
+    RoadExtractionError
+        As `node_places`.
+    """
+    places, crs = node_places(whole, crs)
+    network, rows = LaneletNetwork(whole, places), []
+    shown = [id for id in network.left if network.driven(id)]
+    for count, id in enumerate(shown):
+        lanelet = whole.lanelets[id]
+        left, right = matched(places[network.left[id]], places[network.right[id]])
+        turned = {"left": network.reversed_left[id], "right": network.reversed_right[id]}
+        kinds, patterns = zip(*(_border(whole.ways[lanelet.way(role) or 0].tags, turned[role]) for role in turned))
+        rows.append(dict(
+            left=left, right=right, road=1, lane=count + 1, lane_id=str(id), direction=1,
+            type=LANE_TYPE_OF_LANELET.get(lanelet.tags.get("subtype", ""), "driving"),
+            left_kind=kinds[0], right_kind=kinds[1], left_pattern=patterns[0], right_pattern=patterns[1],
+            successors=[str(other) for other in network.following(id) if network.driven(other)]))
+        progress.report((count + 1) / len(shown))
+    found = MapLayers(Lanes.of_pieces(rows, crs), list(_lines(whole, places)))
+    if not crs:
+        found.notes.append("The map has local coordinates: its place on the earth is not known, and the layers have no CRS.")
+    left_out = len(whole.lanelets) - len(network.left)
+    if left_out:
+        found.notes.append(f"{left_out} lanelets lack a border or its nodes and were left out.")
+    if len(whole.heights) and not np.isfinite(whole.heights).all():
+        found.notes.append(f"{int((~np.isfinite(whole.heights)).sum())} nodes have no height (ele); theirs is 0.")
+    return found
+
+
+def _lines(whole, places):
+    """The painted borders and edges among the ways of a map."""
+    for way in whole.ways.values():
+        kind = way.tags.get("type", "")
+        points = without_repeats(places[whole.rows(way)]) if kind in (*PAINTED_WAYS, *EDGE_WAYS) and len(whole.rows(way)) > 1 else ()
+        if len(points) > 1:
+            pattern = PATTERN_OF_WAY.get(way.tags.get("subtype", ""), "")
+            yield MapLine(1, "edge" if kind in EDGE_WAYS else "marking", "lane", pattern, points, edge="curb" if kind == "curbstone" else "pavement")
+
+
+def matched(left: np.ndarray, right: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Two borders with vertices at the same shares of their lengths, so that each has those of both."""
+    shares = []
+    for border in (left, right):
+        along = np.append(0.0, np.cumsum(np.hypot(*np.diff(border[:, :2], axis=0).T)))
+        shares.append(along / along[-1] if along[-1] > 0 else np.linspace(0, 1, len(border)))
+    every = np.unique(np.concatenate(shares))
+    every = every[np.append(True, np.diff(every) > 1e-9)]
+    every[-1] = 1.0
+    return tuple(np.stack([np.interp(every, share, values) for values in border.T], axis=1)     # type: ignore[return-value]
+                 for border, share in zip((left, right), shares))
+
+
+def _border(tags, turned):
+    """(kind, pattern) of a way, seen in the direction of travel."""
+    named = tags.get("type", "")
+    kind = {"curbstone": "curb", "road_border": "pavement"}.get(named, "edge" if named in EDGE_WAYS else "lane")
+    pattern = PATTERN_OF_WAY.get(tags.get("subtype", ""), "") if named in PAINTED_WAYS else ""
+    return kind, "-".join(pattern.split("-")[::-1]) if turned and "-" in pattern and not pattern.startswith("double") else pattern

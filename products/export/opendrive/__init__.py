@@ -1,0 +1,15 @@
+"""OpenDRIVE: roads along a reference line, lanes as widths beside it.
+
+In: a file `.xodr` or `Lanes`. Out: an `OpenDriveMap`, and from it layers or a file.
+"""
+
+from ....core.lazy import public
+
+__getattr__, __all__ = public(__name__, {
+    "exporter": ("OpenDriveDraft", "OpenDriveSettings", "draft_opendrive"),
+    "geometry": ("Cubics", "PlanElement", "PlanView"),
+    "layers": ("layers_of_opendrive",),
+    "model": ("Connection", "Junction", "LaneSection", "MapLane", "MapRoad", "OpenDriveMap", "RoadLink", "RoadMark", "RoadSurface"),
+    "reference_line": ("fit_reference", "polynomial_reference"),
+    "xodr": ("opendrive_text", "read_opendrive"),
+})

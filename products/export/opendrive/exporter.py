@@ -1,0 +1,561 @@
+"""Lanes of a road map as a map of OpenDRIVE, with links, junctions and objects."""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+import shapely
+
+from ....core.common.features import Features
+from ....core.common.progress import Progress
+from ....core.common.setting import check_limits, setting
+from ..shared_borders import with_driven_middles
+from ..sources import NearestValues, RoadMapSource, sigma_of_lanes, stop_lines, walked_crossings
+from .model import OPEN_END, STEP, Connection, Junction, LaneNetwork, MapLane, MapRoad, OpenDriveMap, RoadLink, RoadMark, travel
+from .road_shape import add_heights, add_lanes, centre_of, heights_above_road, shape_of
+from .strips import (
+    Cell,
+    Slice,
+    connector_slices,
+    cut_into_cells,
+    directions_where_met,
+    end_to_end,
+    is_connector,
+    mark_junctions,
+    slices_of,
+    strips_of,
+)
+
+LINK_AT = {"start": "predecessor", "end": "successor"}   # an end of a road -> its link there
+ROUND_ORIGIN = 100.0      # m: the false origin is a multiple of it
+MIDDLES_SHARE = 0.5       # of the tolerance by which borders are moved to their driving lines
+CURVES_SHARE = 0.4        # of it by which widths may miss the moved borders: what is left is for corners, where two roads meet
+LONGEST_JUNCTION = 100.0  # m of road between two ends of a junction
+SHORTEST_WAY = 2.0        # m at least of a road that is cut off for a way straight on through a junction
+LONGEST_WAY = 10.0        # m at most
+CURB_WIDTH = 0.15         # m, of a curb stone seen from above
+NEAREST_CURB = 0.5        # m from a border within which a road edge tells its height
+TYPE_OF_LANE = {"driving": "driving", "connector": "driving", "shoulder": "shoulder", "parking": "parking", "bicycle": "biking",
+                "hatched": "restricted", "median": "median"}
+MARK_OF_PATTERN = {"solid": "solid", "dashed": "broken", "double-solid": "solid solid", "double": "solid solid", "double-dashed": "broken broken",
+                   "solid-dashed": "solid broken", "dashed-solid": "broken solid"}
+USUAL_DASH = (3.0, 6.0)   # m of a dash and a gap where the country is not known, as on German roads out of town
+
+
+@dataclass(frozen=True)
+class OpenDriveSettings:
+    """tolerance : metres that borders may be missed; version : 1.7 or 1.8; traffic_side : automatic, right or left."""
+
+    tolerance: float = setting(0.02, 0.002, 0.5, "Tolerance", "m")
+    version: str = "1.7"
+    traffic_side: str = "automatic"
+    dash: tuple[float, float] = USUAL_DASH
+
+    def __post_init__(self) -> None:
+        check_limits(self)
+
+
+@dataclass
+class OpenDriveDraft:
+    """The map, the place of every cell in it, and notes for the user.
+
+    place : id of a cell -> (road, section, lane); cells : list of Cell
+    """
+
+    map: OpenDriveMap
+    roads: list[_DraftRoad] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+
+
+def draft_opendrive(source: RoadMapSource, settings: OpenDriveSettings = OpenDriveSettings(), progress: Progress = Progress()) -> OpenDriveDraft:
+    """Roads with reference line, sections, widths, heights, marks, objects, links and junctions.
+
+    Lanes that share borders lie side by side in one road; it goes on while one slice of lanes follows another. Connectors, and the lanes that
+    go straight on beside them, are the roads of a junction, one for each lane.
+
+    Parameters
+    ----------
+    source : RoadMapSource, checked
+    settings : OpenDriveSettings
+    progress : told of the share of the roads
+
+    Returns
+    -------
+    OpenDriveDraft
+    """
+    source = with_driven_middles(source, MIDDLES_SHARE * settings.tolerance)
+    lanes = source.lanes
+    places = np.concatenate([lanes.left, lanes.right])
+    origin = np.append(np.floor(places[:, :2].mean(0) / ROUND_ORIGIN) * ROUND_ORIGIN, 0.0)
+    local = replace(source, lanes=replace(lanes, left=lanes.left - origin, right=lanes.right - origin))
+    drafting = _Drafting(local, origin, settings)
+    draft = OpenDriveDraft(OpenDriveMap((1, int(settings.version[-1])), "Lanewright", offset=(float(origin[0]), float(origin[1]), 0.0, 0.0)))
+    draft.notes += drafting.notes
+    strips = drafting.strips()
+    directions = directions_where_met([cell for strip, _ in strips for one in strip for cell in one.cells])
+    for number, (strip, single) in enumerate(strips, start=1):
+        made = drafting.road(strip, number, single, directions)
+        draft.roads.append(made)
+        draft.map.roads.append(made.road)
+        progress.report(number / len(strips))
+    draft.notes += _link_roads(draft.map, draft.roads)
+    draft.notes += _said_open_ends(draft.map)
+    _add_objects(draft.map, source.markings, origin)
+    return draft
+
+
+class _Drafting:
+    def __init__(self, source: RoadMapSource, origin: np.ndarray, settings: OpenDriveSettings) -> None:
+        self.source, self.lanes, self.origin, self.settings = source, source.lanes, origin, settings
+        self.sigma = sigma_of_lanes(self.lanes, source.driving_lines)
+        self.curb_heights = NearestValues(source.road_edges, "height_m")
+        self.notes: list[str] = []
+        self.cells = cut_into_cells(self.lanes)
+        self.connectors, self.slices = connector_slices(self.cells, slices_of(self.cells, self.lanes), self.lanes)
+        self.left_hand = self._left_hand()
+
+    def _left_hand(self) -> bool:
+        """Whether traffic keeps left: told by roads with both directions."""
+        if self.settings.traffic_side != "automatic":
+            return self.settings.traffic_side == "left"
+        votes = 0.0
+        for one in self.slices:
+            ways = [cell.direction for cell in one.cells if cell.direction]
+            if 1 in ways and -1 in ways:
+                votes += one.length * (1 if ways.index(-1) < ways.index(1) else -1)
+        if not votes:
+            self.notes.append("No road has lanes in both directions; traffic was taken to keep right. Set Side of traffic where it keeps left.")
+        return votes < 0
+
+    def strips(self) -> list[tuple[list[Slice], bool]]:
+        """(slices of a road, whether it is a way through a junction), ordinary roads first."""
+        mark_junctions(self.slices, self.lanes)
+        ordinary, inside = self._parted()
+        known = {id(cell) for one in inside for cell in one.cells} | {id(cell) for cell in self.cells if is_connector(cell, self.lanes)}
+        ordinary, between = _between_junctions(ordinary, known)
+        inside += between
+        lost = sum(len(one.cells) for one in inside if not one.driven)
+        if lost:
+            self.notes.append(f"{lost} pieces that nobody drives lie within junctions, where OpenDRIVE has no place for them.")
+        return _ordinary_roads(ordinary) + _ways_through([part for one in inside for part in one.ways()] + self.connectors)
+
+    def _parted(self) -> tuple[list[Slice], list[Slice]]:
+        """(slices of ordinary roads, slices within junctions): ways through a junction are cut off from the slices in which they begin or end."""
+        ordinary, inside = [], []
+        for one in self.slices:
+            if one.at_start and one.at_end and one.length < LONGEST_JUNCTION:
+                inside.append(one)
+                continue
+            for at_end in (False, True):
+                if not (one.at_end if at_end else one.at_start):
+                    continue
+                row = _cut_row(one, at_end)
+                if not row:   # too short for a way and a road
+                    inside.append(one)
+                    break
+                first, last = one.split(row)
+                part, one = (last, first) if at_end else (first, last)
+                inside.append(part)
+            else:
+                ordinary.append(one)
+        return ordinary, inside
+
+    def road(self, strip: list[Slice], number: int, single: bool, directions: dict[int, float]) -> _DraftRoad:
+        tolerance = self.settings.tolerance
+        centres = [centre_of(one, self.left_hand) for one in strip]
+        shape = shape_of(strip, centres, tolerance / 2)
+        roads = sorted({int(self.lanes.road[cell.piece]) for one in strip for cell in one.cells})
+        road = MapRoad(str(number), shape.plan.length, shape.plan, f"Road {', '.join(map(str, roads))}", rule="LHT" if self.left_hand else "RHT")
+        numbers = add_lanes(road, shape, strip, centres, CURVES_SHARE * tolerance, directions)
+        add_heights(road, shape, tolerance)
+        status: dict[str, float] = defaultdict(float)
+        for row, (one, ids, section, centre) in enumerate(zip(strip, numbers, road.sections, centres)):
+            for k, (cell, id) in enumerate(zip(one.cells, ids)):
+                self._describe(section.lanes[id], cell)
+                section.lanes[id].heights = heights_above_road(shape, row, k)
+                section.lanes[id].marks = [self._mark_between(one, k if id > 0 else k + 1, id)]
+                status[str(self.lanes.status[cell.piece])] += cell.length
+            # where lane 0 lies apart from them, the innermost border is that of the empty lane between
+            apart = next((id for id in section.lanes if id and id not in ids), 0)
+            section.lanes[0].marks = [RoadMark(0.0, "none")]
+            section.lanes[apart].marks = [self._mark_between(one, centre, apart)]
+            self._add_curbs(section.lanes, one, ids)
+            section.order = sorted(section.lanes, reverse=True)
+        road.data = _shares(status)
+        return _DraftRoad(road, strip, numbers, single)
+
+    def _describe(self, lane: MapLane, cell: Cell) -> None:
+        lane.type = TYPE_OF_LANE[self.lanes.type[cell.piece]]
+        lane.data = {"lanewright:lane_id": str(self.lanes.lane_id[cell.piece])}
+        if np.isfinite(self.sigma[cell.piece]):
+            lane.data["lanewright:sigma_m"] = f"{self.sigma[cell.piece]:.3f}"
+        if self.lanes.status[cell.piece] != "measured":
+            lane.data |= {"lanewright:status": str(self.lanes.status[cell.piece]),
+                          "lanewright:confidence": f"{self.lanes.confidence[cell.piece]:.2f}"}
+
+    def _about(self, cell: Cell, left: bool) -> tuple[str, str, str]:
+        """(kind, pattern, line) of the border on one side along the road."""
+        lanes, k = self.lanes, cell.piece
+        side = left if cell.direction >= 0 else not left
+        columns = (lanes.left_kind, lanes.left_pattern, lanes.left_line) if side else (lanes.right_kind, lanes.right_pattern, lanes.right_line)
+        return columns[0][k], columns[1][k], columns[2][k]
+
+    def _mark(self, cell: Cell, left: bool) -> RoadMark:
+        kind, pattern, line = self._about(cell, left)
+        if kind == "curb":
+            return RoadMark(0.0, "curb" if not pattern else MARK_OF_PATTERN.get(pattern, "none"))
+        name = MARK_OF_PATTERN.get(pattern, "edge" if kind == "pavement" else "none")
+        width = self.source.paint_width(line)
+        mark = RoadMark(0.0, name, "white" if name not in ("none", "edge") else "standard", RoadMark.width if np.isnan(width) else round(width, 3))
+        if "broken" in name:
+            mark.dash, mark.gap = self.settings.dash
+        return mark
+
+    def _mark_between(self, one: Slice, number: int, lane: int) -> RoadMark:
+        """The mark of a border of a slice, which is the outer one of `lane`: of two stripes where each of the lanes beside it has its own."""
+        left, right = (self._mark(cells[0], is_left) if cells else None
+                       for cells, is_left in ((one.cells[:number][-1:], False), (one.cells[number:], True)))
+        own, other = (right, left) if lane >= 0 else (left, right)
+        painted = [mark for mark in filter(None, (own, other)) if mark.type != "none"]
+        if not painted:
+            return next(filter(None, (own, other)), RoadMark(0.0, "none"))
+        mark = next((mark for mark in painted if " " in mark.type), painted[0])
+        if len(painted) == 2 and (gap := self._gap(one.cells[number - 1], False)):
+            lines = self._about(one.cells[number - 1], False)[2], self._about(one.cells[number], True)[2]
+            if lines[0] != lines[1]:
+                _make_double(mark, left, right, lane)
+            mark.apart = round(gap, 3) * (" " in mark.type)
+        return mark
+
+    def _gap(self, cell: Cell, left: bool) -> float:
+        """Metres between the two stripes of the border on one side along the road."""
+        if self.source.gaps is None:
+            return 0.0
+        return float(self.source.gaps[cell.piece, 0 if left == (cell.direction >= 0) else 1])
+
+    def _add_curbs(self, lanes: dict[int, MapLane], one: Slice, ids: list[int]) -> None:
+        for cell, id, border, left in ((one.cells[0], ids[0], one.cells[0].left, True), (one.cells[-1], ids[-1], one.cells[-1].right, False)):
+            if self._about(cell, left)[0] != "curb":
+                continue
+            beyond = max(lanes) + 1 if left else min(lanes) - 1
+            curb = MapLane(beyond, "curb", type(lanes[id].width).constant(CURB_WIDTH), [RoadMark(0.0, "none")])
+            heights = self.curb_heights.at(border[:, :2] + self.origin[:2], NEAREST_CURB)
+            if np.isfinite(heights).any():
+                rise = np.array([0.0, 0.0, round(float(np.nanmedian(heights)), 3)])
+                curb.heights = rise + np.array([[at, inner, inner] for at, inner, _ in lanes[id].heights] or [[0.0, 0.0, 0.0]])
+            lanes[beyond] = curb
+
+
+def _said_open_ends(whole: OpenDriveMap) -> list[str]:
+    """Say in the file at which ends a driven lane goes on nowhere though its road does; notes for the user."""
+    network, count = LaneNetwork(whole), 0
+    touched = network.touched()
+    for road in whole.roads:
+        for number, section in enumerate(road.sections):
+            for id, lane in section.lanes.items():
+                ends = [end for end in ("start", "end") if id and network.is_open((road.id, number, id), end, touched)]
+                if ends:
+                    lane.data[OPEN_END] = " ".join(ends)
+                    count += len(ends)
+    return [f"{count} ends of driven lanes are linked to no lane, since the survey shows none there, though their roads go on; userData of the "
+            f"lanes says so."] if count else []
+
+
+def _between_junctions(slices, inside):
+    """(slices, those of them that are too short for a road and lie between ways through junctions)."""
+    found = []
+    while True:
+        more = [one for one in slices if one.length < SHORTEST_WAY and _lies_within(one, inside)]
+        if not more:
+            return slices, found
+        found += more
+        inside = inside | {id(cell) for one in more for cell in one.cells}
+        slices = [one for one in slices if not any(one is other for other in more)]
+
+
+def _lies_within(one, inside):
+    """Whether a slice touches cells at both ends, and only those of these ids."""
+    return all(others and inside.issuperset(map(id, others)) for others in (one.beyond(False), one.beyond(True)))
+
+
+def _ordinary_roads(slices):
+    """(slices of a road, False) of the roads between junctions; a road is driven along its direction, but for those with both."""
+    owner = {id(cell): one for one in slices for cell in one.cells}
+    breaks = {(id(one), id(owner[id(other)])) for one in slices for cell in one.cells for other in cell.after if id(other) in owner
+              and any(id(near) not in owner for near in cell.after + other.before)}
+    return [(_along_traffic(strip), False) for strip in strips_of(slices, breaks)]
+
+
+def _ways_through(parts):
+    """(slices of a road, whether it is a way through a junction) of single lanes, all along their traffic."""
+    parts = [one for part in parts for one in _along_traffic([part])]
+    part_of = {id(cell): one for one in parts for cell in one.driven}
+    # what comes from nowhere or leads nowhere is no way through
+    return [([part_of[id(cell)] for cell in way], bool(way[0].before and way[-1].after))
+            for way in end_to_end([cell for one in parts for cell in one.driven])]
+
+
+def _along_traffic(strip):
+    """The slices of a road that is driven against its direction alone turned round."""
+    ways = {cell.direction for one in strip for cell in one.cells}
+    return [one.turned() for one in strip[::-1]] if -1 in ways and 1 not in ways else strip
+
+
+def _make_double(mark, left, right, lane):
+    """Name a mark by the stripes left and right of a border, the outer one of `lane`, where it is not double and neither is a curb."""
+    if " " not in mark.type and "curb" not in (left.type, right.type):
+        # named from the middle of the road outwards, at lane 0 from left to right
+        mark.type = f"{right.type} {left.type}" if lane > 0 else f"{left.type} {right.type}"
+        dashed = next((one for one in ((right, left) if lane >= 0 else (left, right)) if one.dash), RoadMark(0.0, "none"))
+        mark.dash, mark.gap = dashed.dash, dashed.gap
+
+
+def _shares(status):
+    """What userData says of the metres of each status, where not all is measured."""
+    return {} if set(status) == {"measured"} else {f"lanewright:{name}_m": f"{metres:.1f}" for name, metres in sorted(status.items())}
+
+
+def _cut_row(one: Slice, at_end: bool) -> int:
+    """The vertex at which a way through a junction is cut off from a slice: some metres from its end, a third of it at most; 0 where none is."""
+    middle = (one.cells[0].left + one.cells[-1].right)[:, :2] / 2
+    along = np.append(0.0, np.cumsum(np.hypot(*np.diff(middle, axis=0).T)))
+    if len(along) < 3 or along[-1] < 2 * SHORTEST_WAY:
+        return 0
+    wanted = min(max(SHORTEST_WAY, along[-1] / 3), LONGEST_WAY)
+    row = int(np.argmin(np.abs(along - (along[-1] - wanted if at_end else wanted))))
+    return min(max(row, 1), len(along) - 2)
+
+
+# Links between the roads of an export: lanes of sections, ends of roads, junctions with their connections.
+
+@dataclass
+class _DraftRoad:
+    """A road with the cells that its lanes come from.
+
+    road; strip : slices; numbers : lane of every cell of every slice; single : whether it is a way through a junction
+    """
+
+    road: MapRoad
+    strip: list[Slice]
+    numbers: list[list[int]]
+    single: bool
+
+
+class _Place(NamedTuple):
+    """Where a cell is: road, section, lane."""
+
+    draft: int
+    section: int
+    lane: int
+
+
+class _Touch(NamedTuple):
+    """A lane at a road's end and the lane that it touches at an end of another road."""
+
+    lane: int
+    other: int
+    other_end: str
+    other_lane: int
+
+
+def _link_roads(whole: OpenDriveMap, drafts: list[_DraftRoad]) -> list[str]:
+    """Fill in the links of lanes and roads, and the junctions.
+
+    Returns
+    -------
+    list of sentences on what OpenDRIVE cannot say
+    """
+    places = [(cell, _Place(k, j, number)) for k, draft in enumerate(drafts) for j, (one, ids) in enumerate(zip(draft.strip, draft.numbers))
+              for cell, number in zip(one.cells, ids)]
+    place = {id(cell): here for cell, here in places}
+    touches: dict[tuple[int, str], list[_Touch]] = defaultdict(list)
+    for cell, here in places:
+        for end, others in (("end", cell.after), ("start", cell.before)):
+            for other in others:
+                if id(other) in place:
+                    _link(drafts, touches, here, end, place[id(other)], _end_towards(other, cell))
+    junction = _clusters(drafts, touches)
+    notes = []
+    for k, end in touches:
+        notes += _end_link(drafts, k, end, touches, junction)
+    _connections(whole, drafts, touches, junction)
+    return sorted(set(notes))
+
+
+def _end_towards(cell, other):
+    """The end of a cell at which another one is, as "start" or "end"."""
+    return "start" if any(other is back for back in cell.before) else "end"
+
+
+def _link(drafts, touches, here, end, there, other_end):
+    """One touch: of lanes of neighbouring sections at once, of ends of roads for later."""
+    sections = drafts[here.draft].road.sections
+    beyond = here.section + STEP[end]
+    if here.draft == there.draft and there.section == beyond:
+        lane = sections[here.section].lanes[here.lane]
+        if there.lane not in lane.links(end):
+            lane.links(end).append(there.lane)
+    elif not 0 <= beyond < len(sections):
+        touch = _Touch(here.lane, there.draft, other_end, there.lane)
+        if touch not in touches[here.draft, end]:
+            touches[here.draft, end].append(touch)
+
+
+def _clusters(drafts, touches):
+    """Number of the junction of every way through one: those at one road's end, or end to end, are of one junction."""
+    parent = {k: k for k, draft in enumerate(drafts) if draft.single}
+
+    def root(k):
+        while parent[k] != k:
+            k = parent[k]
+        return k
+
+    for (k, _), found in touches.items():
+        together = [touch.other for touch in found if touch.other in parent] + ([k] if k in parent else [])
+        for other in together[1:]:
+            parent[root(other)] = root(together[0])
+    roots = sorted({root(k) for k in parent})
+    return {k: roots.index(root(k)) for k in parent}
+
+
+def _end_link(drafts, k, end, touches, junction):
+    """Link one end of a road; sentences on what cannot be linked."""
+    found = touches[k, end]
+    ways = [touch.other for touch in found if touch.other in junction]
+    if ways and k not in junction:
+        setattr(drafts[k].road, LINK_AT[end], RoadLink("junction", _junction_id(drafts, junction[ways[0]])))
+        return []
+    # a junction lies between this road and those whose ends are linked to it
+    found = [touch for touch in found if k in junction or not any(one.other in junction for one in touches.get((touch.other, touch.other_end), ()))]
+    return _road_link(drafts, drafts[k].road, end, found) if found else []
+
+
+def _road_link(drafts, road, end, found):
+    """Link one end of a road to the road of its touches with the most lanes there: OpenDRIVE has one link an end."""
+    lanes = Counter((touch.other, touch.other_end) for touch in found)
+    ends = sorted(lanes, key=lambda way: (-lanes[way], way))
+    other, other_end = ends[0]
+    setattr(road, LINK_AT[end], RoadLink("road", drafts[other].road.id, other_end))
+    for touch in found:
+        if (touch.other, touch.other_end) == ends[0]:
+            road.lanes_at(end)[touch.lane].links(end).append(touch.other_lane)
+    if len(ends) > 1:
+        return [f"Road {road.id} touches {len(ends)} roads at its {end} without a connector; it is linked to road {drafts[other].road.id} alone."]
+    return []
+
+
+def _junction_id(drafts: list[_DraftRoad], number: int) -> str:
+    """The id of a junction: beyond those of the roads, as both share one space in some readers."""
+    return str(len(drafts) + 1 + number)
+
+
+def _connections(whole, drafts, touches, junction):
+    found = {number: Junction(_junction_id(drafts, number)) for number in sorted(set(junction.values()))}
+    for k, number in junction.items():
+        drafts[k].road.junction = found[number].id
+    for (k, end), touched in sorted(touches.items()):
+        road = drafts[k].road
+        if k in junction:
+            continue
+        lanes = _incoming(road, end, touched, junction)
+        for (other, other_end), links in sorted(lanes.items()):
+            connections = found[junction[other]].connections
+            connections.append(Connection(str(len(connections)), road.id, drafts[other].road.id, other_end, links))
+    whole.junctions = [one for one in found.values() if one.connections]
+    known = {one.id for one in whole.junctions}
+    for draft in drafts:
+        _forget_junctions(draft.road, known)
+
+
+def _incoming(road, end, touched, junction):
+    """{(way through a junction, its end): (lane, lane) pairs} of what drives out of a road at its end, which is incoming traffic of the junction."""
+    lanes = defaultdict(list)
+    for touch in touched:
+        if touch.other in junction and (travel(road, touch.lane) > 0) == (end == "end"):
+            lanes[touch.other, touch.other_end].append((touch.lane, touch.other_lane))
+    return lanes
+
+
+def _forget_junctions(road, known):
+    """Drop what a road says of junctions that are not known, as nothing connects there."""
+    for end, name in LINK_AT.items():
+        link = road.link(end)
+        if link is not None and link.element == "junction" and link.id not in known:
+            setattr(road, name, None)
+    if road.junction not in known:
+        road.junction = "-1"
+
+
+# Crossings, stop lines, arrows, bicycle symbols, the word BUS and hatched areas as objects of the roads that they lie on.
+
+SAMPLES = 1.0          # m between places of reference lines that objects are held against
+FARTHEST = 25.0        # m from a reference line
+SIMPLER = 0.02         # m by which an outline may be straightened
+STOP_LINE_HALF = 0.15  # m, half of the breadth of a stop line whose outline is not known
+THINNEST = 0.01        # m of an object's length and width at the least: the format has none of 0
+NAME_OF_CLASS = {"hatch": "hatched area", "arrow": "arrow", "bicycle": "bicycle symbol", "bus": "word BUS"}
+
+
+def _add_objects(whole: OpenDriveMap, markings: Features | None, origin: np.ndarray) -> None:
+    """Give the roads the objects that lie on them.
+
+    Parameters
+    ----------
+    whole : OpenDriveMap with its roads
+    markings : the layer MARKINGS in map coordinates, or None
+    origin : (3,) metres of the file's false origin
+    """
+    shapes = list(_painted_shapes(markings))
+    if not shapes:
+        return
+    roads = [road for road in whole.roads if road.junction == "-1"] or whole.roads
+    tree, owner, station = _places(roads)
+    for number, (kind, name, corners) in enumerate(shapes):
+        local = corners - origin
+        near = tree.query_nearest(shapely.Point(local[:, :2].mean(0)), max_distance=FARTHEST, all_matches=False)
+        if len(near):
+            roads[owner[near[0]]].objects.append(_object(number, kind, name, local, roads[owner[near[0]]], float(station[near[0]])))
+
+
+def _painted_shapes(markings: Features | None) -> Iterator[tuple[str, str, np.ndarray]]:
+    """(kind, name, (N, 3) corners) of every object."""
+    for left, right in walked_crossings(markings):
+        yield "crosswalk", "zebra crossing", np.concatenate([left, right[::-1]])
+    for line in stop_lines(markings):
+        way = line[1] - line[0]
+        across = np.array([-way[1], way[0], 0.0]) / max(float(np.hypot(*way[:2])), 1e-6) * STOP_LINE_HALF
+        yield "roadMark", "stop line", np.array([line[0] - across, line[1] - across, line[1] + across, line[0] + across])
+    for geometry, row in markings if markings is not None else ():
+        known = next((name for start, name in NAME_OF_CLASS.items() if str(row.get("class")).startswith(start)), "")
+        for part in shapely.get_parts(geometry) if known and geometry is not None and not geometry.is_empty else ():
+            yield "roadMark", known, shapely.get_coordinates(shapely.simplify(part, SIMPLER).exterior, include_z=True)[:-1]
+
+
+def _places(roads: list[MapRoad]) -> tuple[shapely.STRtree, np.ndarray, np.ndarray]:
+    """(tree of places on reference lines, road of each, s of each)."""
+    stations = [np.linspace(0, road.plan.length, max(int(road.plan.length / SAMPLES), 1) + 1) for road in roads]
+    places = np.concatenate([road.plan.at(s)[0] for road, s in zip(roads, stations)])
+    owner = np.repeat(np.arange(len(roads)), [len(s) for s in stations])
+    return shapely.STRtree(shapely.points(places)), owner, np.concatenate(stations)
+
+
+def _object(number: int, kind: str, name: str, corners: np.ndarray, road: MapRoad, near: float) -> dict[str, Any]:
+    """The attributes of an object; its outline is told along the road, or beside its own place where it reaches beyond the road's end."""
+    s, t = road.plan.feet(corners[:, :2], np.full(len(corners), near))
+    at, aside = float(np.clip(s.mean(), 0.0, road.length)), float(t.mean())
+    local = bool(s.min() < 0.0 or s.max() > road.length)
+    if local:
+        (place,), (heading,), _ = road.plan.at(np.array([at]))
+        way = np.array([[np.cos(heading), -np.sin(heading)], [np.sin(heading), np.cos(heading)]])
+        u, v = ((corners[:, :2] - place) @ way).T
+        outline = np.c_[u, v - aside, corners[:, 2] - road.elevation.at(at)]
+    else:
+        outline = np.c_[s, t, corners[:, 2] - road.elevation.at(s)]
+    outline[:, 2] = np.round(outline[:, 2], 4)
+    length, width = (max(float(size), THINNEST) for size in np.ptp(outline[:, :2], axis=0))
+    return {"id": str(number), "type": kind, "subtype": "", "name": name, "orientation": "none", "s": at, "t": aside, "zOffset": 0.0,
+            "length": length, "width": width, "hdg": 0.0, "height": 0.0, "corners": outline, "local": local}

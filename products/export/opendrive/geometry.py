@@ -1,0 +1,378 @@
+"""The mathematics of OpenDRIVE: piecewise cubics, and the reference line of a road from lines, arcs, spirals and polynomials.
+
+References
+----------
+ASAM OpenDRIVE 1.7 and 1.8, chapters Geometry and Roads.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.linalg import solve_banded
+
+from ....core.curves.base import Arc
+from ....core.curves.clothoid import Clothoid
+
+STRAIGHT_BEND = 1e-5    # 1/m: a curvature that moves 200 m of road by 5 cm
+LEAST_ELEMENT = 1e-4   # m: shorter pieces of a reference line are none
+FOOT_ROUNDS, FOUND_FOOT = 8, 1e-9   # of looking for the foot of a place; m that its step must fall below
+TABLE_STEP = 0.25   # m between the places by which arc lengths on poly3 are found
+
+
+@dataclass(frozen=True)
+class Cubics:
+    """A function of s in pieces ``a + b ds + c ds^2 + d ds^3``.
+
+    rows : (N, 5) start, a, b, c, d, in order of start; before the first start the first piece is not used: the value is 0
+    """
+
+    rows: np.ndarray
+
+    @classmethod
+    def constant(cls, value: float = 0.0) -> Cubics:
+        """The same value everywhere."""
+        return cls(np.array([[0.0, value, 0.0, 0.0, 0.0]]))
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    def at(self, s: np.ndarray | float, order: int = 0) -> np.ndarray:
+        """Value, or slope (order 1), at s."""
+        s = np.asarray(s, float)
+        if not len(self.rows):
+            return np.zeros(s.shape)
+        k = np.searchsorted(self.rows[:, 0], s + 1e-9, side="right") - 1
+        start, a, b, c, d = self.rows[np.maximum(k, 0)].T
+        ds = s - start
+        value = a + ds * (b + ds * (c + ds * d)) if order == 0 else b + ds * (2 * c + ds * 3 * d)
+        return np.where(k < 0, 0.0, value)
+
+    def moved(self, ds: float) -> Cubics:
+        """The same function of s + ds."""
+        rows = self.rows.copy()
+        rows[:, 0] += ds
+        return Cubics(rows)
+
+    def steps(self) -> tuple[np.ndarray, np.ndarray]:
+        """((K,) s, (K,) sizes) of the jumps between the pieces, which are 0 where there is none."""
+        start, a, b, c, d = self.rows.T
+        ds = np.diff(start)
+        met = a[:-1] + ds * (b[:-1] + ds * (c[:-1] + ds * d[:-1]))
+        return start[1:][ds >= 0], np.abs(met - a[1:])[ds >= 0]
+
+    def least(self, length: float) -> tuple[float, float]:
+        """(least value, where) over [0, length], from the ends and the turning points of every piece."""
+        start, a, b, c, d = self.rows.T
+        span = np.append(start[1:], length) - start
+        with np.errstate(divide="ignore", invalid="ignore"):   # where the slope b + 2 c ds + 3 d ds^2 is 0
+            q = -(c + np.copysign(np.sqrt(c**2 - 3 * b * d), c))
+            turning = np.stack([q / (3 * d), b / q], axis=1)
+            inside = (turning > 0) & (turning < span[:, None])
+        ds = np.c_[np.zeros(len(span)), span, np.where(inside, turning, 0.0)]
+        value = a[:, None] + ds * (b[:, None] + ds * (c[:, None] + ds * d[:, None]))
+        value[span < 0] = np.inf
+        piece, at = np.unravel_index(np.argmin(value), value.shape)
+        return float(value[piece, at]), float(start[piece] + ds[piece, at])
+
+
+@dataclass(frozen=True)
+class PlanElement:
+    """One piece of a reference line.
+
+    s, x, y, heading, length : start and length, metres and radians
+    kind : line, arc, spiral, poly3 or paramPoly3
+    values : line (); arc (curvature,); spiral (curvature at start, at end); poly3 (a, b, c, d); paramPoly3 (a, b, c, d of u, then of v)
+    normalized : whether the parameter of paramPoly3 runs from 0 to 1 instead of to `length`
+    """
+
+    s: float
+    x: float
+    y: float
+    heading: float
+    length: float
+    kind: str = "line"
+    values: tuple[float, ...] = ()
+    normalized: bool = False
+
+    def at(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """(N, 2) places, (N,) headings and (N,) curvatures at arc lengths u from its start."""
+        u = np.asarray(u, float)
+        if self.kind in ("line", "arc"):
+            arc = Arc(self.x, self.y, self.heading, self.values[0] if self.values else 0.0, self.length)
+            return arc.at(u), arc.heading(u), arc.curvature(u)
+        if self.kind == "spiral":
+            bend, end = self.values
+            spiral = Clothoid(self.x, self.y, self.heading, bend, (end - bend) / self.length if self.length else 0.0, self.length)
+            return spiral.at(u), spiral.heading(u), spiral.curvature(u)
+        p, a, b = self._parameter(u), np.array(self._polynomials()[0]), np.array(self._polynomials()[1])
+        powers = np.stack([np.ones_like(p), p, p**2, p**3])
+        slopes = np.stack([np.zeros_like(p), np.ones_like(p), 2 * p, 3 * p**2])
+        bends = np.stack([np.zeros_like(p), np.zeros_like(p), 2 * np.ones_like(p), 6 * p])
+        (along, across), (du, dv), (ddu, ddv) = ((a @ some, b @ some) for some in (powers, slopes, bends))
+        c, s = np.cos(self.heading), np.sin(self.heading)
+        places = np.c_[self.x + along * c - across * s, self.y + along * s + across * c]
+        return places, self.heading + np.arctan2(dv, du), (du * ddv - dv * ddu) / np.maximum(du**2 + dv**2, 1e-12) ** 1.5
+
+    def _polynomials(self):
+        """Coefficients of u(p) and v(p)."""
+        if self.kind == "poly3":
+            return (0.0, 1.0, 0.0, 0.0), self.values
+        return self.values[:4], self.values[4:]
+
+    def _parameter(self, u):
+        """The parameter at arc lengths: proportional in paramPoly3, as the standard has it, by a table in poly3."""
+        if self.kind == "paramPoly3":
+            return u / self.length if self.normalized and self.length else u
+        _, b, c, d = self.values
+        p = np.linspace(0.0, self.length, max(int(self.length / TABLE_STEP), 8) + 1)
+        slope = np.hypot(1.0, b + p * (2 * c + p * 3 * d))
+        return np.interp(u, np.append(0.0, np.cumsum((slope[1:] + slope[:-1]) / 2 * np.diff(p))), p)
+
+    def end(self) -> tuple[float, float, float]:
+        """x, y and heading of its end."""
+        place, heading, _ = self.at(np.array([self.length]))
+        return float(place[0, 0]), float(place[0, 1]), float(heading[0])
+
+
+@dataclass(frozen=True)
+class PlanView:
+    """The reference line of a road in plan.
+
+    elements : in order of s
+    """
+
+    elements: tuple[PlanElement, ...]
+
+    @property
+    def length(self) -> float:
+        """Metres, the sum of its elements."""
+        return float(sum(element.length for element in self.elements))
+
+    def at(self, s: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """(N, 2) places, (N,) headings and (N,) curvatures at s; beyond an end the last element goes on."""
+        s = np.asarray(s, float)
+        places, heading, bend = np.empty((len(s), 2)), np.empty(len(s)), np.empty(len(s))
+        starts = np.array([element.s for element in self.elements])
+        owner = np.maximum(np.searchsorted(starts, s + 1e-9, side="right") - 1, 0)
+        for k in np.unique(owner):
+            rows = owner == k
+            places[rows], heading[rows], bend[rows] = self.elements[k].at(s[rows] - starts[k])
+        return places, heading, bend
+
+    def feet(self, places: np.ndarray, near: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """((N,) s, (N,) t) of (N, 2) places, found from s nearby; beyond the ends the first and last element go on."""
+        s = np.array(near, float)
+        for _ in range(FOOT_ROUNDS):
+            on, heading, bend = self.at(s)
+            dx, dy = places[:, 0] - on[:, 0], places[:, 1] - on[:, 1]
+            across = dy * np.cos(heading) - dx * np.sin(heading)
+            step = (dx * np.cos(heading) + dy * np.sin(heading)) / np.clip(1 - bend * across, 0.2, 5.0)
+            s = s + step
+            if np.abs(step).max(initial=0.0) < FOUND_FOOT:
+                break
+        on, heading, _ = self.at(s)
+        dx, dy = places[:, 0] - on[:, 0], places[:, 1] - on[:, 1]
+        return s, dy * np.cos(heading) - dx * np.sin(heading)
+
+    def jumps(self, gap: float, kink: float) -> list[tuple[float, float, float]]:
+        """(s, metres, radians) where an element begins elsewhere, or in another direction, than the one before ends.
+
+        gap, kink : metres and radians from which it counts
+        """
+        found = []
+        for one, other in zip(self.elements[:-1], self.elements[1:]):
+            x, y, heading = one.end()
+            turn = (other.heading - heading + np.pi) % (2 * np.pi) - np.pi
+            away = float(np.hypot(other.x - x, other.y - y))
+            if away > gap or abs(turn) > kink:
+                found.append((other.s, away, abs(turn)))
+        return found
+
+    def lengthened(self, before: float, after: float) -> PlanView:
+        """The same line, which goes on with the curvature of its ends by metres before its start and after its end."""
+        elements = self.elements
+        if before > LEAST_ELEMENT:
+            first, (_, _, (bend,)) = elements[0], self.at(np.zeros(1))
+            x, y, heading = _bent(0.0, first.x, first.y, first.heading + np.pi, before, -bend).end()
+            if first.kind in ("line", "arc"):   # the same one, from farther back
+                start = [replace(first, x=x, y=y, heading=heading - np.pi, length=first.length + before)]
+            else:
+                start = [_bent(0.0, x, y, heading - np.pi, before, bend), replace(first, s=before)]
+            elements = (*start, *(replace(one, s=one.s + before) for one in elements[1:]))
+        if after > LEAST_ELEMENT:
+            last = elements[-1]
+            _, _, (bend,) = last.at(np.array([last.length]))
+            more = (replace(last, length=last.length + after),) if last.kind in ("line", "arc") else (
+                last, _bent(last.s + last.length, *last.end(), after, bend))
+            elements = (*elements[:-1], *more)
+        return PlanView(elements)
+
+
+def _bent(s, x, y, heading, length, bend):
+    """A line or an arc."""
+    return PlanElement(s, x, y, heading, length, *(("arc", (float(bend),)) if abs(bend) > STRAIGHT_BEND else ()))
+
+
+# Smooth functions along a road as piecewise cubics, with no more pieces than the tolerance asks for.
+
+STIFFNESS = 1e-3      # weight of the bending against the deviations: it decides only where there are too few places
+MOST_PIECES = 400     # of one section
+SHORTEST_CUBIC = 0.1  # m of a piece
+LEAST_STEP = 0.001    # m along the road between places that count
+STEP_RUN = 0.005      # m along the road between places that are not of one step
+BAND = 3              # unknowns beside each other that one piece joins: levels and slopes at both of its ends
+
+
+def fit_cubics(s: Sequence[np.ndarray], values: Sequence[np.ndarray], start: float, end: float, tolerance: float,
+               slopes: Sequence[tuple[float, float]] = (), broken: bool = False) -> list[Cubics]:
+    """Functions with common pieces, whose values and slopes go on from piece to piece, but for corners and steps.
+
+    The places are those of lines, which the functions follow between the places too. Where even the shortest cubics miss them, as at a corner
+    or a step, straight pieces lead from place to place.
+
+    Parameters
+    ----------
+    s, values : for each function (n,) metres, rising, and its values there
+    start, end : metres, of the functions; the first and last value are met there
+    tolerance : how far a value may be missed
+    slopes : for each function those at its start and end, NaN for any; none are given by default
+    broken : whether straight pieces lead from place to place everywhere, which are never below what they join
+
+    Returns
+    -------
+    list of Cubics, `start` counted as 0
+    """
+    knots, straight = np.array([start, end]), np.array([broken])
+    s, values = [np.asarray(one, float) for one in s], [np.asarray(one, float) for one in values]
+    while True:
+        fitted = [_hermite(one, value, knots, given, straight) for one, value, given in zip(s, values, slopes or [(np.nan, np.nan)] * len(s))]
+        bad = (_missed(s, values, fitted, knots) > tolerance) & ~straight
+        if not bad.any():
+            at = (knots[:-1, None] + np.diff(knots)[:, None] * np.array([0.25, 0.5, 0.75])).ravel()
+            bad = (_missed([at] * len(s), [np.interp(at, one, value) for one, value in zip(s, values)], fitted, knots) > tolerance) & ~straight
+        if not bad.any():
+            return _pieces(s, values, knots, fitted, straight)
+        inner = [(knots[k] + knots[k + 1]) / 2 for k in np.flatnonzero(bad) if len(knots) <= MOST_PIECES
+                 and _places_within(s, knots[k], knots[k + 1]) and knots[k + 1] - knots[k] > 2 * SHORTEST_CUBIC]
+        if not inner:
+            straight = straight | bad
+            continue
+        before, knots = knots, np.sort(np.append(knots, inner))
+        straight = straight[np.searchsorted(before, knots[1:]) - 1]
+
+
+def _missed(s, values, fitted, knots):
+    """(pieces,) by how much the functions miss their values at most."""
+    worst = np.zeros(len(knots) - 1)
+    for one, value, (levels, rates) in zip(s, values, fitted):
+        np.maximum.at(worst, _piece_of(one, knots), np.abs(_evaluated(one, knots, levels, rates) - value))
+    return worst
+
+
+def _piece_of(s, knots):
+    return np.clip(np.searchsorted(knots, s, side="right") - 1, 0, len(knots) - 2)
+
+
+def difference(first: Cubics, second: Cubics) -> Cubics:
+    """first less second, which have the same pieces."""
+    return Cubics(np.c_[first.rows[:, 0], first.rows[:, 1:] - second.rows[:, 1:]])
+
+
+def simplified(cubics: Cubics) -> Cubics:
+    """Without pieces that only repeat the one before: constant and straight functions have one row."""
+    rows = cubics.rows
+    keep = [0]
+    for k in range(1, len(rows)):
+        ds = rows[k, 0] - rows[keep[-1], 0]
+        _, a, b, c, d = rows[keep[-1]]
+        moved = np.array([a + ds * (b + ds * (c + ds * d)), b + ds * (2 * c + ds * 3 * d), c + 3 * d * ds, d])
+        if np.abs(moved - rows[k, 1:]).max() > 1e-9:
+            keep.append(k)
+    tiny = rows[keep].copy()
+    tiny[:, 1:][np.abs(tiny[:, 1:]) < 1e-12] = 0.0
+    return Cubics(tiny)
+
+
+def risen(s: np.ndarray) -> np.ndarray:
+    """(N,) bool: whether each of (N,) metres along the road lies ahead of all before it."""
+    return np.append(True, np.diff(np.maximum.accumulate(s)) > LEAST_STEP)
+
+
+def _places_within(s, first, last):
+    return max(int(((one > first) & (one < last)).sum()) for one in s)
+
+
+def _basis(u: np.ndarray, h: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Hermite's functions: (value at start, slope at start, value at end, slope at end)."""
+    return 2 * u**3 - 3 * u**2 + 1, h * (u**3 - 2 * u**2 + u), 3 * u**2 - 2 * u**3, h * (u**3 - u**2)
+
+
+def _hermite(s, values, knots, ends, straight):
+    """(K,) levels and slopes at the knots by least squares; both ends are met, and their slopes where they are given.
+
+    straight : (K - 1,) pieces that are led from place to place instead; at their knots the line is met
+    """
+    count, met = len(knots), np.append(straight, False) | np.append(False, straight)
+    known = np.full(2 * count, np.nan)
+    known[::2][met] = np.interp(knots[met], s, values)
+    known[[0, -2]], known[[1, -1]] = _at_ends(s, values, knots), ends
+    known[1::2][np.append(straight, True) & np.append(True, straight)] = 0.0   # no cubic begins or ends there
+    if straight.any():
+        smooth = ~straight[_piece_of(s, knots)]
+        s, values = s[smooth], values[smooth]
+    k, h, j = _piece_of(s, knots), np.diff(knots), np.flatnonzero(~straight)
+    fit = np.stack(_basis((s - knots[k]) / h[k], h[k]), axis=1)
+    # bending of every piece: the integral of the squared second derivative, by its values at both ends
+    bending = [np.stack([a / h**2, b / h, c / h**2, d / h], axis=1)[j] for a, b, c, d in ((-6, -4, 6, -2), (6, 2, -6, 4))]
+    weights = np.concatenate([fit, *(STIFFNESS * one for one in bending)])
+    columns = 2 * np.concatenate([k, j, j])[:, None] + np.arange(4)   # level and slope of a knot lie side by side, so that the system has a band
+    fixed = np.isfinite(known)
+    target = np.append(values, np.zeros(2 * len(j))) - (weights * np.where(fixed, known, 0.0)[columns]).sum(1)
+    weights = np.where(fixed[columns], 0.0, weights)
+    size, side = 2 * count, np.arange(4)
+    place = (BAND + side[:, None] - side) * size + columns[:, None, :]   # of each product of two weights in the band
+    products = weights[:, :, None] * weights[:, None, :]
+    band = np.bincount(place.ravel(), products.ravel(), (2 * BAND + 1) * size).reshape(-1, size)
+    right = np.where(fixed, known, 0.0) + np.bincount(columns.ravel(), (weights * target[:, None]).ravel(), size)
+    band[BAND, fixed] = 1.0
+    found = solve_banded((BAND, BAND), band, right)
+    return found[::2], found[1::2]
+
+
+def _at_ends(s, values, knots):
+    """Values at the first and last knot, by the straight line through the outermost two places."""
+    found = []
+    for at, (i, j) in ((knots[0], (0, 1)), (knots[-1], (-1, -2))):
+        run = s[i] - s[j]
+        found.append(float(values[i] + ((values[i] - values[j]) / run * (at - s[i]) if abs(run) > 1e-6 else 0.0)))
+    return found
+
+
+def _evaluated(s, knots, levels, slopes):
+    k = _piece_of(s, knots)
+    h = np.diff(knots)[k]
+    a, b, c, d = _basis((s - knots[k]) / h, h)
+    return a * levels[k] + b * slopes[k] + c * levels[k + 1] + d * slopes[k + 1]
+
+
+def _pieces(s, values, knots, fitted, straight):
+    """Cubics of the functions: a row for each piece, and in a straight one for each of its places."""
+    h, rows_of = np.diff(knots), []
+    for levels, slopes in fitted:
+        rise = np.diff(levels)
+        c = (3 * rise / h - 2 * slopes[:-1] - slopes[1:]) / h
+        d = (slopes[:-1] + slopes[1:] - 2 * rise / h) / h**2
+        rows_of.append(np.c_[knots[:-1] - knots[0], levels[:-1], slopes[:-1], c, d])
+    for k in np.flatnonzero(straight)[::-1]:
+        places = np.unique(np.concatenate([one[(one > knots[k] + LEAST_STEP) & (one < knots[k + 1] - LEAST_STEP)] for one in s]))
+        at = np.concatenate([[knots[k]], places, [knots[k + 1]]])
+        there = np.array([[levels[k], *np.interp(places, one, value), levels[k + 1]] for one, value, (levels, _) in zip(s, values, fitted)])
+        run, rise = np.diff(at), np.diff(there, axis=1)
+        kept = (run > STEP_RUN) | (np.abs(rise) < run).all(0) | (at[:-1] == knots[0])   # up to a step the piece before goes on
+        for number, rows in enumerate(rows_of):
+            lines = np.c_[at[:-1] - knots[0], there[number, :-1], rise[number] / run, np.zeros((len(run), 2))][kept]
+            rows_of[number] = np.concatenate([rows[:k], lines, rows[k + 1:]])
+    return [Cubics(rows) for rows in rows_of]

@@ -1,0 +1,348 @@
+"""Lanes of a road map laid out for OpenDRIVE: cut at common places, side by side in slices, slices end to end in strips."""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ....core.driving.layers import Lanes
+from ..shared_borders import SAME_VERTEX, cuts_beside, numbered
+from ..sources import LEAST_CURB
+
+SLOPE_REACH = 1.5        # m along a border before and after a place from which its direction there is taken
+MOST_TURN = 0.3          # rad from before to after it: more is a corner, which is kept
+
+
+@dataclass
+class Cell:
+    """A part of one lane between two cuts, with borders along the road's direction.
+
+    piece : row of Lanes; left, right : (n, 3) local metres; left_nodes, right_nodes : their numbers
+    before, after : cells that touch its start and its end along the road, by its lane or by successors
+    """
+
+    piece: int
+    left: np.ndarray
+    right: np.ndarray
+    left_nodes: tuple[int, ...]
+    right_nodes: tuple[int, ...]
+    direction: int
+    before: list[Cell] = field(default_factory=list, repr=False)
+    after: list[Cell] = field(default_factory=list, repr=False)
+
+    def beyond(self, at_end: bool) -> list[Cell]:
+        """The cells that touch its start or its end."""
+        return self.after if at_end else self.before
+
+    @property
+    def length(self) -> float:
+        """Metres in plan along the middle."""
+        return float(np.hypot(*np.diff((self.left + self.right)[:, :2] / 2, axis=0).T).sum())
+
+
+@dataclass
+class Slice:
+    """Cells side by side from left to right, all with vertices at the same places.
+
+    at_start, at_end : whether ways through a junction begin or end within the slice, there
+    """
+
+    cells: list[Cell]
+    at_start: bool = False
+    at_end: bool = False
+
+    @property
+    def length(self) -> float:
+        """Metres of its longest cell."""
+        return max(cell.length for cell in self.cells)
+
+    @property
+    def driven(self) -> list[Cell]:
+        """Those of its cells that have a direction of travel."""
+        return [cell for cell in self.cells if cell.direction]
+
+    def beyond(self, at_end: bool) -> list[Cell]:
+        """The cells that touch its start or its end."""
+        return [other for cell in self.cells for other in cell.beyond(at_end)]
+
+    def mark(self, at_start: bool) -> None:
+        """Note that ways through a junction begin or end within the slice, at its start or its end."""
+        self.at_start, self.at_end = self.at_start or at_start, self.at_end or not at_start
+
+    def borders(self) -> list[np.ndarray]:
+        """(n, 3) each, from left to right, one more than cells."""
+        return [self.cells[0].left, *(cell.right for cell in self.cells)]
+
+    def nodes(self) -> list[tuple[int, ...]]:
+        """Numbers of the vertices of its borders, from left to right."""
+        return [self.cells[0].left_nodes, *(cell.right_nodes for cell in self.cells)]
+
+    def levels(self, centre: int) -> tuple[np.ndarray, np.ndarray]:
+        """((borders, n) heights of the road, (cells, n) metres that cells lie above it): the road goes on below curbs, from border `centre` on."""
+        left, right = np.stack([cell.left[:, 2] for cell in self.cells]), np.stack([cell.right[:, 2] for cell in self.cells])
+        step = left[1:] - right[:-1]
+        lift = np.concatenate([np.zeros((1, left.shape[1])), np.cumsum(np.where(np.abs(step) > LEAST_CURB, step, 0.0), axis=0)])
+        lift = lift - lift[min(centre, len(self.cells) - 1)]
+        return np.concatenate([left[:1] - lift[:1], right - lift]), lift
+
+    def split(self, row: int) -> tuple[Slice, Slice]:
+        """The slice cut at a vertex, linked as it was."""
+        parts: tuple[list[Cell], list[Cell]] = ([], [])
+        for cell in self.cells:
+            first, last = (Cell(cell.piece, cell.left[rows], cell.right[rows], cell.left_nodes[rows], cell.right_nodes[rows], cell.direction)
+                           for rows in (slice(0, row + 1), slice(row, None)))
+            first.before, first.after, last.before, last.after = cell.before, [last], [first], cell.after
+            for others, new in ((cell.before, first), (cell.after, last)):
+                for other in others:
+                    for links in (other.before, other.after):
+                        links[:] = [new if link is cell else link for link in links]
+            parts[0].append(first)
+            parts[1].append(last)
+        return Slice(parts[0], self.at_start, False), Slice(parts[1], False, self.at_end)
+
+    def ways(self) -> list[Slice]:
+        """A slice for each lane that is driven, with what nobody drives on its right; left of the first one, on its left."""
+        driven = [k for k, cell in enumerate(self.cells) if cell.direction]
+        cuts = [0, *driven[1:], len(self.cells)]
+        return [Slice(self.cells[a:b], self.at_start, self.at_end) for a, b in zip(cuts[:-1], cuts[1:])] if driven else []
+
+    def turned(self) -> Slice:
+        """The same slice seen along the opposite direction of the road; its cells are changed."""
+        for cell in self.cells:
+            cell.left, cell.right = cell.right[::-1], cell.left[::-1]
+            cell.left_nodes, cell.right_nodes = cell.right_nodes[::-1], cell.left_nodes[::-1]
+            cell.before, cell.after, cell.direction = cell.after, cell.before, -cell.direction
+        return Slice(self.cells[::-1], self.at_end, self.at_start)
+
+
+def cut_into_cells(lanes: Lanes) -> list[Cell]:
+    """Every lane cut wherever a lane beside it begins, ends or is cut; connectors are left whole.
+
+    Parameters
+    ----------
+    lanes : Lanes, with local coordinates
+
+    Returns
+    -------
+    list of Cell, linked along the road. Lanes driven against the road are turned round; connectors run with their traffic
+    """
+    numbers, _ = numbered(np.concatenate([lanes.left, lanes.right]))
+    left, right = numbers[:len(lanes.left)], numbers[len(lanes.left):]
+    ordinary = np.repeat(lanes.type != "connector", np.diff(lanes.start))
+    cuts = cuts_beside(lanes, left, right, ordinary)
+    cells, first_of, last_of = [], {}, {}
+    for k in range(len(lanes)):
+        a, b = lanes.start[k], lanes.start[k + 1] - 1
+        at = [*_rows_to_cut(a, b, left, right, cuts), b] if ordinary[a] else [a, b]
+        made = []
+        for first, last in zip(at[:-1], at[1:]):
+            rows = slice(first, last + 1)
+            sides = [(lanes.left[rows], tuple(left[rows])), (lanes.right[rows], tuple(right[rows]))]
+            direction = int(lanes.direction[k]) if ordinary[a] else 1
+            if direction < 0:
+                sides = [(line[::-1], nodes[::-1]) for line, nodes in sides[::-1]]
+            made.append(Cell(k, sides[0][0], sides[1][0], sides[0][1], sides[1][1], direction))
+        for one, following in zip(made[:-1], made[1:]):
+            _link(one, following)
+        first_of[lanes.lane_id[k]], last_of[lanes.lane_id[k]] = made[0], made[-1]
+        cells += made
+    for k, names in enumerate(lanes.successors):
+        for name in names:
+            _link(last_of[lanes.lane_id[k]], first_of[name])
+    _link_undriven(cells)
+    return cells
+
+
+def _rows_to_cut(a, b, left, right, cuts):
+    """The row a, and those before b at which a lane is cut: where both borders stand still there is nothing to cut off."""
+    at = [a]
+    for row in range(a + 1, b):
+        if (left[row] in cuts or right[row] in cuts) and all((left[row], right[row]) != (left[end], right[end]) for end in (at[-1], b)):
+            at.append(row)
+    return at
+
+
+def is_connector(cell: Cell, lanes: Lanes) -> bool:
+    """Whether a cell is a way through a junction."""
+    return bool(lanes.type[cell.piece] == "connector")
+
+
+def _link(one: Cell, following: Cell) -> None:
+    """Join two cells in the direction of travel; what is before and after is told along the road."""
+    for cell, other, ahead in ((one, following, True), (following, one, False)):
+        side = cell.after if ahead == (cell.direction >= 0) else cell.before
+        if not any(known is other for known in side):
+            side.append(other)
+
+
+def _link_undriven(cells):
+    """Cells that nobody drives follow each other where they share their ends."""
+    starts = {(cell.left_nodes[0], cell.right_nodes[0]): cell for cell in cells if cell.direction == 0}
+    for cell in cells:
+        other = starts.get((cell.left_nodes[-1], cell.right_nodes[-1])) if cell.direction == 0 else None
+        if other is not None and other is not cell and not cell.after:
+            cell.after.append(other)
+            other.before.append(cell)
+
+
+def slices_of(cells: list[Cell], lanes: Lanes) -> list[Slice]:
+    """Cells that share a border side by side; connectors stand alone and are not among them."""
+    ordinary = [cell for cell in cells if not is_connector(cell, lanes)]
+    by_left = {cell.left_nodes: cell for cell in ordinary if len(set(cell.left_nodes)) > 1}
+    right_of = {id(cell): by_left.get(cell.right_nodes) for cell in ordinary}
+    has_left = {id(other) for other in right_of.values() if other is not None}
+    found = []
+    for cell in ordinary:
+        if id(cell) in has_left:
+            continue
+        row: list[Cell] = [cell]
+        while (beside := right_of[id(row[-1])]) is not None and not any(beside is known for known in row):
+            row.append(beside)
+        found.append(Slice(row))
+    return found
+
+
+def connector_slices(cells: list[Cell], slices: list[Slice], lanes: Lanes) -> tuple[list[Slice], list[Slice]]:
+    """(a slice for every connector with what nobody drives beside it, the slices that are left)."""
+    undriven = [one for one in slices if not one.driven]
+    by_left = {one.cells[0].left_nodes: one for one in undriven}
+    by_right = {one.cells[-1].right_nodes: one for one in undriven}
+    used = set()
+
+    def beside(same, turned, nodes):
+        for one, against in ((same.get(nodes), False), (turned.get(nodes[::-1]), True)):
+            if one is not None and id(one) not in used:
+                used.add(id(one))
+                return (one.turned() if against else one).cells
+        return []
+
+    found = [Slice([*beside(by_right, by_left, cell.left_nodes), cell, *beside(by_left, by_right, cell.right_nodes)])
+             for cell in cells if is_connector(cell, lanes)]
+    return found, [one for one in slices if id(one) not in used]
+
+
+def directions_where_met(cells: list[Cell]) -> dict[int, float]:
+    """The direction of borders where some end and others go on: one for all of them, so that no lane has a kink where roads meet.
+
+    Returns
+    -------
+    {number of a vertex: radians, either way along}; vertices where nothing goes on, or a border turns, are left out
+    """
+    ways: dict[int, dict[int, np.ndarray]] = defaultdict(dict)
+    for cell in cells:
+        for line, nodes in ((cell.left, cell.left_nodes), (cell.right, cell.right_nodes)):
+            for step in (1, -1):
+                away = (line[::step, :2] - line[::step, :2][0])[1:]
+                near = np.hypot(*away.T) <= SLOPE_REACH
+                near[0] = True
+                way = away[near].sum(0)
+                if (length := float(np.hypot(*way))) > SAME_VERTEX:
+                    ways[nodes[::step][0]][nodes[::step][1]] = way / length
+    found = {}
+    for node, all_ways in ways.items():
+        first, *_ = some = np.array(list(all_ways.values()))
+        ahead, behind = some[some @ first > 0], -some[some @ first <= 0]
+        if not len(behind):
+            continue
+        way = ahead.mean(0) + behind.mean(0)
+        turned = np.abs(np.arctan2(*np.array([[way[0] * one[1] - way[1] * one[0], way @ one] for one in (*ahead, *behind)]).T))
+        if turned.max() < MOST_TURN / 2:
+            found[node] = float(np.arctan2(way[1], way[0]))
+    return found
+
+
+def mark_junctions(slices: list[Slice], lanes: Lanes) -> None:
+    """Tell every slice at which of its ends ways through a junction lie beside it: they begin or end there, on its side.
+
+    Where lanes beside each other go on in lanes that are no longer beside each other, there is a junction too: a road has one successor.
+    """
+    _mark_partings(slices)
+    for one in slices:
+        for at_end in (False, True):
+            # a connector that this slice touches lies beyond its end: beside the slices beyond
+            touching = {id(other) for other in one.beyond(at_end)}
+            if any(is_connector(other, lanes) for other in one.beyond(at_end)):
+                for beyond in slices:
+                    if not touching.isdisjoint(map(id, beyond.cells)):
+                        beyond.mark(at_end)
+
+
+def _mark_partings(slices):
+    owner = _owners(slices)
+    for one in slices:
+        for at_end in (False, True):
+            ends = _ends_beyond(one, at_end, owner)
+            for number, at_start in ends if len(ends) > 1 else ():
+                slices[number].mark(at_start)
+
+
+def _owners(slices):
+    """{id of a cell: number of its slice}."""
+    return {id(cell): k for k, one in enumerate(slices) for cell in one.cells}
+
+
+def _ends_beyond(one, at_end, owner):
+    """{(number of a slice, whether at its start)} that the driven cells of a slice touch at one end."""
+    return {(owner[id(other)], any(cell is back for back in other.before)) for cell in one.driven for other in cell.beyond(at_end)
+            if id(other) in owner}
+
+
+def strips_of(slices: list[Slice], breaks: set[tuple[int, int]]) -> list[list[Slice]]:
+    """Slices end to end, each with one before and one after.
+
+    Parameters
+    ----------
+    slices : list of Slice
+    breaks : (id of a slice, id of the next) between which a strip ends
+
+    Returns
+    -------
+    list of lists of Slice, in order along the road
+    """
+    owner = _owners(slices)
+    pairs = {(k, owner[id(other)]) for k, one in enumerate(slices) for cell in one.cells for other in cell.after
+             if id(other) in owner and other.direction * cell.direction >= 0}
+    after, before = (Counter(pair[side] for pair in pairs) for side in (0, 1))
+    follows = {k: j for k, j in pairs if after[k] == before[j] == 1 and (id(slices[k]), id(slices[j])) not in breaks}
+    return _chained(slices, follows)
+
+
+def _chained(slices, follows):
+    """Slices end to end, by {number of a slice: number of the next}."""
+    leads = set(follows.values())
+    found, used = [], set()
+    for k in [k for k in range(len(slices)) if k not in leads] + list(range(len(slices))):
+        strip = []
+        here: int | None = k
+        while here is not None and here not in used:
+            used.add(here)
+            strip.append(slices[here])
+            here = follows.get(here)
+        if strip:
+            found.append(strip)
+    return found
+
+
+def end_to_end(cells: list[Cell]) -> list[list[Cell]]:
+    """Single lanes, all in the direction of travel, that follow each other without a fork."""
+    found, free = [], {id(cell) for cell in cells}
+    for cell in cells:
+        if id(cell) not in free:
+            continue
+        row = [cell]
+        free.remove(id(cell))
+        for ahead in (True, False):
+            while (other := _only_one(row[-1] if ahead else row[0], ahead)) is not None and id(other) in free:
+                free.remove(id(other))
+                row.insert(len(row) if ahead else 0, other)
+        found.append(row)
+    return found
+
+
+def _only_one(cell: Cell, ahead: bool) -> Cell | None:
+    """The cell that one cell touches ahead or behind, where both touch no other there."""
+    others = cell.beyond(ahead)
+    back = others[0].beyond(not ahead) if len(others) == 1 and others[0] is not cell else []
+    return others[0] if len(back) == 1 and back[0] is cell else None

@@ -1,0 +1,297 @@
+"""Reads OpenDRIVE 1.1 to 1.8, and writes 1.7 and 1.8."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ....core.common.errors import RoadExtractionError
+from ....core.common.progress import Progress
+from ..xml_tree import XmlElement, read_xml, xml_text
+from .geometry import Cubics, PlanElement, PlanView
+from .model import Connection, Junction, LaneSection, MapLane, MapRoad, OpenDriveMap, RoadLink, RoadMark
+
+# kind of a geometry -> attributes of its values
+GEOMETRIES = {"line": (), "arc": ("curvature",), "spiral": ("curvStart", "curvEnd"), "poly3": tuple("abcd"),
+              "paramPoly3": ("aU", "bU", "cU", "dU", "aV", "bV", "cV", "dV")}
+SHAPE = ("s", "t", "a", "b", "c", "d")
+XODR_KIND = "an OpenDRIVE file"
+MARK_WIDTH = 0.12    # m, where a road mark has none
+LONGEST_ROAD, LONGEST_MAP = 200_000.0, 1_000_000.0   # m of one road, and of all: more is no map but a file that shall fill the memory
+
+
+def read_opendrive(path: str, progress: Progress = Progress()) -> OpenDriveMap:
+    """Read a file.
+
+    Parameters
+    ----------
+    path : of the .xodr file
+    progress : told of the share that was read
+
+    Returns
+    -------
+    OpenDriveMap; what could not be read of it, such as a road without geometry, is in `problems`
+
+    Raises
+    ------
+    RoadExtractionError
+        If the file is no OpenDRIVE, hostile, or has no road that can be read.
+    """
+    root = read_xml(path, "OpenDRIVE", XODR_KIND, progress)
+    found = _opendrive_of(root)
+    if not found.roads:
+        why = f" Line {found.problems[0][0]}: {found.problems[0][1]}" if found.problems else ""
+        raise RoadExtractionError(f"{path} has no road that can be read.{why} Choose a file with roads and their geometry.")
+    length = sum(road.plan.length for road in found.roads)
+    if length > LONGEST_MAP:
+        raise RoadExtractionError(f"The roads of {path} are {length / 1000:,.0f} km long; at most {LONGEST_MAP / 1000:,.0f} km are read at once. "
+                                  "Export the map again, or in parts.")
+    return found
+
+
+def _opendrive_of(root: XmlElement) -> OpenDriveMap:
+    """The map of the element <OpenDRIVE>."""
+    found = OpenDriveMap(tree=root)
+    header = root.find("header")
+    if header is None:
+        found.problems.append((root.line, "there is no <header>."))
+    else:
+        found.version = (int(header.number("revMajor", 1.0)), int(header.number("revMinor", 0.0)))
+        found.name = header.get("name")
+        sides = [header.number(name, 0.0) for name in ("west", "south", "east", "north") if name in header.attributes]
+        found.bounds = (sides[0], sides[1], sides[2], sides[3]) if len(sides) == 4 else None
+        reference, offset = header.find("geoReference"), header.find("offset")
+        found.reference = reference.text if reference is not None else ""
+        if offset is not None:
+            found.offset = (offset.number("x", 0.0), offset.number("y", 0.0), offset.number("z", 0.0), offset.number("hdg", 0.0))
+    for element in root.all("road"):
+        try:
+            found.roads.append(_road_of(element, found.problems))
+        except RoadExtractionError as problem:
+            found.problems.append((element.line, f"road {element.get('id')} cannot be read: {problem}"))
+    for element in root.all("junction"):
+        found.junctions.append(_junction(element))
+    return found
+
+
+def _road_of(element, problems):
+    elements = sorted((_geometry(child) for child in element.all("planView", "geometry")), key=lambda one: one.s)
+    if not elements:
+        raise RoadExtractionError("it has no geometry.")
+    if sum(abs(one.length) for one in elements) > LONGEST_ROAD:
+        raise RoadExtractionError(f"it is longer than {LONGEST_ROAD / 1000:g} km.")
+    road = MapRoad(
+        element.get("id"), element.number("length", sum(one.length for one in elements)), PlanView(tuple(elements)), element.get("name"),
+        element.get("junction", "-1"),
+        element.get("rule", "RHT"), _link(element.find("link", "predecessor")), _link(element.find("link", "successor")),
+        _cubics(element, "elevationProfile", "elevation"), _cubics(element, "lateralProfile", "superelevation"),
+        np.array(_rows_of(element, SHAPE, "lateralProfile", "shape")).reshape(-1, len(SHAPE)), _cubics(element, "lanes", "laneOffset"))
+    road.sections = sorted((_section_of(child) for child in element.all("lanes", "laneSection")), key=lambda section: section.s)
+    if not road.sections:
+        problems.append((element.line, f"road {road.id} has no lane section."))
+    road.objects = [_object(child) for child in element.all("objects", "object")]
+    return road
+
+
+def _geometry(element):
+    place = [element.number(name) for name in ("s", "x", "y", "hdg", "length")]
+    for child in element.children:
+        if child.tag in GEOMETRIES:
+            values = tuple(child.number(name) for name in GEOMETRIES[child.tag])
+            return PlanElement(*place, child.tag, values, child.tag == "paramPoly3" and child.get("pRange", "normalized") == "normalized")
+    raise RoadExtractionError(f"line {element.line}: a geometry is none of line, arc, spiral, poly3 and paramPoly3.")
+
+
+def _link(element):
+    if element is None:
+        return None
+    return RoadLink(element.get("elementType"), element.get("elementId"), element.get("contactPoint"))
+
+
+def _rows_of(element, names, *path):
+    return [[child.number(name) for name in names] for child in element.all(*path)]
+
+
+def _cubics(element, *path, start="s"):
+    rows = _rows_of(element, (start, *"abcd"), *path)
+    return Cubics(np.array(sorted(rows, key=lambda row: row[0]), float).reshape(-1, 5))
+
+
+def _section_of(element):
+    section = LaneSection(element.number("s"))
+    for side in ("left", "center", "right"):
+        for child in element.all(side, "lane"):
+            lane = _lane_of(child)
+            section.order.append(lane.id)
+            section.lanes[lane.id] = lane
+    return section
+
+
+def _lane_of(element):
+    number = element.number("id")
+    lane = MapLane(int(number), element.get("type"), _cubics(element, "width", start="sOffset"))
+    if not len(lane.width) and element.find("border") is not None:
+        lane.width, lane.border = _cubics(element, "border", start="sOffset"), True
+    lane.marks = sorted((_mark(child) for child in element.all("roadMark")), key=lambda mark: mark.s)
+    link = element.find("link")
+    for child in link.children if link is not None else ():
+        if child.tag in ("predecessor", "successor"):
+            getattr(lane, child.tag + "s").append(int(child.number("id")))
+    rows = [[child.number(name, 0.0) for name in ("sOffset", "inner", "outer")] for child in element.all("height")]
+    lane.heights = np.array(sorted(rows), float).reshape(-1, 3)
+    lane.data = {child.get("code"): child.get("value") for child in element.all("userData")}
+    return lane
+
+
+def _mark(element):
+    mark = RoadMark(element.number("sOffset", 0.0), element.get("type", "none"), element.get("color", "standard"),
+                    element.number("width", MARK_WIDTH), element.get("weight", "standard"))
+    lines = list(element.all("type", "line"))
+    dashed = next((line for line in lines if line.number("space", 0.0)), None)
+    if dashed is not None:
+        mark.dash, mark.gap = dashed.number("length", 0.0), dashed.number("space", 0.0)
+    if len(lines) == 2:
+        mark.apart = abs(lines[0].number("tOffset", 0.0) - lines[1].number("tOffset", 0.0))
+    return mark
+
+
+def _object(element):
+    found = {name: element.get(name) for name in ("id", "type", "subtype", "name", "orientation")}
+    numbers = {name: element.number(name, 0.0) for name in ("s", "t", "zOffset", "length", "width", "hdg", "height")}
+    outline = element.find("outlines", "outline") or element.find("outline")
+    corners = [[corner.number(name, 0.0) for name in (("s", "t", "dz") if corner.tag == "cornerRoad" else ("u", "v", "z"))]
+               for corner in (outline.children if outline is not None else ()) if corner.tag in ("cornerRoad", "cornerLocal")]
+    local = outline is not None and outline.find("cornerLocal") is not None
+    return {**found, **numbers, "corners": np.array(corners, float).reshape(-1, 3), "local": local}
+
+
+def _junction(element):
+    junction = Junction(element.get("id"), element.get("name"))
+    for child in element.all("connection"):
+        links = [(int(link.number("from")), int(link.number("to"))) for link in child.all("laneLink")]
+        # a direct junction links roads without a road between
+        connecting = child.get("connectingRoad") or child.get("linkedRoad")
+        junction.connections.append(Connection(child.get("id"), child.get("incomingRoad"), connecting, child.get("contactPoint"), links))
+    return junction
+
+
+# Writing.
+
+FILLED_BY_PAINT = 8  # of version 1: from there on outlines may be filled by paint
+SOLID_LENGTH = 1.0   # m: a stripe without gaps is repeated from any length on
+
+
+def opendrive_text(whole: OpenDriveMap, vendor: str = "Lanewright") -> str:
+    """The file as text."""
+    root = XmlElement("OpenDRIVE")
+    places = np.concatenate([road.plan.at(np.linspace(0, road.plan.length, max(int(road.plan.length / 5), 1) + 1))[0] for road in whole.roads]) \
+        if whole.roads else np.zeros((1, 2))
+    (west, south), (east, north) = places.min(0), places.max(0)
+    header = root.add("header", revMajor=whole.version[0], revMinor=whole.version[1], name=whole.name, version="1.0", north=_round(north),
+                      south=_round(south), east=_round(east), west=_round(west), vendor=vendor)
+    if whole.reference:
+        header.add("geoReference", whole.reference)
+    x, y, z, heading = whole.offset
+    header.add("offset", x=x, y=y, z=z, hdg=heading)
+    for road in whole.roads:
+        root.append(_road_element(road, whole.version[1]))
+    for junction in whole.junctions:
+        element = root.add("junction", id=junction.id, name=junction.name, type="default")
+        for connection in junction.connections:
+            child = element.add("connection", id=connection.id, incomingRoad=connection.incoming, connectingRoad=connection.connecting,
+                                contactPoint=connection.contact)
+            for start, to in connection.lanes:
+                child.append(XmlElement("laneLink", {"from": start, "to": to}))
+    return xml_text(root)
+
+
+def _road_element(road: MapRoad, minor: int) -> XmlElement:
+    element = XmlElement("road", {"name": road.name, "length": float(road.length), "id": road.id, "junction": road.junction, "rule": road.rule})
+    targets = [(name, target) for name, target in (("predecessor", road.predecessor), ("successor", road.successor)) if target is not None]
+    link = element.add("link") if targets else element
+    for name, target in targets:
+        link.add(name, elementType=target.element, elementId=target.id, contactPoint=target.contact or None)
+    element.append(_plan(road.plan.elements))
+    _rows(element.add("elevationProfile"), "elevation", road.elevation)
+    lateral = element.add("lateralProfile")
+    if np.abs(road.superelevation.rows[:, 1:]).max(initial=0.0) > 0:
+        _rows(lateral, "superelevation", road.superelevation)
+    for row in road.shape:
+        lateral.append(XmlElement("shape", dict(zip(SHAPE, row))))
+    lanes = element.add("lanes")
+    _rows(lanes, "laneOffset", road.lane_offset)
+    for section in road.sections:
+        lanes.append(_section_element(section))
+    objects = element.add("objects") if road.objects else element
+    for item in road.objects:
+        _add_object(objects, item, minor)
+    return _with_data(element, road.data)
+
+
+def _plan(elements: tuple[PlanElement, ...]) -> XmlElement:
+    plan = XmlElement("planView")
+    for one in elements:
+        child = plan.add("geometry", s=one.s, x=one.x, y=one.y, hdg=one.heading, length=one.length)
+        shape = child.append(XmlElement(one.kind, dict(zip(GEOMETRIES[one.kind], one.values))))
+        if one.kind == "paramPoly3":
+            shape.attributes["pRange"] = "normalized" if one.normalized else "arcLength"
+    return plan
+
+
+def _rows(parent: XmlElement, tag: str, cubics: Cubics, start: str = "s") -> None:
+    for s, a, b, c, d in cubics.rows:
+        parent.append(XmlElement(tag, {start: s, "a": a, "b": b, "c": c, "d": d}))
+
+
+def _section_element(section: LaneSection) -> XmlElement:
+    element = XmlElement("laneSection", {"s": float(section.s)})
+    for side, ids in (("left", [id for id in section.order if id > 0]), ("center", [0]), ("right", [id for id in section.order if id < 0])):
+        if ids:
+            group = element.add(side)
+            for id in ids:
+                group.append(_lane_element(section.lanes[id]))
+    return element
+
+
+def _lane_element(lane: MapLane) -> XmlElement:
+    element = XmlElement("lane", {"id": lane.id, "type": lane.type, "level": "false"})
+    if lane.predecessors or lane.successors:
+        link = element.add("link")
+        for name, ids in (("predecessor", lane.predecessors), ("successor", lane.successors)):
+            for id in ids:
+                link.add(name, id=id)
+    _rows(element, "width", lane.width, "sOffset")
+    for mark in lane.marks:
+        _add_mark(element, mark)
+    for s, inner, outer in lane.heights:
+        element.add("height", sOffset=s, inner=inner, outer=outer)
+    return _with_data(element, lane.data)
+
+
+def _with_data(element: XmlElement, data: dict[str, str]) -> XmlElement:
+    for code, value in data.items():
+        element.add("userData", code=code, value=value)
+    return element
+
+
+def _add_mark(lane: XmlElement, mark: RoadMark) -> None:
+    width = mark.width if mark.type != "none" else None
+    element = lane.add("roadMark", sOffset=mark.s, type=mark.type, weight=mark.weight, color=mark.colour, width=width, laneChange=None)
+    stripes = mark.type.split(" ") if mark.apart else [mark.type] if mark.dash else []
+    if stripes:
+        kind = element.add("type", name=mark.type, width=mark.width)
+        for stripe, t in zip(stripes, (mark.apart / 2, -mark.apart / 2)):
+            dash, gap = (mark.dash, mark.gap) if "broken" in stripe else (SOLID_LENGTH, 0.0)
+            kind.add("line", length=dash, space=gap, tOffset=t if mark.apart else 0.0, sOffset=0.0, width=mark.width)
+
+
+def _add_object(objects: XmlElement, item: dict, minor: int) -> None:
+    element = objects.add("object", id=item["id"], type=item["type"], name=item["name"], s=item["s"], t=item["t"], zOffset=item["zOffset"],
+                          orientation=item["orientation"], length=item["length"], width=item["width"], hdg=item["hdg"])
+    outline = element.add("outlines").add("outline", id=0, fillType="paint" if minor >= FILLED_BY_PAINT else None, outer="true", closed="true")
+    tag, names = ("cornerLocal", ("u", "v", "z")) if item["local"] else ("cornerRoad", ("s", "t", "dz"))
+    for number, corner in enumerate(item["corners"]):
+        outline.append(XmlElement(tag, {"id": number} | dict(zip(names, corner)) | {"height": 0.0}))
+
+
+def _round(value: float) -> float:
+    return round(float(value), 3)

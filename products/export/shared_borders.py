@@ -1,0 +1,297 @@
+"""One border between neighbours: where two lanes face each other across a double line or a few centimetres, both are led along its middle."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import shapely
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components, dijkstra
+from scipy.spatial import cKDTree
+
+from ...core.driving.layers import Lanes
+from .sources import LEAST_CURB, RoadMapSource, is_stated
+
+WIDEST_DOUBLE = 0.5       # m between the stripes of a double line at the most; what is wider is a median
+SAME_VERTEX = 0.001       # m in plan between vertices that are one
+SAME_ROAD_RISE = 0.3      # m in height between vertices of one road
+SAME_SECTION_ALONG = 0.1  # m along the road between vertices of one cross-section
+MOST_LANE_OVERLAP = 0.35  # m that a lane placed where paint is missing may lie on its neighbour: a tenth of a lane
+LEAST_STRIPE_GAP = 0.12   # m between the middles of two stripes at the least: what is nearer is one line measured twice
+TOLD_MOVE = 0.05          # m from which the user is told
+SHARED_FADE = 10.0        # m of border beyond a common one in which it comes back to its own place
+MOST_MET = 0.01          # m by which a way of a map from elsewhere may miss its lane and is led there: half of the tolerance of an export
+FACING_TRIED = 4          # vertices around one that may face it
+
+
+@dataclass(frozen=True)
+class SharedBorders:
+    """lanes : Lanes with common borders; gaps : (P, 2) median metres between the stripes at each left and right border, 0 for one line;
+    moved : largest metres that a border was moved."""
+
+    lanes: Lanes
+    gaps: np.ndarray
+    moved: float
+
+
+def with_shared_borders(source: RoadMapSource) -> RoadMapSource:
+    """A road map whose lanes share their borders, with a note for the user where one was moved by more than a line is wide."""
+    met = meet_lanes(source.lanes)
+    found = share_borders(met)
+    notes = list(source.notes)
+    if found.moved > TOLD_MOVE:
+        notes.append(f"Maps have one border between two lanes: facing borders, as of a double line, were led along their middle, moved by up to "
+                     f"{found.moved:.2f} m.")
+    rise = np.abs(np.concatenate([found.lanes.left - source.lanes.left, found.lanes.right - source.lanes.right])[:, 2])
+    if is_stated(source.lanes) and len(rise) and rise.max() > 2 * MOST_MET:
+        row = int(np.argmax(rise)) % len(source.lanes.left)
+        name = source.lanes.lane_id[int(np.searchsorted(source.lanes.start, row, side="right")) - 1]
+        x, y, _ = source.lanes.left[row]
+        notes.append(f"Lanes of the map do not lead on at one height; their borders were led to the middle, moved by up to {rise.max():.2f} m at "
+                     f"lane {name} near x {x:.1f}, y {y:.1f}. Correct the heights where the map was made.")
+    return replace(source, lanes=found.lanes, gaps=found.gaps, middles=(met.left + met.right) / 2, notes=notes)
+
+
+def meet_lanes(lanes: Lanes) -> Lanes:
+    """Lanes whose connectors begin and end at the corners of the lanes that they join, where they miss them by less than WIDEST_DOUBLE, or by
+    less than MOST_MET on a map from elsewhere.
+
+    The last metres of a connector, SHARED_FADE or half of it, follow its end.
+    """
+    row_of = {name: k for k, name in enumerate(lanes.lane_id)}
+    left, right = lanes.left.copy(), lanes.right.copy()
+    most = MOST_MET if is_stated(lanes) else WIDEST_DOUBLE
+    for one, other, at_end in _joints(lanes, row_of):
+        rows = np.arange(lanes.start[one], lanes.start[one + 1])
+        here, there = (rows[-1], lanes.start[other]) if at_end else (rows[0], lanes.start[other + 1] - 1)
+        for side in (left, right):
+            away = side[there] - side[here]
+            beside = np.hypot(*away[:2])
+            if SAME_VERTEX < beside < most or beside < SAME_VERTEX and away[2]:
+                side[rows] += _fading(side[rows], at_end)[:, None] * away
+    return replace(lanes, left=left, right=right)
+
+
+def _joints(lanes, row_of):
+    """(connector, lane that it joins, whether that follows it)."""
+    for k, names in enumerate(lanes.successors):
+        for j in (row_of[name] for name in names if name in row_of):
+            for one, other, at_end in ((k, j, True), (j, k, False)):
+                if lanes.type[one] == "connector" != lanes.type[other]:
+                    yield one, other, at_end
+
+
+def _fading(line, at_end):
+    """(n,) share from 0 to 1 that a line's places have of what its end is moved."""
+    along = np.append(0.0, np.cumsum(np.hypot(*np.diff(line[:, :2], axis=0).T)))
+    away = along[-1] - along if at_end else along
+    share = np.clip(1 - away / max(min(SHARED_FADE, along[-1] / 2), 1e-6), 0.0, 1.0)
+    return share**2 * (3 - 2 * share)
+
+
+def share_borders(lanes: Lanes) -> SharedBorders:
+    """Lanes whose borders are the same line where they face each other.
+
+    Maps for planners and simulators know one border between two lanes. A double line has two stripes, each the border of its lane; and a lane
+    placed where paint was missing may lie some centimetres beside the measured one. Vertices of one cross-section that face each other move to
+    their middle. Where the common border ends, its lanes come back to their own borders along SHARED_FADE. On a map from elsewhere what lies
+    apart stays apart, and a curb between two lanes keeps its bottom and its top.
+
+    Parameters
+    ----------
+    lanes : Lanes in metres; lanes of one road with vertices in the same cross-sections, as the layer LANES has them
+
+    Returns
+    -------
+    SharedBorders; the number and order of vertices stay as they are
+    """
+    rows = np.concatenate([lanes.left, lanes.right])
+    nodes, first = numbered(rows)
+    count = len(lanes.left)
+    if is_stated(lanes):
+        first, nodes = first[nodes], _levels(lanes, nodes, rows)
+        first = first[np.unique(nodes, return_index=True)[1]]
+    places = rows[first]
+    # a place has one height, that of all lanes beside it
+    places[:, 2] = np.bincount(nodes, rows[:, 2]) / np.bincount(nodes)
+    pairs, beyond = (np.empty((0, 2), int), np.empty(0)) if is_stated(lanes) else _facing(lanes, nodes, places)
+    if not len(pairs):
+        return SharedBorders(replace(lanes, left=places[nodes[:count]], right=places[nodes[count:]]), np.zeros((len(lanes), 2)), 0.0)
+    apart = places[pairs[:, 1]] - places[pairs[:, 0]]
+    move = np.zeros_like(places)
+    np.add.at(move, pairs[:, 0], apart / 2)
+    np.add.at(move, pairs[:, 1], -apart / 2)
+    target = places + move + _faded(lanes, nodes, places, pairs, move)
+    target[pairs[:, 1]] = target[pairs[:, 0]]   # the same to the last digit
+    moved = target[nodes]
+    gap = np.zeros(len(places))
+    gap[pairs.ravel()] = np.repeat(beyond, 2)
+    gaps = np.stack([[_typical(gap[nodes[side + a:side + b]]) for a, b in zip(lanes.start[:-1], lanes.start[1:])] for side in (0, count)], axis=1)
+    return SharedBorders(replace(lanes, left=moved[:count], right=moved[count:]), gaps, float(np.hypot(*(target - places)[:, :2].T).max()))
+
+
+def _typical(gaps):
+    """Metres between the stripes at a border, 0 where most of it is one line."""
+    found = float(np.median(gaps)) if len(gaps) else 0.0
+    return found if found > LEAST_STRIPE_GAP else 0.0
+
+
+def numbered(rows: np.ndarray, rise: float = SAME_ROAD_RISE) -> tuple[np.ndarray, np.ndarray]:
+    """((V,) number of each of (V, 3) vertices' place, (N,) a vertex of each place): nearer than SAME_VERTEX, and `rise` in height, are one."""
+    near = cKDTree(rows[:, :2]).query_pairs(SAME_VERTEX, output_type="ndarray")
+    near = near[np.abs(rows[near[:, 0], 2] - rows[near[:, 1], 2]) < rise] if len(near) else near.reshape(0, 2)
+    first = np.arange(len(rows))
+    np.minimum.at(first, near[:, 1], near[:, 0])
+    first, nodes = np.unique(first, return_inverse=True)
+    return nodes, first
+
+
+def cuts_beside(lanes: Lanes, left: np.ndarray, right: np.ndarray, among: np.ndarray) -> set[int]:
+    """Numbers of the places at which every lane beside them is cut, as one of them begins, ends or is cut there.
+
+    left, right : (V,) numbers of the places of the vertices of borders; among : (V,) bool, of the lanes that count
+    """
+    rows = np.concatenate([lanes.start[:-1], lanes.start[1:] - 1]).astype(int)
+    rows = rows[among[rows]]
+    cuts = set(left[rows].tolist()) | set(right[rows].tolist())
+    while True:
+        known = np.array(sorted(cuts))
+        one_sided = np.flatnonzero((np.isin(left, known) ^ np.isin(right, known)) & among)
+        more = (set(left[one_sided].tolist()) | set(right[one_sided].tolist())) - cuts
+        if not more:
+            return cuts
+        cuts |= more
+
+
+def _levels(lanes, nodes, rows):
+    """(V,) number of each of (V, 3) vertices' place and height: of a curb the bottom and the top are two; where a lane leads on there is one."""
+    order = np.lexsort((rows[:, 2], nodes))
+    apart = (np.diff(nodes[order]) > 0) | (np.diff(rows[order, 2]) > LEAST_CURB)
+    level = np.empty(len(rows), int)
+    level[order] = np.append(0, np.cumsum(apart))
+    row_of, count = {name: k for k, name in enumerate(lanes.lane_id)}, len(lanes.left)
+    ends = [(lanes.start[k + 1] - 1, lanes.start[row_of[name]]) for k, names in enumerate(lanes.successors) for name in names if name in row_of]
+    led = np.array(ends, int).reshape(-1, 2)
+    led = np.concatenate([led, led + count])
+    one, other = level[led[nodes[led[:, 0]] == nodes[led[:, 1]]]].T
+    size = int(level.max()) + 1
+    return connected_components(coo_matrix((np.ones(len(one)), (one, other)), shape=(size, size)), directed=False)[1][level]
+
+
+def _inward(lanes, nodes, count):
+    """((N, 2) unit vector from each place to the other border of its lane, (N,) whether it bounds lanes on one side only)."""
+    across = (lanes.right - lanes.left)[:, :2]
+    across = across / np.maximum(np.hypot(*across.T), 1e-9)[:, None]
+    ordinary = np.repeat(lanes.type != "connector", np.diff(lanes.start))
+    vectors, known = np.concatenate([across, -across]), np.tile(ordinary, 2)
+    total, number = np.zeros((count, 2)), np.zeros(count)
+    np.add.at(total, nodes[known], vectors[known])
+    np.add.at(number, nodes[known], 1)
+    mean = total / np.maximum(number, 1)[:, None]
+    size = np.hypot(*mean.T)
+    return mean / np.maximum(size, 1e-9)[:, None], (number > 0) & (size > 0.8)
+
+
+def _facing(lanes, nodes, places):
+    """((M, 2) places that are each other's nearest, with their lanes on opposite sides; (M,) metres between the lanes, negative where they
+    overlap)."""
+    inward, free = _inward(lanes, nodes, len(places))
+    free = np.flatnonzero(free)
+    if len(free) < 2:
+        return np.empty((0, 2), int), np.empty(0)
+    near, found = cKDTree(places[free, :2]).query(places[free, :2], k=min(FACING_TRIED + 1, len(free)), distance_upper_bound=WIDEST_DOUBLE)
+    best = np.full(len(places), -1)
+    least, gaps = np.full(len(places), np.inf), np.zeros(len(places))
+    for distance, other in zip(near.T[1:], found.T[1:]):
+        there = np.flatnonzero(np.isfinite(distance))
+        a, b = free[there], free[other[there]]
+        gap = places[b] - places[a]
+        beyond = -np.einsum("ij,ij->i", gap[:, :2], inward[a])       # positive outside of a's lane
+        along = np.abs(gap[:, 0] * inward[a, 1] - gap[:, 1] * inward[a, 0])
+        good = (np.einsum("ij,ij->i", inward[a], inward[b]) < -0.8) & (beyond > -MOST_LANE_OVERLAP) & (along < SAME_SECTION_ALONG)
+        good &= (np.abs(gap[:, 2]) < SAME_ROAD_RISE) & (distance[there] < least[a])
+        best[a[good]], least[a[good]], gaps[a[good]] = b[good], distance[there][good], beyond[good]
+    mine = np.flatnonzero(best >= 0)
+    mine = mine[(best[best[mine]] == mine) & (mine < best[mine])]
+    return np.stack([mine, best[mine]], axis=1), gaps[mine]
+
+
+def _faded(lanes, nodes, places, pairs, move):
+    """(N, 3) how far places beyond the ends of common borders follow them."""
+    count = len(lanes.left)
+    steps = np.ones(count, bool)
+    steps[lanes.start[1:] - 1] = False
+    first = np.flatnonzero(steps)
+    first = np.concatenate([first, first + count])
+    a, b = nodes[first], nodes[first + 1]
+    length = np.hypot(*(places[b] - places[a])[:, :2].T)
+    size = len(places)
+    graph = coo_matrix((np.maximum(length, 1e-6), (a, b)), shape=(size, size)).tocsr()
+    common = np.unique(pairs)
+    distance, _, source = dijkstra(graph, directed=False, indices=common, limit=SHARED_FADE, return_predecessors=True, min_only=True)
+    follows = np.flatnonzero(np.isfinite(distance) & (distance > 0))
+    share = 1 - distance[follows] / SHARED_FADE
+    found = np.zeros_like(places)
+    found[follows] = move[source[follows]] * (share**2 * (3 - 2 * share))[:, None]
+    return found
+
+
+# Borders moved within the tolerance of the map, so that the middles of its lanes are the driving lines.
+
+NEAR_LINE = 0.15   # m from the middle of a lane within which a driving line is its own
+ROUNDS = 50        # of moving borders: neighbours share them
+
+
+def with_driven_middles(source: RoadMapSource, most: float) -> RoadMapSource:
+    """A road map whose lanes have their driving lines in their middle, as far as it takes to move no border by more than `most` metres.
+
+    Driving lines are smooth, borders are as they were measured; a map of borders alone tells where to drive by the middle between them. Of two
+    lanes that share a border each asks for its own move; the least squares of what is missed are looked for, within the limit.
+
+    Parameters
+    ----------
+    source : RoadMapSource with common borders
+    most : metres
+    """
+    lanes = source.lanes
+    if not source.driving_lines or most <= 0 or is_stated(lanes):   # a map from elsewhere has its driving lines from its borders
+        return source
+    across = (lanes.left - lanes.right)[:, :2]
+    across = across / np.maximum(np.hypot(*across.T), 1e-9)[:, None]
+    middles = source.middles if source.middles is not None else (lanes.left + lanes.right) / 2
+    wanted = _beside(source, middles[:, :2], across)
+    known = np.flatnonzero(np.isfinite(wanted))
+    if not len(known):
+        return source
+    nodes, first = numbered(np.concatenate([lanes.left, lanes.right]))
+    left, right = nodes[:len(lanes.left)], nodes[len(lanes.left):]
+    sides, lateral = np.concatenate([left[known], right[known]]), np.tile(across[known], (2, 1))
+    way = np.zeros((len(first), 2))
+    way[sides] = lateral
+    turned = np.sign((lateral * way[sides]).sum(1))   # neighbours may be driven against each other
+    asked, move = np.maximum(np.bincount(sides, minlength=len(first)), 1), np.zeros(len(first))
+    for _ in range(ROUNDS):
+        own = (turned * move[sides]).reshape(2, -1).mean(0)
+        change = np.bincount(sides, turned * np.tile(wanted[known] - own, 2), minlength=len(first))
+        move = np.clip(move + change / asked, -most, most)
+    way = way * move[:, None]
+    moved = [np.c_[side[:, :2] + way[of], side[:, 2]] for side, of in ((lanes.left, left), (lanes.right, right))]
+    return replace(source, lanes=replace(lanes, left=moved[0], right=moved[1]))
+
+
+def _beside(source, middles, across):
+    """(V,) metres by which the driving line lies left of the middle of its lane, NaN where none lies near."""
+    lanes, found = source.lanes, np.full(len(middles), np.nan)
+    lines = [geometry for geometry, row in source.driving_lines if geometry is not None and row.get("status") in (None, "measured")]
+    driven = np.flatnonzero(np.repeat(lanes.type == "driving", np.diff(lanes.start)))
+    if not lines or not len(driven):
+        return found
+    lines, points = shapely.force_2d(np.array(lines, object)), shapely.points(middles[driven])
+    which, line = shapely.STRtree(lines).query_nearest(points, max_distance=NEAR_LINE, all_matches=False)
+    foot = shapely.get_coordinates(shapely.line_interpolate_point(lines[line], shapely.line_locate_point(lines[line], points[which])))
+    rows = driven[which]
+    away = foot - middles[rows]
+    beside = np.abs(away[:, 0] * across[rows, 1] - away[:, 1] * across[rows, 0]) < np.abs((away * across[rows]).sum(1)) + 1e-3
+    found[rows[beside]] = (away * across[rows]).sum(1)[beside]
+    return found

@@ -1,0 +1,370 @@
+"""The layers of a road map on their way into another format: checked, with the heights and uncertainty that maps state."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import shapely
+
+from ...core.common.errors import RoadExtractionError
+from ...core.common.features import Features
+from ...core.driving.layers import Lanes
+from ...core.io.crs import check_metric, parse_crs
+
+if TYPE_CHECKING:
+    from ...core.survey.store.road_points import RoadPoints
+
+MOST_OVERLAP = 0.5       # share of a lane that may lie on lanes of another road: more is two roads at one place
+SAME_LEVEL = 2.0         # m of height within which two roads are no bridge
+FARTHEST_PLACE = 1e8     # m from the origin of a CRS: twice around the world
+LEAST_LED = 0.001        # m
+LEAST_CURB = 0.005       # m of height between the bottom and the top of a curb: less is none that a map states
+FARTHEST_LAYER = 50.0    # m from the lanes: a layer that lies farther away is of another survey
+
+
+@dataclass
+class RoadMapSource:
+    """Lanes with the other layers of their road map.
+
+    lanes : Lanes in map coordinates
+    driving_lines, marking_lines, road_edges, markings : Features or None
+    notes : sentences for the user, filled by `checked`
+    gaps : (P, 2) metres between the two stripes at the left and right border of each lane, None or 0 where there is one
+    middles : (V, 3) of the lanes between their own stripes, vertex by vertex; None where they are the middles of the lanes
+    """
+
+    lanes: Lanes
+    driving_lines: Features | None = None
+    marking_lines: Features | None = None
+    road_edges: Features | None = None
+    markings: Features | None = None
+    notes: list[str] = field(default_factory=list)
+    gaps: np.ndarray | None = None
+    middles: np.ndarray | None = None
+
+    def led_to_middles(self) -> np.ndarray:
+        """(N, 2) places in the middle of lanes where a border was led along the middle of a double line, away from the lane's own stripe."""
+        if self.middles is None:
+            return np.empty((0, 2))
+        moved = ((self.lanes.left + self.lanes.right) / 2 - self.middles)[:, :2]
+        return self.middles[np.hypot(*moved.T) > LEAST_LED, :2]
+
+    def paint_width(self, line: str) -> float:
+        """Metres of the paint of a border, by the name of its line in Lanes; NaN where unknown."""
+        rows = self.marking_lines.rows if self.marking_lines is not None and line.startswith("line ") else ()
+        widths = [float(row["width_m"]) for row in rows if str(row.get("line")) == line[5:] and row.get("width_m") is not None]
+        return float(np.median(widths)) if widths else np.nan
+
+    def others(self) -> Iterator[tuple[str, Features]]:
+        """(what messages call it, layer) of the layers beside the lanes that there are."""
+        for label, layer in (("Driving lines", self.driving_lines), ("Marking lines", self.marking_lines), ("Road edges", self.road_edges),
+                             ("Markings", self.markings)):
+            if layer is not None and len(layer):
+                yield label, layer
+
+
+def is_stated(lanes: Lanes) -> bool:
+    """Whether lanes are of a map from elsewhere, which states its borders and ways: all are sure, and none is of a line or edge of a survey."""
+    lines = np.concatenate([lanes.left_line, lanes.right_line])
+    return bool((lanes.status == "measured").all() and (lanes.confidence == 1).all() and (lines == "none").all())
+
+
+def checked(source: RoadMapSource) -> RoadMapSource:
+    """The same source without successors that are not there, proven fit for a map.
+
+    Raises
+    ------
+    RoadExtractionError
+        If there are no lanes, the CRS is not in metres, a lane has no width or borders that cross, heights are missing, two roads lie at
+        one place, or a layer is of another survey.
+    """
+    lanes = source.lanes
+    if not len(lanes):
+        raise RoadExtractionError("The layer of lanes is empty. Run Driving lines or Road map where there are marking lines or road edges.")
+    crs = parse_crs(lanes.crs)
+    if crs is not None:
+        check_metric(crs, "The layer of lanes")
+    if not np.isfinite(lanes.left).all() or not np.isfinite(lanes.right).all():
+        raise RoadExtractionError("Some lanes have no heights or broken coordinates. Use the layer of lanes that Lanewright wrote.")
+    places = np.concatenate([lanes.left, lanes.right])
+    if np.abs(places).max() > FARTHEST_PLACE:
+        raise RoadExtractionError(f"The lanes reach to {np.abs(places).max():.3g} m from the origin of their CRS, which is not on this world. Choose "
+                                  "the layer of lanes that Lanewright wrote, or set its CRS right.")
+    _check_shapes(lanes)
+    if not is_stated(lanes):   # where a map from elsewhere has two roads at one place, it means both
+        _check_places(lanes)
+    _check_layers(source)
+    return _linked(source)
+
+
+def _linked(source):
+    """The source without successors that are not there, with a note for each kind of them."""
+    lanes = source.lanes
+    known = set(lanes.lane_id)
+    lost = sum(name not in known for names in lanes.successors for name in names)
+    notes = list(source.notes)
+    if lost:
+        notes.append(f"{lost} successors name lanes that are not in the layer; these links were left out.")
+    own = sum(name in names for name, names in zip(lanes.lane_id, lanes.successors))
+    if own:
+        notes.append(f"{own} lanes name themselves as their successors; these links were left out.")
+    kept = [tuple(name for name in names if name in known and name != own_name) for own_name, names in zip(lanes.lane_id, lanes.successors)]
+    return replace(source, notes=notes, lanes=replace(lanes, successors=kept))
+
+
+def _check_shapes(lanes):
+    for k in range(len(lanes)):
+        left, right = lanes.borders(k)
+        width = float(np.hypot(*(left - right)[:, :2].T).max())
+        if width < 0.01 or np.hypot(*np.diff(left[[0, -1]], axis=0)[0, :2]) + np.hypot(*np.diff(right[[0, -1]], axis=0)[0, :2]) < 0.01:
+            raise RoadExtractionError(f"Lane {lanes.lane_id[k]} has no two borders: it is {width:.2f} m wide. Delete it, or draw it as a strip.")
+        for border, side in ((left, "left"), (right, "right")):
+            if (back := _runs_back(left, right, border)) is not None and not shapely.linestrings(border[:, :2]).is_simple:
+                raise RoadExtractionError(f"The {side} border of lane {lanes.lane_id[k]} runs back and crosses itself near x {back[0]:.1f}, "
+                                          f"y {back[1]:.1f}. Mend it in the layer of lanes.")
+        if shapely.linestrings(left[:, :2]).crosses(shapely.linestrings(right[:, :2])):
+            raise RoadExtractionError(f"The borders of lane {lanes.lane_id[k]} cross each other near x {left[0, 0]:.1f}, y {left[0, 1]:.1f}. "
+                                      "Mend it in the layer of lanes.")
+
+
+def _runs_back(left, right, border):
+    """Where a border runs against the direction of its lane, None where it does nowhere. Ramps may well cross themselves."""
+    across, step = (left - right)[:-1, :2] + (left - right)[1:, :2], np.diff(border[:, :2], axis=0)
+    ahead = step[:, 0] * across[:, 1] - step[:, 1] * across[:, 0]
+    back = np.flatnonzero((ahead < 0) & (np.hypot(*step.T) > LEAST_LED) & (np.hypot(*across.T) > LEAST_LED))
+    return border[back[0]] if len(back) else None
+
+
+def _check_places(lanes):
+    """Refuse two roads at one place; connectors may cross, and bridges."""
+    rows = np.flatnonzero(lanes.type == "driving")
+    if not len(rows):
+        return
+    borders = [lanes.borders(k) for k in rows]
+    shapes = shapely.make_valid(np.array([shapely.Polygon(np.concatenate([left, right[::-1]])[:, :2]) for left, right in borders], object))
+    height = np.array([left[:, 2].mean() for left, _ in borders])
+    for first, second in shapely.STRtree(shapes).query(shapes, predicate="intersects").T:
+        a, b = rows[first], rows[second]
+        if first >= second or lanes.road[a] == lanes.road[b] or abs(height[first] - height[second]) > SAME_LEVEL:
+            continue
+        common, least = shapes[first].intersection(shapes[second]).area, min(shapes[first].area, shapes[second].area)
+        if common > MOST_OVERLAP * least:
+            raise RoadExtractionError(f"Roads {lanes.road[a]} and {lanes.road[b]} lie at one place: lanes {lanes.lane_id[a]} and "
+                                      f"{lanes.lane_id[b]} share {common:.0f} m². Keep the lanes of one of them.")
+
+
+def _check_layers(source):
+    lanes = source.lanes
+    low, high = lanes.left.min(0)[:2] - FARTHEST_LAYER, lanes.left.max(0)[:2] + FARTHEST_LAYER
+    for label, layer in source.others():
+        west, south, east, north = shapely.total_bounds(np.array([g for g in layer.geometries if g is not None], object))
+        if west > high[0] or east < low[0] or south > high[1] or north < low[1]:
+            raise RoadExtractionError(f"{label} do not lie where the lanes are: they begin at x {west:.0f}, y {south:.0f}, the lanes at "
+                                      f"x {low[0] + FARTHEST_LAYER:.0f}, y {low[1] + FARTHEST_LAYER:.0f}. Choose the layers of one survey.")
+
+
+def wrapped(angle: Any) -> Any:
+    """Radians, a number or an array of them, in [-pi, pi)."""
+    return (angle + np.pi) % (2 * np.pi) - np.pi
+
+
+class NearestValues:
+    """A number of the line or area of a layer that is nearest to a place.
+
+    Parameters
+    ----------
+    layer : Features, or None
+    name : of the field; features without a value are left out
+    """
+
+    def __init__(self, layer: Features | None, name: str) -> None:
+        rows: list[tuple[Any, float]] = [] if layer is None else [(g, float(row[name])) for g, row in layer
+                                                                  if g is not None and row.get(name) is not None]
+        # of long lines the tree finds the nearest segment much sooner than the nearest line
+        parts, values = [], []
+        for geometry, value in rows:
+            places = shapely.get_coordinates(geometry)
+            pieces = shapely.linestrings(np.stack([places[:-1], places[1:]], axis=1)) if geometry.geom_type == "LineString" else [geometry]
+            parts += list(pieces)
+            values += [value] * len(pieces)
+        self._tree, self._values = shapely.STRtree(parts), np.array(values)
+
+    def at(self, points: np.ndarray, farthest: float = 0.5) -> np.ndarray:
+        """(N,) numbers nearest to (N, 2) points, NaN where none lies within `farthest` metres."""
+        found = np.full(len(points), np.nan)
+        if len(self._values) and len(points):
+            which, part = self._tree.query_nearest(shapely.points(points), max_distance=farthest, all_matches=False)
+            found[which] = self._values[part]
+        return found
+
+
+# The uncertainty that driving lines carry, lane by lane.
+
+MIN_SHARED = 0.5   # m along the road that a lane and its driving line must share
+
+
+def sigma_of_lanes(lanes: Lanes, driving_lines: Features | None) -> np.ndarray:
+    """One sigma across each piece of a lane, the RMS over the driving lines along it.
+
+    Parameters
+    ----------
+    lanes : Lanes
+    driving_lines : Features DRIVING_LINES with `sigma_m`, or None
+
+    Returns
+    -------
+    (P,) m, NaN where no driving line of the same road and lane says it
+    """
+    square, length = np.zeros(len(lanes)), np.zeros(len(lanes))
+    for row in driving_lines.rows if driving_lines is not None else ():
+        if any(row.get(name) is None for name in ("sigma_m", "road", "lane", "station_m", "end_m")):
+            continue
+        own = (lanes.road == int(row["road"])) & (lanes.lane == int(row["lane"]))
+        shared = np.minimum(lanes.end, float(row["end_m"])) - np.maximum(lanes.station, float(row["station_m"]))
+        shared = np.where(own & (shared > MIN_SHARED), shared, 0.0)
+        square += shared * float(row["sigma_m"]) ** 2
+        length += shared
+    return np.sqrt(np.divide(square, length, out=np.full(len(lanes), np.nan), where=length > 0))
+
+
+# Heights of the lanes' borders from the points of the road's surface.
+
+SURFACE_REACH = 0.3          # m about a vertex within which the surface is flat enough for a median
+FEWEST_POINTS = 5    # about a vertex
+MOST_CHANGE = 0.5    # m: a surface farther above or below is another one, such as a bridge's
+
+
+def with_surface_heights(lanes: Lanes, road_points: RoadPoints) -> tuple[Lanes, float]:
+    """Lanes in map coordinates with borders at the median height of the road points about each vertex.
+
+    Parameters
+    ----------
+    lanes : Lanes in map coordinates
+    road_points : RoadPoints of the same survey
+
+    Returns
+    -------
+    lanes : Lanes; vertices without points are raised or lowered as those before and after them on the border, and keep their heights on a
+        border without any
+    share : 0 to 1, of the vertices that have points
+
+    Raises
+    ------
+    RoadExtractionError
+        If no vertex has points.
+    """
+    from scipy.spatial import cKDTree
+
+    vertices = np.concatenate([lanes.left, lanes.right])
+    origin = road_points.origin
+    tree = cKDTree(vertices[:, :2] - origin[:2])
+    owners, heights = [], []
+    for key in road_points.all_sections():
+        points = road_points.section(*key)
+        _, nearest = tree.query(np.c_[points.x, points.y], distance_upper_bound=SURFACE_REACH)
+        near = nearest < len(vertices)
+        owners.append(nearest[near])
+        heights.append(np.asarray(points.z, float)[near])
+    owner, height = np.concatenate([np.empty(0, int), *owners]), np.concatenate([np.empty(0), *heights]) + origin[2]
+    # vertices of neighbours lie at one place, of which the tree gives the points to one
+    same, which = np.unique(np.round(vertices[:, :2], 3), axis=0, return_inverse=True)
+    which = which.ravel()
+    place = which[owner]
+    order = np.lexsort((height, place))
+    place, height = place[order], height[order]
+    counts = np.bincount(place, minlength=len(same))
+    first = np.append(0, np.cumsum(counts))[:-1]
+    enough = counts >= FEWEST_POINTS
+    if not enough.any():
+        raise RoadExtractionError("Road points do not lie where the lanes are: no border has any beside it. Choose the road points of the same "
+                                  "survey, or leave them out.")
+    median = np.full(len(same), np.nan)
+    median[enough] = height[(first + counts // 2)[enough]]
+    change = median[which] - vertices[:, 2]
+    change[~(np.abs(change) < MOST_CHANGE)] = np.nan
+    found = np.c_[vertices[:, :2], vertices[:, 2] + _along_borders(change, vertices, lanes.start)]
+    return replace(lanes, left=found[:len(lanes.left)], right=found[len(lanes.left):]), float(enough[which].mean())
+
+
+def _along_borders(change, vertices, start):
+    """(V,) the changes of the vertices of left and right borders; NaN is filled in from those before and after it on its border."""
+    filled = np.nan_to_num(change)
+    count = len(change) // 2
+    for side in (0, count):
+        for a, b in zip(start[:-1] + side, start[1:] + side):
+            known = np.isfinite(change[a:b])
+            if known.any() and not known.all():
+                along = np.append(0.0, np.cumsum(np.hypot(*np.diff(vertices[a:b, :2], axis=0).T)))
+                filled[a:b] = np.interp(along, along[known], change[a:b][known])
+    return filled
+
+
+# Crossings and stop lines of the layer MARKINGS, as lines across and along the road.
+
+STRIPE_GAP = 1.5     # m between stripes of one crossing: a gap of one stripe, worn on both sides
+LEAST_CROSSING = 3   # stripes
+
+
+def stop_lines(markings: Features | None) -> list[np.ndarray]:
+    """(2, 3) the middle line of every stop line."""
+    found = [_corners(shape) for shape in _shapes(markings, ("stop", "stop_line"))]
+    return [(corners[[0, 1]] + corners[[3, 2]]) / 2 for corners in found if len(corners)]
+
+
+def walked_crossings(markings: Features | None) -> list[tuple[np.ndarray, np.ndarray]]:
+    """((2, 3) left, (2, 3) right) sides of every zebra crossing, along the way of those who cross: over the row of its stripes."""
+    stripes = _shapes(markings, ("zebra", "crosswalk", "zebra_crossing"))
+    found = []
+    for group in _groups(stripes):
+        corners = _corners(shapely.unary_union(group)) if len(group) > 1 else _corners(group[0])
+        if not len(corners) or len(group) < LEAST_CROSSING and len(stripes) >= LEAST_CROSSING:
+            continue
+        across = np.mean([_long_side(stripe) for stripe in group], axis=0)
+        along = corners[1] - corners[0]
+        if len(group) > 1 and abs(along[:2] @ across) > abs((corners[2] - corners[1])[:2] @ across):
+            corners = corners[[1, 2, 3, 0]]   # walkers go from stripe to stripe, which lie along the road
+        found.append((corners[[3, 2]], corners[[0, 1]]))
+    return found
+
+
+def _shapes(markings: Features | None, classes: tuple[str, ...]) -> list[Any]:
+    if markings is None:
+        return []
+    return [geometry for geometry, row in markings if geometry is not None and not geometry.is_empty and row.get("class") in classes]
+
+
+def _groups(shapes: list[Any]) -> list[list[Any]]:
+    """Shapes that lie together."""
+    if not shapes:
+        return []
+    joined = shapely.get_parts(shapely.union_all(shapely.buffer(shapely.force_2d(np.array(shapes, object)), STRIPE_GAP / 2)))
+    found: list[list[Any]] = [[] for _ in joined]
+    tree = shapely.STRtree(joined)
+    for shape in shapes:
+        found[int(tree.query(shapely.force_2d(shape).representative_point(), predicate="intersects")[0])].append(shape)
+    return [group for group in found if group]
+
+
+def _corners(shape: Any) -> np.ndarray:
+    """(4, 3) corners of the rectangle about a shape, its long side first, counter-clockwise; heights are those of the nearest vertices."""
+    rectangle = shapely.force_2d(shape).minimum_rotated_rectangle
+    if rectangle.geom_type != "Polygon":
+        return np.empty((0, 3))
+    corners = shapely.get_coordinates(shapely.orient_polygons(rectangle).exterior)[:4] if hasattr(shapely, "orient_polygons") else \
+        shapely.get_coordinates(shapely.geometry.polygon.orient(rectangle).exterior)[:4]
+    if np.hypot(*(corners[1] - corners[0])) < np.hypot(*(corners[2] - corners[1])):
+        corners = corners[[1, 2, 3, 0]]
+    vertices = shapely.get_coordinates(shape, include_z=True)
+    nearest = np.argmin(np.hypot(*(corners[:, None] - vertices[None, :, :2]).transpose(2, 0, 1)), axis=1)
+    return np.c_[corners, np.nan_to_num(vertices[nearest, 2])]
+
+
+def _long_side(shape):
+    corners = _corners(shape)
+    if not len(corners):
+        return np.zeros(2)
+    side = (corners[1] - corners[0])[:2]
+    return side * (1 if side[0] > 0 or side[0] == 0 and side[1] > 0 else -1)

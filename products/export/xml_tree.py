@@ -1,0 +1,261 @@
+"""XML read with limits, so that a hostile file is refused before it costs memory, and written."""
+
+from __future__ import annotations
+
+import codecs
+import math
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from html import escape
+from pathlib import Path
+from pyexpat import ExpatError, ParserCreate
+from typing import Any
+
+from ...core.common.errors import RoadExtractionError
+from ...core.common.progress import Progress
+
+CHUNK = 1 << 16             # bytes handed to the parser at once
+MAX_PENDING = 4 << 20       # bytes of one tag: longer ones hide no map
+MAX_TEXT = 1 << 20          # characters of text kept of one element
+MAX_BLANK = 64 << 20        # bytes without any tag
+MAX_ELEMENTS = 1_000_000    # some hundred kilometres of lanes
+MAX_DEPTH = 60
+MAX_MAP_NUMBER = 1e9            # metres or any other unit of a map
+MAX_DIGITS = 400            # characters of a number
+HEAD = 400                  # bytes in which the declaration of the encoding is looked for
+NATIVE = ("utf-8", "utf-16", "iso8859-1", "ascii")   # codecs that the parser has itself
+BYTE_ORDER_MARKS = {codecs.BOM_UTF32_LE: "utf-32", codecs.BOM_UTF32_BE: "utf-32", codecs.BOM_UTF8: "utf-8-sig", codecs.BOM_UTF16_LE: "utf-16",
+                    codecs.BOM_UTF16_BE: "utf-16"}   # those of 32 bits first: they begin like those of 16
+
+
+class XmlElement:
+    """One element of an XML file.
+
+    tag : name; attributes : dict of str; children : list of XmlElement; text : without blanks around it; line : in the file, 0 where made
+    """
+
+    __slots__ = ("attributes", "children", "line", "tag", "text")
+
+    def __init__(self, tag: str, attributes: Mapping[str, Any] | None = None, text: str = "", line: int = 0) -> None:
+        self.tag, self.text, self.line = tag, text, line
+        self.attributes: dict[str, str] = {name: written(value) for name, value in attributes.items() if value is not None} if attributes else {}
+        self.children: Sequence[XmlElement] = ()   # most have none: a list is made for the first
+
+    def add(self, tag: str, /, text: str = "", **attributes: Any) -> XmlElement:
+        """A new child; attributes that are None are left out."""
+        return self.append(XmlElement(tag, attributes, text))
+
+    def append(self, child: XmlElement) -> XmlElement:
+        """Add a child, and return it."""
+        if isinstance(self.children, list):
+            self.children.append(child)
+        else:
+            self.children = [child]
+        return child
+
+    def all(self, *path: str) -> Iterator[XmlElement]:
+        """The children of a name; of several names, those of the last one in the first child of the others."""
+        parent, tag = self.find(*path[:-1]), path[-1]
+        return (child for child in (parent.children if parent is not None else ()) if child.tag == tag)
+
+    def find(self, *path: str) -> XmlElement | None:
+        """The first child of a name, its first child of the next name and so on; None where there is none."""
+        here: XmlElement | None = self
+        for tag in path:
+            here = next(here.all(tag), None) if here is not None else None
+        return here
+
+    def get(self, name: str, missing: str = "") -> str:
+        """An attribute."""
+        return self.attributes.get(name, missing)
+
+    def number(self, name: str, missing: float | None = None) -> float:
+        """A finite number of an attribute.
+
+        Raises
+        ------
+        RoadExtractionError
+            If it is missing and has no default, or is no number of a map.
+        """
+        text = self.attributes.get(name)
+        if text is None:
+            if missing is None:
+                raise RoadExtractionError(f"Line {self.line}: <{self.tag}> has no {name}. Is the file whole and of the right format?")
+            return missing
+        try:
+            value = float(text) if len(text) <= MAX_DIGITS else math.inf
+        except ValueError:
+            value = math.nan
+        if not abs(value) <= MAX_MAP_NUMBER:
+            raise RoadExtractionError(f"Line {self.line}: {name} of <{self.tag}> is {text[:40]!r}; a number up to {MAX_MAP_NUMBER:g} is needed.")
+        return value
+
+
+def written(value: Any) -> str:
+    """A value as XML has it: numbers with all their digits and no more."""
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, float) or hasattr(value, "dtype"):
+        number = float(value)
+        return repr(int(number)) if number == int(number) and abs(number) < 1e15 else repr(number)
+    return str(value)
+
+
+def xml_text(root: XmlElement) -> str:
+    """The whole file as text."""
+    lines = ['<?xml version="1.0" encoding="UTF-8"?>']
+    _write(root, "", lines)
+    return "\n".join(lines) + "\n"
+
+
+def _write(element, indent, lines):
+    head = f"{indent}<{element.tag}" + "".join(f' {name}="{escape(value)}"' for name, value in element.attributes.items())
+    if not element.children and not element.text:
+        lines.append(head + "/>")
+    elif not element.children:
+        lines.append(f"{head}>{escape(element.text, quote=False)}</{element.tag}>")
+    else:
+        lines.append(head + ">" + escape(element.text, quote=False))
+        for child in element.children:
+            _write(child, indent + "  ", lines)
+        lines.append(f"{indent}</{element.tag}>")
+
+
+def read_xml(path: str, root_tag: str, kind: str, progress: Progress = Progress()) -> XmlElement:
+    """Read a file whole, within limits.
+
+    Parameters
+    ----------
+    path : of the file
+    root_tag : name that its first element must have
+    kind : what the file should be, for messages
+    progress : told of the share that was read
+
+    Returns
+    -------
+    XmlElement, the root
+
+    Raises
+    ------
+    RoadExtractionError
+        If it is no XML, not of this kind, in an encoding that is not known or that it is not written in, declares a document type or
+        entities (no map needs them), or is larger, deeper or emptier than a map is.
+    """
+    return _Reading(Path(path), root_tag, kind).run(progress)
+
+
+class _Reading:
+    """One file on its way through the parser."""
+
+    def __init__(self, path, root_tag, kind):
+        self.path, self.root_tag, self.kind = path, root_tag, kind
+        self.root, self.open, self.count, self.last_tag = None, [], 0, 0
+        self.in_utf8 = False
+        self.encoding = self._encoding()
+        self.parser = parser = ParserCreate("utf-8" if self.encoding else None)
+        parser.StartElementHandler, parser.EndElementHandler = self._start, self._end
+        parser.CharacterDataHandler = self._text
+        parser.StartDoctypeDeclHandler = parser.EntityDeclHandler = self._declared
+        parser.UnparsedEntityDeclHandler = parser.ExternalEntityRefHandler = self._declared
+
+    def run(self, progress):
+        size, fed = max(self.path.stat().st_size, 1), 0
+        decoder = codecs.getincrementaldecoder(self.encoding)() if self.encoding else None
+        try:
+            with open(self.path, "rb") as file:
+                while chunk := file.read(CHUNK):
+                    if decoder is not None:
+                        chunk = decoder.decode(chunk).encode("utf-8")
+                    self.parser.Parse(chunk, False)
+                    fed += len(chunk)
+                    if fed - self.parser.CurrentByteIndex > MAX_PENDING:
+                        self._refuse(f"has {MAX_PENDING >> 20} MB without the end of a tag")
+                    if file.tell() % (CHUNK * 64) == 0:
+                        progress.report(file.tell() / size)
+                self.parser.Parse(decoder.decode(b"", True).encode("utf-8") if decoder is not None else b"", True)
+        except UnicodeError as problem:
+            raise RoadExtractionError(f"{self.path} is not written in the encoding {self.encoding} that it declares. Save it again as UTF-8, and say "
+                                      "so in its first line.") from problem
+        except ExpatError as problem:
+            if self.in_utf8 and not _is_utf8(self.path):
+                raise RoadExtractionError(f"{self.path} is not written in UTF-8, though it names no other encoding. Save it again as UTF-8, or "
+                                          "name its encoding in its first line.") from problem
+            raise RoadExtractionError(f"{self.path} is not well-formed XML: {problem}. Is it {self.kind}, and whole?") from problem
+        return self.root
+
+    def _encoding(self):
+        """The codec that the file is decoded by, "" where the parser does it by itself."""
+        with open(self.path, "rb") as file:
+            head = file.read(HEAD)
+        marked = next((name for mark, name in BYTE_ORDER_MARKS.items() if head.startswith(mark)), "")
+        if marked:
+            return "" if marked in NATIVE else marked
+        if head[:4] in ("<".encode("utf-32-le"), "<".encode("utf-32-be")):
+            return "utf-32-le" if head[:1] == b"<" else "utf-32-be"
+        said = re.match(rb"""\s*<\?xml[^>]*?\sencoding\s*=\s*["']([^"'>]*)["']""", head)
+        name = said[1].decode("latin-1") if said else ""
+        try:
+            codec = codecs.lookup(name) if name else None
+            # others, such as zip and hex, are no encodings of text
+            known = codec is None or codec._is_text_encoding and codec.incrementaldecoder is not None
+        except (LookupError, ValueError):
+            known = False
+        if not known:
+            raise RoadExtractionError(f"{self.path} declares the encoding {name[:40]!r}, which is not known. Save it again as UTF-8, and say so in "
+                                      "its first line.")
+        if codec is not None and codec.name.startswith(("utf-16", "utf-32")):
+            return "utf-8"   # the declaration itself is written in single bytes: some programs state what they have in memory
+        self.in_utf8 = codec is None or codec.name == "utf-8"
+        return "" if codec is None or codec.name in NATIVE else codec.name
+
+    def _refuse(self, why):
+        raise RoadExtractionError(f"{self.path} {why}. That is not {self.kind}, so it was not read further. Export the map again, or in parts.")
+
+    def _declared(self, *_):
+        self._refuse("declares a document type or entities, which no map needs")
+
+    def _start(self, tag, attributes):
+        if self.root is None and tag != self.root_tag:
+            raise RoadExtractionError(f"{self.path} begins with <{tag[:40]}>; {self.kind} begins with <{self.root_tag}>. Choose another file.")
+        if self.root is not None and not self.open:
+            self._refuse("has more than one first element")
+        self.count += 1
+        if len(self.open) >= MAX_DEPTH:
+            self._refuse(f"has elements within elements, more than {MAX_DEPTH} deep")
+        if self.count > MAX_ELEMENTS:
+            self._refuse(f"has more than {MAX_ELEMENTS:,} elements")
+        element = XmlElement(tag, None, "", self.parser.CurrentLineNumber)
+        if attributes:
+            element.attributes = attributes
+        self.last_tag = self.parser.CurrentByteIndex
+        if self.open:
+            self.open[-1].append(element)
+        else:
+            self.root = element
+        self.open.append(element)
+
+    def _end(self, _):
+        element = self.open.pop()
+        element.text = element.text.strip()
+        self.last_tag = self.parser.CurrentByteIndex
+
+    def _text(self, text):
+        if not self.open or not (self.open[-1].text or text.strip()):
+            if self.parser.CurrentByteIndex - self.last_tag > MAX_BLANK:
+                self._refuse(f"has more than {MAX_BLANK >> 20} MB of blanks")
+            return
+        element = self.open[-1]
+        if len(element.text) + len(text) > MAX_TEXT:
+            self._refuse(f"has a text of more than {MAX_TEXT:,} characters")
+        element.text += text
+
+
+def _is_utf8(path):
+    decoder = codecs.getincrementaldecoder("utf-8")()
+    try:
+        with open(path, "rb") as file:
+            while chunk := file.read(CHUNK):
+                decoder.decode(chunk)
+    except UnicodeError:
+        return False
+    return True

@@ -1,0 +1,228 @@
+"""Where the carriageway and its lanes end, at every section, from the layers of the road map."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import shapely
+
+from ...core.countries.model import Country
+from ...core.driving.layers import Lanes
+from ...core.survey.frame.placement import FrameLines, line_parts, lines_in_frame
+
+if TYPE_CHECKING:
+    from ...core.common.features import Features
+    from ...core.survey.frame.road_frame import RoadFrame
+
+MAX_BORDER_OBLIQUITY = np.tan(np.radians(25.0))  # a line that runs more across the road than this is no border of it
+BORDER_REACH = 0.8       # m beyond half a lane's width within which a painted line is its border
+MIN_DRIVEN_PART = 0.5    # of the width of a strip between two lines that a driving line or lane must not have taken before
+
+
+@dataclass(frozen=True)
+class BorderLayers:
+    """The layers of a road map as Features in map coordinates; None where not given."""
+
+    edges: Features | None = None
+    marking_lines: Features | None = None
+    driving_lines: Features | None = None
+    lanes: Features | None = None
+
+
+@dataclass(frozen=True)
+class Strip:
+    """A lane or the carriageway at one section.
+
+    right, left : m, offsets of its borders
+    lane : number of the lane, 0 for the carriageway
+    type : as in LANES; "carriageway" for the carriageway
+    direction : of travel, 1 along the road, -1 against it, 0 where unknown
+    borders : what they were taken from: lanes, lines, edges or track
+    curbs : whether its right and left border may be a curb: road edges that are not said to be the edge of a pavement without one
+    """
+
+    right: float
+    left: float
+    lane: int
+    type: str
+    direction: int
+    borders: str
+    curbs: tuple[bool, bool] = (False, False)
+
+    @property
+    def width(self) -> float:
+        """m"""
+        return self.left - self.right
+
+
+@dataclass
+class _Pieces:
+    """Lines of one layer in the road frame with what their rows say, and the stations between which each runs."""
+
+    lines: FrameLines
+    rows: list[dict[str, Any]] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        ends = [(np.nanmin(part), np.nanmax(part)) if np.isfinite(part).any() else (np.inf, -np.inf)
+                for part in (self.lines.s[self.lines.line(k)] for k in range(len(self.lines)))]
+        self.low, self.high = np.array(ends).reshape(-1, 2).T
+
+
+class RoadBorders:
+    """Borders of carriageway and lanes, station by station.
+
+    Parameters
+    ----------
+    layers : BorderLayers
+    frame : RoadFrame
+    country : whose lanes tell two lines that bound a lane
+    """
+
+    def __init__(self, layers: BorderLayers, frame: RoadFrame, country: Country):
+        self.frame, self.country = frame, country
+        self.edges = _pieces(layers.edges, frame, lambda row: (row.get("kind") or "main") == "main" and (row.get("part") or "bottom") == "bottom")
+        self.lines = _pieces(layers.marking_lines, frame)
+        self.driving = _pieces(layers.driving_lines, frame)
+        self.lane_borders = None if layers.lanes is None else _lane_borders(layers.lanes, frame)
+
+    @property
+    def given(self) -> bool:
+        """Whether any layer was given."""
+        return any(layer is not None for layer in (self.edges, self.lines, self.driving, self.lane_borders))
+
+    def outer(self, road: int, s: float) -> tuple[float, float]:
+        """(right, left) offsets of the carriageway's edges, else of its outermost lanes or lines; NaN where there are none."""
+        found = self.at(road, s) if self.given else None
+        if found is not None:
+            return found[0].right, found[0].left
+        track = self._track(road, s)
+        return _nearest_outside(np.sort(np.array([d for d, _ in _crossings(self.edges, road, s)])), float(track.min()), float(track.max()))
+
+    def _track(self, road, s):
+        """Offsets of the passes that drove a station; 0 where none did."""
+        passes = [p for p in self.frame.passes_of(road) if p.span[0] - 1.0 <= s <= p.span[1] + 1.0]
+        return np.array([p.at_station(np.array([s]))[0][0] for p in passes] or [0.0])
+
+    def at(self, road: int, s: float) -> tuple[Strip, list[Strip]] | None:
+        """The carriageway and its lanes, from right to left, at a station of a road; None where the layers know no carriageway."""
+        track = self._track(road, s)
+        lines = np.sort(np.array([d for d, _ in _crossings(self.lines, road, s)]))
+        lanes = self._lanes(road, s, lines)
+        crossed = _crossings(self.edges, road, s)
+        edges = np.sort(np.array([d for d, _ in crossed]))
+        # the track lies on the carriageway; edges are looked for beyond it and beyond the lanes that nobody doubts
+        right, left = _nearest_outside(edges, float(track.min()), float(track.max()))
+        if not lanes and len(lines) > 1:
+            lanes = self._between(lines, right, left)
+        outer = [strip.right for strip in lanes], [strip.left for strip in lanes]
+        if not lanes and not (np.isfinite(right) and np.isfinite(left)):
+            if self.given:
+                return None
+            lanes = self._driven(track)
+            outer = [strip.right for strip in lanes], [strip.left for strip in lanes]
+        borders = "edges" if np.isfinite(right) and np.isfinite(left) else lanes[0].borders if lanes else "edges"
+        if not np.isfinite(right):
+            right = min([*outer[0], *lines])
+        if not np.isfinite(left):
+            left = max([*outer[1], *lines])
+        if track.max() < right or track.min() > left:
+            return None   # lanes beside the road that was driven, such as of a street that it joins
+        curbs = {d for d, row in crossed if row.get("edge") != "pavement"}
+        return Strip(float(right), float(left), 0, "carriageway", 0, borders, (right in curbs, left in curbs)), lanes
+
+    def _lanes(self, road, s, lines):
+        if self.lane_borders is not None and len(self.lane_borders.rows):
+            found = []
+            crossed: dict[int, list[float]] = {}
+            for d, k in _numbered_crossings(self.lane_borders, road, s):
+                crossed.setdefault(k // 2, []).append(d)
+            for piece, ds in crossed.items():
+                row = self.lane_borders.rows[piece]
+                if len(ds) == 2 and row["type"] != "connector":
+                    found.append(Strip(min(ds), max(ds), int(row["lane"]), row["type"], int(row["direction"]), "lanes"))
+            return _apart(found)
+        found = []
+        for d, row in _crossings(self.driving, road, s):
+            half = 0.5 * float(row.get("width_m") or self.country.usual_lane)
+            right, left = _within(lines[lines < d], d - half), _within(lines[lines > d], d + half)
+            found.append(Strip(right, left, int(row.get("lane") or 0), "driving", int(row.get("direction") or 0), "lines"))
+        return _apart(found)
+
+    def _between(self, lines, right, left):
+        """Lanes between painted lines a lane's width apart."""
+        low, high = (right if np.isfinite(right) else -np.inf), (left if np.isfinite(left) else np.inf)
+        lines = lines[(lines > low) & (lines < high)]
+        pairs = [(a, b) for a, b in zip(lines[:-1], lines[1:]) if self.country.narrowest_lane <= b - a <= self.country.widest_lane]
+        return [Strip(float(a), float(b), k + 1, "driving", 0, "lines") for k, (a, b) in enumerate(pairs)]
+
+    def _driven(self, track):
+        """A lane of the country's usual width about every track: all that is known without a layer."""
+        half = 0.5 * self.country.usual_lane
+        middles = [float(d) for k, d in enumerate(np.sort(track)) if k == 0 or d - np.sort(track)[k - 1] > half]
+        return _apart([Strip(d - half, d + half, k + 1, "driving", 0, "track") for k, d in enumerate(middles)])
+
+
+def _within(candidates, wanted):
+    """The painted line nearest to where a border is wanted, else that place itself."""
+    if len(candidates):
+        best = candidates[np.argmin(np.abs(candidates - wanted))]
+        if abs(best - wanted) < BORDER_REACH:
+            return float(best)
+    return float(wanted)
+
+
+def _apart(strips):
+    """Strips from right to left; of two that lie over each other the wider one."""
+    kept: list[Strip] = []
+    for strip in sorted(strips, key=lambda one: -one.width):
+        if all(min(strip.left, one.left) - max(strip.right, one.right) < MIN_DRIVEN_PART * strip.width for one in kept):
+            kept.append(strip)
+    return sorted(kept, key=lambda one: one.right)
+
+
+def _nearest_outside(edges, low, high):
+    """The nearest edge right of `low` and left of `high`; NaN where there is none."""
+    right, left = edges[edges < low], edges[edges > high]
+    return (float(right.max()) if len(right) else np.nan), (float(left.min()) if len(left) else np.nan)
+
+
+def _pieces(features, frame, wanted=lambda row: True):
+    """Lines of a layer in the road frame, with their rows."""
+    if features is None:
+        return None
+    parts, row_of = line_parts(features.geometries)
+    own = [k for k, row in enumerate(row_of) if wanted(features.rows[row])]
+    rows = [features.rows[row_of[k]] for k in own]
+    roads = [-1 if row.get("road") is None else int(row["road"]) for row in rows]
+    return _Pieces(lines_in_frame([parts[k] for k in own], roads, frame), rows)
+
+
+def _lane_borders(features, frame):
+    """Both borders of every lane: lines 2 k and 2 k + 1 belong to row k."""
+    lanes = Lanes.from_features(features)
+    shapes = [shapely.linestrings(border) for k in range(len(lanes)) for border in lanes.borders(k)]
+    rows = [dict(lane=lanes.lane[k], type=lanes.type[k], direction=lanes.direction[k]) for k in range(len(lanes))]
+    return _Pieces(lines_in_frame(shapes, np.repeat(lanes.road, 2), frame), rows)
+
+
+def _crossings(pieces, road, s):
+    """[(offset, row)] of the lines of a layer at a station."""
+    if pieces is None:
+        return []
+    return [(d, pieces.rows[k]) for d, k in _numbered_crossings(pieces, road, s)]
+
+
+def _numbered_crossings(pieces, road, s):
+    """[(offset, number of the line)] where lines cross the section at a station."""
+    found, lines = [], pieces.lines
+    for k in np.flatnonzero((lines.road == road) & (pieces.low <= s) & (pieces.high >= s)).tolist():
+        here = lines.line(k)
+        along, d = lines.s[here], lines.d[here]
+        step = np.flatnonzero((np.minimum(along[:-1], along[1:]) <= s) & (np.maximum(along[:-1], along[1:]) > s))
+        for j in step[:1].tolist():
+            ahead = along[j + 1] - along[j]
+            if abs(d[j + 1] - d[j]) <= MAX_BORDER_OBLIQUITY * abs(ahead):
+                found.append((float(d[j] + (s - along[j]) / ahead * (d[j + 1] - d[j])), k))
+    return found

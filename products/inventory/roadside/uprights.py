@@ -1,0 +1,387 @@
+"""Upright things in slices across the road: where points stand above each other within a hand's breadth; single poles."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import ndimage
+
+from ....core.common.arrays import Rows
+
+UPRIGHT_SLICE = 0.5              # m along the road
+UPRIGHT_CELL = 0.10              # m across
+HEIGHT_BIN = 0.10        # m
+LOW_BINS = 25            # height bins in which things stand: up to 2.5 m
+TOP_BIN, TOP_BINS = 0.05, 16   # m and number of the bins below the top that tell the kind of a line
+FIRST_BIN = 2            # bins below it (0.2 m) hold grass and curbs
+REACH_CELLS = 1          # cells on either side that belong to the same upright
+BODY_CELLS = 3           # cells on either side whose points describe it
+MIN_BINS = 2             # occupied height bins of an upright
+TOP_SHARE = 0.97         # quantile of heights that is its top: ghosts lie higher
+TALL = 2.3               # m: what reaches higher is measured up to the height that was read
+TALL_BIN = 0.25          # m, bins of tall things
+MAX_LOW_GAP, MAX_TALL_GAP = 2, 5  # unoccupied bins of TALL_BIN, below and above TALL, beyond which something else begins
+UPPER_SIDE = 0.05        # m below its top that the upper side of a thing reaches down to
+MIN_FACE_POINTS = 3      # below that
+SIGHT_MARGIN = 0.10      # m below the line of sight over the top, from which a point was seen through the thing
+TOP_DEPTH = 0.30         # m below the top that a thing's own upper side may lie behind its face
+BEHIND = 0.30, 3.0       # m behind it where points seen through it are counted
+
+
+@dataclass
+class Uprights(Rows):
+    """N uprights.
+
+    slice : (N,) int, number of the slice, counted from station 0
+    d, ground : (N,) m, offset of the face, and local z of the ground at its foot
+    top, foot : (N,) m above the ground
+    below_top : (N, TOP_BINS) number of points in bins counted down from the top
+    thickness : (N,) m across between the 10 % and 90 % quantile of its points
+    batter : (N,) m across per m of height, positive where it leans away from the road
+    points, behind : (N,) number of points on it, and of those seen through it
+    above_view : (N,) bool, may it be higher than what the scanner saw of it?
+    rough : (N,) m across between two points of its face of which one is next above the other, median
+    """
+
+    slice: np.ndarray
+    d: np.ndarray
+    ground: np.ndarray
+    top: np.ndarray
+    foot: np.ndarray
+    below_top: np.ndarray
+    thickness: np.ndarray
+    batter: np.ndarray
+    points: np.ndarray
+    behind: np.ndarray
+    above_view: np.ndarray
+    rough: np.ndarray
+
+    @staticmethod
+    def joined(parts: list[Uprights]) -> Uprights:
+        """All uprights of several parts, sorted by slice and offset."""
+        whole = Uprights.join(parts)
+        return whole[np.lexsort((whole.d, whole.slice))]
+
+    @staticmethod
+    def none() -> Uprights:
+        """No uprights."""
+        empty = np.empty(0)
+        return Uprights(np.empty(0, np.int64), *(empty,) * 4, np.empty((0, TOP_BINS)), *(empty,) * 4, np.empty(0, bool), empty)
+
+
+def find_uprights(s: np.ndarray, d: np.ndarray, above: np.ndarray, ground: np.ndarray, slices: tuple[int, int], side: int,
+                  sight: np.ndarray, min_height: float) -> Uprights:
+    """Uprights of one side of a stretch of road.
+
+    Parameters
+    ----------
+    s, d : (N,) m, stations and offsets of points of that side beyond the carriageway's edge
+    above, ground : (N,) m, heights above the ground, and local z of it
+    slices : (first, last + 1) numbers of the slices
+    side : 1 left, -1 right
+    sight : (N,) m that the line of sight to a point rises for each m across towards the road
+    min_height : m of the top
+    """
+    if not len(s):
+        return Uprights.none()
+    i = np.floor(s / UPRIGHT_SLICE).astype(np.int64) - slices[0]
+    u = side * d
+    origin = np.floor(u.min() / UPRIGHT_CELL) * UPRIGHT_CELL
+    j = np.floor((u - origin) / UPRIGHT_CELL).astype(np.int64)
+    above = np.where(np.isfinite(above), above, -1.0)  # where no ground is known nothing stands on it
+    k = np.floor(above / HEIGHT_BIN).astype(np.int64)
+    rows, columns = slices[1] - slices[0], int(j.max()) + 1
+    inside = (i >= 0) & (i < rows)
+    low = inside & (k >= FIRST_BIN) & (k < LOW_BINS)
+    occupied = np.zeros((rows, columns + 2 * REACH_CELLS, LOW_BINS), bool)
+    occupied[i[low], j[low] + REACH_CELLS, k[low]] = True
+    near = np.any([occupied[:, lag:lag + columns] for lag in range(2 * REACH_CELLS + 1)], axis=0)
+    count, highest = near.sum(axis=2), LOW_BINS - np.argmax(near[:, :, ::-1], axis=2)
+    score = np.where((count >= MIN_BINS) & (highest * HEIGHT_BIN > min_height), count, 0)
+    # the densest of neighbours stands for all; of equals the nearest to the road
+    order = score * 1000.0 - np.arange(columns)
+    peak = score > 0
+    for lag in range(1, BODY_CELLS + 1):
+        peak[:, lag:] &= order[:, lag:] > order[:, :-lag]
+        peak[:, :-lag] &= order[:, :-lag] > order[:, lag:]
+    at = np.argwhere(peak)
+    if not len(at):
+        return Uprights.none()
+    owner = np.full((rows, columns), -1)
+    for lag in sorted(range(-BODY_CELLS, BODY_CELLS + 1), key=abs, reverse=True):
+        beside = at[:, 1] + lag
+        fits = (beside >= 0) & (beside < columns)
+        owner[at[fits, 0], beside[fits]] = np.flatnonzero(fits)
+    body = np.flatnonzero(inside & (above >= FIRST_BIN * HEIGHT_BIN))
+    own = owner[i[body], j[body]]
+    body, own = body[own >= 0], own[own >= 0]
+    if not len(body):
+        return Uprights.none()
+    return _described(at, own, u[body], above[body], (i[inside], u[inside], above[inside], ground[inside], sight[inside]), slices[0], side)
+
+
+def _described(at, own, u, above, everything, first, side):
+    """Uprights at (slice, cell), with `own` the upright that every point of a body belongs to."""
+    n = len(at)
+    order = np.lexsort((above, own))
+    own, u, above = own[order], u[order], above[order]
+    tops = _contiguous_top(own, above, n)
+    # what hangs over it is no part of it
+    part = above <= tops[own] + 1e-6
+    own, u, above = own[part], u[part], above[part]
+    count = np.bincount(own, minlength=n)
+    has = count > 0
+    at, tops, count = at[has], tops[has], count[has]
+    own, n = (np.cumsum(has) - 1)[own], len(at)
+    start = np.cumsum(count) - count
+    down = np.maximum((tops[own] - above) / TOP_BIN, 0.0).astype(np.int64)
+    high = down < TOP_BINS
+    below_top = np.bincount(own[high] * TOP_BINS + down[high], minlength=n * TOP_BINS).reshape(n, TOP_BINS).astype(float)
+    foot = above[start]
+    # the face alone tells how it stands: of a low wall most points lie on its top
+    face = tops[own] - above > UPPER_SIDE
+    face |= (np.bincount(own[face], minlength=n) < MIN_FACE_POINTS)[own]
+    own, u, above = own[face], u[face], above[face]
+    on_face = np.bincount(own, minlength=n)
+    start = np.cumsum(on_face) - on_face
+    by_u = np.lexsort((u, own))
+    ordered = u[by_u]
+    nearest, middle, farthest = (ordered[start + np.rint(share * (on_face - 1)).astype(np.int64)] for share in (0.1, 0.5, 0.9))
+    mean_u, mean_h = (np.bincount(own, values, n) / on_face for values in (u, above))
+    du, dh = u - mean_u[own], above - mean_h[own]
+    batter = np.bincount(own, du * dh, n) / np.maximum(np.bincount(own, dh * dh, n), 1e-6)
+    i, all_u, all_above, all_ground, all_sight = everything
+    ground = _ground_at(at, middle, i, all_u, all_ground)
+    behind = _behind(at, middle, ground + tops, i, all_u, all_above + all_ground, all_sight)
+    return Uprights(at[:, 0] + first, side * middle, ground, tops, foot, below_top, farthest - nearest, batter, count.astype(float), behind,
+                    np.zeros(n, bool), _rough(own, u, n))
+
+
+def _rough(own, u, n):
+    """(N,) m: median step across from one point of an upright to the next higher one; points in order of their owner and height."""
+    step, owner = np.abs(np.diff(u)), own[1:]
+    same = np.diff(own) == 0
+    step, owner = step[same], owner[same]
+    order = np.lexsort((step, owner))
+    count = np.bincount(owner, minlength=n)
+    middle = np.cumsum(count) - count + count // 2
+    return np.where(count > 0, step[order][np.minimum(middle, max(len(step) - 1, 0))], 0.0) if len(step) else np.zeros(n)
+
+
+def _contiguous_top(own, above, n):
+    """(N,) m: the top of what rises from the ground without a gap: of windows in what is tall, of a beam's height in what is not."""
+    levels = int(np.floor(above.max() / TALL_BIN)) + 2 + MAX_TALL_GAP
+    filled = np.zeros((n, levels), bool)
+    filled[own, np.floor(above / TALL_BIN).astype(np.int64)] = True
+    filled[:, :1 + MAX_LOW_GAP] = True
+    low_end, end = (_first_gap(filled, gap) for gap in (MAX_LOW_GAP, MAX_TALL_GAP))
+    end = np.where(low_end * TALL_BIN < TALL, low_end, end) * TALL_BIN
+    part = above < end[own]
+    own, above = own[part], above[part]
+    if not len(above):
+        return np.full(n, FIRST_BIN * HEIGHT_BIN)
+    count = np.bincount(own, minlength=n)
+    start = np.cumsum(count) - count
+    return np.where(count > 0, above[np.minimum(start + np.floor(TOP_SHARE * np.maximum(count - 1, 0)).astype(np.int64), len(above) - 1)],
+                    FIRST_BIN * HEIGHT_BIN)
+
+
+def _first_gap(filled, gap):
+    """(N,) the first level from which more than `gap` levels are empty."""
+    levels = filled.shape[1]
+    empty = np.stack([~filled[:, lag:levels - gap + lag] for lag in range(gap + 1)]).all(axis=0)
+    return np.where(empty.any(axis=1), np.argmax(empty, axis=1), levels)
+
+
+def _ground_at(at, middle, i, u, ground):
+    """(N,) median local z of the ground at the uprights."""
+    key = i * 1e4 + u
+    order = np.argsort(key, kind="stable")
+    place = np.clip(np.searchsorted(key[order], at[:, 0] * 1e4 + middle), 0, len(key) - 1)
+    return ground[order[place]]
+
+
+def _behind(at, middle, tops, i, u, z, sight):
+    """(N,) points seen behind uprights, below the line of sight over their tops; tops and points have local z, for the ground behind may lie
+    higher or lower."""
+    order = np.lexsort((u, i))
+    i, u, z, sight = i[order], u[order], z[order], sight[order]
+    key = i * 1e4 + u
+    first = np.searchsorted(key, at[:, 0] * 1e4 + middle + BEHIND[0])
+    last = np.searchsorted(key, at[:, 0] * 1e4 + middle + BEHIND[1])
+    count = np.maximum(last - first, 0)
+    owner = np.repeat(np.arange(len(at)), count)
+    index = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count) + np.repeat(first, count)
+    passed = z[index] + sight[index] * (u[index] - middle[owner])   # where the pulse passed the upright
+    through = (passed < tops[owner] - SIGHT_MARGIN) & (z[index] < tops[owner] - TOP_DEPTH)
+    return np.bincount(owner[through], minlength=len(at)).astype(float)
+
+
+# Single uprights: poles, signs and trunks.
+
+POLE_CELL = 0.10          # m, of the plan
+POLE_BIN = 0.25           # m of height
+SHAFT = 0.5, 2.0          # m above the ground where a shaft stands free of grass and, mostly, of branches
+MIN_SHAFT_FILLED = 0.6    # share of the height bins of the shaft with points, in every cell of it or beside
+MAX_FOOTPRINT = 0.8       # m of a shaft
+MIN_POLE_POINTS = 20      # on the shaft
+MAX_CIRCLE_MISS = 0.06           # m, median distance of a shaft's points from its circle
+MIN_DIAMETER = 0.03       # m, what a circle may be
+SLENDER = 5.5             # times as high as thick at least: people, bushes and the ends of cars are stouter
+AS_LOW_AS_CARS = 2.0      # m: what is lower stands free, or it is the edge of a vehicle
+FREE_ABOUT = 0.15, 0.60   # m from its shaft, between which little else stands
+MAX_BESIDE = 0.5          # points there for each on the shaft
+WIDER_LEVEL = 1.5         # times the spread of the narrower levels of a shaft, beyond which a level holds a plate or leaves
+HEAD_REACH = 1.5          # m about a shaft in which its head is looked for
+MAX_POLE_GAP = 4          # bins of POLE_BIN without points, beyond which something else begins
+HEAD_CELL = 0.20          # m, of the plan: what is not linked to the shaft by such cells stands behind it
+CROWN_SPREAD = 0.45       # m, standard deviation across of what lies above a trunk's shaft
+TRUNK_DIAMETER = 0.12     # m at least
+PLATE = 0.12, 0.9         # m, standard deviation across of a sign's head (a plate of 0.4 to 3 m); less is a pole
+PLATE_THICKNESS = 0.06    # m, standard deviation of a sign's head through its plate
+MIN_HEAD_POINTS = 15
+
+
+@dataclass(frozen=True)
+class Pole:
+    """One upright thing.
+
+    kind : pole, sign or trunk
+    s, d, z : m, station and offset of its middle, local z of the ground
+    diameter, height : m
+    """
+
+    kind: str
+    s: float
+    d: float
+    z: float
+    diameter: float
+    height: float
+
+
+def find_poles(s: np.ndarray, d: np.ndarray, above: np.ndarray, ground: np.ndarray, own: tuple[float, float], min_height: float) -> list[Pole]:
+    """Poles, signs and trunks of a stretch of road.
+
+    Parameters
+    ----------
+    s, d : (N,) m, stations and offsets of points beside the carriageway, with a margin before and after the stretch
+    above, ground : (N,) m, heights above the ground, and local z of it
+    own : stations (m) between which the middle of a pole must lie: a pole belongs to one stretch
+    min_height : m
+    """
+    low = np.flatnonzero((above > SHAFT[0]) & (above < SHAFT[1]))
+    if len(low) < MIN_POLE_POINTS:
+        return []
+    i, j = (np.floor(v[low] / POLE_CELL).astype(np.int64) for v in (s, d))
+    i, j = i - i.min(), j - j.min()
+    k = np.floor((above[low] - SHAFT[0]) / POLE_BIN).astype(np.int64)
+    levels = int(round((SHAFT[1] - SHAFT[0]) / POLE_BIN))
+    filled = np.zeros((int(i.max()) + 1, int(j.max()) + 1, levels), bool)
+    filled[i, j, np.minimum(k, levels - 1)] = True
+    # a plate or a branch beside the shaft fills some of the levels alone
+    levels_about = ndimage.maximum_filter(filled, size=(3, 3, 1)).mean(axis=2)
+    label, _ = ndimage.label(filled.any(axis=2) & (levels_about >= MIN_SHAFT_FILLED), np.ones((3, 3)))
+    found = []
+    for number, box in enumerate(ndimage.find_objects(label), 1):
+        size = [(side.stop - side.start) * POLE_CELL for side in box]
+        if max(size) > MAX_FOOTPRINT or filled[box][label[box] == number].any(axis=0).mean() < MIN_SHAFT_FILLED:
+            continue
+        rows = low[(label[i, j] == number)]
+        pole = _pole(rows, s, d, above, ground, min_height)
+        if pole is not None and own[0] <= pole.s < own[1]:
+            found.append(pole)
+    return found
+
+
+def _pole(rows, s, d, above, ground, min_height):
+    """The Pole of a shaft's points; None where it is none."""
+    foot = float(above[rows].min())
+    rows = rows[_narrow(s[rows], d[rows], above[rows])]
+    if len(rows) < MIN_POLE_POINTS:
+        return None
+    stands = float(above[rows].min()) < foot + POLE_BIN
+    place = np.c_[s[rows], d[rows]]
+    centre, radius = _circle(place)
+    miss = np.abs(np.hypot(*(place - centre).T) - radius)
+    if np.median(miss) > MAX_CIRCLE_MISS or 2 * radius > MAX_FOOTPRINT:
+        return None
+    near = np.flatnonzero((np.abs(s - centre[0]) < HEAD_REACH) & (np.abs(d - centre[1]) < HEAD_REACH))
+    ring = np.hypot(s[near] - centre[0], d[near] - centre[1])
+    height = _top(above[near][ring < max(2 * radius, 0.25)])
+    # people are slender at the head alone
+    if height < max(min_height, SLENDER * 2 * radius) or height < AS_LOW_AS_CARS and not stands:
+        return None
+    beside = (above[near] > SHAFT[0]) & (above[near] < height) & (ring > radius + FREE_ABOUT[0]) & (ring < radius + FREE_ABOUT[1])
+    if height < AS_LOW_AS_CARS and beside.sum() > MAX_BESIDE * len(rows):
+        return None
+    head = near[(above[near] > SHAFT[1] - 0.5) & (above[near] < height + HEAD_REACH) & (ring < HEAD_REACH) & (ring > 2 * radius)]
+    kind = _head_kind(_linked(np.c_[s[head], d[head]] - centre, radius), 2 * radius)
+    return Pole(kind, float(centre[0]), float(centre[1]), float(np.median(ground[rows])), float(max(2 * radius, MIN_DIAMETER)), float(height))
+
+
+def _narrow(s, d, above):
+    """(N,) bool, which points of a shaft lie at levels where it is as narrow as it mostly is."""
+    level = np.floor((above - SHAFT[0]) / POLE_BIN).astype(np.int64)
+    count = np.bincount(level)
+    n = np.maximum(count, 1)
+    spread = np.sqrt(sum(np.maximum(np.bincount(level, v * v) / n - (np.bincount(level, v) / n) ** 2, 0.0) for v in (s - s.mean(), d - d.mean())))
+    narrow = np.quantile(spread[count > 1], 0.25) if (count > 1).any() else 0.0
+    return (spread <= WIDER_LEVEL * narrow + 0.01)[level]
+
+
+def _linked(head, radius):
+    """Those of (N, 2) places about a shaft that hang together with it."""
+    if not len(head):
+        return head
+    middle = int(np.ceil(HEAD_REACH / HEAD_CELL)) + 1
+    cell = np.floor(head / HEAD_CELL + 0.5).astype(np.int64) + middle
+    filled = np.zeros((2 * middle + 1,) * 2, bool)
+    filled[cell[:, 0], cell[:, 1]] = True
+    own = int(np.ceil(radius / HEAD_CELL))
+    filled[middle - own:middle + own + 1, middle - own:middle + own + 1] = True
+    label, _ = ndimage.label(filled, np.ones((3, 3)))
+    return head[label[cell[:, 0], cell[:, 1]] == label[middle, middle]]
+
+
+def _head_kind(head, diameter):
+    """What a shaft carries."""
+    if len(head) < MIN_HEAD_POINTS:
+        return "pole"
+    spread = np.sqrt(np.linalg.eigvalsh(np.cov(head.T)))
+    if diameter > TRUNK_DIAMETER and spread[0] > 0.5 * CROWN_SPREAD and spread[1] > CROWN_SPREAD:
+        return "trunk"
+    return "sign" if spread[0] < PLATE_THICKNESS and PLATE[0] < spread[1] < PLATE[1] else "pole"
+
+
+def _top(above):
+    """m: top of what rises without a gap."""
+    if not len(above):
+        return 0.0
+    filled = np.zeros(int(above.max() / POLE_BIN) + MAX_POLE_GAP + 2, bool)
+    filled[np.maximum(np.floor(above / POLE_BIN), 0).astype(np.int64)] = True
+    filled[:int(SHAFT[1] / POLE_BIN)] = True
+    empty = np.convolve(~filled, np.ones(MAX_POLE_GAP, int), "valid") == MAX_POLE_GAP
+    end = (int(np.argmax(empty)) if empty.any() else len(filled)) * POLE_BIN
+    return float(above[above < end].max(initial=0.0))
+
+
+def _circle(place):
+    """(centre, radius) of the circle through points that may lie on one side of it.
+
+    The radius is that of Taubin's fit, which an arc seen from one side does not make smaller than it is; a thin pole, whose points
+    lie within the noise, has the radius of their scatter.
+    """
+    middle = place.mean(axis=0)
+    x, y = (place - middle).T
+    w = x * x + y * y
+    mean = w.mean()
+    design = np.c_[(w - mean) / (2.0 * np.sqrt(max(mean, 1e-12))), x, y]
+    _, _, v = np.linalg.svd(design, full_matrices=False)
+    a = v[2] / np.array([2.0 * np.sqrt(max(mean, 1e-12)), 1.0, 1.0])
+    if abs(a[0]) > 1e-9:
+        centre = -a[1:] / (2.0 * a[0])
+        radius = float(np.sqrt(max(centre @ centre + mean, 0.0)))
+        if radius < MAX_FOOTPRINT and np.hypot(*centre) < MAX_FOOTPRINT:
+            return middle + centre, radius
+    return middle, float(np.sqrt(mean))

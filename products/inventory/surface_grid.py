@@ -1,0 +1,426 @@
+"""Heights of the road in cells along and across it, apart for every pass and scanner; their errors, and rut depths."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy import sparse
+from scipy.sparse.linalg import spsolve
+
+from ...core.common.arrays import order_by
+from ...core.road.common.pseudo_scanlines import lowest_layers
+from ...core.survey.frame.passes import Pass
+
+if TYPE_CHECKING:
+    from ...core.survey.store.records import Points
+    from ...core.survey.survey import Survey
+
+SLICE_LENGTH = 1.0        # m along the road over which a transverse profile is averaged
+CROSS_CELL = 0.05       # m across the road
+ROAD_REACH = 1.5        # m above and below the expected road within which its surface is looked for
+ROAD_LAYER_JUMP = 0.05  # m of height between two layers of one cell: the lower one is the road
+SCATTER_POINTS = 4        # of a cell, to say how points scatter about its median
+SPREAD_SAMPLE = 400       # cells whose scatter tells the noise of a pass and scanner
+
+
+@dataclass(frozen=True)
+class SurfaceGrid:
+    """Heights of a stretch of road in I slices along it and J cells across it, of G groups (pass and scanner).
+
+    road : number
+    start, origin : m, station of the first slice and offset of the first cell
+    base, slope : m and m/m, the straight line that heights count from: base + slope * (station - start)
+    groups : G pairs (pass number, scanner)
+    height : (G, I, J) m above the line, median of the lowest layer at the middle of the slice; NaN where there is none
+    count : (G, I, J) points of the lowest layer
+    sigma : (G,) m, scatter of a single point about the surface
+    """
+
+    road: int
+    start: float
+    origin: float
+    base: float
+    slope: float
+    groups: list[tuple[int, int]]
+    height: np.ndarray
+    count: np.ndarray
+    sigma: np.ndarray
+
+    @property
+    def d(self) -> np.ndarray:
+        """(J,) offsets of the middles of the cells, m."""
+        return self.origin + (np.arange(self.height.shape[2]) + 0.5) * CROSS_CELL
+
+    @property
+    def s(self) -> np.ndarray:
+        """(I,) stations of the middles of the slices, m."""
+        return self.start + (np.arange(self.height.shape[1]) + 0.5) * SLICE_LENGTH
+
+    def line(self, s: np.ndarray) -> np.ndarray:
+        """Local z of the line that heights count from, (N,) m at (N,) stations."""
+        return self.base + self.slope * (np.asarray(s) - self.start)
+
+
+def surface_grid(survey: Survey, road: int, start: float, slices: int, offsets: tuple[float, float]) -> SurfaceGrid:
+    """Read a stretch of road.
+
+    Parameters
+    ----------
+    survey : Survey
+    road : number
+    start : m, station of the first slice
+    slices : number of slices, SLICE_LENGTH each
+    offsets : (right, left) m between which the road is looked at
+    """
+    end = start + slices * SLICE_LENGTH
+    first, last = survey.road_height(road, np.array([start, end]))
+    slope = float(last - first) / (end - start)
+    points = survey.window(road, start, end)
+    d = points.d
+    near = np.flatnonzero((d >= offsets[0]) & (d < offsets[1]))
+    return _grid_of_points(points[near], road, start, slices, offsets, float(first), slope)
+
+
+def _grid_of_points(points: Points, road: int, start: float, slices: int, offsets: tuple[float, float], base: float,
+                   slope: float) -> SurfaceGrid:
+    """SurfaceGrid of points.
+
+    Parameters
+    ----------
+    points : (N,) Points of the stretch
+    road, start, slices, offsets : as in `surface_grid`
+    base, slope : m and m/m, the line that heights count from
+    """
+    columns = max(int(np.ceil((offsets[1] - offsets[0]) / CROSS_CELL)), 1)
+    s, d = points.s, points.d
+    h = points.z - base - slope * (s - start)
+    i = np.floor((s - start) / SLICE_LENGTH).astype(np.int64)
+    j = np.floor((d - offsets[0]) / CROSS_CELL).astype(np.int64)
+    inside = np.flatnonzero((i >= 0) & (i < slices) & (j >= 0) & (j < columns) & (np.abs(h) < ROAD_REACH))
+    place, h, s = (i * columns + j)[inside], h[inside], s[inside]
+    order = order_by(np.rint((h + ROAD_REACH) * 1e4).astype(np.int32), place)
+    place, h, s, inside = place[order], h[order], s[order], inside[order]
+    ground = np.flatnonzero(lowest_layers(place, h, ROAD_LAYER_JUMP)[0])
+    place, h, s, inside = place[ground], h[ground], s[ground], inside[ground]
+    key = points.pass_number[inside].astype(np.int64) << 8 | points.scanner[inside]
+    values, group = np.unique(key, return_inverse=True)
+    groups = [(int(value) >> 8, int(value) & 255) for value in values]
+    shape = (len(groups), slices, columns)
+    height, count, sigma = np.full(shape, np.nan), np.zeros(shape, np.int32), np.zeros(len(groups))
+    ahead = s - start - (place // columns + 0.5) * SLICE_LENGTH
+    cell = group.ravel() * (slices * columns) + place
+    h = h - _slope_within(cell, ahead, h) * ahead
+    order = order_by(np.rint((h + 2 * ROAD_REACH) * 1e4).astype(np.int32), cell)
+    cell, h = cell[order], h[order]
+    first = np.flatnonzero(np.r_[True, np.diff(cell) > 0]) if len(cell) else np.empty(0, np.int64)
+    n = np.diff(np.r_[first, len(cell)])
+    middle = 0.5 * (h[first + (n - 1) // 2] + h[first + n // 2])
+    owner = cell[first]
+    count.flat[owner] = n
+    height.flat[owner] = middle
+    off = np.abs(h - np.repeat(middle, n))
+    of = cell // (slices * columns)
+    rich = np.repeat(n, n) >= SCATTER_POINTS
+    for g in range(len(groups)):
+        own = off[(of == g) & rich]
+        # mean absolute deviation of a normal distribution: sigma * sqrt(2 / pi), a median's own n costs one degree of freedom
+        sigma[g] = np.sqrt(np.pi / 2) * float(np.minimum(own, ROAD_LAYER_JUMP).mean()) if len(own) else 0.0
+    return SurfaceGrid(road, start, offsets[0], base, slope, groups, height, count, sigma)
+
+
+def _slope_within(cell, ahead, h):
+    """Slope along the road that the points of the cells have in common, beyond that of the line."""
+    if len(cell) < SPREAD_SAMPLE:
+        return 0.0
+    _, of, n = np.unique(cell, return_inverse=True, return_counts=True)
+    of = of.ravel()
+    x, y = (v - (np.bincount(of, v) / n)[of] for v in (ahead, h))
+    near = np.abs(y) < ROAD_LAYER_JUMP
+    return float((x[near] * y[near]).sum() / max((x[near] ** 2).sum(), 1e-9))
+
+
+# Errors in height that passes and scanners show against each other, estimated where they overlap.
+#
+# A scanner that is mounted, or a vehicle that is levelled, a little wrong measures the road too high by a constant and tilted across: ``e = a + b
+# (d - t)``, with d the offset of a point and t that of the vehicle. Steps and differences in tilt between two groups (pass and scanner) are
+# measured where both saw the road. The tilt has a part that stays with the scanner on its vehicle (boresight): it changes sides with the direction
+# of driving, so passes in opposite directions reveal it, and no others do.
+
+MIN_OVERLAP_CELLS = 40         # cells of a window that two groups share, for a step between them
+MIN_OVERLAP_POINTS = 3         # of either group in such a cell
+MIN_OVERLAP_WIDTH = 1.0        # m across over which they are shared, for a difference in tilt
+MAX_STEP = 0.05                # m: what lies farther apart is not the same surface
+STEP_SIGMA = 0.0005            # m, of a measured step: texture that the two beams see differently
+TILT_SIGMA = 0.0003            # m/m, of a measured difference in tilt over MIN_OVERLAP_WIDTH
+STEP_PRIOR, STEP_CHANGE = 0.05, 0.001      # m, the error of a group, and its change from window to window (navigation)
+TILT_PRIOR, TILT_CHANGE = 0.0005, 0.0001   # m/m, the same of the tilt: 0.03 degrees of roll, slowly drifting
+BORESIGHT_PRIOR = 0.01         # m/m, of a scanner's tilt on its vehicle
+STEP_OUTLIER = 0.002           # m of residual at which a step has half its weight (Cauchy)
+REWEIGHTINGS = 4
+OPPOSITE_WINDOWS = 3           # windows in which opposite passes overlap, before their common tilt counts as known
+
+
+@dataclass(frozen=True)
+class Overlap:
+    """What two groups differ by in one window: one less the other.
+
+    window : number
+    one, other : groups (pass number, scanner)
+    at : m, offset at which the step counts
+    step : m
+    tilt : m/m across, NaN where the overlap is too narrow
+    width : m across that both saw
+    station : m, the middle of the window
+    """
+
+    window: int
+    one: tuple[int, int]
+    other: tuple[int, int]
+    at: float
+    step: float
+    tilt: float
+    width: float
+    station: float
+
+
+@dataclass
+class HeightErrors:
+    """Errors of every group in every window.
+
+    windows : (W,) m, ascending, middles of the windows
+    groups : {(pass number, scanner): row}
+    step, tilt : (G, W) m and m/m: error = step + tilt * (d - offset of the vehicle)
+    opposite : whether passes in opposite directions revealed the common tilt
+    largest_step : m, the median over the windows of the largest step between two groups
+    """
+
+    windows: np.ndarray = field(default_factory=lambda: np.empty(0))
+    groups: dict[tuple[int, int], int] = field(default_factory=dict)
+    step: np.ndarray = field(default_factory=lambda: np.empty((0, 0)))
+    tilt: np.ndarray = field(default_factory=lambda: np.empty((0, 0)))
+    opposite: bool = False
+    largest_step: float = 0.0
+
+    def of(self, group: tuple[int, int], s: np.ndarray, across: np.ndarray) -> np.ndarray:
+        """Error of a group, (N,) m, at (N,) stations and `across` m left of its vehicle; 0 where nothing is known of it."""
+        row = self.groups.get(group)
+        if row is None or not len(self.windows):
+            return np.zeros(np.shape(across))
+        return np.interp(s, self.windows, self.step[row]) + np.interp(s, self.windows, self.tilt[row]) * across
+
+
+def overlaps_of(grid: SurfaceGrid, window: int) -> list[Overlap]:
+    """Steps and differences in tilt between the groups of a grid."""
+    found = []
+    station = float(grid.s.mean())
+    for a in range(len(grid.groups)):
+        for b in range(a + 1, len(grid.groups)):
+            apart = grid.height[a] - grid.height[b]
+            _, j = shared = np.nonzero((np.abs(apart) < MAX_STEP) & (np.minimum(grid.count[a], grid.count[b]) >= MIN_OVERLAP_POINTS))
+            if len(j) < MIN_OVERLAP_CELLS:
+                continue
+            values, d = apart[shared], grid.d[j]
+            at, width = float(d.mean()), float(np.ptp(d)) + CROSS_CELL
+            step, tilt = _line(d - at, values)
+            found.append(Overlap(window, grid.groups[a], grid.groups[b], at, step, tilt if width >= MIN_OVERLAP_WIDTH else np.nan, width, station))
+    return found
+
+
+def _line(x, y):
+    """Height at 0 and slope of the line through (N,) values, robust against what only one group saw."""
+    weight = np.ones(len(x))
+    for _ in range(REWEIGHTINGS):
+        mean = np.average(x, weights=weight), np.average(y, weights=weight)
+        slope = (weight * (x - mean[0]) * (y - mean[1])).sum() / max((weight * (x - mean[0]) ** 2).sum(), 1e-9)
+        level = mean[1] - slope * mean[0]
+        off = y - level - slope * x
+        weight = 1.0 / (1.0 + (off / max(2.0 * float(np.median(np.abs(off))), STEP_SIGMA)) ** 2)
+    return float(level), float(slope)
+
+
+def solve_height_errors(overlaps: Iterable[Overlap], passes: list[Pass]) -> HeightErrors:
+    """The errors that explain the overlaps best: least squares with the priors above, robust against single windows.
+
+    Parameters
+    ----------
+    overlaps : of one road
+    passes : all passes of the survey, by number
+
+    Returns
+    -------
+    HeightErrors; without overlaps, an empty one
+    """
+    overlaps = list(overlaps)
+    if not overlaps:
+        return HeightErrors()
+    groups = sorted({group for one in overlaps for group in (one.one, one.other)})
+    scanners = sorted({scanner for _, scanner in groups})
+    numbers, place = np.unique([one.window for one in overlaps], return_inverse=True)
+    stations = np.zeros(len(numbers))
+    stations[place.ravel()] = [one.station for one in overlaps]
+    G, W = len(groups), len(numbers)
+    direction = np.array([passes[number].direction for number, _ in groups])
+    track = np.array([passes[number].at_station(stations)[0] for number, _ in groups])
+    steps, tilts, boresight = 0, G * W, 2 * G * W   # where the unknowns of each kind begin
+    rows: list[tuple[list[int], list[float], float, float]] = []  # columns, factors, value, sigma
+    for one, w in zip(overlaps, place.ravel().tolist()):
+        a, b = groups.index(one.one), groups.index(one.other)
+        level: tuple[list[int], list[float]] = ([], [])
+        tilt: tuple[list[int], list[float]] = ([], [])
+        for g, sign in ((a, 1.0), (b, -1.0)):
+            arm = one.at - track[g, w]
+            columns = [steps + g * W + w, tilts + g * W + w, boresight + scanners.index(groups[g][1])]
+            level[0].extend(columns)
+            level[1].extend([sign, sign * arm, sign * arm * direction[g]])
+            tilt[0].extend(columns[1:])
+            tilt[1].extend([sign, sign * direction[g]])
+        rows.append((*level, one.step, STEP_SIGMA))
+        if np.isfinite(one.tilt):
+            rows.append((*tilt, one.tilt, TILT_SIGMA * max(MIN_OVERLAP_WIDTH / one.width, 0.2)))
+    size = 2 * G * W + len(scanners)
+    of = np.repeat(np.arange(len(rows)), [len(row[0]) for row in rows])
+    design = sparse.csr_matrix((np.concatenate([row[1] for row in rows]), (of, np.concatenate([row[0] for row in rows]))), (len(rows), size))
+    value, sigma = (np.array([row[k] for row in rows]) for k in (2, 3))
+    prior = _prior(G, W, len(scanners))
+    weight, x = np.ones(len(rows)), np.zeros(size)
+    for _ in range(REWEIGHTINGS):
+        precision = sparse.diags(weight / sigma**2)
+        x = spsolve((design.T @ precision @ design + prior).tocsc(), design.T @ (precision @ value))
+        weight = 1.0 / (1.0 + ((design @ x - value) / (STEP_OUTLIER / STEP_SIGMA * sigma)) ** 2)
+    own = x[boresight + np.searchsorted(scanners, [scanner for _, scanner in groups])]
+    tilt_of = x[tilts:boresight].reshape(G, W) + (direction * own)[:, None]
+    opposite = {one.window for one in overlaps if passes[one.one[0]].direction != passes[one.other[0]].direction and np.isfinite(one.tilt)}
+    largest = np.zeros(W)
+    np.maximum.at(largest, place.ravel(), np.abs([one.step for one in overlaps]))
+    return HeightErrors(stations, {group: g for g, group in enumerate(groups)}, x[:tilts].reshape(G, W), tilt_of,
+                        len(opposite) >= OPPOSITE_WINDOWS, float(np.median(largest)))
+
+
+def _prior(G, W, S):
+    """The normal matrix of what is known beforehand."""
+    change = sparse.diags([-np.ones(W), np.ones(W)], [0, 1], shape=(max(W - 1, 0), W))
+    parts = [sparse.kron(sparse.identity(G), sparse.identity(W) / prior**2 + change.T @ change / drift**2)
+             for prior, drift in ((STEP_PRIOR, STEP_CHANGE), (TILT_PRIOR, TILT_CHANGE))]
+    return sparse.block_diag([*parts, sparse.identity(S) / BORESIGHT_PRIOR**2])
+
+
+# Rut depth under a straight edge.
+
+EDGE_LENGTH = 2.0           # m of the straight edge (EN 13036-7)
+EDGE_STEP = 0.10            # m between the places where it is laid
+SMOOTHING_CELLS = 3         # cells of the profile that are averaged: less than the width of a tyre
+# slopes against the profile's own of the lines that make its upper hull, m/m: fine where most lie, 0.5 mm of depth at most; coarse up to those of
+# the steepest ridges, where a road falls to both sides by as much as it may anywhere (8 %), since there an edge laid askew would show a rut
+FINE_SLOPE, FINE_STEP = 0.03, 0.001
+STEEPEST, COARSE_STEP = 0.18, 0.005
+MAX_STEP_PER_CELL = 0.02    # m from one cell to the next: more is a curb or an island, on which no edge is laid
+MAX_GAP_CELLS = 3           # unseen cells that the edge may bridge
+MIN_SEEN = 0.8              # share of the cells under the edge that must be measured
+WHEEL_REACH = 0.3           # m that the edge may reach beyond the lane, where the carriageway goes on
+
+
+def rut_depths(d: np.ndarray, profiles: np.ndarray, lane: tuple[float, float], carriageway: tuple[float, float],
+               sigma: np.ndarray) -> np.ndarray:
+    """Rut depth of the two wheel paths of a lane: the greatest distance of the profile below the straight edge, less what noise adds.
+
+    The edge is laid over the profile everywhere within the lane. It rests on the upper convex hull of what is under it. Noise lifts the
+    largest of n distances by about ``sigma sqrt(2 ln n)``, with sigma that of a smoothed cell, which is subtracted.
+
+    Parameters
+    ----------
+    d : (J,) m, offsets of the cells, CROSS_CELL apart, ascending
+    profiles : (I, J) m, heights of I profiles; NaN where the road was not seen
+    lane, carriageway : (right, left) m, between whose borders the edge is laid
+    sigma : (I,) m, of the height of one cell
+
+    Returns
+    -------
+    (2, I) m, >= 0, of the right and the left wheel path, seen along the road; NaN where the profile has gaps
+
+    References
+    ----------
+    Straight edge: EN 13036-7. Largest of n normal deviates: sigma sqrt(2 ln n), an upper bound of its expectation.
+    """
+    count = int(round(EDGE_LENGTH / CROSS_CELL)) + 1
+    low = max(lane[0] - WHEEL_REACH, carriageway[0])
+    high = min(lane[1] + WHEEL_REACH, carriageway[1])
+    smooth = smoothed(profiles)
+    found = np.full((2, len(profiles)), np.nan)
+    first, last = int(np.searchsorted(d, low)), int(np.searchsorted(d, high)) - count
+    if last < first:
+        return found
+    middle = 0.5 * (lane[0] + lane[1])
+    broken = _breaks(profiles)
+    for start in range(first, last + 1, max(int(round(EDGE_STEP / CROSS_CELL)), 1)):
+        under, heights = d[start:start + count], smooth[:, start:start + count]
+        known = np.isfinite(heights)
+        depth = _hull_height(under, heights) - heights
+        depth[(known.mean(axis=1) < MIN_SEEN) | broken[:, start:start + count].any(axis=1)] = np.nan
+        for half, own in enumerate((under < middle, under >= middle)):
+            if own.any():
+                found[half] = np.fmax(found[half], np.where(known[:, own], depth[:, own], -np.inf).max(axis=1) + np.where(
+                    np.isfinite(depth).any(axis=1), 0.0, np.nan))
+    found[~np.isfinite(found)] = np.nan
+    return np.maximum(found - noise_of_largest(sigma), 0.0)
+
+
+def _breaks(profiles):
+    """(I, J) whether the road breaks off beside a cell: at a step up or down, or where too many cells are unseen."""
+    found = np.zeros(profiles.shape, bool)
+    for lag in range(1, MAX_GAP_CELLS + 2):
+        apart = np.abs(profiles[:, lag:] - profiles[:, :-lag])
+        found[:, :profiles.shape[1] - lag] |= apart > MAX_STEP_PER_CELL * lag
+    unseen = np.cumsum(np.pad(np.isnan(profiles), ((0, 0), (1, MAX_GAP_CELLS + 1)), constant_values=False), axis=1)
+    return found | (unseen[:, MAX_GAP_CELLS + 1:-1] - unseen[:, :-MAX_GAP_CELLS - 2] > MAX_GAP_CELLS)
+
+
+def noise_of_largest(sigma: np.ndarray) -> np.ndarray:
+    """(I,) m that noise of (I,) m in every cell adds to the largest distance below the edge."""
+    independent = EDGE_LENGTH / (SMOOTHING_CELLS * CROSS_CELL)
+    return np.asarray(sigma) / np.sqrt(SMOOTHING_CELLS) * np.sqrt(2.0 * np.log(independent))
+
+
+def smoothed(profiles: np.ndarray) -> np.ndarray:
+    """(I, J) means over SMOOTHING_CELLS neighbours, across gaps of up to MAX_GAP_CELLS; NaN at wider ones."""
+    filled = _bridged(profiles)
+    reach = SMOOTHING_CELLS // 2
+    padded = np.pad(filled, ((0, 0), (reach, reach)), constant_values=np.nan)
+    means = np.lib.stride_tricks.sliding_window_view(padded, SMOOTHING_CELLS, axis=1).mean(axis=2)
+    return np.where(np.isnan(means), filled, means)
+
+
+def _bridged(profiles):
+    """Profiles whose short gaps are filled along straight lines."""
+    columns = np.arange(profiles.shape[1])
+    known = np.isfinite(profiles)
+    before = np.maximum.accumulate(np.where(known, columns, -1), axis=1)
+    after = np.minimum.accumulate(np.where(known, columns, profiles.shape[1])[:, ::-1], axis=1)[:, ::-1]
+    gap = ~known & (before >= 0) & (after < profiles.shape[1]) & (after - before <= MAX_GAP_CELLS + 1)
+    i, j = np.nonzero(gap)
+    low, high = before[i, j], after[i, j]
+    filled = profiles.copy()
+    filled[i, j] = profiles[i, low] + (j - low) / (high - low) * (profiles[i, high] - profiles[i, low])
+    return filled
+
+
+def _hull_height(x: np.ndarray, heights: np.ndarray) -> np.ndarray:
+    """(I, K) upper convex hull of I profiles at (K,) x: the lowest of the lines of all slopes that lie on top of a profile.
+
+    NaN heights carry nothing. A profile without heights gives -inf.
+    """
+    known = np.isfinite(heights)
+    at = x - x.mean()
+    level = np.where(known, heights, 0.0)
+    n = np.maximum(known.sum(axis=1), 1)
+    mean_x, mean_z = (known * at).sum(axis=1) / n, level.sum(axis=1) / n
+    off = np.where(known, at - mean_x[:, None], 0.0)
+    own = (off * level).sum(axis=1) / np.maximum((off**2).sum(axis=1), 1e-9)
+    flat = np.where(known, heights - mean_z[:, None] - own[:, None] * (at - mean_x[:, None]), -np.inf)
+    steep = np.arange(FINE_SLOPE + COARSE_STEP, STEEPEST + COARSE_STEP / 2, COARSE_STEP)
+    slopes = np.r_[-steep, np.arange(-FINE_SLOPE, FINE_SLOPE + FINE_STEP / 2, FINE_STEP), steep]
+    top = (flat[:, None, :] - slopes[:, None] * at).max(axis=2)
+    hull = (top[:, :, None] + slopes[:, None] * at).min(axis=1)
+    return hull + mean_z[:, None] + own[:, None] * (at - mean_x[:, None])

@@ -1,0 +1,370 @@
+"""An image and its control points: the polynomial between them, its residuals, and warnings about its reliability."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+import shapely
+
+from ...core.common.errors import RoadExtractionError
+from ...core.common.features import RESIDUALS, Features
+from ...core.common.setting import check_limits, setting
+from .control_points import CONTROL, REQUIRED_COLUMNS, ControlPoints
+from .polynomial import (
+    COLLINEAR_RATIO,
+    MIN_CONTROL_POINTS,
+    MIN_INVERSE_CONDITION,
+    ControlPointFit,
+    fit_image_polynomial,
+    fit_shift,
+    inverse_condition,
+    principal_extents,
+)
+from .source_image import SourceImage
+
+EXTRAPOLATIONS = ("automatic", "draw", "leave-out")  # of the image outside the hull of the control points
+RESAMPLINGS = ("bilinear", "nearest", "cubic")
+_SUFFICIENT_RATIO = 1.5  # times the smallest number of points: with fewer, residuals are much smaller than the errors
+_MISFIT_RESIDUAL = 5.0   # studentised residual from which a point is reported
+_NOTED_OUTSIDE_SHARE = 0.05  # of the image outside the hull of the control points, from which it is reported
+_OUTLINE_PLACES = 200    # places along the outline of the image
+_MIN_POINT_ERROR = 0.1   # pixels: no control point is more accurate
+_MAX_MISFITS = 3         # points reported as misfits
+_MAX_SCALE_ERROR = 0.01  # of the scale of the map projection, above which it is reported
+
+
+@dataclass(frozen=True)
+class GeoreferenceSettings:
+    """How the image is georeferenced and drawn.
+
+    Attributes
+    ----------
+    order : of the polynomial, 1 to 3; 0 is a shift
+    pixel_size : m, of the result (and of the image, for a shift of an image without position); 0 = as the image
+    extrapolation : what is drawn of the image outside the hull of the control points: "draw", "leave-out" or
+        "automatic", which leaves it out at order 3
+    resampling : "bilinear", "nearest" or "cubic"
+    check_disabled : whether disabled points are used as check points
+    """
+
+    order: int = setting(2, 0, 3, "The order of the polynomial")
+    pixel_size: float = setting(0.0, 0.0, 999.0, "The pixel size", "m")
+    extrapolation: str = "automatic"
+    resampling: str = "bilinear"
+    check_disabled: bool = False
+
+    def __post_init__(self):
+        """Check the limits of all settings, and the texts of the choices."""
+        check_limits(self)
+        if self.order not in (0, 1, 2, 3):
+            raise RoadExtractionError(f"The order of the polynomial is {self.order}; it must be 0 (a shift), 1, 2 or 3.")
+        for name, known in (("extrapolation", EXTRAPOLATIONS), ("resampling", RESAMPLINGS)):
+            if getattr(self, name) not in known:
+                raise RoadExtractionError(f"{name.capitalize()} {getattr(self, name)!r} is not known. Choose one of: {', '.join(known)}.")
+
+
+@dataclass(frozen=True)
+class Georeferencing:
+    """The result of `georeference` for N points.
+
+    Attributes
+    ----------
+    image, points, settings : as given; disabled points used as check points have the role "check"
+    fit : ControlPointFit of the control points
+    pixel_size : m, of the image to be drawn
+    hull : shapely polygon around the control points in pixel and line; None for a shift
+    outside : 0 to 1, share of the area of the image outside the hull
+    cut : whether only the hull is drawn
+    errors : (N, 2) m, map coordinates of every point minus those of the polynomial
+    left_out : (N, 2) m, the same where the point is left out of the fit; NaN where the other points are not enough
+    notes : warnings for the user, one sentence each
+    """
+
+    image: SourceImage
+    points: ControlPoints
+    settings: GeoreferenceSettings
+    fit: ControlPointFit
+    pixel_size: float
+    hull: shapely.Geometry | None
+    outside: float
+    cut: bool
+    errors: np.ndarray
+    left_out: np.ndarray
+    notes: list[str] = field(default_factory=list)
+
+    def rmse(self, role: str = CONTROL) -> float:
+        """Root mean square of the lengths of the residuals of a role, m: sqrt(sum(dx^2 + dy^2) / n); NaN without points."""
+        return _rmse(self.errors[self.points.having(role)])
+
+    @property
+    def left_out_rmse(self) -> float:
+        """The same of the leave-one-out residuals of the control points, m; NaN where one of them cannot be computed."""
+        return _rmse(self.left_out[self.points.having(CONTROL)])
+
+
+def _rmse(vectors):
+    """Root mean square of the lengths of vectors, NaN without any."""
+    return float(np.sqrt(np.mean(np.sum(vectors**2, axis=1)))) if len(vectors) else float("nan")
+
+
+def georeference(image: SourceImage, points: ControlPoints, settings: GeoreferenceSettings | None = None) -> Georeferencing:
+    """Fit a polynomial to control points and assess it.
+
+    Parameters
+    ----------
+    image : SourceImage
+    points : ControlPoints in a projected CRS in metres, or in local metres
+    settings : GeoreferenceSettings
+
+    Returns
+    -------
+    Georeferencing
+
+    Raises
+    ------
+    RoadExtractionError
+        If there are fewer than 1, 3, 6, 10 control points for order 0, 1, 2, 3; if they lie on a line or do not determine
+        the polynomial; if the polynomial mirrors or folds the image; if the CRS is not in metres; or if the image of
+        a shift has no position.
+    """
+    from ...core.io.crs import check_metric, parse_crs
+
+    settings = settings or GeoreferenceSettings()
+    if settings.check_disabled:
+        points = points.with_disabled_as_checks()
+    if points.crs:
+        check_metric(parse_crs(points.crs), "The set of control points")
+    used = points.having(CONTROL)
+    pixel, line, easting, northing = (getattr(points, name)[used] for name in REQUIRED_COLUMNS)
+    _enough(len(used), len(points), settings.order)
+    if settings.order == 0:
+        fit = fit_shift(pixel, line, easting, northing, _rough_position(image, points, settings))
+    else:
+        _well_spread(pixel, line, easting, northing, settings.order)
+        fit = fit_image_polynomial(pixel, line, easting, northing, settings.order)
+    hull = shapely.convex_hull(shapely.multipoints(np.column_stack([pixel, line]))) if settings.order else None
+    frame = shapely.box(0, 0, image.width, image.height)
+    outside = 1.0 - hull.intersection(frame).area / frame.area if hull is not None else 0.0
+    cut = settings.order > 0 and (settings.extrapolation == "leave-out"
+                                  or (settings.extrapolation == "automatic" and settings.order == 3))
+    _unfolded(fit, frame if hull is None or not cut else hull.intersection(frame), hull, points, used, settings.order)
+    easting, northing = fit.polynomial.to_map(points.pixel, points.line)
+    errors = np.column_stack([points.easting - easting, points.northing - northing])
+    left_out = errors.copy()
+    left_out[used] = fit.left_out
+    size = settings.pixel_size or _two_digits(own_pixel_size(fit, hull or frame))
+    found = Georeferencing(image, points, settings, fit, size, hull, outside, cut, errors, left_out)
+    found.notes.extend(_notes(found))
+    return found
+
+
+def residual_vectors(found: Georeferencing) -> Features:
+    """Residuals of the control and check points as vectors on the map, in their true length.
+
+    Parameters
+    ----------
+    found : Georeferencing
+
+    Returns
+    -------
+    Features RESIDUALS: LineStringZ from the place of a point by the polynomial to its measured place
+    """
+    from shapely import LineString
+
+    points, errors = found.points, found.errors
+    leverage = np.full(len(points), np.nan)
+    leverage[points.having(CONTROL)] = found.fit.leverage
+    layer = Features("LineStringZ", RESIDUALS, crs=points.crs)
+    heights = np.nan_to_num(points.height)
+    for k in range(len(points)):
+        end = np.array([points.easting[k], points.northing[k]])
+        start = end - errors[k]
+        layer.add(LineString([(*start, heights[k]), (*end, heights[k])]), point=points.names[k], role=points.roles[k],
+                  pixel=points.pixel[k], line=points.line[k], dx_m=errors[k, 0], dy_m=errors[k, 1], resid_m=np.hypot(*errors[k]),
+                  loo_m=np.hypot(*found.left_out[k]), leverage=leverage[k])
+    return layer
+
+
+def _enough(count, rows, order):
+    """Refuse too few control points for an order."""
+    if count >= MIN_CONTROL_POINTS[order]:
+        return
+    kind = "a shift" if order == 0 else f"a polynomial of order {order}"
+    apart = f" ({rows - count} more are disabled or check points)" if rows > count else ""
+    lower = [k for k in range(1, order) if MIN_CONTROL_POINTS[k] <= count]
+    way = f"Measure more points, or choose order {lower[-1]}." if lower else "Measure more points."
+    raise RoadExtractionError(f"There are {count} control points{apart}; {kind} needs {MIN_CONTROL_POINTS[order]} or more. {way}")
+
+
+def _rough_position(image, points, settings):
+    """Geotransform of the approximate position of the image before a shift."""
+    from ...core.io.crs import horizontal_part, parse_crs, same_crs
+
+    if image.geotransform is not None:
+        own, wanted = parse_crs(image.crs), parse_crs(points.crs)
+        if own is not None and wanted is not None and not same_crs(own, wanted):
+            raise RoadExtractionError(
+                f"The image lies in {horizontal_part(own).name}, the control points in {horizontal_part(wanted).name}. A shift (order 0) "
+                "needs both in one CRS: reproject the image or the points, or choose order 1.")
+        return image.geotransform
+    if settings.pixel_size <= 0:
+        raise RoadExtractionError(
+            "The image has no position of its own, so there is nothing to shift (order 0). Give its pixel size, if north "
+            "is up in the image, or choose order 1 with three or more control points.")
+    return (0.0, settings.pixel_size, 0.0, 0.0, 0.0, -settings.pixel_size)
+
+
+def _well_spread(pixel, line, easting, northing, order):
+    """Refuse control points on a line, in the image or on the map, and those that do not determine a higher order."""
+    for places, unit, digits in ((np.column_stack([pixel, line]), "pixels", 0), (np.column_stack([easting, northing]), "m", 2)):
+        along, across = principal_extents(places)
+        if across <= COLLINEAR_RATIO * along:
+            raise RoadExtractionError(
+                f"The {len(pixel)} control points lie in a line: they spread {along:.{digits}f} {unit} along it and "
+                f"{across:.{digits}f} {unit} across. Measure points on both sides of it, spread over the image.")
+    if order > 1 and inverse_condition(pixel, line, order) < MIN_INVERSE_CONDITION:
+        raise RoadExtractionError(
+            f"The {len(pixel)} control points lie so (in few rows, on one curve, or several in one place) that a polynomial of order "
+            f"{order} is not determined between them. Add points away from the others, or choose order {order - 1}.")
+
+
+def _unfolded(fit, area, hull, points, used, order):
+    """Refuse a polynomial that mirrors or folds the image where it is drawn."""
+    pixel, line = node_grid(area.bounds, 25)
+    inside = shapely.contains_xy(area.buffer(1e-6), pixel, line)
+    turn = np.linalg.det(fit.polynomial.jacobian(pixel[inside], line[inside]))
+    if (turn < 0).all():
+        return
+    if (turn > 0).all():
+        raise RoadExtractionError(
+            "The control points turn the image into its mirror image. Are pixel and line, or easting and northing, swapped?")
+    within = hull is not None and shapely.contains_xy(hull, pixel[inside], line[inside])[turn >= 0].any()
+    if within:
+        worst = int(np.argmax(_burden(fit)))
+        raise RoadExtractionError(
+            f"Between the control points the polynomial of order {order} folds the image over itself. A point is wrong (check "
+            f"{points.names[used[worst]]} first), or the order is too high: choose a lower one.")
+    raise RoadExtractionError(
+        f"Outside the control points the polynomial of order {order} folds the image over itself. Choose a lower order, "
+        "measure points nearer to the image's corners, or leave out what lies outside the points (extrapolation).")
+
+
+def node_grid(bounds: tuple[float, float, float, float], count: int) -> tuple[np.ndarray, np.ndarray]:
+    """A regular grid of places in the image.
+
+    Parameters
+    ----------
+    bounds : smallest pixel and line, largest pixel and line
+    count : nodes per side
+
+    Returns
+    -------
+    pixel, line : (count ** 2,)
+    """
+    across, down = np.meshgrid(np.linspace(bounds[0], bounds[2], count), np.linspace(bounds[1], bounds[3], count))
+    return across.ravel(), down.ravel()
+
+
+def own_pixel_size(fit: ControlPointFit, area: shapely.Geometry) -> float:
+    """Pixel size of the image on the map.
+
+    Parameters
+    ----------
+    fit : ControlPointFit
+    area : shapely polygon in pixel and line
+
+    Returns
+    -------
+    m, median over the area
+    """
+    pixel, line = node_grid(area.bounds, 9)
+    inside = shapely.contains_xy(area, pixel, line)
+    return float(np.sqrt(np.median(np.abs(np.linalg.det(fit.polynomial.jacobian(pixel[inside], line[inside]))))))
+
+
+def _two_digits(size):
+    """A number rounded to two digits."""
+    return round(size, 1 - int(np.floor(np.log10(size))))
+
+
+def _notes(found: Georeferencing) -> Iterator[str]:
+    """Warnings for the user, one sentence each."""
+    fit, points, order = found.fit, found.points, found.settings.order
+    used = points.having(CONTROL)
+    if not points.crs:
+        yield ("The control points have no CRS, so the result has none either: it lies in their coordinates. If these are "
+               "map coordinates, give their CRS.")
+    yield from _map_metres(points)
+    if points.left_out:
+        yield f"{points.left_out} rows of the table of control points hold no numbers and were left out."
+    if order and fit.free == 0:
+        yield (f"{len(used)} control points are the fewest for order {order}: the polynomial passes through all of them, and the "
+               "residuals are 0 whatever their errors. Measure more points, or choose a lower order.")
+    elif order and len(used) < _SUFFICIENT_RATIO * MIN_CONTROL_POINTS[order]:
+        yield (f"{len(used)} control points are few for order {order} ({MIN_CONTROL_POINTS[order]} at least): the residuals are smaller than "
+               "the errors. Use the leave-one-out error instead.")
+    if order and found.outside > _NOTED_OUTSIDE_SHARE:
+        times = float(np.sqrt(_ring_leverage(found).max()))
+        share = f"{100 * found.outside:.0f} % of the image lies outside the hull of the control points"
+        if found.cut:
+            yield f"{share} and is left out, because a polynomial of order {order} is not reliable there."
+        elif order > 1 or times > 1.0:
+            yield (f"{share}; there the polynomial extrapolates, and at the worst place on the border its error is {times:.1f} times "
+                   "that of a single point.")
+    for index in _misfits(found):
+        yield (f"Point {points.names[index]} does not fit the others: it lies {np.hypot(*found.left_out[index]):.2f} m from where "
+               "they place it. Check its coordinates.")
+
+
+def _map_metres(points):
+    """A warning where a metre on the map is not a metre on the ground, as in web maps."""
+    from ...core.io.crs import horizontal_part, parse_crs
+
+    crs = horizontal_part(parse_crs(points.crs))
+    if crs is None or not crs.is_projected:
+        return
+    scale = _scale_of_map(crs, points)
+    if np.isfinite(scale) and abs(scale - 1.0) > _MAX_SCALE_ERROR:
+        yield (f"In {crs.name} a metre of the map is {1.0 / scale:.2f} m on the ground here, and all errors are in metres of the map. "
+               "For measuring, use control points in the CRS of the survey.")
+
+
+def _scale_of_map(crs, points):
+    """Metres on the map per metre on the ground at the middle of the points; NaN where the CRS is a local one."""
+    from pyproj import Proj
+    from pyproj.exceptions import CRSError, ProjError
+
+    try:
+        projection = Proj(crs)
+        longitude, latitude = projection(float(points.easting.mean()), float(points.northing.mean()), inverse=True)
+        return float(np.sqrt(projection.get_factors(longitude, latitude).areal_scale))
+    except (CRSError, ProjError):
+        return float("nan")
+
+
+def _ring_leverage(found):
+    """Leverage along the border of the image."""
+    frame = shapely.box(0, 0, found.image.width, found.image.height)
+    places = shapely.get_coordinates(shapely.line_interpolate_point(
+        frame.exterior, np.linspace(0, 1, _OUTLINE_PLACES), normalized=True))
+    return found.fit.leverage_at(places[:, 0], places[:, 1])
+
+
+def _burden(fit):
+    """Decrease of the sum of squares, m², without each point; largest for a single wrong point."""
+    return np.sum(fit.residuals**2, axis=1) / np.maximum(1.0 - fit.leverage, 1e-6)
+
+
+def _misfits(found):
+    """Control points with an extreme residual (externally studentised, two coordinates)."""
+    fit, used = found.fit, found.points.having(CONTROL)
+    freedom = 2 * fit.free - 2
+    if freedom < 2:
+        return []
+    own = _burden(fit)
+    others = np.maximum(np.sum(fit.residuals**2) - own, 0.0) / freedom
+    floor = (_MIN_POINT_ERROR * found.pixel_size) ** 2
+    strange = own / 2 > _MISFIT_RESIDUAL**2 * np.maximum(others, floor)
+    return used[strange][np.argsort(-own[strange])][:_MAX_MISFITS]

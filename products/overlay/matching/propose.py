@@ -1,0 +1,322 @@
+"""Control points of an image, proposed from corners of paint that the intensity image shows too."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ....core.common.errors import RoadExtractionError
+from ....core.common.progress import Progress
+from ....core.io.geotiff import IntensityImage
+from ....core.lazy import cv2
+from ..rough_place import RoughPlace
+from ..source_image import SourceImage
+from .coarse import find_places, paint_about
+from .patches import find_patches
+from .photo import Photo, SurveyedPaint, read_photo, reduced
+from .placement import Placement, highest_order, left_out_residuals, robust_placement
+from .proposal import Proposal, ProposalSettings, corner_scores, nearby_rival, rival_elsewhere
+
+_CORNERS = 400          # corners looked for
+_CANDIDATES = 4         # places of the search that are followed up
+_SAME = 0.6             # m at most corners of paint, within which two placements are one; bars of a crossing lie a metre apart
+AMBIGUOUS = "all of it fits elsewhere too"
+
+
+def propose_control_points(image: SourceImage, intensity: IntensityImage, rough: RoughPlace, settings: ProposalSettings | None = None,
+                           progress: Progress = Progress()) -> Proposal:
+    """Find corners of paint in an image and in the intensity image, and pair them.
+
+    The paint of both is correlated over shift, turn and scale; patches of falling size then follow the distortion of the camera;
+    at last the surroundings of single corners are compared. A pair is accepted where the two look alike, nothing nearby looks
+    the same, and the other pairs place it where it is. None is accepted where the whole image fits another place about as well.
+
+    Parameters
+    ----------
+    image : SourceImage
+    intensity : IntensityImage in a projected CRS in metres
+    rough : RoughPlace in that CRS
+    settings : ProposalSettings
+    progress : Progress
+
+    Returns
+    -------
+    Proposal
+
+    Raises
+    ------
+    RoadExtractionError
+        If the image does not lie over the intensity image, covers too much ground, or shows other paint.
+    """
+    settings = settings or ProposalSettings()
+    paint, bounds = paint_about(image, intensity, rough)
+    photo = read_photo(image, rough.size, paint.cell)
+    progress.report(0.1)
+    x, y = _paint_corners(paint.contrast, paint.known, paint.cell, _CORNERS)
+    if len(x) < LEAST_PAIRS:
+        raise RoadExtractionError(
+            f"The intensity image shows {len(x)} corners of paint where {image.path} may lie; {LEAST_PAIRS} are needed. Measure the control "
+            "points by hand there, at manholes and curbs for example.")
+    for sign, part in ((1, progress.part(0.1, 0.5)), (-1, progress.part(0.5, 0.9))):
+        tried = _followed(image, photo, paint, bounds, sign, x, y, part)
+        for chosen in tried:
+            pairs = _pair_corners(chosen.placement, paint, photo, x, y, settings)
+            if pairs is not None:
+                rivals = [rival_elsewhere(chosen.scores, other.scores, _shift(chosen.placement, other.placement, image))
+                          for other in tried if other is not chosen]
+                near = nearby_rival(pairs.placement, paint, photo, x, y)
+                rival = min([*rivals, *([near] if near else [])], key=lambda one: one.margin, default=None)
+                return _proposal(image, intensity, rough, settings, pairs, rival, paint)
+    raise RoadExtractionError(
+        f"The paint of {image.path} and that of the intensity image do not fit each other, though it was looked for {_range(rough, bounds)}. "
+        "Is it another stretch of road, another scale, or a photo from before or after the road was painted anew? Give a closer position, "
+        "two points or the pixel size, or measure the control points by hand.")
+
+
+def _followed(image, photo, paint, bounds, sign, x, y, progress):
+    """The few best places of the search, aligned with the paint, the best first."""
+    tried: list[_Tried] = []
+    places = find_places(photo.contrast, paint.contrast, paint.cell, bounds.of_pixels(photo.factor), sign, progress.part(0.0, 0.8))
+    for place in places[:_CANDIDATES]:
+        progress.check_cancelled()
+        start = Placement.similarity(place.x, place.y, place.turn, place.size / photo.factor, _middle(image), place.sign)
+        placement = _align(start, paint, photo, progress)
+        if placement is not None and not any(_same(placement, other.placement, x, y) for other in tried):
+            tried.append(_Tried(placement, corner_scores(placement, paint, photo, x, y)))
+    progress.report(1.0)
+    return sorted(tried, key=lambda one: -one.total)
+
+
+class _Tried(NamedTuple):
+    placement: Placement
+    scores: np.ndarray
+
+    @property
+    def total(self):
+        return float(np.nansum(np.maximum(self.scores, 0.0)))
+
+
+def _proposal(image, intensity, rough, settings, pairs, rival, paint):
+    """The pairs that are shown, and what is said of them."""
+    accepted = pairs.why == ""
+    certain = np.flatnonzero(accepted)
+    certain = certain[_spread(pairs.x[certain], pairs.y[certain], settings.count)]
+    doubtful = np.flatnonzero(~accepted)
+    doubtful = doubtful[np.argsort(-pairs.score[doubtful], kind="stable")][:settings.count // 2]
+    shown = np.concatenate([certain[np.argsort(-pairs.score[certain], kind="stable")], doubtful])
+    notes = []
+    why = pairs.why[shown]
+    if rival is not None and rival.margin < 1.0:
+        why = np.where(why == "", AMBIGUOUS, why)
+        notes.append(
+            f"The paint repeats: {rival.votes_for:.0f} corners speak for this place and {rival.votes_against:.0f} for one "
+            f"{np.hypot(rival.dx, rival.dy):.1f} m away, so no pair is accepted. Give two points or a smaller search distance, or accept the "
+            "pairs by hand if the place is right.")
+    slope = pairs.placement.polynomial.jacobian(pairs.x.mean(keepdims=True), pairs.y.mean(keepdims=True))[0]
+    east = np.linalg.solve(slope, [1.0, 0.0])   # along a row of the image, m
+    size = 1.0 / float(np.sqrt(abs(np.linalg.det(slope))))
+    return Proposal(image, intensity, settings, rough, intensity.crs, paint.left + pairs.x[shown], paint.top + pairs.y[shown], pairs.pixel[shown],
+                    pairs.line[shown], pairs.score[shown], pairs.residual[shown], why == "", tuple(why.tolist()), pairs.order,
+                    float(np.arctan2(east[1], east[0])), size, rival, notes)
+
+
+def _spread(x, y, count):
+    """Indices of at most `count` places, each as far as possible from those before it."""
+    if len(x) <= count:
+        return np.arange(len(x))
+    kept = [0]  # the strongest corner
+    distance = np.hypot(x - x[0], y - y[0])
+    while len(kept) < count:
+        kept.append(int(distance.argmax()))
+        distance = np.minimum(distance, np.hypot(x - x[kept[-1]], y - y[kept[-1]]))
+    return np.array(kept)
+
+
+def _middle(image):
+    return image.width / 2, image.height / 2
+
+
+def _corners_on_map(placement, image):
+    """(5, 2) m, of the image's corners and its middle, by the affine part of the placement."""
+    polynomial = placement.polynomial
+    centre = np.array([polynomial.centre])
+    slope = polynomial.jacobian(centre[:, 0], centre[:, 1])[0]
+    at = np.column_stack(polynomial.to_map(centre[:, 0], centre[:, 1]))
+    corners = np.array([(a * image.width, b * image.height) for a, b in ((0, 0), (1, 0), (1, 1), (0, 1), (0.5, 0.5))])
+    return centre + np.linalg.solve(slope, (corners - at).T).T
+
+
+def _same(one, other, x, y):
+    # of most corners: those beyond the photo are extrapolated
+    return bool(np.median(np.hypot(*one.metres(x, y, *other.pixels(x, y)).T)) < _SAME)
+
+
+def _shift(one, other, image):
+    return tuple(float(v) for v in _corners_on_map(other, image)[4] - _corners_on_map(one, image)[4])
+
+
+def _range(rough, bounds):
+    """What was searched, in words."""
+    where = f"within {rough.reach:.0f} m of where {rough.source} put it" if np.isfinite(rough.reach) else "everywhere"
+    turns = "in all directions" if rough.turn_range >= np.pi else f"turned by up to {np.degrees(rough.turn_range):.0f}°"
+    return f"{where}, {turns}, with pixels of {bounds.sizes[0]:.3f} to {bounds.sizes[1]:.3f} m"
+
+
+# Corners of paint in the intensity image: ends of dashes, corners of arrows, bars and stop lines.
+
+_SMOOTHING = 0.05    # m, standard deviation: the noise of single cells has corners too
+_WINDOW = 0.5        # m, over which the directions of edges are collected
+_APART = 1.0         # m between two corners
+_LEAST = 0.08        # of the strongest corner's measure
+_PAINT = 0.4         # contrast from which it is paint; spots of asphalt and its repairs have less
+_BORDER = 0.3        # m from where the intensity image ends
+
+
+def _paint_corners(paint: np.ndarray, known: np.ndarray, cell: float, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Places where paint has edges in two directions, spread over the image.
+
+    Parameters
+    ----------
+    paint : (H, W) contrast, its corner at local 0, 0
+    known : (H, W) bool
+    cell : m
+    count : most corners
+
+    Returns
+    -------
+    x, y : (N,) m, local, the strongest first
+
+    References
+    ----------
+    .. [1] Shi and Tomasi (1994), Good features to track, CVPR: the smaller eigenvalue of the structure tensor.
+    """
+    if not known.any():
+        return np.empty(0), np.empty(0)
+    smooth = cv2.GaussianBlur(np.maximum(paint - _PAINT, 0.0), (0, 0), _SMOOTHING / cell)
+    border = 2 * round(_BORDER / cell) + 1
+    inside = cv2.erode(known.astype(np.uint8), np.ones((border, border), np.uint8), borderType=cv2.BORDER_CONSTANT, borderValue=0)
+    found = cv2.goodFeaturesToTrack(smooth, count, _LEAST, _APART / cell, mask=inside, blockSize=2 * round(_WINDOW / cell / 2) + 1)
+    if found is None:
+        return np.empty(0), np.empty(0)
+    column, row = found[:, 0].T.astype(float)
+    return (column + 0.5) * cell, -(row + 0.5) * cell
+
+
+# From a place that is right to about a metre to one that is right to a decimetre, over the whole photo.
+
+# Half the side of a patch, how far it is looked for, and the largest residual of one that is used (m each), with the cell. Large patches
+# hold several markings, so that one dash is not taken for the next; small ones follow the tilt of the camera and its lens.
+_ALIGNING_ROUNDS = ((10.0, 2.5, 0.6, 0.16), (5.0, 1.0, 0.25, 0.08), (3.0, 0.6, 0.15, 0.08))
+_LEAST_SCORE = 0.15    # of a patch: shadows and cars spoil many, and which are right shows in that they agree
+_MOST_SECOND_OF_PATCHES = 0.8     # share of the best correlation that another place may have
+
+
+def _align(placement: Placement, paint: SurveyedPaint, photo: Photo, progress: Progress = Progress()) -> Placement | None:
+    """Follow the photo's distortion from patches of the intensity image that are found in it, in ever smaller ones.
+
+    Parameters
+    ----------
+    placement : Placement, right to some metres
+    paint : SurveyedPaint
+    photo : Photo
+    progress : Progress
+
+    Returns
+    -------
+    Placement of order 2, or 1 where few patches hold paint; None where they do not agree
+    """
+    for half, search, tolerance, cell in _ALIGNING_ROUNDS:
+        progress.check_cancelled()
+        factor = max(1, round(cell / paint.cell))
+        small = reduced(paint.contrast, factor)
+        now = paint.cell * factor
+        drawn = placement.sign * placement.drawn(photo.contrast, photo, now, small.shape, reduction=placement.reduction(photo, now))
+        height, width = (n * now for n in small.shape)
+        x, y = (axis.ravel() for axis in np.meshgrid(np.arange(half / 2, width, half), -np.arange(half / 2, height, half)))
+        found = find_patches(small, drawn, now, x, y, half, search)
+        found = found.where((found.score > _LEAST_SCORE) & (found.second < _MOST_SECOND_OF_PATCHES))
+        fitted = robust_placement(placement, found.x, found.y, np.column_stack([found.dx, found.dy]), tolerance, found.score, 2)
+        if fitted is None:
+            return None
+        placement = fitted[0]
+    return placement
+
+
+# Corners of paint paired: found in the photo by their surroundings, and judged by what the others say.
+
+LEAST_PAIRS = 6         # pairs that agree, below which a fit may be chance: twice what turn, scale and shift need
+_LEAST_SHARE = 0.4      # of the corners that look alike, which must agree on one placement
+_PATCH = 0.8            # m, half the side of the cut-out that is compared: a dash's end, an arrow's corner
+_ROUNDS = ((0.40, 1.5), (0.25, 1.0))  # m within which a corner is looked for, and how many tolerances a pair may be off
+_MOST_SECOND = 0.9      # share of the best correlation that another place in the window may have
+_LISTED_SCORE = 0.3     # correlation below which a corner is not worth showing
+_SIGMAS = 3.0           # robust standard deviations of the residuals from which a pair is false
+_FINEST = 0.03          # m: residuals below a cell of the image do not make a pair false
+_MEDIAN_LENGTH = 1.1774  # median length of errors of two coordinates, in their standard deviation (Rayleigh)
+
+WEAK, REPEATS, AWAY = "looks different", "repeats nearby", "does not fit the others"
+
+
+class Pairs(NamedTuple):
+    """N corners of paint and where the image has them.
+
+    Attributes
+    ----------
+    placement : Placement that those that agree were fitted to
+    order : of the polynomial that the residuals belong to
+    x, y : (N,) m, local
+    pixel, line : (N,)
+    score : (N,) correlation of the two cut-outs
+    residual : (N,) m, from where the pairs that agree place it, each without itself
+    why : (N,) texts, why a pair is false or doubtful; "" for a sound one
+    """
+
+    placement: Placement
+    order: int
+    x: np.ndarray
+    y: np.ndarray
+    pixel: np.ndarray
+    line: np.ndarray
+    score: np.ndarray
+    residual: np.ndarray
+    why: np.ndarray
+
+
+def _pair_corners(placement: Placement, paint: SurveyedPaint, photo: Photo, x: np.ndarray, y: np.ndarray, settings: ProposalSettings) -> Pairs | None:
+    """Find corners of paint in a photo that lies on the map to some decimetres.
+
+    Parameters
+    ----------
+    placement : Placement of the photo
+    paint : SurveyedPaint
+    photo : Photo
+    x, y : (M,) m, corners of paint, local
+    settings : ProposalSettings
+
+    Returns
+    -------
+    Pairs; None where too few agree on one placement
+    """
+    for search, times in _ROUNDS:
+        drawn = placement.sign * placement.drawn(photo.contrast, photo, paint.cell, paint.contrast.shape,
+                                                 reduction=placement.reduction(photo, paint.cell))
+        found = find_patches(paint.contrast, drawn, paint.cell, x, y, _PATCH, search)
+        found = found.where(found.score > _LISTED_SCORE)
+        alike = (found.score >= settings.min_score) & (found.second <= _MOST_SECOND)
+        moved = np.column_stack([found.dx, found.dy])
+        fitted = robust_placement(placement, found.x[alike], found.y[alike], moved[alike], times * settings.tolerance, found.score[alike], 2)
+        if fitted is None or fitted[1].sum() < max(LEAST_PAIRS, _LEAST_SHARE * alike.sum()):
+            return None
+        pixel, line = placement.pixels(found.x + found.dx, found.y + found.dy)
+        placement = fitted[0]
+        used = np.zeros(len(found.x), dtype=bool)
+        used[np.flatnonzero(alike)[fitted[1]]] = True
+    order = highest_order(found.x[used], found.y[used], 2)
+    if order == 0:
+        return None
+    residual = left_out_residuals(found.x, found.y, pixel, line, used, order)
+    spread = float(np.median(residual[used])) / _MEDIAN_LENGTH
+    fits = residual <= min(settings.tolerance, max(_SIGMAS * spread, _FINEST))
+    why = np.select([found.score < settings.min_score, found.second > _MOST_SECOND, ~fits | ~used], [WEAK, REPEATS, AWAY], "")
+    return Pairs(placement, order, found.x, found.y, pixel, line, found.score, residual, why)

@@ -1,0 +1,268 @@
+"""Where an image lies roughly, before any control point: by two points, its own position, its tags, or its pixel size alone."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ...core.common.errors import RoadExtractionError
+from ...core.io.local_files import gdal_exceptions, open_raster
+from .control_points import DISABLED, ControlPoints
+from .source_image import SourceImage
+
+_POINTED = 2.0          # m by which a point pointed at by hand may be off
+_PLACED_TURN, _PLACED_SIZE = np.radians(3.0), 0.03   # of an image with a position of its own, such as a world file
+_TAGGED_TURN, _TAGGED_SIZE = np.radians(20.0), 0.15  # of tags: the gimbal's compass; a height above the take-off, not above the road
+_GIVEN_SIZE = 0.10      # of a pixel size that was given
+_NORTH_STEP = 0.001     # degrees of latitude over which the direction of north is taken
+
+
+@dataclass(frozen=True)
+class RoughPlace:
+    """A rough similarity from an image to the map, and how far it may be off.
+
+    Attributes
+    ----------
+    x, y : m, map coordinates of the image's middle; NaN where nothing is known of them
+    reach : m, how far off these may be; infinite where nothing is known
+    turn : radians, counter-clockwise, from the rows of the image to east
+    turn_range : radians, how far off that may be; pi where nothing is known
+    size : m of a pixel
+    size_range : how far off that may be, as a share
+    source : what it was taken from, for the report
+    """
+
+    x: float
+    y: float
+    reach: float
+    turn: float
+    turn_range: float
+    size: float
+    size_range: float
+    source: str
+
+
+def rough_place(image: SourceImage, crs: str, reach: float, pixel_size: float = 0.0, points: ControlPoints | None = None) -> RoughPlace:
+    """Where an image lies roughly: by given points, else by its own position, else by its tags, else by its pixel size alone.
+
+    Parameters
+    ----------
+    image : SourceImage
+    crs : WKT of the map, projected in metres; "" where unknown
+    reach : m, how far off a position of the image may be
+    pixel_size : m; 0 where unknown
+    points : two or more ControlPoints in that CRS, or None
+
+    Raises
+    ------
+    RoadExtractionError
+        If nothing says how large the pixels are on the ground, or the points are too few.
+    """
+    middle = np.array([image.width / 2, image.height / 2])
+    if points is not None:
+        used = points.roles != DISABLED
+        return _by_points(points.pixel[used], points.line[used], points.easting[used], points.northing[used], middle, reach)
+    if image.geotransform is not None:
+        return _by_geotransform(image, crs, middle, reach)
+    tags = read_position_tags(image)
+    size = pixel_size or (tags.pixel_size(image) if tags else None) or 0.0
+    if not size:
+        known = "its tags say where the camera hung, but not how high or with what focal length" if tags else \
+            "it has neither a position nor position tags"
+        raise RoadExtractionError(
+            f"Nothing tells how large the pixels of {image.path} are on the ground: {known}. Give the pixel size, or two points, or a "
+            "world file beside the image.")
+    size_range = _GIVEN_SIZE if pixel_size else _TAGGED_SIZE
+    if tags is None or not crs:
+        return RoughPlace(np.nan, np.nan, np.inf, 0.0, np.pi, size, size_range, f"a pixel size of {size:.3g} m alone")
+    return _by_tags(tags, crs, reach, size, size_range)
+
+
+def _by_points(pixel, line, easting, northing, middle, reach):
+    """The least-squares similarity of two or more points."""
+    if len(pixel) < 2:
+        raise RoadExtractionError(f"There are {len(pixel)} rough points; two or more are needed, far apart in the image.")
+    factor, shift = similarity(pixel, line, easting, northing)
+    spread = float(np.hypot(np.ptp(easting), np.ptp(northing)))
+    if not np.isfinite(factor) or spread < 2.0 * _POINTED:
+        raise RoadExtractionError(f"The rough points lie {spread:.1f} m apart. Choose two that are far apart in the image.")
+    loose = min(0.3, 2.0 * _POINTED / spread)
+    at = shift + factor * complex(middle[0], -middle[1])
+    # what lies beyond the points is off by more than they are
+    beyond = 1.0 + abs(at - complex(easting.mean(), northing.mean())) / spread
+    return RoughPlace(at.real, at.imag, min(reach, 2.0 * _POINTED * beyond), float(np.angle(factor)), max(np.radians(1.0), loose), abs(factor),
+                      max(0.01, loose), f"{len(pixel)} given points")
+
+
+def similarity(pixel: np.ndarray, line: np.ndarray, easting: np.ndarray, northing: np.ndarray) -> tuple[complex, complex]:
+    """The least-squares similarity from an image to the map, in complex numbers: map = shift + factor * (pixel - i line).
+
+    Parameters
+    ----------
+    pixel, line, easting, northing : (N,), N at least 2
+
+    Returns
+    -------
+    factor, shift : NaN where all points lie in one place
+    """
+    seen, there = pixel - 1j * line, easting + 1j * northing
+    a = seen - seen.mean()
+    with np.errstate(all="ignore"):
+        factor = ((there - there.mean()) * a.conj()).sum() / (np.abs(a) ** 2).sum()
+    return complex(factor), complex(there.mean() - factor * seen.mean())
+
+
+def _by_geotransform(image, crs, middle, reach):
+    """By the image's own position, in whatever CRS it is given."""
+    x0, xp, xl, y0, yp, yl = image.geotransform
+    pixel, line = (axis.ravel() for axis in np.meshgrid([0.0, image.width], [0.0, image.height]))
+    easting, northing = to_map(x0 + xp * pixel + xl * line, y0 + yp * pixel + yl * line, image.crs, crs)
+    factor, shift = similarity(pixel, line, easting, northing)
+    at = shift + factor * complex(middle[0], -middle[1])
+    if not (np.isfinite(at) and abs(factor) > 0):
+        raise RoadExtractionError(f"The position of {image.path} cannot be taken to the CRS of the intensity image. Is its CRS the right one?")
+    return RoughPlace(at.real, at.imag, reach, float(np.angle(factor)), _PLACED_TURN, abs(factor), _PLACED_SIZE, "the image's own position")
+
+
+def _by_tags(tags, crs, reach, size, size_range):
+    """By the place of the camera: the middle of an image that looks straight down lies below it."""
+    x, y = to_map(np.full(2, tags.longitude), tags.latitude + np.array([0.0, _NORTH_STEP]), "EPSG:4326", crs)
+    north = float(np.arctan2(y[1] - y[0], x[1] - x[0]))  # true north on the map, counter-clockwise from east
+    said = "position tags"
+    if tags.heading is None:
+        return RoughPlace(float(x[0]), float(y[0]), reach, 0.0, np.pi, size, size_range, said)
+    # the top of the image points to the heading; its rows run a right angle clockwise from there
+    turn = north - np.radians(tags.heading) - np.pi / 2
+    return RoughPlace(float(x[0]), float(y[0]), reach, float(np.angle(np.exp(1j * turn))), _TAGGED_TURN, size, size_range, said)
+
+
+def to_map(x: np.ndarray, y: np.ndarray, source: str, target: str) -> tuple[np.ndarray, np.ndarray]:
+    """Places in another CRS.
+
+    Parameters
+    ----------
+    x, y : (N,) in the source CRS, longitude and latitude where that is geographic
+    source, target : WKT or codes; where either is "" nothing is changed
+
+    Returns
+    -------
+    x, y : (N,), infinite where a place has none in the target CRS
+    """
+    from pyproj import Transformer
+
+    from ...core.io.crs import horizontal_part, parse_crs, same_crs
+
+    a, b = parse_crs(source), parse_crs(target)
+    if a is None or b is None or same_crs(a, b):
+        return x, y
+    moved: tuple[Any, Any] = Transformer.from_crs(horizontal_part(a), horizontal_part(b), always_xy=True).transform(x, y)
+    return np.asarray(moved[0], float), np.asarray(moved[1], float)
+
+
+# What a camera wrote into its image about where it hung: EXIF, and the XMP of drones.
+
+FULL_FRAME_DIAGONAL = 43.27  # mm, of the 24 x 36 mm that a focal length "in 35 mm film" refers to
+_STEEP = 45.0                # ° below the horizon from which a camera looks down rather than ahead
+_NUMBER = r"[-+]?\d+(?:\.\d+)?(?:/\d+)?"
+# XMP names, with or without their prefix; DJI wrote the second spelling of longitude for years
+_LATITUDE, _LONGITUDE = ("GpsLatitude", "GPSLatitude"), ("GpsLongitude", "GpsLongtitude", "GPSLongitude")
+
+
+@dataclass(frozen=True)
+class PositionTags:
+    """Where a camera hung and how it looked; None where the image does not say.
+
+    Attributes
+    ----------
+    latitude, longitude : degrees, WGS 84
+    heading : degrees clockwise from north, of the top of the image
+    height : m above the ground, or above where the drone took off
+    focal_length : mm, converted to 35 mm film
+    """
+
+    latitude: float
+    longitude: float
+    heading: float | None = None
+    height: float | None = None
+    focal_length: float | None = None
+
+    def pixel_size(self, image: SourceImage) -> float | None:
+        """m of a pixel on the ground below a camera that looks straight down; None where height or focal length are missing."""
+        if not self.height or not self.focal_length or self.height <= 0 or self.focal_length <= 0:
+            return None
+        return self.height * FULL_FRAME_DIAGONAL / (self.focal_length * float(np.hypot(image.width, image.height)))
+
+
+@gdal_exceptions()
+def read_position_tags(image: SourceImage) -> PositionTags | None:
+    """The PositionTags of an image; None where it has no latitude and longitude."""
+
+    dataset = open_raster(image.path)
+    packets = dataset.GetMetadata("xml:XMP")
+    exif = {**(dataset.GetMetadata("EXIF") or {}), **(dataset.GetMetadata() or {})}
+    return position_tags({_text(name): _text(value) for name, value in exif.items()},
+                         "".join(map(_text, packets)) if isinstance(packets, list) else "")
+
+
+def _text(value):
+    """What GDAL gives as text; it gives bytes where they are not UTF-8."""
+    return value.decode("latin-1") if isinstance(value, bytes) else value
+
+
+def position_tags(exif: Mapping[str, str], xmp: str = "") -> PositionTags | None:
+    """The same from EXIF items, named as GDAL names them, and from the text of an XMP packet."""
+    latitude = _first(_xmp_degrees(xmp, _LATITUDE), _exif_degrees(exif, "Latitude"))
+    longitude = _first(_xmp_degrees(xmp, _LONGITUDE), _exif_degrees(exif, "Longitude"))
+    # a receiver without a fix writes zeros
+    if latitude is None or longitude is None or not abs(latitude) <= 90 or not abs(longitude) <= 180 or latitude == longitude == 0:
+        return None
+    pitch = _xmp_number(xmp, "GimbalPitchDegree")
+    heading = _first(_xmp_number(xmp, "GimbalYawDegree") if pitch is None or pitch < -_STEEP else None,
+                     _xmp_number(xmp, "FlightYawDegree"), _numbers(exif.get("EXIF_GPSImgDirection", "")))
+    return PositionTags(
+        latitude, longitude, heading, _xmp_number(xmp, "RelativeAltitude"),
+        _first(_numbers(exif.get("EXIF_FocalLengthIn35mmFilm", "")), _xmp_number(xmp, "FocalLengthIn35mmFilm")))
+
+
+def _first(*values):
+    return next((value for value in values if value is not None), None)
+
+
+def _xmp_text(xmp, name):
+    """The text of an attribute or an element, "" where there is none."""
+    found = re.search(rf"\b{name}\s*=\s*[\"']([^\"']*)[\"']|<(?:[\w-]+:)?{name}>([^<]*)<", xmp)
+    return (found.group(1) or found.group(2) or "").strip() if found else ""
+
+
+def _xmp_number(xmp, name):
+    return _numbers(_xmp_text(xmp, name))
+
+
+def _xmp_degrees(xmp, names):
+    for name in names:
+        text = _xmp_text(xmp, name)
+        value = _numbers(text)
+        if value is not None:
+            return -abs(value) if text[-1:].upper() in ("S", "W") else value
+    return None
+
+
+def _exif_degrees(exif, name):
+    value = _numbers(exif.get(f"EXIF_GPS{name}", ""))
+    if value is None:
+        return None
+    return -value if exif.get(f"EXIF_GPS{name}Ref", "").strip().upper()[:1] in ("S", "W") else value
+
+
+def _numbers(text):
+    """The number in a text; of several (degrees, minutes, seconds) each counts a sixtieth of the one before."""
+    parts = []
+    for one in re.findall(_NUMBER, text):
+        above, _, below = one.partition("/")
+        parts.append(float(above) / (float(below) or np.nan) if below else float(above))
+    value = sum(part / 60.0**k for k, part in enumerate(parts[:3]))
+    return value if parts and np.isfinite(value) else None

@@ -1,0 +1,83 @@
+"""Reports on HD maps: what an export wrote and how well it fits, and what a check of a file found."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...core.common.texts import told, tr, word
+from ..export.check.findings import FAULTS, Findings, SameFindings
+from ..export.map_layers import MapLayers
+from .page import html_page
+
+COLOUR_OF_LANE = {"driving": "#8a9299", "connector": "#c9b27c", "shoulder": "#b7bfc5", "bicycle": "#c47f6a", "parking": "#9fb4c9"}
+PICTURE_WIDTH, PICTURE_HEIGHT = 900, 520   # pixels
+MOST_ROWS = 200   # of findings that the report lists; the layer has all
+Table = tuple[str, Sequence[str], Sequence[Sequence[Any]]]
+
+
+def map_export_report(title: str, subtitle: str, facts: Iterable[tuple[str, Any]], tables: Sequence[Table] = (), notes: Sequence[str] = (),
+                      shown: MapLayers | None = None) -> str:
+    """An HTML page.
+
+    Parameters
+    ----------
+    title, subtitle : of the page
+    facts : (name, value)
+    tables : (heading, names of the columns, rows)
+    notes : sentences to highlight
+    shown : what the file holds as our own reader sees it, for a picture; None for none
+    """
+    types = set() if shown is None else set(shown.lanes.type)
+    return html_page("map_export", title=title, subtitle=subtitle, notes=notes, rows=list(facts), tables=tables,
+                  drawn=_lanes_and_lines(shown) if shown is not None and types else "",
+                  colours=[(COLOUR_OF_LANE[kind], word(kind)) for kind in COLOUR_OF_LANE if kind in types])
+
+
+def _lanes_and_lines(shown: MapLayers) -> str:
+    """An SVG of lanes and lines."""
+    lanes = shown.lanes
+    every = np.concatenate([lanes.left, lanes.right])[:, :2]
+    low, high = every.min(0), every.max(0)
+    scale = min(PICTURE_WIDTH / max(high[0] - low[0], 1.0), PICTURE_HEIGHT / max(high[1] - low[1], 1.0))
+    size = (high - low) * scale + 20
+
+    def path(points):
+        placed = (points[:, :2] - low) * scale + 10
+        return " ".join(f"{x:.1f},{size[1] - y:.1f}" for x, y in placed)
+
+    parts = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {size[0]:.0f} {size[1]:.0f}" width="{size[0]:.0f}" height="{size[1]:.0f}">']
+    for k in range(len(lanes)):
+        left, right = lanes.borders(k)
+        colour = COLOUR_OF_LANE.get(lanes.type[k], "#d5d9dc")
+        parts.append(f'<polygon points="{path(np.concatenate([left, right[::-1]]))}" fill="{colour}" fill-opacity="0.8" stroke="#ffffff" '
+                     'stroke-width="0.4"/>')
+    for line in shown.lines:
+        dash = ' stroke-dasharray="4 4"' if "dashed" in line.pattern else ""
+        colour = "#5a4632" if line.what == "edge" else "#1f2a33"
+        parts.append(f'<polyline points="{path(line.points)}" fill="none" stroke="{colour}" stroke-width="0.8"{dash}/>')
+    return "".join(parts) + "</svg>"
+
+
+def map_check_report(found: Findings, path: str, notes: Sequence[str] = ()) -> str:
+    """The findings of a map as HTML.
+
+    Parameters
+    ----------
+    found : Findings
+    path : of the file
+    notes : further sentences
+    """
+    groups, _ = found.groups()
+    return html_page("map_check", found=found, file=Path(path).name, notes=notes, faults=FAULTS, count=len(groups),
+                  groups=[(row, places_of_findings(one, MOST_ROWS // 10), one) for row, one in enumerate(groups[:MOST_ROWS], start=1)])
+
+
+def places_of_findings(one: SameFindings, most: int) -> str:
+    """The names of the first elements with a finding, and how many more there are."""
+    named = "; ".join(told(name) for name in one.elements[:most])
+    rest = len(one.elements) - most
+    return tr("{named}; and {rest} more").format(named=named, rest=rest) if rest > 0 else named

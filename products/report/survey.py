@@ -1,0 +1,141 @@
+"""Reports on a survey: its files as they are, and a trajectory that was estimated from the points."""
+
+from __future__ import annotations
+
+from datetime import datetime, timedelta
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...core.common.texts import tr
+from ...core.io.crs import horizontal_part, parse_crs
+from ...core.lazy import cv2
+from ...core.survey.estimation.estimate import WAYS
+from .figures import Chart
+from .page import html_page
+
+if TYPE_CHECKING:
+    from ...core.survey.estimation.estimate import EstimatedTrajectory
+    from ..inspection import Inspection
+
+DENSITY_PICTURE_SIDE = 1400  # px
+NO_DATA_COLOUR = (28, 28, 30)  # blue, green, red
+PLACE_COLOUR, HEIGHT_COLOUR = "#1f6feb", "#c2410c"
+CHART_COLUMNS = 600   # of the chart: each shows the worst of its time
+LEAST_CHART_TOP = 0.02  # m
+
+
+def inspection_report(found: Inspection) -> str:
+    """The report of an Inspection as HTML."""
+    first, track, profile = (found.time_span or (0.0,))[0], found.trajectory, None
+    # seconds beyond a week are no seconds of a week, whatever the header says of them
+    start = datetime(1980, 1, 6) + timedelta(seconds=first + 1e9) if first > timedelta(weeks=1).total_seconds() else None
+    if found.drive is not None:
+        image, low, high = _profile_picture(found.drive.profile)
+        profile = dict(image=image, low=low, high=high)
+    values = np.flatnonzero(found.intensity)
+    quantiles = [int(np.searchsorted(np.cumsum(found.intensity) / found.count, q)) for q in (0.01, 0.5, 0.99)]
+    histogram = _histogram_picture(found.intensity, quantiles[0], quantiles[2]) if len(values) > 1 else None
+    return html_page(
+        "inspection", found=found, notes=found.notes, crs_name=_crs_name, size=found.maximum - found.minimum, density=_density_picture(found),
+        profile=profile, start=start and f"{start:%Y-%m-%d %H:%M:%S}",
+        driven=None if track is None else float(np.hypot(np.diff(track.x), np.diff(track.y)).sum()),
+        intensity=dict(lowest=values[0], highest=values[-1], number=len(values), quantiles=quantiles, image=histogram))
+
+
+def _density_picture(found: Inspection) -> dict[str, Any]:
+    """The density of the points with the trajectory on it: `image` (H, W, 3) uint8, `most` points per m² that it shows, `with_track` or not."""
+    density, corner = found.density
+    known = np.isfinite(density)
+    top = max(float(np.percentile(density[known], 98)), 1e-9)
+    value = np.where(known, 20 + 235 * np.clip(np.nan_to_num(density) / top, 0, 1), 0).astype(np.uint8)
+    image = cv2.applyColorMap(value, cv2.COLORMAP_VIRIDIS)
+    image[~known] = NO_DATA_COLOUR
+    scale = max(DENSITY_PICTURE_SIDE / max(density.shape), 1.0 / 64)
+    height, width = (max(int(round(n * scale)), 1) for n in density.shape)
+    image = cv2.resize(image, (width, height), interpolation=cv2.INTER_NEAREST if scale >= 1 else cv2.INTER_AREA)
+    trajectory: Any = found.trajectory
+    with_track = trajectory is not None and bool(found.near_share)
+    if with_track:
+        track = np.c_[trajectory.x - corner[0], corner[1] - trajectory.y] / found.settings.cell_size * scale
+        cv2.polylines(image, [np.rint(track).astype(np.int32)], False, (60, 60, 255), 2, cv2.LINE_AA)
+    return dict(image=image, most=top, with_track=with_track)
+
+
+def _profile_picture(profile: np.ndarray, width: int = 900, height: int = 220) -> tuple[np.ndarray, float, float]:
+    """Heights along the drive.
+
+    Parameters
+    ----------
+    profile : (N, 3) distance driven, height of the trajectory and of the road under it (NaN where unknown), metres
+    width, height : pixels
+
+    Returns
+    -------
+    picture : (height, width, 3) uint8
+    low, high : lowest and highest height, metres
+    """
+    known = profile[:, 1:][np.isfinite(profile[:, 1:])]
+    low, high = float(known.min()), float(known.max())
+    spread = max(high - low, 0.1)
+    image = np.full((height, width, 3), 255, np.uint8)
+    across = profile[:, 0] / max(profile[-1, 0], 1e-9) * (width - 1)
+
+    def at(z):
+        return height - 6 - (z - low) / spread * (height - 12)
+
+    seen = np.isfinite(profile[:, 2])
+    runs = np.split(np.arange(len(profile)), np.flatnonzero(np.diff(seen.astype(int))) + 1)
+    for run in runs:
+        if seen[run[0]]:
+            line = np.rint(np.c_[across[run], at(profile[run, 2])]).astype(np.int32)
+            cv2.polylines(image, [line], False, (120, 120, 120), 2, cv2.LINE_AA)
+    cv2.polylines(image, [np.rint(np.c_[across, at(profile[:, 1])]).astype(np.int32)], False, (60, 60, 230), 2, cv2.LINE_AA)
+    return image, low, high
+
+
+def _histogram_picture(counts: np.ndarray, low: int, high: int, width: int = 900, height: int = 220) -> np.ndarray:
+    """(height, width, 3) uint8 picture of the histogram of the values low to high, from the counts (M,) of the values from 0 on."""
+    high = max(high, low + 1)
+    edges = np.linspace(low, high + 1, min(width // 3, high - low + 1) + 1)
+    place = np.clip(np.searchsorted(edges, np.arange(low, high + 1), side="right") - 1, 0, len(edges) - 2)
+    bars = np.bincount(place, weights=counts[low:high + 1], minlength=len(edges) - 1) / np.diff(edges)
+    image = np.full((height, width, 3), 255, np.uint8)
+    tops = height - 4 - (height - 14) * bars / bars.max()
+    left = np.linspace(0, width, len(bars) + 1)
+    for start, end, top in zip(left[:-1], left[1:], tops):
+        cv2.rectangle(image, (int(start), int(top)), (max(int(end) - 2, int(start)), height - 4), (150, 110, 60), -1)
+    return image
+
+
+def _crs_name(wkt):
+    return horizontal_part(parse_crs(wkt)).name if wkt else tr("no CRS")
+
+
+def estimated_trajectory_report(found: EstimatedTrajectory) -> str:
+    """The report on an EstimatedTrajectory as HTML."""
+    place, height = ((np.median(sigma), sigma.max()) for sigma in (found.sigma, found.sigma_height))
+    return html_page("estimated_trajectory", found=found, notes=found.notes, way=WAYS[found.method], place=place, height=height,
+                  scanners=_scanners(found), chart="" if found.adjusted is None else _chart_of_sigmas(found))
+
+
+def _scanners(found):
+    if found.adjusted is None:
+        return []
+    adjusted, poses = found.adjusted, found.adjusted.poses
+    return [(one.number + 1, abs(float(poses.rate[k])), float(np.degrees(poses.turn[k])), float(np.degrees(poses.lean[k])),
+             *map(float, poses.lever[k]), 1000.0 * float(np.median(misfit[np.isfinite(misfit)])))
+            for k, (one, misfit) in enumerate(zip(found.scanners, adjusted.misfit.T))]
+
+
+def _chart_of_sigmas(found):
+    time = found.trajectory.time - found.trajectory.time[0]
+    gone = np.minimum(np.diff(time, prepend=time[0]), 1.0).cumsum()
+    cell = np.minimum((gone / max(gone[-1], 1e-9) * CHART_COLUMNS).astype(np.int64), CHART_COLUMNS - 1)
+    top = max(float(np.quantile(np.maximum(found.sigma, found.sigma_height), 0.995)), LEAST_CHART_TOP)
+    chart = Chart((0.0, float(gone[-1])), (0.0, top), tr("seconds of driving, without pauses"), tr("one sigma (m)"))
+    for values, colour, title in ((found.sigma, PLACE_COLOUR, tr("place")), (found.sigma_height, HEIGHT_COLOUR, tr("height"))):
+        worst = np.full(CHART_COLUMNS, np.nan)
+        np.fmax.at(worst, cell, values)
+        chart.curve((np.arange(CHART_COLUMNS) + 0.5) / CHART_COLUMNS * gone[-1], worst, colour, title)
+    return chart.svg()
