@@ -20,12 +20,13 @@ from scipy.sparse.linalg import spsolve
 
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
-from ..frame.passes import LEVEL_SEPARATION, SAME_CARRIAGEWAY, Pass
+from ..frame.passes import Pass
 from ..frame.road_frame import RoadFrame
 from ..frame.row_table import SigmaAlong
 from ..store.columns import Columns
 from ..store.records import COORDINATE_SCALE, to_units
 from ..store.section_store import SectionStore
+from ..weights import FRAME
 from .register import (
     AXES,
     CORRECTION_STEP,
@@ -426,7 +427,7 @@ def roads_beside(frame: Any) -> list[Beside]:
     """Pairs of roads that run beside each other for SHORTEST_BESIDE and more on one level; `up` is not known yet."""
     found = []
     for one, other, s, place, offset, rise in _parallel(frame):
-        known = np.flatnonzero(np.abs(rise) < LEVEL_SEPARATION)
+        known = np.flatnonzero(np.abs(rise) < FRAME.level_separation)
         if len(known) * CORRECTION_STEP >= SHORTEST_BESIDE:
             way = np.sign(np.cos(frame.road(one).heading(s[known]) - frame.road(other).heading(place[known])))
             found.append(Beside(one, other, s[known], place[known], -way * offset[known], np.full(len(known), np.nan)))
@@ -440,7 +441,7 @@ def said_of_levels(frame: Any) -> list[str]:
     """
     said = []
     for one, other, s, _, offset, rise in _parallel(frame):
-        known = np.flatnonzero((np.abs(offset) < SAME_CARRIAGEWAY) & (np.abs(rise) >= LEVEL_SEPARATION))
+        known = np.flatnonzero((np.abs(offset) < FRAME.same_carriageway) & (np.abs(rise) >= FRAME.level_separation))
         length = min(np.ptp([p.span for p in frame.passes_of(road)]) for road in (one, other))
         if len(known) * CORRECTION_STEP < max(SHORTEST_BESIDE, SHARE_ALONG * length):
             continue

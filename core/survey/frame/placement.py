@@ -10,7 +10,8 @@ import numpy as np
 import shapely
 
 from ...common.features import PASSES, Features
-from .passes import STANDSTILL_RADIUS, decimate_by_distance
+from ..weights import FRAME
+from .passes import decimate_by_distance
 from .road_frame import RoadFrame
 
 COORDINATE_DECIMALS = 4  # of coordinates in layers: 0.1 mm
@@ -144,7 +145,7 @@ def passes_to_features(frame: RoadFrame, crs: str) -> Features:
     """
     layer = Features("LineStringZ", list(PASSES), crs=crs)
     for one in frame.passes:
-        rows = decimate_by_distance(one.x, one.y, STANDSTILL_RADIUS)
+        rows = decimate_by_distance(one.x, one.y, FRAME.standstill_radius)
         if len(rows) < 2:
             continue
         line = shapely.linestrings(np.round(np.c_[one.x, one.y, one.z][rows] + frame.origin, COORDINATE_DECIMALS))
