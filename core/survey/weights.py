@@ -40,3 +40,43 @@ class _FrameWeights:
 
 
 FRAME = _FrameWeights()
+
+
+@dataclass(frozen=True)
+class _RegisterWeights:
+    """Offsets between two passes over one road, and between two scanners."""
+
+    correction_step: float = 10.0   # m of station between nodes
+    min_coupled_offset: float = 0.02   # m along or across, less than which shifts the other by less than the noise of an offset
+    much_larger: float = 2.0   # times: bars 27° off the road and more, moved across, look moved along by less
+    strip_half_width: float = 12.0   # m either side of the reference line
+    lag_cell: float = 0.02   # m: cell size along an offset, and across it
+    row_cell: float = 0.25   # m: cell size along an offset, and across it
+    max_offset: float = 0.30   # m between two passes
+    max_rough_offset: float = 1.5   # m between two drives of different years or datums
+    min_compared: float = 0.3   # of the windows that show an offset across, or the passes seem to lie farther apart
+    rough_groups: int = 5   # groups along a road, and windows of each, that are searched then
+    rough_group: int = 3   # groups along a road, and windows of each, that are searched then
+    min_cell_height: float = -0.3   # m about the road's expected height: ground and curbs
+    max_cell_height: float = 0.4   # m about the road's expected height: ground and curbs
+    height_blur_cells: int = 3   # cells over which heights are averaged
+    detrend_cells: int = 51   # cells: variations over more than a metre are neither curbs nor paint
+    max_step: float = 0.05   # m of height, and standard deviations of intensity, at which cells are clipped
+    max_contrast: float = 4.0   # m of height, and standard deviations of intensity, at which cells are clipped
+    max_correlation: float = 0.999   # at which the correlation is clipped
+    face_cells: int = 9   # cells along a row, and m between the highest and the lowest of them, that show a face such as a curb's
+    face_height: float = 0.03   # cells along a row, and m between the highest and the lowest of them, that show a face such as a curb's
+    flat_step: float = 0.01   # m: the height offset is measured on cells flatter than this
+    min_shared_cells: int = 300   # cells that two passes must share in a window
+    correlated_cells: float = 6.0   # neighbouring cells whose errors are correlated
+    pooling_sigma: float = 15.0   # m of road, over which drift changes little
+    max_offset_sigma: float = 0.006   # m: standard deviation of an accepted offset at most
+    prior_offset_sigma: float = 0.10   # m: prior standard deviation of offsets; of two equally good ones the smaller is chosen
+    min_likelihood_ratio: float = 25.0   # twice the log likelihood ratio of the best offset against none
+    max_runner_up: float = 0.7   # of that ratio, for the second best offset
+    parabola_cells: int = 2   # cells either side of the best, for the parabola
+    peak_cells: int = 2   # cells beside the best that belong to its peak
+    sigma_reach: float = 25.0   # m of road either way over which passes are compared: less would be the noise of single offsets
+
+
+REGISTER = _RegisterWeights()

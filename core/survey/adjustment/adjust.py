@@ -26,19 +26,8 @@ from ..frame.row_table import SigmaAlong
 from ..store.columns import Columns
 from ..store.records import COORDINATE_SCALE, to_units
 from ..store.section_store import SectionStore
-from ..weights import FRAME
-from .register import (
-    AXES,
-    CORRECTION_STEP,
-    MAX_OFFSET,
-    PLAN_AXES,
-    POOLING_SIGMA,
-    WINDOW_LENGTH,
-    PassCorrections,
-    PassOffsets,
-    pass_offsets,
-    sigma_of_passes,
-)
+from ..weights import FRAME, REGISTER
+from .register import AXES, PLAN_AXES, WINDOW_LENGTH, PassCorrections, PassOffsets, pass_offsets, sigma_of_passes
 
 MOVED_COLUMNS = "x", "y", "z", "s", "d"
 AGREEMENT_PLAN, AGREEMENT_HEIGHT = 0.020, 0.007    # m: a road stays as measured if nine tenths of its offsets are less
@@ -89,7 +78,7 @@ def solve_corrections(offsets: list[PassOffsets]) -> dict[int, tuple[np.ndarray,
     """
     numbers = sorted({number for pair in offsets for number in (pair.one, pair.other)})
     first, last = (end(np.concatenate([pair.stations for pair in offsets])) for end in (np.min, np.max))
-    stations = np.arange(first, last + CORRECTION_STEP / 2, CORRECTION_STEP)
+    stations = np.arange(first, last + REGISTER.correction_step / 2, REGISTER.correction_step)
     count = len(stations)
     rows = np.arange(count - 1)
     step = sparse.coo_matrix((np.r_[-np.ones(count - 1), np.ones(count - 1)], (np.r_[rows, rows], np.r_[rows, rows + 1])), (count - 1, count))
@@ -99,7 +88,7 @@ def solve_corrections(offsets: list[PassOffsets]) -> dict[int, tuple[np.ndarray,
         places, measured = [], []
         for pair in offsets:
             known = np.flatnonzero(np.isfinite(getattr(pair, axis)))
-            at = np.rint((pair.stations[known] - first) / CORRECTION_STEP).astype(np.int64)
+            at = np.rint((pair.stations[known] - first) / REGISTER.correction_step).astype(np.int64)
             places.append(np.c_[numbers.index(pair.one) * count + at, numbers.index(pair.other) * count + at])
             measured.append(getattr(pair, axis)[known])
         columns, values = np.concatenate(places), np.concatenate(measured)
@@ -132,7 +121,7 @@ def _report_offsets(road, offsets, found, progress):
         apart = _separations(offsets)
         plan, up = (f"{100 * np.median(v):.1f} cm (at most {100 * v.max():.1f})" if len(v) else "an unknown distance" for v in apart)
         said = f"Road {road}: its passes lay {plan} beside and {up} above each other"
-        if max((float(v.max()) for v in apart if len(v)), default=0.0) > MAX_OFFSET:
+        if max((float(v.max()) for v in apart if len(v)), default=0.0) > REGISTER.max_offset:
             progress.warn(f"{said}, which is more than navigation drifts within a survey. Drives of different years or datums lie so far apart. They "
                           "were laid on each other, each moved by its share. Nothing shows which of them is right, so the map may be off by half of "
                           "that distance. Process the files of each drive by itself, or measure control points.")
@@ -255,7 +244,7 @@ def _beside_moved(passes, by_pass, known):
 
 def _moved_across(frame, moves, p):
     """RMS metres by which a pass is moved across its road."""
-    s = np.linspace(*p.span, max(int(np.ptp(p.span) / CORRECTION_STEP), 2))
+    s = np.linspace(*p.span, max(int(np.ptp(p.span) / REGISTER.correction_step), 2))
     east, north, _ = moves.metres(p.number, s)
     heading = frame.road(p.road).heading(s)
     return float(np.sqrt(np.mean((north * np.cos(heading) - east * np.sin(heading)) ** 2)))
@@ -272,7 +261,7 @@ def _led_on(moves, p, before, after):
     """(station of the first node, (3, N) int16 in 0.1 mm) of a pass from the ends of those before and after it, either of them None."""
     ends = [np.array(moves.metres(one.number, one.s[[row]])) for one, row in ((before, -1), (after, 0)) if one is not None]
     first, last = p.span
-    nodes = first + CORRECTION_STEP * np.arange(int(np.ceil((last - first) / CORRECTION_STEP)) + 1)
+    nodes = first + REGISTER.correction_step * np.arange(int(np.ceil((last - first) / REGISTER.correction_step)) + 1)
     share = np.interp(nodes, [first, last], [0.0, 1.0] if p.s[-1] > p.s[0] else [1.0, 0.0])
     return first, to_units(ends[0] + share * (ends[-1] - ends[0])).astype(np.int16)
 
@@ -321,7 +310,7 @@ def places_of_one_drive(passes: list[Pass], offsets: list[PassOffsets], correcti
         stations = (np.arange(first, last + 1) + 0.5) * WINDOW_LENGTH
         away = np.abs(stations[:, None] - known).min(axis=1, initial=np.inf)
         moved = np.hypot(*corrections.metres(p.number, stations)[:2])
-        for station, metres in zip(*(values[(away > POOLING_SIGMA) & (moved > MAX_REMAINING)].tolist() for values in (stations, moved))):
+        for station, metres in zip(*(values[(away > REGISTER.pooling_sigma) & (moved > MAX_REMAINING)].tolist() for values in (stations, moved))):
             places[station] = max(places.get(station, 0.0), metres)
     return _stretches_of(places)
 
@@ -359,7 +348,7 @@ def _applied(pair, corrections, axis):
 def said_of_places(road: int, places: list[tuple[float, float, float]]) -> str:
     if not places:
         return ""
-    named = [f"{start:.0f} to {end:.0f} m (" + (f"more than {100 * MAX_OFFSET:.0f} cm apart, too far to lay them on each other)" if np.isinf(metres)
+    named = [f"{start:.0f} to {end:.0f} m (" + (f"more than {100 * REGISTER.max_offset:.0f} cm apart, too far to lay them on each other)" if np.isinf(metres)
                                                 else f"up to {100 * metres:.1f} cm remain)") for start, end, metres in places[:MOST_NAMED]]
     more = _further(places)
     return (f"Road {road}: its passes do not lie on each other at {', '.join(named)}{more}: curbs and lines may be doubled or blurred there. "
@@ -428,7 +417,7 @@ def roads_beside(frame: Any) -> list[Beside]:
     found = []
     for one, other, s, place, offset, rise in _parallel(frame):
         known = np.flatnonzero(np.abs(rise) < FRAME.level_separation)
-        if len(known) * CORRECTION_STEP >= SHORTEST_BESIDE:
+        if len(known) * REGISTER.correction_step >= SHORTEST_BESIDE:
             way = np.sign(np.cos(frame.road(one).heading(s[known]) - frame.road(other).heading(place[known])))
             found.append(Beside(one, other, s[known], place[known], -way * offset[known], np.full(len(known), np.nan)))
     return found
@@ -443,11 +432,11 @@ def said_of_levels(frame: Any) -> list[str]:
     for one, other, s, _, offset, rise in _parallel(frame):
         known = np.flatnonzero((np.abs(offset) < FRAME.same_carriageway) & (np.abs(rise) >= FRAME.level_separation))
         length = min(np.ptp([p.span for p in frame.passes_of(road)]) for road in (one, other))
-        if len(known) * CORRECTION_STEP < max(SHORTEST_BESIDE, SHARE_ALONG * length):
+        if len(known) * REGISTER.correction_step < max(SHORTEST_BESIDE, SHARE_ALONG * length):
             continue
         middle = float(np.median(rise[known]))
         if np.quantile(np.abs(rise[known] - middle), SHARE_ALONG) < EVEN_RISE:
-            first, last = s[known].min() - CORRECTION_STEP / 2, s[known].max() + CORRECTION_STEP / 2
+            first, last = s[known].min() - REGISTER.correction_step / 2, s[known].max() + REGISTER.correction_step / 2
             said.append(
                 f"Roads {one} and {other} run along each other at stations {first:.0f} to {last:.0f} m of road {one}, and one lies "
                 f"{abs(middle):.2f} m above the other all along, as no bridge does. They seem to be one road with heights of two kinds (above the "
@@ -463,7 +452,7 @@ def _parallel(frame):
     roads = np.array([p.road for p in frame.passes])
     for one, other in sorted({(int(a), int(b)) for a, b in roads[near] if a < b}):
         spans = np.array([p.span for p in frame.passes_of(one)])
-        s = np.arange(np.floor(spans.min() / CORRECTION_STEP), np.ceil(spans.max() / CORRECTION_STEP)) * CORRECTION_STEP + CORRECTION_STEP / 2
+        s = np.arange(np.floor(spans.min() / REGISTER.correction_step), np.ceil(spans.max() / REGISTER.correction_step)) * REGISTER.correction_step + REGISTER.correction_step / 2
         x, y = frame.road(one).to_map(s, np.zeros(len(s)))
         place, offset = frame.road(other).locate(x, y, corridor=FARTHEST_BESIDE)
         known = np.flatnonzero(np.isfinite(offset))
@@ -474,7 +463,7 @@ def _parallel(frame):
 
 def _height_apart(survey, pair, k):
     """m by which the second road's points lie higher in one window; NaN where too little is seen of both."""
-    road, half = survey.frame.road(pair.one), CORRECTION_STEP / 2
+    road, half = survey.frame.road(pair.one), REGISTER.correction_step / 2
     sides, cells = np.sort(pair.apart[k] * np.array(SHARE_BETWEEN)), []
     for number, station in ((pair.one, pair.stations[k]), (pair.other, pair.places[k])):
         points = survey.window(number, station - 1.5 * half, station + 1.5 * half)
@@ -503,8 +492,8 @@ def _said_of_carriageways(pair: Beside) -> tuple[str, bool]:
     """What is said of two roads beside each other, and whether it is a warning."""
     known = np.isfinite(pair.up)
     far = known & (np.abs(pair.up) > MAX_HEIGHT_APART)
-    where = (f"Road {pair.other} runs beside road {pair.one} at its stations {pair.stations.min() - CORRECTION_STEP / 2:.0f} to "
-             f"{pair.stations.max() + CORRECTION_STEP / 2:.0f} m, and no drive measured both")
+    where = (f"Road {pair.other} runs beside road {pair.one} at its stations {pair.stations.min() - REGISTER.correction_step / 2:.0f} to "
+             f"{pair.stations.max() + REGISTER.correction_step / 2:.0f} m, and no drive measured both")
     if far.any():
         return (f"{where}. Their drives differ in height at "
                 f"{_named_places(_stretches_of(dict(zip(pair.stations[far].tolist(), np.abs(pair.up[far]).tolist()))), 'by up to {:.1f} cm')}. "
