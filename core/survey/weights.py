@@ -80,3 +80,34 @@ class _RegisterWeights:
 
 
 REGISTER = _RegisterWeights()
+
+
+@dataclass(frozen=True)
+class _AdjustWeights:
+    """Corrections of passes from their offsets, and which of them are told."""
+
+    agreement_plan: float = 0.020   # m: a road stays as measured if nine tenths of its offsets are less
+    agreement_height: float = 0.007   # m: a road stays as measured if nine tenths of its offsets are less
+    offset_sigma: float = 0.003   # m, sigma of a measured offset
+    outlier_scale: float = 0.010   # m of residual at which the weight of an offset is one half (Cauchy weights)
+    reweighting_rounds: int = 5   # iterations of robust weights
+    drift_change_sigma: float = 0.010   # m, sigma of the drift from window to window
+    drift_sigma: float = 0.20   # m, sigma of the drift itself
+    max_seam: float = 1.0   # s between the end of a pass and the start of the next one of the same drive
+    max_remaining: float = 0.02   # m in plan that two passes may still differ by: less than a marking's edge is blurred by
+    max_change: float = 0.04   # m to the next window that a correction changes by: navigation drifts more slowly, so a pass jumped somewhere between
+    most_named: int = 12   # places that a message names
+    farthest_beside: float = 30.0   # m between the tracks of two carriageways
+    least_parallel: float = np.cos(np.radians(15))   # cosine of the angle between them, at least
+    shortest_beside: float = 50.0   # m beside each other, shorter than which it is a junction
+    share_along: float = 0.8   # of the shorter of two roads, that they run along each other
+    even_rise: float = 0.15   # m by which one may vary in height above the other: navigation drifts by less, ramps climb by more
+    share_between: tuple[float, float] = 0.25, 0.75   # of the way from one track to the other: what both drives see well
+    height_cell: float = 0.25   # m, of the cells that heights are compared in
+    flat_cell_range: float = 0.03   # m between the highest and the lowest point of a flat cell
+    min_flat_cells: int = 40   # flat cells that both drives see, for a difference
+    max_height_apart: float = 0.02   # m in height that two drives may differ by without a warning
+    least_told_move: float = 0.005   # m; less is not named in the warning
+
+
+ADJUST = _AdjustWeights()

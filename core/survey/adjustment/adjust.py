@@ -26,16 +26,10 @@ from ..frame.row_table import SigmaAlong
 from ..store.columns import Columns
 from ..store.records import COORDINATE_SCALE, to_units
 from ..store.section_store import SectionStore
-from ..weights import FRAME, REGISTER
+from ..weights import ADJUST, FRAME, REGISTER
 from .register import AXES, PLAN_AXES, WINDOW_LENGTH, PassCorrections, PassOffsets, pass_offsets, sigma_of_passes
 
 MOVED_COLUMNS = "x", "y", "z", "s", "d"
-AGREEMENT_PLAN, AGREEMENT_HEIGHT = 0.020, 0.007    # m: a road stays as measured if nine tenths of its offsets are less
-OFFSET_SIGMA = 0.003           # m, sigma of a measured offset
-OUTLIER_SCALE = 0.010              # m of residual at which the weight of an offset is one half (Cauchy weights)
-REWEIGHTING_ROUNDS = 5                 # iterations of robust weights
-DRIFT_CHANGE_SIGMA = 0.010             # m, sigma of the drift from window to window
-DRIFT_SIGMA = 0.20                # m, sigma of the drift itself
 
 
 def adjust_passes(survey: Any, progress: Progress = Progress(), folder: Path | None = None) -> None:
@@ -82,7 +76,7 @@ def solve_corrections(offsets: list[PassOffsets]) -> dict[int, tuple[np.ndarray,
     count = len(stations)
     rows = np.arange(count - 1)
     step = sparse.coo_matrix((np.r_[-np.ones(count - 1), np.ones(count - 1)], (np.r_[rows, rows], np.r_[rows, rows + 1])), (count - 1, count))
-    prior = sparse.kron(sparse.identity(len(numbers)), step.T @ step / DRIFT_CHANGE_SIGMA**2 + sparse.identity(count) / DRIFT_SIGMA**2)
+    prior = sparse.kron(sparse.identity(len(numbers)), step.T @ step / ADJUST.drift_change_sigma**2 + sparse.identity(count) / ADJUST.drift_sigma**2)
     found = np.zeros((len(numbers), len(AXES), count))
     for k, axis in enumerate(AXES):
         places, measured = [], []
@@ -95,10 +89,10 @@ def solve_corrections(offsets: list[PassOffsets]) -> dict[int, tuple[np.ndarray,
         of = np.repeat(np.arange(len(values)), 2)
         between = sparse.csr_matrix((np.tile([-1.0, 1.0], len(values)), (of, columns.ravel())), (len(values), len(numbers) * count))
         weight = np.ones(len(values))
-        for _ in range(REWEIGHTING_ROUNDS):
-            precision = sparse.diags(weight / OFFSET_SIGMA**2)
+        for _ in range(ADJUST.reweighting_rounds):
+            precision = sparse.diags(weight / ADJUST.offset_sigma**2)
             u = spsolve((between.T @ precision @ between + prior).tocsc(), between.T @ (precision @ values))
-            weight = 1.0 / (1.0 + ((between @ u - values) / OUTLIER_SCALE) ** 2)
+            weight = 1.0 / (1.0 + ((between @ u - values) / ADJUST.outlier_scale) ** 2)
         found[:, k] = u.reshape(len(numbers), count)
     return {number: (stations, found[k]) for k, number in enumerate(numbers)}
 
@@ -112,7 +106,7 @@ def _separations(offsets):
 
 
 def _disagree(offsets):
-    return any(len(values) and np.percentile(values, 90) > least for values, least in zip(_separations(offsets), (AGREEMENT_PLAN, AGREEMENT_HEIGHT)))
+    return any(len(values) and np.percentile(values, 90) > least for values, least in zip(_separations(offsets), (ADJUST.agreement_plan, ADJUST.agreement_height)))
 
 
 def _report_offsets(road, offsets, found, progress):
@@ -209,7 +203,6 @@ def replace_points(survey: Any, moved: Callable[[Columns], Columns], progress: P
 
 # A drive that was laid on others goes on where it measures alone: it is moved on as where it left them, not back to where it was measured.
 
-MAX_SEAM = 1.0   # s between the end of a pass and the start of the next one of the same drive
 
 
 def continued_corrections(frame: RoadFrame, moves: PassCorrections, compared: list[PassOffsets]) -> PassCorrections:
@@ -252,7 +245,7 @@ def _moved_across(frame, moves, p):
 
 def _touching(first: Pass | None, then: Pass | None, by_pass: dict) -> Pass | None:
     """The one of two passes that was moved, if they touch in time."""
-    if first is None or then is None or not 0.0 <= then.time[0] - first.time[-1] <= MAX_SEAM:
+    if first is None or then is None or not 0.0 <= then.time[0] - first.time[-1] <= ADJUST.max_seam:
         return None
     return next((one for one in (first, then) if one.number in by_pass), None)
 
@@ -268,9 +261,6 @@ def _led_on(moves, p, before, after):
 
 # Where passes still differ after they were laid on each other, and where one was moved that no other confirms, place by place.
 
-MAX_REMAINING = 0.02   # m in plan that two passes may still differ by: less than a marking's edge is blurred by
-MAX_CHANGE = 0.04      # m to the next window that a correction changes by: navigation drifts more slowly, so a pass jumped somewhere between
-MOST_NAMED = 12        # places that a message names
 
 
 def remaining_places(offsets: list[PassOffsets], corrections: dict[int, tuple[np.ndarray, np.ndarray]]) -> list[tuple[float, float, float]]:
@@ -288,7 +278,7 @@ def remaining_places(offsets: list[PassOffsets], corrections: dict[int, tuple[np
             applied = _applied(pair, corrections, axis)
             left = np.abs(np.nan_to_num(getattr(pair, axis) - applied))
             rest = np.hypot(rest, np.maximum(left, _evened_out(pair.stations, applied)))
-        for station, metres in (*zip(pair.stations[rest > MAX_REMAINING], rest[rest > MAX_REMAINING]), *((station, np.inf) for station in pair.far)):
+        for station, metres in (*zip(pair.stations[rest > ADJUST.max_remaining], rest[rest > ADJUST.max_remaining]), *((station, np.inf) for station in pair.far)):
             places[float(station)] = max(places.get(float(station), 0.0), float(metres))
     return _stretches_of(places)
 
@@ -310,7 +300,7 @@ def places_of_one_drive(passes: list[Pass], offsets: list[PassOffsets], correcti
         stations = (np.arange(first, last + 1) + 0.5) * WINDOW_LENGTH
         away = np.abs(stations[:, None] - known).min(axis=1, initial=np.inf)
         moved = np.hypot(*corrections.metres(p.number, stations)[:2])
-        for station, metres in zip(*(values[(away > REGISTER.pooling_sigma) & (moved > MAX_REMAINING)].tolist() for values in (stations, moved))):
+        for station, metres in zip(*(values[(away > REGISTER.pooling_sigma) & (moved > ADJUST.max_remaining)].tolist() for values in (stations, moved))):
             places[station] = max(places.get(station, 0.0), metres)
     return _stretches_of(places)
 
@@ -319,7 +309,7 @@ def _evened_out(stations, applied):
     """(N,) m of a jump that remain in the windows it lies between, as corrections change evenly from one to the next; 0 where there is none."""
     found = np.zeros(len(stations))
     change = np.abs(np.diff(applied))
-    for k in np.flatnonzero((change > MAX_CHANGE) & (np.diff(stations) < 1.5 * WINDOW_LENGTH)).tolist():
+    for k in np.flatnonzero((change > ADJUST.max_change) & (np.diff(stations) < 1.5 * WINDOW_LENGTH)).tolist():
         found[k:k + 2] = np.maximum(found[k:k + 2], change[k] / 2)
     return found
 
@@ -349,7 +339,7 @@ def said_of_places(road: int, places: list[tuple[float, float, float]]) -> str:
     if not places:
         return ""
     named = [f"{start:.0f} to {end:.0f} m (" + (f"more than {100 * REGISTER.max_offset:.0f} cm apart, too far to lay them on each other)" if np.isinf(metres)
-                                                else f"up to {100 * metres:.1f} cm remain)") for start, end, metres in places[:MOST_NAMED]]
+                                                else f"up to {100 * metres:.1f} cm remain)") for start, end, metres in places[:ADJUST.most_named]]
     more = _further(places)
     return (f"Road {road}: its passes do not lie on each other at {', '.join(named)}{more}: curbs and lines may be doubled or blurred there. "
             "Adjust the trajectories of the drives to each other, or process the files of each drive by itself.")
@@ -363,11 +353,11 @@ def said_of_one_drive(road: int, places: list[tuple[float, float, float]]) -> st
 
 
 def _named_places(places: list[tuple[float, float, float]], size: str) -> str:
-    return ", ".join(f"{start:.0f} to {end:.0f} m ({size.format(100 * metres)})" for start, end, metres in places[:MOST_NAMED]) + _further(places)
+    return ", ".join(f"{start:.0f} to {end:.0f} m ({size.format(100 * metres)})" for start, end, metres in places[:ADJUST.most_named]) + _further(places)
 
 
 def _further(places):
-    return f" and at {len(places) - MOST_NAMED} further places" if len(places) > MOST_NAMED else ""
+    return f" and at {len(places) - ADJUST.most_named} further places" if len(places) > ADJUST.most_named else ""
 
 
 # Carriageways that were driven one by one, as of a motorway: whether their drives agree on the ground between them, place by place.
@@ -375,16 +365,6 @@ def _further(places):
 # Such roads share no pass, so nothing lays them on each other. What both drives see is the strip between the two tracks. Its flat places give the
 # difference in height to millimetres. Across they tell nothing: of a guard rail each drive sees its own side, and rails hide the paint behind them.
 
-FARTHEST_BESIDE = 30.0                    # m between the tracks of two carriageways
-LEAST_PARALLEL = np.cos(np.radians(15))  # cosine of the angle between them, at least
-SHORTEST_BESIDE = 50.0                    # m beside each other, shorter than which it is a junction
-SHARE_ALONG = 0.8                         # of the shorter of two roads, that they run along each other
-EVEN_RISE = 0.15                          # m by which one may vary in height above the other: navigation drifts by less, ramps climb by more
-SHARE_BETWEEN = 0.25, 0.75               # of the way from one track to the other: what both drives see well
-HEIGHT_CELL = 0.25                        # m, of the cells that heights are compared in
-FLAT_CELL_RANGE = 0.03                    # m between the highest and the lowest point of a flat cell
-MIN_FLAT_CELLS = 40                     # flat cells that both drives see, for a difference
-MAX_HEIGHT_APART = 0.02                   # m in height that two drives may differ by without a warning
 
 
 class Beside(NamedTuple):
@@ -417,7 +397,7 @@ def roads_beside(frame: Any) -> list[Beside]:
     found = []
     for one, other, s, place, offset, rise in _parallel(frame):
         known = np.flatnonzero(np.abs(rise) < FRAME.level_separation)
-        if len(known) * REGISTER.correction_step >= SHORTEST_BESIDE:
+        if len(known) * REGISTER.correction_step >= ADJUST.shortest_beside:
             way = np.sign(np.cos(frame.road(one).heading(s[known]) - frame.road(other).heading(place[known])))
             found.append(Beside(one, other, s[known], place[known], -way * offset[known], np.full(len(known), np.nan)))
     return found
@@ -432,10 +412,10 @@ def said_of_levels(frame: Any) -> list[str]:
     for one, other, s, _, offset, rise in _parallel(frame):
         known = np.flatnonzero((np.abs(offset) < FRAME.same_carriageway) & (np.abs(rise) >= FRAME.level_separation))
         length = min(np.ptp([p.span for p in frame.passes_of(road)]) for road in (one, other))
-        if len(known) * REGISTER.correction_step < max(SHORTEST_BESIDE, SHARE_ALONG * length):
+        if len(known) * REGISTER.correction_step < max(ADJUST.shortest_beside, ADJUST.share_along * length):
             continue
         middle = float(np.median(rise[known]))
-        if np.quantile(np.abs(rise[known] - middle), SHARE_ALONG) < EVEN_RISE:
+        if np.quantile(np.abs(rise[known] - middle), ADJUST.share_along) < ADJUST.even_rise:
             first, last = s[known].min() - REGISTER.correction_step / 2, s[known].max() + REGISTER.correction_step / 2
             said.append(
                 f"Roads {one} and {other} run along each other at stations {first:.0f} to {last:.0f} m of road {one}, and one lies "
@@ -448,15 +428,15 @@ def said_of_levels(frame: Any) -> list[str]:
 def _parallel(frame):
     """Yield (road, other road, stations, places, offsets and m that the first lies higher) where roads run beside or above each other."""
     tracks = [shapely.linestrings(np.c_[p.x, p.y]) for p in frame.passes]
-    near = shapely.STRtree(tracks).query(tracks, predicate="dwithin", distance=FARTHEST_BESIDE).T
+    near = shapely.STRtree(tracks).query(tracks, predicate="dwithin", distance=ADJUST.farthest_beside).T
     roads = np.array([p.road for p in frame.passes])
     for one, other in sorted({(int(a), int(b)) for a, b in roads[near] if a < b}):
         spans = np.array([p.span for p in frame.passes_of(one)])
         s = np.arange(np.floor(spans.min() / REGISTER.correction_step), np.ceil(spans.max() / REGISTER.correction_step)) * REGISTER.correction_step + REGISTER.correction_step / 2
         x, y = frame.road(one).to_map(s, np.zeros(len(s)))
-        place, offset = frame.road(other).locate(x, y, corridor=FARTHEST_BESIDE)
+        place, offset = frame.road(other).locate(x, y, corridor=ADJUST.farthest_beside)
         known = np.flatnonzero(np.isfinite(offset))
-        known = known[np.abs(np.cos(frame.road(one).heading(s[known]) - frame.road(other).heading(place[known]))) > LEAST_PARALLEL]
+        known = known[np.abs(np.cos(frame.road(one).heading(s[known]) - frame.road(other).heading(place[known]))) > ADJUST.least_parallel]
         rise = frame.track_height(one, s[known]) - frame.track_height(other, place[known])
         yield one, other, s[known], place[known], offset[known], rise
 
@@ -464,34 +444,34 @@ def _parallel(frame):
 def _height_apart(survey, pair, k):
     """m by which the second road's points lie higher in one window; NaN where too little is seen of both."""
     road, half = survey.frame.road(pair.one), REGISTER.correction_step / 2
-    sides, cells = np.sort(pair.apart[k] * np.array(SHARE_BETWEEN)), []
+    sides, cells = np.sort(pair.apart[k] * np.array(ADJUST.share_between)), []
     for number, station in ((pair.one, pair.stations[k]), (pair.other, pair.places[k])):
         points = survey.window(number, station - 1.5 * half, station + 1.5 * half)
         between = np.flatnonzero(np.abs(np.abs(points.d) - 0.5 * abs(pair.apart[k])) < np.ptp(sides) / 2 + 1.0)
-        s, d = road.locate(points.x[between], points.y[between], corridor=FARTHEST_BESIDE)
+        s, d = road.locate(points.x[between], points.y[between], corridor=ADJUST.farthest_beside)
         own = (np.abs(s - pair.stations[k]) < half) & (d > sides[0]) & (d < sides[1])
         cells.append(_flat_cells(s[own] - pair.stations[k] + half, d[own] - sides[0], points.z[between[own]]))
     (one, low), (other, high) = cells
     _, a, b = np.intersect1d(one, other, return_indices=True)
-    return float(np.median(high[b] - low[a])) if len(a) >= MIN_FLAT_CELLS else np.nan
+    return float(np.median(high[b] - low[a])) if len(a) >= ADJUST.min_flat_cells else np.nan
 
 
 def _flat_cells(along, across, z):
     """Numbers of the flat cells that points lie in, rising, and their mean heights, m."""
     if not len(z):
         return np.empty(0, int), np.empty(0)
-    cell = (along / HEIGHT_CELL).astype(int) * 1000 + (across / HEIGHT_CELL).astype(int)
+    cell = (along / ADJUST.height_cell).astype(int) * 1000 + (across / ADJUST.height_cell).astype(int)
     order = np.argsort(cell, kind="stable")
     numbers, first = np.unique(cell[order], return_index=True)
     z = z[order]
-    flat = np.maximum.reduceat(z, first) - np.minimum.reduceat(z, first) < FLAT_CELL_RANGE
+    flat = np.maximum.reduceat(z, first) - np.minimum.reduceat(z, first) < ADJUST.flat_cell_range
     return numbers[flat], (np.add.reduceat(z, first) / np.diff(np.append(first, len(z))))[flat]
 
 
 def _said_of_carriageways(pair: Beside) -> tuple[str, bool]:
     """What is said of two roads beside each other, and whether it is a warning."""
     known = np.isfinite(pair.up)
-    far = known & (np.abs(pair.up) > MAX_HEIGHT_APART)
+    far = known & (np.abs(pair.up) > ADJUST.max_height_apart)
     where = (f"Road {pair.other} runs beside road {pair.one} at its stations {pair.stations.min() - REGISTER.correction_step / 2:.0f} to "
              f"{pair.stations.max() + REGISTER.correction_step / 2:.0f} m, and no drive measured both")
     if far.any():

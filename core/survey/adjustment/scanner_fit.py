@@ -18,14 +18,13 @@ import numpy as np
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ..store.records import COORDINATE_SCALE, to_units
-from ..weights import REGISTER
-from .adjust import AGREEMENT_HEIGHT, AGREEMENT_PLAN, MOVED_COLUMNS, replace_points
+from ..weights import ADJUST, REGISTER
+from .adjust import MOVED_COLUMNS, replace_points
 from .register import CHANNELS, WINDOW_LENGTH, Strips, best_offsets, correlation_sums, height_offset
 from .trajectory_fit import LOOK_WINDOWS, MAX_SCANNER_OFFSETS, SCANNER_WINDOWS, SIGNIFICANT
 
 SIDES = "right", "left"
 SAID_AS = ("ahead", "behind"), ("left", "right"), ("above", "below")
-SAID_M = 0.005           # m; less is not named in the warning
 
 
 @dataclass(frozen=True)
@@ -108,7 +107,7 @@ def _said(survey, one, sigma):
     if one.far:
         return (f"{names} lie more than {100 * REGISTER.max_offset:.0f} cm apart, too far to lay them on each other: curbs and lines are doubled. Calibrate "
                 "the mounting of the scanners anew, or process the points of one scanner alone.")
-    right, left = (", ".join(f"{100 * abs(metres):.1f} cm {words[int(metres < 0)]}" for metres, words in zip(side, SAID_AS) if abs(metres) > SAID_M)
+    right, left = (", ".join(f"{100 * abs(metres):.1f} cm {words[int(metres < 0)]}" for metres, words in zip(side, SAID_AS) if abs(metres) > ADJUST.least_told_move)
                    or "nothing that is measurable" for side in np.nan_to_num(-one.moves))
     return (f"{names} differ all along the survey, as with a wrong lever arm or boresight angles. On the left of the vehicle, points of the first "
             f"are displaced from those of the other by {left}, on the right by {right}. Each was moved by its share. Nothing shows which of them is "
@@ -126,7 +125,7 @@ def _filled(one):
     """(2, 3) m of moves: where one side shows nothing, the other's; where both are alike, their mean."""
     right, left = one.moves
     right, left = (np.where(np.isnan(a), np.nan_to_num(b), a) for a, b in ((right, left), (left, right)))
-    alike = np.abs(left - right) < np.array([AGREEMENT_PLAN, AGREEMENT_PLAN, AGREEMENT_HEIGHT])
+    alike = np.abs(left - right) < np.array([ADJUST.agreement_plan, ADJUST.agreement_plan, ADJUST.agreement_height])
     return np.where(alike, 0.5 * (left + right), [right, left])
 
 

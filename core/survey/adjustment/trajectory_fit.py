@@ -23,7 +23,7 @@ from ..las.reader import CloudHeader
 from ..lattice.scan_lattice import MIN_ROTATION_PEAK, ROTATION_WINDOW, rotation_spectrum, strongest_rotation
 from ..trajectory.shape import shaped_trajectory
 from ..trajectory.trajectory import Trajectory, clean_trajectory
-from .adjust import AGREEMENT_PLAN
+from ..weights import ADJUST
 
 
 @dataclass(frozen=True)
@@ -433,5 +433,5 @@ SIGMA_OF_OTHER_HEIGHTS = (0.15 + 0.30) / 12.0**0.5   # derived: m
 # cost: windows of the survey in which scanners are looked at, and measured, as an error of a mounting is the same in all
 LOOK_WINDOWS, SCANNER_WINDOWS = 3, 16
 # derived: m ahead, left and up that scanners may differ by without a move, as passes may; along lines nothing is drawn sharply
-MAX_SCANNER_OFFSETS = 2 * AGREEMENT_PLAN, AGREEMENT_PLAN, AGREEMENT_PLAN / 2
+MAX_SCANNER_OFFSETS = 2 * ADJUST.agreement_plan, ADJUST.agreement_plan, ADJUST.agreement_plan / 2
 SIGNIFICANT = 3.0        # derived: sigma; of a normal error one in 370 is larger
