@@ -111,3 +111,39 @@ class _AdjustWeights:
 
 
 ADJUST = _AdjustWeights()
+
+
+@dataclass(frozen=True)
+class _LatticeWeights:
+    """The scan lines of a scanner, and the turns of its mirror."""
+
+    rotation_samples: int = 6   # places along a pass at which the frequency is sought
+    rotation_sample_pieces: int = 6   # in which these are read
+    rotation_sample_length: float = 30.0   # m of road about each: scan lines are oblique, and cover little of a short piece of road
+    min_window_points: int = 200   # points of a scanner in a window
+    min_distinct_times: float = 0.7   # share of the points; if more share their times, the times do not give the order on the line
+    max_point_step: float = 0.5   # m across, median between successive points of a line
+    same_place_step: float = 0.1   # m across, median of successive points that lie on one line, in whatever order
+    min_one_way_share: float = 0.75   # of the steps from point to point that go the same way across
+    median_time_stride: int = 15   # every n-th point is enough for the median time of a sample
+    turns_per_bin: int = 10   # turns whose points give one phase
+    phase_stretch: float = 20.0   # m of road processed at a time
+    max_points_per_turn: int = 40   # that are used for the phase; more do not improve it
+    min_axis_height: float = 1.5   # m above the road: seen from lower, the angles of road points hardly change
+    line_sectors: int = 36   # of a turn, in each of which lines are counted
+    max_mounting_points: int = 10_000   # points of a window that are used for the mounting of a scanner
+    mounting_directions: int = 360   # about the trajectory, for which the mounting of a scanner is estimated
+    min_phase_bin_points: int = 8   # points of a bin, or it gives no phase
+    min_phase_bin_share: float = 0.3   # of the median number of points: bins that are cut off have a biased phase
+    min_phase_coherence: float = 0.3   # length of the mean phasor of a bin
+    nodes_per_bin: int = 5   # of the smooth curve through the phases of the bins
+    max_phase_bin_gap: float = 1.5   # bins between two phases; farther apart, the phase in between is extrapolated from the rate before
+    min_rotation: float = 5.0   # Hz
+    max_rotation: float = 400.0   # Hz
+    rotation_window: float = 0.5   # s of scanning whose points are compared
+    rotation_tolerance: float = 0.02   # share of a frequency within which it may vary
+    min_direction_ratio: float = 1.5   # of the peak against that of the opposite rotation
+    min_rotation_peak: float = 0.5
+
+
+LATTICE = _LatticeWeights()

@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...curves.robust import robustly_smoothed
-from ..lattice.scan_lattice import MIN_ROTATION_PEAK, ROTATION_WINDOW, rotation_spectrum, strongest_rotation
+from ..lattice.scan_lattice import rotation_spectrum, strongest_rotation
+from ..weights import LATTICE
 from .samples import MIN_WINDOW_SAMPLES, WINDOW, FirstTrack, Samples, headings_of
 
 KNOT_SPACING = 0.1   # s between the knots of the splines: suspensions swing at 1 to 3 Hz
@@ -145,7 +146,7 @@ def _rotation_rate_of(runs: list[tuple[np.ndarray, np.ndarray, FirstTrack]]) -> 
     spectra = []
     for time, place, track in runs:
         for middle in np.linspace(track.time[0], track.time[-1], ROTATION_SAMPLES_PER_DRIVE + 2)[1:-1]:
-            own = slice(*np.searchsorted(time, [middle - ROTATION_WINDOW / 2, middle + ROTATION_WINDOW / 2]))
+            own = slice(*np.searchsorted(time, [middle - LATTICE.rotation_window / 2, middle + LATTICE.rotation_window / 2]))
             if own.stop - own.start < MIN_SPECTRUM_SAMPLES:
                 continue
             foot, heading = track.at(time[own])
@@ -156,7 +157,7 @@ def _rotation_rate_of(runs: list[tuple[np.ndarray, np.ndarray, FirstTrack]]) -> 
     if not spectra:
         return None
     rate, peak = strongest_rotation(spectra)
-    return abs(rate) if peak >= MIN_ROTATION_PEAK else None
+    return abs(rate) if peak >= LATTICE.min_rotation_peak else None
 
 
 def _fixes_of(time: np.ndarray, place: np.ndarray, track: FirstTrack, rate: float) -> _Fixes:
