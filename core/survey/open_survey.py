@@ -29,13 +29,14 @@ from .las.point_fields import check_coloured, intensity_source_of, without_inten
 from .las.reader import CloudHeader, read_headers
 from .las.samples import coarse_coordinates, distinct_rows, may_overlap, sample_files, without_copies
 from .store.records import COORDINATE_SCALE, SURVEY_POINT, point_dtype
-from .store.section_store import SECTION_LENGTH, SectionStore
+from .store.section_store import SectionStore
 from .store.spill_file import parts_are_whole
 from .survey import SURVEY_FOLDER, Survey, SurveySettings, survey_in_folder
 from .survey_reader import SurveyReader
 from .trajectory.meaning import EARTH_RADIUS
 from .trajectory.time_systems import align_time, wrapped_week
 from .trajectory.trajectory import Trajectory, refuse_standstill, reproject_trajectory
+from .weights import STORE
 
 
 def open_survey(paths: Sequence[str | Path], trajectory: Trajectory, settings: SurveySettings = SurveySettings(),
@@ -145,7 +146,7 @@ def _found_survey(work, name, files, progress):
 
 INGEST_PROGRESS = 0.7        # of the work, where the passes are adjusted afterwards
 SECTION_POINTS = 250_000      # points of a section, about, and
-SECTION_LENGTHS = SECTION_LENGTH, 10.0, 25.0   # m that it may be long
+SECTION_LENGTHS = STORE.section_length, 10.0, 25.0   # m that it may be long
 PARTS_PROGRESS = 0.85        # of reading, where the points are put in order afterwards
 HIGHEST_SENSOR = 5.0         # m above the road: vehicles are up to 4 m high (Directive 96/53/EC), and a mast on a roof adds some
 
@@ -331,7 +332,7 @@ def section_length(files: list[CloudHeader], frame: RoadFrame) -> float:
     files : headers of the clouds
     """
     density = sum(file.count for file in files) / max(sum(road.length for road in frame.roads), 1.0)
-    return max((length for length in SECTION_LENGTHS if length * density <= SECTION_POINTS), default=SECTION_LENGTH)
+    return max((length for length in SECTION_LENGTHS if length * density <= SECTION_POINTS), default=STORE.section_length)
 
 
 def _sampled(files, reader, has_time, progress):

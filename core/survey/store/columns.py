@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from ..weights import STORE
+
 ROW_CHUNK = 1 << 14    # rows that are split into columns at a time: they fit the processor's cache
-ROWS_OVERHEAD = 8      # reading some rows of a column costs as much as 1 / ROWS_OVERHEAD of the whole column, plus the rows
 
 
 class Columns:
@@ -135,7 +136,7 @@ class Columns:
 
     def _pays(self, name, rows):
         """Whether rows of a column are read by row: of a column that is kept, only until they have cost half as much as the whole."""
-        cost = self._load_cost.get(name, 0) + len(rows) + self._length // ROWS_OVERHEAD if self._kept else len(rows)
+        cost = self._load_cost.get(name, 0) + len(rows) + self._length // STORE.rows_overhead if self._kept else len(rows)
         if 2 * cost > self._length or rows.min() < 0 or rows.max() >= self._length:
             return False
         if self._kept:

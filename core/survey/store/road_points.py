@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...execution.phase import THREADS, Executor, Recipe
+from ..weights import STORE
 from .columns import Columns
 from .records import ROAD_POINT, Points, join_columns, point_dtype
 from .section_store import ColumnOverlay, DerivedStore, SectionStore
@@ -117,7 +118,6 @@ def _shared_road_points(survey: Any, subset: dict[str, Any], corrected: dict[str
 
 # A subset of the points of a store, with additional columns: it stores which points are in it, not the points.
 
-SUBSET_MEMORY_LIMIT = 16 * 2**20  # bytes of masks, and as many of additional columns, in memory
 
 
 def packed_mask(rows: np.ndarray) -> np.ndarray:
@@ -143,7 +143,7 @@ class PointSubset(DerivedStore):
         super().__init__(dtype, points)
         # What is read from these two is cached with the points.
         self._masks, self._own = (
-            SectionStore(kind, points.section_length, min(SUBSET_MEMORY_LIMIT, points.memory_limit), cache_limit=0, folder=folder)
+            SectionStore(kind, points.section_length, min(STORE.subset_memory_limit, points.memory_limit), cache_limit=0, folder=folder)
             for kind in ([("bits", "u1")], [(name, self.dtype[name]) for name in own]))
         self._constants = {name: np.array(value, self.dtype[name]) for name, value in constants.items()}
 

@@ -16,15 +16,11 @@ import numpy as np
 
 from ...common.arrays import RADIX_BITS, above_least, bucket_argsort, order_by
 from ...common.parallel import ScratchBuffers, check_cancelled, column_buffers
+from ..weights import STORE
 from .columns import Columns, columns_in_order
 from .records import COORDINATE_SCALE, Points, take_rows
 from .spill_file import Key, SpillFile, StoredColumn, StoreIndex, close_parts, new_part
 
-SECTION_LENGTH = 5.0       # m of station; results do not depend on it
-MEMORY_LIMIT = 64 * 2**20  # bytes of records in memory before they are spilled
-CACHE_LIMIT = 64 * 2**20   # bytes of spilled sections cached as last read: neighbouring windows ask for them again
-STRIPS_PER_SECTION = 16    # points wait strip by strip until a section is sorted, so that points sorted together lie together in memory
-SECTION_LOCKS = 16         # locks that the sections share while they are read
 LEAST_UNIT, MOST_UNIT = -2**31, 2**31 - 1   # of 0.1 mm, in which stations are kept
 STRETCH_POINTS = 1_200_000   # points of a stretch that a worker process works on, about: a second of its time
 
@@ -60,8 +56,8 @@ class SectionStore:
     folder : where the points go that are not kept in memory, so that others can read them; None for a temporary file without a name
     """
 
-    def __init__(self, dtype: Any, section_length: float = SECTION_LENGTH, memory_limit: int = MEMORY_LIMIT,
-                 finish: Callable[[int, Columns], np.ndarray | None] | None = None, cache_limit: int = CACHE_LIMIT, folder: Path | None = None):
+    def __init__(self, dtype: Any, section_length: float = STORE.section_length, memory_limit: int = STORE.memory_limit,
+                 finish: Callable[[int, Columns], np.ndarray | None] | None = None, cache_limit: int = STORE.cache_limit, folder: Path | None = None):
         self.dtype = np.dtype(dtype)
         self.section_length = section_length
         self.memory_limit = memory_limit
@@ -71,7 +67,7 @@ class SectionStore:
         self._cache: OrderedDict[tuple[int, int], Columns] = OrderedDict()   # the spilled sections read last
         self._cache_bytes, self._cache_limit = 0, cache_limit
         self._lock = threading.Lock()       # sections are read by several threads
-        self._section_locks = [threading.Lock() for _ in range(SECTION_LOCKS)]
+        self._section_locks = [threading.Lock() for _ in range(STORE.section_locks)]
         self._waiting_bytes = 0
         self._file: SpillFile | None = None
         self._count = 0
@@ -91,12 +87,12 @@ class SectionStore:
         strip = np.multiply(records["s"], COORDINATE_SCALE, out=self._buffers.of(len(records))("strip"))
         strip /= self.section_length
         low, high = int(np.floor(strip.min())), int(np.floor(strip.max()))
-        strip *= STRIPS_PER_SECTION
+        strip *= STORE.strips_per_section
         np.floor(strip, out=strip)
-        strip -= STRIPS_PER_SECTION * low
-        order, ends = bucket_argsort(strip, STRIPS_PER_SECTION * (high + 1 - low), mask)
+        strip -= STORE.strips_per_section * low
+        order, ends = bucket_argsort(strip, STORE.strips_per_section * (high + 1 - low), mask)
         columns = records.take(order).load_all() if isinstance(records, Columns) else columns_in_order(records, order)
-        return PartitionedPoints(int(road), columns, low, ends[STRIPS_PER_SECTION - 1::STRIPS_PER_SECTION].tolist())
+        return PartitionedPoints(int(road), columns, low, ends[STORE.strips_per_section - 1::STORE.strips_per_section].tolist())
 
     def add(self, points: PartitionedPoints) -> None:
         for k, (first, end) in enumerate(zip([0, *points.ends], points.ends)):
@@ -171,7 +167,7 @@ class SectionStore:
         """The Columns of one section in canonical order, read-only; empty where there are no points."""
         check_cancelled()
         key = (road, section)
-        with self._section_locks[hash(key) % SECTION_LOCKS]:
+        with self._section_locks[hash(key) % STORE.section_locks]:
             with self._lock:
                 records = self._cache.get(key)
                 if records is not None:
@@ -452,8 +448,6 @@ def _concatenate_into_buffer(columns):
 
 # The order in which a section returns its points, each once: it does not depend on the order of the files, nor on how far these overlap.
 
-SORT_CHUNK = 1 << 15   # points sorted at a time: they fit the processor's cache
-STATION_CELL_BITS = 7  # bits of the number of a cell of stations; points are sorted into cells first (fewer than a byte holds)
 # Sort keys, the most significant last: the first set differs between nearly all points, the second between all that are not identical.
 PLACE_KEYS = "z", "d", "s"
 ALL_KEYS = "returns", "source", "y", "x", "intensity", "time", *PLACE_KEYS
@@ -469,8 +463,8 @@ def canonical_order(records: np.ndarray | Columns, mask: np.ndarray | None = Non
         return np.empty(0, np.intp)
     along, across = records["s"], records["d"]
     cell = above_least(along)
-    cell >>= max(int(cell.max()).bit_length() - STATION_CELL_BITS, 0)
-    order, ends = bucket_argsort(cell, 2**STATION_CELL_BITS, mask)
+    cell >>= max(int(cell.max()).bit_length() - STORE.station_cell_bits, 0)
+    order, ends = bucket_argsort(cell, 2**STORE.station_cell_bits, mask)
     tied_parts, first = [np.empty(0, np.intp)], 0
     for end in _chunk_ends(ends):
         rows = order[first:end]
@@ -500,7 +494,7 @@ def _same_as_next(*keys):
 
 def _chunk_ends(ends):
     """Where runs of cells end that hold about SORT_CHUNK points each."""
-    last = np.searchsorted(ends, np.arange(SORT_CHUNK, ends[-1] + SORT_CHUNK, SORT_CHUNK))
+    last = np.searchsorted(ends, np.arange(STORE.sort_chunk, ends[-1] + STORE.sort_chunk, STORE.sort_chunk))
     return np.unique(ends[last.clip(max=len(ends) - 1)]).tolist()
 
 
@@ -562,7 +556,7 @@ class ColumnOverlay(DerivedStore):
         # of as many points as the store keeps ready, not of as many bytes
         share = points.dtype[name].itemsize / points.dtype.itemsize
         self._column = SectionStore([(name, points.dtype[name])], points.section_length, points.memory_limit, folder=folder,
-                                    cache_limit=int(share * CACHE_LIMIT))
+                                    cache_limit=int(share * STORE.cache_limit))
 
     @property
     def count(self) -> int:

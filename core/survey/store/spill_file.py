@@ -24,13 +24,11 @@ import numpy as np
 
 from ...common.parallel import column_buffers, freed_on_demand
 from ...execution.phase import checksum
+from ..weights import STORE
 
-PACKING_CHUNK = 1 << 15  # values packed at a time: they fit the processor's cache
 PART_WIDTHS = {0: (), 1: (1,), 2: (2,), 3: (2, 1), 4: (4,), 5: (4, 1), 6: (4, 2)}  # bytes of a value -> bytes of its parts, lowest first
 PART_DTYPES = {width: np.dtype(f"u{width}") for width in (1, 2, 4, 8)}
 SEAL = struct.Struct("<I")   # CRC-32 of what comes before it in a part
-OPEN_PARTS = 64          # files of parts that are held open: a system lets a program open some hundred (macOS 256)
-MAX_FREE_RANGES = 64     # free ranges of the file that are remembered; of more, the smallest is forgotten
 
 
 class Packing(NamedTuple):
@@ -64,9 +62,9 @@ class Packing(NamedTuple):
         bits = np.dtype(f"u{self.dtype.itemsize}")
         least, column = bits.type(self.least % 2**(8 * bits.itemsize)), column.view(bits)
         low, *high = _part_views(data, self)
-        for first in range(0, len(column), PACKING_CHUNK):
-            chunk = column[first:first + PACKING_CHUNK]
-            some = slice(first, first + PACKING_CHUNK) if rows is None else rows[first:first + PACKING_CHUNK]
+        for first in range(0, len(column), STORE.packing_chunk):
+            chunk = column[first:first + STORE.packing_chunk]
+            some = slice(first, first + STORE.packing_chunk) if rows is None else rows[first:first + STORE.packing_chunk]
             if high:
                 np.left_shift(_values_at(high[0], some), 8 * self.widths[0], out=chunk, dtype=bits)
                 chunk |= _values_at(low, some)
@@ -89,13 +87,13 @@ def pack(column: np.ndarray) -> tuple[Packing, np.ndarray]:
     offset = bits.dtype.type(least % 2**(8 * itemsize))
     data = column_buffers.of(packing.nbytes)("packed", np.uint8)
     parts = _part_views(data, packing)
-    buffer = np.empty(min(len(bits), PACKING_CHUNK), bits.dtype)
-    for first in range(0, len(bits) if parts else 0, PACKING_CHUNK):
-        chunk = bits[first:first + PACKING_CHUNK]
+    buffer = np.empty(min(len(bits), STORE.packing_chunk), bits.dtype)
+    for first in range(0, len(bits) if parts else 0, STORE.packing_chunk):
+        chunk = bits[first:first + STORE.packing_chunk]
         rest = np.subtract(chunk, offset, out=buffer[:len(chunk)])
-        parts[0][first:first + PACKING_CHUNK] = rest
+        parts[0][first:first + STORE.packing_chunk] = rest
         if len(parts) > 1:
-            parts[1][first:first + PACKING_CHUNK] = np.right_shift(rest, 8 * widths[0], out=rest)
+            parts[1][first:first + STORE.packing_chunk] = np.right_shift(rest, 8 * widths[0], out=rest)
     return packing, data
 
 
@@ -208,7 +206,7 @@ class _OpenFile:
             raise OSError(error.errno, error.strerror, name if isinstance(name, str) else tempfile.gettempdir()) from error
 
 
-@lru_cache(maxsize=OPEN_PARTS)
+@lru_cache(maxsize=STORE.open_parts)
 def _opened(path):
     return _OpenFile(open(path, "rb", buffering=0))
 
@@ -282,7 +280,7 @@ class SpillFile(ColumnFile):
                     merged[-1] = before, length + nbytes
                 else:
                     merged.append((place, nbytes))
-            if len(merged) > MAX_FREE_RANGES:
+            if len(merged) > STORE.max_free_ranges:
                 merged.remove(min(merged, key=lambda free: free[1]))
             self._free = merged
 
