@@ -17,7 +17,7 @@ from ..execution.choice import ExecutionSettings, cluster_for, executor_for
 from ..execution.phase import THREADS, Executor, digest
 from ..execution.work_folder import KeptResults, WorkFolder, code_digest
 from ..io.crs import FOOT, US_SURVEY_FOOT, as_in_file, check_projected, crs_name, crs_note, parse_crs, unit_note
-from .adjustment.adjust import adjust_passes, compare_carriageways, said_of_levels
+from .adjustment.adjust import adjust_passes, compare_carriageways, warnings_of_levels
 from .adjustment.scanner_fit import lay_scanners
 from .adjustment.trajectory_fit import LOWEST_SENSOR, fitted_trajectory
 from .blocks import PointChoice, unwrap_week
@@ -316,7 +316,7 @@ def _see_passes(survey, fit_passes, measured, shared, progress):
             file.unlink()
         survey.put_in_order(shared.ordered, shared.ordering, progress.part(1.0, 1.0))
     if len(survey.frame.roads) > 1:
-        for said in said_of_levels(survey.frame):
+        for said in warnings_of_levels(survey.frame):
             progress.warn(said)
         if fit_passes and survey.has_time:
             compare_carriageways(survey, progress.part(1.0, 1.0))

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 
 @dataclass(frozen=True)
 class _FrameWeights:
@@ -12,7 +14,7 @@ class _FrameWeights:
     track_step: float = 2.0   # m between the positions that are compared
     same_carriageway: float = 12.0   # m: parallel tracks closer than this run on the same carriageway
     level_separation: float = 3.0   # m of height: tracks farther apart run on different levels of a ramp or bridge
-    parallel_angle: float = np.radians(30.0)
+    parallel_angle: float = np.radians(30.0)   # between tracks that run along each other
     min_loop_length: float = 60.0   # m driven before coming near the own track again counts as a return
     min_pass_length: float = 10.0   # m: shorter pieces do not become a pass
     standstill_radius: float = 0.5   # m: position noise of a standing vehicle
@@ -153,7 +155,7 @@ LATTICE = _LatticeWeights()
 class _StoreWeights:
     """Points by section: how many are kept in memory, and worked on at a time."""
 
-    rows_overhead: int = 8   # reading some rows of a column costs as much as 1 / ROWS_OVERHEAD of the whole column, plus the rows
+    rows_overhead: int = 8   # reading some rows of a column costs as much as the inverse of this share of the whole column, plus the rows
     section_length: float = 5.0   # m of station; results do not depend on it
     memory_limit: int = 64 * 2**20   # bytes of records in memory before they are spilled
     cache_limit: int = 64 * 2**20   # bytes of spilled sections cached as last read: neighbouring windows ask for them again

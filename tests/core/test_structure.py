@@ -24,7 +24,7 @@ NUMBERS = {
     "core/countries": 15,
     "core/io": 23,
     "core/curves": 44,
-    "core/survey": 420,
+    "core/survey": 315,
     "core/road": 516,
     "core/intensity": 49,
     "core/markings": 440,

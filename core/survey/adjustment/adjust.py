@@ -58,7 +58,7 @@ def adjust_passes(survey: Any, progress: Progress = Progress(), folder: Path | N
     if moves:
         corrections = continued_corrections(survey.frame, _map_corrections(survey.frame, moves), compared)
         for road in survey.store.roads():
-            if warning := said_of_one_drive(road, places_of_one_drive(survey.frame.passes_of(road), compared, corrections)):
+            if warning := warning_of_one_drive(road, places_of_one_drive(survey.frame.passes_of(road), compared, corrections)):
                 progress.warn(warning)
         _replace_points(survey, corrections, progress.part(0.5, 1.0), folder)
 
@@ -106,7 +106,8 @@ def _separations(offsets):
 
 
 def _disagree(offsets):
-    return any(len(values) and np.percentile(values, 90) > least for values, least in zip(_separations(offsets), (ADJUST.agreement_plan, ADJUST.agreement_height)))
+    limits = ADJUST.agreement_plan, ADJUST.agreement_height
+    return any(len(values) and np.percentile(values, 90) > least for values, least in zip(_separations(offsets), limits))
 
 
 def _report_offsets(road, offsets, found, progress):
@@ -125,7 +126,7 @@ def _report_offsets(road, offsets, found, progress):
         plan, up = (100 * np.percentile(v, 90) for v in _separations(offsets))
         progress.info(f"Road {road}: nine tenths of its passes lie within {plan:.1f} cm beside and {up:.1f} cm above each other; "
                      "they stay as they were measured.")
-    if warning := said_of_places(road, remaining_places(offsets, found)):
+    if warning := warning_of_places(road, remaining_places(offsets, found)):
         progress.warn(warning)
 
 
@@ -278,7 +279,8 @@ def remaining_places(offsets: list[PassOffsets], corrections: dict[int, tuple[np
             applied = _applied(pair, corrections, axis)
             left = np.abs(np.nan_to_num(getattr(pair, axis) - applied))
             rest = np.hypot(rest, np.maximum(left, _evened_out(pair.stations, applied)))
-        for station, metres in (*zip(pair.stations[rest > ADJUST.max_remaining], rest[rest > ADJUST.max_remaining]), *((station, np.inf) for station in pair.far)):
+        remains = rest > ADJUST.max_remaining
+        for station, metres in (*zip(pair.stations[remains], rest[remains]), *((station, np.inf) for station in pair.far)):
             places[float(station)] = max(places.get(float(station), 0.0), float(metres))
     return _stretches_of(places)
 
@@ -300,7 +302,8 @@ def places_of_one_drive(passes: list[Pass], offsets: list[PassOffsets], correcti
         stations = (np.arange(first, last + 1) + 0.5) * WINDOW_LENGTH
         away = np.abs(stations[:, None] - known).min(axis=1, initial=np.inf)
         moved = np.hypot(*corrections.metres(p.number, stations)[:2])
-        for station, metres in zip(*(values[(away > REGISTER.pooling_sigma) & (moved > ADJUST.max_remaining)].tolist() for values in (stations, moved))):
+        alone = (away > REGISTER.pooling_sigma) & (moved > ADJUST.max_remaining)
+        for station, metres in zip(stations[alone].tolist(), moved[alone].tolist()):
             places[station] = max(places.get(station, 0.0), metres)
     return _stretches_of(places)
 
@@ -335,17 +338,18 @@ def _applied(pair, corrections, axis):
     return other - one
 
 
-def said_of_places(road: int, places: list[tuple[float, float, float]]) -> str:
+def warning_of_places(road: int, places: list[tuple[float, float, float]]) -> str:
     if not places:
         return ""
-    named = [f"{start:.0f} to {end:.0f} m (" + (f"more than {100 * REGISTER.max_offset:.0f} cm apart, too far to lay them on each other)" if np.isinf(metres)
-                                                else f"up to {100 * metres:.1f} cm remain)") for start, end, metres in places[:ADJUST.most_named]]
+    too_far = f"more than {100 * REGISTER.max_offset:.0f} cm apart, too far to lay them on each other"
+    named = [f"{start:.0f} to {end:.0f} m (" + (f"{too_far})" if np.isinf(metres) else f"up to {100 * metres:.1f} cm remain)")
+             for start, end, metres in places[:ADJUST.most_named]]
     more = _further(places)
     return (f"Road {road}: its passes do not lie on each other at {', '.join(named)}{more}: curbs and lines may be doubled or blurred there. "
             "Adjust the trajectories of the drives to each other, or process the files of each drive by itself.")
 
 
-def said_of_one_drive(road: int, places: list[tuple[float, float, float]]) -> str:
+def warning_of_one_drive(road: int, places: list[tuple[float, float, float]]) -> str:
     if not places:
         return ""
     return (f"Road {road}: one drive alone shows what lies at {_named_places(places, 'by up to {:.1f} cm')}. It was moved there as where it last "
@@ -353,7 +357,8 @@ def said_of_one_drive(road: int, places: list[tuple[float, float, float]]) -> st
 
 
 def _named_places(places: list[tuple[float, float, float]], size: str) -> str:
-    return ", ".join(f"{start:.0f} to {end:.0f} m ({size.format(100 * metres)})" for start, end, metres in places[:ADJUST.most_named]) + _further(places)
+    named = (f"{start:.0f} to {end:.0f} m ({size.format(100 * metres)})" for start, end, metres in places[:ADJUST.most_named])
+    return ", ".join(named) + _further(places)
 
 
 def _further(places):
@@ -370,7 +375,7 @@ def _further(places):
 class Beside(NamedTuple):
     """Two roads, `one` and `other`, that run beside each other.
 
-    stations, places : (N,) m on the first, middles of windows of CORRECTION_STEP, and on the second
+    stations, places : (N,) m on the first, middles of windows of `correction_step`, and on the second
     apart : (N,) m of offset, left positive, from the first to the second
     up : (N,) m by which the points of the second lie higher, NaN where both hardly see the same
     """
@@ -388,12 +393,12 @@ def compare_carriageways(survey: Any, progress: Progress = Progress()) -> None:
     for pair in roads_beside(survey.frame):
         up = ordered_map(partial(_height_apart, survey, pair), range(len(pair.stations)))
         found = pair._replace(up=np.array(list(up)))
-        said, warns = _said_of_carriageways(found)
+        said, warns = _message_of_carriageways(found)
         (progress.warn if warns else progress.info)(said)
 
 
 def roads_beside(frame: Any) -> list[Beside]:
-    """Pairs of roads that run beside each other for SHORTEST_BESIDE and more on one level; `up` is not known yet."""
+    """Pairs of roads that run beside each other for `shortest_beside` and more on one level; `up` is not known yet."""
     found = []
     for one, other, s, place, offset, rise in _parallel(frame):
         known = np.flatnonzero(np.abs(rise) < FRAME.level_separation)
@@ -403,7 +408,7 @@ def roads_beside(frame: Any) -> list[Beside]:
     return found
 
 
-def said_of_levels(frame: Any) -> list[str]:
+def warnings_of_levels(frame: Any) -> list[str]:
     """Warnings about roads that were driven along each other at another height, always by the same: one road, with heights of two kinds.
 
     A bridge or a second deck climbs to its height somewhere, and roads on a slope lie farther apart.
@@ -432,7 +437,8 @@ def _parallel(frame):
     roads = np.array([p.road for p in frame.passes])
     for one, other in sorted({(int(a), int(b)) for a, b in roads[near] if a < b}):
         spans = np.array([p.span for p in frame.passes_of(one)])
-        s = np.arange(np.floor(spans.min() / REGISTER.correction_step), np.ceil(spans.max() / REGISTER.correction_step)) * REGISTER.correction_step + REGISTER.correction_step / 2
+        step = REGISTER.correction_step
+        s = np.arange(np.floor(spans.min() / step), np.ceil(spans.max() / step)) * step + step / 2
         x, y = frame.road(one).to_map(s, np.zeros(len(s)))
         place, offset = frame.road(other).locate(x, y, corridor=ADJUST.farthest_beside)
         known = np.flatnonzero(np.isfinite(offset))
@@ -468,7 +474,7 @@ def _flat_cells(along, across, z):
     return numbers[flat], (np.add.reduceat(z, first) / np.diff(np.append(first, len(z))))[flat]
 
 
-def _said_of_carriageways(pair: Beside) -> tuple[str, bool]:
+def _message_of_carriageways(pair: Beside) -> tuple[str, bool]:
     """What is said of two roads beside each other, and whether it is a warning."""
     known = np.isfinite(pair.up)
     far = known & (np.abs(pair.up) > ADJUST.max_height_apart)

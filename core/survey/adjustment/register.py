@@ -40,7 +40,7 @@ _HEAD = np.dtype([("first", "<f8"), ("count", "<u4")])
 class PassCorrections:
     """East, north and up corrections of every pass that was moved, by station.
 
-    by_pass : {pass number: (station of the first node in m, (3, N) int16 in 0.1 mm)}, nodes CORRECTION_STEP apart; constant
+    by_pass : {pass number: (station of the first node in m, (3, N) int16 in 0.1 mm)}, nodes `correction_step` apart; constant
         beyond the first and the last node
     """
 
@@ -87,7 +87,8 @@ CHANNELS = "steps", "paint"
 CHANNEL_SCALE = {"steps": 1e4, "paint": 64.0}  # units per m, and per standard deviation of intensity
 WINDOW_LENGTH = REGISTER.correction_step          # m of road compared at a time, counted from station 0
 LAGS = np.arange(-int(round(REGISTER.max_offset / REGISTER.lag_cell)), int(round(REGISTER.max_offset / REGISTER.lag_cell)) + 1)
-ROUGH_LAGS = 2 * np.arange(-int(REGISTER.max_rough_offset / REGISTER.lag_cell / 2), int(REGISTER.max_rough_offset / REGISTER.lag_cell / 2) + 1)   # narrower than half of a line
+_ROUGH_REACH = int(REGISTER.max_rough_offset / REGISTER.lag_cell / 2)
+ROUGH_LAGS = 2 * np.arange(-_ROUGH_REACH, _ROUGH_REACH + 1)   # narrower than half of a line
 
 
 @dataclass(frozen=True)
@@ -97,7 +98,7 @@ class PassOffsets:
     one, other : pass numbers
     stations : (N,) middles of the windows, m
     along, left, up : (N,) metres, NaN where unknown
-    far : (K,) middles of the windows in which the offset seems to exceed MAX_OFFSET
+    far : (K,) middles of the windows in which the offset seems to exceed `max_offset`
     """
 
     one: int
@@ -160,16 +161,17 @@ class Strips:
 
 
 def _at_faces(heights):
-    """(rows, cells) bool, whether heights differ by FACE_HEIGHT within FACE_CELLS; unknown ones do not."""
+    """(rows, cells) bool, whether heights differ by `face_height` within `face_cells`; unknown ones do not."""
     known, far = np.isfinite(heights), np.float32(1e3)
     return (maximum_filter1d(np.where(known, heights, -far), REGISTER.face_cells, axis=1)
             - minimum_filter1d(np.where(known, heights, far), REGISTER.face_cells, axis=1)) > REGISTER.face_height
 
 
 def _detrended(values):
-    """Values minus their mean over DETREND_CELLS cells of the row; NaN stays."""
+    """Values minus their mean over `detrend_cells` cells of the row; NaN stays."""
     known = np.isfinite(values)
-    return values - _box_sum(np.where(known, values, np.float32(0)), REGISTER.detrend_cells) / np.maximum(_box_sum(known.astype(np.float32), REGISTER.detrend_cells), 1)
+    total, count = (_box_sum(part, REGISTER.detrend_cells) for part in (np.where(known, values, np.float32(0)), known.astype(np.float32)))
+    return values - total / np.maximum(count, 1)
 
 
 def _box_sum(values, cells):
@@ -278,10 +280,10 @@ def _with_rough(pair, places):
 
 
 def _rough_offsets(survey, road, pair):
-    """{window: (along, left) by which the second of two passes is to be moved} where they lie farther apart than MAX_OFFSET; {} where they do not.
+    """{window: (along, left) by which the second of two passes is to be moved} where they lie farther apart than `max_offset`; {} where they do not.
 
     Drives of different years, or in different datums, lie apart by as much as a metre. Where hardly any window shows an offset, or large ones,
-    and where none shows one along the road, groups of windows are searched up to MAX_ROUGH_OFFSET.
+    and where none shows one along the road, groups of windows are searched up to `max_rough_offset`.
     """
     known = pair.left[np.isfinite(pair.left)]
     across = len(known) < REGISTER.min_compared * len(pair.left) or len(pair.far) > 0 or np.median(np.abs(known)) > REGISTER.max_offset / 2
@@ -297,7 +299,7 @@ def _rough_offsets(survey, road, pair):
 
 
 def _of_groups(survey, road, pair, numbers):
-    """(N,) m along and (N,) m left at N windows, up to MAX_ROUGH_OFFSET, as groups of them show; 0 along an axis that few groups show."""
+    """(N,) m along and (N,) m left at N windows, up to `max_rough_offset`, as groups of them show; 0 along an axis that few groups show."""
     starts = np.unique(np.linspace(0, max(len(numbers) - REGISTER.rough_group, 0), REGISTER.rough_groups).astype(int)).tolist()
     found = []
     for group in (numbers[start:start + REGISTER.rough_group] for start in starts):
@@ -317,7 +319,7 @@ def _of_groups(survey, road, pair, numbers):
 
 
 def _rough_offset(likeness):
-    """m of best correlation up to MAX_ROUGH_OFFSET from (2, 4, L) sums, by paint where it shows one."""
+    """m of best correlation up to `max_rough_offset` from (2, 4, L) sums, by paint where it shows one."""
     offsets = best_offsets(likeness, ROUGH_LAGS)[0]
     steps, paint = (offsets[CHANNELS.index(name)] for name in CHANNELS)
     return paint if np.isfinite(paint) else steps
@@ -385,7 +387,7 @@ def _combine_windows(pair, evidence):
 
 
 def _pool(numbers, values):
-    """(N, ...) sums over each window and its neighbours, with Gaussian weights of POOLING_SIGMA."""
+    """(N, ...) sums over each window and its neighbours, with Gaussian weights of `pooling_sigma`."""
     sigma = REGISTER.pooling_sigma / WINDOW_LENGTH
     whole = np.zeros((numbers[-1] - numbers[0] + 1, *values.shape[1:]))
     whole[numbers - numbers[0]] = values
@@ -409,11 +411,12 @@ def best_offsets(likeness: np.ndarray, lags: np.ndarray = LAGS) -> tuple[np.ndar
     clear = (least < -REGISTER.min_likelihood_ratio) & (_second_best(unlikely, best) > REGISTER.max_runner_up * least)
     limit = clear & ((best == 0) | (best == len(lags) - 1))
     # sub-cell position from a parabola through the best lag and its neighbours
-    k = np.clip(best, REGISTER.parabola_cells, len(lags) - 1 - REGISTER.parabola_cells)[:, None] + np.arange(-REGISTER.parabola_cells, REGISTER.parabola_cells + 1)
-    bend, slope, _ = np.polyfit(np.arange(-REGISTER.parabola_cells, REGISTER.parabola_cells + 1.0), np.take_along_axis(unlikely, k, 1).T, 2)
+    reach = REGISTER.parabola_cells
+    k = np.clip(best, reach, len(lags) - 1 - reach)[:, None] + np.arange(-reach, reach + 1)
+    bend, slope, _ = np.polyfit(np.arange(-reach, reach + 1.0), np.take_along_axis(unlikely, k, 1).T, 2)
     bend = np.maximum(bend, 1e-12)
-    found = REGISTER.lag_cell * lags[k[:, REGISTER.parabola_cells]] + cell * np.clip(-0.5 * slope / bend, -REGISTER.parabola_cells, REGISTER.parabola_cells)
-    return np.where(clear & ~limit & (cell / np.sqrt(bend) < REGISTER.max_offset_sigma * cell / REGISTER.lag_cell), found, np.nan), limit
+    offset = REGISTER.lag_cell * lags[k[:, reach]] + cell * np.clip(-0.5 * slope / bend, -reach, reach)
+    return np.where(clear & ~limit & (cell / np.sqrt(bend) < REGISTER.max_offset_sigma * cell / REGISTER.lag_cell), offset, np.nan), limit
 
 
 def _second_best(unlikely, best):

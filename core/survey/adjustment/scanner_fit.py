@@ -24,7 +24,7 @@ from .register import CHANNELS, WINDOW_LENGTH, Strips, best_offsets, correlation
 from .trajectory_fit import LOOK_WINDOWS, MAX_SCANNER_OFFSETS, SCANNER_WINDOWS, SIGNIFICANT
 
 SIDES = "right", "left"
-SAID_AS = ("ahead", "behind"), ("left", "right"), ("above", "below")
+MOVE_WORDS = ("ahead", "behind"), ("left", "right"), ("above", "below")
 
 
 @dataclass(frozen=True)
@@ -105,9 +105,10 @@ def _said(survey, one, sigma):
     """The warning about a scanner that lies beside the first."""
     names = f"Scanner {survey.scanners[one.scanner]} and scanner {survey.scanners[0]}"
     if one.far:
-        return (f"{names} lie more than {100 * REGISTER.max_offset:.0f} cm apart, too far to lay them on each other: curbs and lines are doubled. Calibrate "
-                "the mounting of the scanners anew, or process the points of one scanner alone.")
-    right, left = (", ".join(f"{100 * abs(metres):.1f} cm {words[int(metres < 0)]}" for metres, words in zip(side, SAID_AS) if abs(metres) > ADJUST.least_told_move)
+        return (f"{names} lie more than {100 * REGISTER.max_offset:.0f} cm apart, too far to lay them on each other: curbs and lines are doubled. "
+                "Calibrate the mounting of the scanners anew, or process the points of one scanner alone.")
+    right, left = (", ".join(f"{100 * abs(metres):.1f} cm {words[int(metres < 0)]}" for metres, words in zip(side, MOVE_WORDS)
+                             if abs(metres) > ADJUST.least_told_move)
                    or "nothing that is measurable" for side in np.nan_to_num(-one.moves))
     return (f"{names} differ all along the survey, as with a wrong lever arm or boresight angles. On the left of the vehicle, points of the first "
             f"are displaced from those of the other by {left}, on the right by {right}. Each was moved by its share. Nothing shows which of them is "
@@ -191,8 +192,9 @@ def _window_evidence(survey, window):
         rows = np.flatnonzero(scanner == number)
         if len(rows) < REGISTER.min_shared_cells:
             return None
+        wide = 2 * REGISTER.strip_half_width
         return [Strips.of(fine[rows], coarse[rows], h[rows], intensity[rows], (round(width / REGISTER.row_cell), round(length / REGISTER.lag_cell)))
-                for fine, coarse, length, width in ((beside, ahead, 2 * REGISTER.strip_half_width, long), (ahead, beside, long, 2 * REGISTER.strip_half_width))]
+                for fine, coarse, length, width in ((beside, ahead, wide, long), (ahead, beside, long, wide))]
 
     first, found = strips(0), {}
     for number in range(1, len(survey.scanners)):

@@ -256,7 +256,7 @@ class RoadProjection:
         return inside
 
     def _owner(self, time):
-        """Pass driven at each time, or within CLOCK_SLACK of it; -1 where none was."""
+        """Pass driven at each time, or within `clock_slack` of it; -1 where none was."""
         if not len(time):
             return np.empty(0, np.int16)
         low, high = time.min(), time.max()

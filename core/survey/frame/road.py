@@ -149,7 +149,7 @@ def track_line(x: np.ndarray, y: np.ndarray, z: np.ndarray) -> np.ndarray:
 
 
 def reference_nodes(line: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Nodes x, y (M,) of the reference line along a track, (N, 2) or (N, 3) m: NODE_SPACING apart, extended by FRAME_EXTENSION at both ends.
+    """Nodes x, y (M,) of the reference line along a track, (N, 2) or (N, 3) m: NODE_SPACING apart, extended at both ends.
 
     A track that does not move is refused.
     """
@@ -211,7 +211,8 @@ def _append_track(line, track):
     direction = _direction(line[::-1]) * -1.0
     ahead = (track[:, :2] - line[-1, :2]) @ direction
     aside = (track[:, :2] - line[-1, :2]) @ np.array([-direction[1], direction[0]])
-    if not (-FRAME.junction_gap < ahead[0] < FRAME.junction_gap and abs(aside[0]) < FRAME.max_lateral_jump and abs(track[0, 2] - line[-1, 2]) < FRAME.level_separation):
+    if not (abs(ahead[0]) < FRAME.junction_gap and abs(aside[0]) < FRAME.max_lateral_jump
+            and abs(track[0, 2] - line[-1, 2]) < FRAME.level_separation):
         return None
     if np.arccos(np.clip(_direction(track) @ direction, -1, 1)) > FRAME.parallel_angle:
         return None

@@ -242,7 +242,7 @@ def _ranges_of(along, rows, kept, s):
 
 
 def _jumps(s):
-    """Indices at which the station jumps, at least half of MIN_SHARED_LENGTH from the ends and from each other."""
+    """Indices at which the station jumps, at least half of `min_shared_length` from the ends and from each other."""
     found = np.flatnonzero(np.abs(np.diff(s)) > 10.0) + 1
     shortest, kept, last = int(FRAME.min_shared_length / 2), [], 0
     for k in found:

@@ -83,8 +83,8 @@ def _report_lattice(lattice, progress):
         rates = sorted({f"{abs(mirror.frequency) / mirror.spacing:.2f}" for mirror in found.values()}, key=float)
         progress.info(f"Scan lattice found for {len(found)} run(s) of a scanner: {', '.join(rates)} lines per second.")
     if not found and not missing:
-        lattice.notes.append(f"There are too few points to distinguish scan lines (fewer than {LATTICE.min_window_points} in {LATTICE.rotation_window:g} s "
-                             "of each scanner); scanlines are made of the points near each section plane.")
+        lattice.notes.append(f"There are too few points to distinguish scan lines (fewer than {LATTICE.min_window_points} in "
+                             f"{LATTICE.rotation_window:g} s of each scanner); scanlines are made of the points near each section plane.")
         progress.warn(lattice.notes[-1])
     if missing:
         why = ", ".join(sorted(set(missing.values())))
@@ -290,7 +290,7 @@ def _direction_number(phasor):
 
 
 def _mounting(windows, frequency):
-    """(MOUNTING_DIRECTIONS,) complex: the mirror's phase minus the angle at which its points are seen, as phasors.
+    """(`mounting_directions`,) complex: the mirror's phase minus the angle at which its points are seen, as phasors.
 
     For a scanner that is rotated, tilted or mounted beside the trajectory, the angles are not proportional to the
     mirror's phase; with this correction every point gives the same phase, wherever it lies.
@@ -305,8 +305,8 @@ def _mounting(windows, frequency):
         mirror = _mirror_phase_from_phasors(frequency, since, phasor, count, length, bins.start)
         if mirror is not None:
             ahead = np.exp(2j * np.pi * np.sign(frequency) * mirror.turns_at(time)) * np.conj(seen)
-            direction = _direction_number(seen)
-            total += np.bincount(direction, ahead.real, LATTICE.mounting_directions) + 1j * np.bincount(direction, ahead.imag, LATTICE.mounting_directions)
+            real, imaginary = (np.bincount(_direction_number(seen), part, LATTICE.mounting_directions) for part in (ahead.real, ahead.imag))
+            total += real + 1j * imaginary
     # directions without points take the value of their neighbours
     near = np.array([total, np.roll(total, 1), np.roll(total, -1), np.roll(total, 2), np.roll(total, -2)]).sum(axis=0)
     return np.where(near == 0, 1.0, near / np.maximum(np.abs(near), 1e-12))
@@ -450,7 +450,7 @@ def _mirror_phase_from_phasors(frequency: float, time: np.ndarray, phasor: np.nd
 
 
 def _smooth_nodes(time, turns, bin_length):
-    """NODES_PER_BIN nodes per bin on a cubic spline: with linear pieces the points of neighbouring lines would not line up."""
+    """`nodes_per_bin` nodes per bin on a cubic spline: with linear pieces the points of neighbouring lines would not line up."""
     if len(time) < 4:
         return time, turns
     steps = np.minimum(np.ceil(np.diff(time) / bin_length * LATTICE.nodes_per_bin), LATTICE.nodes_per_bin).astype(np.int64)
@@ -483,7 +483,7 @@ SPECTRUM_SIZE = 8192            # cells, zero-padded: a step of 0.25 Hz
 def rotation_spectrum(time: np.ndarray, phasor: np.ndarray) -> np.ndarray:
     """How well (N,) points fit each rotation frequency: |mean(exp(i (angle - 2 pi f t)))| (our own), as (SPECTRUM_SIZE,) from 0 to 1.
 
-    The times, (N,) seconds, span at most ROTATION_WINDOW; phasors are exp(i angle). The order is that of `numpy.fft.fftfreq`.
+    The times, (N,) seconds, span at most `rotation_window`; phasors are exp(i angle). The order is that of `numpy.fft.fftfreq`.
     """
     cell = ((time - time.min()) / SPECTRUM_CELL).astype(np.int64)
     size = int(cell.max()) + 1

@@ -493,7 +493,7 @@ def _same_as_next(*keys):
 
 
 def _chunk_ends(ends):
-    """Where runs of cells end that hold about SORT_CHUNK points each."""
+    """Where runs of cells end that hold about `sort_chunk` points each."""
     last = np.searchsorted(ends, np.arange(STORE.sort_chunk, ends[-1] + STORE.sort_chunk, STORE.sort_chunk))
     return np.unique(ends[last.clip(max=len(ends) - 1)]).tolist()
 
