@@ -341,9 +341,9 @@ def _applied(pair, corrections, axis):
 def warning_of_places(road: int, places: list[tuple[float, float, float]]) -> str:
     if not places:
         return ""
-    too_far = f"more than {100 * REGISTER.max_offset:.0f} cm apart, too far to lay them on each other"
-    named = [f"{start:.0f} to {end:.0f} m (" + (f"{too_far})" if np.isinf(metres) else f"up to {100 * metres:.1f} cm remain)")
-             for start, end, metres in places[:ADJUST.most_named]]
+    named = [f"{start:.0f} to {end:.0f} m (" + (
+                 f"more than {100 * REGISTER.max_offset:.0f} cm apart, too far to lay them on each other)" if np.isinf(metres)
+                 else f"up to {100 * metres:.1f} cm remain)") for start, end, metres in places[:ADJUST.most_named]]
     more = _further(places)
     return (f"Road {road}: its passes do not lie on each other at {', '.join(named)}{more}: curbs and lines may be doubled or blurred there. "
             "Adjust the trajectories of the drives to each other, or process the files of each drive by itself.")

@@ -204,8 +204,8 @@ class SigmaAlong:
 def cuts_where_it_changes(along: np.ndarray, sigma: np.ndarray) -> np.ndarray:
     """(K,) rows, without the first, that begin a stretch of a line of which one number tells how uncertain it is; empty where one tells it all.
 
-    From stretches of `sigma_stretch` on, those beside each other become one that differ least, weighted by their lengths (Ward), until every two differ by
-    `sigma_cut_factor` times and `least_sigma_change`. `along` : (N,) m along the line, rising; `sigma` : (N,) m, one sigma there.
+    From stretches of `sigma_stretch` on, those beside each other become one that differ least, weighted by their lengths (Ward), until every two
+    differ by `sigma_cut_factor` times and `least_sigma_change`. `along` : (N,) m along the line, rising; `sigma` : (N,) m, one sigma there.
     """
     count = int((along[-1] - along[0]) / FRAME.sigma_stretch) if len(along) else 0
     if count < 2 or np.ptp(sigma) < FRAME.least_sigma_change:
