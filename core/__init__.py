@@ -12,9 +12,10 @@ from .lazy import public
 # What `products` and `simulator` may use of the rooms of the chain; all else may change without a look at them
 PUBLIC = {
     "survey.survey": ("Survey", "SurveySettings"),   # points of all sections in the road frame, and how they are read
+    "survey.weights": ("LAS", "READING", "TRAJECTORY"),   # the numbers by which clouds and trajectories are read
     "survey.open_survey": ("match_clocks",),   # shift between the clocks of clouds and trajectory
-    "survey.blocks": ("DEFAULT_SENSOR_HEIGHT", "HEIGHT_PEAK_REACH", "OWN_TRACK_HALF_WIDTH", "sensor_height_of"),   # sensor above the road
-    "survey.trajectory.trajectory": ("LONGEST_STEP", "Trajectory", "clean_trajectory", "reproject_trajectory"),   # positions of the vehicle
+    "survey.blocks": ("sensor_height_of",),   # sensor above the road
+    "survey.trajectory.trajectory": ("Trajectory", "clean_trajectory", "reproject_trajectory"),   # positions of the vehicle
     "survey.estimation.estimate": ("EstimatedTrajectory", "WAYS"),   # the trajectory from the clouds alone
     "survey.frame.road_frame": ("RoadFrame", "build_frame"),   # station, offset and height along roads
     "survey.frame.passes": ("Pass",),   # one drive along a road
@@ -24,7 +25,7 @@ PUBLIC = {
     "survey.store.road_points": ("RoadPoints",),   # points of the road, by section
     "survey.las.reader": ("read_blocks", "read_headers"),   # LAS, LAZ and COPC files
     "survey.las.point_fields": ("INTENSITY_SOURCES", "ScannerCensus", "intensity_source_of", "without_intensity"),   # scanners and intensity of files
-    "survey.las.samples": ("PER_METRE", "coarse_coordinates", "distinct_rows", "may_overlap", "sample_files", "without_copies"),   # copies of points
+    "survey.las.samples": ("coarse_coordinates", "distinct_rows", "may_overlap", "sample_files", "without_copies"),   # copies of points
     "survey.lattice.scan_lattice": ("find_lattice",),   # scan lines, numbered
     "survey.road_points_las": ("metres_of_file", "new_laz", "place_in_file"),   # new point clouds
     "road.common.pseudo_scanlines": ("lowest_layers",),   # the ground among the points of a cell

@@ -489,7 +489,7 @@ def rotation_spectrum(time: np.ndarray, phasor: np.ndarray) -> np.ndarray:
     size = int(cell.max()) + 1
     total = np.bincount(cell, phasor.real, size) + 1j * np.bincount(cell, phasor.imag, size)
     # averaging over a cell attenuates high frequencies by sinc
-    return np.abs(np.fft.fft(total, SPECTRUM_SIZE)) / len(time) / np.sinc(np.fft.fftfreq(SPECTRUM_SIZE))
+    return np.abs(np.fft.fft(total, SPECTRUM_SIZE)) / len(time) / np.sinc(np.fft.fftfreq(SPECTRUM_SIZE, 1.0))
 
 
 def strongest_rotation(spectra: Sequence[np.ndarray], given: float = 0.0, signed: bool = True) -> tuple[float, float]:
