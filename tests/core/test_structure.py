@@ -37,7 +37,7 @@ NUMBERS = {
     "products/inventory": 148,
     "products/export": 161,
     "products/assess": 18,
-    "products/overlay": 79,
+    "products/overlay": 78,
     "products/report": 26,
     "simulator": 151,
 }

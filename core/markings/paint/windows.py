@@ -27,8 +27,8 @@ from ..objects.shape import painted_cells
 from ..road_grid import CELL_SIZE, CELL_UNITS, PieceOfRoad, RoadCells, RoadGrid, cell_numbers, cells_of_road
 from ..weights import ASPHALT, SHAPES
 from .asphalt_level import AsphaltBin, AsphaltLevels, OtsuSplit, asphalt_bins, asphalt_profile, bin_edges, dark_cells, flatten, split_bins
-from .noisy import CellAverages, ViewSamples, faint_lines, noisy_paint_cells, views
-from .not_paint import RimBands, edge_distance, morphology, raised_cells, rim_distance, track_spacing, without_fading_areas, without_fading_rims
+from .noisy import CellAverages, ViewSamples, noisy_paint_cells, views
+from .not_paint import RimBands, edge_distance, morphology, raised_cells, rim_distance, track_spacing
 from .settings import MarkingSettings
 
 THRESHOLD_WINDOW = 500   # derived: cells: thresholds are taken from 20 m of road
@@ -216,16 +216,9 @@ class WindowExtractor:
         median, spread, scale, threshold = levels.at(grid)
         z, gutter = flatten(brightness, median, spread, view.rims)
         with np.errstate(invalid="ignore"):
-            bright = morphology((z > threshold * scale) & ~gutter, np.isfinite(brightness), self.settings)
-        mask = without_fading_rims(z, bright, view.occupied & ~gutter)
-        # areas are judged as they look and, where they hang together with a rim, without it
-        for area in ((bright, mask) if (mask != bright).any() else (bright,)):
-            mask = mask & without_fading_areas(z, area, view.occupied, gutter, grid.offsets())
+            mask = morphology((z > threshold * scale) & ~gutter, np.isfinite(brightness), self.settings)
         # the background that was subtracted from the cell is subtracted from the point as well
         least = (brightness - z * spread) + (threshold - 0.5) * (spread * scale)
-        lines, halfway = faint_lines(brightness, view.occupied, view.rims[0].distance, mask, bright & ~mask)
-        least = np.where(lines & ~mask, halfway, least)
-        mask |= lines
         mask &= ~raised_cells([self._heights(part, grid) for part in parts], mask)
         return self._paint_in(parts, grid, view.occupied, mask, least)
 
