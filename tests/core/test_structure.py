@@ -24,7 +24,7 @@ NUMBERS = {
     "core/countries": 15,
     "core/io": 5,
     "core/curves": 44,
-    "core/survey": 192,
+    "core/survey": 85,
     "core/road": 20,
     "core/intensity": 49,
     "core/markings": 75,
@@ -37,7 +37,7 @@ NUMBERS = {
     "products/inventory": 148,
     "products/export": 161,
     "products/assess": 18,
-    "products/overlay": 79,
+    "products/overlay": 78,
     "products/report": 26,
     "simulator": 151,
 }

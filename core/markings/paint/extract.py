@@ -14,7 +14,8 @@ from ...common.progress import Progress
 from ...execution.phase import THREADS, Executor, Phase
 from ...intensity.asphalt_model import LOWER_QUANTILE
 from ...intensity.correction import saturation_of
-from ...intensity.tiled_image import IntensityRaster, TiledImage
+from ...intensity.tiled_image import TiledImage
+from ...io.geotiff import IntensityImage
 from ...survey.frame.road_frame import RoadFrame
 from ...survey.store.columns import Columns
 from ...survey.store.records import COORDINATE_SCALE, Points
@@ -41,7 +42,7 @@ from .windows import (
 WINDOWS_PER_TASK = 4   # derived: windows of 20 m that a worker process is given together: at everyday density a fifth of a second of its time
 
 
-def extract_markings(road_points: RoadPoints, image: IntensityRaster, frame: RoadFrame, settings: MarkingSettings = MarkingSettings(),
+def extract_markings(road_points: RoadPoints, image: IntensityImage, frame: RoadFrame, settings: MarkingSettings = MarkingSettings(),
                      progress: Progress = Progress(), mask_path: str | PathLike | None = None) -> RoadPoints:
     """Road points, corrected or not, that lie on paint.
 
@@ -82,7 +83,7 @@ def _extract_from_points(road_points: RoadPoints, method: PaintMethod, progress:
     return paint
 
 
-def _extract_from_image(road_points: RoadPoints, image: IntensityRaster, frame: RoadFrame, settings: MarkingSettings, progress: Progress,
+def _extract_from_image(road_points: RoadPoints, image: IntensityImage, frame: RoadFrame, settings: MarkingSettings, progress: Progress,
                         burn: Burn | None) -> RoadPoints:
     """Paint by multi-thresholds on the image, and from averages where points are noisy."""
     source = PaintSource(road_points, image, frame)
