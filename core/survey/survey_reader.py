@@ -22,7 +22,7 @@ from .blocks import BlockReader, BlockSummary, ChosenPoints, HeightFilter, Point
 from .estimation.interleaved import ScannerSplitter
 from .frame.road_frame import RoadFrame
 from .las.parallel_reader import ParallelCloudReader
-from .las.point_fields import ScannerCensus, numbers_by_value
+from .las.point_fields import numbers_by_value
 from .las.reader import CloudHeader
 from .las.samples import TimeSlots
 from .store.columns import Columns
@@ -35,8 +35,7 @@ from .weights import READING
 class SurveyReader:
     """Reads files into a section store and gathers statistics of the whole survey, complete after `read` or `read_in_parts`.
 
-    darkest, brightest : lowest and highest intensity
-    unplaced_time, excluded : numbers of points at a time of no pass, and of those that are withheld or classified as noise
+    summary : BlockSummary of all points
     heights, uneven : {pass number: metres from the trajectory down to the road}, and as of `HeightHistogram.uneven`
     slots, sampled : TimeSlots of the points by which scanners are told apart that no field distinguishes; their (N,) times and (N, 3) units
         of 0.1 mm, in no order; without times none
@@ -44,7 +43,7 @@ class SurveyReader:
 
     def __init__(self, frame: RoadFrame, store: SectionStore, choice: PointChoice):
         self.frame, self.store, self.choice = frame, store, choice
-        self.census, self.darkest, self.brightest, self.unplaced_time, self.excluded = ScannerCensus(), 65535, 0, 0, 0
+        self.summary = BlockSummary()
         self.slots = TimeSlots(1)
         self._blocks: BlockReader
         # both are created once the rough height of the road is known; until then parts of blocks wait
@@ -122,7 +121,7 @@ class SurveyReader:
 
     def _take(self, found, parts, parted, count):
         """Take the result of a block, in the order of the files."""
-        self._hear(found)
+        self.summary.join(found)
         if parted:
             for part in parts:
                 self.store.add(part)
@@ -137,18 +136,11 @@ class SurveyReader:
 
     def _take_part(self, part):
         """Take a part that somebody else read, in the order of the files."""
-        self._hear(part.found)
+        self.summary.join(part.found)
         self._chosen.histogram.join(part.drops)
         self._chosen.sampled.append((part.times, part.places))
         if self.store.folder is not None:
             self.store.adopt(part.index, self.store.folder)
-
-    def _hear(self, found):
-        self.darkest, self.brightest = min(self.darkest, found.darkest), max(self.brightest, found.brightest)
-        self.unplaced_time += found.without_time
-        self.excluded += found.excluded
-        for name, times in found.scanners.items():
-            self.census.take(name, times)
 
     def _settle(self):
         """Estimate the rough height of the road and store the points that waited for it."""
