@@ -136,14 +136,14 @@ class BlockReader:
         """No points yet, of a road that lies about `drop` metres below the trajectory."""
         return ChosenPoints(HeightHistogram([p.number for p in self.frame.passes], drop))
 
-    def unfiltered(self, block: laspy.ScaleAwarePointRecord, found: BlockSummary) -> list[tuple[int, Columns]]:
-        """Road and Columns of the points of a block within the corridor, whatever their height; `found` is updated."""
-        return [(road, points.copy() if own is None else points.take(own).load_all()) for road, points, own in self._near_roads(block, found)]
+    def unfiltered(self, block: laspy.ScaleAwarePointRecord, summary: BlockSummary) -> list[tuple[int, Columns]]:
+        """Road and Columns of the points of a block within the corridor, whatever their height; `summary` is updated."""
+        return [(road, points.copy() if own is None else points.take(own).load_all()) for road, points, own in self._near_roads(block, summary)]
 
-    def read(self, block: laspy.ScaleAwarePointRecord, found: BlockSummary, ground: HeightFilter, chosen: ChosenPoints,
+    def read(self, block: laspy.ScaleAwarePointRecord, summary: BlockSummary, ground: HeightFilter, chosen: ChosenPoints,
              store: SectionStore) -> list[PartitionedPoints]:
-        """The points of a block near the road, ready for the store; `found` and `chosen` are updated."""
-        return [self._partition(road, points, own, chosen, store) for road, points, own in self._near_roads(block, found, ground)]
+        """The points of a block near the road, ready for the store; `summary` and `chosen` are updated."""
+        return [self._partition(road, points, own, chosen, store) for road, points, own in self._near_roads(block, summary, ground)]
 
     def filtered(self, parts: Iterable[tuple[int, Columns]], ground: HeightFilter, chosen: ChosenPoints,
                  store: SectionStore) -> Iterator[PartitionedPoints]:
@@ -168,10 +168,10 @@ class BlockReader:
                 chosen.sampled.append((points["time"][rows], np.stack([points[name][rows] for name in "xyz"], axis=1)))
         return store.partition(road, points, own)
 
-    def _near_roads(self, block, found, ground=None):
+    def _near_roads(self, block, summary, ground=None):
         """Yield the points of a block near a road, piece by piece; each piece overwrites the Columns of the one before.
 
-        found : BlockSummary, which is updated; ground : HeightFilter, without which points of any height are taken. Yields road number, Columns of
+        summary : BlockSummary, which is updated; ground : HeightFilter, without which points of any height are taken. Yields road number, Columns of
         a piece, and (N,) bool of the points to use, None for all; for ground beyond the corridor the number is that of `beside_road`, and
         stations are the vehicle's.
         """
@@ -179,20 +179,19 @@ class BlockReader:
         axes = [LasAxis(*axis, self.dtype[axis[0].lower()]) for axis in zip("XYZ", block.scales, block.offsets, self.frame.origin)]
         # small pieces stay in the processor cache
         for first in range(0, len(block), POINTS_PER_PROJECTION):
-            yield from self._piece(block[first:first + POINTS_PER_PROJECTION], names, axes, found, ground)
+            yield from self._piece(block[first:first + POINTS_PER_PROJECTION], names, axes, summary, ground)
 
-    def _piece(self, piece, names, axes, found, ground):
+    def _piece(self, piece, names, axes, summary, ground):
         buffers = self._scratch.of(len(piece))
         columns = self._columns(piece, names, buffers)
-        found.add_intensity(columns["intensity"])
-        usable = self._usable(piece, axes, columns, found, buffers)
+        summary.add_intensity(columns["intensity"])
+        usable = self._usable(piece, axes, columns, summary, buffers)
         columns["s"], columns["d"] = buffers("s", np.int32), buffers("d", np.int32)
         columns["pass_number"], inside, lost = self._placed(columns, usable)
-        found.without_time += lost
-        self._add_scanners(columns, names, inside, found)
+        summary.without_time += lost
+        self._add_scanners(columns, names, inside, summary)
         if inside is not None:
-            # points outside get a valid station of this piece
-            columns["s"][~inside] = columns["s"][inside.argmax()] if inside.any() else 0
+            _fill_outside(columns["s"], inside)
         points = Columns(columns, self.dtype, len(piece))
         if inside is not None and self.choice.has_time:
             yield from self._beyond(columns, points, inside, ground)
@@ -205,23 +204,23 @@ class BlockReader:
             if own is None or own.any():
                 yield number, points, own
 
-    def _usable(self, piece, axes, columns, found, buffers):
+    def _usable(self, piece, axes, columns, summary, buffers):
         """Fill the columns x, y and z; (N,) bool of the points that are valid and no outliers, None for all."""
         usable = valid_points(piece)
         if usable is not None:
-            found.excluded += len(usable) - int(np.count_nonzero(usable))
+            summary.excluded += len(usable) - int(np.count_nonzero(usable))
         for axis, name in zip(axes, "xyz"):
             columns[name], there = axis.units(piece.array, buffers)
             usable = _both(usable, there)
         return usable
 
-    def _add_scanners(self, columns, names, inside, found):
+    def _add_scanners(self, columns, names, inside, summary):
         """Scanners measure together: at the same times of the drive, or without times along the same stretches of road."""
         own = slice(None) if self.choice.has_time or inside is None else inside
         at = columns["time"] if self.choice.has_time else columns["s"][own] * COORDINATE_SCALE
         for name, key in zip(SCANNER_FIELDS, ("source", "scanner")):
             if name in names:
-                found.census.add(name, columns[key][own], at, self._span)
+                summary.census.add(name, columns[key][own], at, self._span)
 
     def _beyond(self, columns, points, inside, ground):
         """As `read`, the ground beyond the corridor that the vehicle saw about as high as its road."""
@@ -250,8 +249,8 @@ class BlockReader:
         road = self.roads[pass_number.view(np.int16)]
         if inside is not None:
             road = np.where(inside, road, -1)
-        found = np.unique(road)
-        return [(number, None if len(found) == 1 else road == number) for number in found.tolist() if number >= 0]
+        numbers = np.unique(road)
+        return [(number, None if len(numbers) == 1 else road == number) for number in numbers.tolist() if number >= 0]
 
     def _columns(self, piece, names, buffers):
         """Columns copied from the file: time, intensity, source, returns, scanner."""
@@ -276,13 +275,13 @@ class BlockReader:
             passes, inside = self._located(*map(columns.get, names))
             return passes.view(np.uint16), inside, self._lost(passes)
         rows = np.flatnonzero(usable)
-        some = [columns[name].take(rows) for name in names]
-        found, there = self._located(*some)
+        columns_of_rows = [columns[name].take(rows) for name in names]
+        located, within = self._located(*columns_of_rows)
         passes, inside = np.full(len(usable), -1, np.int16), np.zeros(len(usable), bool)
-        passes[rows], inside[rows] = found, True if there is None else there
-        for name, values in zip(names[3:], some[3:]):
+        passes[rows], inside[rows] = located, True if within is None else within
+        for name, values in zip(names[3:], columns_of_rows[3:]):
             columns[name][rows] = values
-        return passes.view(np.uint16), inside, self._lost(found)
+        return passes.view(np.uint16), inside, self._lost(located)
 
     def _lost(self, passes):
         if not self.choice.has_time or not len(passes) or passes.strides[0] == 0 and passes[0] >= 0:
@@ -300,6 +299,11 @@ class BlockReader:
         for p in self.frame.passes[::-1]:
             passes[road == p.road] = p.number
         return passes, road >= 0
+
+
+def _fill_outside(stations, inside):
+    """Give points outside the frame a valid station of their piece."""
+    stations[~inside] = stations[inside.argmax()] if inside.any() else 0
 
 
 def unwrap_week(time: np.ndarray) -> np.ndarray:
@@ -402,14 +406,14 @@ class HeightHistogram:
             k = k[(k >= 0) & (k < size)]
         least = int(k.min(initial=size))
         k -= least
-        found = np.bincount(k)
+        counted = np.bincount(k)
         with self._lock:
-            self.counts[number][least:least + len(found)] += found
+            self.counts[number][least:least + len(counted)] += counted
 
     def join(self, counts: dict[int, np.ndarray]) -> None:
         """Add the counts of another histogram of the same passes and the same first estimate."""
-        for number, found in counts.items():
-            self.counts[number] += found
+        for number, counted in counts.items():
+            self.counts[number] += counted
 
     def heights(self) -> dict[int, float]:
         """{pass number: metres of the trajectory above the road, to millimetres}; a pass without points on its track gets the median of others.
@@ -417,10 +421,10 @@ class HeightHistogram:
         The road makes the peak of the histogram, the fullest decimetre. Its height is the median of the points within half a metre of the peak, so
         that bridges and trees above do not count.
         """
-        found = {number: _road_height(counts, self.origin) for number, counts in self.counts.items()}
-        known = [height for height in found.values() if height is not None]
+        heights = {number: _road_height(counts, self.origin) for number, counts in self.counts.items()}
+        known = [height for height in heights.values() if height is not None]
         usual = float(np.median(known)) if known else READING.default_sensor_height
-        return {number: usual if height is None else height for number, height in found.items()}
+        return {number: usual if height is None else height for number, height in heights.items()}
 
     def uneven(self) -> tuple[float, float] | None:
         """(median absolute deviation, height) of the trajectory above the road in metres, where it varies by more than a vehicle can cause.
@@ -429,9 +433,9 @@ class HeightHistogram:
         below it, whatever is parked or grows on the rest. The pass with the largest deviation counts; None if none exceeds `max_suspension_travel`.
         """
         heights = self.heights()
-        found = [(_half_within(counts, self.origin, heights[number]), heights[number])
-                 for number, counts in self.counts.items() if counts.sum() > READING.min_track_points]
-        off, height = max(found, default=(0.0, 0.0))
+        deviations = [(_half_within(counts, self.origin, heights[number]), heights[number])
+                      for number, counts in self.counts.items() if counts.sum() > READING.min_track_points]
+        off, height = max(deviations, default=(0.0, 0.0))
         return (off, height) if off > READING.max_suspension_travel else None
 
 

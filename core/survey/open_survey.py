@@ -190,7 +190,7 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     _read_points(reader, files, settings.block, shared, progress.part(0.0, read_at))
     _say_left_out(files, frame, reader, settings, progress)
     height = float(np.mean(list(reader.heights.values())))
-    feet = _check_height(height, crs, fitted.seen or reader.uneven, progress)
+    feet = _check_height(height, crs, (fitted.seen, reader.uneven), progress)
     survey = _survey_of(files, frame, reader, settings, crs, progress)
     progress.info(f"Points read: {survey.counts['read']:,} from {len(files)} file(s), {store.count:,} near the road kept; "
                  f"{len(frame.roads)} road(s), {len(frame.passes)} pass(es), {len(survey.scanners)} scanner(s); "
@@ -198,9 +198,7 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     _say_brightness(survey, intensity, settings, samples, progress)
     at = read_at if shared is None else READING.parts_progress * read_at
     _tell_scanners_apart(survey, reader, progress.part(at, at))
-    if shared is not None:
-        shared.ordered.mkdir(exist_ok=True)
-        survey.put_in_order(shared.ordered, shared.ordering, progress.part(at, read_at))
+    _put_in_order(survey, shared, progress.part(at, read_at))
     mounted = _lay_scanners_and_passes(survey, again, bool(feet), shared, progress)
     _see_passes(survey, settings.fit_passes, store, shared, progress)
     # what the user says overrules what lies beside the trajectory
@@ -233,6 +231,12 @@ def _survey_of(files, frame, reader, settings, crs, progress):
     scanner_field, scanners = reader.summary.census.choose(settings.scanner_field)
     return Survey(files, frame, store, crs, reader.heights, scanner_field, scanners, reader.summary.brightest > reader.summary.darkest,
                   frame.has_time, dict(read=total, kept=store.count, outside=total - store.count), above_road=settings.above_road)
+
+
+def _put_in_order(survey, shared, progress):
+    if shared is not None:
+        shared.ordered.mkdir(exist_ok=True)
+        survey.put_in_order(shared.ordered, shared.ordering, progress)
 
 
 def _say_brightness(survey, intensity, settings, samples, progress):
@@ -313,7 +317,7 @@ def _check_height(height, crs, explained, progress):
             "trajectory that the navigation system recorded. If it is that of the vehicle's wheels, add the height of the scanner to its heights.")
     if feet := unit_note(height, crs):
         progress.warn(feet)
-    elif not explained and not 0.0 < height < READING.highest_sensor:
+    elif not any(explained) and not 0.0 < height < READING.highest_sensor:
         progress.warn(f"The trajectory lies {abs(height):.1f} m {'above' if height > 0 else 'below'} the road; scanners ride up to "
                       f"{READING.highest_sensor:g} m above it. Heights of cloud and trajectory seem to be of two kinds (above the ellipsoid and "
                       "above sea level), in feet, or upside down. Export both anew with one kind of heights in metres.")

@@ -119,7 +119,7 @@ def _of_mirrors(samples, tracks, scanners, wkt, progress):
     found = None
     if by_field := samples.scanners > 1 and _all_take_part(samples, scanners):
         found = _adjusted(samples, tracks, scanners, progress)
-    if found is None or found.unexplained > RAYS.max_unexplained:
+    if not _explains(found):
         # a field may have numbered tiles or files
         if (apart := separated(samples, tracks, progress)) is not None:
             result = _of_rays(apart[0], tracks, *apart[1:], wkt)
@@ -128,7 +128,7 @@ def _of_mirrors(samples, tracks, scanners, wkt, progress):
         if not by_field:
             refuse_handheld(tracks, scanners)
             found = _adjusted(samples, tracks, scanners, progress) if scanners else None
-    if found is not None and found.unexplained <= RAYS.max_unexplained:
+    if _explains(found):
         return _of_rays(samples, tracks, scanners, found, wkt)
     refuse_handheld(tracks, [])
     if found is None or not _could_be_driven(found):
@@ -141,6 +141,11 @@ def _of_mirrors(samples, tracks, scanners, wkt, progress):
     result.notes.append(f"Returns lie {found.unexplained:.2f} m off the rays of a mirror (median), as those of tilted heads of many beams do: the "
                         "trajectory is less certain than where they keep to them.")
     return result
+
+
+def _explains(found):
+    """Whether returns lie on the rays of adjusted poses, None for none."""
+    return found is not None and found.unexplained <= RAYS.max_unexplained
 
 
 def _could_be_driven(found):
@@ -175,14 +180,14 @@ def separated(samples: Samples, tracks: list[FirstTrack], progress: Progress = P
     if len(scanners) < 2:
         return None
     found = _adjusted(apart, tracks, scanners, progress.part(0.0, 0.6))
-    if found.unexplained > RAYS.max_unexplained:
+    if not _explains(found):
         return None
     # the rays tell the other points apart, too, and the few that were wrong
     splitter = ScannerSplitter(found.poses, 0.0, np.zeros(3))
     apart = replace(samples, scanner=splitter.numbers(samples.time, samples.place))
     scanners = [replace(one, number=number) for number, one in enumerate(scanners)]
     found = grown_poses(found.poses, np.isfinite(found.misfit), _returns(apart, found.poses, scanners), progress.part(0.6, 1.0))
-    return (apart, scanners, found) if found.unexplained <= RAYS.max_unexplained else None
+    return (apart, scanners, found) if _explains(found) else None
 
 
 def splitter_of(samples: Samples, progress: Progress = Progress()) -> ScannerSplitter | None:

@@ -7,6 +7,7 @@ import os
 import struct
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import product
 from typing import BinaryIO
 
 import numpy as np
@@ -372,14 +373,17 @@ def _lengths(fields, records, size):
         # the decoder cannot do without the record that says of what its points consist
         point_size = next((record.compression.point_size for record in records if record.compression is not None), 0)
         return replace(fields, record_size=point_size) if base <= point_size <= MAX_RECORD_SIZE else fields
-    behind, described = records[-1].end if records else fields.header_size, base + _extra_bytes_described(records)
-    end = fields.end_of_points(size)
-    for points_at in (fields.points_at, behind):
-        for record_size in (fields.record_size, described, base):
-            ends = [points_at + count * record_size for count in fields.counts]
-            if points_at <= size and base <= record_size <= MAX_RECORD_SIZE and end in ends:
-                return replace(fields, points_at=points_at, record_size=record_size)
+    places = fields.points_at, records[-1].end if records else fields.header_size
+    sizes = fields.record_size, base + _extra_bytes_described(records), base
+    for points_at, record_size in product(places, sizes):
+        if base <= record_size <= MAX_RECORD_SIZE and _fills(fields, points_at, record_size, size):
+            return replace(fields, points_at=points_at, record_size=record_size)
     return fields
+
+
+def _fills(fields, points_at, record_size, size):
+    """Whether as many points as are stated, of so many bytes each, end where the points of the file end."""
+    return points_at <= size and fields.end_of_points(size) in [points_at + count * record_size for count in fields.counts]
 
 
 def _mended_records(records, fields):

@@ -306,11 +306,7 @@ def crs_of_records(header: Any) -> tuple[str, str]:
 @lru_cache(maxsize=256)
 def _stated(text, keys, doubles, place):
     """As of `crs_of_records`, of the contents of the records."""
-    table = np.frombuffer(keys[:len(keys) // 8 * 8], "<u2").reshape(-1, 4)[1:].tolist()
-    sizes = np.frombuffer(doubles[:len(doubles) // 8 * 8], "<f8").tolist()
-    values = {key: value if where == 0 else sizes[value] for key, where, _, value in table
-              if where == 0 or where == DOUBLES_RECORD and value < len(sizes)}
-    written, (plane, vertical, problem) = _parsed(text.split(b"\0")[0].decode("utf-8", "replace")), _of_keys(values)
+    written, (plane, vertical, problem) = _parsed(text.split(b"\0")[0].decode("utf-8", "replace")), _of_keys(_key_values(keys, doubles))
     if _of_heights(written):
         written, vertical = plane, written
         if written is None:
@@ -319,6 +315,14 @@ def _stated(text, keys, doubles, place):
         return _joined(plane, vertical), problem
     heights = written.sub_crs_list[-1] if written.is_compound else None
     return _joined(written, vertical if heights is None else None), problem or _contradiction(written, heights, plane, vertical, place)
+
+
+def _key_values(keys, doubles):
+    """{GeoKey: number} of the contents of the records of keys and of doubles."""
+    table = np.frombuffer(keys[:len(keys) // 8 * 8], "<u2").reshape(-1, 4)[1:].tolist()
+    sizes = np.frombuffer(doubles[:len(doubles) // 8 * 8], "<f8").tolist()
+    return {key: value if where == 0 else sizes[value] for key, where, _, value in table
+            if where == 0 or where == DOUBLES_RECORD and value < len(sizes)}
 
 
 def _contradiction(written, heights, plane, vertical, place):
@@ -332,26 +336,25 @@ def _contradiction(written, heights, plane, vertical, place):
 
 def _of_keys(values: Mapping[int, Any]) -> tuple[CRS | None, CRS | None, str]:
     """The horizontal and vertical CRS that GeoKeys name, None where they do not, and what contradicts itself in them."""
-    plane = _coded(values.get(PROJECTED)) or _coded(values.get(GEODETIC))
+    plane, vertical = _coded(values.get(PROJECTED)) or _coded(values.get(GEODETIC)), _coded(values.get(VERTICAL))
     if _of_heights(plane):
         plane = None
-    problem = _problem_of_unit(plane, *_length(values.get(LENGTH_UNIT), values.get(LENGTH_SIZE)))
-    vertical = _coded(values.get(VERTICAL))
     if not _of_heights(vertical):   # codes of datums, which older files have there
         vertical = None
     factor, unit = _length(values.get(HEIGHT_UNIT), None)
     if factor and (vertical is None or not _same_unit(vertical, factor)):
         vertical = _vertical(vertical, factor, unit)
-    if plane is None and vertical is not None and not _same_unit(vertical, 1.0):
-        problem = problem or f"its heights are in {vertical.axis_info[0].unit_name}, and the CRS of its x and y is not known"
-    return plane, vertical, problem
+    return plane, vertical, _problem_of_units(plane, vertical, *_length(values.get(LENGTH_UNIT), values.get(LENGTH_SIZE)))
 
 
-def _problem_of_unit(plane, factor, unit):
+def _problem_of_units(plane, vertical, factor, unit):
     """What contradicts itself where x and y have a unit of `factor` metres, None where that is not said."""
-    if factor and plane is None and abs(factor - 1.0) > IO.same_unit:
-        return f"its x and y are in {unit}, and the CRS that they lie in is not known"
-    if factor and plane is not None and not plane.is_geographic and not _same_unit(plane, factor):
+    if plane is None:
+        if factor and abs(factor - 1.0) > IO.same_unit:
+            return f"its x and y are in {unit}, and the CRS that they lie in is not known"
+        if vertical is not None and not _same_unit(vertical, 1.0):
+            return f"its heights are in {vertical.axis_info[0].unit_name}, and the CRS of its x and y is not known"
+    elif factor and not plane.is_geographic and not _same_unit(plane, factor):
         return f"its code says {plane.name}, whose unit is {plane.axis_info[0].unit_name}, and its unit key says {unit}"
     return ""
 
