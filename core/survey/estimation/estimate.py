@@ -19,7 +19,7 @@ from ..weights import ESTIMATE, HEAD, MIRROR, RAYS, TRACK
 from .adjustment import Adjusted, Returns, grown_poses
 from .interleaved import ScannerSplitter, lines_of_each, scan_line_directions, steps_of, told_apart
 from .poses import YAW, Poses, Spinning, first_poses, known_intervals, spinning_scanners
-from .samples import UNKNOWN_SCANNER, FirstTrack, Samples, first_track, read_samples, ridge_of, rounding_of
+from .samples import UNKNOWN_SCANNER, FirstTrack, Samples, first_track, read_samples, ridge_of, rounding_of, thinned
 from .turning_head import HeadTrack, head_heights, turning_heads
 
 WAYS = {"rays": "the rays of the mirrors", "turns": "the turns of a many-beam head", "density": "the density of the points, which is rough"}
@@ -209,10 +209,7 @@ def _returns(samples: Samples, poses: Poses, scanners: list[Spinning]) -> Return
         interval, share = knots.interval(samples.time[drive])
         key = (interval - knots.first) * (poses.scanners + 1) + scanner + 1
         by_key = np.argsort(key, kind="stable")
-        ordered = key[by_key]
-        rank = np.arange(len(key)) - np.searchsorted(ordered, ordered)
-        thinned = rank % -(-np.bincount(ordered)[ordered] // RAYS.per_interval) == 0
-        rows = np.sort(by_key[thinned & (scanner[by_key] >= 0)])
+        rows = np.sort(by_key[thinned(key[by_key], RAYS.per_interval) & (scanner[by_key] >= 0)])
         parts.append((interval[rows], share[rows], samples.time[drive][rows], samples.place[drive][rows], scanner[rows]))
     interval, share, time, place, scanner = (np.concatenate(column) for column in zip(*parts))
     return Returns(interval, share, time, place, scanner, rounding_of(samples.time, samples.start))
