@@ -146,9 +146,10 @@ def check_projected(files: Sequence[Any], given: str = "", trajectory_crs: str =
     wkt = stated or given or trajectory_crs
     if not stated and not given:
         _refuse_degrees(files, trajectory_crs)
-    if not wkt:
+    crs = parse_crs(wkt)
+    if crs is None:
         return ""
-    wkt = in_metres(wkt if wkt == stated or len(wkt) > 20 else parse_crs(wkt).to_wkt())[0]
+    wkt = in_metres(wkt if wkt == stated or len(wkt) > 20 else crs.to_wkt())[0]
     check_metric(parse_crs(wkt), "The point cloud")
     check_extent(wkt, _bounds(files), "The point cloud")
     return wkt
