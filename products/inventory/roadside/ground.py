@@ -56,8 +56,6 @@ class _LocalGround:
 def local_ground(s: np.ndarray, d: np.ndarray, h: np.ndarray, start: float, slices: int, offsets: tuple[float, float]) -> _LocalGround:
     """The ground under points.
 
-    Parameters
-    ----------
     s, d, h : (N,) m, stations, offsets and heights above the expected road
     start : m, station of the first slice
     slices : number of slices along the road
@@ -176,16 +174,10 @@ def lines_of_sight(survey: Survey, road: int, number: int, s: np.ndarray, d: np.
                    time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Horizontal vectors from points of a pass to the scanner, and how much higher the scanner is.
 
-    Parameters
-    ----------
-    survey : Survey
     road, number : of the road and of the pass
     s, d, h : (N,) m, station, offset, and height above the road
     time : (N,) s
-
-    Returns
-    -------
-    (2, N) m ahead and left along the road, and (N,) m
+    Returns (2, N) m ahead and left along the road, and (N,) m
     """
     driven, line = survey.frame.passes[number], survey.frame.road(road)
     x, y = line.to_map(s, d)
@@ -202,13 +194,7 @@ def level_views(survey: Survey) -> dict[int, float]:
     In open country nothing stands that a mirror could see above it. That its view ends is told by the ground beside the vehicle, which only a
     mirror sees; without times, which tell where the scanner was, nothing high is taken for a view that ends.
 
-    Parameters
-    ----------
-    survey : Survey
-
-    Returns
-    -------
-    {number of the pass: m above the road, height of its scanner}
+    Returns {number of the pass: m above the road, height of its scanner}
     """
     slopes: dict[int, list[np.ndarray]] = {}
     far: dict[int, list[np.ndarray]] = {}
