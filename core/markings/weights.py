@@ -55,29 +55,6 @@ ASPHALT = _AsphaltWeights()
 
 
 @dataclass(frozen=True)
-class _FaintLineWeights:
-    """Lines that a threshold misses and that stand out against both their sides."""
-
-    stroke_cells: int = 3   # across the road: 12 cm, of which the line is the mean
-    flank_cells: tuple[int, int] = 4, 5   # from the middle of the stroke: what lies beside it, on either side
-    beyond_cells: int = 15   # from the middle of the stroke: the ground of the half metre farther on, where it was scanned
-    least_rim: float = 0.22   # m from the middle of the stroke to the rim of what was scanned: both flanks are ground, and no gutter ends there
-    mean_along: int = 13   # cells: half a metre that both are taken over
-    min_cells_averaged: int = 6   # of the stroke, and of the flanks, that were scanned
-    stroke_reach: int = 2   # cells from the middle of the stroke that may be paint
-    drift_cells: int = 1   # either way that a line wavers from row to row
-    longest_break: int = 15   # cells along the road: a worn spot
-    shortest_line: int = 50   # cells along the road: 2 m
-    min_painted_share: float = 0.65   # of the cells of a line: wear leaves more, and of even ground half are brighter than the mean
-    max_refused_share: float = 0.05   # of the cells of a line
-    least_ratio: float = 0.10   # of the brightness beside it, by which a line is brighter
-    clear_sigmas: float = 3.0   # standard deviations of what asphalt shows, by which a line stands out
-
-
-FAINT_LINES = _FaintLineWeights()
-
-
-@dataclass(frozen=True)
 class _GroupWeights:
     """Which points belong together."""
 
@@ -282,6 +259,10 @@ class _StrandWeights:
     line_height_smoothing: float = 3.0   # m
     max_distance_to_line: float = 0.15   # m between a marking and the line along it
     paint_beside_piece: float = 2.0   # m of station before and after a piece whose paint counts for its offset
+    # Roughness of paint about fitted lines.
+    max_paint_distance: float = 0.25   # m from a fitted line within which a point is its paint
+    min_width_ratio: float = 0.03   # of the variances along the second and the first principal direction: below, neighbours lie in a line
+    max_quadric_condition: float = 1e3   # condition number of the normal equations of the quadric
 
 
 STRANDS = _StrandWeights()
@@ -333,11 +314,9 @@ TREND = _TrendWeights()
 class _SelectionWeights:
     """Which linked paint is a line."""
 
-    same_course_offset: float = 0.25   # m: a single dash this near the course of a dashed line is one of its dashes
     min_shared_paint: float = 0.6   # of a line's paint that must have its twin beside it in a double line
     min_twin_paint: float = 4.0   # m of paint: a shorter line beside another is its frayed edge, however short the other is there
     max_frayed_share: float = 0.35   # of a line's length: less paint beside a line than this is no second line but its frayed edge
-    min_single_dash: float = 1.5   # m
     min_bounding_paint: float = 15.0   # m of paint: enough to bound a road by
     max_neighbour_offset: float = 8.0   # m across: a line this near starts and ends where this one does
     max_bar_length: float = 4.0   # m along the road: what is called hatching and is longer is no single bar of it
@@ -498,17 +477,6 @@ class _RimWeights:
     gutter_brightness: float = 1.5   # spreads above asphalt
     paint_to_gutter: float = 1.8   # times as bright as the cells between it and the rim: paint beside the gutter
     road_gap_along: int = 15   # cells: smaller gaps between points belong to the road
-    # Rims and areas that fade out, as no paint does.
-    fading_beside: tuple[int, int] = 2, 4   # cells from a run of paint across the road: where its fading is measured
-    top_reach: int = 6   # cells in which the brightest of a run stands for it
-    run_along: int = 62   # cells, either way: 5 m of road that fading is averaged over
-    run_across: int = 3   # cells, either way, that the rim may waver
-    min_cells_beside: int = 60   # that were measured there
-    slight_fading: float = 0.10   # of the contrast of a run that is left beside a rim everywhere,
-    clear_fading: float = 0.22   # and in places
-    area_width: float = 0.35   # m across the road: broader pieces are no lines, and they are judged one by one
-    area_cells_beside: int = 15   # that were measured beside them
-    speck_cells: int = 26   # what two points brighten, each the cells no farther than two from it: smaller pieces outside an area are no end of it
     # Bright things that stand above the asphalt.
     plane_squares: int = 9   # squares, either way, that a plane is fitted to: 1.8 m
     min_plane_squares: int = 12   # of them with asphalt, for the plane to be known
@@ -543,7 +511,6 @@ class _ClassWeights:
     min_stop_line_fill: float = 0.62   # of length times width: a stop line is a full bar, the outline of hatching with its bars is not
     max_bar_to_outline: float = 0.3   # m from a bar of hatching to its outline
     max_hatching_pitch: float = 3.0   # m between bars of one hatching
-    min_bars_before_tip: int = 2   # that make a row which leads to its tip
     min_hatching_length: float = 4.0   # m along the road: what is longer is more than one bar
     min_arrow_shaft: float = 0.20   # of an arrow's length: its shaft at least,
     max_arrow_tip: float = 0.25   # and at the other end the tip of its head at most

@@ -57,8 +57,8 @@ def select_lines(lines: list[LinkedLine], trend: CommonTrend, crossed: np.ndarra
                  longest_dash: float = NEUTRAL.longest_dash) -> list[SelectedLine]:
     """The lines worth drawing, by station.
 
-    A line needs paint: `min_paint` m of it, or two dashes of a pattern, or one dash on the course and of the length of a dashed line elsewhere on
-    the road. What runs close beside a much longer line is that line's frayed edge; what frames a hatched area belongs to that area.
+    A line needs paint: `min_paint` m of it, or two dashes of a pattern. What runs close beside a much longer line is that line's ragged edge; what
+    frames a hatched area belongs to that area.
 
     Parameters
     ----------
@@ -71,25 +71,18 @@ def select_lines(lines: list[LinkedLine], trend: CommonTrend, crossed: np.ndarra
     crossings_there = StretchLookup(crossed[:, 0], crossed[:, 1])
     parts = [_without_pairs_at_crossings(stretches(line, longest_dash), line, crossed, crossings_there) for line in lines]
     level = np.array([_level(line, trend) for line in lines])
-    patterns = [[part.dashes for part in stretch if part.dashes] for stretch in parts]
     painted_to = max(line.last for line in lines)
     painted_from = min(line.first for line in lines)
     frayed, double = _beside(lines, beside, trend, longest_dash)
     outside = _beyond_the_edge(lines, beside, level)
-    dashes = _DashesElsewhere(lines, patterns, level)
     found = []
     for k, line in enumerate(lines):
         check_cancelled()
-        single = None
-        if not patterns[k] and line.painted < longest_dash:
-            single = dashes.alike(k)
-        if frayed[k] or outside[k] or _frames_hatching(line, bars) or not (line.painted >= min_paint or patterns[k] or single):
+        dashed = any(stretch.dashes for stretch in parts[k])
+        if frayed[k] or outside[k] or _frames_hatching(line, bars) or not (line.painted >= min_paint or dashed):
             continue
-        drawn = _line_pieces(parts[k])
-        if single is not None:
-            drawn = [_LinePiece(line.first, line.last, "measured", "dashed")]
-        drawn = _extended(drawn, parts[k], single, (painted_from, painted_to), partial(_crossed_there, crossed, crossings_there, line.middle),
-                          partial(strands.near, level, k), line)
+        drawn = _extended(_line_pieces(parts[k]), parts[k], (painted_from, painted_to),
+                          partial(_crossed_there, crossed, crossings_there, line.middle), partial(strands.near, level, k), line)
         found.append(SelectedLine(line, bool(double[k]), drawn))
     return found
 
@@ -131,31 +124,6 @@ class _StrandsBeside:
 def _level(line, trend):
     s, d, *_ = line.places()
     return median(d - trend.at(s))
-
-
-class _DashesElsewhere:
-    """The dash patterns of the lines of a road, by how far across these lie."""
-
-    def __init__(self, lines, patterns, level):
-        self.lines, self.level = lines, level
-        found = [(j, pattern) for j, of_line in enumerate(patterns) if len(lines[j].strands) >= 3 for pattern in of_line]
-        order = np.argsort([level[j] for j, _ in found], kind="stable").astype(int)
-        self.of, self.patterns = np.array([found[n][0] for n in order], int), [found[n][1] for n in order]
-        self.dash = np.array([pattern.dash for pattern in self.patterns])
-        self.first, self.last = (np.array([getattr(lines[j], end) for j in self.of]) for end in ("first", "last"))
-
-    def alike(self, k):
-        """The _DashPattern of a dashed line elsewhere on the road, on whose course and of whose dash length line k is; of several the first one's."""
-        line = self.lines[k]
-        if line.painted < SELECTION.min_single_dash or len(line.strands) > 2:
-            return None
-        levels = self.level[self.of]
-        near = slice(*np.searchsorted(levels, self.level[k] + SELECTION.same_course_offset * np.array([-1.001, 1.001])))
-        apart = (self.last[near] < line.first) | (self.first[near] > line.last)
-        same = np.abs(levels[near] - self.level[k]) <= SELECTION.same_course_offset
-        differs = np.abs(line.last - line.first - self.dash[near])
-        found = near.start + np.flatnonzero(apart & same & (differs <= np.maximum(0.6, 0.25 * self.dash[near])))
-        return self.patterns[found[np.argmin(self.of[found])]] if len(found) else None
 
 
 def _beside(lines, beside, trend, longest_dash):
@@ -257,10 +225,8 @@ def _aside(strands):
 
 def _meet(one, other):
     """Whether one strand begins where the other ends."""
-    for a, b in ((one, other), (other, one)):
-        if abs(b.first - a.last) <= SELECTION.max_border_gap and abs(b.d[0] - a.d[-1]) <= SELECTION.max_bar_end_offset:
-            return True
-    return False
+    return any(abs(b.first - a.last) <= SELECTION.max_border_gap and abs(b.d[0] - a.d[-1]) <= SELECTION.max_bar_end_offset
+               for a, b in ((one, other), (other, one)))
 
 
 def _areas(hatched):
@@ -316,13 +282,13 @@ def _votes(line):
     return votes
 
 
-def _extended(drawn, parts, single, painted, crossed, painted_beside, line):
+def _extended(drawn, parts, painted, crossed, painted_beside, line):
     """A dashed line ends with a gap: its ends go on by one gap, but not past the road's paint, into a crossing, or past the ends of lines beside it.
 
     `crossed` and `painted_beside` tell crossings and paint between two stations.
     """
     drawn = list(drawn)
-    before, after = single or parts[0].dashes, single or parts[-1].dashes
+    before, after = parts[0].dashes, parts[-1].dashes
     if before:
         limit = line.first - before.gap
         beside, neighbours = crossed(limit - 1.0, line.first + 1.0), painted_beside(limit - 1.0, line.first + 1.0)

@@ -91,9 +91,8 @@ def classify_markings(shapes: list[Shape], half_widths: Sequence[float], setting
     kinds = [_kind(*of_one) for of_one in zip(shapes, clearance, line, zigzag, np.broadcast_to(blocks, len(shapes)), doubles, covered_feet, refused,
                                               repeat(settings.margin))]
     found = [(kind, "keep" if kind in LINE_KINDS else "other") for kind in kinds]
-    for looked_like in (_outlines, _tips):
-        for k in looked_like(column, [kind for kind, _ in found]):
-            found[k] = "hatch", "other"
+    for k in _outlines(column, [kind for kind, _ in found]):
+        found[k] = "hatch", "other"
     for k in _single_bars(column, [kind for kind, _ in found]):
         corner = clearance[k] < CLASSES.curb_corner_clearance and shapes[k].length < CLASSES.max_curb_corner_length
         found[k] = NOT_PAINT if corner else "symbol", "other"
@@ -178,17 +177,6 @@ def _outlines(column, kinds):
             touch &= (column[low][a] < column[high][b] + CLASSES.max_bar_to_outline) & (column[high][a] > column[low][b] - CLASSES.max_bar_to_outline)
         touched[a[touch]] = True
     return np.flatnonzero(touched)
-
-
-def _tips(column, kinds):
-    """What looked like an arrow, and is the last bar of hatching with the borders that meet behind it: it stands in the row of bars."""
-    kinds = np.array(kinds, dtype=object)
-    bars, rows = np.flatnonzero((kinds == "hatch") & (column["s1"] - column["s0"] < CLASSES.min_hatching_length)), np.flatnonzero(kinds == "arrow")
-    count = np.zeros(len(kinds), int)
-    for a, b in overlapping_pairs(column["s0"][rows], column["s1"][rows], column["s0"][bars], column["s1"][bars], CLASSES.max_hatching_pitch):
-        a, b = rows[a], bars[b]
-        np.add.at(count, a[(column["d0"][a] < column["d1"][b]) & (column["d1"][a] > column["d0"][b])], 1)
-    return np.flatnonzero(count >= CLASSES.min_bars_before_tip)
 
 
 def _single_bars(column, kinds):

@@ -12,13 +12,12 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage
 
-from ...lazy import cv2
 from ...survey.frame.road_frame import RoadFrame
 from ...survey.store.records import COORDINATE_SCALE, Points
 from ..objects.repeating import dashes_beyond, rows_of_dashes
 from ..objects.shape import Shape, measure
-from ..road_grid import CELL_SIZE, CELL_UNITS, fill_gaps
-from ..weights import FAINT_LINES, NOISY, ROWS
+from ..road_grid import CELL_SIZE, CELL_UNITS
+from ..weights import NOISY, ROWS
 
 SCATTER_SIGMAS = 0.5244   # derived: standard deviations of a normal distribution that it lies below the median
 BRIGHTNESS_STEPS = 64   # derived: brightness is summed in whole 64ths: their sums are exact in any order
@@ -278,106 +277,3 @@ def _bright_in_all_views(number, samples, count):
         mean = (weight * above).sum(axis=1) / whole
         error = np.sqrt(((weight * (above - mean[:, None])) ** 2).sum(axis=1) * views / (views - 1)) / whole
         return (views >= NOISY.min_views) & (mean > NOISY.min_view_sigmas * error)
-
-
-# Faint lines: where the ground is darker than usual or the strip beside it brighter, a threshold misses a line that still stands out against both
-# its sides, over metres along the road.
-
-
-def faint_lines(brightness: np.ndarray, scanned: np.ndarray, rim: np.ndarray, found: np.ndarray,
-                refused: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Cells of narrow lines along the road where there is no paint yet, and at these the brightness halfway from beside the line to it, float32.
-
-    Parameters
-    ----------
-    brightness : (rows, columns) NaN where nothing was scanned; scanned : bool, cells that points lie in
-    rim : (rows, columns) m from the rim of what was scanned
-    found, refused : (rows, columns) bool, what a threshold took for paint, and what of it is none: a line that is such in part is none
-    """
-    known = scanned & np.isfinite(brightness)
-    # (2, rows, columns) how many cells and their sum, over half a metre along the road
-    sums = np.stack([cv2.boxFilter(a, -1, (1, FAINT_LINES.mean_along), normalize=False, borderType=cv2.BORDER_CONSTANT)
-                     for a in (known.astype(np.float32), np.where(known, brightness, 0.0).astype(np.float32))])
-    half = FAINT_LINES.stroke_cells // 2
-    stroke = _mean_of_columns(sums, range(-half, half + 1))
-    beside = np.maximum(_mean_of_columns(sums, FAINT_LINES.flank_cells), _mean_of_columns(sums, [-step for step in FAINT_LINES.flank_cells]))
-    # between two dark seams asphalt is no line: it is no brighter than what lies beyond them
-    flank = FAINT_LINES.flank_cells[1]
-    beyond = range(flank + 1, FAINT_LINES.beyond_cells + 1), range(-flank - 1, -FAINT_LINES.beyond_cells - 1, -1)
-    with np.errstate(invalid="ignore"):
-        clear = stroke - beside > FAINT_LINES.least_ratio * beside
-        cells = np.flatnonzero(clear)
-        own = np.fmax(beside.take(cells), np.fmax(*(_mean_of_columns(sums, steps, cells) for steps in beyond)))
-        clear.ravel()[cells] = stroke.take(cells) - own > FAINT_LINES.least_ratio * own
-    lines, halfway = np.zeros(known.shape, bool), np.full(known.shape, np.inf, np.float32)
-    # most windows have no such line: what asphalt scatters by is not asked for there
-    if not (_long_lines(_wavering(clear & (rim > FAINT_LINES.least_rim)), lines) * clear * ~_near(found)).any():
-        return lines, halfway
-    beside = np.fmax(beside, np.where(np.isfinite(beside), np.fmax(*(_mean_of_columns(sums, steps) for steps in beyond)), np.nan))
-    above = stroke - beside
-    with np.errstate(invalid="ignore"):
-        clear &= above > FAINT_LINES.clear_sigmas * _local_scatter(above)
-    above = np.where(clear, above, 0.0).astype(np.float32)
-    # the middle of the stroke
-    ridge = clear & (rim > FAINT_LINES.least_rim) & (above >= cv2.dilate(above, np.ones((1, 2 * FAINT_LINES.stroke_reach + 1), np.uint8)))
-    line = np.where(ridge & ~_near(found), _long_lines(_wavering(ridge), refused), 0)
-    row, column = np.nonzero(line)
-    level = ((stroke + beside) / 2)[row, column]
-    # (n, steps) the cells of the stroke about each cell of its middle
-    across = np.clip(column[:, None] + np.arange(-FAINT_LINES.stroke_reach, FAINT_LINES.stroke_reach + 1), 0, line.shape[1] - 1)
-    along = np.broadcast_to(row[:, None], across.shape)
-    seen = known[along, across]
-    with np.errstate(invalid="ignore"):
-        bright = seen & (brightness[along, across] > level[:, None])
-    # a few bright specks raise a mean, too
-    number = line[row, column]
-    inner = slice(FAINT_LINES.stroke_reach - half, FAINT_LINES.stroke_reach + half + 1)
-    filled = [np.bincount(number, cells[:, inner].sum(axis=1), line.max() + 1) for cells in (bright, seen)]
-    bright &= (filled[0] >= FAINT_LINES.min_painted_share * filled[1])[number][:, None]
-    lines[along[bright], across[bright]] = True
-    np.minimum.at(halfway, (along[bright], across[bright]), np.broadcast_to(level[:, None], bright.shape)[bright].astype(np.float32))
-    return lines, halfway
-
-
-def _mean_of_columns(sums, steps, cells=None):
-    """Mean over the columns some steps beside all cells, or beside some of them, (n,) flat numbers; NaN where too few cells were scanned."""
-    count, total = (sum(_shifted(a, step) if cells is None else _shifted_at(a, step, cells) for step in steps) for a in sums)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        return np.where(count >= FAINT_LINES.min_cells_averaged, total / count, np.float32(np.nan))
-
-
-def _shifted(values, step):
-    """Values some columns farther on, 0 beyond the last."""
-    found = np.zeros_like(values)
-    last = values.shape[1] - abs(step)
-    if last > 0:
-        found[:, max(-step, 0):max(-step, 0) + last] = values[:, max(step, 0):max(step, 0) + last]
-    return found
-
-
-def _shifted_at(values, step, cells):
-    """The same beside some cells."""
-    column = cells % values.shape[1] + step
-    return np.where((column >= 0) & (column < values.shape[1]), values.take(cells + step, mode="clip"), np.float32(0.0))
-
-
-def _wavering(mask):
-    """Cells of a mask and those that a line wavers to."""
-    return cv2.dilate(mask.astype(np.uint8), np.ones((1, 2 * FAINT_LINES.drift_cells + 1), np.uint8)).astype(bool)
-
-
-def _near(mask):
-    """Cells beside some others, on either side of them."""
-    box = np.ones((FAINT_LINES.mean_along, 2 * max(FAINT_LINES.flank_cells) + 1), np.uint8)
-    return cv2.dilate(mask.astype(np.uint8), box, borderType=cv2.BORDER_CONSTANT, borderValue=0).astype(bool)
-
-
-def _long_lines(course, refused):
-    """Numbers, from 1 on, of the pieces that run on along the road for long enough, slowly across it too; 0 elsewhere."""
-    closed = fill_gaps(course, FAINT_LINES.longest_break, 0)
-    count, label, stats, _ = cv2.connectedComponentsWithStats(closed.astype(np.uint8), connectivity=8)
-    area = np.maximum(stats[:, cv2.CC_STAT_AREA], 1)
-    long = stats[:, cv2.CC_STAT_HEIGHT] >= FAINT_LINES.shortest_line + FAINT_LINES.mean_along
-    long &= np.bincount(label[refused], minlength=count) <= FAINT_LINES.max_refused_share * area
-    long[0] = False
-    return np.where(long, np.arange(count), 0)[label]

@@ -17,8 +17,7 @@ import numpy as np
 
 from ...curves.robust import median
 from ...execution.phase import Recipe
-from ...intensity.tiled_image import IntensityRaster
-from ...io.geotiff import new_geotiff
+from ...io.geotiff import IntensityImage, new_geotiff
 from ...survey.frame.road import Road
 from ...survey.frame.road_frame import RoadFrame
 from ...survey.store.columns import Columns
@@ -28,8 +27,8 @@ from ..objects.shape import painted_cells
 from ..road_grid import CELL_SIZE, CELL_UNITS, PieceOfRoad, RoadCells, RoadGrid, cell_numbers, cells_of_road
 from ..weights import ASPHALT, SHAPES
 from .asphalt_level import AsphaltBin, AsphaltLevels, OtsuSplit, asphalt_bins, asphalt_profile, bin_edges, dark_cells, flatten, split_bins
-from .noisy import CellAverages, ViewSamples, faint_lines, noisy_paint_cells, views
-from .not_paint import RimBands, edge_distance, morphology, raised_cells, rim_distance, track_spacing, without_fading_areas, without_fading_rims
+from .noisy import CellAverages, ViewSamples, noisy_paint_cells, views
+from .not_paint import RimBands, edge_distance, morphology, raised_cells, rim_distance, track_spacing
 from .settings import MarkingSettings
 
 THRESHOLD_WINDOW = 500   # derived: cells: thresholds are taken from 20 m of road
@@ -217,16 +216,9 @@ class WindowExtractor:
         median, spread, scale, threshold = levels.at(grid)
         z, gutter = flatten(brightness, median, spread, view.rims)
         with np.errstate(invalid="ignore"):
-            bright = morphology((z > threshold * scale) & ~gutter, np.isfinite(brightness), self.settings)
-        mask = without_fading_rims(z, bright, view.occupied & ~gutter)
-        # areas are judged as they look and, where they hang together with a rim, without it
-        for area in ((bright, mask) if (mask != bright).any() else (bright,)):
-            mask = mask & without_fading_areas(z, area, view.occupied, gutter, grid.offsets())
+            mask = morphology((z > threshold * scale) & ~gutter, np.isfinite(brightness), self.settings)
         # the background that was subtracted from the cell is subtracted from the point as well
         least = (brightness - z * spread) + (threshold - 0.5) * (spread * scale)
-        lines, halfway = faint_lines(brightness, view.occupied, view.rims[0].distance, mask, bright & ~mask)
-        least = np.where(lines & ~mask, halfway, least)
-        mask |= lines
         mask &= ~raised_cells([self._heights(part, grid) for part in parts], mask)
         return self._paint_in(parts, grid, view.occupied, mask, least)
 
@@ -307,7 +299,7 @@ Burn = Callable[[np.ndarray, np.ndarray], None]   # burns (M,) local x, y
 
 
 @contextmanager
-def marking_mask(path: str | PathLike, image: IntensityRaster, origin: np.ndarray) -> Iterator[Burn]:
+def marking_mask(path: str | PathLike, image: IntensityImage, origin: np.ndarray) -> Iterator[Burn]:
     """Open a byte GeoTIFF, 1 where a marking is, no data elsewhere; gives a function that burns local x, y into it.
 
     `path` : of the GeoTIFF, which appears when the block is left without an error; it has the pixels of `image`. `origin` : of local coordinates, m.
@@ -329,7 +321,7 @@ def marking_mask(path: str | PathLike, image: IntensityRaster, origin: np.ndarra
         yield burn
 
 
-def _pixel_centres(image: IntensityRaster, x: np.ndarray, y: np.ndarray, origin: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _pixel_centres(image: IntensityImage, x: np.ndarray, y: np.ndarray, origin: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Local x, y (M,) of the centres of the pixels that places lie in, each once, and the (M,) index of a place in each pixel."""
     column, row = (np.floor(c).astype(np.int64) for c in image.pixel_of(x, y, origin))
     _, first = np.unique(row * (image.width + 1) + column, return_index=True)
@@ -337,7 +329,7 @@ def _pixel_centres(image: IntensityRaster, x: np.ndarray, y: np.ndarray, origin:
     return (left - origin[0]) + (column[first] + 0.5) * size, (top - origin[1]) - (row[first] + 0.5) * size, first
 
 
-def _painted_pixels(cells: np.ndarray, first: tuple[int, int], image: IntensityRaster, origin: np.ndarray,
+def _painted_pixels(cells: np.ndarray, first: tuple[int, int], image: IntensityImage, origin: np.ndarray,
                     road: Road) -> tuple[np.ndarray, np.ndarray]:
     """Local x, y (M,) of the image's pixels whose centres lie in painted cells of a road, of which the first begins at `first` * 4 cm."""
     row, column = np.nonzero(cells)
@@ -356,7 +348,7 @@ def _painted_pixels(cells: np.ndarray, first: tuple[int, int], image: IntensityR
     return x[inside], y[inside]
 
 
-def burn_points(burn: Burn, points: RoadPoints, image: IntensityRaster, frame: RoadFrame) -> None:
+def burn_points(burn: Burn, points: RoadPoints, image: IntensityImage, frame: RoadFrame) -> None:
     """Burn the cells that points on paint lie in, gaps between scan lines closed; `burn` is given by `marking_mask`."""
     halo = int(np.ceil(SHAPES.close_along / CELL_SIZE)) + 1
     for road in points.roads():
