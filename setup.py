@@ -32,7 +32,8 @@ setup(
     package_dir={"lanewright": "."},
     packages=["lanewright"] + [f"lanewright.{name}" for name in find_packages(".", include=[pattern for name in FOLDERS
                                                                                          for pattern in (name, f"{name}.*")])],
-    package_data={"lanewright.products.report": ["templates/*.html"], "lanewright": ["resources/i18n/*.json"]},
+    package_data={"lanewright.products.report": ["templates/*.html"], "lanewright.core.survey.trajectory": ["column_names.txt"],
+                  "lanewright": ["resources/i18n/*.json"]},
     # build/ is that of the checkout
     options={"build": {"build_base": "build/package"}},
     cmdclass={"build_py": BuildWithoutPlugin},

@@ -18,8 +18,6 @@ TAGS_OF_ALL = ("mls", "mobile mapping", "lidar", "point cloud", "las", "laz", "r
 class Algorithm:
     """Base of every algorithm; subclasses set the texts below and write `declare` and `work`.
 
-    Attributes
-    ----------
     parameters : list of ParameterSpec, inputs and outputs in the order of the dialog
     numbers : list of NumberOutput
     """
@@ -100,16 +98,13 @@ class Algorithm:
     def add_trajectory(self, optional=False, without=""):
         text = tr(
             "Where the vehicle drove: a point or line layer with heights, a table with columns time, x, y, z, or "
-            "the path of a CSV, TXT or SBET file. Made with Import trajectory it needs no further care."
-        )
+            "the path of a CSV, TXT or SBET file. Made with Import trajectory it needs no further care.")
         self.add_input("trajectory", "TRAJECTORY", tr("Trajectory"), f"{text} {tr(without) if without else ''}".strip(), optional=optional)
 
     def add_crs(self):
-        self.add_input(
-            "crs", "CRS", tr("CRS of the point clouds"),
-            tr("Only for point clouds that carry no CRS of their own, or contradict themselves; it is written into everything made from them."),
-            optional=True, advanced=True,
-        )
+        self.add_input("crs", "CRS", tr("CRS of the point clouds"),
+                       tr("Only for point clouds that carry no CRS of their own, or contradict themselves; it is written into everything made from "
+                          "them."), optional=True, advanced=True)
 
     def add_settings(self, specs, only=None, advanced=None):
         """Fields of a core Settings class, all or `only` those of the names given; what two stages share is asked for once."""

@@ -28,8 +28,6 @@ NAMES_ONLY = "LANEWRIGHT_NAMES_ONLY"
 class Call:
     """Reads parameters into what the core takes, and writes what the core gave.
 
-    Attributes
-    ----------
     algorithm : Algorithm
     parameters : dict, parameter name to what was given
     """
@@ -201,16 +199,14 @@ class Call:
             if read:
                 raise RoadExtractionError(
                     tr("{label} would be written over {path}, which is read as {input}: inputs are never changed. Give it another name.").format(
-                        label=spec.label, path=path, input=read)
-                )
+                        label=spec.label, path=path, input=read))
             # layers of one GeoPackage differ in the rest of the value
             place = str(path.absolute()) if value == str(path) else value
             if place in taken:
                 raise RoadExtractionError(
                     tr("{first} and {second} would both be written to {path}, and one would be lost. Give each a file of its own, "
                        "or name the layers in one GeoPackage: ogr:dbname='map.gpkg' table=\"road_edges\" (geom).").format(
-                        first=taken[place], second=spec.label, path=path)
-                )
+                        first=taken[place], second=spec.label, path=path))
             taken[place] = spec.label
             check_writable(path, spec.label)
 
@@ -323,10 +319,8 @@ def existing_file(path, label):
     """The path, or one sentence on why it cannot be used."""
     if "://" in path or "|" in path:
         raise RoadExtractionError(
-            tr("{label} names {path}, which is not a file. Choose the LAS or LAZ file itself.").format(label=label, path=path)
-        )
+            tr("{label} names {path}, which is not a file. Choose the LAS or LAZ file itself.").format(label=label, path=path))
     if not Path(path).is_file():
         raise RoadExtractionError(
-            tr("{label}: there is no file {path}. Check the name and the folder.").format(label=label, path=path)
-        )
+            tr("{label}: there is no file {path}. Check the name and the folder.").format(label=label, path=path))
     return path

@@ -1,71 +1,30 @@
 """Every algorithm, in the order of the work."""
 
-from .algorithm import GROUPS
-from .assess.assess_boundaries import AssessBoundaries
-from .assess.assess_driving_lines import AssessDrivingLines
-from .assess.assess_markings import AssessMarkings
-from .driving.driving_lines import DrivingLines
-from .driving.road_map import RoadMap
-from .export.check_map import CheckMap
-from .export.export_cad import ExportCad
-from .export.export_lanelet2 import ExportLanelet2
-from .export.export_opendrive import ExportOpenDrive
-from .export.import_lanelet2 import ImportLanelet2
-from .export.import_opendrive import ImportOpenDrive
-from .inventory.cross_sections import CrossSections
-from .inventory.roadside import Roadside
-from .markings.cluster_markings import ClusterMarkings
-from .markings.correct_intensity import CorrectIntensity
-from .markings.extract_markings import ExtractMarkings
-from .markings.fit_marking_lines import FitMarkingLines
-from .markings.intensity_image import IntensityImage
-from .markings.remove_outliers import RemoveOutliers
-from .overlay.georeference_image import GeoreferenceImage
-from .overlay.propose_control_points import ProposeControlPoints
-from .road.boundaries_from_scanlines import BoundariesFromScanlines
-from .road.detect_boundaries import DetectBoundaries
-from .road.detect_curbs import DetectCurbs
-from .road.extract_road_surface import ExtractRoadSurface
-from .road.fit_road_edges import FitRoadEdges
-from .road.normalized_scanlines import NormalizedScanlines
-from .survey.estimate_trajectory import EstimateTrajectory
-from .survey.import_trajectory import ImportTrajectory
-from .survey.inspect_survey import InspectSurvey
-from .survey.sample_survey import SampleSurvey
+from importlib import import_module
 
-ALGORITHMS = (
-    ImportTrajectory,
-    EstimateTrajectory,
-    InspectSurvey,
-    SampleSurvey,
-    NormalizedScanlines,
-    BoundariesFromScanlines,
-    DetectCurbs,
-    FitRoadEdges,
-    DetectBoundaries,
-    ExtractRoadSurface,
-    CorrectIntensity,
-    IntensityImage,
-    ExtractMarkings,
-    RemoveOutliers,
-    ClusterMarkings,
-    FitMarkingLines,
-    DrivingLines,
-    RoadMap,
-    ExportOpenDrive,
-    ExportLanelet2,
-    ExportCad,
-    ImportOpenDrive,
-    ImportLanelet2,
-    CheckMap,
-    CrossSections,
-    Roadside,
-    AssessBoundaries,
-    AssessMarkings,
-    AssessDrivingLines,
-    ProposeControlPoints,
-    GeoreferenceImage,
-)
+from .algorithm import GROUPS, Algorithm
+
+# Folder -> its files with an algorithm each
+FILES = {
+    "survey": ("import_trajectory", "estimate_trajectory", "inspect_survey", "sample_survey"),
+    "road": ("normalized_scanlines", "boundaries_from_scanlines", "detect_curbs", "fit_road_edges", "detect_boundaries", "extract_road_surface"),
+    "markings": ("correct_intensity", "intensity_image", "extract_markings", "remove_outliers", "cluster_markings", "fit_marking_lines"),
+    "driving": ("driving_lines", "road_map"),
+    "export": ("export_opendrive", "export_lanelet2", "export_cad", "import_opendrive", "import_lanelet2", "check_map"),
+    "inventory": ("cross_sections", "roadside"),
+    "assess": ("assess_boundaries", "assess_markings", "assess_driving_lines"),
+    "overlay": ("propose_control_points", "georeference_image"),
+}
+
+
+def _declared_in(name):
+    """The algorithm that a file declares."""
+    module = import_module(name, __package__)
+    declared = (value for value in vars(module).values() if isinstance(value, type) and issubclass(value, Algorithm))
+    return next(value for value in declared if value.__module__ == module.__name__)
+
+
+ALGORITHMS = tuple(_declared_in(f".{folder}.{file}") for folder, files in FILES.items() for file in files)
 
 
 def toolbox_number(ID):

@@ -10,13 +10,12 @@ NEEDED = ("action", "target")
 
 
 def add_corrections(algorithm):
-    algorithm.add_input(
-        "layer", "CORRECTIONS", tr("Corrections"),
-        tr("What an analyst decided at doubtful places: points or lines with the fields action (accept, delete, move, draw, take) and target "
-           "(edge, marking, lane). Further fields: note; kind and pattern of a line that is drawn; other of a second reading that is taken. "
-           "A row concerns what this run finds within half a metre of it, whatever its number; for lanes it is one metre, for move two. "
-           "A row without geometry lies at its road, station_m and offset_m. "
-           "What matches nothing is listed in log and report. The window of doubtful places writes this layer."), optional=True, advanced=True)
+    algorithm.add_input("layer", "CORRECTIONS", tr("Corrections"),
+                        tr("What an analyst decided at doubtful places: points or lines with the fields action (accept, delete, move, draw, take) "
+                           "and target (edge, marking, lane). Further fields: note; kind and pattern of a line that is drawn; other of a second "
+                           "reading that is taken. A row concerns what this run finds within half a metre of it, whatever its number; for lanes it "
+                           "is one metre, for move two. A row without geometry lies at its road, station_m and offset_m. What matches nothing is "
+                           "listed in log and report. The window of doubtful places writes this layer."), optional=True, advanced=True)
 
 
 def corrections_of(call):

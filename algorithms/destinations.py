@@ -59,8 +59,6 @@ def at_path(value, path):
 def check_suffix(path, spec, vector_suffixes):
     """Raise RoadExtractionError where the name promises a kind of file that is not written.
 
-    Parameters
-    ----------
     path : Path
     spec : OutputSpec
     vector_suffixes : the endings, without dot, of the vector formats that the program writes
@@ -73,9 +71,7 @@ def check_suffix(path, spec, vector_suffixes):
     if not name.endswith(kinds) or name.endswith((".copc.laz", ".copc.las")):
         raise RoadExtractionError(
             tr("{label} was to be written to {path}, but it is written as {kinds} only. Name the file so.").format(
-                label=spec.label, path=path, kinds=tr(" or ").join(kinds)
-            )
-        )
+                label=spec.label, path=path, kinds=tr(" or ").join(kinds)))
 
 
 def _check_vector_suffix(path, label, suffixes):
@@ -84,14 +80,11 @@ def _check_vector_suffix(path, label, suffixes):
     if suffix == "dxf":
         raise RoadExtractionError(
             tr("{label} was to be written to {path}, but a DXF has no fields. Write a GeoPackage and bring it to DXF with the "
-               "QGIS algorithm “Export layers to DXF”.").format(label=label, path=path)
-        )
+               "QGIS algorithm “Export layers to DXF”.").format(label=label, path=path))
     if suffix not in suffixes:
         raise RoadExtractionError(
             tr("{label} was to be written to {path}, whose ending names no format that QGIS writes. Use .gpkg, .fgb or .shp.").format(
-                label=label, path=path
-            )
-        )
+                label=label, path=path))
 
 
 def check_writable(path, label):
@@ -100,13 +93,10 @@ def check_writable(path, label):
     if not folder.is_dir():
         raise RoadExtractionError(
             tr("{label} was to be written to {path}, but there is no folder {folder}. Create it or choose another.").format(
-                label=label, path=path, folder=folder
-            )
-        )
+                label=label, path=path, folder=folder))
     if path.is_dir():
         raise RoadExtractionError(
-            tr("{label} was to be written to {path}, which is a folder. Name a file in it.").format(label=label, path=path)
-        )
+            tr("{label} was to be written to {path}, which is a folder. Name a file in it.").format(label=label, path=path))
     try:
         # Asking is not enough: a read-only disk and a share say yes and then refuse
         with tempfile.TemporaryFile(dir=folder):
@@ -117,8 +107,7 @@ def check_writable(path, label):
     except OSError as error:
         raise RoadExtractionError(
             tr("{label} cannot be written to {path}: {reason}. Choose another place, or close the program that holds it.").format(
-                label=label, path=path, reason=error.strerror
-            )
+                label=label, path=path, reason=error.strerror)
         ) from error
 
 

@@ -57,8 +57,7 @@ def read_trajectory_source(source, crs="", heights_needed=True):
 def _refuse_empty(source, count):
     if not count:
         raise RoadExtractionError(
-            tr("{label} has no rows. Choose the layer that holds the driven positions.").format(label=source.label)
-        )
+            tr("{label} has no rows. Choose the layer that holds the driven positions.").format(label=source.label))
 
 
 def _line_columns(source):

@@ -17,8 +17,6 @@ FARTHEST_ON_EARTH = 1e8   # m or feet: coordinates of a map, some times around t
 class VectorSource:
     """A layer that is open for reading; every program that runs the algorithms has its own.
 
-    Attributes
-    ----------
     label : what messages call it
     names : list of str, its fields
     kind : POINT, LINE, POLYGON, TABLE or UNKNOWN
@@ -32,8 +30,6 @@ class VectorSource:
     def stored_rows(self, measures=False, check_validity=True):
         """(WKB or None where there is no geometry, b"" where it is none, list of values with None for NULL) of every row, as it is stored.
 
-        Parameters
-        ----------
         measures : keep M in the WKB
         check_validity : refuse or skip invalid geometries where the program does so
         """
@@ -123,9 +119,7 @@ def read_features(source, schema, geometry_type):
             if not part.has_z or np.isnan(shapely.get_coordinates(part, include_z=True)).any():
                 raise RoadExtractionError(
                     tr("{label} has geometries without heights (Z). Use the layer that Lanewright wrote.").format(
-                        label=source.label
-                    )
-                )
+                        label=source.label))
             result.add(part, **row)
     return result
 
@@ -139,9 +133,7 @@ def _columns(source, schema):
     if missing:
         raise RoadExtractionError(
             tr("{label} lacks the field(s) {fields}. Use the layer that Lanewright wrote.").format(
-                label=source.label, fields=", ".join(missing)
-            )
-        )
+                label=source.label, fields=", ".join(missing)))
     return found
 
 
@@ -151,9 +143,7 @@ def _check_kind(source, geometry_type):
     if geometry_type != "None" and source.kind != needed:
         raise RoadExtractionError(
             tr("{label} holds geometries of the kind {found}; {needed} is needed. Use the layer that Lanewright wrote.").format(
-                label=source.label, found=source.kind_label(source.kind), needed=source.kind_label(needed)
-            )
-        )
+                label=source.label, found=source.kind_label(source.kind), needed=source.kind_label(needed)))
 
 
 def _measured_parts(wkb, label):
@@ -161,8 +151,7 @@ def _measured_parts(wkb, label):
     _, has_z, has_m = _type_of(wkb, 0)
     if not (has_z and has_m):
         raise RoadExtractionError(
-            tr("{label} has geometries without heights (Z) or measures (M). Use the layer that Lanewright wrote.").format(label=label)
-        )
+            tr("{label} has geometries without heights (Z) or measures (M). Use the layer that Lanewright wrote.").format(label=label))
     for at, count, *_ in _runs(wkb):
         yield wkb[at - 9:at + 32 * count]   # with its byte order, type and count
 

@@ -2,13 +2,13 @@
 
 from pathlib import Path
 
-from qgis.core import Qgis, QgsApplication, QgsProcessingModelAlgorithm, QgsProject
+from qgis.core import QgsApplication, QgsProcessingModelAlgorithm, QgsProject
 from qgis.PyQt.QtCore import QObject, QUrl
 from qgis.PyQt.QtGui import QAction, QDesktopServices, QIcon
 from qgis.PyQt.QtWidgets import QMenu
 
 from ..processing_provider.reports import last_report
-from ..processing_provider.results.layer_tree import keeps_names_only, replaces_last_run, set_keeps_names_only, set_replaces_last_run
+from ..processing_provider.results.layer_tree import NAMES_ONLY, REPLACES_LAST_RUN
 from ..processing_provider.results.road_maps import clouds_of, road_maps
 from ..processing_provider.results.run_table import last_run
 from ..processing_provider.texts import tr
@@ -18,6 +18,7 @@ from .manual import ManualWindow
 from .messages import all_is_there
 from .runs_window import RunsWindow
 from .sample_run import SampleRun
+from .widgets import say
 
 PROVIDER = "lanewright"
 LAYOUT_WINDOW = (1300, 850)  # px
@@ -51,9 +52,9 @@ class Menu(QObject):
         self._add(tr("Table of the runs"), self.open_table, tr("Lengths, shares measured, warnings, seconds and failures of all runs since QGIS "
                   "was started"), theme("/mActionOpenTable.svg"))
         self._add_models()
-        self._add_choice(tr("Replace the last run of a survey"), replaces_last_run, set_replaces_last_run,
+        self._add_choice(tr("Replace the last run of a survey"), REPLACES_LAST_RUN,
                          tr("New results take the place of the last ones of the same survey and algorithm in the layer tree; files stay"))
-        self._add_choice(tr("Name files without their folders"), keeps_names_only, set_keeps_names_only,
+        self._add_choice(tr("Name files without their folders"), NAMES_ONLY,
                          tr("Results keep the names of the files they were made from, but not the folders; for layers that are given away"))
         self._add(tr("Manual"), self.manual.open, tr("What every algorithm does, and a walk through a first survey"),
                   theme("/mActionHelpContents.svg"))
@@ -62,24 +63,21 @@ class Menu(QObject):
         # A toolbar of its own would take a row of the window for one button
         iface.addToolBarIcon(self.actions[0])
 
-    def _add(self, title, what, tip, icon):
+    def _add(self, title, what, tip, icon=QIcon()):
         action = QAction(icon, title, self.iface.mainWindow())
         action.setToolTip(f"Lanewright: {tip}")
         action.setStatusTip(tip)
         action.triggered.connect(lambda checked=False: what())
         self.iface.addPluginToMenu("Lanewright", action)
         self.actions.append(action)
+        return action
 
-    def _add_choice(self, title, chosen, choose, tip):
-        """An entry with a tick."""
-        action = QAction(title, self.iface.mainWindow())
+    def _add_choice(self, title, setting, tip):
+        """An entry with a tick, which is a setting of the user."""
+        action = self._add(title, lambda: None, tip)
         action.setCheckable(True)
-        action.setChecked(chosen())
-        action.setToolTip(f"Lanewright: {tip}")
-        action.setStatusTip(tip)
-        action.toggled.connect(choose)
-        self.iface.addPluginToMenu("Lanewright", action)
-        self.actions.append(action)
+        action.setChecked(setting.holds())
+        action.toggled.connect(setting.keep)
 
     def _add_models(self):
         """A sub-menu that opens the models of the plugin in QGIS's model designer, each as a copy to be changed and saved."""
@@ -144,8 +142,7 @@ class Menu(QObject):
         """The road maps of the project; where there are none, a word on that."""
         found = road_maps(QgsProject.instance(), self.iface.activeLayer())
         if not found:
-            self.iface.messageBar().pushMessage("Lanewright", tr("There is no road map in this project yet: run Road map, or drop the GeoPackage of "
-                                                                 "one into the project."), level=Qgis.MessageLevel.Info)
+            say(self.iface, tr("There is no road map in this project yet: run Road map, or drop the GeoPackage of one into the project."))
         return found
 
     def _show_section(self, place):
@@ -176,12 +173,12 @@ class Menu(QObject):
             return
         else:
             said = tr("No web browser could be started. The report is the file {path}.").format(path=path)
-        self.iface.messageBar().pushMessage("Lanewright", said, level=Qgis.MessageLevel.Info)
+        say(self.iface, said)
 
     def open_table(self):
         """What the runs since QGIS was started gave, in a window."""
         if last_run() is None:
-            self.iface.messageBar().pushMessage("Lanewright", tr("Nothing has been run since QGIS was started."), level=Qgis.MessageLevel.Info)
+            say(self.iface, tr("Nothing has been run since QGIS was started."))
             return
         self.dialog = RunsWindow(self.iface.mainWindow())
         self.dialog.show()

@@ -4,20 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from qgis.core import (
-    Qgis,
-    QgsApplication,
-    QgsCoordinateTransform,
-    QgsCsException,
-    QgsMapLayer,
-    QgsProject,
-    QgsRectangle,
-)
+from qgis.core import Qgis, QgsApplication, QgsMapLayer, QgsRectangle
 from qgis.gui import QgsMessageViewer
-from qgis.PyQt.QtWidgets import QPushButton, QWidget
+from qgis.PyQt.QtWidgets import QWidget
 
 from ..processing_provider.dependencies import how_to_install, install_command, missing_in_short
 from ..processing_provider.texts import tr
+from .widgets import brought_to, button
 
 RIM = 1.05  # of what is shown of a result
 LONG = 0    # s that a message with buttons stays: until it is closed
@@ -28,9 +21,8 @@ def all_is_there(iface) -> bool:
     missing = missing_in_short()
     if not missing:
         return True
-    copy = _button(tr("Copy command"), lambda: QgsApplication.clipboard().setText(install_command()))
-    copy.setToolTip(install_command())
-    how = _button(tr("How to install…"), lambda: show_text(iface.mainWindow(), "Lanewright", how_to_install()))
+    copy = button(tr("Copy command"), lambda: QgsApplication.clipboard().setText(install_command()), install_command())
+    how = button(tr("How to install…"), lambda: show_text(iface.mainWindow(), "Lanewright", how_to_install()))
     _say(iface, missing, Qgis.MessageLevel.Warning, copy, how)
     return False
 
@@ -38,8 +30,6 @@ def all_is_there(iface) -> bool:
 def tell_result(iface, title: str, layers: Sequence[QgsMapLayer], warnings: Sequence[str]) -> None:
     """What a run made: the map goes there where nothing of it is seen, and its warnings can be read.
 
-    Parameters
-    ----------
     iface : of QGIS
     title : of the algorithm
     layers : that came into the project
@@ -50,10 +40,10 @@ def tell_result(iface, title: str, layers: Sequence[QgsMapLayer], warnings: Sequ
     if not extent.isEmpty():
         if not canvas.extent().intersects(extent):
             _show(canvas, extent)
-        buttons.append(_button(tr("Show it"), lambda: _show(canvas, extent)))
+        buttons.append(button(tr("Show it"), lambda: _show(canvas, extent)))
     if warnings:
         shown = tr("1 warning…") if len(warnings) == 1 else tr("{count} warnings…").format(count=len(warnings))
-        buttons.append(_button(shown, lambda: show_text(iface.mainWindow(), title, "\n\n".join(warnings))))
+        buttons.append(button(shown, lambda: show_text(iface.mainWindow(), title, "\n\n".join(warnings))))
     if buttons:
         level = Qgis.MessageLevel.Warning if warnings else Qgis.MessageLevel.Success
         _say(iface, tr("{title} is done, {count} layers.").format(title=title, count=len(layers)), level, *buttons)
@@ -64,10 +54,7 @@ def extent_of(layers: Iterable[QgsMapLayer], crs) -> QgsRectangle:
     whole = QgsRectangle()
     for layer in layers:
         if layer.isSpatial() and not layer.extent().isEmpty():
-            try:
-                whole.combineExtentWith(QgsCoordinateTransform(layer.crs(), crs, QgsProject.instance()).transformBoundingBox(layer.extent()))
-            except QgsCsException:
-                continue
+            whole.combineExtentWith(brought_to(layer.extent(), layer.crs(), crs))
     return whole
 
 
@@ -86,14 +73,8 @@ def _show(canvas, extent):
     canvas.refresh()
 
 
-def _button(text, what):
-    button = QPushButton(text)
-    button.clicked.connect(lambda checked=False: what())
-    return button
-
-
 def _say(iface, text, level, *buttons):
     said = iface.messageBar().createMessage("Lanewright", text)
-    for button in buttons:
-        said.layout().addWidget(button)
+    for shown in buttons:
+        said.layout().addWidget(shown)
     iface.messageBar().pushWidget(said, level, LONG)

@@ -150,8 +150,6 @@ def _crs_text(wkt):
 def write_layer(path, table, features, check_cancelled):
     """Write a layer into a file that is new, or add it to a GeoPackage.
 
-    Parameters
-    ----------
     path : str, its ending chooses the format
     table : name of the layer in a GeoPackage; "" for that of the file
     features : Features

@@ -14,9 +14,7 @@ from .call import FileCall
 def algorithms():
     """Every algorithm in the order of the work.
 
-    Returns
-    -------
-    dict, id to Algorithm: its `parameters` and `numbers` say what it takes and gives
+    Returns dict, id to Algorithm: its `parameters` and `numbers` say what it takes and gives
     """
     return {declared.ID: declared() for declared in ALGORITHMS}
 

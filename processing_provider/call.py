@@ -22,7 +22,7 @@ from .embedded_style import embed_style
 from .input_files import close_database, input_files, layer_file, written_over
 from .layers import WKB_TYPES, QgisSource, crs_text, keeps_aliases, qgis_fields, write_features
 from .reports import note_report
-from .results.layer_tree import keeps_names_only
+from .results.layer_tree import NAMES_ONLY
 from .results.runs import run_of
 from .styling import style_on_load
 from .texts import tr
@@ -45,7 +45,7 @@ class QgisCall(Call):
 
     @property
     def names_only(self):
-        return keeps_names_only() or super().names_only
+        return NAMES_ONLY.holds() or super().names_only
 
     # -- in ---------------------------------------------------------------------------------
 
@@ -70,8 +70,7 @@ class QgisCall(Call):
         given = self.parameters.get(name)
         if isinstance(given, str) and given and not crs.isValid():
             raise RoadExtractionError(
-                tr("{label}: the CRS {given} is not known. Give it as EPSG:number.").format(label=self.label(name), given=given)
-            )
+                tr("{label}: the CRS {given} is not known. Give it as EPSG:number.").format(label=self.label(name), given=given))
         return in_metres(crs_text(crs))[0]
 
     def raster(self, name):

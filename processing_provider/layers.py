@@ -141,9 +141,7 @@ def write_features(sink, features, fields, feedback=None):
         if not sink.addFeatures(some, QgsFeatureSink.Flag.FastInsert):
             raise RoadExtractionError(
                 tr("The result could not be written: {reason}. Is the disk full or the file open elsewhere?").format(
-                    reason=sink.lastError() or tr("the sink refused the features")
-                )
-            )
+                    reason=sink.lastError() or tr("the sink refused the features")))
     # Absent on QGIS 3.40, needed from 3.44 on
     if hasattr(sink, "finalize"):
         sink.finalize()

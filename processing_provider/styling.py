@@ -99,8 +99,7 @@ def apply_style(layer, qml, schema=(), output=""):
         # Intensities have no common scale: every image is stretched to its own values
         layer.setContrastEnhancement(
             QgsContrastEnhancement.ContrastEnhancementAlgorithm.StretchToMinimumMaximum,
-            QgsRasterMinMaxOrigin.Limits.CumulativeCut,
-        )
+            QgsRasterMinMaxOrigin.Limits.CumulativeCut)
         stretch = layer.renderer().contrastEnhancement()
         if stretch.maximumValue() - stretch.minimumValue() > 100:  # in the legend six decimals say nothing
             stretch.setMinimumValue(round(stretch.minimumValue()))

@@ -14,14 +14,15 @@ from ..core.common.progress import Progress
 from ..core.common.setting import check_limits, setting
 from ..core.io.crs import check_projected, crs_note, place_raster
 from ..core.io.local_files import gdal_exceptions
-from ..core.survey.blocks import HEIGHT_PEAK_REACH, OWN_TRACK_HALF_WIDTH, sensor_height_of
+from ..core.survey.blocks import sensor_height_of
 from ..core.survey.frame.road_frame import build_frame
 from ..core.survey.las.point_fields import INTENSITY_SOURCES, ScannerCensus, intensity_source_of, without_intensity
-from ..core.survey.las.reader import POINTS_PER_BLOCK, read_blocks, read_headers
-from ..core.survey.las.samples import PER_METRE, coarse_coordinates, distinct_rows, may_overlap, sample_files, without_copies
+from ..core.survey.las.reader import read_blocks, read_headers
+from ..core.survey.las.samples import coarse_coordinates, distinct_rows, may_overlap, sample_files, without_copies
 from ..core.survey.open_survey import match_clocks
 from ..core.survey.survey import SurveySettings
 from ..core.survey.trajectory.trajectory import Trajectory, clean_trajectory, reproject_trajectory
+from ..core.survey.weights import LAS, READING
 
 NEAR_TRAJECTORY = 25.0        # m: points within this distance count as measured from the trajectory
 SAMPLING_INTERVAL = 50       # the distance to the trajectory is measured for every 50th point
@@ -106,7 +107,7 @@ def inspect_survey(paths: Sequence[str | Path], trajectory: Trajectory | None = 
     counter = _Counter(files, settings, _usable(trajectory, wkt))
     total, done = sum(file.count for file in files), 0
     for file in files:
-        for block in read_blocks(file.path, POINTS_PER_BLOCK, units=file.units):
+        for block in read_blocks(file.path, units=file.units):
             counter.take(block)
             done += len(block)
             progress.report(done / total)
@@ -170,7 +171,7 @@ class _Counter:
             self.copy_samples.append(_copy_samples(np.stack([x, y, z], axis=1), time, self.every))
         if self.tree is not None:
             distance, row = self.tree.query(np.c_[x, y][::SAMPLING_INTERVAL], distance_upper_bound=NEAR_TRAJECTORY)
-            below = distance < OWN_TRACK_HALF_WIDTH
+            below = distance < READING.own_track_half_width
             self.on_track.append((row[below], z[::SAMPLING_INTERVAL][below]))
             self.sampled += len(distance)
             self.near += int(np.isfinite(distance).sum())
@@ -239,7 +240,7 @@ class _Tally:
 
 def _copy_samples(place, time, every):
     """(M,) times and (M, 3) places in mm of one in `every` points, chosen by place."""
-    whole = np.rint(place * PER_METRE).astype(np.int64)
+    whole = np.rint(place * LAS.places_per_metre).astype(np.int64)
     mixed = (whole * COPY_PRIMES).sum(axis=1).astype(np.uint64)
     chosen = (mixed >> np.uint64(17)) % np.uint64(every) == 0
     return time[chosen], whole[chosen]
@@ -340,7 +341,7 @@ def _profile(driven, track_z, at, heights, drops, height):
     places = np.arange(0.0, driven[-1] + PROFILE_STEP, PROFILE_STEP)
     road = np.full(len(places), np.nan)
     if height is not None:
-        near = np.abs(drops - height) < HEIGHT_PEAK_REACH
+        near = np.abs(drops - height) < READING.height_peak_reach
         cell = np.rint(at[near] / PROFILE_STEP).astype(np.int64)
         order = np.lexsort((heights[near], cell))
         cell, z = cell[order], heights[near][order]

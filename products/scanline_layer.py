@@ -22,7 +22,7 @@ from ..core.survey.store.records import COORDINATE_SCALE
 
 if TYPE_CHECKING:
     from ..core.survey.frame.road_frame import RoadFrame
-    from ..core.survey.open_survey import Survey
+    from ..core.survey.survey import Survey
 
 SPOOL_MEMORY = 32 * 2**20  # bytes of lines in memory before a temporary file is used
 WKB_TYPE = 3002           # ISO WKB: LineString with Z and M

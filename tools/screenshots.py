@@ -94,7 +94,7 @@ def sample():
     """The sample survey, run from the menu, until its layers are there."""
     ours = plugins["lanewright"].menu
     ours.actions[1].trigger()
-    needed(wait(400, lambda: not ours.sample.running), "the sample survey took longer than 400 s")
+    needed(wait(400, lambda: ours.sample.running is None), "the sample survey took longer than 400 s")
     wait(2)
     from processing.core.ProcessingResults import resultsList
 

@@ -21,18 +21,12 @@ BOUNDARY = "products.assess.boundaries:BoundaryAccuracySettings"
 
 EDGES = ("automatic", "all", "curbs")
 BOUNDARY_SETTINGS = (
-    SettingSpec(
-        "TOLERANCE", BOUNDARY, "tolerance", tr("Tolerance of the layer and of the numbers (m)"),
-        tr("The tolerance for which intervals are drawn and numbers returned; the report has all of them."),
-    ),
-    SettingSpec(
-        "INTERVAL", BOUNDARY, "interval", tr("Length of an interval (m)"),
-        tr("Longer lets a short error pass or spoil more of the road; published figures use 2."), advanced=True,
-    ),
-    SettingSpec(
-        "CORRIDOR", BOUNDARY, "corridor", tr("Corridor either side of the trajectory (m)"),
-        tr("What lies farther out belongs to no road and is left out; the report tells how much."), advanced=True,
-    ),
+    SettingSpec("TOLERANCE", BOUNDARY, "tolerance", tr("Tolerance of the layer and of the numbers (m)"),
+                tr("The tolerance for which intervals are drawn and numbers returned; the report has all of them.")),
+    SettingSpec("INTERVAL", BOUNDARY, "interval", tr("Length of an interval (m)"),
+                tr("Longer lets a short error pass or spoil more of the road; published figures use 2."), advanced=True),
+    SettingSpec("CORRIDOR", BOUNDARY, "corridor", tr("Corridor either side of the trajectory (m)"),
+                tr("What lies farther out belongs to no road and is left out; the report tells how much."), advanced=True),
 )
 
 
@@ -63,13 +57,10 @@ class AssessBoundaries(Algorithm):
         add_tolerances(self, BOUNDARY, tr("Tolerances (m)"), tr(
             "Distances to either side within which a line is right, with commas between them. The report has a row for each."))
         self.add_settings(BOUNDARY_SETTINGS)
-        self.add_input(
-            "choice", "EDGES", tr("Edges to judge"),
-            tr("Road edges hold curbs and, where there is no curb, edges of the pavement. Curbs judges curbs alone; all judges whatever both layers "
-               "hold. Automatic leaves edges of the pavement out where the field edge or kind of the reference says that it holds curbs alone: "
-               "such a reference cannot tell whether they are right."),
-            default=EDGES[0], choices=EDGES,
-        )
+        self.add_input("choice", "EDGES", tr("Edges to judge"),
+                       tr("Road edges hold curbs and, where there is no curb, edges of the pavement. Curbs judges curbs alone; all judges whatever "
+                          "both layers hold. Automatic leaves edges of the pavement out where the field edge or kind of the reference says that it "
+                          "holds curbs alone: such a reference cannot tell whether they are right."), default=EDGES[0], choices=EDGES)
         add_excluded(self)
         add_area(self)
         self.add_sink("OUTPUT", tr("Boundaries by outcome"), tr("One line an interval and outcome."), fields=ASSESSED_BOUNDARIES,

@@ -17,11 +17,9 @@ LINE_SETTINGS = (
         tr("The tolerance for which pieces are drawn and numbers returned, of the same kind as the others; the report has all of them."),
         times=2.0,  # total widths are halved
     ),
-    SettingSpec(
-        "MAX_ANGLE", LINES, "max_angle", tr("Largest angle between lines that match (°)"),
-        tr("Smaller keeps lines that cross from matching; 90 lets any direction match. The way a line is drawn does not matter."),
-        advanced=True,
-    ),
+    SettingSpec("MAX_ANGLE", LINES, "max_angle", tr("Largest angle between lines that match (°)"),
+                tr("Smaller keeps lines that cross from matching; 90 lets any direction match. The way a line is drawn does not matter."),
+                advanced=True),
 )
 
 
@@ -50,12 +48,9 @@ class AssessDrivingLines(Algorithm):
         self.add_trajectory(optional=True)
         add_tolerances(self, LINES, tr("Tolerances (m)"), tr(
             "Sizes of the buffer, with commas between them. The report has a row for each."))
-        self.add_input(
-            "choice", "WIDTH", tr("Tolerances are"),
-            tr("Half-width: from the line to the rim of its buffer. Total-width: from rim to rim, so that 0.20 lets a line be 0.10 m off. Published "
-               "figures seldom say which they mean; the report shows both."),
-            default=WIDTHS[0], choices=WIDTHS,
-        )
+        self.add_input("choice", "WIDTH", tr("Tolerances are"),
+                       tr("Half-width: from the line to the rim of its buffer. Total-width: from rim to rim, so that 0.20 lets a line be 0.10 m off. "
+                          "Published figures seldom say which they mean; the report shows both."), default=WIDTHS[0], choices=WIDTHS)
         self.add_settings(LINE_SETTINGS)
         add_area(self)
         self.add_sink("OUTPUT", tr("Driving lines by outcome"), tr("The lines cut where the outcome changes: false pieces lie outside the buffer."),

@@ -9,18 +9,12 @@ from .inputs import add_area, add_tolerances, area_of, found_numbers, frame_of_d
 MARKINGS = "products.assess.markings:MarkingAccuracySettings"
 
 MARKING_SETTINGS = (
-    SettingSpec(
-        "TOLERANCE", MARKINGS, "tolerance", tr("Tolerance of objects and of the layer (cells)"),
-        tr("Objects are judged and numbers ending in TOLERANT returned with this tolerance; the report has all of them."),
-    ),
-    SettingSpec(
-        "CELL_SIZE", MARKINGS, "cell_size", tr("Cell size (m)"),
-        tr("Smaller weighs the rims of markings more and takes longer; published figures use 0.04."), advanced=True,
-    ),
-    SettingSpec(
-        "LINE_WIDTH", MARKINGS, "line_width", tr("Width of lines (m)"),
-        tr("How wide paint is where a layer of lines has no field width_m or width."), advanced=True,
-    ),
+    SettingSpec("TOLERANCE", MARKINGS, "tolerance", tr("Tolerance of objects and of the layer (cells)"),
+                tr("Objects are judged and numbers ending in TOLERANT returned with this tolerance; the report has all of them.")),
+    SettingSpec("CELL_SIZE", MARKINGS, "cell_size", tr("Cell size (m)"),
+                tr("Smaller weighs the rims of markings more and takes longer; published figures use 0.04."), advanced=True),
+    SettingSpec("LINE_WIDTH", MARKINGS, "line_width", tr("Width of lines (m)"),
+                tr("How wide paint is where a layer of lines has no field width_m or width."), advanced=True),
 )
 
 

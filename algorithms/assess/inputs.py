@@ -10,20 +10,15 @@ NOT_THERE = ("dropped", "none")  # values of the field `edge` or `kind` of a ref
 
 
 def add_excluded(algorithm):
-    algorithm.add_input(
-        "expression", "EXCLUDED", tr("Rows of the reference that are not judged"),
-        tr("An expression, such as \"type\" = 'driveway': where it holds, a result is neither right nor wrong. Empty leaves out the rows "
-           "whose field edge or kind says dropped or none."),
-        optional=True, advanced=True, default="", of="REFERENCE",
-    )
+    algorithm.add_input("expression", "EXCLUDED", tr("Rows of the reference that are not judged"),
+                        tr("An expression, such as \"type\" = 'driveway': where it holds, a result is neither right nor wrong. Empty leaves out the "
+                           "rows whose field edge or kind says dropped or none."), optional=True, advanced=True, default="", of="REFERENCE")
 
 
 def add_area(algorithm):
-    algorithm.add_input(
-        "layer", "AREA", tr("Area"),
-        tr("Polygons. What lies outside is left out of both layers; without it a result beyond the ends of the reference is false."),
-        "PolygonZ", optional=True,
-    )
+    algorithm.add_input("layer", "AREA", tr("Area"),
+                        tr("Polygons. What lies outside is left out of both layers; without it a result beyond the ends of the reference is false."),
+                        "PolygonZ", optional=True)
 
 
 def add_tolerances(algorithm, settings, label, text):

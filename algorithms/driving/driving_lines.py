@@ -10,28 +10,18 @@ from ..texts import tr
 DRIVING = "core.driving.settings:DrivingSettings"
 
 DRIVING_SETTINGS = (
-    SettingSpec(
-        "COUNTRY", DRIVING, "country", tr("Country"),
-        tr("Whose dashes are looked for, whose usual lane is assumed where the data do not decide, and whose design code curves are checked "
-           "against. It is never guessed; neutral holds for roads of all countries of the catalogue and checks curves against CJJ 37-2012."),
-        choices=tuple(COUNTRIES), advanced=True,
-    ),
-    SettingSpec(
-        "LANE_WIDTH", DRIVING, "lane_width", tr("Lane width, 0 = as seen on the road (m)"),
-        tr("0 takes the width that is seen between lines. A width named here is held to: where only the outer lines are painted, their "
-           "distance and this width give the number of lanes. Wider makes fewer lanes."),
-    ),
-    SettingSpec(
-        "LINE_DISTANCE", DRIVING, "line_distance", tr("Distance from a line without partner, 0 = half a lane (m)"),
-        tr("How far beside a painted line the driving line runs where the lane has no second line."),
-        advanced=True,
-    ),
-    SettingSpec(
-        "TRAFFIC_SIDE", DRIVING, "traffic_side", tr("Side of traffic"),
-        tr("The side one drives on; it gives the driving lines their direction. Automatic goes by where and which way the vehicle "
-           "drove, and by lines that part the directions. A side named here counts more than the drive."),
-        choices=("automatic", "right", "left"),
-    ),
+    SettingSpec("COUNTRY", DRIVING, "country", tr("Country"),
+                tr("Whose dashes are looked for, whose usual lane is assumed where the data do not decide, and whose design code curves are checked "
+                   "against. It is never guessed; neutral holds for roads of all countries of the catalogue and checks curves against CJJ 37-2012."),
+                choices=tuple(COUNTRIES), advanced=True),
+    SettingSpec("LANE_WIDTH", DRIVING, "lane_width", tr("Lane width, 0 = as seen on the road (m)"),
+                tr("0 takes the width that is seen between lines. A width named here is held to: where only the outer lines are painted, their "
+                   "distance and this width give the number of lanes. Wider makes fewer lanes.")),
+    SettingSpec("LINE_DISTANCE", DRIVING, "line_distance", tr("Distance from a line without partner, 0 = half a lane (m)"),
+                tr("How far beside a painted line the driving line runs where the lane has no second line."), advanced=True),
+    SettingSpec("TRAFFIC_SIDE", DRIVING, "traffic_side", tr("Side of traffic"),
+                tr("The side one drives on; it gives the driving lines their direction. Automatic goes by where and which way the vehicle drove, and "
+                   "by lines that part the directions. A side named here counts more than the drive."), choices=("automatic", "right", "left")),
 )
 
 
@@ -44,14 +34,11 @@ class DrivingLines(Algorithm):
     def declare(self):
         self.add_input("layer", "MARKING_LINES", tr("Marking lines"), tr("The layer written by Fit marking lines."), "LineStringZ")
         self.add_trajectory()
-        self.add_input(
-            "layer", "MARKINGS", tr("Markings"),
-            tr("With it a lane continues through zebra crossings and past stop lines, and kinds of gaps are distinguished."),
-            "PolygonZ", optional=True,
-        )
-        self.add_input(
-            "layer", "ROAD_EDGES", tr("Road edges"), tr("With it lanes without an outer line end at the edge."), "LineStringZ", optional=True
-        )
+        self.add_input("layer", "MARKINGS", tr("Markings"),
+                       tr("With it a lane continues through zebra crossings and past stop lines, and kinds of gaps are distinguished."), "PolygonZ",
+                       optional=True)
+        self.add_input("layer", "ROAD_EDGES", tr("Road edges"), tr("With it lanes without an outer line end at the edge."), "LineStringZ",
+                       optional=True)
         self.add_input("cloud", "ROAD_POINTS", tr("Road points"), tr("With it heights are the road's own."), optional=True)
         self.add_settings(DRIVING_SETTINGS)
         self.add_sink("DRIVING_LINES", tr("Driving lines"), fields=DRIVING_LINES, geometry="LineStringZ")
@@ -74,8 +61,7 @@ class DrivingLines(Algorithm):
         lines, elements, lanes = make_driving_lines(
             PaintedLines.from_features(marking_lines, frame), frame, call.settings(DRIVING_SETTINGS), progress.part(0.3, 1.0),
             markings=None if markings is None else MarkingObjects.from_features(markings, frame),
-            edges=None if edges is None else RoadEdges.from_features(edges, frame).densified(frame), road_points=road_points,
-        )
+            edges=None if edges is None else RoadEdges.from_features(edges, frame).densified(frame), road_points=road_points)
         call.layer("DRIVING_LINES", lines.to_features(frame))
         call.layer("LANES", lanes.to_features(frame))
         call.layer("CURVE_ELEMENTS", elements.to_features(frame))

@@ -80,12 +80,9 @@ class RoadMap(Algorithm):
         self.add_settings((METHOD_SETTING,), advanced=True)
         for stage, specs in STAGES.items():
             if stage == "intensity":
-                self.add_input(
-                    "flag", "CORRECT_INTENSITY", tr("Correct intensity first"),
-                    tr("Evens out range, incidence and the difference between scanners. Switch it off for clouds whose "
-                       "intensity was corrected already."),
-                    default=True, advanced=True,
-                )
+                self.add_input("flag", "CORRECT_INTENSITY", tr("Correct intensity first"),
+                               tr("Evens out range, incidence and the difference between scanners. Switch it off for clouds whose intensity was "
+                                  "corrected already."), default=True, advanced=True)
             self.add_settings(specs, only=OFFERED, advanced=True)
             if stage == "image":
                 self.add_settings((MARKING_METHOD,), advanced=True)
@@ -97,9 +94,8 @@ class RoadMap(Algorithm):
         self.add_sink("PASSES", tr("Passes (the trajectory)"), tr("Where the vehicle drove, as this run used it: one line a pass."), fields=PASSES,
                       geometry="LineStringZ", optional=True)
         self.add_sink("CURB_POINTS", tr("Curb points"), fields=CURB_POINTS, geometry="PointZ", optional=True, by_default=False)
-        self.add_output(
-            "cloud", "ROAD_POINTS", tr("Road points"), tr("Class 11, with the fields the single stages need."), optional=True, by_default=False
-        )
+        self.add_output("cloud", "ROAD_POINTS", tr("Road points"), tr("Class 11, with the fields the single stages need."), optional=True,
+                        by_default=False)
         self.add_output("raster", "INTENSITY_IMAGE", tr("Intensity image"), optional=True)
         self.add_report()
 
@@ -113,8 +109,7 @@ class RoadMap(Algorithm):
             survey=call.settings(SURVEY_SETTINGS, crs=call.crs()),
             execution=execution_of(call),
             markings=marking_settings(call),
-            **{field: call.settings(specs) for field, specs in STAGES.items()},
-        )
+            **{field: call.settings(specs) for field, specs in STAGES.items()})
         if not any(call.wants(one.name) for one in self.outputs()):
             raise RoadExtractionError(tr(
                 "No result was asked for, and all of the work would be lost. Name at least one output, such as DRIVING_LINES, MARKINGS or REPORT."))

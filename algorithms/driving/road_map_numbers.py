@@ -34,8 +34,6 @@ def road_map_numbers(road_lengths: Iterable[float], edges: Features | None, mark
                      markings: Features | None, corrections: Corrections | None = None) -> dict[str, float]:
     """The values of NUMBERS to three decimals; a share or mean of nothing is left out.
 
-    Parameters
-    ----------
     road_lengths : m of each road
     edges, marking_lines, driving_lines, markings : layers of the road map, None where there are none
     corrections : of an analyst, and which of them were made; None for none

@@ -12,23 +12,17 @@ SECTIONS = "products.inventory.settings:CrossSectionSettings"
 ABOVE_ROAD = 12.0  # m of height above the road that are read: more than any clearance that a rule asks for
 
 SECTION_SETTINGS = (
-    SettingSpec(
-        "INTERVAL", SECTIONS, "interval", tr("Interval of the sections (m)"),
-        tr("Smaller shows where a rut or a change of crossfall begins, but takes longer; below 10 m grade and ruts are measured over "
-           "that length only."),
-    ),
-    SettingSpec(
-        "COUNTRY", SECTIONS, "country", tr("Country"),
-        tr("Whose rules give the limits that are left at 0, and whose usual lane is measured about the track where no layer of the road map is "
-           "given. It is never guessed."),
-        choices=tuple(COUNTRIES),
-    ),
+    SettingSpec("INTERVAL", SECTIONS, "interval", tr("Interval of the sections (m)"),
+                tr("Smaller shows where a rut or a change of crossfall begins, but takes longer; below 10 m grade and ruts are measured over that "
+                   "length only.")),
+    SettingSpec("COUNTRY", SECTIONS, "country", tr("Country"),
+                tr("Whose rules give the limits that are left at 0, and whose usual lane is measured about the track where no layer of the road map "
+                   "is given. It is never guessed."), choices=tuple(COUNTRIES)),
     SettingSpec("MAX_RUT", SECTIONS, "max_rut", tr("Rut depth at most, 0 = of the country (mm)"),
                 tr("Deeper ruts under a straight edge of 2 m are marked. Lower finds shallow ones, down to what noise leaves, about 2 mm.")),
     SettingSpec("MIN_CROSSFALL", SECTIONS, "min_crossfall", tr("Crossfall at least, 0 = of the country (%)"),
                 tr("Lanes that fall less to either side are marked: water stands there. Lower leaves the places where the crossfall changes sides "
-                   "unmarked."),
-                advanced=True),
+                   "unmarked."), advanced=True),
     SettingSpec("MAX_CROSSFALL", SECTIONS, "max_crossfall", tr("Crossfall at most, 0 = of the country (%)"),
                 tr("Steeper lanes are marked. Lower marks the superelevation of bends too."), advanced=True),
     SettingSpec("MAX_GRADE", SECTIONS, "max_grade", tr("Grade at most, 0 = of the country (%)"),

@@ -9,10 +9,8 @@ from ..texts import tr
 CLUSTERS = "core.markings.objects.cluster:ClusterSettings"
 
 CLUSTER_SETTINGS = (
-    SettingSpec(
-        "DISTANCE", CLUSTERS, "distance", tr("Distance that joins points (m)"),
-        tr("Larger joins worn paint into one marking, but also neighbouring markings; smaller keeps them apart."),
-    ),
+    SettingSpec("DISTANCE", CLUSTERS, "distance", tr("Distance that joins points (m)"),
+                tr("Larger joins worn paint into one marking, but also neighbouring markings; smaller keeps them apart.")),
 )
 
 

@@ -8,12 +8,9 @@ from ..texts import tr
 INTENSITY = "core.intensity.correction:IntensitySettings"
 
 INTENSITY_SETTINGS = (
-    SettingSpec(
-        "SCALE", INTENSITY, "scale", tr("Scale of the intensities"),
-        tr("Linear ones are multiplied, logarithmic ones added to. Automatic goes by the spread of asphalt; choose one "
-           "when the report names the wrong one."),
-        choices=("automatic", "linear", "logarithmic"), advanced=True,
-    ),
+    SettingSpec("SCALE", INTENSITY, "scale", tr("Scale of the intensities"),
+                tr("Linear ones are multiplied, logarithmic ones added to. Automatic goes by the spread of asphalt; choose one when the report names "
+                   "the wrong one."), choices=("automatic", "linear", "logarithmic"), advanced=True),
 )
 
 

@@ -13,16 +13,12 @@ METHOD = ParameterSpec(
        "other two are published methods to compare with. intensity-peaks looks for narrow peaks in profiles across the "
        "road and finds lines only; point-segments sets thresholds on the points and keeps the dense ones. Neither "
        "tells concrete gutters from paint."),
-    default="multi-threshold", choices=("multi-threshold", "intensity-peaks", "point-segments"),
-)
+    default="multi-threshold", choices=("multi-threshold", "intensity-peaks", "point-segments"))
 
 MARKING_SETTINGS = (
-    SettingSpec(
-        "SEPARATION", EXTRACTION, "separation", tr("Multi-threshold: least distance of paint from asphalt (σ)"),
-        tr("How many spreads of asphalt the paint of a strip must lie above it before the strip counts as painted. Lower "
-           "finds fainter paint, but also gutters, patches and noise."),
-        advanced=True,
-    ),
+    SettingSpec("SEPARATION", EXTRACTION, "separation", tr("Multi-threshold: least distance of paint from asphalt (σ)"),
+                tr("How many spreads of asphalt the paint of a strip must lie above it before the strip counts as painted. Lower finds fainter "
+                   "paint, but also gutters, patches and noise."), advanced=True),
 )
 
 
@@ -47,9 +43,8 @@ class ExtractMarkings(Algorithm):
         self.add(METHOD)
         self.add_settings(MARKING_SETTINGS)
         self.add_output("cloud", "MARKING_POINTS", tr("Marking points"))
-        self.add_output(
-            "raster", "MARKING_MASK", tr("Marking mask"), tr("1 where a pixel is paint, 0 where it is not."), optional=True, by_default=False
-        )
+        self.add_output("raster", "MARKING_MASK", tr("Marking mask"), tr("1 where a pixel is paint, 0 where it is not."), optional=True,
+                        by_default=False)
 
     def work(self, call, progress):
         from ...core.intensity.image import check_image_shows

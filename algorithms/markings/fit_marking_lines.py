@@ -10,21 +10,14 @@ from ..texts import tr
 LINES = "core.markings.lines.fit:MarkingLineSettings"
 
 LINE_SETTINGS = (
-    SettingSpec(
-        "COUNTRY", LINES, "country", tr("Country"),
-        tr("Whose dashes are looked for. It is never guessed; neutral holds for roads of all countries of the catalogue."),
-        choices=tuple(COUNTRIES), advanced=True,
-    ),
-    SettingSpec(
-        "CURVE", LINES, "curve", tr("Curve fitted to marking lines"),
-        tr("Automatic takes the simplest curve that fits (Bayesian information criterion). Choose one to force it "
-           "on every line."),
-        choices=("automatic", "line", "circle", "ellipse", "clothoid", "polynomial", "b-spline"),
-    ),
-    SettingSpec(
-        "DEGREE", LINES, "degree", tr("Degree of the polynomial (0-9)"),
-        tr("Used with polynomial only. Higher follows more bends, but swings between its points."),
-    ),
+    SettingSpec("COUNTRY", LINES, "country", tr("Country"),
+                tr("Whose dashes are looked for. It is never guessed; neutral holds for roads of all countries of the catalogue."),
+                choices=tuple(COUNTRIES), advanced=True),
+    SettingSpec("CURVE", LINES, "curve", tr("Curve fitted to marking lines"),
+                tr("Automatic takes the simplest curve that fits (Bayesian information criterion). Choose one to force it on every line."),
+                choices=("automatic", "line", "circle", "ellipse", "clothoid", "polynomial", "b-spline")),
+    SettingSpec("DEGREE", LINES, "degree", tr("Degree of the polynomial (0-9)"),
+                tr("Used with polynomial only. Higher follows more bends, but swings between its points.")),
 )
 
 

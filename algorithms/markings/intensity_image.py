@@ -8,10 +8,8 @@ from ..texts import tr
 IMAGE = "core.intensity.image:ImageSettings"
 
 IMAGE_SETTINGS = (
-    SettingSpec(
-        "CELL_SIZE", IMAGE, "cell_size", tr("Cell size (m)"),
-        tr("Smaller shows narrow lines more sharply while the cloud is dense enough; larger fills gaps and makes smaller files."),
-    ),
+    SettingSpec("CELL_SIZE", IMAGE, "cell_size", tr("Cell size (m)"),
+                tr("Smaller shows narrow lines more sharply while the cloud is dense enough; larger fills gaps and makes smaller files.")),
 )
 
 
@@ -22,17 +20,13 @@ class IntensityImage(Algorithm):
     RETIRED = ("POWER", "BETA", "RADIUS_CELLS")
 
     def declare(self):
-        self.add_input(
-            "cloud", "ROAD_POINTS", tr("Road points"),
-            tr("The file written by Correct intensity, or by Extract road surface for the raw intensity."),
-        )
+        self.add_input("cloud", "ROAD_POINTS", tr("Road points"),
+                       tr("The file written by Correct intensity, or by Extract road surface for the raw intensity."))
         self.add_settings(IMAGE_SETTINGS)
         self.add_output("raster", "INTENSITY_IMAGE", tr("Intensity image"))
-        self.add_output(
-            "raster", "DISPLAY_IMAGE", tr("Intensity image, 8 bit"),
-            tr("The same for viewing: stretched to 256 grey values, for programs that show no floating-point images."),
-            optional=True, by_default=False,
-        )
+        self.add_output("raster", "DISPLAY_IMAGE", tr("Intensity image, 8 bit"),
+                        tr("The same for viewing: stretched to 256 grey values, for programs that show no floating-point images."), optional=True,
+                        by_default=False)
 
     def work(self, call, progress):
         from ...core.intensity.image import write_intensity_image

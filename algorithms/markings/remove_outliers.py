@@ -8,20 +8,13 @@ from ..texts import tr
 OUTLIERS = "core.markings.outliers:OutlierSettings"
 
 OUTLIER_SETTINGS = (
-    SettingSpec(
-        "NEIGHBOURS", OUTLIERS, "neighbours", tr("Nearest points looked at (points)"),
-        tr("More judges by a wider neighbourhood and removes small clumps too; fewer removes single points only."),
-    ),
-    SettingSpec(
-        "STD_RATIO", OUTLIERS, "std_ratio", tr("Allowed distance above the mean (σ)"),
-        tr("Smaller removes more, first where points are sparse; larger keeps far paint, and some noise with it."),
-    ),
-    SettingSpec(
-        "SCOPE", OUTLIERS, "scope", tr("Statistics over"),
-        tr("All compares every point with the whole file, as PCL does, and eats sparse paint far from the scanner; "
-           "windows compares it with its own stretch of the road."),
-        choices=("all", "windows"),
-    ),
+    SettingSpec("NEIGHBOURS", OUTLIERS, "neighbours", tr("Nearest points looked at (points)"),
+                tr("More judges by a wider neighbourhood and removes small clumps too; fewer removes single points only.")),
+    SettingSpec("STD_RATIO", OUTLIERS, "std_ratio", tr("Allowed distance above the mean (σ)"),
+                tr("Smaller removes more, first where points are sparse; larger keeps far paint, and some noise with it.")),
+    SettingSpec("SCOPE", OUTLIERS, "scope", tr("Statistics over"),
+                tr("All compares every point with the whole file, as PCL does, and eats sparse paint far from the scanner; windows compares it with "
+                   "its own stretch of the road."), choices=("all", "windows")),
 )
 
 

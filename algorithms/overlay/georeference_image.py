@@ -11,34 +11,22 @@ GEOREFERENCE = "products.overlay.georeference:GeoreferenceSettings"
 POINTS_FILTER = "Control points (*.points *.csv *.txt *.POINTS *.CSV *.TXT);;All files (*.*)"
 
 GEOREFERENCE_SETTINGS = (
-    SettingSpec(
-        "ORDER", GEOREFERENCE, "order", tr("Order of the polynomial (0-3)"),
-        tr("0 only shifts an image that already has a rough position; 1 also turns, scales and shears it (3 points or more), 2 also "
-           "bends it (6), 3 bends it twice (10). Higher follows the points more closely and runs away faster outside them: "
-           "watch the leave-one-out error, which falls only as long as the order is worth it."),
-    ),
-    SettingSpec(
-        "PIXEL_SIZE", GEOREFERENCE, "pixel_size", tr("Pixel size (m)"),
-        tr("Of the result; 0 keeps that of the image. Smaller makes a larger file, not a sharper image. A shift (order 0) of an image "
-           "without position takes this as the image's own pixel size, north up."),
-    ),
-    SettingSpec(
-        "EXTRAPOLATION", GEOREFERENCE, "extrapolation", tr("Outside the control points"),
-        tr("What becomes of the image outside the hull of the control points, where the polynomial extrapolates: automatic draws it "
-           "up to order 2 and leaves it out at order 3."),
-        choices=("automatic", "draw", "leave-out"), advanced=True,
-    ),
-    SettingSpec(
-        "RESAMPLING", GEOREFERENCE, "resampling", tr("Resampling"),
-        tr("Bilinear is smooth and safe, cubic a little sharper, nearest keeps the values as they are (for classes and temperatures)."),
-        choices=("bilinear", "nearest", "cubic"), advanced=True,
-    ),
-    SettingSpec(
-        "CHECK_DISABLED", GEOREFERENCE, "check_disabled", tr("Disabled points are check points"),
-        tr("Points that are switched off in the georeferencer, or have 0 in a column enable, judge the result instead of being passed "
-           "over. A layer or CSV may name check points in a column role."),
-        advanced=True,
-    ),
+    SettingSpec("ORDER", GEOREFERENCE, "order", tr("Order of the polynomial (0-3)"),
+                tr("0 only shifts an image that already has a rough position; 1 also turns, scales and shears it (3 points or more), 2 also bends it "
+                   "(6), 3 bends it twice (10). Higher follows the points more closely and runs away faster outside them: watch the leave-one-out "
+                   "error, which falls only as long as the order is worth it.")),
+    SettingSpec("PIXEL_SIZE", GEOREFERENCE, "pixel_size", tr("Pixel size (m)"),
+                tr("Of the result; 0 keeps that of the image. Smaller makes a larger file, not a sharper image. A shift (order 0) of an image "
+                   "without position takes this as the image's own pixel size, north up.")),
+    SettingSpec("EXTRAPOLATION", GEOREFERENCE, "extrapolation", tr("Outside the control points"),
+                tr("What becomes of the image outside the hull of the control points, where the polynomial extrapolates: automatic draws it up to "
+                   "order 2 and leaves it out at order 3."), choices=("automatic", "draw", "leave-out"), advanced=True),
+    SettingSpec("RESAMPLING", GEOREFERENCE, "resampling", tr("Resampling"),
+                tr("Bilinear is smooth and safe, cubic a little sharper, nearest keeps the values as they are (for classes and temperatures)."),
+                choices=("bilinear", "nearest", "cubic"), advanced=True),
+    SettingSpec("CHECK_DISABLED", GEOREFERENCE, "check_disabled", tr("Disabled points are check points"),
+                tr("Points that are switched off in the georeferencer, or have 0 in a column enable, judge the result instead of being passed over. "
+                   "A layer or CSV may name check points in a column role."), advanced=True),
 )
 
 
@@ -66,18 +54,13 @@ class GeoreferenceImage(Algorithm):
 
     def declare(self):
         self.add_input("raster", "IMAGE", tr("Image"), tr("TIFF, JPEG, PNG or any other raster, with a position on the map or without."))
-        self.add_input(
-            "layer", "GCPS", tr("Control points (layer)"),
-            tr("A point layer with the fields pixel and line, or a table that also has easting and northing. A field role (control or check) "
-               "sets points aside that only judge the result, a field enable switches points off."),
-            optional=True,
-        )
-        self.add_input(
-            "file", "GCP_FILE", tr("Control points (file)"),
-            tr("In place of a layer: the .points file of QGIS's georeferencer, the gcp_list.txt of OpenDroneMap, or a CSV with the columns pixel, "
-               "line, easting, northing in any order. Where rows name images, those of this image are used."),
-            optional=True, file_filter=POINTS_FILTER,
-        )
+        self.add_input("layer", "GCPS", tr("Control points (layer)"),
+                       tr("A point layer with the fields pixel and line, or a table that also has easting and northing. A field role (control or "
+                          "check) sets points aside that only judge the result, a field enable switches points off."), optional=True)
+        self.add_input("file", "GCP_FILE", tr("Control points (file)"),
+                       tr("In place of a layer: the .points file of QGIS's georeferencer, the gcp_list.txt of OpenDroneMap, or a CSV with the "
+                          "columns pixel, line, easting, northing in any order. Where rows name images, those of this image are used."),
+                       optional=True, file_filter=POINTS_FILTER)
         self.add_input("crs", "CRS", tr("CRS of the control points"),
                        tr("Only for control points that name none of their own. It must be projected."), optional=True)
         self.add_settings(GEOREFERENCE_SETTINGS)

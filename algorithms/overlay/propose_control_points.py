@@ -9,28 +9,18 @@ from .control_point_layer import read_control_point_layer
 PROPOSE = "products.overlay.matching.propose:ProposalSettings"
 
 PROPOSE_SETTINGS = (
-    SettingSpec(
-        "PIXEL_SIZE", PROPOSE, "pixel_size", tr("Pixel size of the image on the ground (m)"),
-        tr("Roughly, to a tenth; 0 takes it from the image's position, or from the height and focal length in its tags. With it alone the "
-           "whole intensity image is searched, in every direction."),
-    ),
-    SettingSpec(
-        "SEARCH", PROPOSE, "search", tr("How far the rough position may be off (m)"),
-        tr("Larger finds images with poor tags, takes longer, and meets more places that look alike on a road of equal dashes."),
-    ),
-    SettingSpec(
-        "TOLERANCE", PROPOSE, "tolerance", tr("Largest distance from the other pairs (m)"),
-        tr("A pair is accepted where the others place it, to so much. Larger keeps pairs of an oblique image that a polynomial follows badly."),
-        advanced=True,
-    ),
-    SettingSpec(
-        "MIN_SCORE", PROPOSE, "min_score", tr("Smallest likeness of two cut-outs (0-1)"),
-        tr("Correlation, 1 for the same picture. Lower accepts worn paint and shadows, higher only what looks the same."), advanced=True,
-    ),
-    SettingSpec(
-        "COUNT", PROPOSE, "count", tr("Most pairs that are accepted (points)"),
-        tr("They are spread over the image. Half as many doubtful ones are listed besides."), advanced=True,
-    ),
+    SettingSpec("PIXEL_SIZE", PROPOSE, "pixel_size", tr("Pixel size of the image on the ground (m)"),
+                tr("Roughly, to a tenth; 0 takes it from the image's position, or from the height and focal length in its tags. With it alone the "
+                   "whole intensity image is searched, in every direction.")),
+    SettingSpec("SEARCH", PROPOSE, "search", tr("How far the rough position may be off (m)"),
+                tr("Larger finds images with poor tags, takes longer, and meets more places that look alike on a road of equal dashes.")),
+    SettingSpec("TOLERANCE", PROPOSE, "tolerance", tr("Largest distance from the other pairs (m)"),
+                tr("A pair is accepted where the others place it, to so much. Larger keeps pairs of an oblique image that a polynomial follows "
+                   "badly."), advanced=True),
+    SettingSpec("MIN_SCORE", PROPOSE, "min_score", tr("Smallest likeness of two cut-outs (0-1)"),
+                tr("Correlation, 1 for the same picture. Lower accepts worn paint and shadows, higher only what looks the same."), advanced=True),
+    SettingSpec("COUNT", PROPOSE, "count", tr("Most pairs that are accepted (points)"),
+                tr("They are spread over the image. Half as many doubtful ones are listed besides."), advanced=True),
 )
 
 
@@ -59,12 +49,9 @@ class ProposeControlPoints(Algorithm):
     def declare(self):
         self.add_input("raster", "IMAGE", tr("Image"), tr("TIFF, JPEG, PNG or any other raster that looks straight down, of up to 500 m of ground."))
         self.add_input("raster", "INTENSITY_IMAGE", tr("Intensity image"), tr("As Intensity image and Road map write it."))
-        self.add_input(
-            "layer", "ROUGH_POINTS", tr("Two rough points"),
-            tr("Where the image has no position: a layer with the fields pixel and line of two or more points far apart, right to some "
-               "metres."),
-            optional=True,
-        )
+        self.add_input("layer", "ROUGH_POINTS", tr("Two rough points"),
+                       tr("Where the image has no position: a layer with the fields pixel and line of two or more points far apart, right to some "
+                          "metres."), optional=True)
         self.add_settings(PROPOSE_SETTINGS)
         self.add_sink("CONTROL_POINTS", tr("Control points"), tr("As Georeference image takes them."), "PointZ", fields=PROPOSED_POINTS)
         self.add_report()

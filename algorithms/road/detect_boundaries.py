@@ -14,8 +14,7 @@ METHOD_SETTING = SettingSpec(
     tr("Profiles looks for the curb in slices across the road; scanlines meets the planes of road, curb face and sidewalk; both "
        "lets the two check each other: at every place the one that measures better is drawn, agree_cm says how far apart they are, "
        "and it takes as long as the two together."),
-    choices=("profiles", "scanlines", "both"),
-)
+    choices=("profiles", "scanlines", "both"))
 # Both methods ask for one least height
 SCANLINE_METHOD_SETTINGS = tuple(spec for spec in BOUNDARY_SETTINGS if spec.name == "MIN_HEIGHT")
 OFFERED = ("BLOCK_LENGTH", "SLOPE", "MIN_HEIGHT", "MAX_HEIGHT")

@@ -9,11 +9,9 @@ from ..texts import tr
 SURFACE = "core.road.surface.extract:SurfaceSettings"
 
 SURFACE_SETTINGS = (
-    SettingSpec(
-        "MAX_WIDTH", SURFACE, "max_width", tr("Farthest surface from the trajectory (m)"),
-        tr("On a side without an edge the surface grows outward while it stays smooth, at most this far. Wider reaches "
-           "the far lanes of a broad road, but also yards and forecourts."),
-    ),
+    SettingSpec("MAX_WIDTH", SURFACE, "max_width", tr("Farthest surface from the trajectory (m)"),
+                tr("On a side without an edge the surface grows outward while it stays smooth, at most this far. Wider reaches the far lanes of a "
+                   "broad road, but also yards and forecourts.")),
 )
 
 
@@ -25,17 +23,12 @@ class ExtractRoadSurface(Algorithm):
 
     def declare(self):
         self.add_survey()
-        self.add_input(
-            "layer", "ROAD_EDGES", tr("Road edges"),
-            tr("The layer written by Fit road edges. Without it the surface is grown on both sides."),
-            "LineStringZ", optional=True,
-        )
+        self.add_input("layer", "ROAD_EDGES", tr("Road edges"),
+                       tr("The layer written by Fit road edges. Without it the surface is grown on both sides."), "LineStringZ", optional=True)
         self.add_settings(SURFACE_SETTINGS)
         self.add_settings(SURVEY_SETTINGS)
-        self.add_output(
-            "cloud", "ROAD_POINTS", tr("Road points"),
-            tr("Class 11, with the extra fields road, pass, station_m, offset_m, half_width and covered for the stages that follow."),
-        )
+        self.add_output("cloud", "ROAD_POINTS", tr("Road points"),
+                        tr("Class 11, with the extra fields road, pass, station_m, offset_m, half_width and covered for the stages that follow."))
         self.add_sink("ROAD_SURFACE", tr("Road surface"), fields=ROAD_SURFACE, geometry="PolygonZ", optional=True)
 
     def work(self, call, progress):

@@ -11,33 +11,21 @@ from ..texts import tr
 PLANES = "core.road.scanlines.section_planes:ScanlineSettings"
 
 SCANLINE_SETTINGS = (
-    SettingSpec(
-        "INTERVAL", PLANES, "interval", tr("Interval of section planes along the road (m)"),
-        tr("Smaller gives more scanlines, and more of them than were measured where scan lines lie far apart; larger is quicker."),
-    ),
-    SettingSpec(
-        "CORRIDOR", PLANES, "corridor", tr("Corridor either side of the road's reference line (m)"),
-        tr("Wider reaches the far side of a broad avenue, but takes longer."),
-    ),
-    SettingSpec(
-        "ROTATION_FREQUENCY", PLANES, "rotation_frequency", tr("Scan lines of each scanner, 0 = from the data (per second)"),
-        tr("The data know it well. Give it where they are said to show no regular scan lines although the scanner has a rotating "
-           "mirror; the direction of rotation is found anyway."),
-        advanced=True,
-    ),
+    SettingSpec("INTERVAL", PLANES, "interval", tr("Interval of section planes along the road (m)"),
+                tr("Smaller gives more scanlines, and more of them than were measured where scan lines lie far apart; larger is quicker.")),
+    SettingSpec("CORRIDOR", PLANES, "corridor", tr("Corridor either side of the road's reference line (m)"),
+                tr("Wider reaches the far side of a broad avenue, but takes longer.")),
+    SettingSpec("ROTATION_FREQUENCY", PLANES, "rotation_frequency", tr("Scan lines of each scanner, 0 = from the data (per second)"),
+                tr("The data know it well. Give it where they are said to show no regular scan lines although the scanner has a rotating mirror; the "
+                   "direction of rotation is found anyway."), advanced=True),
 )
 LAYER_SETTINGS = (
-    SettingSpec(
-        "SIMPLIFY", "products.scanline_layer:ScanlineLayerSettings", "simplify", tr("Deviation allowed in thinning the scanlines (m)"),
-        tr("Larger draws and writes faster and shows less of the surface; 0 keeps every vertex."),
-    ),
+    SettingSpec("SIMPLIFY", "products.scanline_layer:ScanlineLayerSettings", "simplify", tr("Deviation allowed in thinning the scanlines (m)"),
+                tr("Larger draws and writes faster and shows less of the surface; 0 keeps every vertex.")),
 )
 POINT_SETTINGS = (
-    SettingSpec(
-        "RESAMPLED_SPACING", "products.scanline_layer:ResamplingSettings", "spacing", tr("Spacing of resampled points along a scanline (m)"),
-        tr("Smaller gives more points, without more being known of the surface."),
-        advanced=True,
-    ),
+    SettingSpec("RESAMPLED_SPACING", "products.scanline_layer:ResamplingSettings", "spacing", tr("Spacing of resampled points along a scanline (m)"),
+                tr("Smaller gives more points, without more being known of the surface."), advanced=True),
 )
 
 

@@ -32,14 +32,10 @@ class ImportTrajectory(Algorithm):
                "recognises them by their names, or by their numbers where they have none."), optional=True, default="")
         self.add_input("crs", "INPUT_CRS", tr("CRS of the trajectory"),
                        tr("Where the file does not say it. An SBET is in WGS 84 unless another is chosen."), optional=True)
-        self.add_input(
-            "crs", "TARGET_CRS", tr("CRS to bring it to"),
-            tr("That of the point clouds. Empty takes it from the point clouds below, or leaves the trajectory as it is."), optional=True,
-        )
-        self.add_input(
-            "clouds", "POINT_CLOUDS", tr("Point clouds"),
-            tr("With them the time system is told apart, and the trajectory is written on the clouds' clock."), optional=True,
-        )
+        self.add_input("crs", "TARGET_CRS", tr("CRS to bring it to"),
+                       tr("That of the point clouds. Empty takes it from the point clouds below, or leaves the trajectory as it is."), optional=True)
+        self.add_input("clouds", "POINT_CLOUDS", tr("Point clouds"),
+                       tr("With them the time system is told apart, and the trajectory is written on the clouds' clock."), optional=True)
         self.add_settings(TIME_SETTING)
         self.add_sink("OUTPUT", tr("Imported trajectory"), fields=TRAJECTORY, geometry="PointZ")
 

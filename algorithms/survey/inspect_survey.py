@@ -7,10 +7,8 @@ from ..texts import tr
 INSPECTION = "products.inspection:InspectionSettings"
 
 INSPECTION_SETTINGS = (
-    SettingSpec(
-        "CELL_SIZE", INSPECTION, "cell_size", tr("Cell of the density raster (m)"),
-        tr("Smaller shows single scan lines, larger the broad picture."), advanced=True,
-    ),
+    SettingSpec("CELL_SIZE", INSPECTION, "cell_size", tr("Cell of the density raster (m)"),
+                tr("Smaller shows single scan lines, larger the broad picture."), advanced=True),
 )
 
 
@@ -43,8 +41,7 @@ class InspectSurvey(Algorithm):
         from ...products.report.survey import inspection_report
 
         found = inspect_survey(
-            call.point_clouds(), call.trajectory(), call.settings(INSPECTION_SETTINGS), call.crs(), progress.part(0.0, 0.95)
-        )
+            call.point_clouds(), call.trajectory(), call.settings(INSPECTION_SETTINGS), call.crs(), progress.part(0.0, 0.95))
         for note in found.notes:
             progress.warn(note)
         progress.info(tr("Survey: {count} points in {files} file(s), {density:.0f} points per m² where there are any, {scanners} scanner(s), "

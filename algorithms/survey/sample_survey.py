@@ -19,34 +19,19 @@ SAMPLE_SETTINGS = (
            "barrier, walls, fences and a hedge beside them, driven both ways. cycle-lanes: two lanes with the word BUS, and cycle lanes "
            "with bicycles."),
         choices=("street", "rural", "urban", "one-lane", "wide-lane", "no-centre-line", "hatched-island", "motorway", "serpentine",
-                 "crossing", "roundabout", "outskirts", "cycle-lanes"),
-    ),
-    SettingSpec(
-        "LENGTH", SAMPLE, "length", tr("Length of the road, 0: as usual for the scene (m)"),
-        tr("Longer takes longer to make and to work through, in proportion. Streets are usually 120 m long, a motorway 240 m (600 m at the "
-           "most), a serpentine 200 m (1000 m), a crossing and a roundabout 110 m from end to end (300 m)."),
-    ),
-    SettingSpec(
-        "SEED", SAMPLE, "seed", tr("Seed of the random numbers (whole number)"),
-        tr("Another seed gives another street with other cars, wear and noise; the same seed gives the same points."),
-    ),
-    SettingSpec(
-        "SPEED", SAMPLE, "speed_kmh", tr("Speed of the vehicle (km/h)"),
-        tr("Faster spreads the scan lines wider apart."), advanced=True,
-    ),
-    SettingSpec(
-        "PULSE_RATE", SAMPLE, "pulse_rate", tr("Pulses of each scanner (per second)"),
-        tr("More gives a denser cloud and a larger file."), advanced=True,
-    ),
-    SettingSpec(
-        "ROTATION_RATE", SAMPLE, "rotation_rate", tr("Scan lines of each scanner (per second)"),
-        tr("More brings the lines closer together, with fewer points on each."), advanced=True,
-    ),
-    SettingSpec(
-        "RADIUS", SAMPLE, "radius", tr("Radius of the bends (m)"),
-        tr("Smaller makes sharper bends; motorway, serpentine, crossing and roundabout have bends of their own."),
-        advanced=True,
-    ),
+                 "crossing", "roundabout", "outskirts", "cycle-lanes")),
+    SettingSpec("LENGTH", SAMPLE, "length", tr("Length of the road, 0: as usual for the scene (m)"),
+                tr("Longer takes longer to make and to work through, in proportion. Streets are usually 120 m long, a motorway 240 m (600 m at the "
+                   "most), a serpentine 200 m (1000 m), a crossing and a roundabout 110 m from end to end (300 m).")),
+    SettingSpec("SEED", SAMPLE, "seed", tr("Seed of the random numbers (whole number)"),
+                tr("Another seed gives another street with other cars, wear and noise; the same seed gives the same points.")),
+    SettingSpec("SPEED", SAMPLE, "speed_kmh", tr("Speed of the vehicle (km/h)"), tr("Faster spreads the scan lines wider apart."), advanced=True),
+    SettingSpec("PULSE_RATE", SAMPLE, "pulse_rate", tr("Pulses of each scanner (per second)"), tr("More gives a denser cloud and a larger file."),
+                advanced=True),
+    SettingSpec("ROTATION_RATE", SAMPLE, "rotation_rate", tr("Scan lines of each scanner (per second)"),
+                tr("More brings the lines closer together, with fewer points on each."), advanced=True),
+    SettingSpec("RADIUS", SAMPLE, "radius", tr("Radius of the bends (m)"),
+                tr("Smaller makes sharper bends; motorway, serpentine, crossing and roundabout have bends of their own."), advanced=True),
 )
 
 TRUTHS = (
@@ -69,20 +54,17 @@ class SampleSurvey(Algorithm):
 
     def declare(self):
         self.add_settings(SAMPLE_SETTINGS)
-        self.add_input(
-            "crs", "CRS", tr("CRS of the survey"),
-            tr("A projected CRS in metres. The coordinates are the same in each; it only says where on earth they are."),
-            optional=True, advanced=True, default="EPSG:32650",
-        )
+        self.add_input("crs", "CRS", tr("CRS of the survey"),
+                       tr("A projected CRS in metres. The coordinates are the same in each; it only says where on earth they are."), optional=True,
+                       advanced=True, default="EPSG:32650")
         self.add_output("cloud", "POINT_CLOUD", tr("Point cloud"))
         self.add_sink("TRAJECTORY", tr("Trajectory"), fields=TRAJECTORY, geometry="PointZ")
         for name, _, geometry, label in TRUTHS:
             self.add_sink(name, label, geometry=geometry, optional=True)
-        self.add_output(
-            "raster", "UAV_IMAGE", tr("UAV image"),
-            tr("What a UAV sees of the first 150 m: a TIFF of 4 cm pixels without a place on the map, with the distortion of its camera and "
-               "the position tags of a drone. Propose control points and Georeference image find its place. "
-               "There is none of motorway, serpentine, crossing and roundabout."), optional=True, by_default=False)
+        self.add_output("raster", "UAV_IMAGE", tr("UAV image"),
+                        tr("What a UAV sees of the first 150 m: a TIFF of 4 cm pixels without a place on the map, with the distortion of its camera "
+                           "and the position tags of a drone. Propose control points and Georeference image find its place. There is none of "
+                           "motorway, serpentine, crossing and roundabout."), optional=True, by_default=False)
         self.add_sink("UAV_GCPS", tr("Ground control points of the UAV image"), geometry="PointZ", optional=True, by_default=False,
                       fields=CONTROL_POINTS)
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..common.errors import RoadExtractionError
+from .weights import IO
 
 if TYPE_CHECKING:
     from pyproj import CRS
@@ -18,26 +19,10 @@ if TYPE_CHECKING:
 
 # what a GeoPackage calls the CRS of a layer that carries none; without it GDAL writes an undefined geographic one
 UNDEFINED_CARTESIAN = 'LOCAL_CS["Undefined Cartesian SRS",UNIT["metre",1]]'
-SAME_DATUM = 2.0                            # m between a place in two realisations of one datum, such as NAD 83 and WGS 84
-SAME_COORDINATES = 0.01                     # m between coordinates of one place in two CRS that are none other for a map
 
 
 def parse_crs(text: str | None) -> CRS | None:
-    """The CRS that a text defines.
-
-    Parameters
-    ----------
-    text : WKT, "EPSG:n" or PROJ text
-
-    Returns
-    -------
-    pyproj.CRS; None for an empty text
-
-    Raises
-    ------
-    RoadExtractionError
-        If the text is not understood.
-    """
+    """The pyproj.CRS of WKT, "EPSG:n" or PROJ text, None for an empty one; RoadExtractionError if the text is not understood."""
     from pyproj import CRS
     from pyproj.exceptions import CRSError
 
@@ -63,17 +48,9 @@ def horizontal_part(crs: Any) -> Any:
 
 
 def check_metric(crs: Any, what: str) -> None:
-    """Refuse a CRS that is geographic, geocentric or of heights alone, or not in metres.
+    """Raise RoadExtractionError for a pyproj.CRS that is geographic, geocentric or of heights alone, or not in metres.
 
-    Parameters
-    ----------
-    crs : pyproj.CRS
     what : the subject of the message, such as "The point cloud"
-
-    Raises
-    ------
-    RoadExtractionError
-        If the CRS is of such a kind, or a unit of it is not the metre.
     """
     flat = horizontal_part(crs)
     if flat.is_geocentric or flat.is_vertical:
@@ -121,7 +98,7 @@ def moved_by(a: Any, b: Any, place: tuple[float, float]) -> float:
 
 
 def check_same_crs(own: str, other: str, place: tuple[float, float], label: str) -> None:
-    """Refuse a layer in another CRS than the point clouds; one whose CRS is not known is taken to be in theirs.
+    """Raise RoadExtractionError for a layer in another CRS than the point clouds; one whose CRS is not known is taken to be in theirs.
 
     Two that give the place of the layer the same coordinates, such as UTM zone 32 of ETRS89 and of WGS 84, are no others.
 
@@ -130,14 +107,9 @@ def check_same_crs(own: str, other: str, place: tuple[float, float], label: str)
     own, other : WKT or "EPSG:n" of the layer and of the point clouds, "" where unknown
     place : (x, y) in the layer
     label : name of the layer, as at the beginning of a sentence
-
-    Raises
-    ------
-    RoadExtractionError
-        If they differ.
     """
     layer, clouds = horizontal_part(parse_crs(own)), horizontal_part(parse_crs(other))
-    if layer is not None and clouds is not None and not moved_by(layer, clouds, place) < SAME_COORDINATES:
+    if layer is not None and clouds is not None and not moved_by(layer, clouds, place) < IO.same_coordinates:
         raise RoadExtractionError(f"{label} is in {layer.name}, the point clouds are in {clouds.name}. "
                                   "Reproject the layer to their CRS and run again.")
 
@@ -150,7 +122,6 @@ def _projection(crs):
 
 # The CRS of a survey: projected, true to scale, and the same for all its files.
 
-SUSPICIOUS_SENSOR_HEIGHT = 5.0, 15.0  # m: higher than any survey vehicle; 1.5 to 4.5 m expressed in feet
 
 
 def check_projected(files: Sequence[Any], given: str = "", trajectory_crs: str = "") -> str:
@@ -159,8 +130,7 @@ def check_projected(files: Sequence[Any], given: str = "", trajectory_crs: str =
     Parameters
     ----------
     files : CloudHeader of each point cloud
-    given : WKT or "EPSG:n", for clouds without a CRS; "" where none was given
-    trajectory_crs : WKT or "EPSG:n"; "" where unknown
+    given, trajectory_crs : WKT or "EPSG:n", the first for clouds without a CRS; "" where unknown
 
     Returns
     -------
@@ -217,18 +187,7 @@ def _in_degrees(files):
 
 
 def crs_note(files: Sequence[Any], given: str, crs: str) -> str:
-    """A note for the user about the CRS in which a survey is processed.
-
-    Parameters
-    ----------
-    files : CloudHeader of each point cloud
-    given : the CRS that the user gave, "" for none
-    crs : WKT of the CRS of the survey, "" where unknown
-
-    Returns
-    -------
-    Sentences; "" where there is nothing to note
-    """
+    """Sentences for the user about the CRS (WKT, "" where unknown) in which a survey is processed, and the one that was given; "" for none."""
     if not crs:
         return ("The point cloud carries no CRS, and neither do the results: they lie in its own coordinates. Where these are "
                 "map coordinates, give their CRS by the parameter CRS (such as EPSG:25832) and run again.")
@@ -247,14 +206,8 @@ def crs_note(files: Sequence[Any], given: str, crs: str) -> str:
 
 
 def unit_note(height: float, crs: str) -> str:
-    """A note for the user where a cloud without CRS is in feet, as it seems; "" where there is nothing to note.
-
-    Parameters
-    ----------
-    height : m, of the sensor above the road; NaN where unknown
-    crs : WKT of the CRS of the survey, "" where unknown
-    """
-    if crs or not SUSPICIOUS_SENSOR_HEIGHT[0] < height < SUSPICIOUS_SENSOR_HEIGHT[1]:
+    """A note for the user where a cloud without CRS is in feet, as it seems by the height of the sensor above the road, m; "" for none."""
+    if crs or not IO.suspicious_sensor_height[0] < height < IO.suspicious_sensor_height[1]:
         return ""
     return (f"The sensor seems to ride {height:.1f} m above the road, as if cloud and trajectory were in feet, and no CRS tells their "
             "unit: everything is measured in metres, so curbs and markings would be missed. Set the parameter CRS to the CRS that they are "
@@ -263,19 +216,12 @@ def unit_note(height: float, crs: str) -> str:
 
 # Whether a survey lies where its CRS holds, and lengths on the map there are lengths on the ground.
 
-# Official grids for measuring keep within it where they are used: UTM zone 33, used in all of Norway, and Lambert-93 come to 4 per mille
-MAX_SCALE_ERROR = 0.005
-SCALE_STEP = 50.0                     # m on the map over which the scale is measured
-MAX_OUTSIDE_AREA = 8.0                # degrees: official surveys lie outside the area of their CRS too, of UTM zone 33 in Norway by 7.5
-MIN_EXCHANGED = 1.0             # degrees outside, from which on x and y may be exchanged; a survey beyond a border lies nearer
-MAX_LOCAL = 1e5                 # m: local coordinates, and those without their leading digits, are smaller
 
 
 @dataclass(frozen=True)
 class _MapPlace:
-    """A place of the map on the ground.
+    """A place of the map on the ground: degrees from Greenwich, of the CRS's own datum.
 
-    longitude, latitude : degrees from Greenwich, of the CRS's own datum
     scale : length on the map per length on the ground, in the direction where it is farthest from 1; NaN where the projection is not defined
     """
 
@@ -286,33 +232,25 @@ class _MapPlace:
     @property
     def true_to_scale(self) -> bool:
         """Whether lengths on the map are lengths on the ground, as far as roads are concerned."""
-        return abs(self.scale - 1.0) <= MAX_SCALE_ERROR
+        return abs(self.scale - 1.0) <= IO.max_scale_error
 
 
 def place_on_ground(crs: Any, x: float, y: float) -> _MapPlace:
-    """Where a place of the map lies, and the scale there.
+    """Where a place of the map, x and y in metres of a projected pyproj.CRS, lies, and the scale there.
 
     The metric of the ground is measured along x, y and their diagonal with geodesics; its eigenvalues are the squared lengths of the axes of
-    Tissot's indicatrix [1]_. Heights, which shorten lengths on the map by 0.16 per mille a kilometre, are not counted.
-
-    Parameters
-    ----------
-    crs : pyproj.CRS, projected in metres
-    x, y : m
-
-    References
-    ----------
-    .. [1] Snyder (1987), Map Projections: A Working Manual, USGS Professional Paper 1395, p. 20-26.
+    Tissot's indicatrix (Snyder, 1987, Map Projections: A Working Manual, USGS Professional Paper 1395, p. 20-26). Heights, which shorten lengths
+    on the map by 0.16 per mille a kilometre, are not counted.
     """
     from pyproj import Transformer
 
     datum = crs.geodetic_crs
     to_radians = datum.axis_info[0].unit_conversion_factor
-    steps = SCALE_STEP * np.array([(0, 0), (1, 0), (0, 1), (1, 1)])
+    steps = IO.scale_step * np.array([(0, 0), (1, 0), (0, 1), (1, 1)])
     u, v = (np.asarray(found) * to_radians for found in Transformer.from_crs(crs, datum, always_xy=True).transform(*(steps + (x, y)).T))
     if not np.isfinite([u, v]).all():
         return _MapPlace(np.nan, np.nan, np.nan)
-    along_x, along_y, diagonal = np.array(crs.get_geod().inv(*([end[0]] * 3 for end in (u, v)), u[1:], v[1:], radians=True)[2]) / SCALE_STEP
+    along_x, along_y, diagonal = np.array(crs.get_geod().inv(*([end[0]] * 3 for end in (u, v)), u[1:], v[1:], radians=True)[2]) / IO.scale_step
     mixed = (diagonal**2 - along_x**2 - along_y**2) / 2
     ground = np.sqrt(np.linalg.eigvalsh([[along_x**2, mixed], [mixed, along_y**2]]).clip(1e-12))
     scale = max(1 / ground, key=lambda one: abs(np.log(one)))
@@ -347,14 +285,14 @@ def check_place(wkt: str, place: tuple[float, float], what: str) -> str:
     there = place_on_ground(crs, x, y)
     area = _area_of_use(wkt, there.true_to_scale)
     beside = _beside(there, area)
-    if beside > MIN_EXCHANGED:
+    if beside > IO.min_exchanged:
         turned = place_on_ground(crs, y, x)
         if turned.true_to_scale and _beside(turned, area) == 0:
             raise RoadExtractionError(
                 f"{what} has x and y exchanged: x is about {x:.0f} and y about {y:.0f}, and in its CRS {crs.name} only the place with y as the "
                 f"easting lies in the area of this CRS ({_named(area)}). Export it with the easting as x and the northing as y, and run again.")
-    outside = beside > MIN_EXCHANGED and area
-    if beside > MAX_OUTSIDE_AREA and max(abs(x), abs(y)) < MAX_LOCAL:
+    outside = beside > IO.min_exchanged and area
+    if beside > IO.max_outside_area and max(abs(x), abs(y)) < IO.max_local:
         return (f"{what} says that it is in {crs.name}, but its coordinates (about {x:.0f}, {y:.0f}) are those of a local system, or lack their "
                 "leading digits. They are taken as metres as they are; the results lie elsewhere on a map until the coordinates are complete.")
     if not there.true_to_scale:
@@ -367,31 +305,16 @@ def check_place(wkt: str, place: tuple[float, float], what: str) -> str:
         raise RoadExtractionError(
             f"{what} is in {named}. {lengths}, and roads are measured in metres on the ground. Reproject the data to a CRS that is made for this "
             f"place{zone} or correct the CRS.")
-    if beside > MAX_OUTSIDE_AREA:
+    if beside > IO.max_outside_area:
         return (f"{what} lies at {_degrees(there)}, outside the area of its CRS {crs.name} ({_named(area)}): if the survey was not made there, its "
                 "CRS is wrong, and so is that of the results. Correct it in the data.")
     return ""
 
 
 def check_extent(wkt: str, bounds: Sequence[Sequence[float]], what: str) -> str:
-    """As `check_place`, of what lies between two corners.
+    """As `check_place`, of what lies between two corners, (2,) or (3,) least and greatest coordinates in metres.
 
     Single points astray move one corner, and the middle with it: what is right at the middle or at either corner is not refused.
-
-    Parameters
-    ----------
-    wkt : metric CRS
-    bounds : (2,) or (3,) least coordinates and greatest coordinates, metres
-    what : the subject of the message, such as "The point cloud"
-
-    Returns
-    -------
-    As `check_place`
-
-    Raises
-    ------
-    RoadExtractionError
-        If `check_place` refuses the middle and both corners.
     """
     corners = np.array(bounds)[:, :2]
     notes, refusals = [], []
@@ -457,18 +380,13 @@ def _utm_zone(place):
 # again, by whatever process and stage.
 
 MARK = "Metric form of "        # begins the remark, before the WKT of the file's CRS
-FOOT, US_SURVEY_FOOT = 0.3048, 1200 / 3937   # m, both exact (NIST Special Publication 811, appendix B.6)
-NO_PLACE = (0.0, 1.0, 0.0, 0.0, 0.0, 1.0)   # of a raster without georeferencing, as GDAL gives it
-SAME_UNIT = 1e-9                # relative, between units that are written with other digits; two definitions of the foot differ by 2e-6
+FOOT, US_SURVEY_FOOT = 0.3048, 1200 / 3937   # source: m, both exact (NIST Special Publication 811, appendix B.6)
+NO_PLACE = (0.0, 1.0, 0.0, 0.0, 0.0, 1.0)   # source: of a raster without georeferencing, as GDAL gives it
 
 
 @dataclass(frozen=True)
 class FileUnits:
-    """The units of coordinates in a file.
-
-    across : metres per unit of x and y (1 for degrees)
-    up : metres per unit of z
-    """
+    """The units of coordinates in a file: metres per unit of x and y (1 for degrees), and per unit of z."""
 
     across: float = 1.0
     up: float = 1.0
@@ -496,7 +414,7 @@ METRES = FileUnits()
 
 @lru_cache(maxsize=64)
 def in_metres(wkt: str) -> tuple[str, FileUnits]:
-    """The CRS to work in with coordinates of a file, and the units of the file.
+    """The CRS to work in with coordinates of a file, and the units of the file; RoadExtractionError if the text is not understood.
 
     Parameters
     ----------
@@ -506,11 +424,6 @@ def in_metres(wkt: str) -> tuple[str, FileUnits]:
     -------
     wkt : as it was where the file is in metres (or degrees); otherwise a CRS with the same projection in metres
     units : FileUnits. Heights without a vertical CRS have the unit of x and y, and beside degrees metres
-
-    Raises
-    ------
-    RoadExtractionError
-        If the text is not understood.
     """
     file_wkt = _file_wkt(wkt)
     crs = parse_crs(file_wkt or wkt)
@@ -522,17 +435,7 @@ def in_metres(wkt: str) -> tuple[str, FileUnits]:
 
 @lru_cache(maxsize=64)
 def as_in_file(wkt: str) -> tuple[str, FileUnits]:
-    """The CRS of a file that is to be written, and its units.
-
-    Parameters
-    ----------
-    wkt : of the CRS that was worked in, "" where unknown
-
-    Returns
-    -------
-    wkt : of the survey's own CRS
-    units : FileUnits
-    """
+    """The survey's own CRS, in which a file is written, and its units, of the CRS that was worked in; WKT, "" where unknown."""
     file_wkt = _file_wkt(wkt)
     return (file_wkt, _units_of(parse_crs(file_wkt))) if file_wkt else (wkt, METRES)
 
@@ -577,7 +480,7 @@ def _units_of(crs):
     across = axes[0].unit_conversion_factor if axes and not flat.is_geographic else 1.0
     heights = [axis for axis in (crs.sub_crs_list[-1] if crs.is_compound else flat).axis_info if axis.direction.lower() in ("up", "down")]
     up = heights[0].unit_conversion_factor if heights else across
-    return FileUnits(*(1.0 if abs(factor - 1.0) < SAME_UNIT else float(factor) for factor in (across, up)))
+    return FileUnits(*(1.0 if abs(factor - 1.0) < IO.same_unit else float(factor) for factor in (across, up)))
 
 
 def _metric_form(crs):

@@ -15,26 +15,18 @@ from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from .crs import place_of_raster, place_raster
 from .local_files import gdal_exceptions, open_raster, reading, unfinished_path
+from .weights import IO
 
-GEOTIFF_TILE = 512          # px, side of a tile of the file, and of the parts that are processed at a time
-NODATA = -9999.0            # value of pixels without data
-MAX_SAMPLED_WINDOW = 4 * GEOTIFF_TILE**2   # px that are read as one window to be sampled
-MAX_CACHED_PIXELS = 32 * GEOTIFF_TILE**2   # px that GDAL may cache of what a thread has read
-COMPRESSION_THREADS = 2
-DISPLAY_SIZE = 2000         # px, longer side of the reduced image from which the stretch is computed
-MAX_DISPLAY_STEP = 16       # px between its pixels at the most, where few tiles of a large image hold data
+GEOTIFF_TILE = 512          # source: TIFF 6.0, sides of tiles are multiples of 16; px, of the file and of what is processed at a time
+NODATA = -9999.0            # source: usual in GIS; value of pixels without data
+MAX_SAMPLED_WINDOW = 4 * GEOTIFF_TILE**2   # derived: px that are read as one window to be sampled
+MAX_CACHED_PIXELS = 32 * GEOTIFF_TILE**2   # derived: px that GDAL may cache of what a thread has read
 
 
 class IntensityImage:
     """An intensity image that several threads may read.
 
-    Attributes
-    ----------
-    path : of the file
-    geotransform : (6,) of GDAL, map coordinates
-    cell_size : metres
-    width, height : pixels
-    crs : WKT, "" where the file carries none
+    geotransform : (6,) of GDAL, map coordinates; cell_size : metres; width, height : pixels; crs : WKT, "" where the file carries none
     eight_bit : whether it is the display image, with values 1 to 255
     """
 
@@ -50,13 +42,7 @@ class IntensityImage:
     @classmethod
     @gdal_exceptions()
     def open(cls, path: str | os.PathLike[str]) -> IntensityImage:
-        """Open an image.
-
-        Raises
-        ------
-        RoadExtractionError
-            If the file is missing, not a raster, rotated, has no square pixels, or is in degrees.
-        """
+        """Open an image; RoadExtractionError if it is missing, not a raster, rotated, has no square pixels, or is in degrees."""
         dataset = _open_raster(path)
         transform, crs = place_of_raster(dataset)
         if transform is None:
@@ -75,17 +61,7 @@ class IntensityImage:
 
     @gdal_exceptions()
     def read_pixels(self, column: int, row: int, width: int, height: int) -> np.ndarray:
-        """A window of pixels.
-
-        Parameters
-        ----------
-        column, row : of the first pixel; the window may reach beyond the image
-        width, height : pixels
-
-        Returns
-        -------
-        (height, width) float32; NaN where there is no data or no image
-        """
+        """(height, width) float32 pixels from (column, row) on; NaN where there is no data or no image, beyond which the window may reach."""
         values = np.full((height, width), np.nan, np.float32)
         c0, c1 = max(column, 0), min(column + width, self.width)
         r0, r1 = max(row, 0), min(row + height, self.height)
@@ -105,32 +81,18 @@ class IntensityImage:
         return filled_tiles(self._dataset(0))
 
     def pixel_of(self, x: Any, y: Any, origin: Any = (0.0, 0.0)) -> tuple[np.ndarray, np.ndarray]:
-        """The pixels of places.
+        """(N,) float64 column and row of places, (N,) metres; pixel 0 extends from 0 to 1.
 
-        Parameters
-        ----------
-        x, y : (N,) metres
         origin : map coordinates that were subtracted from x and y, such as RoadFrame.origin
-
-        Returns
-        -------
-        column, row : (N,) float64; pixel 0 extends from 0 to 1
         """
         left, _, _, top, _, _ = self.geotransform
         return (np.asarray(x, float) + (origin[0] - left)) / self.cell_size, \
             ((top - origin[1]) - np.asarray(y, float)) / self.cell_size
 
     def sample(self, x: Any, y: Any, origin: Any = (0.0, 0.0), bilinear: bool = False) -> np.ndarray:
-        """Image values at places.
+        """(N,) float32 image values at places as of `pixel_of`, NaN where there is no data.
 
-        Parameters
-        ----------
-        x, y, origin : as of `pixel_of`
-        bilinear : interpolate between the centres of four pixels; otherwise the value of the pixel that contains the place
-
-        Returns
-        -------
-        (N,) float32, NaN where there is no data (for bilinear: in any of the four pixels)
+        bilinear : interpolate between the centres of four pixels, all of which must hold data; otherwise the pixel that contains the place
         """
         column, row = self.pixel_of(x, y, origin)
         if bilinear:
@@ -188,17 +150,9 @@ def _open_raster(path):
 
 
 def filled_tiles(dataset: Any) -> list[tuple[int, int]]:
-    """The tiles of a raster that may hold data.
+    """(column, row) of the first pixel of each tile of a gdal.Dataset that may hold data, row by row.
 
     Empty tiles are missing from the file. They are found by bisection, without reading pixels.
-
-    Parameters
-    ----------
-    dataset : gdal.Dataset, in tiles of GEOTIFF_TILE pixels
-
-    Returns
-    -------
-    (column, row) of the first pixel of each tile, row by row
     """
     from osgeo import gdal
 
@@ -222,24 +176,14 @@ def filled_tiles(dataset: Any) -> list[tuple[int, int]]:
 
 
 class _NewGeoTiff:
-    """The single band of a GeoTIFF that is being written.
-
-    Parameters
-    ----------
-    path : of the file
-    width, height : pixels
-    geotransform : (6,) of GDAL
-    crs : WKT, "" for none
-    byte : uint8, otherwise float32
-    nodata : value of pixels without data
-    """
+    """The single band of a GeoTIFF that is being written, of uint8 where `byte` says so, otherwise float32; `nodata` marks pixels without data."""
 
     @gdal_exceptions()
     def __init__(self, path: str | os.PathLike[str], width: int, height: int, geotransform: Any, crs: str, byte: bool, nodata: float):
         from osgeo import gdal
 
         options = [f"BLOCKXSIZE={GEOTIFF_TILE}", f"BLOCKYSIZE={GEOTIFF_TILE}", "TILED=YES", "COMPRESS=DEFLATE", "SPARSE_OK=TRUE",
-                   "BIGTIFF=IF_SAFER", f"NUM_THREADS={COMPRESSION_THREADS}"]
+                   "BIGTIFF=IF_SAFER", f"NUM_THREADS={IO.compression_threads}"]
         # Intensities are too noisy to be predicted from their neighbours: a predictor costs more time than it saves.
         options += ["PREDICTOR=2"] if byte else ["ZLEVEL=1"]
         self._type = gdal.GDT_Byte if byte else gdal.GDT_Float32
@@ -284,16 +228,8 @@ def new_geotiff(path: str | os.PathLike[str], width: int, height: int, geotransf
                 nodata: float = NODATA) -> Iterator[_NewGeoTiff]:
     """A new GeoTIFF with one band: tiled, DEFLATE, without empty tiles. It appears at its path only when all is written.
 
-    Of several runs that write the same file each ends well, and the last to end is kept.
-
-    Parameters
-    ----------
-    path, width, height, geotransform, crs, byte, nodata : as of _NewGeoTiff
-
-    Raises
-    ------
-    RoadExtractionError
-        If the file cannot be written.
+    Of several runs that write the same file each ends well, and the last to end is kept. RoadExtractionError if the file cannot be written.
+    geotransform : (6,) of GDAL; crs : WKT, "" for none; byte, nodata : as of _NewGeoTiff
     """
     target = Path(path)
     unfinished = unfinished_path(target, ".tif")
@@ -314,20 +250,9 @@ def new_geotiff(path: str | os.PathLike[str], width: int, height: int, geotransf
 
 
 def write_display_image(image_path: str | os.PathLike[str], path: str | os.PathLike[str], progress: Progress = Progress()) -> None:
-    """Write an intensity image stretched to bytes 1 to 255, for viewers; 0 is no data.
+    """Write an intensity image stretched to bytes 1 to 255, for viewers; 0 is no data. RoadExtractionError if it cannot be read or written.
 
     The stretch runs from the 1st to the 99.5th percentile of the image.
-
-    Parameters
-    ----------
-    image_path : of the intensity image
-    path : of the display image, a GeoTIFF
-    progress : receives progress
-
-    Raises
-    ------
-    RoadExtractionError
-        If the image cannot be read, or the display image cannot be written.
     """
     image = IntensityImage.open(image_path)
     low, high = _stretch(image)
@@ -347,8 +272,8 @@ def _stretch(image):
     """1st and 99.5th percentile of an image, computed from every n-th pixel."""
     tiles = image.tiles()
     # a large image that is mostly empty gives as many pixels as a small one that is full
-    filled = int(np.sqrt(len(tiles))) * GEOTIFF_TILE // DISPLAY_SIZE
-    step = max(1, min(max(image.width, image.height) // DISPLAY_SIZE, max(filled, MAX_DISPLAY_STEP)))
+    filled = int(np.sqrt(len(tiles))) * GEOTIFF_TILE // IO.display_size
+    step = max(1, min(max(image.width, image.height) // IO.display_size, max(filled, IO.max_display_step)))
     parts = [np.empty(0, np.float32)]
     for column, row in tiles:
         values = image.read_pixels(column, row, GEOTIFF_TILE, GEOTIFF_TILE)[::step, ::step]

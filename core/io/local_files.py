@@ -19,6 +19,7 @@ from typing import Any
 from uuid import uuid4
 
 from ..common.errors import RoadExtractionError
+from .weights import IO
 
 # Formats that hold their pixels themselves; a VRT, which names other files, is read where its name says that it is one
 RASTER_DRIVERS = ("GTiff", "JPEG", "PNG", "HFA", "JP2OpenJPEG", "JP2KAK", "JP2ECW", "JP2MrSID", "JPEG2000", "ECW", "MrSID", "HEIF", "AVIF",
@@ -50,17 +51,9 @@ def offline() -> Iterator[None]:
 
 
 def open_raster(path: str | Path, give: str = "Give a TIFF, JPEG or PNG.") -> Any:
-    """The gdal.Dataset of a raster file, within `gdal_exceptions`.
+    """The gdal.Dataset of a raster file, within `gdal_exceptions`; RoadExtractionError if its format does not hold its pixels itself.
 
-    Parameters
-    ----------
-    path : of the file
-    give : what to try where it is none, a sentence
-
-    Raises
-    ------
-    RoadExtractionError
-        If it is none of the formats that hold their pixels themselves.
+    give : what to try then, a sentence
     """
     from osgeo import gdal
 
@@ -164,24 +157,18 @@ def _for_all_threads(modules):
 
 # Files that appear whole or not at all: until a file is finished it has a hidden name of its own beside its place.
 
-ABANDONED_TIME = 24 * 3600.0   # s since the last write to an unfinished file after which its run is taken for dead; a computer may be suspended
 
 
 def unfinished_path(path: str | os.PathLike[str], suffix: str) -> Path:
     """Where a file is written until it is finished, and then moved to its place by `finish_file`; or where a folder for its parts is made.
 
     The name is used once, so that of several runs that write the same file each ends well, and the last to end is kept. What killed
-    runs left of the file is removed.
-
-    Parameters
-    ----------
-    path : of the finished file
-    suffix : of the unfinished one, such as ".tif"
+    runs left of the file is removed. suffix : of the unfinished file, such as ".tif"
     """
     target = Path(path)
     for left in target.parent.glob(f".{escape(target.name)}.*.unfinished*"):
         try:
-            if time.time() - max(file.stat().st_mtime for file in (left, *left.glob("*"))) > ABANDONED_TIME:
+            if time.time() - max(file.stat().st_mtime for file in (left, *left.glob("*"))) > IO.abandoned_time:
                 shutil.rmtree(left) if left.is_dir() else left.unlink()
         except OSError:
             pass   # another run was quicker, or it is held open

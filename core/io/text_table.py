@@ -18,12 +18,8 @@ from typing import Any
 import numpy as np
 
 from ..common.errors import RoadExtractionError
+from .weights import IO
 
-SAMPLE_BYTES = 200_000     # from which the format of the table is recognised
-SAMPLE_LINES = 400         # lines of these that are split
-MIN_NUMBER_COLUMNS = 3     # columns of numbers that make a table
-MAX_NUMBER = 1e20          # beyond time in nanoseconds; larger numbers count as missing, like infinity
-FIELDS_PER_CHUNK = 200_000  # fields parsed at a time where some are words
 DELIMITERS = (";", "\t", "|", ",", " ")
 MIXED = re.compile(rb"[ ]*[,;|\t ][ ]*")                # between columns where a row has several delimiters
 # Encodings of tables beside UTF-8, and what words beyond ASCII are in them. Latin letters in these bytes stand beside small letters of ASCII.
@@ -68,8 +64,7 @@ class NumberTable:
     """A table of numbers.
 
     values : (N, K) float64, NaN where a field is not a number
-    preamble : the lines above the numbers, header included, top down
-    first_row : the fields of the first row as they are written
+    preamble, first_row : the lines above the numbers, header included, top down, and the fields of the first row as they are written
     dropped : rows left out because they had another number of fields
     body : the rows, their fields separated by blanks, with _ for a blank within a field
     """
@@ -91,17 +86,12 @@ class NumberTable:
 
 
 def read_number_table(path: str | os.PathLike[str]) -> NumberTable:
-    """The table of numbers in a text file with any delimiter, with or without a header.
-
-    Parameters
-    ----------
-    path : of the file, in UTF-8, UTF-16 or an encoding that shares the characters of ASCII
+    """The table of numbers in a text file with any delimiter, with or without a header, in UTF-8, UTF-16 or another encoding like ASCII.
 
     Raises
     ------
     RoadExtractionError
-        If the file cannot be read, holds no table of at least three columns of
-        numbers, or uses the comma for columns and decimals alike.
+        If the file cannot be read, holds no table of at least three columns of numbers, or uses the comma for columns and decimals alike.
     """
     data = _without_quotes(_text_bytes(path))
     lines = _sample_lines(data)
@@ -137,7 +127,7 @@ def _text_bytes(path):
     if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
         data = data.decode("utf-16", "replace").encode()
     data = data[3:] if data.startswith(b"\xef\xbb\xbf") else data
-    if b"\0" in data[:SAMPLE_BYTES]:
+    if b"\0" in data[:IO.sample_bytes]:
         raise RoadExtractionError(
             f"{path} is a binary file. A trajectory is read from text (CSV, TXT) or from Applanix SBET (.out, records of 136 bytes).")
     data = _in_utf8(data.replace(b"\r\n", b"\n").replace(b"\r", b"\n").rstrip(b"\x1a\0 \t\n") + b"\n")
@@ -166,7 +156,7 @@ def _decodes(data, encoding):
 
 def _without_quotes(data):
     """The text with tabs between its columns, where quotes hold commas or other delimiters together."""
-    sample = data[:SAMPLE_BYTES]
+    sample = data[:IO.sample_bytes]
     quoted = re.search(rb'(?:^|[,;\t|])"[^"\n]*[,;\t|][^"\n]*"([,;\t|]|$)', sample, re.MULTILINE) if b'"' in sample else None
     if quoted is None:
         return data
@@ -176,7 +166,7 @@ def _without_quotes(data):
 
 
 def _sample_lines(data):
-    whole = data[:SAMPLE_BYTES].rpartition(b"\n")[0]
+    whole = data[:IO.sample_bytes].rpartition(b"\n")[0]
     return _decoded(whole).split("\n")
 
 
@@ -191,7 +181,7 @@ def _fields(line, delimiter):
 
 def _is_row(fields, columns, style):
     numbers = _numbers_among(fields, style)
-    return len(fields) == columns and numbers >= MIN_NUMBER_COLUMNS and 2 * numbers >= len(fields)
+    return len(fields) == columns and numbers >= IO.min_number_columns and 2 * numbers >= len(fields)
 
 
 def _numbers_among(fields, style):
@@ -200,11 +190,11 @@ def _numbers_among(fields, style):
 
 def _recognise_format(lines):
     """(delimiter, number of columns, style of numbers) that explain the most lines; None where none does."""
-    lines = lines[:SAMPLE_LINES]
+    lines = lines[:IO.sample_lines]
     styles = [style for style in STYLES if not style.grouping or any(map(style.grouped.search, lines))]
     best = (0, False, 0, False, None)
     for delimiter in DELIMITERS:
-        split = [fields for fields in (_fields(line, delimiter) for line in lines) if len(fields) >= MIN_NUMBER_COLUMNS]
+        split = [fields for fields in (_fields(line, delimiter) for line in lines) if len(fields) >= IO.min_number_columns]
         for style in styles:
             if delimiter in (style.decimal, style.grouping):
                 continue
@@ -263,8 +253,8 @@ def _parse(body, delimiter, columns, style=STYLES[0]):
 
 
 def finite_or_nan(values: np.ndarray) -> np.ndarray:
-    """The values, of any shape, with NaN for those that are infinite or beyond MAX_NUMBER, with which sums overflow."""
-    return np.where(np.abs(values) < MAX_NUMBER, values, np.nan)
+    """The values, of any shape, with NaN for those that are infinite or so large that sums overflow."""
+    return np.where(np.abs(values) < IO.max_number, values, np.nan)
 
 
 def as_number(value: Any) -> float:
@@ -293,7 +283,7 @@ def _parse_mixed(body, columns):
     # bytes.split() would also split at vertical tabs and form feeds, which did not separate the fields above
     fields = re.split(rb"[ \t\n]+", body.strip(b" \t\n"))
     parts = []
-    step = FIELDS_PER_CHUNK // columns * columns or columns
+    step = IO.fields_per_chunk // columns * columns or columns
     for start in range(0, len(fields), step):
         rows = np.array(fields[start:start + step], dtype=bytes).reshape(-1, columns)
         values = np.empty(rows.shape)

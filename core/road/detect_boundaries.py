@@ -16,33 +16,28 @@ from ..common.parallel import InBackground
 from ..common.progress import Progress
 from ..survey.frame.road_frame import RoadFrame
 from ..survey.lattice.scan_lattice import find_lattice
-from .common.corners import CANDIDATE_HEIGHT_SHARE
-from .common.curb_limits import LEAST_HEIGHT, CurbSettings
+from .common.curb_limits import CurbSettings
 from .common.curb_points import CurbPoints, curb_points_at
 from .common.decimation import LevelGround, PointDecimation
 from .common.occlusion import OcclusionGrid
 from .common.sides import SIDE_SIGNS, expected_height, hidden_beside
-from .common.tracking import LINE_FIT_LENGTH, MAX_JOINED_GAP, MAX_LINE_GAP, PieceInLine, SideChains, StepsByStation, pieces_between
+from .common.tracking import PieceInLine, SideChains, StepsByStation, pieces_between
 from .curb_returns.detect import with_curb_returns
 from .curb_returns.main_curbs import main_curbs_of
 from .edges.fit import EdgeSettings, fit_road_edges
 from .edges.road_edges import EdgePiece, RoadEdges, joined_pieces
 from .profiles.detect import detect_curbs
-from .scanlines.candidates import GAP_FILL_REACH, ScanlineBoundarySettings
+from .scanlines.candidates import ScanlineBoundarySettings
 from .scanlines.detect import SurveyScanlines, curbs_from_scanlines
 from .scanlines.section_planes import ScanlineSettings
 from .surface.ground_grid import MeasuredGround
 from .surface.pavement_lines import with_pavement_edges
+from .weights import BOUNDARY, CURBS, SCANLINE
 
 if TYPE_CHECKING:
     from ..survey.open_survey import Survey
 
 BOUNDARY_METHODS = ("profiles", "scanlines", "both")
-PROFILES_PROGRESS = 0.3       # share of the work that profiles are, with both methods; of the rest,
-LATTICE_PROGRESS = 0.1        # share at which the scan lattice is known, and
-RETURNS_PROGRESS = 0.85       # share at which the search for curb returns begins
-CURB_EDGES_PROGRESS = 0.1     # share of the edges that those at curbs are; the others need the ground beside the road
-LEVEL_STRIP_MARGIN = 0.20     # m beyond the points from which corners are measured, in which scanlines still continue
 
 
 @dataclass(frozen=True)
@@ -128,27 +123,28 @@ def _find_curb_points(decimation, lattice, settings, progress):
     beside_of_scanlines: dict[int, dict[str, OcclusionGrid]] = {}
     chains: list[dict[tuple[int, str], SideChains]] = [{}, {}]
     if settings.method != "scanlines":
-        part = progress.part(0.0, PROFILES_PROGRESS) if both else progress
+        part = progress.part(0.0, BOUNDARY.profiles_progress) if both else progress
         found["profiles"] = detect_curbs(survey, settings.curbs, part, not both, decimation, beside, chains[0])
     if settings.method != "profiles":
-        part = progress.part(PROFILES_PROGRESS if both else 0.0, 1.0)
-        source = SurveyScanlines(survey, settings.planes, settings.scanlines.sensor_height, lattice(part.part(0.0, LATTICE_PROGRESS)),
+        part = progress.part(BOUNDARY.profiles_progress if both else 0.0, 1.0)
+        source = SurveyScanlines(survey, settings.planes, settings.scanlines.sensor_height, lattice(part.part(0.0, BOUNDARY.lattice_progress)),
                                  level=_level_for(decimation, settings.scanlines))
-        found["scanlines"] = curbs_from_scanlines(source, settings.scanlines, settings.curbs.block_length,
-                                                  part.part(LATTICE_PROGRESS, RETURNS_PROGRESS), beside_of_scanlines if both else beside, chains[1])
+        corners = part.part(BOUNDARY.lattice_progress, BOUNDARY.returns_progress)
+        found["scanlines"] = curbs_from_scanlines(source, settings.scanlines, settings.curbs.block_length, corners,
+                                                  beside_of_scanlines if both else beside, chains[1])
         drawn = "both" if both else "scanlines"
         if both:
             chosen = _better_points(found, survey.frame, CurbEvidence(chains[1], beside_of_scanlines), CurbEvidence(chains[0], beside))
             beside_of_scanlines.clear()   # planes lie close: along a long road their grids are large
             found["both"] = with_pieces_of_both(chosen, chains, beside, survey)
-        found[drawn] = with_curb_returns(found[drawn], decimation, settings.curbs, part.part(RETURNS_PROGRESS, 1.0), beside)
+        found[drawn] = with_curb_returns(found[drawn], decimation, settings.curbs, part.part(BOUNDARY.returns_progress, 1.0), beside)
     return found
 
 
 def _level_for(decimation, settings):
     """The ground that SurveyScanlines leaves out, which can have no corner."""
-    along = settings.distance_along + GAP_FILL_REACH + LEVEL_STRIP_MARGIN
-    return LevelGround(decimation, settings.distance_across + LEVEL_STRIP_MARGIN, along)
+    along = settings.distance_along + SCANLINE.gap_fill_reach + BOUNDARY.level_strip_margin
+    return LevelGround(decimation, settings.distance_across + BOUNDARY.level_strip_margin, along)
 
 
 def _better_points(found, frame, *seen):
@@ -178,10 +174,10 @@ def draw_boundaries(found: dict[str, CurbPoints], frame: RoadFrame, settings: Ed
     -------
     RoadBoundaries
     """
-    boundaries = _drawn(found, frame, settings, progress if survey is None else progress.part(0.0, CURB_EDGES_PROGRESS))
+    boundaries = _drawn(found, frame, settings, progress if survey is None else progress.part(0.0, BOUNDARY.curb_edges_progress))
     if survey is not None:
         boundaries.ground = MeasuredGround(survey)
-        boundaries.edges = with_pavement_edges(survey, boundaries.edges, settings, progress=progress.part(CURB_EDGES_PROGRESS, 1.0),
+        boundaries.edges = with_pavement_edges(survey, boundaries.edges, settings, progress=progress.part(BOUNDARY.curb_edges_progress, 1.0),
                                                ground=boundaries.ground)
     return boundaries
 
@@ -204,15 +200,8 @@ def _drawn(found, frame, settings, progress):
 
 # How far apart two sets of road edges lie where both follow one curb, and which of the two to draw.
 
-COMPARISON_STEP = 0.5             # m along the road between places that are compared
-MAX_SAME_CURB_DISTANCE = 0.25     # m across within which two lines follow one curb
-MIN_REPORTED_DIFFERENCE = 0.05    # m across above which a stretch is reported
-AGREEMENT_QUANTILE = 0.95         # quantile of the distances that stands for a piece
-MIN_REPORTED_LENGTH = 1.0         # m of a stretch that is reported
-MIN_SINGLE_METHOD_LENGTH = 2.0    # m that one line must continue beyond the other to be drawn in its place
-MIN_RISE = CANDIDATE_HEIGHT_SHARE * LEAST_HEIGHT  # m from one side of a place to the other below which ground is level
-SURE_SUPPORT = 80.0               # points per metre of road that show a step beyond doubt
-SECOND_METHOD_CHAIN_OFFSET = 100_000  # added to the chain numbers of the second method, to keep both apart
+MIN_RISE = CURBS.candidate_height_share * CURBS.least_height  # m from one side of a place to the other below which ground is level
+SECOND_METHOD_CHAIN_OFFSET = 100_000   # derived: more chains than a method finds; keeps those of both apart
 
 
 @dataclass(frozen=True)
@@ -231,7 +220,7 @@ class CurbEvidence:
 
 @dataclass
 class _EdgeSamples:
-    """The edges of one side of a road at N places COMPARISON_STEP apart.
+    """The edges of one side of a road at N places BOUNDARY.comparison_step apart.
 
     Attributes
     ----------
@@ -259,8 +248,8 @@ def sample_edges(edges: RoadEdges, frame: RoadFrame, road: int, side: str) -> _E
     side : "left" or "right"
     """
     line = frame.road(road)
-    first, last = int(np.floor(line.start / COMPARISON_STEP)), int(np.ceil(line.end / COMPARISON_STEP))
-    s = np.arange(first, last + 1) * COMPARISON_STEP
+    first, last = int(np.floor(line.start / BOUNDARY.comparison_step)), int(np.ceil(line.end / BOUNDARY.comparison_step))
+    s = np.arange(first, last + 1) * BOUNDARY.comparison_step
     samples = _EdgeSamples(s, np.full(len(s), np.nan), np.full(len(s), np.nan), np.zeros(len(s), bool), np.full(len(s), np.inf))
     course = edges.course
     for k in np.flatnonzero((edges.road == road) & (edges.side == side) & (edges.status != "inferred") & (edges.part == "bottom")
@@ -272,7 +261,7 @@ def sample_edges(edges: RoadEdges, frame: RoadFrame, road: int, side: str) -> _E
             continue
         order = np.argsort(at, kind="stable")
         at, d, z = at[order], d[order], z[order]
-        inside = stretch_of(s, at[0] - COMPARISON_STEP / 2, at[-1] + COMPARISON_STEP / 2)
+        inside = stretch_of(s, at[0] - BOUNDARY.comparison_step / 2, at[-1] + BOUNDARY.comparison_step / 2)
         samples.d[inside], samples.z[inside] = np.interp(s[inside], at, d), np.interp(s[inside], at, z)
         samples.measured[inside] = edges.status[k] == "measured"
         samples.scatter[inside] = edges.rmse[k]
@@ -284,8 +273,8 @@ def select_curb_points(points: CurbPoints, others: CurbPoints, edges: RoadEdges,
     """At every place the curb points of that method whose edge measures better there.
 
     Where one method alone measured, its points are taken, unless the other saw level ground
-    there: the fewer points show a curb (SURE_SUPPORT), the more must the ground rise that the other
-    saw, up to MIN_RISE. Where both measured one curb (MAX_SAME_CURB_DISTANCE), each such stretch
+    there: the fewer points show a curb (BOUNDARY.sure_support), the more must the ground rise that the other
+    saw, up to MIN_RISE. Where both measured one curb (BOUNDARY.max_same_curb_distance), each such stretch
     takes the points that scatter less about their line. Where they found different curbs,
     those of the first method are taken.
 
@@ -317,14 +306,14 @@ def select_curb_points(points: CurbPoints, others: CurbPoints, edges: RoadEdges,
 
 def _node(s, station):
     """(N,) int, the place among the samples at (N,) stations."""
-    return np.clip(np.rint((station - s[0]) / COMPARISON_STEP), 0, len(s) - 1).astype(int)
+    return np.clip(np.rint((station - s[0]) / BOUNDARY.comparison_step), 0, len(s) - 1).astype(int)
 
 
 def _second_is_better(first, second):
     """(N,) bool: is the second edge the one to draw? False where there is neither."""
     both = first.measured & second.measured
     with np.errstate(invalid="ignore"):
-        one_curb = both & (np.abs(first.d - second.d) <= MAX_SAME_CURB_DISTANCE)
+        one_curb = both & (np.abs(first.d - second.d) <= BOUNDARY.max_same_curb_distance)
     better = second.measured & ~first.measured
     # where neither measured, the one that bridges
     better |= ~first.measured & ~second.measured & np.isfinite(second.d) & np.isnan(first.d)
@@ -332,7 +321,7 @@ def _second_is_better(first, second):
         better[a:b] = second.scatter[a:b].mean() < first.scatter[a:b].mean()
     # no change of method for a line that begins a little before the other
     for a, b in mask_runs(first.measured ^ second.measured):
-        if (b - a) * COMPARISON_STEP < MIN_SINGLE_METHOD_LENGTH:
+        if (b - a) * BOUNDARY.comparison_step < BOUNDARY.min_single_method_length:
             if a > 0 and one_curb[a - 1]:
                 better[a:b] = better[a - 1]
             elif b < len(better) and one_curb[b]:
@@ -342,7 +331,7 @@ def _second_is_better(first, second):
 
 def _slopes(d):
     """(N,) m per m along of offsets at regular stations, from those of its neighbours that are known; 0 where there are none."""
-    steps = np.diff(d) / COMPARISON_STEP
+    steps = np.diff(d) / BOUNDARY.comparison_step
     before, after = np.r_[np.nan, steps], np.r_[steps, np.nan]
     return np.nan_to_num(np.where(np.isnan(before), after, np.where(np.isnan(after), before, 0.5 * (before + after))))
 
@@ -355,13 +344,13 @@ def _level(measured, other, chains, grid, sign):
         return level
     line = measured.s[alone], sign * measured.d[alone], sign * _slopes(measured.d)[alone]
     rise, support = grid.rise(*line), 0.0 if chains is None else chains.support_along(*line)
-    doubt = np.clip(1.0 - support / SURE_SUPPORT, 0.0, 1.0)
+    doubt = np.clip(1.0 - support / BOUNDARY.sure_support, 0.0, 1.0)
     with np.errstate(invalid="ignore"):
         level[alone] = np.abs(rise) < doubt * MIN_RISE   # a fall is something else: the roof of a car, say
-        doubtful[alone] = (doubt > 0) & ~(level[alone] | (rise >= LEAST_HEIGHT))
+        doubtful[alone] = (doubt > 0) & ~(level[alone] | (rise >= CURBS.least_height))
     # what is left beside such places is too short to be a curb on such evidence
     for a, b in mask_runs(doubtful):
-        if (b - a) * COMPARISON_STEP < MIN_SINGLE_METHOD_LENGTH and (level[max(a - 1, 0)] or level[min(b, len(level) - 1)]):
+        if (b - a) * BOUNDARY.comparison_step < BOUNDARY.min_single_method_length and (level[max(a - 1, 0)] or level[min(b, len(level) - 1)]):
             level[a:b] = True
     # a place alone says nothing of a curb that goes on on both sides of it
     for a, b in mask_runs(level):
@@ -374,7 +363,7 @@ def measure_agreement(edges: RoadEdges, first_edges: RoadEdges, second_edges: Ro
     """How far apart two sets of edges lie beside every edge, and where that is much.
 
     The number is the distance that 95 % of the piece does not exceed, NaN where one of the
-    two sets has no line. It is measured across the road, every COMPARISON_STEP metres.
+    two sets has no line. It is measured across the road, every BOUNDARY.comparison_step metres.
 
     Parameters
     ----------
@@ -386,7 +375,7 @@ def measure_agreement(edges: RoadEdges, first_edges: RoadEdges, second_edges: Ro
     -------
     edges : RoadEdges with `agree`
     differences : RoadEdges, lines along the drawn edges, one for every stretch where the two lie more
-        than MIN_REPORTED_DIFFERENCE apart, `agree` their largest distance there
+        than BOUNDARY.min_reported_difference apart, `agree` their largest distance there
     """
     agree = edges.agree.copy()
     differences: list[EdgePiece] = []
@@ -398,11 +387,11 @@ def measure_agreement(edges: RoadEdges, first_edges: RoadEdges, second_edges: Ro
                 beside = apart[stretch_of(first.s, edges.station[k], edges.end[k])]
                 beside = beside[np.isfinite(beside)]
                 if len(beside):
-                    agree[k] = round(100 * float(np.quantile(beside, AGREEMENT_QUANTILE)), 1)
+                    agree[k] = round(100 * float(np.quantile(beside, BOUNDARY.agreement_quantile)), 1)
             with np.errstate(invalid="ignore"):
-                differing = (apart > MIN_REPORTED_DIFFERENCE) & np.isfinite(drawn.d)
+                differing = (apart > BOUNDARY.min_reported_difference) & np.isfinite(drawn.d)
             for a, b in mask_runs(differing):
-                if (b - a) * COMPARISON_STEP < MIN_REPORTED_LENGTH:
+                if (b - a) * BOUNDARY.comparison_step < BOUNDARY.min_reported_length:
                     continue
                 x, y, z = frame.to_map(road.number, first.s[a:b], drawn.d[a:b], drawn.z[a:b])
                 differences.append(EdgePiece(
@@ -461,7 +450,7 @@ def _pieces_of_side(points, chains, survey, road, side, number):
     curb = _Ends(own.station, sign * own.offset, own.z - expected_height(survey, road, own.station), own.height)
     rows: list[dict] = []
     gap = np.diff(curb.s)
-    begin = np.flatnonzero((gap > MAX_JOINED_GAP) & (gap <= MAX_LINE_GAP))
+    begin = np.flatnonzero((gap > CURBS.max_joined_gap) & (gap <= CURBS.max_line_gap))
     gaps = np.column_stack([curb.s[begin], curb.s[begin + 1]])
     of_methods = [StepsByStation(known.steps) for known in chains]
 
@@ -469,7 +458,7 @@ def _pieces_of_side(points, chains, survey, road, side, number):
         return frame.road(road).to_map(s, sign * u)
 
     for a, b in gaps.tolist():
-        before, after = curb[stretch_of(curb.s, a - LINE_FIT_LENGTH, a)], curb[stretch_of(curb.s, b, b + LINE_FIT_LENGTH)]
+        before, after = curb[stretch_of(curb.s, a - CURBS.line_fit_length, a)], curb[stretch_of(curb.s, b, b + CURBS.line_fit_length)]
         pieces = [(known, piece) for known, others in zip(chains, of_methods) for piece in pieces_between(before, after, others, to_plan)]
         # of pieces beside each other the one nearest to the line
         chosen: list[PieceInLine] = []

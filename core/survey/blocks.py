@@ -12,35 +12,26 @@ import numpy as np
 from ..common.parallel import ScratchBuffers
 from .frame.projection import POINTS_PER_PROJECTION, RoadProjection
 from .frame.road_frame import RoadFrame
-from .las.point_fields import EVER, IntensitySource, LasAxis, flagged, times_by_value, valid_points
+from .las.point_fields import EVER, SCANNER_FIELDS, IntensitySource, LasAxis, flagged, times_by_value, valid_points
 from .las.samples import TimeSlots
 from .store.columns import Columns
 from .store.records import COORDINATE_SCALE, SURVEY_POINT, beside_road, fill_units, point_dtype, road_of, to_units
 from .store.section_store import PartitionedPoints, SectionStore
 from .trajectory.time_systems import SECONDS_PER_WEEK
+from .weights import READING
 
 if TYPE_CHECKING:
     import laspy
 
 DECODED_LAYERS = ("z", "intensity", "point_source_id", "gps_time", "flags", "classification")  # LAZ layers that are decoded
-KEPT_ABOVE_ROAD, KEPT_BELOW_ROAD = 3.5, 4.0  # m: vehicles that hide a curb above the road, ditches below it
-# m stored beyond these limits: the height of the road is rough while reading and exact when points are returned,
-# so that the points returned do not depend on the order of the files
-INGEST_HEIGHT_MARGIN = 1.5
-HEIGHT_CELL_BITS = 12      # of a station in units of 0.1 mm: the height of the road is looked up every 0.41 m
-SCANNER_FIELDS = ("point_source_id", "scanner_channel")
-LEVEL_HEIGHT = 1.0         # m above or below the road beside the vehicle, and
-LEVEL_DISTANCE = 50.0      # m from the vehicle within which ground beyond the corridor is kept: that of side streets
 
 
 @dataclass
 class BlockSummary:
     """What a block contributes to the knowledge of the whole cloud.
 
-    scanners : {LAS field: {value: (first time, last time, count)}}
-    darkest, brightest : lowest and highest intensity
-    without_time : number of points at a time of no pass
-    excluded : number of points that are withheld or classified as noise
+    scanners : {LAS field: {value: (first time, last time, count)}}; darkest, brightest : lowest and highest intensity
+    without_time, excluded : numbers of points at a time of no pass, and of those that are withheld or classified as noise
     """
 
     scanners: dict[str, dict[int, tuple[float, float, int]]] = field(default_factory=dict)
@@ -63,12 +54,8 @@ class BlockSummary:
         self.brightest = max(self.brightest, int(columns["intensity"].max()))
 
     def add_scanners(self, columns: dict[str, np.ndarray], names: set[str], at: np.ndarray, span: tuple[float, float] = EVER) -> None:
-        """Count points by the fields that may tell scanners apart.
+        """Count points by the fields that may tell scanners apart, of which the file has `names`; `columns` has (N,) source and scanner.
 
-        Parameters
-        ----------
-        columns : (N,) source and scanner
-        names : LAS fields that the file has
         at : (N,) s, their times; m, their stations where there are none
         span : s, (first, last) time of the drive: points at other times say nothing of the scanners
         """
@@ -84,38 +71,21 @@ class BlockSummary:
 
 
 class HeightFilter:
-    """Selects points near the rough height of the road.
+    """Selects points near the rough height of the road, `drop` metres below the trajectory, up to `above` metres above it."""
 
-    Parameters
-    ----------
-    drop : metres from the trajectory down to the road
-    above : metres above the road up to which points are kept
-    """
-
-    def __init__(self, frame: RoadFrame, drop: float, above: float = KEPT_ABOVE_ROAD):
+    def __init__(self, frame: RoadFrame, drop: float, above: float = READING.kept_above_road):
         self._roads = {}
-        self._depth = np.uint32((above + KEPT_BELOW_ROAD + 2 * INGEST_HEIGHT_MARGIN) / COORDINATE_SCALE)
+        self._depth = np.uint32((above + READING.kept_below_road + 2 * READING.height_margin) / COORDINATE_SCALE)
         for road in frame.roads:
-            first, last = (int(station / COORDINATE_SCALE) >> HEIGHT_CELL_BITS for station in (road.start, road.end))
-            stations = ((np.arange(first, last + 1) << HEIGHT_CELL_BITS) + (1 << HEIGHT_CELL_BITS) // 2) * COORDINATE_SCALE
-            lowest = frame.track_height(road.number, stations) - drop - KEPT_BELOW_ROAD - INGEST_HEIGHT_MARGIN
+            first, last = (int(station / COORDINATE_SCALE) >> READING.height_cell_bits for station in (road.start, road.end))
+            stations = ((np.arange(first, last + 1) << READING.height_cell_bits) + (1 << READING.height_cell_bits) // 2) * COORDINATE_SCALE
+            lowest = frame.track_height(road.number, stations) - drop - READING.kept_below_road - READING.height_margin
             self._roads[road.number] = first, to_units(lowest)
 
     def near(self, road: int, s: np.ndarray, z: np.ndarray, buffers: Callable[..., np.ndarray]) -> np.ndarray:
-        """Which points lie near the height of the road.
-
-        Parameters
-        ----------
-        road : number
-        s, z : (N,) int32 station and local height, units of 0.1 mm
-        buffers : of `ScratchBuffers.of` for N values
-
-        Returns
-        -------
-        (N,) bool
-        """
+        """(N,) bool: which points at (N,) int32 stations s and local heights z, units of 0.1 mm, lie near the height of the road."""
         first, lowest = self._roads[int(road)]
-        cell, k = np.right_shift(s, HEIGHT_CELL_BITS, out=buffers("cell", np.int32)), buffers("k", np.intp)
+        cell, k = np.right_shift(s, READING.height_cell_bits, out=buffers("cell", np.int32)), buffers("k", np.intp)
         np.copyto(k, np.subtract(cell, first, out=cell))
         above = np.subtract(z, lowest.take(k, out=cell, mode="clip"), out=cell)
         # a negative difference becomes a large unsigned number
@@ -124,25 +94,24 @@ class HeightFilter:
     def level(self, road: int, s: np.ndarray, z: np.ndarray) -> np.ndarray:
         """(N,) bool: which points, seen from stations s, lie about as high as the road there; units of 0.1 mm."""
         first, lowest = self._roads[road]
-        height = lowest.take((s >> HEIGHT_CELL_BITS) - first, mode="clip") + int((KEPT_BELOW_ROAD + INGEST_HEIGHT_MARGIN) / COORDINATE_SCALE)
-        return np.abs(z - height) < (LEVEL_HEIGHT + INGEST_HEIGHT_MARGIN) / COORDINATE_SCALE
+        road_above = int((READING.kept_below_road + READING.height_margin) / COORDINATE_SCALE)   # the lowest height that is kept
+        height = lowest.take((s >> READING.height_cell_bits) - first, mode="clip") + road_above
+        return np.abs(z - height) < (READING.level_height + READING.height_margin) / COORDINATE_SCALE
 
 
 @dataclass(frozen=True)
 class PointChoice:
     """Which points of the files are taken, and how.
 
-    corridor : metres either side
+    corridor, above_road : metres either side, and metres above the road up to which points are kept
     has_time : whether points are assigned to passes by their time; else by the nearest point on a road
-    week_ends : whether the GPS week ends during the scan
-    above_road : metres above the road up to which points are kept
-    intensity : what the intensity of points is read from
+    week_ends : whether the GPS week ends during the scan; intensity : what the intensity of points is read from
     """
 
     corridor: float
     has_time: bool
     week_ends: bool = False
-    above_road: float = KEPT_ABOVE_ROAD
+    above_road: float = READING.kept_above_road
     intensity: IntensitySource = IntensitySource()
 
     @property
@@ -164,18 +133,11 @@ class _BlockProjector:
 
     def read(self, block: laspy.ScaleAwarePointRecord, found: BlockSummary,
              ground: HeightFilter | None = None) -> Iterator[tuple[int, Columns, np.ndarray | None]]:
-        """The points of a block near a road, piece by piece; each piece overwrites the Columns of the one before.
+        """Yield the points of a block near a road, piece by piece; each piece overwrites the Columns of the one before.
 
-        Parameters
-        ----------
-        block : laspy point record
-        found : BlockSummary, which is updated
-        ground : HeightFilter; without it points of any height are taken
-
-        Yields
-        ------
-        road number, Columns of a piece, and (N,) bool of the points to use, None for all; for ground beyond the corridor the number is that
-        of `beside_road`, and stations are the vehicle's
+        found : BlockSummary, which is updated; ground : HeightFilter, without which points of any height are taken. Yields road number, Columns of
+        a piece, and (N,) bool of the points to use, None for all; for ground beyond the corridor the number is that of `beside_road`, and
+        stations are the vehicle's.
         """
         names = set(block.point_format.dimension_names)
         axes = [LasAxis(*axis, self.dtype[axis[0].lower()]) for axis in zip("XYZ", block.scales, block.offsets, self.frame.origin)]
@@ -230,7 +192,7 @@ class _BlockProjector:
             station, x, y = driven.at(columns["time"].take(rows), "s", "x", "y")
             x -= columns["x"].take(rows) * COORDINATE_SCALE
             y -= columns["y"].take(rows) * COORDINATE_SCALE
-            near = np.flatnonzero(x * x + y * y < LEVEL_DISTANCE**2)
+            near = np.flatnonzero(x * x + y * y < READING.level_distance**2)
             rows, station = rows.take(near), to_units(station.take(near))
             if ground is not None:
                 level = np.flatnonzero(ground.level(driven.road, station, columns["z"].take(rows)))
@@ -318,9 +280,8 @@ def _both(one, other):
 
 @dataclass
 class ChosenPoints:
-    """What the points that are kept say of the survey.
+    """What the points that are kept say of the survey: the HeightHistogram of those on the vehicle's own track, and samples.
 
-    histogram : HeightHistogram of those on the vehicle's own track
     sampled : (N,) times and (N, 3) units of 0.1 mm of some points; without times none
     """
 
@@ -329,12 +290,7 @@ class ChosenPoints:
 
 
 class BlockReader:
-    """Chooses the points of blocks that lie near the road and partitions them by section; safe to use in several threads.
-
-    Parameters
-    ----------
-    slots : TimeSlots of the points that are sampled
-    """
+    """Chooses the points of blocks that lie near the road and partitions them by section; safe to use in several threads."""
 
     def __init__(self, frame: RoadFrame, choice: PointChoice, slots: TimeSlots):
         self.frame, self.choice, self.slots = frame, choice, slots
@@ -384,17 +340,8 @@ class BlockReader:
 
 # The height of the sensor above the road, from the points on the track of the vehicle itself.
 
-OWN_TRACK_HALF_WIDTH = 1.5       # m either side of the own track: road, not sidewalk
-DEFAULT_SENSOR_HEIGHT = 2.6   # m, used where too few points lie on the track
-MIN_TRACK_POINTS = 50            # points on the track that an estimate needs (more than)
-HEIGHT_RESOLUTION = 0.001           # m: resolution of the histogram
-_RESOLUTION_UNITS = round(HEIGHT_RESOLUTION / COORDINATE_SCALE)
-HEIGHT_RANGE = 20.0           # m either side of the first estimate covered by the histogram
-HEIGHT_PEAK_BIN = 0.1             # m: bin width in which the road makes the peak
-MAX_SUSPENSION_TRAVEL = 0.15            # m: no suspension lets a vehicle rise and sink more than this for half of its way
-TRACK_CELL_BITS = 8          # of a station in units of 0.1 mm: a track is looked up every 26 mm
-OWN_TRACK_HALF_WIDTH_UNITS = round(OWN_TRACK_HALF_WIDTH / COORDINATE_SCALE)
-HEIGHT_PEAK_REACH = 0.5           # m either side of the peak that belong to the road
+_RESOLUTION_UNITS = round(READING.height_resolution / COORDINATE_SCALE)
+OWN_TRACK_HALF_WIDTH_UNITS = round(READING.own_track_half_width / COORDINATE_SCALE)
 
 
 class VehicleTracks:
@@ -405,27 +352,20 @@ class VehicleTracks:
         # pass number -> first station cell, offsets and heights of the track at the middle of each cell
         self._tracks: dict[int, tuple[int, np.ndarray, np.ndarray]] = {}
         for p in frame.passes:
-            first, last = (int(station / COORDINATE_SCALE) >> TRACK_CELL_BITS for station in p.span)
-            middles = ((np.arange(first, last + 1) << TRACK_CELL_BITS) + (1 << TRACK_CELL_BITS) // 2) * COORDINATE_SCALE
+            first, last = (int(station / COORDINATE_SCALE) >> READING.track_cell_bits for station in p.span)
+            middles = ((np.arange(first, last + 1) << READING.track_cell_bits) + (1 << READING.track_cell_bits) // 2) * COORDINATE_SCALE
             offsets, heights = p.at_station(middles)
             self._tracks[p.number] = first, to_units(offsets), to_units(heights)
 
     def drops(self, road: int, points: Columns, own: np.ndarray | None = None) -> Iterator[tuple[int, np.ndarray]]:
-        """Depths below the trajectory of the points on the own track, pass by pass.
+        """Yield pass number and (M,) int32 depths below the trajectory, units of 0.1 mm, of the points of a road on the pass's own track.
 
-        Parameters
-        ----------
-        road : number
         own : (N,) bool, points to use; all by default
-
-        Yields
-        ------
-        pass number and (M,) int32 units of 0.1 mm from the trajectory down to the points
         """
         if not len(points):
             return
         number, along, across = points["pass_number"], points["s"], points["d"]
-        ends = np.array([along.min(), along.max()]) >> TRACK_CELL_BITS
+        ends = np.array([along.min(), along.max()]) >> READING.track_cell_bits
         only = number.strides[0] == 0 or number.min() == number.max()
         for p in self.frame.passes_of(road):
             if only and p.number != number[0]:
@@ -440,7 +380,7 @@ class VehicleTracks:
             if not only:
                 beside &= number == p.number
             rows = np.flatnonzero(beside)
-            cell = (along.take(rows) >> TRACK_CELL_BITS) - np.int32(first)
+            cell = (along.take(rows) >> READING.track_cell_bits) - np.int32(first)
             off = across.take(rows)
             off -= offsets.take(cell, mode="clip")
             on = np.flatnonzero(_between(off, -OWN_TRACK_HALF_WIDTH_UNITS, OWN_TRACK_HALF_WIDTH_UNITS))
@@ -458,26 +398,23 @@ def _between(values, least, most):
 
 def estimate_sensor_height(drops: np.ndarray) -> float | None:
     """A rough sensor height in metres, accurate to one or two decimetres, of (N,) units of 0.1 mm; None for too few points."""
-    return float(np.median(drops)) * COORDINATE_SCALE if len(drops) > MIN_TRACK_POINTS else None
+    return float(np.median(drops)) * COORDINATE_SCALE if len(drops) > READING.min_track_points else None
 
 
 class HeightHistogram:
-    """Histogram of the depths below the trajectory of points on the track; independent of the order of adding.
+    """Histogram of the depths below the trajectory of points on the track, by pass; independent of the order of adding.
 
-    Parameters
-    ----------
-    passes : numbers of the passes
     about : first estimate of the sensor height, m
     """
 
     def __init__(self, passes: Iterable[int], about: float):
-        self.origin = np.floor(about) - HEIGHT_RANGE
-        self.counts = {number: np.zeros(int(2 * HEIGHT_RANGE / HEIGHT_RESOLUTION), np.int64) for number in passes}
+        self.origin = np.floor(about) - READING.height_range
+        self.counts = {number: np.zeros(int(2 * READING.height_range / READING.height_resolution), np.int64) for number in passes}
         self._lock = threading.Lock()
 
     def add(self, number: int, drops: np.ndarray) -> None:
         """Count points on the track of a pass; (N,) int32 depths below the trajectory in units of 0.1 mm."""
-        size = int(2 * HEIGHT_RANGE / HEIGHT_RESOLUTION)
+        size = int(2 * READING.height_range / READING.height_resolution)
         k = drops - np.int32(round(self.origin / COORDINATE_SCALE) - _RESOLUTION_UNITS // 2)
         k //= _RESOLUTION_UNITS
         if k.min() < 0 or k.max() >= size:
@@ -494,41 +431,32 @@ class HeightHistogram:
             self.counts[number] += found
 
     def heights(self) -> dict[int, float]:
-        """Height of the trajectory above the road, one per pass.
+        """{pass number: metres of the trajectory above the road, to millimetres}; a pass without points on its track gets the median of others.
 
-        The road makes the peak of the histogram, the fullest decimetre. Its height is the median of the points within
-        half a metre of the peak, so that bridges and trees above do not count.
-
-        Returns
-        -------
-        {pass number: metres, rounded to millimetres}; a pass without points on its own track gets the median of the others.
+        The road makes the peak of the histogram, the fullest decimetre. Its height is the median of the points within half a metre of the peak, so
+        that bridges and trees above do not count.
         """
         found = {number: _road_height(counts, self.origin) for number, counts in self.counts.items()}
         known = [height for height in found.values() if height is not None]
-        usual = float(np.median(known)) if known else DEFAULT_SENSOR_HEIGHT
+        usual = float(np.median(known)) if known else READING.default_sensor_height
         return {number: usual if height is None else height for number, height in found.items()}
 
     def uneven(self) -> tuple[float, float] | None:
-        """Variation of the height of the trajectory above the road, where it is more than a vehicle can cause.
+        """(median absolute deviation, height) of the trajectory above the road in metres, where it varies by more than a vehicle can cause.
 
-        Points and trajectory share the errors of navigation, so half of the points on the own track lie within a few
-        centimetres of one height below it, whatever is parked or grows on the rest.
-
-        Returns
-        -------
-        (median absolute deviation from the height, height) in metres, of the pass where it is largest; None if no pass
-        exceeds MAX_SUSPENSION_TRAVEL.
+        Points and trajectory share the errors of navigation, so half of the points on the own track lie within a few centimetres of one height
+        below it, whatever is parked or grows on the rest. The pass with the largest deviation counts; None if none exceeds `max_suspension_travel`.
         """
         heights = self.heights()
         found = [(_half_within(counts, self.origin, heights[number]), heights[number])
-                 for number, counts in self.counts.items() if counts.sum() > MIN_TRACK_POINTS]
+                 for number, counts in self.counts.items() if counts.sum() > READING.min_track_points]
         off, height = max(found, default=(0.0, 0.0))
-        return (off, height) if off > MAX_SUSPENSION_TRAVEL else None
+        return (off, height) if off > READING.max_suspension_travel else None
 
 
 def _half_within(counts, origin, height):
     """Metres from `height` within which half of the counts of a histogram per millimetre lie."""
-    off = np.abs(origin + np.arange(len(counts)) * HEIGHT_RESOLUTION - height)
+    off = np.abs(origin + np.arange(len(counts)) * READING.height_resolution - height)
     order = np.argsort(off, kind="stable")
     near = np.cumsum(counts[order])
     return float(off[order[np.searchsorted(near, (near[-1] + 1) // 2)]])
@@ -536,22 +464,23 @@ def _half_within(counts, origin, height):
 
 def sensor_height_of(drops: np.ndarray) -> float | None:
     """Sensor height in metres, of (N,) metres from the trajectory down to points on its track; None for too few points."""
-    if len(drops) <= MIN_TRACK_POINTS:
+    if len(drops) <= READING.min_track_points:
         return None
-    origin = np.floor(np.median(drops)) - HEIGHT_RANGE
-    size = int(2 * HEIGHT_RANGE / HEIGHT_RESOLUTION)
-    k = np.rint((drops - origin) / HEIGHT_RESOLUTION).astype(np.int64)
+    origin = np.floor(np.median(drops)) - READING.height_range
+    size = int(2 * READING.height_range / READING.height_resolution)
+    k = np.rint((drops - origin) / READING.height_resolution).astype(np.int64)
     return _road_height(np.bincount(k[(k >= 0) & (k < size)], minlength=size), origin)
 
 
 def _road_height(counts, origin):
     """The median about the fullest decimetre of a histogram per millimetre; None for too few points."""
-    if counts.sum() <= MIN_TRACK_POINTS:
+    if counts.sum() <= READING.min_track_points:
         return None
-    bins = counts.reshape(-1, int(round(HEIGHT_PEAK_BIN / HEIGHT_RESOLUTION))).sum(axis=1)
+    bins = counts.reshape(-1, int(round(READING.height_peak_bin / READING.height_resolution))).sum(axis=1)
     # neighbouring bins count too: the road may lie on the border of two bins
     peak = int(np.argmax(np.convolve(bins, np.ones(3), "same")))
-    middle, reach = int((peak + 0.5) * HEIGHT_PEAK_BIN / HEIGHT_RESOLUTION), int(HEIGHT_PEAK_REACH / HEIGHT_RESOLUTION)
+    middle = int((peak + 0.5) * READING.height_peak_bin / READING.height_resolution)
+    reach = int(READING.height_peak_reach / READING.height_resolution)
     first = max(middle - reach, 0)
     near = np.cumsum(counts[first:middle + reach])
-    return round(float(origin + (first + np.searchsorted(near, (near[-1] + 1) // 2)) * HEIGHT_RESOLUTION), 3)
+    return round(float(origin + (first + np.searchsorted(near, (near[-1] + 1) // 2)) * READING.height_resolution), 3)

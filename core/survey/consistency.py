@@ -15,9 +15,9 @@ import numpy as np
 from ..common.errors import RoadExtractionError
 from ..common.features import Features
 from .adjustment.trajectory_fit import LOWEST_SENSOR
-from .estimation.poses import HEIGHT_RANGE_ABOVE
 from .frame.road_frame import RoadFrame
 from .store.road_points import RoadPoints
+from .weights import MIRROR
 
 STATION_TOLERANCE = 1.0    # m: far more than rounding, far less than the shift of another drive
 OFFSET_TOLERANCE = 1.0     # m: more than passes are moved by onto each other, less than a trajectory is moved by to its scanners (HALF_VEHICLE)
@@ -171,7 +171,7 @@ def _refuse_moved(beside, above, label):
             f"{label} lie {np.median(np.abs(beside)):.2f} m beside the offsets they carry from the trajectory. They were made with another "
             "trajectory, or with one that was moved to the scanners, as a warning said then. Run Road map, which makes all layers with the moved "
             "trajectory, or give every stage the trajectory that belongs to the cloud.")
-    if np.count_nonzero((above < -LOWEST_SENSOR) | (above > HEIGHT_RANGE_ABOVE[1])) > 0.5 * len(above):
+    if np.count_nonzero((above < -LOWEST_SENSOR) | (above > MIRROR.heights[1])) > 0.5 * len(above):
         apart = float(np.median(above))
         raise RoadExtractionError(
             f"{label} lie {abs(apart):.2f} m {'below' if apart > 0 else 'above'} the trajectory, where its vehicle cannot have driven. They were "

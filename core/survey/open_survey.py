@@ -36,6 +36,7 @@ from .survey_reader import SurveyReader
 from .trajectory.meaning import EARTH_RADIUS
 from .trajectory.time_systems import align_time, wrapped_week
 from .trajectory.trajectory import Trajectory, refuse_standstill, reproject_trajectory
+from .weights import READING
 
 
 def open_survey(paths: Sequence[str | Path], trajectory: Trajectory, settings: SurveySettings = SurveySettings(),
@@ -143,22 +144,11 @@ def _found_survey(work, name, files, progress):
 
 # Reading a survey: its points are read once and projected into the road frame, and checked against the trajectory.
 
-INGEST_PROGRESS = 0.7        # of the work, where the passes are adjusted afterwards
-SECTION_POINTS = 250_000      # points of a section, about, and
-SECTION_LENGTHS = SECTION_LENGTH, 10.0, 25.0   # m that it may be long
-PARTS_PROGRESS = 0.85        # of reading, where the points are put in order afterwards
-HIGHEST_SENSOR = 5.0         # m above the road: vehicles are up to 4 m high (Directive 96/53/EC), and a mast on a roof adds some
 
 
 @dataclass(frozen=True)
 class _SharedReading:
-    """A survey that is read by workers, or kept.
-
-    reading : Executor that reads the files
-    ordering : Executor that puts the points in order
-    points : folder for the points as they are read, seen by both; it is made
-    ordered : folder that gets the points; it is made where it is missing
-    """
+    """A survey that is read by workers, or kept: who reads the files and who puts the points in order, and the folders for either."""
 
     reading: Executor
     ordering: Executor
@@ -179,8 +169,7 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     Raises
     ------
     RoadExtractionError
-        If a file cannot be read, the CRS is geographic or not in metres, or the
-        trajectory does not overlap the cloud in space or time.
+        If a file cannot be read, the CRS is geographic or not in metres, or the trajectory does not overlap the cloud in space or time.
     """
     if settings.intensity_from == "rgb":
         check_coloured(files)
@@ -203,12 +192,12 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
                          settings.memory_limit, folder=None if shared is None else shared.points)
     reader = SurveyReader(frame, store, PointChoice(settings.corridor, has_time, week_ends, settings.above_road, intensity))
     again = settings.fit_passes and has_time and len(frame.passes) > len(frame.roads)
-    read_at = INGEST_PROGRESS if again else 1.0
+    read_at = READING.read_progress if again else 1.0
     if shared is None:
         reader.read(files, settings.block, progress.part(0.0, read_at))
     else:
         shared.points.mkdir(exist_ok=True)
-        reader.read_in_parts(files, settings.block, shared.reading, progress.part(0.0, PARTS_PROGRESS * read_at))
+        reader.read_in_parts(files, settings.block, shared.reading, progress.part(0.0, READING.parts_progress * read_at))
     _say_left_out(files, frame, reader, settings, progress)
     height = float(np.mean(list(reader.heights.values())))
     feet = _check_height(height, crs, fitted.seen or reader.uneven, progress)
@@ -226,17 +215,17 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     if not survey.has_intensity and (note := without_intensity(files, settings.intensity_from, list(samples[0].fields))):
         progress.warn(note)
     if has_time and len(scanners) == 1:
-        at = read_at if shared is None else PARTS_PROGRESS * read_at
+        at = read_at if shared is None else READING.parts_progress * read_at
         _tell_scanners_apart(survey, time, place, reader.slots.stride, progress.part(at, at))
     if shared is not None:
         shared.ordered.mkdir(exist_ok=True)
-        survey.put_in_order(shared.ordered, shared.ordering, progress.part(PARTS_PROGRESS * read_at, read_at))
+        survey.put_in_order(shared.ordered, shared.ordering, progress.part(READING.parts_progress * read_at, read_at))
     if has_time and not feet:   # a scanner that rides three times too high sees three times too far
         _check_clock(survey, progress)
     measured = survey.store
     mounted = lay_scanners(survey, progress.part(read_at, read_at), shared.points if shared else None) if has_time and not feet else 0.0
     if again:
-        adjust_passes(survey, progress.part(INGEST_PROGRESS, 1.0), shared.points if shared else None)
+        adjust_passes(survey, progress.part(READING.read_progress, 1.0), shared.points if shared else None)
     _see_passes(survey, settings.fit_passes, measured, shared, progress)
     # what the user says overrules what lies beside the trajectory
     if across := max(settings.trajectory_sigma or trajectory.sigma_across, float(np.hypot(fitted.sigma, rounding)), mounted):
@@ -301,10 +290,10 @@ def _check_height(height, crs, explained, progress):
             "trajectory that the navigation system recorded. If it is that of the vehicle's wheels, add the height of the scanner to its heights.")
     if feet := unit_note(height, crs):
         progress.warn(feet)
-    elif not explained and not 0.0 < height < HIGHEST_SENSOR:
+    elif not explained and not 0.0 < height < READING.highest_sensor:
         progress.warn(f"The trajectory lies {abs(height):.1f} m {'above' if height > 0 else 'below'} the road; scanners ride up to "
-                      f"{HIGHEST_SENSOR:g} m above it. Heights of cloud and trajectory seem to be of two kinds (above the ellipsoid and above sea "
-                      "level), in feet, or upside down. Export both anew with one kind of heights in metres.")
+                      f"{READING.highest_sensor:g} m above it. Heights of cloud and trajectory seem to be of two kinds (above the ellipsoid and "
+                      "above sea level), in feet, or upside down. Export both anew with one kind of heights in metres.")
     return feet
 
 
@@ -322,16 +311,13 @@ def _see_passes(survey, fit_passes, measured, shared, progress):
 
 
 def section_length(files: list[CloudHeader], frame: RoadFrame) -> float:
-    """Metres of station in a section of the store: the longest of SECTION_LENGTHS that holds up to SECTION_POINTS, or the shortest.
+    """Metres of station in a section of the store: the longest that holds no more than `section_points`, or the shortest.
 
     Threads work section by section, and Python lets several of them work at once only where arrays are large.
-
-    Parameters
-    ----------
-    files : headers of the clouds
     """
     density = sum(file.count for file in files) / max(sum(road.length for road in frame.roads), 1.0)
-    return max((length for length in SECTION_LENGTHS if length * density <= SECTION_POINTS), default=SECTION_LENGTH)
+    lengths = SECTION_LENGTH, *READING.longer_sections
+    return max((length for length in lengths if length * density <= READING.section_points), default=SECTION_LENGTH)
 
 
 def _sampled(files, reader, has_time, progress):
@@ -363,24 +349,9 @@ def _tell_scanners_apart(survey, time, place, stride, progress):
 
 def match_clocks(files: list[CloudHeader], trajectory: Trajectory, settings: SurveySettings,
                  progress: Progress) -> tuple[Trajectory, str, bool, bool]:
-    """Convert the trajectory to the time system of the cloud.
+    """The trajectory in the time system of the cloud, and a note for the log, "" without one; RoadExtractionError if their times do not overlap.
 
-    Parameters
-    ----------
-    files : headers of the clouds
-    settings : SurveySettings, of which `time` is used
-
-    Returns
-    -------
-    trajectory : in the time system of the cloud
-    note : for the log, "" without one
-    has_time : whether points can be assigned to passes by their time
-    week_ends : whether the GPS week ends during the scan
-
-    Raises
-    ------
-    RoadExtractionError
-        If the times of cloud and trajectory do not overlap.
+    The last two say whether points can be assigned to passes by their time, and whether the GPS week ends during the scan.
     """
     if not trajectory.has_time:
         return trajectory, "The trajectory has no time; each point is assigned to the nearest position on it.", False, False
@@ -404,10 +375,7 @@ def _without_time(files, trajectory):
 
 
 def _time_span(files):
-    """((first, last) gps_time, whether the week ends in between), of samples of every file; None if all times are equal.
-
-    The samples include the last points of each file.
-    """
+    """((first, last) gps_time, whether the week ends in between), of samples of every file, its last points among them; None if all are equal."""
     with ParallelCloudReader(("gps_time",)) as readers:
         samples = [time[np.isfinite(time)] for file in files if file.count for time in readers.times(file)]
     times = np.concatenate(samples)
@@ -487,21 +455,12 @@ def _no_overlap(files, frame, reader, corridor):
 
 # Check that points and trajectory use the same clock: the road on the own track is scanned when the vehicle is near it.
 
-CLOCK_TRACK_HALF_WIDTH = 2.0     # m either side of the own track
-MAX_LOOK_AHEAD = 6.5        # m along the road: every scanner measures road nearer than this in each rotation
-NEAREST_PERCENTILE = 10           # percentile of the distances that must be less than MAX_LOOK_AHEAD
-CLOCK_SECTIONS, CLOCK_POINTS_PER_SECTION = 20, 5000  # sampled, evenly over the survey
-MIN_CLOCK_POINTS = 500         # sampled points that a judgement needs
 
 
 def _check_clock(survey: Survey, progress: Progress = Progress()) -> None:
-    """Warn if points were measured at times at which the vehicle was elsewhere.
-
-    survey : Survey with times
-    progress : receives the warning
-    """
+    """Warn if points were measured at times at which the vehicle was elsewhere."""
     ahead, speed = _look_ahead(survey)
-    if len(ahead) < MIN_CLOCK_POINTS or np.percentile(np.abs(ahead), NEAREST_PERCENTILE) < MAX_LOOK_AHEAD:
+    if len(ahead) < READING.min_clock_points or np.percentile(np.abs(ahead), READING.nearest_percentile) < READING.max_look_ahead:
         return
     away, fast = float(np.median(ahead)), float(np.median(speed))
     seconds = f", about {abs(away) / fast:.1f} s at its speed" if fast > 1.0 else ""
@@ -514,7 +473,7 @@ def _check_clock(survey: Survey, progress: Progress = Progress()) -> None:
 def _look_ahead(survey):
     """Of sampled points on the own track: metres ahead of the vehicle when measured, and its speed then (m/s)."""
     keys = [(road, number) for road in survey.store.roads() for number in survey.store.sections(road)]
-    sampled = [keys[k] for k in np.unique(np.linspace(0, len(keys) - 1, CLOCK_SECTIONS).astype(int))] if keys else []
+    sampled = [keys[k] for k in np.unique(np.linspace(0, len(keys) - 1, READING.clock_sections).astype(int))] if keys else []
     # most of the time goes into putting the points of these sections in order
     found = [part for parts in ordered_map(lambda key: _look_ahead_in_section(survey, key), sampled) for part in parts]
     ahead, speed = zip(*found) if found else ([np.empty(0)], [np.empty(0)])
@@ -524,12 +483,12 @@ def _look_ahead(survey):
 def _look_ahead_in_section(survey, key):
     """The same of one section, by pass: list of (ahead, speed)."""
     points, found = survey.section(*key), []
-    if len(points) > CLOCK_POINTS_PER_SECTION:
-        points = points[np.unique(np.linspace(0, len(points) - 1, CLOCK_POINTS_PER_SECTION).astype(int))]
+    if len(points) > READING.clock_points_per_section:
+        points = points[np.unique(np.linspace(0, len(points) - 1, READING.clock_points_per_section).astype(int))]
     s, d, time, owner = points.s, points.d, points.time, points.pass_number
     for number in np.unique(owner).tolist():
         p = survey.frame.passes[number]
-        on_track = np.abs(d - p.at_station(s)[0]) < CLOCK_TRACK_HALF_WIDTH
+        on_track = np.abs(d - p.at_station(s)[0]) < READING.clock_track_half_width
         own = np.flatnonzero((owner == number) & on_track & (time >= p.time[0]) & (time <= p.time[-1]))
         here, soon = (p.station_at(time[own] + wait) for wait in (0.0, 0.5))
         found.append((p.direction * (s[own] - here), 2.0 * np.abs(soon - here)))

@@ -15,29 +15,19 @@ from ..common.progress import Progress
 from ..io.crs import as_in_file, parse_crs
 from ..io.local_files import unfinished_path
 from .adjustment.register import PassCorrections, sigma_of_records, sigma_to_record
-from .las.reader import POINTS_PER_BLOCK, cloud_crs, open_cloud, read_blocks
+from .las.reader import cloud_crs, open_cloud, read_blocks
 from .store.records import COORDINATE_SCALE, ROAD_POINT, point_dtype
 from .store.road_points import RoadPoints
 from .store.section_store import SectionStore
+from .weights import LAS, READING
 
-MAX_LAS_INTEGER = 2**31 - 2    # largest coordinate, as an integer about the offset, in a LAS file
+MAX_LAS_INTEGER = 2**31 - 2    # derived: largest coordinate, as an integer about the offset, in a LAS file
 
 
 def scale_for(farthest: float) -> float:
-    """The coordinate scale of a LAS file: 0.1 mm, or the least power of ten times it with which all points fit.
+    """The coordinate scale of a LAS file, metres per integer: 0.1 mm, or the least power of ten times it with which all points fit.
 
-    Parameters
-    ----------
-    farthest : metres, the largest coordinate counted from the offset of the file
-
-    Returns
-    -------
-    Metres per integer
-
-    Raises
-    ------
-    RoadExtractionError
-        If even 0.1 m is too fine.
+    farthest : metres, the largest coordinate counted from the offset of the file. RoadExtractionError if even 0.1 m is too fine.
     """
     for per_metre in (10_000, 1_000, 100, 10):
         if farthest * per_metre <= MAX_LAS_INTEGER:
@@ -47,14 +37,9 @@ def scale_for(farthest: float) -> float:
 
 
 def place_in_file(header: Any, origin: np.ndarray, crs: str, farthest: float) -> None:
-    """Set the scales, offsets and CRS of a new file, in the units of the survey's own CRS.
+    """Set the scales, offsets and CRS of a new laspy header, in the units of the survey's own CRS.
 
-    Parameters
-    ----------
-    header : laspy.LasHeader
-    origin : (3,) metres, map coordinates of the local origin
-    crs : WKT, metric, "" where unknown
-    farthest : metres, the largest local coordinate
+    origin : (3,) metres, map coordinates of the local origin; crs : WKT, metric, "" where unknown; farthest : metres, the largest local coordinate
     """
     file_wkt, units = as_in_file(crs)
     header.scales = np.full(3, scale_for(farthest / min(units.across, units.up)))
@@ -71,17 +56,9 @@ def metres_of_file(header: Any, crs: str) -> list[float]:
 
 @contextmanager
 def new_laz(path: str | os.PathLike[str], header: Any) -> Iterator[Any]:
-    """A laspy writer of a new file, which appears at its path only when all is written.
+    """A laspy writer of a new file, which appears at its path only when all is written; compressed unless the path ends in .las.
 
-    Parameters
-    ----------
-    path : of the file; compressed unless it ends in .las
-    header : laspy.LasHeader
-
-    Raises
-    ------
-    RoadExtractionError
-        If the file cannot be written.
+    RoadExtractionError if the file cannot be written.
     """
     import laspy
 
@@ -101,33 +78,24 @@ def new_laz(path: str | os.PathLike[str], header: Any) -> Iterator[Any]:
 
 # Road points as a LAZ file, with the road frame in extra fields for the later stages.
 
-ROAD_CLASS = 11  # ASPRS: road surface
-MAX_CORRECTION = 10.0  # m: larger than any correction of a pass
+ROAD_CLASS = 11  # source: ASPRS, road surface
+MILLIMETRE = 1e-3   # source: definition; m of widths and spacings in the file
 
 # stations and offsets are integers of 0.1 mm, so that reading returns exactly the records that were written
 EXTRA_FIELDS = [("road", "uint16", "Road", None), ("pass", "uint16", "Pass", None), ("scanner", "uint8", "Scanner", None),
                 ("station_m", "int32", "Station along the road", COORDINATE_SCALE), ("offset_m", "int32", "Offset, left positive", COORDINATE_SCALE),
-                ("half_width", "uint16", "Half width of the road", 1e-3), ("covered", "uint8", "Beneath something on the road", None)]
+                ("half_width", "uint16", "Half width of the road", MILLIMETRE), ("covered", "uint8", "Beneath something on the road", None)]
 CORRECTED_FIELD = ("intensity_corrected", "float32", "Intensity, range corrected", None)
 CLUSTER_FIELD = ("cluster", "int32", "Cluster of paint", None)
-SPACING_FIELD = ("spacing", "uint16", "Spacing across the road", 1e-3)
+SPACING_FIELD = ("spacing", "uint16", "Spacing across the road", MILLIMETRE)
 REQUIRED_FIELDS = ("road", "pass", "station_m", "offset_m", "half_width")
 
 
 def write_road_points(road_points: RoadPoints, path: str | Path, progress: Progress = Progress()) -> None:
-    """Write road points as LAS 1.4, class 11, in road order; a failed run leaves no file.
+    """Write road points as LAS 1.4, class 11, in road order; a failed run leaves no file. RoadExtractionError if it cannot be written.
 
     Coordinates are written as measured, in the units of the survey's own CRS; in metres with a scale of 0.1 mm, of 1 mm beyond 214 km from
     the origin and of 1 cm beyond 2,147 km. Corrections of passes are written beside them and applied again on reading.
-
-    Parameters
-    ----------
-    path : of the file, .laz or .las
-
-    Raises
-    ------
-    RoadExtractionError
-        If the file cannot be written.
     """
     sections = road_points.all_sections()
     header = _header(road_points)
@@ -163,7 +131,7 @@ def _farthest(road_points):
         return 0.0
     ends = [int(np.abs(road_points.store.section(road, number)[name]).max(initial=0))
             for road, number in road_points.all_sections() for name in "xy"]
-    return max(ends, default=0) * COORDINATE_SCALE + MAX_CORRECTION
+    return max(ends, default=0) * COORDINATE_SCALE + READING.max_correction
 
 
 def _whole(units, share):
@@ -198,17 +166,7 @@ def _record(road_points, road, number, header):
 
 
 def read_road_points(path: str | Path, progress: Progress = Progress()) -> RoadPoints:
-    """Read a LAZ file written by `write_road_points`.
-
-    Parameters
-    ----------
-    path : of the file
-
-    Raises
-    ------
-    RoadExtractionError
-        If the file lacks the extra fields of road points, or holds no points.
-    """
+    """Read a LAZ file written by `write_road_points`; RoadExtractionError if it lacks the extra fields of road points, or holds no points."""
     with open_cloud(path) as reader:
         header = reader.header
         names = set(header.point_format.dimension_names)
@@ -225,7 +183,7 @@ def read_road_points(path: str | Path, progress: Progress = Progress()) -> RoadP
     has_corrected, has_cluster, has_spacing = (name in names for name in ("intensity_corrected", "cluster", "spacing"))
     store = SectionStore(dtype)
     done = 0
-    for block in read_blocks(path, POINTS_PER_BLOCK):
+    for block in read_blocks(path, LAS.points_per_block):
         records = np.zeros(len(block), dtype)
         # another program may have rewritten the file with its own scale
         for _axis, (name, scale) in enumerate(zip("xyz", scales)):
@@ -238,12 +196,12 @@ def read_road_points(path: str | Path, progress: Progress = Progress()) -> RoadP
         records["scanner"] = block["scanner"] if "scanner" in names else 0
         records["s"] = np.rint(np.asarray(block["station_m"], float) / COORDINATE_SCALE)
         records["d"] = np.rint(np.asarray(block["offset_m"], float) / COORDINATE_SCALE)
-        records["half_width"] = np.rint(np.asarray(block["half_width"], float) / 1e-3)
+        records["half_width"] = np.rint(np.asarray(block["half_width"], float) / MILLIMETRE)
         records["corrected"] = block["intensity_corrected"] if has_corrected else np.nan
         records["cluster"] = block["cluster"] if has_cluster else 0
         records["covered"] = block["covered"] if "covered" in names else 0
         if has_spacing:
-            records["spacing"] = np.rint(np.asarray(block["spacing"], float) / 1e-3)
+            records["spacing"] = np.rint(np.asarray(block["spacing"], float) / MILLIMETRE)
         if moves is not None:
             for name, moved in zip("xyz", moves.units(records)):
                 records[name] += moved

@@ -12,13 +12,13 @@ from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from ..common.setting import check_limits, setting
 from ..execution.phase import THREADS, Executor, Recipe, read_plain, write_plain
-from .blocks import KEPT_ABOVE_ROAD
 from .frame.road import CORRIDOR
 from .las.point_fields import INTENSITY_SOURCES
-from .las.reader import POINTS_PER_BLOCK, CloudHeader
+from .las.reader import CloudHeader
 from .store.records import Points, road_of
 from .store.section_store import MEMORY_LIMIT, SectionStore
 from .survey_reader import Finishing, UnorderedPoints
+from .weights import LAS, READING
 
 if TYPE_CHECKING:
     from .adjustment.register import PassCorrections
@@ -53,10 +53,10 @@ class SurveySettings:
     intensity_from: str = INTENSITY_SOURCES[0]
     fit_passes: bool = True
     trajectory_sigma: float = setting(0.0, 0.0, 10.0, "The accuracy of the trajectory", "m")
-    above_road: float = setting(KEPT_ABOVE_ROAD, 1.0, 100.0, "The height above the road", "m")
+    above_road: float = setting(READING.kept_above_road, 1.0, 100.0, "The height above the road", "m")
     section_length: float | None = None
     memory_limit: int = MEMORY_LIMIT
-    block: int = POINTS_PER_BLOCK
+    block: int = LAS.points_per_block
 
     def __post_init__(self) -> None:
         check_limits(self)
@@ -96,7 +96,7 @@ class Survey:
     has_time: bool
     counts: dict[str, int] = field(default_factory=dict)
     moves: PassCorrections | None = None
-    above_road: float = KEPT_ABOVE_ROAD
+    above_road: float = READING.kept_above_road
     executor: Executor = THREADS
     folder: Path | None = None
     splitter: ScannerSplitter | None = None

@@ -18,17 +18,7 @@ import numpy as np
 from ..common.parallel import POLL_INTERVAL, check_cancelled
 from ..common.progress import Progress
 from ..execution.phase import Executor, Phase, Recipe
-from .blocks import (
-    DEFAULT_SENSOR_HEIGHT,
-    KEPT_BELOW_ROAD,
-    LEVEL_HEIGHT,
-    BlockReader,
-    BlockSummary,
-    ChosenPoints,
-    HeightFilter,
-    PointChoice,
-    estimate_sensor_height,
-)
+from .blocks import BlockReader, BlockSummary, ChosenPoints, HeightFilter, PointChoice, estimate_sensor_height
 from .estimation.interleaved import ScannerSplitter
 from .frame.road_frame import RoadFrame
 from .las.parallel_reader import ParallelCloudReader
@@ -39,31 +29,17 @@ from .store.columns import Columns
 from .store.records import COORDINATE_SCALE, road_of
 from .store.section_store import STRETCH_POINTS, SectionStore, Stretch
 from .store.spill_file import StoreIndex, close_parts
-
-MAX_WAITING_POINTS = 4_000_000  # points held back at most until the height of the road is known
-HEIGHT_SAMPLES = 5_000     # points on the own track from which the rough height is estimated
-MAX_INGEST_THREADS = 4     # each decodes blocks with all cores (lazrs keeps the others waiting) and projects their points
-BLOCKS_PER_THREAD = 3      # begun or queued per thread: keeps the threads busy while sections are written to the temporary file
-MAX_SPLIT_SAMPLES = 1_500_000   # points sampled, by which two scanners are told apart
+from .weights import READING
 
 
 class SurveyReader:
-    """Reads files into a section store and gathers statistics of the whole survey.
+    """Reads files into a section store and gathers statistics of the whole survey, complete after `read` or `read_in_parts`.
 
-    Parameters
-    ----------
-    store : SectionStore that the points are added to
-
-    Attributes, complete after `read` or `read_in_parts`
-    ----------------------------------------------------
-    census : ScannerCensus
     darkest, brightest : lowest and highest intensity
-    unplaced_time : number of points at a time of no pass
-    excluded : number of points that are withheld or classified as noise
-    heights : {pass number: metres from the trajectory down to the road}
-    uneven : see `HeightHistogram.uneven`
-    slots : TimeSlots of the points sampled, to tell scanners apart that no field distinguishes
-    sampled : their (N,) times and (N, 3) units of 0.1 mm, in no order; without times none
+    unplaced_time, excluded : numbers of points at a time of no pass, and of those that are withheld or classified as noise
+    heights, uneven : {pass number: metres from the trajectory down to the road}, and as of `HeightHistogram.uneven`
+    slots, sampled : TimeSlots of the points by which scanners are told apart that no field distinguishes; their (N,) times and (N, 3) units
+        of 0.1 mm, in no order; without times none
     """
 
     def __init__(self, frame: RoadFrame, store: SectionStore, choice: PointChoice):
@@ -74,7 +50,7 @@ class SurveyReader:
         # both are created once the rough height of the road is known; until then parts of blocks wait
         self._ground: HeightFilter | None = None
         self._chosen: ChosenPoints
-        self._drop = DEFAULT_SENSOR_HEIGHT
+        self._drop = READING.default_sensor_height
         self._waiting: list[tuple[int, Columns]] = []
         self._samples: list[np.ndarray] = []
 
@@ -86,7 +62,7 @@ class SurveyReader:
     def read(self, files: list[CloudHeader], block: int, progress: Progress) -> None:
         """Read all files, `block` points at a time, in several threads of this process."""
         total, done = self._begin(files), 0
-        threads = min(MAX_INGEST_THREADS, os.cpu_count() or 1)
+        threads = min(READING.max_threads, os.cpu_count() or 1)
         with ParallelCloudReader(self.choice.layers) as readers, ThreadPoolExecutor(threads) as pool:
             waiting: deque[Future] = deque()
 
@@ -101,7 +77,7 @@ class SurveyReader:
                 for load in readers.blocks(files, block):
                     waiting.append(pool.submit(self._read_block, load))
                     # the height of the road is estimated from the first blocks and filters the others
-                    while len(waiting) > (BLOCKS_PER_THREAD * threads if self._ground else 0):
+                    while len(waiting) > (READING.blocks_per_thread * threads if self._ground else 0):
                         take()
                 while waiting:
                     take()
@@ -123,14 +99,14 @@ class SurveyReader:
         self._settle()
         source = _PartsOfFiles(files, self.frame, self.store, self.choice, self.slots, self._drop, np.array(ranges, np.int64).reshape(-1, 3), block)
         phase = Phase(_read_part, source, (), source.place, source.size, _join_parts)
-        for part in executor.run(phase, source.items(PART_POINTS), progress.part(done / total, 1.0)):
+        for part in executor.run(phase, source.items(READING.part_points), progress.part(done / total, 1.0)):
             self._take_part(part)
         self._end()
 
     def _begin(self, files):
         """Prepare for the points of files; how many there are."""
         total = sum(file.count for file in files)
-        self.slots = TimeSlots.for_points(total, MAX_SPLIT_SAMPLES)
+        self.slots = TimeSlots.for_points(total, READING.max_split_samples)
         self._blocks = BlockReader(self.frame, self.choice, self.slots)
         return total
 
@@ -155,7 +131,7 @@ class SurveyReader:
         else:
             self._waiting += parts
             self._samples += [drops[::7] for road, points in parts if road >= 0 for _, drops in self._blocks.tracks.drops(road, points)]
-            if sum(map(len, self._samples)) > HEIGHT_SAMPLES or sum(len(points) for _, points in self._waiting) > MAX_WAITING_POINTS:
+            if sum(map(len, self._samples)) > READING.height_samples or sum(len(points) for _, points in self._waiting) > READING.max_waiting_points:
                 self._settle()
         return count
 
@@ -179,7 +155,7 @@ class SurveyReader:
         if self._ground is not None:
             return
         drop = estimate_sensor_height(np.concatenate(self._samples)) if self._samples else None
-        self._drop = DEFAULT_SENSOR_HEIGHT if drop is None else drop
+        self._drop = READING.default_sensor_height if drop is None else drop
         self._ground, self._chosen = self._blocks.ground(self._drop), self._blocks.chosen(self._drop)
         waiting, self._waiting, self._samples = self._waiting, [], []
         self._choose(waiting)
@@ -192,17 +168,13 @@ class SurveyReader:
 
 # The phase of reading: ranges of points of the files, each decoded, placed and written to the store's folder by whoever is given it.
 
-PART_POINTS = 1_200_000   # points of a part, about: a second or two of a worker's time, some 20 MB of its file
 
 
 @dataclass(frozen=True)
 class _PartOfFiles:
-    """What was found in a range of points.
+    """What was found in a range of points: where those lie that were kept, and what all contribute to the knowledge of the cloud.
 
-    index : where those lie that were kept
-    found : what all of them contribute to the knowledge of the cloud
-    drops : {pass number: counts of its HeightHistogram}
-    times, places : (N,) s and (N, 3) units of 0.1 mm of the sampled points
+    drops : {pass number: counts of its HeightHistogram}; times, places : (N,) s and (N, 3) units of 0.1 mm of the sampled points
     """
 
     index: StoreIndex
@@ -215,14 +187,8 @@ class _PartOfFiles:
 class _PartsOfFiles:
     """Files whose points are read part by part into the folder of a store; several threads may do so.
 
-    Parameters
-    ----------
-    files : CloudHeaders
-    store : SectionStore, of which dtype, section length, memory limit and folder count
-    slots : TimeSlots of the points that are sampled
-    drop : m from the trajectory down to the road, about
-    ranges : (B, 3) number of a file, index of the first point and points of every block
-    block : points of a block, about
+    store : of which dtype, section length, memory limit and folder count; drop : m from the trajectory down to the road, about
+    ranges : (B, 3) number of a file, index of the first point and points of every block, which has about `block` points
     """
 
     def __init__(self, files: Sequence[CloudHeader], frame: RoadFrame, store: SectionStore, choice: PointChoice, slots: TimeSlots, drop: float,
@@ -267,12 +233,7 @@ def _parts_of_files(columns: list[list[str]], section_length: float, memory_limi
 
 
 def _read_part(source: _PartsOfFiles, item: tuple[int, int]) -> _PartOfFiles:
-    """The phase of reading: the points of some blocks that lie near the road.
-
-    Parameters
-    ----------
-    item : (first, last + 1) numbers of blocks
-    """
+    """The phase of reading: the points of some blocks, (first, last + 1) of their numbers, that lie near the road."""
     chosen, found = source.reader.chosen(source.drop), BlockSummary()
     with source.store.part() as store:
         for number, first, count in source.ranges[item[0]:item[1]].tolist():
@@ -299,14 +260,7 @@ def _join_parts(parts: list[_PartOfFiles]) -> _PartOfFiles:
 # The phase that puts points in order: sections are read from where they were stored, finished, sorted, and written to a folder.
 
 class UnorderedPoints:
-    """Points of a store, to be put in order in a folder.
-
-    Parameters
-    ----------
-    store : SectionStore; the executor's workers must see its folder
-    finishing : what its points are finished with, None where they are
-    folder : that gets the points
-    """
+    """Points of a store, which workers must see, to be put in order in a folder, finished with `finishing`, None where they are."""
 
     def __init__(self, store: SectionStore, finishing: Finishing | None, folder: Path):
         self.store, self.finishing, self.folder = store, finishing, folder
@@ -317,13 +271,7 @@ class UnorderedPoints:
                                                                finishing=self.finishing, folder=str(self.folder)))
 
     def put_in_order(self, executor: Executor, place: Callable[[int, float, float], str], progress: Progress) -> None:
-        """Put all points in order; the store has them from the folder, from then on.
-
-        Parameters
-        ----------
-        executor : who does it
-        place : names the stretch of a road between two stations (m)
-        """
+        """Put all points in order; the store has them from the folder, from then on. place : names the stretch of a road between two stations (m)"""
         length = self.store.section_length
 
         def points(item):
@@ -342,12 +290,7 @@ def _unordered_points(contents: dict[str, Any], points_folder: str, finishing: F
 
 
 def _order_sections(source: UnorderedPoints, item: Stretch) -> StoreIndex:
-    """The phase: the points of some sections, in order, in a file of the folder.
-
-    Parameters
-    ----------
-    item : Stretch of its road
-    """
+    """The phase: the points of some sections, in order, in a file of the folder."""
     try:
         return source.store.write_in_order(source.store.in_stretch(item), source.folder)
     finally:
@@ -357,17 +300,14 @@ def _order_sections(source: UnorderedPoints, item: Stretch) -> StoreIndex:
 
 # What is done with the points of a section before they are put in order: scanners are numbered, and those far above or below the road go.
 
-ROAD_HEIGHT_STEP = 0.25      # m between the stations at which points are compared with the height of the road
 
 
 @dataclass(frozen=True)
 class Finishing:
-    """Finishes the points of sections.
+    """Finishes the points of sections: numbers their scanners from 0, and tells those near the height of the road.
 
-    frame : RoadFrame
     sensor_height : {pass number: metres from the trajectory down to the road}
-    scanner_field : LAS field that identifies the scanners, None if there is one
-    scanners : values of that field, see `ScannerCensus.choose`
+    scanner_field, scanners : LAS field that identifies the scanners, None if there is one, and its values, see `ScannerCensus.choose`
     splitter : tells scanners apart that no field distinguishes; None where there is no need
     above_road : metres above the road up to which points are kept
     """
@@ -380,17 +320,7 @@ class Finishing:
     above_road: float
 
     def __call__(self, road: int, records: Columns) -> np.ndarray | None:
-        """Number the scanners of the records of a section from 0.
-
-        Parameters
-        ----------
-        road : number, or that of what lies beside it
-        records : (N,) Columns, in no order, N > 0
-
-        Returns
-        -------
-        (N,) bool of those near the height of the road, None for all
-        """
+        """Number the scanners of (N,) records of a section, N > 0, and tell which lie near the height of the road: (N,) bool, None for all."""
         if self.splitter is not None:
             records["scanner"] = self.splitter.numbers(records["time"], np.stack([records[name] for name in "xyz"], axis=1) * COORDINATE_SCALE)
         elif self.scanner_field is None:
@@ -400,11 +330,11 @@ class Finishing:
             records["scanner"] = numbers_by_value(self.scanners, int(numbers.max()) + 1).take(numbers)
         # only records near the limits are compared with the height at their own station
         z = records["z"]
-        below, above = (KEPT_BELOW_ROAD, self.above_road) if road >= 0 else (LEVEL_HEIGHT, LEVEL_HEIGHT)
+        below, above = (READING.kept_below_road, self.above_road) if road >= 0 else (READING.level_height, READING.level_height)
         first, nodes = self._heights(road_of(road), records["s"].min() * COORDINATE_SCALE, records["s"].max() * COORDINATE_SCALE)
         doubtful = np.flatnonzero((z < (nodes.max() - below) / COORDINATE_SCALE + 1)
                                   | (z > (nodes.min() + above) / COORDINATE_SCALE - 1))
-        at = records["s"][doubtful] * COORDINATE_SCALE / ROAD_HEIGHT_STEP - first
+        at = records["s"][doubtful] * COORDINATE_SCALE / READING.road_height_step - first
         k = at.astype(np.int64)
         h = z[doubtful] * COORDINATE_SCALE - (nodes[k] + (at - k) * (nodes[k + 1] - nodes[k]))
         near = np.ones(len(records), bool)
@@ -413,6 +343,6 @@ class Finishing:
 
     def _heights(self, road, start, end):
         """Heights of the road at fixed stations from start to end: number of the first, heights."""
-        first = int(np.floor(start / ROAD_HEIGHT_STEP))
-        stations = np.arange(first, int(np.floor(end / ROAD_HEIGHT_STEP)) + 2) * ROAD_HEIGHT_STEP
+        first = int(np.floor(start / READING.road_height_step))
+        stations = np.arange(first, int(np.floor(end / READING.road_height_step)) + 2) * READING.road_height_step
         return first, self.frame.track_height(road, stations, self.sensor_height)

@@ -8,7 +8,7 @@ from pathlib import Path
 from processing.gui.AlgorithmDialog import AlgorithmDialog
 from qgis import utils
 from qgis.core import Qgis, QgsProcessingAlgorithm, QgsProcessingContext, QgsProcessingFeedback, QgsProject, QgsSettings
-from qgis.PyQt.QtWidgets import QDialogButtonBox, QFileDialog, QInputDialog, QMenu, QPushButton, QTextBrowser, QWidget
+from qgis.PyQt.QtWidgets import QDialogButtonBox, QFileDialog, QInputDialog, QMenu, QTextBrowser, QWidget
 
 from ...algorithms.cloud_files import cloud_files, survey_name
 from ...core.common.errors import RoadExtractionError
@@ -16,6 +16,7 @@ from ...processing_provider.results.run_table import last_run
 from ...processing_provider.texts import tr
 from ..messages import tell_result
 from ..review.corrections_layer import SURVEY, corrections_layers
+from ..widgets import button
 from .batch_dialog import BatchAlgorithmDialog
 from .database_dialog import DatabaseDialog, database_destinations
 from .destinations import LAST_OUTPUT, destinations, outputs_by_default
@@ -91,10 +92,9 @@ class LanewrightDialog(AlgorithmDialog):
             self.setParameters({"CORRECTIONS": of.get(survey)})
 
     def _button(self, text, tip):
-        button = QPushButton(text)
-        button.setToolTip(tip)
-        self.buttonBox().addButton(button, QDialogButtonBox.ButtonRole.ResetRole)
-        return button
+        made = button(text, tip=tip)
+        self.buttonBox().addButton(made, QDialogButtonBox.ButtonRole.ResetRole)
+        return made
 
     # -- everything to one place ----------------------------------------------------------------
 

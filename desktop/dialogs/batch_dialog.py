@@ -9,12 +9,13 @@ from processing.core.ProcessingResults import resultsList
 from processing.gui import BatchAlgorithmDialog as qgis_batch
 from processing.gui import BatchPanel as qgis_batch_panel
 from qgis.core import Qgis, QgsProcessing, QgsProcessingAlgorithm, QgsProcessingOutputHtml, QgsProcessingUtils, QgsSettings
-from qgis.PyQt.QtWidgets import QDialogButtonBox, QFileDialog, QPushButton, QWidget
+from qgis.PyQt.QtWidgets import QDialogButtonBox, QFileDialog, QWidget
 
 from ...algorithms.cloud_files import SUFFIXES, cloud_files, survey_name
 from ...core.common.errors import RoadExtractionError
 from ...processing_provider.texts import tr
 from ..trajectory_widget import trajectory_beside
+from ..widgets import button
 from .destinations import LAST_OUTPUT, destinations, outputs_by_default
 
 CLOUDS = "POINT_CLOUDS"
@@ -42,17 +43,14 @@ class BatchAlgorithmDialog(qgis_batch.BatchAlgorithmDialog):
             if name in self.mainWidget().parameter_to_column:
                 self.mainWidget().tblParameters.setColumnWidth(self.mainWidget().parameter_to_column[name], PATH_WIDTH)
         if {CLOUDS, "TRAJECTORY"} <= set(self.mainWidget().parameter_to_column):
-            add = QPushButton(tr("Add the surveys of a folder…"))
-            add.setToolTip(tr("One row for each folder with point clouds, and the trajectory that lies beside them"))
-            add.clicked.connect(lambda checked=False: self.choose_surveys())
-            self.buttonBox().addButton(add, QDialogButtonBox.ButtonRole.ResetRole)
+            self.buttonBox().addButton(button(tr("Add the surveys of a folder…"), self.choose_surveys, tr(
+                "One row for each folder with point clouds, and the trajectory that lies beside them")), QDialogButtonBox.ButtonRole.ResetRole)
         for fill in self.findChildren(qgis_batch_panel.BatchPanelFillWidget):
             if fill.parameterDefinition.name() == CLOUDS:  # QGIS would make a row of every file of whatever kind
                 fill.showDirectorySelectionDialog = self.choose_surveys
-        save = QPushButton(tr("Save everything to…"))
-        save.setToolTip(tr("One folder for all surveys: of each the layers in one GeoPackage called like the survey, images and reports beside it"))
-        save.clicked.connect(lambda checked=False: self.choose_folder())
-        self.buttonBox().addButton(save, QDialogButtonBox.ButtonRole.ResetRole)
+        self.buttonBox().addButton(button(tr("Save everything to…"), self.choose_folder, tr(
+            "One folder for all surveys: of each the layers in one GeoPackage called like the survey, images and reports beside it")),
+            QDialogButtonBox.ButtonRole.ResetRole)
         self.updateRunButtonVisibility()  # the box shows all of its buttons when it gets another
 
     def choose_surveys(self) -> None:

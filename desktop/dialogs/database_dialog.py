@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from qgis.core import Qgis, QgsDataSourceUri, QgsProcessingAlgorithm, QgsProviderConnectionException, QgsProviderRegistry
 from qgis.gui import QgsProviderConnectionComboBox
-from qgis.PyQt.QtWidgets import QComboBox, QDialog, QDialogButtonBox, QFormLayout, QLabel, QLineEdit, QPushButton, QWidget
+from qgis.PyQt.QtWidgets import QComboBox, QDialog, QDialogButtonBox, QFormLayout, QLineEdit, QWidget
 
 from ...processing_provider.texts import tr
+from ..widgets import answers, button, wrapped
 from .destinations import outputs_by_default, table_name
 
 PROVIDER = "postgres"
@@ -25,23 +26,16 @@ class DatabaseDialog(QDialog):
         self.connection.connectionChanged.connect(self._other_connection)
         self.prefix = QLineEdit()
         self.prefix.setPlaceholderText(tr("such as b12_, where one schema holds several surveys"))
-        self.problem = QLabel()
-        self.problem.setWordWrap(True)
-        new = QPushButton(tr("New connection…"))
-        new.clicked.connect(lambda checked=False: self._make_connection())
+        self.problem = wrapped()
         form = QFormLayout(self)
         form.addRow(self.problem)
         form.addRow(tr("Connection"), self.connection)
         form.addRow(tr("Schema"), self.schema)
         form.addRow(tr("Names of the tables begin with"), self.prefix)
-        told = QLabel(tr("One table for each layer; a table of the same name is replaced. The intensity image and the report are files: choose a "
-                         "folder for them too."))
-        told.setWordWrap(True)
-        form.addRow(told)
-        self.buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Ok | QDialogButtonBox.StandardButton.Cancel)
-        self.buttons.addButton(new, QDialogButtonBox.ButtonRole.ResetRole)
-        self.buttons.accepted.connect(self.accept)
-        self.buttons.rejected.connect(self.reject)
+        form.addRow(wrapped(tr(
+            "One table for each layer; a table of the same name is replaced. The intensity image and the report are files: choose a "
+            "folder for them too.")))
+        self.buttons = answers(self, button(tr("New connection…"), self._make_connection))
         form.addRow(self.buttons)
         self.resize(520, self.sizeHint().height())
         self._other_connection(self.connection.currentConnection())

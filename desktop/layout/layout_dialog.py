@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from qgis.core import Qgis, QgsMapLayer, QgsProject
-from qgis.PyQt.QtWidgets import QComboBox, QDialog, QDialogButtonBox, QFormLayout, QLineEdit, QWidget
+from qgis.PyQt.QtWidgets import QDialog, QFormLayout, QLineEdit, QWidget
 
 from ...processing_provider.results.road_maps import RoadMap
 from ...processing_provider.texts import tr
+from ..widgets import answers, choices
 from .map_layout import PAPERS, SCALES
 
 
@@ -39,18 +40,11 @@ class LayoutDialog(QDialog):
         self.setWindowTitle(tr("Print layout of the road map"))
         self.maps, self.project = maps, project
         form = QFormLayout(self)
-        self.road_map = QComboBox()
-        self.road_map.addItems([road_map.name for road_map in maps])
-        self.paper = QComboBox()
-        self.paper.addItems(list(PAPERS))
-        self.scale = QComboBox()
-        self.scale.addItem(tr("The largest at which the road fits; long roads on several pages"), 0)
-        for scale in SCALES:
-            self.scale.addItem(f"1 : {scale}", scale)
-        self.below = QComboBox()
-        self.below.addItem(tr("Nothing"), "")
-        for layer in layers_below(project, maps):
-            self.below.addItem(layer.name(), layer.id())
+        self.road_map = choices((road_map.name, road_map) for road_map in maps)
+        self.paper = choices((paper, paper) for paper in PAPERS)
+        self.scale = choices([(tr("The largest at which the road fits; long roads on several pages"), 0),
+                              *((f"1 : {scale}", scale) for scale in SCALES)])
+        self.below = choices([(tr("Nothing"), ""), *((layer.name(), layer.id()) for layer in layers_below(project, maps))])
         seen = [layer.id() for layer in project.layerTreeRoot().checkedLayers()]
         self.below.setCurrentIndex(next((row for row in range(1, self.below.count()) if self.below.itemData(row) in seen), 0))
         self.credit = QLineEdit()
@@ -65,10 +59,7 @@ class LayoutDialog(QDialog):
         form.addRow(tr("Credit on the map"), self.credit)
         for box in (self.scale, self.below):
             box.setMinimumContentsLength(42)
-        buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Ok | QDialogButtonBox.StandardButton.Cancel)
-        buttons.accepted.connect(self.accept)
-        buttons.rejected.connect(self.reject)
-        form.addRow(buttons)
+        form.addRow(answers(self))
 
     def _suggest_credit(self):
         below = self._layer_below()

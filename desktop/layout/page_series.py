@@ -23,14 +23,9 @@ class MapPage:
 def pages_along(lines: list[QgsGeometry], width: float, height: float) -> list[MapPage]:
     """Pages that show all of the lines.
 
-    Parameters
-    ----------
     lines : line geometries, in metres
     width, height : of the ground that a page shows, metres, width along the road
-
-    Returns
-    -------
-    list of MapPage in the order in which the lines are walked along, the longest line first
+    Returns list of MapPage in the order in which the lines are walked along, the longest line first
     """
     lines = [line for line in lines if line is not None and not line.isEmpty()]
     if not lines:

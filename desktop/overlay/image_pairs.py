@@ -27,8 +27,6 @@ GREEN, RED = "#33a02c", "#e6323c"
 class ImagePairs:
     """An image and its pairs.
 
-    Attributes
-    ----------
     path : of the image
     failed : why no pairs were found, "" where none were looked for or some were found
     rough : layer of two points that say roughly where it lies, None where none were given

@@ -4,18 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from qgis.core import (
-    QgsApplication,
-    QgsCoordinateTransform,
-    QgsCsException,
-    QgsMapLayerProxyModel,
-    QgsProcessingAlgRunnerTask,
-    QgsProcessingContext,
-    QgsProcessingFeedback,
-    QgsProcessingOutputLayerDefinition,
-    QgsProject,
-    QgsRectangle,
-)
+from qgis.core import QgsMapLayerProxyModel, QgsPointXY, QgsProcessingOutputLayerDefinition, QgsProject, QgsRectangle
 from qgis.gui import QgsMapLayerComboBox
 from qgis.PyQt.QtCore import QSize, Qt
 from qgis.PyQt.QtGui import QBrush, QColor, QIcon
@@ -25,13 +14,11 @@ from qgis.PyQt.QtWidgets import (
     QDoubleSpinBox,
     QFileDialog,
     QFormLayout,
-    QHBoxLayout,
     QLabel,
     QListView,
     QListWidget,
     QListWidgetItem,
     QProgressBar,
-    QPushButton,
     QSplitter,
     QVBoxLayout,
     QWidget,
@@ -40,6 +27,8 @@ from qgis.PyQt.QtWidgets import (
 from ...core.common.errors import RoadExtractionError
 from ...processing_provider.results.road_maps import runs_of
 from ...processing_provider.texts import tr
+from ..background import BackgroundRun
+from ..widgets import button, row, show_extent, wrapped
 from .image_pairs import GAP, GREEN, RED, SIDE, ImagePairs, pair_text
 from .two_points_dialog import TwoPointsDialog
 
@@ -58,7 +47,7 @@ class PairsDialog(QDialog):
         self.iface = iface
         self.images: list[ImagePairs] = []
         self._waiting: list = []
-        self._run = None  # (task, context, feedback) of what is running: QGIS keeps no reference to them
+        self._run: BackgroundRun | None = None
         self._filling = False
         self.two_points: TwoPointsDialog | None = None
         self._build()
@@ -68,9 +57,6 @@ class PairsDialog(QDialog):
         self.list = QListWidget()
         self.list.setWordWrap(True)
         self.list.currentRowChanged.connect(lambda row: self._show_pairs())
-        add, remove = QPushButton(tr("Add images…")), QPushButton(tr("Remove"))
-        add.clicked.connect(lambda checked=False: self.add(self.ask_for_images()))
-        remove.clicked.connect(lambda checked=False: self._remove())
         self.intensity = QgsMapLayerComboBox()
         self.intensity.setFilters(QgsMapLayerProxyModel.Filter.RasterLayer)
         self._prefer_intensity()
@@ -80,11 +66,9 @@ class PairsDialog(QDialog):
         self.size.setSingleStep(0.005)
         self.size.setSuffix(" m")
         self.size.setSpecialValueText(tr("as the image says"))
-        self.rough_button = QPushButton(tr("Two points by hand…"))
-        self.rough_button.setToolTip(tr("Where the chosen image says nothing of its position: two places clicked in it and in the intensity image"))
-        self.rough_button.clicked.connect(lambda checked=False: self.point())
-        self.propose_button = QPushButton(tr("Propose control points"))
-        self.propose_button.clicked.connect(lambda checked=False: self.propose())
+        self.rough_button = button(tr("Two points by hand…"), self.point, tr(
+            "Where the chosen image says nothing of its position: two places clicked in it and in the intensity image"))
+        self.propose_button = button(tr("Propose control points"), self.propose)
         form = QFormLayout()
         form.setRowWrapPolicy(QFormLayout.RowWrapPolicy.WrapAllRows)
         form.addRow(tr("Intensity image"), self.intensity)
@@ -94,9 +78,9 @@ class PairsDialog(QDialog):
         column.setContentsMargins(0, 0, 0, 0)
         column.addWidget(QLabel(tr("Images")))
         column.addWidget(self.list, 1)
-        column.addLayout(_row(add, remove))
+        column.addLayout(row(button(tr("Add images…"), lambda: self.add(self.ask_for_images())), button(tr("Remove"), self._remove)))
         column.addLayout(form)
-        column.addLayout(_row(self.rough_button, self.propose_button))
+        column.addLayout(row(self.rough_button, self.propose_button))
         self.pairs = QListWidget()
         self.pairs.setViewMode(QListView.ViewMode.IconMode)
         self.pairs.setResizeMode(QListView.ResizeMode.Adjust)
@@ -106,13 +90,10 @@ class PairsDialog(QDialog):
         self.pairs.setSpacing(6)
         self.pairs.itemChanged.connect(self._ticked)
         self.pairs.itemDoubleClicked.connect(self._zoom)
-        self.told = QLabel(tr("Add images, choose the intensity image, and let control points be proposed."))
-        self.told.setWordWrap(True)
-        accept, refuse = QPushButton(tr("Accept the selected")), QPushButton(tr("Refuse the selected"))
-        accept.clicked.connect(lambda checked=False: self.accept_selected(True))
-        refuse.clicked.connect(lambda checked=False: self.accept_selected(False))
-        self.place_button = QPushButton(tr("Georeference the images"))
-        self.place_button.clicked.connect(lambda checked=False: self.place())
+        self.told = wrapped(tr("Add images, choose the intensity image, and let control points be proposed."))
+        accept, refuse = (button(text, lambda accepted=accepted: self.accept_selected(accepted)) for text, accepted in (
+            (tr("Accept the selected"), True), (tr("Refuse the selected"), False)))
+        self.place_button = button(tr("Georeference the images"), self.place)
         self.bar = QProgressBar()
         self.bar.hide()
         right = QWidget()
@@ -122,7 +103,7 @@ class PairsDialog(QDialog):
         column.addWidget(self.pairs, 1)
         column.addWidget(self.told)
         column.addWidget(self.bar)
-        column.addLayout(_row(accept, refuse, None, self.place_button))
+        column.addLayout(row(accept, refuse, None, self.place_button))
         parts = QSplitter()
         parts.addWidget(left)
         parts.addWidget(right)
@@ -157,22 +138,22 @@ class PairsDialog(QDialog):
             self.list.setCurrentRow(0)
 
     def _remove(self):
-        row = self.list.currentRow()
-        if row >= 0 and self._run is None:
-            del self.images[row]
-            self.list.takeItem(row)
+        number = self.list.currentRow()
+        if number >= 0 and self._run is None:
+            del self.images[number]
+            self.list.takeItem(number)
             self._tell()
 
     @property
     def current(self) -> ImagePairs | None:
         """The image whose pairs are shown."""
-        row = self.list.currentRow()
-        return self.images[row] if 0 <= row < len(self.images) else None
+        number = self.list.currentRow()
+        return self.images[number] if 0 <= number < len(self.images) else None
 
     def _tell(self):
         """The state of every image in the list, that of the current one below its pairs."""
-        for row, one in enumerate(self.images):
-            self.list.item(row).setText(f"{one.name}\n{one.summary()}")
+        for number, one in enumerate(self.images):
+            self.list.item(number).setText(f"{one.name}\n{one.summary()}")
         if self.current is not None:
             self.told.setText(f"{self.current.name}: {self.current.summary()}")
         self._enable()
@@ -196,9 +177,9 @@ class PairsDialog(QDialog):
             except RoadExtractionError as problem:
                 pictures = []
                 self.told.setText(str(problem))
-            for row, picture in zip(one.rows(), pictures):
+            for pair, picture in zip(one.rows(), pictures):
                 item = QListWidgetItem(QIcon(picture), "")
-                item.setData(_ID, row.id())
+                item.setData(_ID, pair.id())
                 item.setFlags(item.flags() | Qt.ItemFlag.ItemIsUserCheckable)
                 self.pairs.addItem(item)
         self._filling = False
@@ -207,14 +188,14 @@ class PairsDialog(QDialog):
     def _label(self):
         """Text, tick and colour of every pair, from the layer."""
         self._filling = True
-        rows = {row.id(): row for row in self.current.rows()} if self.current is not None else {}
+        rows = {pair.id(): pair for pair in self.current.rows()} if self.current is not None else {}
         for number in range(self.pairs.count()):
             item = self.pairs.item(number)
-            row = rows.get(item.data(_ID))
-            if row is not None:
-                item.setText(pair_text(row))
-                item.setCheckState(Qt.CheckState.Checked if row["accepted"] else Qt.CheckState.Unchecked)
-                item.setForeground(QBrush(QColor(GREEN if row["accepted"] else RED)))
+            pair = rows.get(item.data(_ID))
+            if pair is not None:
+                item.setText(pair_text(pair))
+                item.setCheckState(Qt.CheckState.Checked if pair["accepted"] else Qt.CheckState.Unchecked)
+                item.setForeground(QBrush(QColor(GREEN if pair["accepted"] else RED)))
         self._filling = False
         self._tell()
 
@@ -234,15 +215,8 @@ class PairsDialog(QDialog):
         layer = self.current.layer if self.current is not None else None
         if layer is None:
             return
-        at = layer.getFeature(item.data(_ID)).geometry().asPoint()
-        canvas = self.iface.mapCanvas()
-        around = QgsRectangle(at.x() - NEAR, at.y() - NEAR, at.x() + NEAR, at.y() + NEAR)
-        try:
-            canvas.setExtent(QgsCoordinateTransform(layer.crs(), canvas.mapSettings().destinationCrs(),
-                                                    QgsProject.instance()).transformBoundingBox(around))
-        except QgsCsException:
-            return
-        canvas.refresh()
+        at: QgsPointXY = layer.getFeature(item.data(_ID)).geometry().asPoint()
+        show_extent(self.iface.mapCanvas(), QgsRectangle.fromCenterAndSize(at, 2 * NEAR, 2 * NEAR), layer.crs())
 
     # -- runs -------------------------------------------------------------------------------------
 
@@ -285,49 +259,27 @@ class PairsDialog(QDialog):
             self._show_pairs()
             return
         name, one, inputs = self._waiting.pop(0)
-        algorithm = QgsApplication.processingRegistry().createAlgorithmById(f"lanewright:{name}")
-        context, feedback = QgsProcessingContext(), QgsProcessingFeedback(False)
-        context.setProject(QgsProject.instance())
-        context.setFeedback(feedback)
-        feedback.progressChanged.connect(lambda share: self.bar.setValue(int(share)))
-        task = QgsProcessingAlgRunnerTask(algorithm, inputs, context, feedback)
-        task.executed.connect(lambda ok, results: self._ended(algorithm, one, inputs, ok, results))
-        self._run = task, context, feedback
+        self._run = BackgroundRun(name, inputs, lambda run, fine: self._ended(one, run, fine))
+        self._run.feedback.progressChanged.connect(lambda share: self.bar.setValue(int(share)))
         self.bar.setValue(0)
-        self.told.setText(f"{one.name}: {algorithm.declaration.title()}…")
+        self.told.setText(f"{one.name}: {self._run.algorithm.declaration.title()}…")
         self._enable()
-        QgsApplication.taskManager().addTask(task)
 
-    def _ended(self, algorithm, one, inputs, ok, results):
-        from processing.gui.Postprocessing import handleAlgorithmResults
-
-        _, context, feedback = self._run
+    def _ended(self, one, run, fine):
         try:
-            if ok:
-                handleAlgorithmResults(algorithm, context, feedback, inputs)
-                layer = QgsProject.instance().mapLayer(results.get("CONTROL_POINTS", ""))
+            if fine:
+                run.load_results()
+                layer = QgsProject.instance().mapLayer(run.results.get("CONTROL_POINTS", ""))
                 if layer is not None:
                     one.found(layer)
                 else:
-                    one.placed = tr("On the map: {file}").format(file=Path(str(results.get("OUTPUT", ""))).name)
+                    one.placed = tr("On the map: {file}").format(file=Path(str(run.results.get("OUTPUT", ""))).name)
+            elif "CONTROL_POINTS" in run.parameters:
+                one.failed_because(run.reason)
             else:
-                said = (feedback.textLog().strip().splitlines() or [tr("cancelled")])[-1]
-                if "CONTROL_POINTS" in inputs:
-                    one.failed_because(said)
-                else:
-                    one.placed = said
+                one.placed = run.reason
         finally:  # or the window would wait for ever
             self._next()
-
-
-def _row(*widgets):
-    row = QHBoxLayout()
-    for widget in widgets:
-        if widget is None:
-            row.addStretch()
-        else:
-            row.addWidget(widget)
-    return row
 
 
 def _free_name(path):

@@ -5,10 +5,11 @@ from __future__ import annotations
 from qgis.core import QgsCoordinateReferenceSystem, QgsFeature, QgsGeometry, QgsPointXY, QgsRasterLayer, QgsVectorLayer
 from qgis.gui import QgsMapCanvas, QgsMapToolEmitPoint, QgsVertexMarker
 from qgis.PyQt.QtGui import QColor
-from qgis.PyQt.QtWidgets import QDialog, QDialogButtonBox, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
+from qgis.PyQt.QtWidgets import QDialog, QDialogButtonBox, QVBoxLayout, QWidget
 
 from ...processing_provider.texts import tr
 from ...products.overlay.source_image import SourceImage, open_image
+from ..widgets import answers, button, row, wrapped
 
 COLOURS = ("#ff00c8", "#00c8ff")  # of the first and the second point
 NEEDED = len(COLOURS)
@@ -23,24 +24,15 @@ class TwoPointsDialog(QDialog):
         self.image: SourceImage = open_image(path)
         self.intensity = intensity
         self.photo = QgsRasterLayer(path, "image")
-        self.told = QLabel()
-        self.told.setWordWrap(True)
+        self.told = wrapped()
         self.places: dict[QgsMapCanvas, list[QgsPointXY]] = {}
         self.marks: list[tuple[QgsMapCanvas, QgsVertexMarker]] = []
         self.tools = []  # a canvas keeps no reference
         self.views = [self._canvas(layer) for layer in (self.photo, intensity)]
-        begin = QPushButton(tr("Begin again"))
-        begin.clicked.connect(lambda checked=False: self.begin())
-        self.buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Ok | QDialogButtonBox.StandardButton.Cancel)
-        self.buttons.accepted.connect(self.accept)
-        self.buttons.rejected.connect(self.reject)
-        self.buttons.addButton(begin, QDialogButtonBox.ButtonRole.ResetRole)
-        row = QHBoxLayout()
-        for view in self.views:
-            row.addWidget(view, 1)
+        self.buttons = answers(self, button(tr("Begin again"), self.begin))
         column = QVBoxLayout(self)
         column.addWidget(self.told)
-        column.addLayout(row, 1)
+        column.addLayout(row(*self.views), 1)
         column.addWidget(self.buttons)
         self.resize(1100, 620)
         self.begin()

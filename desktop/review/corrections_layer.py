@@ -9,7 +9,6 @@ from qgis.core import (
     Qgis,
     QgsCoordinateReferenceSystem,
     QgsCoordinateTransform,
-    QgsCsException,
     QgsFeature,
     QgsGeometry,
     QgsProject,
@@ -26,6 +25,7 @@ from ...processing_provider.results.origin import OUTPUT
 from ...processing_provider.results.road_maps import RoadMap
 from ...processing_provider.styling import STYLES, apply_style
 from ...processing_provider.texts import tr
+from ..widgets import brought_to
 
 NAME = "CORRECTIONS"
 TABLE = "corrections"
@@ -44,24 +44,21 @@ def corrections_layers(project: QgsProject) -> list[QgsVectorLayer]:
 def corrections_of_survey(project: QgsProject, survey: str, extent: QgsRectangle, crs: QgsCoordinateReferenceSystem) -> QgsVectorLayer | None:
     """The layer with the corrections of a survey: one that says so, else one that says nothing and lies where the survey does.
 
-    Parameters
-    ----------
-    project : QgsProject
     survey : its name
     extent, crs : where it lies
     """
     for layer in corrections_layers(project):
         of = layer.customProperty(SURVEY)
-        if of == survey or not of and layer.featureCount() > 0 and _overlaps(layer, extent, crs, project):
+        if of == survey or not of and layer.featureCount() > 0 and brought_to(extent, crs, layer.crs()).intersects(layer.extent()):
             return layer
     return None
 
 
-def _overlaps(layer, extent, crs, project):
-    try:
-        return QgsCoordinateTransform(crs, layer.crs(), project).transformBoundingBox(extent).intersects(layer.extent())
-    except QgsCsException:
-        return False
+def _placed(line, crs, layer):
+    """A line in the CRS of a layer."""
+    placed = QgsGeometry(line)
+    placed.transform(QgsCoordinateTransform(crs, layer.crs(), QgsProject.instance()))
+    return placed
 
 
 def new_corrections_layer(project: QgsProject, path: str, crs: QgsCoordinateReferenceSystem, survey: str = "") -> QgsVectorLayer:
@@ -119,8 +116,7 @@ def add_correction(layer: QgsVectorLayer, line: QgsGeometry, crs: QgsCoordinateR
     -------
     Number of the feature
     """
-    placed = QgsGeometry(line)
-    placed.transform(QgsCoordinateTransform(crs, layer.crs(), QgsProject.instance()))
+    placed = _placed(line, crs, layer)
     former = former or correction_at(layer, line, crs, str(values["target"]))
     lacking = [column for column in CORRECTIONS if column.name in values and layer.fields().lookupField(column.name) < 0]
     if lacking:  # a layer of an earlier version
@@ -145,8 +141,7 @@ def add_correction(layer: QgsVectorLayer, line: QgsGeometry, crs: QgsCoordinateR
 
 def correction_at(layer: QgsVectorLayer, line: QgsGeometry, crs: QgsCoordinateReferenceSystem, target: str) -> QgsFeature | None:
     """The correction that was made of a piece, None where there is none."""
-    placed = QgsGeometry(line)
-    placed.transform(QgsCoordinateTransform(crs, layer.crs(), QgsProject.instance()))
+    placed = _placed(line, crs, layer)
     box = placed.boundingBox().buffered(SAME_PLACE)
     for feature in layer.getFeatures(box):
         if feature["target"] == target and feature.geometry().hausdorffDistance(placed) < SAME_PLACE:
@@ -156,8 +151,7 @@ def correction_at(layer: QgsVectorLayer, line: QgsGeometry, crs: QgsCoordinateRe
 
 def move_of(layer: QgsVectorLayer, line: QgsGeometry, crs: QgsCoordinateReferenceSystem, target: str, road: int, station: float) -> QgsFeature | None:
     """The correction that moves a piece, by where the piece begins and lies; None where there is none."""
-    placed = QgsGeometry(line)
-    placed.transform(QgsCoordinateTransform(crs, layer.crs(), QgsProject.instance()))
+    placed = _placed(line, crs, layer)
     for feature in layer.getFeatures(placed.boundingBox().buffered(MOVED)):
         begins = feature["road"], feature["station_m"]
         if (feature["action"], feature["target"]) == ("move", target) and NULL not in begins and begins[0] == road \

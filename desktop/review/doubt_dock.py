@@ -4,39 +4,18 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from qgis.core import (
-    Qgis,
-    QgsCoordinateTransform,
-    QgsCsException,
-    QgsGeometry,
-    QgsProject,
-    QgsRectangle,
-    QgsVectorLayer,
-)
+from qgis.core import Qgis, QgsGeometry, QgsProject, QgsRectangle, QgsVectorLayer
 from qgis.gui import QgsRubberBand
 from qgis.PyQt.QtCore import Qt, pyqtSignal
 from qgis.PyQt.QtGui import QAction, QColor, QKeySequence
-from qgis.PyQt.QtWidgets import (
-    QAbstractItemView,
-    QCheckBox,
-    QComboBox,
-    QDockWidget,
-    QFileDialog,
-    QHBoxLayout,
-    QLabel,
-    QLineEdit,
-    QListWidget,
-    QMenu,
-    QPushButton,
-    QVBoxLayout,
-    QWidget,
-)
+from qgis.PyQt.QtWidgets import QAbstractItemView, QCheckBox, QDockWidget, QFileDialog, QLineEdit, QListWidget, QMenu, QVBoxLayout, QWidget
 
 from ...core.common.errors import RoadExtractionError
 from ...core.corrections.corrections import taken_reading
 from ...processing_provider.results.attributes import WORDS
 from ...processing_provider.results.road_maps import RoadMap, clouds_of
 from ...processing_provider.texts import tr
+from ..widgets import button, choices, row, say, show_extent, wrapped
 from .corrections_layer import add_correction, correction_at, corrections_of_survey, lay_above, move_of, new_corrections_layer, take_back
 from .doubtful import Doubt, DoubtfulPiece, doubts_of
 from .line_tool import LineTool
@@ -76,22 +55,15 @@ class DoubtDock(QDockWidget):
         QgsProject.instance().layersWillBeRemoved.connect(self._forget)
 
     def _build(self):
-        self.where = QLabel()
-        self.where.setWordWrap(True)
+        self.where = wrapped()
         back = self._button("◀", tr("The place before"), lambda: self.go(self.road_map, -1), "P")
         ahead = self._button("▶", tr("The next place"), lambda: self.go(self.road_map), "N")
-        for button in (back, ahead):
-            button.setFixedWidth(34)
-        self.kinds = QComboBox()
-        for title, kind in ((tr("Everything"), ""), (tr("Road edges"), "edge"), (tr("Road surface"), "surface"), (tr("Marking lines"), "marking"),
-                            (tr("Lanes"), "lane"), (tr("Warnings"), "warning")):
-            self.kinds.addItem(title, kind)
-        self.order = QComboBox()
-        self.order.addItem(tr("The most doubtful first"), True)
-        self.order.addItem(tr("Along the road"), False)
+        for arrow in (back, ahead):
+            arrow.setFixedWidth(34)
+        self.kinds = choices(((tr("Everything"), ""), (tr("Road edges"), "edge"), (tr("Road surface"), "surface"), (tr("Marking lines"), "marking"),
+                              (tr("Lanes"), "lane"), (tr("Warnings"), "warning")), self._begin_again)
+        self.order = choices(((tr("The most doubtful first"), True), (tr("Along the road"), False)), self._begin_again)
         self.undecided = QCheckBox(tr("Only what is not done"))
-        for changed in (self.kinds.currentIndexChanged, self.order.currentIndexChanged):
-            changed.connect(lambda index: self._begin_again())
         self.list = QListWidget()
         self.list.setSelectionMode(QAbstractItemView.SelectionMode.ExtendedSelection)
         self.list.setWordWrap(True)
@@ -109,40 +81,36 @@ class DoubtDock(QDockWidget):
         for target, title in (("edge", tr("Road edge…")), ("marking", tr("Marking line…")), ("lane", tr("Lane, in the direction of travel…"))):
             menu.addAction(title, lambda target=target: self.begin_draw(target))
         self.draw_button.setMenu(menu)
-        self.hint = QLabel()  # in the message bar it would lie on the map, and clicks on it would be lost
-        self.hint.setWordWrap(True)
+        self.hint = wrapped()  # in the message bar it would lie on the map, and clicks on it would be lost
         self.hint.setStyleSheet("background: #fff3c4; color: #222222; padding: 4px")
         self.hint.hide()
-        self.kept = QLabel()
-        self.kept.setWordWrap(True)
+        self.kept = wrapped()
         self.undo_button = self._button(tr("Take back the last"), tr("Removes the correction that was made last"), self.undo)
         self.run_button = self._button(tr("Make the map again…"), tr("Opens Road map with these corrections"),
                                        lambda: self.run_wanted.emit(self.road_map, self.layer))
         body = QWidget()
         column = QVBoxLayout(body)
-        column.addLayout(_row(back, ahead, self.where))
-        column.addLayout(_row(self.kinds, self.order))
+        column.addLayout(row(back, ahead, self.where))
+        column.addLayout(row(self.kinds, self.order))
         column.addWidget(self.undecided)
         column.addWidget(self.list, 1)
-        column.addLayout(_row(self.accept_button, self.delete_button, self.move_button, self.other_button, self.draw_button))
+        column.addLayout(row(self.accept_button, self.delete_button, self.move_button, self.other_button, self.draw_button))
         column.addWidget(self.note)
         column.addWidget(self.hint)
         column.addWidget(self.kept)
-        column.addLayout(_row(self.undo_button, self.run_button))
+        column.addLayout(row(self.undo_button, self.run_button))
         self.setWidget(body)
 
     def _button(self, text, tip, what, key=""):
         """A button; `key` presses it while the window has the focus."""
-        button = QPushButton(text)
-        button.setToolTip(f"{tip} ({key})" if key else tip)
-        button.clicked.connect(lambda checked=False: what())
+        made = button(text, what, f"{tip} ({key})" if key else tip)
         if key:
             action = QAction(tip, self)
             action.setShortcut(QKeySequence(key))
             action.setShortcutContext(Qt.ShortcutContext.WidgetWithChildrenShortcut)
-            action.triggered.connect(lambda checked=False: button.click())
+            action.triggered.connect(lambda checked=False: made.click())
             self.addAction(action)
-        return button
+        return made
 
     def remove(self) -> None:
         """Take the window out of QGIS."""
@@ -236,14 +204,9 @@ class DoubtDock(QDockWidget):
         return str(self.road_map.layers[0].customProperty(SEEN) or "").split("\n")
 
     def _zoom(self, place):
-        canvas, extent = self.iface.mapCanvas(), QgsRectangle(place.extent)
+        extent = QgsRectangle(place.extent)
         extent.grow(max(0.15 * max(extent.width(), extent.height()), (LEAST_VIEW - max(extent.width(), extent.height())) / 2))
-        try:
-            shown = QgsCoordinateTransform(place.crs, canvas.mapSettings().destinationCrs(), QgsProject.instance()).transformBoundingBox(extent)
-        except QgsCsException:
-            return
-        canvas.setExtent(shown)
-        canvas.refresh()
+        show_extent(self.iface.mapCanvas(), extent, place.crs)
 
     # -- what is selected -------------------------------------------------------------------------
 
@@ -304,7 +267,7 @@ class DoubtDock(QDockWidget):
         try:
             return new_corrections_layer(QgsProject.instance(), path, self.road_map.vectors[0].crs(), self.road_map.survey)
         except RoadExtractionError as problem:
-            self.iface.messageBar().pushMessage("Lanewright", str(problem), level=Qgis.MessageLevel.Warning)
+            say(self.iface, str(problem), Qgis.MessageLevel.Warning)
             return None
 
     def decide(self, action: str) -> None:
@@ -391,10 +354,3 @@ class DoubtDock(QDockWidget):
         self.kept.setText(tr("No corrections yet.") if not count else
                           tr("Corrections in {file}: {count}. They come into the map when it is made again.").format(
                               count=count, file=Path(layer.source().split("|")[0]).name))
-
-
-def _row(*widgets):
-    row = QHBoxLayout()
-    for widget in widgets:
-        row.addWidget(widget, 1 if isinstance(widget, (QLabel, QLineEdit, QComboBox)) else 0)
-    return row

@@ -18,7 +18,7 @@ from qgis.core import (
 from qgis.gui import QgsMapToolEmitPoint, QgsRubberBand
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtGui import QColor
-from qgis.PyQt.QtWidgets import QDockWidget, QDoubleSpinBox, QFileDialog, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
+from qgis.PyQt.QtWidgets import QDockWidget, QDoubleSpinBox, QFileDialog, QLabel, QVBoxLayout, QWidget
 
 from ...core.common.errors import Cancelled, RoadExtractionError
 from ...core.common.parallel import cancellation_scope
@@ -27,6 +27,7 @@ from ...core.road.scanlines.section_planes import slice_lines
 from ...core.survey.las.samples import points_near
 from ...processing_provider.results.road_maps import RoadMap, clouds_lie_in, clouds_of, road_maps
 from ...processing_provider.texts import told, tr
+from ..widgets import button, row
 from .section import HALF_WIDTH, Section, corners, crossings, middle_of, section_at
 from .section_view import SectionView
 
@@ -49,13 +50,11 @@ class SectionDock(QDockWidget):
         self.section = self.road_map = self.task = None
         self._asked: set[str] = set()  # road maps whose user was asked where the point clouds are
         self._kept, self._kept_at = np.empty((0, 4)), None  # points about a place: (clouds, x, y)
-        self.pick = QPushButton(tr("Click in the map"))
-        self.pick.clicked.connect(lambda checked=False: iface.mapCanvas().setMapTool(self.tool))
-        back, ahead = QPushButton("◀"), QPushButton("▶")
-        for button, metres, tip in ((back, -STEP, tr("A metre back along the road")), (ahead, STEP, tr("A metre ahead along the road"))):
-            button.setToolTip(tip)
-            button.setFixedWidth(34)
-            button.clicked.connect(lambda checked=False, metres=metres: self.step(metres))
+        self.pick = button(tr("Click in the map"), lambda: iface.mapCanvas().setMapTool(self.tool))
+        back = button("◀", lambda: self.step(-STEP), tr("A metre back along the road"))
+        ahead = button("▶", lambda: self.step(STEP), tr("A metre ahead along the road"))
+        for arrow in (back, ahead):
+            arrow.setFixedWidth(34)
         self.thickness = QDoubleSpinBox()
         self.thickness.setRange(0.02, 5.0)
         self.thickness.setSingleStep(0.05)
@@ -63,14 +62,10 @@ class SectionDock(QDockWidget):
         self.thickness.setSuffix(" m")
         self.thickness.setToolTip(tr("Length of road from which points are shown"))
         self.thickness.valueChanged.connect(lambda value: self._draw())
-        row = QHBoxLayout()
-        for widget in (self.pick, back, ahead, QLabel(tr("Thickness")), self.thickness):
-            row.addWidget(widget)
-        row.addStretch()
         body = QWidget()
         column = QVBoxLayout(body)
         column.setContentsMargins(4, 4, 4, 4)
-        column.addLayout(row)
+        column.addLayout(row(self.pick, back, ahead, QLabel(tr("Thickness")), self.thickness, None))
         column.addWidget(self.view, 1)
         self.setWidget(body)
         iface.addDockWidget(Qt.DockWidgetArea.BottomDockWidgetArea, self)

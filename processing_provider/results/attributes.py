@@ -87,8 +87,6 @@ def _parts():
 def explain_attributes(layer: QgsVectorLayer, output: str, schema: Sequence[Any]) -> None:
     """Set names, formats and titles of the fields that a layer has.
 
-    Parameters
-    ----------
     layer : of a result
     output : the result, such as ROAD_EDGES
     schema : columns of the result, with aliases

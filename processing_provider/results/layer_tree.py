@@ -8,37 +8,31 @@ from .origin import OUTPUT, describe_origin, origin_of
 from .road_maps import LINES, road_map_of, runs_of
 from .runs import Run
 
-NAMES_ONLY = "lanewright/names_only"      # setting of the user
-REPLACE = "lanewright/replace_last_run"  # setting of the user
 IMAGES = ("ORTHOIMAGE", "UAV_IMAGE")
 BELOW_IMAGES = ("INTENSITY_IMAGE", "DENSITY")
 
 
-def replaces_last_run() -> bool:
-    """Whether the user wants a run to take the place of the last one of the same survey."""
-    return QgsSettings().value(REPLACE, False, type=bool)
+class Setting:
+    """A yes or no of the user that QGIS keeps; no at first."""
+
+    def __init__(self, key: str):
+        self.key = f"lanewright/{key}"
+
+    def holds(self) -> bool:
+        return QgsSettings().value(self.key, False, type=bool)
+
+    def keep(self, value: bool) -> None:
+        QgsSettings().setValue(self.key, value)
 
 
-def set_replaces_last_run(replaces: bool) -> None:
-    QgsSettings().setValue(REPLACE, bool(replaces))
-
-
-def keeps_names_only() -> bool:
-    """Whether the user wants results to name the files they were made from without their folders."""
-    return QgsSettings().value(NAMES_ONLY, False, type=bool)
-
-
-def set_keeps_names_only(names: bool) -> None:
-    QgsSettings().setValue(NAMES_ONLY, bool(names))
+REPLACES_LAST_RUN = Setting("replace_last_run")  # a run takes the place of the last one of the same survey
+NAMES_ONLY = Setting("names_only")               # results name the files they were made from without their folders
 
 
 def place_layer(layer: QgsMapLayer, project: QgsProject, output: str, run: Run) -> None:
     """Note where a layer comes from, hide or take away what it replaces, and put an image below the lines of the map it lies under.
 
-    Parameters
-    ----------
     layer : in the tree of the project
-    project : QgsProject
     output : the result whose look it has, such as ROAD_EDGES
     run : Run that made it
     """
@@ -48,7 +42,7 @@ def place_layer(layer: QgsMapLayer, project: QgsProject, output: str, run: Run) 
     if this is None:
         return
     former = [one for one in runs_of(project) if one.group is not None and one.survey == this.survey != "" and layer not in one.layers]
-    if replaces_last_run():
+    if REPLACES_LAST_RUN.holds():
         _remove_former(layer, output, former, project)
     else:
         _hide_former(output, this, former, project)

@@ -104,8 +104,8 @@ class LineMatch:
     nearest_reference : (N,) index of the nearest reference line of each result point, or -1
     """
 
-    result: list[Any]
-    reference: list[Any]
+    result: Sequence[Any]
+    reference: Sequence[Any]
     result_owner: np.ndarray
     reference_owner: np.ndarray
     result_points: LinePoints

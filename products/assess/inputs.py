@@ -14,7 +14,7 @@ from ...core.common.progress import Progress
 from ...core.curves.line_segments import single_lines
 from ...core.io.crs import check_extent, check_metric, horizontal_part, parse_crs, same_crs
 from ...core.io.local_files import gdal_exceptions, open_raster, reading
-from ...core.survey.trajectory.trajectory import LONGEST_STEP
+from ...core.survey.weights import TRAJECTORY
 from .matching import MAX_ROAD_DISTANCE, TrajectoryStationing, sample_lines
 
 MAX_LAYER_DISTANCE = 100.0  # m between the extents of two layers of one road
@@ -154,19 +154,19 @@ def without_stray_vertices(layer: AssessedLayer, warn: Callable[[str], None] = _
     """
     places = shapely.get_coordinates(layer.geometries)
     middle = np.median(places, axis=0) if len(places) else np.zeros(2)
-    far = np.hypot(*(places - middle).T) > LONGEST_STEP
+    far = np.hypot(*(places - middle).T) > TRAJECTORY.longest_step
     if not far.any():
         return layer
     x, y = places[int(np.argmax(far))]
-    warn(f"{layer.label}: {np.count_nonzero(far):,} of {len(far):,} vertices lie more than {LONGEST_STEP / 1000:.0f} km from the others, the first "
-         f"at {x:.1f}, {y:.1f}. They were left out.")
+    warn(f"{layer.label}: {np.count_nonzero(far):,} of {len(far):,} vertices lie more than {TRAJECTORY.longest_step / 1000:.0f} km from the others, "
+         f"the first at {x:.1f}, {y:.1f}. They were left out.")
     return replace(layer, geometries=[_lines_near(shape, middle) for shape in layer.geometries])
 
 
 def _lines_near(shape, middle):
     """The lines of a shape, without the vertices that are far from a place."""
     lines, _ = single_lines([shape])
-    near = [places[np.hypot(*(places[:, :2] - middle).T) <= LONGEST_STEP]
+    near = [places[np.hypot(*(places[:, :2] - middle).T) <= TRAJECTORY.longest_step]
             for places in (shapely.get_coordinates(line, include_z=bool(shape.has_z)) for line in lines)]
     return shapely.multilinestrings([shapely.linestrings(places) for places in near if len(places) > 1])
 

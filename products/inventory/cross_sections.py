@@ -31,8 +31,8 @@ from .surface_grid import (
 
 if TYPE_CHECKING:
     from ...core.survey.frame.road_frame import RoadFrame
-    from ...core.survey.open_survey import Survey
     from ...core.survey.store.records import Points
+    from ...core.survey.survey import Survey
 
 STRETCH = 10.0               # m of road about a section from which grade and ruts are measured; shorter where the interval is
 READ_BESIDE = 1.0                 # m beyond the borders that are read too, for the curbs' tops
@@ -118,12 +118,6 @@ def measure_cross_sections(survey: Survey, layers: BorderLayers = BorderLayers()
     ----------
     survey : Survey, opened with enough height above the road for the clearance
     layers : BorderLayers, of which any may be missing. Without edges and lines a lane of the country's usual width about the track is measured
-    settings : CrossSectionSettings
-    progress : Progress
-
-    Returns
-    -------
-    RoadSections
 
     Raises
     ------
@@ -431,15 +425,10 @@ LINKED_CELLS = 2, 1, 1    # cells along, across and up by which the points of on
 def clear_height(points: Points, h: np.ndarray, right: float, left: float) -> float | None:
     """Height of the lowest thing above a strip.
 
-    Parameters
-    ----------
     points : (N,) Points of a stretch of road
     h : (N,) m, heights above the surface
     right, left : m, offsets of the strip's borders
-
-    Returns
-    -------
-    m; None where nothing was seen above it
+    Returns m; None where nothing was seen above it
     """
     d = points.d
     near = np.flatnonzero((d > right + OVERHEAD_INSIDE) & (d < left - OVERHEAD_INSIDE) & (h > STANDS_FROM))
@@ -477,14 +466,6 @@ def _on_vehicles(s: np.ndarray, d: np.ndarray, h: np.ndarray) -> np.ndarray:
 
     A vehicle that moves beside the scanner is drawn out, and in places only the upper part of its flank was seen. What hangs together from below
     LOWEST_OVERHEAD and is neither higher nor broader than vehicles may be is taken for one; a deck on a pier is not, for it is broader.
-
-    Parameters
-    ----------
-    s, d, h : (N,) m, stations, offsets within the carriageway, and heights above its surface, VEHICLE_REACH beyond the stretch that is asked for
-
-    Returns
-    -------
-    (N,) bool
     """
     from scipy.ndimage import binary_dilation, find_objects, label
 
@@ -515,10 +496,6 @@ MIN_SECTION_VERTICES = 2
 
 def sections_to_features(sections: RoadSections) -> tuple[Features, Features]:
     """The layer CROSS_SECTIONS, and its rows as a table.
-
-    Parameters
-    ----------
-    sections : RoadSections
 
     Returns
     -------

@@ -15,8 +15,8 @@ from ...core.road.common.pseudo_scanlines import lowest_layers
 from ...core.survey.frame.passes import Pass
 
 if TYPE_CHECKING:
-    from ...core.survey.open_survey import Survey
     from ...core.survey.store.records import Points
+    from ...core.survey.survey import Survey
 
 SLICE_LENGTH = 1.0        # m along the road over which a transverse profile is averaged
 CROSS_CELL = 0.05       # m across the road
@@ -67,9 +67,6 @@ class SurfaceGrid:
 def surface_grid(survey: Survey, road: int, start: float, slices: int, offsets: tuple[float, float]) -> SurfaceGrid:
     """Read a stretch of road.
 
-    Parameters
-    ----------
-    survey : Survey
     road : number
     start : m, station of the first slice
     slices : number of slices, SLICE_LENGTH each
@@ -86,14 +83,7 @@ def surface_grid(survey: Survey, road: int, start: float, slices: int, offsets: 
 
 def _grid_of_points(points: Points, road: int, start: float, slices: int, offsets: tuple[float, float], base: float,
                    slope: float) -> SurfaceGrid:
-    """SurfaceGrid of points.
-
-    Parameters
-    ----------
-    points : (N,) Points of the stretch
-    road, start, slices, offsets : as in `surface_grid`
-    base, slope : m and m/m, the line that heights count from
-    """
+    """SurfaceGrid of points."""
     columns = max(int(np.ceil((offsets[1] - offsets[0]) / CROSS_CELL)), 1)
     s, d = points.s, points.d
     h = points.z - base - slope * (s - start)
@@ -244,14 +234,9 @@ def _line(x, y):
 def solve_height_errors(overlaps: Iterable[Overlap], passes: list[Pass]) -> HeightErrors:
     """The errors that explain the overlaps best: least squares with the priors above, robust against single windows.
 
-    Parameters
-    ----------
     overlaps : of one road
     passes : all passes of the survey, by number
-
-    Returns
-    -------
-    HeightErrors; without overlaps, an empty one
+    Returns HeightErrors; without overlaps, an empty one
     """
     overlaps = list(overlaps)
     if not overlaps:

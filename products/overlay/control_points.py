@@ -50,8 +50,6 @@ NUMBER_ORDERS = (("pixel", "line", "easting", "northing"), ("easting", "northing
 class ControlPoints:
     """N control points.
 
-    Attributes
-    ----------
     pixel, line : (N,) in the image, lines counted downward
     easting, northing, height : (N,) m; height is NaN where it is unknown
     names : N texts
@@ -93,10 +91,6 @@ def control_points(names: Sequence[Any] | None, rows: Sequence[Sequence[Any]], i
     image : SourceImage that the points belong to
     what : name of the table for error messages
     crs : WKT of the map coordinates in the table, "" where unknown
-
-    Returns
-    -------
-    ControlPoints
 
     Raises
     ------
@@ -163,20 +157,6 @@ def _find_columns(names: Sequence[Any], what: str) -> dict[str, int]:
     """Columns of a table with a header.
 
     Columns named only `x` and `y` are map coordinates, unless other columns have the names of these.
-
-    Parameters
-    ----------
-    names : of the columns
-    what : name of the table for error messages
-
-    Returns
-    -------
-    dict of meaning (a key of COLUMN_ALIASES) to index of the column
-
-    Raises
-    ------
-    RoadExtractionError
-        If pixel, line, easting or northing has no column.
     """
     found = _columns_named(names)
     plain = _plain(names)
@@ -193,23 +173,7 @@ def _find_columns(names: Sequence[Any], what: str) -> dict[str, int]:
 
 
 def _guess_columns(rows: Sequence[Sequence[Any]], image: SourceImage, what: str) -> dict[str, int]:
-    """Columns of a table without a header: two columns lie in the image, and the two beside them do not.
-
-    Parameters
-    ----------
-    rows : of the table
-    image : SourceImage
-    what : name of the table for error messages
-
-    Returns
-    -------
-    dict of meaning (a key of COLUMN_ALIASES) to index of the column
-
-    Raises
-    ------
-    RoadExtractionError
-        If both orders are possible, or neither.
-    """
+    """Columns of a table without a header: two columns lie in the image, and the two beside them do not."""
     width = min(len(row) for row in rows)
     values = np.array([[as_number(field) for field in row[:width]] for row in rows])
     texts = [{str(row[k]).strip() for row in rows} for k in range(width)]
@@ -334,10 +298,6 @@ def read_control_points(path: str | Path, image: SourceImage, crs: str = "") -> 
         image in each row), or a CSV or TXT table
     image : SourceImage that the points belong to; rows that name another image are passed over
     crs : WKT of the map coordinates where the file names none
-
-    Returns
-    -------
-    ControlPoints
 
     Raises
     ------

@@ -39,8 +39,6 @@ _MAX_SCALE_ERROR = 0.01  # of the scale of the map projection, above which it is
 class GeoreferenceSettings:
     """How the image is georeferenced and drawn.
 
-    Attributes
-    ----------
     order : of the polynomial, 1 to 3; 0 is a shift
     pixel_size : m, of the result (and of the image, for a shift of an image without position); 0 = as the image
     extrapolation : what is drawn of the image outside the hull of the control points: "draw", "leave-out" or
@@ -69,8 +67,6 @@ class GeoreferenceSettings:
 class Georeferencing:
     """The result of `georeference` for N points.
 
-    Attributes
-    ----------
     image, points, settings : as given; disabled points used as check points have the role "check"
     fit : ControlPointFit of the control points
     pixel_size : m, of the image to be drawn
@@ -114,13 +110,7 @@ def georeference(image: SourceImage, points: ControlPoints, settings: Georeferen
 
     Parameters
     ----------
-    image : SourceImage
     points : ControlPoints in a projected CRS in metres, or in local metres
-    settings : GeoreferenceSettings
-
-    Returns
-    -------
-    Georeferencing
 
     Raises
     ------
@@ -163,13 +153,7 @@ def georeference(image: SourceImage, points: ControlPoints, settings: Georeferen
 def residual_vectors(found: Georeferencing) -> Features:
     """Residuals of the control and check points as vectors on the map, in their true length.
 
-    Parameters
-    ----------
-    found : Georeferencing
-
-    Returns
-    -------
-    Features RESIDUALS: LineStringZ from the place of a point by the polynomial to its measured place
+    Returns Features RESIDUALS: LineStringZ from the place of a point by the polynomial to its measured place
     """
     from shapely import LineString
 
@@ -254,14 +238,9 @@ def _unfolded(fit, area, hull, points, used, order):
 def node_grid(bounds: tuple[float, float, float, float], count: int) -> tuple[np.ndarray, np.ndarray]:
     """A regular grid of places in the image.
 
-    Parameters
-    ----------
     bounds : smallest pixel and line, largest pixel and line
     count : nodes per side
-
-    Returns
-    -------
-    pixel, line : (count ** 2,)
+    Returns pixel, line: (count ** 2,)
     """
     across, down = np.meshgrid(np.linspace(bounds[0], bounds[2], count), np.linspace(bounds[1], bounds[3], count))
     return across.ravel(), down.ravel()
@@ -270,14 +249,8 @@ def node_grid(bounds: tuple[float, float, float, float], count: int) -> tuple[np
 def own_pixel_size(fit: ControlPointFit, area: shapely.Geometry) -> float:
     """Pixel size of the image on the map.
 
-    Parameters
-    ----------
-    fit : ControlPointFit
     area : shapely polygon in pixel and line
-
-    Returns
-    -------
-    m, median over the area
+    Returns m, median over the area
     """
     pixel, line = node_grid(area.bounds, 9)
     inside = shapely.contains_xy(area, pixel, line)

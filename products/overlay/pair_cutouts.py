@@ -22,8 +22,6 @@ def pair_cutouts(image: SourceImage, intensity: IntensityImage, pixel: np.ndarra
 
     Parameters
     ----------
-    image : SourceImage
-    intensity : IntensityImage
     pixel, line : (N,) in the image; N at least 2
     easting, northing : (N,) m, in the intensity image
     half : m, half the side of a cut-out

@@ -15,13 +15,8 @@ NEWTON_STEPS = 30              # of the inverse; it converges in a few
 def term_powers(order: int) -> np.ndarray:
     """Powers of the terms u^a v^b with a + b <= order.
 
-    Parameters
-    ----------
     order : of the polynomial
-
-    Returns
-    -------
-    (K, 2) int, K = (order + 1)(order + 2) / 2
+    Returns (K, 2) int, K = (order + 1)(order + 2) / 2
     """
     return np.array([(total - b, b) for total in range(order + 1) for b in range(total + 1)])
 
@@ -33,8 +28,6 @@ class ImagePolynomial:
     Coordinates are centred, rotated to their principal axes and scaled to unit spread, so that all terms are of
     similar size: u = (p - centre) @ whiten.
 
-    Attributes
-    ----------
     order : of the polynomial; a shift is stored as a polynomial of order 1
     centre : (2,) pixel and line
     whiten : (2, 2)
@@ -71,14 +64,9 @@ class ImagePolynomial:
     def to_pixel(self, easting: np.ndarray, northing: np.ndarray, steps: int = NEWTON_STEPS) -> tuple[np.ndarray, np.ndarray]:
         """Places in the image by Newton's method, started from the affine part.
 
-        Parameters
-        ----------
         easting, northing : (N,) m
         steps : of the iteration, at most
-
-        Returns
-        -------
-        pixel, line : (N,); NaN where the iteration does not converge, because the polynomial has no unique inverse
+        Returns pixel, line: (N,); NaN where the iteration does not converge, because the polynomial has no unique inverse
         """
         target = np.column_stack([np.asarray(easting, float), np.asarray(northing, float)])
         affine = self.jacobian(self.centre[:1], self.centre[1:])[0]
@@ -111,8 +99,6 @@ def _terms(u, order):
 class ControlPointFit:
     """A polynomial fitted to N control points, with the quality of the fit.
 
-    Attributes
-    ----------
     polynomial : ImagePolynomial
     residuals : (N, 2) m, map coordinates of the points minus those of the polynomial
     leverage : (N,) 0 to 1, influence of each point on its own residual
@@ -147,13 +133,8 @@ class ControlPointFit:
 def principal_extents(places: np.ndarray) -> tuple[float, float]:
     """Extents of places along their principal axes.
 
-    Parameters
-    ----------
     places : (N, 2)
-
-    Returns
-    -------
-    along, across : in the unit of the places
+    Returns along, across: in the unit of the places
     """
     _, _, turned = np.linalg.svd(places - places.mean(axis=0), full_matrices=False)
     along, across = np.ptp((places - places.mean(axis=0)) @ turned.T, axis=0)
@@ -163,14 +144,9 @@ def principal_extents(places: np.ndarray) -> tuple[float, float]:
 def inverse_condition(pixel: np.ndarray, line: np.ndarray, order: int) -> float:
     """Smallest over largest singular value of the terms at control points.
 
-    Parameters
-    ----------
     pixel, line : (N,)
     order : of the polynomial
-
-    Returns
-    -------
-    0 to 1; 0 where the points do not determine the coefficients
+    Returns 0 to 1; 0 where the points do not determine the coefficients
     """
     centre, whiten = _frame(np.column_stack([pixel, line]))
     singular = np.linalg.svd(_terms((np.column_stack([pixel, line]) - centre) @ whiten, order), compute_uv=False)
@@ -193,10 +169,6 @@ def fit_image_polynomial(pixel: np.ndarray, line: np.ndarray, easting: np.ndarra
     easting, northing : (N,) m
     order : 1, 2 or 3
 
-    Returns
-    -------
-    ControlPointFit
-
     Notes
     -----
     The terms are those of the polynomials of ArcGIS and GDAL. They are centred and scaled, and solved by QR. With R of the QR,
@@ -217,15 +189,9 @@ def fit_shift(pixel: np.ndarray, line: np.ndarray, easting: np.ndarray, northing
               geotransform: tuple[float, ...]) -> ControlPointFit:
     """Fit of order 0: the image keeps the scale and rotation of its approximate position and is only shifted.
 
-    Parameters
-    ----------
     pixel, line : (N,) in the image
     easting, northing : (N,) m
     geotransform : approximate position of the image, six numbers as in GDAL
-
-    Returns
-    -------
-    ControlPointFit
     """
     x0, xp, xl, y0, yp, yl = geotransform
     places, target = np.column_stack([pixel, line]).astype(float), np.column_stack([easting, northing]).astype(float)

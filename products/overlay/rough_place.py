@@ -25,8 +25,6 @@ _NORTH_STEP = 0.001     # degrees of latitude over which the direction of north 
 class RoughPlace:
     """A rough similarity from an image to the map, and how far it may be off.
 
-    Attributes
-    ----------
     x, y : m, map coordinates of the image's middle; NaN where nothing is known of them
     reach : m, how far off these may be; infinite where nothing is known
     turn : radians, counter-clockwise, from the rows of the image to east
@@ -51,7 +49,6 @@ def rough_place(image: SourceImage, crs: str, reach: float, pixel_size: float = 
 
     Parameters
     ----------
-    image : SourceImage
     crs : WKT of the map, projected in metres; "" where unknown
     reach : m, how far off a position of the image may be
     pixel_size : m; 0 where unknown
@@ -101,13 +98,8 @@ def _by_points(pixel, line, easting, northing, middle, reach):
 def similarity(pixel: np.ndarray, line: np.ndarray, easting: np.ndarray, northing: np.ndarray) -> tuple[complex, complex]:
     """The least-squares similarity from an image to the map, in complex numbers: map = shift + factor * (pixel - i line).
 
-    Parameters
-    ----------
     pixel, line, easting, northing : (N,), N at least 2
-
-    Returns
-    -------
-    factor, shift : NaN where all points lie in one place
+    Returns factor, shift: NaN where all points lie in one place
     """
     seen, there = pixel - 1j * line, easting + 1j * northing
     a = seen - seen.mean()
@@ -143,14 +135,9 @@ def _by_tags(tags, crs, reach, size, size_range):
 def to_map(x: np.ndarray, y: np.ndarray, source: str, target: str) -> tuple[np.ndarray, np.ndarray]:
     """Places in another CRS.
 
-    Parameters
-    ----------
     x, y : (N,) in the source CRS, longitude and latitude where that is geographic
     source, target : WKT or codes; where either is "" nothing is changed
-
-    Returns
-    -------
-    x, y : (N,), infinite where a place has none in the target CRS
+    Returns x, y: (N,), infinite where a place has none in the target CRS
     """
     from pyproj import Transformer
 
@@ -176,8 +163,6 @@ _LATITUDE, _LONGITUDE = ("GpsLatitude", "GPSLatitude"), ("GpsLongitude", "GpsLon
 class PositionTags:
     """Where a camera hung and how it looked; None where the image does not say.
 
-    Attributes
-    ----------
     latitude, longitude : degrees, WGS 84
     heading : degrees clockwise from north, of the top of the image
     height : m above the ground, or above where the drone took off

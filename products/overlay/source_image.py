@@ -16,8 +16,6 @@ from ...core.io.local_files import gdal_exceptions, open_raster
 class SourceImage:
     """What is known about an image without reading its pixels.
 
-    Attributes
-    ----------
     path : of the file
     width, height : pixels
     geotransform : six numbers as in GDAL, or None where the image has no position on the map
@@ -66,14 +64,9 @@ class SourceImage:
     def holds(self, pixel: np.ndarray, line: np.ndarray, margin: float = 0.0) -> np.ndarray:
         """Whether places lie in the image.
 
-        Parameters
-        ----------
         pixel, line : (N,)
         margin : pixels around the image that count as inside
-
-        Returns
-        -------
-        (N,) bool
+        Returns (N,) bool
         """
         return ((pixel >= -margin) & (pixel <= self.width + margin)
                 & (line >= -margin) & (line <= self.height + margin))
@@ -86,10 +79,6 @@ def open_image(path: str | Path) -> SourceImage:
     Parameters
     ----------
     path : of a file that GDAL reads
-
-    Returns
-    -------
-    SourceImage
 
     Raises
     ------

@@ -27,13 +27,7 @@ _ALGORITHMS = {"nearest": "near", "bilinear": "bilinear", "cubic": "cubic"}
 def drawn_area(found: Georeferencing) -> shapely.Geometry:
     """The part of the image that is drawn.
 
-    Parameters
-    ----------
-    found : Georeferencing
-
-    Returns
-    -------
-    shapely polygon in pixel and line
+    Returns shapely polygon in pixel and line
     """
     frame = shapely.box(0, 0, found.image.width, found.image.height)
     return found.hull.intersection(frame) if found.cut and found.hull is not None else frame
@@ -44,10 +38,6 @@ def output_grid(found: Georeferencing) -> tuple[tuple[float, float, float, float
 
     Bounds are whole multiples of the pixel size. A shift at the pixel size of the image keeps the bounds of the image, so that
     no pixel is resampled.
-
-    Parameters
-    ----------
-    found : Georeferencing
 
     Returns
     -------
@@ -90,9 +80,7 @@ def draw_image(found: Georeferencing, path: str | Path, progress: Progress | Non
 
     Parameters
     ----------
-    found : Georeferencing
     path : of the GeoTIFF
-    progress : Progress
 
     Returns
     -------

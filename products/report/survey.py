@@ -11,7 +11,6 @@ from ...core.common.texts import tr
 from ...core.io.crs import horizontal_part, parse_crs
 from ...core.lazy import cv2
 from ...core.survey.estimation.estimate import WAYS
-from ...core.survey.trajectory.time_systems import SECONDS_PER_WEEK
 from .figures import Chart
 from .page import html_page
 
@@ -30,7 +29,7 @@ def inspection_report(found: Inspection) -> str:
     """The report of an Inspection as HTML."""
     first, track, profile = (found.time_span or (0.0,))[0], found.trajectory, None
     # seconds beyond a week are no seconds of a week, whatever the header says of them
-    start = datetime(1980, 1, 6) + timedelta(seconds=first + 1e9) if first > SECONDS_PER_WEEK else None
+    start = datetime(1980, 1, 6) + timedelta(seconds=first + 1e9) if first > timedelta(weeks=1).total_seconds() else None
     if found.drive is not None:
         image, low, high = _profile_picture(found.drive.profile)
         profile = dict(image=image, low=low, high=high)

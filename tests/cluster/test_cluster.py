@@ -8,6 +8,7 @@ import subprocess
 import sys
 import threading
 import time
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -334,7 +335,7 @@ def sample(tmp_path_factory):
 def points_read(sample, monkeypatch, progress=Progress(), **execution):
     """All points of the survey as bytes, read in parts of 50,000 points, and what was sent where."""
     made, path = sample
-    monkeypatch.setattr(survey_reader, "PART_POINTS", 50_000)
+    monkeypatch.setattr(survey_reader, "READING", replace(survey_reader.READING, part_points=50_000))
     survey = open_survey([path], made.trajectory, SurveySettings(block=20_000), progress, ExecutionSettings(**execution))
     with contextlib.closing(survey.store):
         parts = [np.array(survey.section(road, number).records) for road in survey.store.roads() for number in survey.store.sections(road)]

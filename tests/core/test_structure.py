@@ -22,10 +22,10 @@ NUMBERS = {
     "core/common": 17,
     "core/execution": 25,
     "core/countries": 15,
-    "core/io": 23,
+    "core/io": 5,
     "core/curves": 44,
-    "core/survey": 422,
-    "core/road": 516,
+    "core/survey": 192,
+    "core/road": 20,
     "core/intensity": 49,
     "core/markings": 440,
     "core/driving": 62,
@@ -61,10 +61,11 @@ def room_of(name):
 @functools.cache
 def imported(path, for_types=False):
     """(module imported, line) of every import from these rooms, also those inside functions; those for type checkers alone on wish."""
-    return list(_imported(path, for_types))
+    return [(target, line) for target, line, _ in named_imports(path, for_types)]
 
 
-def _imported(path, for_types):
+def named_imports(path, for_types=False):
+    """(module, line, name) of the same."""
     package = list(name_of(path))[:-1]
     tree = tree_of(path)
     typing = {inner for node in ast.walk(tree) if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING"
@@ -76,13 +77,23 @@ def _imported(path, for_types):
         for alias in node.names:
             inner = (*base, alias.name)
             is_module = ROOT.joinpath(*inner).with_suffix(".py").exists() or ROOT.joinpath(*inner, "__init__.py").exists()
-            yield (inner if is_module else tuple(base)), node.lineno
+            yield (inner if is_module else tuple(base)), node.lineno, alias.name
 
 
 def test_imports_run_one_way_between_folders():
     wrong = [f"{'/'.join(name_of(path))}.py, line {line}: {room_of(name_of(path))} imports {'/'.join(target)}" for path in MODULES
              for target, line in imported(path) if ORDER.index(room_of(target)) > ORDER.index(room_of(name_of(path)))]
     assert not wrong
+
+
+def test_products_and_the_simulator_use_public_names_of_the_chain_alone():
+    """Those that `core/__init__.py` lists, each with the file that defines it."""
+    from lanewright.core import PUBLIC
+
+    chain = set(ORDER[ORDER.index("core/survey"):ORDER.index("core/pipeline") + 1])
+    used = {(".".join(target[1:]), name) for path in MODULES if name_of(path)[0] != "core" for target, _, name in named_imports(path, True)
+            if room_of(target) in chain}
+    assert used == {(module, name) for module, names in PUBLIC.items() for name in names}
 
 
 def test_no_two_folders_import_each_other():

@@ -13,7 +13,7 @@ from lanewright.algorithms import destinations
 from lanewright.algorithms.destinations import Unfinished, check_suffix, check_writable, destination_path, table_of
 from lanewright.algorithms.driving.road_map import RoadMap
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.io.local_files import ABANDONED_TIME
+from lanewright.core.io.weights import IO
 from lanewright.processing_provider.call import QgisCall
 from qgis.core import QgsProcessingContext, QgsProcessingFeedback, QgsProcessingOutputLayerDefinition, QgsProject, QgsVectorLayer
 
@@ -188,7 +188,7 @@ def test_what_killed_runs_left_goes_after_a_day_and_what_a_run_of_today_writes_s
     left = [Unfinished().begin(tmp_path / "map.gpkg") for _ in range(2)]
     for path in left:
         path.write_text("half")
-    long_ago = time.time() - 2 * ABANDONED_TIME
+    long_ago = time.time() - 2 * IO.abandoned_time
     for path in (left[0], left[0].parent):
         os.utime(path, (long_ago, long_ago))
     Unfinished().begin(tmp_path / "map.gpkg")

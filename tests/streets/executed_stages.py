@@ -1,5 +1,7 @@
 """The stages of a road map, run by any executor on a sample survey in small tasks, and what must be the same to the last bit."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import shapely
@@ -40,7 +42,7 @@ def found_by(sample, executor=None, work=None, progress=Progress()):
     with pytest.MonkeyPatch.context() as patch:
         for module in (extract, correction, point_density, evidence):
             patch.setattr(module, "STRETCH_POINTS", 40_000)
-        patch.setattr(ground_grid, "MEASURED_WINDOWS", 2)
+        patch.setattr(ground_grid, "SURFACE", replace(ground_grid.SURFACE, measured_windows=2))
         patch.setattr(imaging, "LOOKED_WINDOWS", 1)
         patch.setattr(imaging, "PIECES_PER_TASK", 3)
         patch.setattr(extraction, "WINDOWS_PER_TASK", 1)

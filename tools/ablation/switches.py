@@ -15,9 +15,10 @@ from lanewright.core.markings.lines.strands import trace_strands
 from lanewright.core.pipeline.road_map import RoadMapSettings
 from lanewright.core.road.common.corners import CurbSteps
 from lanewright.core.road.common.curb_points import CurbPoints
-from lanewright.core.road.common.tracking import LOW_CURB_SHARE, StepChain
+from lanewright.core.road.common.tracking import StepChain
 from lanewright.core.road.curb_returns.steps import PlanSteps
 from lanewright.core.road.profiles.steps import find_steps
+from lanewright.core.road.weights import CURBS
 
 DEFAULT = RoadMapSettings()
 ALIKE = (1.0, 1.0, 1.0, 1.0)   # weights that tell no cross-section from another
@@ -120,7 +121,7 @@ def _whole(chains, *_):
 
 
 def _unaveraged(lines, section, settings, overgrown):
-    return find_steps(lines.part(*section), LOW_CURB_SHARE * settings.limits.least_height, settings.max_height)
+    return find_steps(lines.part(*section), CURBS.low_curb_share * settings.limits.least_height, settings.max_height)
 
 
 def _no_main_islands(points, survey, _):

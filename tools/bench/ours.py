@@ -56,10 +56,11 @@ def placing(size):
     from lanewright.core.survey.frame.projection import RoadProjection
     from lanewright.core.survey.frame.road import CORRIDOR
     from lanewright.core.survey.frame.road_frame import build_frame
-    from lanewright.core.survey.las.reader import POINTS_PER_BLOCK, read_blocks
+    from lanewright.core.survey.las.reader import read_blocks
     from lanewright.core.survey.trajectory.reader import read_trajectory
+    from lanewright.core.survey.weights import LAS
 
-    blocks = [block for path in clouds_of("dense", size) for block in read_blocks(str(path), POINTS_PER_BLOCK, DECODED_LAYERS)]
+    blocks = [block for path in clouds_of("dense", size) for block in read_blocks(str(path), LAS.points_per_block, DECODED_LAYERS)]
     frame = build_frame(read_trajectory(trajectory_of("dense", size)))
 
     def place(block):
@@ -77,12 +78,13 @@ def storing(size):
     """Points that are decoded already into the sections of the road frame, ready for the next stage."""
     from lanewright.core.survey import survey_reader as reading
     from lanewright.core.survey.blocks import DECODED_LAYERS
-    from lanewright.core.survey.las.reader import POINTS_PER_BLOCK, read_blocks
+    from lanewright.core.survey.las.reader import read_blocks
     from lanewright.core.survey.open_survey import open_survey
     from lanewright.core.survey.trajectory.reader import read_trajectory
+    from lanewright.core.survey.weights import LAS
 
     clouds, trajectory = clouds_of("dense", size), read_trajectory(trajectory_of("dense", size))
-    decoded = {str(path): list(read_blocks(str(path), POINTS_PER_BLOCK, DECODED_LAYERS)) for path in clouds}
+    decoded = {str(path): list(read_blocks(str(path), LAS.points_per_block, DECODED_LAYERS)) for path in clouds}
 
     class Decoded:
         """Stands in for the readers of the files."""

@@ -13,33 +13,10 @@ from functools import partial
 import numpy as np
 
 from ...common.arrays import Rows
-from .curb_limits import LEAST_SLOPE
+from ..weights import CURBS
 from .pseudo_scanlines import TOP_QUANTILE_SIGMAS, PseudoScanLines, expand_ranges
 
-ROAD_SIDE_LENGTH = 0.40     # m of road before the face to which the road's line is fitted
-FACE_MARGIN = 0.05          # m next to the face left out of that line: a blurred face begins there
-BEHIND_LENGTH = 0.40        # m behind the face in which the ground must stay raised
-SLOPE_PER_NOISE = 6.0       # per m: heights that scatter tilt the short line behind a face
-MAX_LOW_SHARE = 0.15        # share of the points behind that may lie below half the height; a verge has more
-FACE_SEARCH_HALF_WIDTH = 0.15   # m on either side of the rising cell within which the face lies
-MAX_ROAD_SLOPE = 0.15       # rise over run of the road side; ditches are steeper
-MIN_BED_SLOPE = np.tan(np.radians(LEAST_SLOPE))  # rise over run of plants or a wall right behind a curb; flatter ground is a ramp,
-MAX_BED_SLOPE = 1.5         # and what is steeper is a face itself
-MIN_BED_POINTS = 8          # points that give this slope
-MAX_FACE_WIDTH = 0.10       # m across
-FACE_NOISE_SIGMAS = 4.0     # sigmas by which noise widens a face
-CANDIDATE_HEIGHT_SHARE = 0.8    # share of the least height below which a rise is no step in any direction
-MIN_STEP_SIGMAS = 4.0       # a step must stand this far above the noise of its road side
-CANDIDATE_SIGMA_SHARE = 0.5     # share of that below which a rise is no step in any direction
-MIN_VIEW_POINTS = 5         # points that each of two views needs to be measured separately; else one shows what all points show
-FACE_LOWER_SHARE, FACE_UPPER_SHARE = 0.15, 0.70  # part of the height that counts as face: grass hangs over the top
-MIN_FACE_SHARE = 0.5        # of the height; noise brings points from above and below into a thinner part
-REMEASURE_SKEW = 0.1        # m outward per m along above which a face is measured again across its own direction
-MAX_FACE_SKEW = 1.0         # m outward per m along
-SKEW_PRIOR = 3e-3           # m²: keeps a face seen in one scan line parallel to the road
-FACE_PRIOR = 2e-4           # m²: keeps a face seen in few points upright
-GRADE_PRIOR = 3.6e-3        # m²: (noise / grade)² of 3 mm, the noise of a scanner, and 5 %, a usual grade or crossfall
-
+MIN_BED_SLOPE = np.tan(np.radians(CURBS.least_slope))  # rise over run of plants or a wall right behind a curb; flatter ground is a ramp,
 
 
 @dataclass
@@ -86,7 +63,7 @@ def measure_corners(lines: PseudoScanLines, rows: np.ndarray, cells: np.ndarray,
     CurbSteps, at most M, in the order of the cells
     """
     cell_count = lines.shape[1]
-    reach = int(round(max(ROAD_SIDE_LENGTH + FACE_MARGIN, BEHIND_LENGTH) / lines.spacing)) + 2
+    reach = int(round(max(CURBS.road_side_length + CURBS.face_margin, CURBS.behind_length) / lines.spacing)) + 2
     start = lines.starts[rows * cell_count + np.maximum(cells - reach, 0)]
     end = lines.starts[rows * cell_count + np.minimum(cells + reach + 1, cell_count)]
     owner, index = expand_ranges(start, end)
@@ -99,7 +76,7 @@ def measure_corners(lines: PseudoScanLines, rows: np.ndarray, cells: np.ndarray,
     # step in all points together may be one in the points seen from one side of the vehicle
     ahead = lines.along.take(lines.point.take(index)) > 0
     ahead_of, count = np.bincount(owner, ahead, len(rows)), np.bincount(owner, minlength=len(rows))
-    mixed = np.minimum(ahead_of, count - ahead_of) >= MIN_VIEW_POINTS
+    mixed = np.minimum(ahead_of, count - ahead_of) >= CURBS.min_view_points
     again = np.flatnonzero(best["likely"] & ~best["good"] & mixed)
     if len(again):
         number = np.full(len(rows), -1)
@@ -124,7 +101,7 @@ def _measure(lines, rows, cells, owner, index, min_height, max_height):
     patches = StepPatches(owner, lines.u.take(point) - edge.take(owner), lines.s.take(point) - middle.take(owner), lines.h.take(index),
                           lines.noise[rows], min_height, max_height)
     found = patches.corners()
-    skewed = np.flatnonzero(np.abs(found["skew"]) > REMEASURE_SKEW)
+    skewed = np.flatnonzero(np.abs(found["skew"]) > CURBS.remeasure_skew)
     if len(skewed):
         again = patches.straightened(skewed, found["skew"][skewed]).corners()
         again["skew"] = again["skew"] + found["skew"][skewed]
@@ -172,7 +149,7 @@ class StepPatches:
         `likely` : bool, may it be one in another direction or view?
         """
         owner, u, s, h, count = self.owner, self.u, self.s, self.h, self.count
-        road = np.flatnonzero((u < -FACE_MARGIN) & (u > -ROAD_SIDE_LENGTH - FACE_MARGIN))
+        road = np.flatnonzero((u < -CURBS.face_margin) & (u > -CURBS.road_side_length - CURBS.face_margin))
         grade = self._grade(road)
         if self.graded:
             h = h - grade.take(owner) * s
@@ -185,12 +162,13 @@ class StepPatches:
         height, n_behind, stays = self._raised_ground(rise)
         found = dict(level=level, slope=slope, grade=grade, noise=noise, n_road=n_road, height=height, n_behind=n_behind, stays=stays)
         # most candidates are no step in any direction: their faces need no measurement
-        likely = (n_road >= 4) & (height >= np.maximum(CANDIDATE_HEIGHT_SHARE * self.min_height, CANDIDATE_SIGMA_SHARE * MIN_STEP_SIGMAS * noise)) \
-            & (np.abs(slope) <= MAX_ROAD_SLOPE / CANDIDATE_HEIGHT_SHARE)
+        likely = (n_road >= 4) & (height >= np.maximum(CURBS.candidate_height_share * self.min_height,
+                                                       CURBS.candidate_sigma_share * CURBS.min_step_sigmas * noise)) \
+            & (np.abs(slope) <= CURBS.max_road_slope / CURBS.candidate_height_share)
         which = np.flatnonzero(likely)
         number = np.full(count, -1)
         number[which] = np.arange(len(which))
-        own = np.flatnonzero((np.abs(u) < FACE_SEARCH_HALF_WIDTH) & (number.take(owner) >= 0))
+        own = np.flatnonzero((np.abs(u) < CURBS.face_search_half_width) & (number.take(owner) >= 0))
         skew = self.skew if isinstance(self.skew, float) else self.skew[which]
         near = StepPatches(number.take(owner.take(own)), u.take(own), s.take(own), h.take(own), self.scanner_noise[which],
                            self.min_height, self.max_height, skew, self.graded)
@@ -217,16 +195,16 @@ class StepPatches:
         uu, us, ss, uh, sh = (moment(a, b) for a, b in ((u, u), (u, s), (s, s), (u, h), (s, h)))
         # points that all lie at one offset do not give a slope
         share = np.where(uu > n * 0.03**2, us / np.maximum(uu, 1e-12), 0.0)
-        return (sh - share * uh) / (np.maximum(ss - share * us, 0.0) + GRADE_PRIOR)
+        return (sh - share * uh) / (np.maximum(ss - share * us, 0.0) + CURBS.grade_prior)
 
     def _faces(self, rise, level, slope, grade, noise, n_road, height, n_behind, stays):
         """What `corners` returns, for candidates whose road side and height are known; `rise` : (N,) m of the points above the road."""
         owner, u, s, count = self.owner, self.u, self.s, self.count
         scatter = np.maximum(noise, self.scanner_noise)
         # the part of the height that is surely neither road nor raised ground
-        lower = np.minimum(np.maximum(FACE_LOWER_SHARE * height, 2 * scatter), 0.45 * height)
-        upper = np.maximum(np.minimum(FACE_UPPER_SHARE * height, height - 2 * scatter), 0.55 * height)
-        face = np.flatnonzero((np.abs(u) < FACE_SEARCH_HALF_WIDTH) & (rise > lower.take(owner)) & (rise < upper.take(owner)))
+        lower = np.minimum(np.maximum(CURBS.face_lower_share * height, 2 * scatter), 0.45 * height)
+        upper = np.maximum(np.minimum(CURBS.face_upper_share * height, height - 2 * scatter), 0.55 * height)
+        face = np.flatnonzero((np.abs(u) < CURBS.face_search_half_width) & (rise > lower.take(owner)) & (rise < upper.take(owner)))
         owner, u, s, rise = (v.take(face) for v in (owner, u, s, rise))
         skew, straight = _skew(owner, u, s, scatter, count)
         mid, spread = _median_and_spread(owner, straight, count)
@@ -237,22 +215,22 @@ class StepPatches:
         mid, up, at = (_mean(np.bincount(owner, v, count), n_face) for v in (straight, rise, s))
         off = rise - up.take(owner)
         var_up = np.bincount(owner, off ** 2, count)
-        lean = np.bincount(owner, (straight - mid.take(owner)) * off, count) / (var_up + n_face * FACE_PRIOR + 1e-9)
+        lean = np.bincount(owner, (straight - mid.take(owner)) * off, count) / (var_up + n_face * CURBS.face_prior + 1e-9)
         corner = mid - np.clip(lean, -0.2, 0.8) * up
         # half the points of an even face lie within half its run; noise widens that
-        share = np.maximum((upper - lower) / np.maximum(height, 1e-3), MIN_FACE_SHARE)
+        share = np.maximum((upper - lower) / np.maximum(height, 1e-3), CURBS.min_face_share)
         run = 2 * np.sqrt(np.maximum(spread**2 - (1.35 * scatter) ** 2, 0.0)) / share
-        run = np.where(n_face < 3, 0.0, np.maximum(run - FACE_NOISE_SIGMAS * scatter, 0.0))
+        run = np.where(n_face < 3, 0.0, np.maximum(run - CURBS.face_noise_sigmas * scatter, 0.0))
         good = (np.isfinite(level) & (n_road >= 4) & (height >= self.min_height) & (height <= self.max_height)
-                & (height >= MIN_STEP_SIGMAS * noise) & (np.abs(slope) <= MAX_ROAD_SLOPE) & stays
-                & (n_face >= 1) & (run <= MAX_FACE_WIDTH))
+                & (height >= CURBS.min_step_sigmas * noise) & (np.abs(slope) <= CURBS.max_road_slope) & stays
+                & (n_face >= 1) & (run <= CURBS.max_face_width))
         return dict(s=at, u=corner + self.skew * at, h=level + slope * corner + grade * at, skew=skew, height=height, run=run,
                     noise=noise, support=n_road + n_face, behind=n_behind, good=good)
 
     def _raised_ground(self, rise):
         """Height of the ground behind the face, how many points lie there, and whether it stays up and is level or a bed of plants."""
         count = self.count
-        beyond = np.flatnonzero((self.u > 0.03) & (self.u < BEHIND_LENGTH))
+        beyond = np.flatnonzero((self.u > 0.03) & (self.u < CURBS.behind_length))
         owner, u, rise_there = self.owner.take(beyond), self.u.take(beyond), rise.take(beyond)
         raised = np.flatnonzero((rise_there > 0.4 * self.min_height) & (rise_there < self.max_height + 0.1))
         up, out, to = owner.take(raised), u.take(raised), rise_there.take(raised)
@@ -262,21 +240,21 @@ class StepPatches:
         up, out, to = up.take(alike), out.take(alike), to.take(alike)
         # a ramp continues to rise, while the ground behind a curb is as level as a road
         _, climb, _, n_behind = _line_per_owner(up, out, to, count)
-        level = (n_behind < 4) | (np.abs(climb) <= MAX_ROAD_SLOPE + SLOPE_PER_NOISE * self.scanner_noise)
+        level = (n_behind < 4) | (np.abs(climb) <= CURBS.max_road_slope + CURBS.slope_per_noise * self.scanner_noise)
         peak = np.zeros(count)
-        near = np.flatnonzero((self.u > -0.03) & (self.u < FACE_SEARCH_HALF_WIDTH) & (n_behind < 2).take(self.owner))
+        near = np.flatnonzero((self.u > -0.03) & (self.u < CURBS.face_search_half_width) & (n_behind < 2).take(self.owner))
         with np.errstate(invalid="ignore"):  # an unknown rise stays unknown; newer numpy warns about it
             np.maximum.at(peak, self.owner.take(near), rise.take(near))
         height = np.where(n_behind >= 2, _mean(np.bincount(up, to, count), n_behind),
                           np.maximum(peak - TOP_QUANTILE_SIGMAS * self.scanner_noise, 0.0))
         # plants, or a wall, right behind a curb rise from its top: what their slope does not explain is the curb
-        bed = ~level & (n_raised >= MIN_BED_POINTS) & (bank > MIN_BED_SLOPE) & (bank <= MAX_BED_SLOPE) & (foot > 0.0)
+        bed = ~level & (n_raised >= CURBS.min_bed_points) & (bank > MIN_BED_SLOPE) & (bank <= CURBS.max_bed_slope) & (foot > 0.0)
         height, level = np.where(bed, foot, height), level | bed
         far = np.flatnonzero(u > 0.10)
         low = np.flatnonzero(rise_there < 0.5 * height.take(owner))
         low = low[u.take(low) > 0.10]
         low, far = (np.bincount(owner.take(v), minlength=count) for v in (low, far))
-        return height, n_behind, level & (low <= np.maximum(MAX_LOW_SHARE * far, 1))
+        return height, n_behind, level & (low <= np.maximum(CURBS.max_low_share * far, 1))
 
 
 def _skew(owner, u, s, scatter, count):
@@ -289,8 +267,8 @@ def _skew(owner, u, s, scatter, count):
     at, out = (_mean(np.bincount(owner, v, count), n) for v in (s, u))
     ds, du = s - at.take(owner), u - out.take(owner)
     along = np.bincount(owner, ds ** 2, count)
-    skew = np.bincount(owner, ds * du, count) / (along + SKEW_PRIOR + (5 * scatter) ** 2)
-    skew = np.minimum(np.maximum(skew, -MAX_FACE_SKEW), MAX_FACE_SKEW)
+    skew = np.bincount(owner, ds * du, count) / (along + CURBS.skew_prior + (5 * scatter) ** 2)
+    skew = np.minimum(np.maximum(skew, -CURBS.max_face_skew), CURBS.max_face_skew)
     return skew, u - skew.take(owner) * ds
 
 
@@ -328,14 +306,6 @@ def _line_per_owner(owner, u, h, count):
 
 # Levels of the ground on either side of every place of averaged profiles.
 
-ROAD_FIT_LENGTH = 0.35        # m of road to which a level is fitted
-BEHIND_FIT_LENGTH = 0.25      # m of ground behind: a hedge may stand close
-BLURRED_FACE_HALF_WIDTH = 0.09    # m on either side of a step left out of both levels: the blurred face
-STEEP_HALF_WIDTH = 0.07       # m on either side of a step within which most of the rise must lie
-MIN_STEEP_SHARE = 0.65        # share of the height; an even rise from level to level has less
-MIN_FILLED_SHARE = 0.6        # share of the cells of a level that must hold ground
-MAX_AVERAGED_SCATTER = 0.008  # m, scatter of averaged heights about their level: verges and banks have more
-
 
 class RunningSums:
     """Running sums over the cells of every profile; differences of them give the line through any range of cells.
@@ -349,7 +319,7 @@ class RunningSums:
     def __init__(self, shape: tuple[int, int], spacing: float):
         self.cells, self.spacing, self.u = shape[1], spacing, np.arange(shape[1]) * spacing
         # a window may reach beyond the first and the last cell
-        self.pad = int(round((BLURRED_FACE_HALF_WIDTH + ROAD_FIT_LENGTH) / spacing)) + 2
+        self.pad = int(round((CURBS.blurred_face_half_width + CURBS.road_fit_length) / spacing)) + 2
         self.totals = np.zeros((6, shape[0], self.cells + 2 * self.pad))
 
     def add(self, value: np.ndarray) -> None:

@@ -14,14 +14,7 @@ import numpy as np
 
 from ...common.errors import RoadExtractionError
 from ...common.setting import check_limits, setting
-
-USUAL_HEIGHT, USUAL_SLOPE = 0.05, 60.0  # m and degrees: such a step is a curb wherever it is seen
-TEXTURE_SIGMA = 0.0025      # m, of heights averaged along a curb, however many: texture of the surfaces, footprint, registration
-SIGNIFICANT_SIGMAS = 4.0    # of what is left of the noise, by which a faint step must rise
-LEAST_HEIGHT = 0.025        # m: lower steps are dropped curbs and seams
-LEAST_SLOPE = 25.0          # °: flatter faces are ramps
-MAX_FAINT_SCATTER = 0.006   # m, of a faint step about its own running line
-MIN_FAINT_LENGTH = 5.0      # m of faint steps in one line that make a curb
+from ..weights import CURBS
 
 
 @dataclass(frozen=True)
@@ -53,12 +46,12 @@ class CurbLimits:
     @property
     def least_height(self) -> float:
         """m, below which no step is a curb."""
-        return min(LEAST_HEIGHT, self.clear_height) if self.automatic_height else self.clear_height
+        return min(CURBS.least_height, self.clear_height) if self.automatic_height else self.clear_height
 
     @property
     def least_slope(self) -> float:
         """Radians, below which no face is a curb's."""
-        return min(np.radians(LEAST_SLOPE), self.clear_slope) if self.automatic_slope else self.clear_slope
+        return min(np.radians(CURBS.least_slope), self.clear_slope) if self.automatic_slope else self.clear_slope
 
     def faint(self, height: float, slope: float, noise: float, count: int, scatter: float) -> bool:
         """Is a step that is not clear a curb all the same?
@@ -69,8 +62,9 @@ class CurbLimits:
         noise : m, scatter of single heights beside it; count : profiles that show it
         scatter : m, of the step about its own running line
         """
-        left = np.hypot(noise / np.sqrt(max(count, 1)), TEXTURE_SIGMA)
-        return bool(height >= max(self.least_height, SIGNIFICANT_SIGMAS * left) and slope >= self.least_slope and scatter <= MAX_FAINT_SCATTER)
+        left = np.hypot(noise / np.sqrt(max(count, 1)), CURBS.texture_sigma)
+        return bool(height >= max(self.least_height, CURBS.significant_sigmas * left) and slope >= self.least_slope
+                    and scatter <= CURBS.max_faint_scatter)
 
 
 @dataclass(frozen=True)
@@ -104,4 +98,4 @@ class CurbSettings:
     @property
     def limits(self) -> CurbLimits:
         """The least height and slope of curbs."""
-        return CurbLimits.of(self.min_height, self.slope, min(USUAL_HEIGHT, self.max_height), USUAL_SLOPE)
+        return CurbLimits.of(self.min_height, self.slope, min(CURBS.usual_height, self.max_height), CURBS.usual_slope)

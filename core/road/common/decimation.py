@@ -19,28 +19,16 @@ from ...common.arrays import decimate_cells
 from ...execution.phase import Executor, Recipe
 from ...survey.store.records import COORDINATE_SCALE, Points, join_columns
 from ...survey.store.spill_file import SpillFile
+from ..weights import CURBS
 
 if TYPE_CHECKING:
     from ...survey.frame.passes import Pass
     from ...survey.open_survey import Survey
 
-POINTS_PER_LEVEL_CELL = 12          # points of a cell that describe level ground in profiles
-POINTS_PER_LEVEL_CELL_IN_PLAN = 6   # the same in plan, where a cell of the raster covers four of these cells and more
-LEVEL_CELL_LIMITS = POINTS_PER_LEVEL_CELL, POINTS_PER_LEVEL_CELL_IN_PLAN
-POINTS_PER_UNEVEN_CELL = 60         # points of any other cell; more hardly separate its layers better
-LEVEL_CELL_STD = 0.008              # m, standard deviation of heights in a level cell, with and without a grade of the road
-MAX_STRIP_PROFILE_WIDTH = 0.30      # m; in the means of longer profiles a low curb at an angle to the road looks like a slope
-MIN_STEP_HEIGHT = 0.03              # m, the least step that is looked for anywhere
-MOSTLY_UNEVEN_SHARE = 0.7           # share of points in cells that are not level
-STRETCH_LENGTH = 5.0                # m of road that are read together
-DECIMATION_BLOCK_POINTS = 256_000   # points that are decided together
-JOINED_POINTS = 60_000              # points below which those of one stretch and the next are yielded together
-MIN_DENSE_SHARE = 0.5               # share of points in dense cells, below which the heights of the others are not looked at
-PROFILE_BOUND_TOLERANCE = 1e-6      # 0.1 mm: bounds between profiles are whole numbers of it, except for rounding
-DECIMATION_LOCKS = 16               # locks that stretches share while they are decided; the last one is the file's
-# Large odd factors of a multiplicative hash (Knuth, The Art of Computer Programming 3, 6.4): neighbouring places get unrelated numbers.
-HASH_FACTORS = tuple(np.uint32(odd) for odd in (2654435761, 2246822519, 3266489917))
-MAX_CELL_OFFSET = (1 << 18) - 1     # 0.1 mm from the reference line; points beyond are counted there
+LEVEL_CELL_LIMITS = CURBS.points_per_level_cell, CURBS.points_per_level_cell_in_plan
+PROFILE_BOUND_TOLERANCE = 1e-6   # derived: 0.1 mm; bounds between profiles are whole numbers of it, except for rounding
+HASH_FACTORS = tuple(np.uint32(odd) for odd in (2654435761, 2246822519, 3266489917))   # source: Knuth, TAOCP 3, 6.4; odd
+MAX_CELL_OFFSET = (1 << 18) - 1   # derived: 18 bits of 0.1 mm from the reference line; points beyond are counted there
 
 
 class PointDecimation:
@@ -55,13 +43,13 @@ class PointDecimation:
     min_step : m, the least step for which `level_strip` leaves ground out
     """
 
-    def __init__(self, survey: Survey, width: float, spacing: float, min_step: float = MIN_STEP_HEIGHT):
+    def __init__(self, survey: Survey, width: float, spacing: float, min_step: float = CURBS.min_step_height):
         self.survey, self.width, self.spacing, self.min_step = survey, width, spacing, min_step
-        self._stretch = max(int(round(STRETCH_LENGTH / width)), 1)   # profiles
+        self._stretch = max(int(round(CURBS.stretch_length / width)), 1)   # profiles
         self._selections: dict = {}   # (road, first profile) -> (number of points, {limit: bits in the file, None for all points})
         self._uneven: dict = {}       # (road, profile) -> bool
         self._strips: dict = {}       # (road, first profile) -> {pass number: LevelStrip}
-        self._locks = [threading.Lock() for _ in range(DECIMATION_LOCKS)]
+        self._locks = [threading.Lock() for _ in range(CURBS.decimation_locks)]
         self._file: SpillFile | None = None
 
     @property
@@ -83,7 +71,7 @@ class PointDecimation:
             self._file = None
 
     def decimated_points(self, road: int, profiles: tuple[int, int],
-                         points_per_cell: int | None = POINTS_PER_LEVEL_CELL) -> Iterator[Points]:
+                         points_per_cell: int | None = CURBS.points_per_level_cell) -> Iterator[Points]:
         """The points of profiles, block by block along the road, decimated where cells of level ground are dense.
 
         Parameters
@@ -109,7 +97,7 @@ class PointDecimation:
                     points = points[rows[a:b] - before]
             # few points are worked on together with the next ones
             waiting.append(points)
-            if first == begins[-1] or sum(map(len, waiting)) >= JOINED_POINTS:
+            if first == begins[-1] or sum(map(len, waiting)) >= CURBS.joined_points:
                 joined = waiting[0] if len(waiting) == 1 else Points(join_columns([part.records for part in waiting], points.records.dtype))
                 waiting = []
                 yield from _blocks_of_profiles(joined, start * self.width, self.width)
@@ -161,7 +149,7 @@ class PointDecimation:
     def _decide(self, road, first):
         """Select the points of the stretch which begins with profile `first`, unless that was done."""
         key = road, first
-        with self._locks[hash(key) % (DECIMATION_LOCKS - 1)]:
+        with self._locks[hash(key) % (CURBS.decimation_locks - 1)]:
             if key not in self._selections:
                 self._strips[key] = {}
                 self._selections[key] = self._select(road, first, self._strips[key])
@@ -176,7 +164,7 @@ class PointDecimation:
                 for limit, mask in cells.select().items():
                     here = selected[limit][done:done + len(block)]
                     here[slice(None) if own is None else own] = mask
-                if cells.complete and self.width <= MAX_STRIP_PROFILE_WIDTH:
+                if cells.complete and self.width <= CURBS.max_strip_profile_width:
                     strip = strips.setdefault(number, LevelStrip.empty(first, self._stretch, self.width))
                     self._fill_strip(strip, cells, self.survey.frame.passes[number])
             done += len(block)
@@ -221,7 +209,7 @@ class LevelGround:
 
 
 def _blocks_of_profiles(points: Points, start: float, width: float) -> list[Points]:
-    """Points along the road cut into blocks of whole profiles, about DECIMATION_BLOCK_POINTS each.
+    """Points along the road cut into blocks of whole profiles, about CURBS.decimation_block_points each.
 
     Parameters
     ----------
@@ -229,7 +217,7 @@ def _blocks_of_profiles(points: Points, start: float, width: float) -> list[Poin
     start : m, station from which profiles are counted
     width : m of road per profile
     """
-    cuts = np.arange(0, len(points), DECIMATION_BLOCK_POINTS)
+    cuts = np.arange(0, len(points), CURBS.decimation_block_points)
     if len(cuts) > 1:
         edges = np.unique(np.floor((points.records["s"][cuts[1:]] * COORDINATE_SCALE - start) / width)) * width + start
         cuts = np.unique(np.r_[0, np.searchsorted(points.records["s"], np.ceil(edges / COORDINATE_SCALE - 0.01).astype(np.int32))])
@@ -237,11 +225,11 @@ def _blocks_of_profiles(points: Points, start: float, width: float) -> list[Poin
 
 
 def limit_points_per_cell(cell: np.ndarray) -> np.ndarray | slice:
-    """Indices of the points with (N,) cell indices, at most about POINTS_PER_UNEVEN_CELL of a cell, evenly spread over their order."""
-    if len(cell) <= POINTS_PER_UNEVEN_CELL:
+    """Indices of the points with (N,) cell indices, at most about CURBS.points_per_uneven_cell of a cell, evenly spread over their order."""
+    if len(cell) <= CURBS.points_per_uneven_cell:
         return slice(None)
     cell = cell - cell.min()
-    return slice(None) if np.bincount(cell).max() <= POINTS_PER_UNEVEN_CELL else decimate_cells(cell, POINTS_PER_UNEVEN_CELL)
+    return slice(None) if np.bincount(cell).max() <= CURBS.points_per_uneven_cell else decimate_cells(cell, CURBS.points_per_uneven_cell)
 
 
 def _by_pass(records):
@@ -293,7 +281,7 @@ class _PointCells:
         in_dense = count.sum()
         if not in_dense:
             return dict.fromkeys(LEVEL_CELL_LIMITS, True)
-        if in_dense < MIN_DENSE_SHARE * len(self.s):
+        if in_dense < CURBS.min_dense_share * len(self.s):
             # of the other cells all points are used
             number = np.full(len(self.count), -1)
             number[dense] = np.arange(len(dense))
@@ -306,7 +294,7 @@ class _PointCells:
         rank, per_point = _hash_of_place(s, np.abs(d)), 65536.0 / np.maximum(count, 1)
         found = {}
         for limit in LEVEL_CELL_LIMITS:
-            used = rank <= np.minimum(np.where(level, limit, POINTS_PER_UNEVEN_CELL) * per_point, 65535.0).astype(np.uint16).take(cell)
+            used = rank <= np.minimum(np.where(level, limit, CURBS.points_per_uneven_cell) * per_point, 65535.0).astype(np.uint16).take(cell)
             if own is not None:
                 those, used = used, np.ones(len(self.s), bool)
                 used[own] = those
@@ -334,15 +322,15 @@ def _sums(cell, z, count):
 
 
 def _is_level(squares, count):
-    return squares <= count * (LEVEL_CELL_STD / COORDINATE_SCALE) ** 2
+    return squares <= count * (CURBS.level_cell_std / COORDINATE_SCALE) ** 2
 
 
 def _mostly_uneven(records, width, spacing):
     if not len(records):
         return False
     cells = _PointCells(*(records[name] for name in ("s", "d", "z")), width, spacing)
-    known = np.where(cells.count >= MIN_LEVEL_POINTS, cells.count, 0)
-    return known[~cells.is_level()].sum() > MOSTLY_UNEVEN_SHARE * known.sum()
+    known = np.where(cells.count >= CURBS.min_level_points, cells.count, 0)
+    return known[~cells.is_level()].sum() > CURBS.mostly_uneven_share * known.sum()
 
 
 def _hash_of_place(s, out):
@@ -357,16 +345,7 @@ def _hash_of_place(s, out):
 
 # The strip about a driven track in which the ground is level beyond doubt: no curb lies in it, and nothing that hides one.
 
-MAX_STRIP_OFFSET = 8.0        # m from the reference line within which the strip lies
-MIN_LEVEL_POINTS = 4          # points that a cell needs for a statement whether it is level
-# A step rises within this width, m, even one that runs at an angle to the road, so its height shows in the means of cells so far apart.
-MAX_STEP_WIDTH = 0.20
-LEVEL_STEP_SHARE = 0.4        # share of the least step height that such means may differ
-MAX_STRIP_STD = 0.016         # m, standard deviation of heights in a cell, above which it is not level
-MIN_UNEVEN_NEIGHBOURS = 5     # of 15 cells that a step changes; a bird, a drop of rain or a ghost point changes one
-BLIND_HALF_WIDTH = 1.5        # m beside the track that may be without points: scanners do not see the ground beneath their vehicle
-NO_OFFSET = 1 << 28           # 0.1 mm, farther than any offset
-MIN_STRIP_WIDTH = 1.0         # m; to leave a narrower strip out saves nothing
+NO_OFFSET = 1 << 28   # derived: 0.1 mm, farther than any offset
 
 
 @dataclass
@@ -407,7 +386,7 @@ class LevelStrip:
 
         margin = int(round(across / COORDINATE_SCALE))
         low, high = widest(self.low) + margin, -widest(-self.high) - margin
-        narrow = high - low < MIN_STRIP_WIDTH / COORDINATE_SCALE
+        narrow = high - low < CURBS.min_strip_width / COORDINATE_SCALE
         own = slice(around, len(self.height) - around)
         return LevelStrip(self.first + around, self.width, np.where(narrow, NO_OFFSET, low).astype(np.int32),
                           np.where(narrow, -NO_OFFSET, high).astype(np.int32), self.height[own])
@@ -446,15 +425,15 @@ def _find_level_strip(track: np.ndarray, count: np.ndarray, total: np.ndarray, s
     -------
     low, high, height : as of LevelStrip
     """
-    half = min(int(MAX_STRIP_OFFSET / COORDINATE_SCALE) // size, count.shape[2])
+    half = min(int(CURBS.max_strip_offset / COORDINATE_SCALE) // size, count.shape[2])
     count, total, squares = (np.concatenate([v[:, 1, :half][:, ::-1], v[:, 0, :half]], axis=1) for v in (count, total, squares))
     seen = count > 0
     mean = np.where(seen, total / np.maximum(count, 1), np.nan)
-    uneven = seen & ((count < MIN_LEVEL_POINTS) | (squares > count * (MAX_STRIP_STD / COORDINATE_SCALE) ** 2))
-    apart = max(int(round(MAX_STEP_WIDTH * 0.5 / COORDINATE_SCALE / size)), 1)
+    uneven = seen & ((count < CURBS.min_level_points) | (squares > count * (CURBS.max_strip_std / COORDINATE_SCALE) ** 2))
+    apart = max(int(round(CURBS.max_step_width * 0.5 / COORDINATE_SCALE / size)), 1)
     with np.errstate(invalid="ignore"):
-        uneven[:, apart:-apart] |= np.abs(mean[:, 2 * apart:] - mean[:, :-2 * apart]) > LEVEL_STEP_SHARE * min_height
-    uneven &= _count_about(uneven) >= MIN_UNEVEN_NEIGHBOURS
+        uneven[:, apart:-apart] |= np.abs(mean[:, 2 * apart:] - mean[:, :-2 * apart]) > CURBS.level_step_share * min_height
+    uneven &= _count_about(uneven) >= CURBS.min_uneven_neighbours
     own = np.clip(track // size + half, 0, 2 * half - 1).astype(np.int64)
     left, right = (_level_cells_from(own, sign, uneven, seen, size) for sign in (1, -1))
     column = np.arange(2 * half)
@@ -482,5 +461,5 @@ def _level_cells_from(own, sign, uneven, seen, size):
     column = np.clip(column, 0, last)
     there = np.take_along_axis(seen, column, axis=1)
     ends = ~on | np.take_along_axis(uneven, column, axis=1) \
-        | ~there & (np.logical_or.accumulate(there, axis=1) | (away * size * COORDINATE_SCALE > BLIND_HALF_WIDTH))
+        | ~there & (np.logical_or.accumulate(there, axis=1) | (away * size * COORDINATE_SCALE > CURBS.blind_half_width))
     return np.argmax(ends, axis=1)

@@ -14,19 +14,11 @@ from typing import Any
 
 import numpy as np
 
-OCCLUSION_CELL = 0.25         # m across
-MIN_OCCLUDER_HEIGHT = 0.45    # m above the expected road, from which a thing can hide a curb
-MAX_BOTTOM_DIFFERENCE = 0.30  # m above or below the curb's bottom within which ground counts as seen
-HIDDEN_POINT_SPACING = 0.5    # m along the road between two points of hidden curb, and the length that each stands for
-WATER_CELLS = 4               # before a curb whose foot lies in water, and as many behind its foot: 1 m
-LEAST_WATER_STEP = 0.05       # m above the foot, from which the ground behind it is raised: dropped curbs of driveways are lower
-SHADOW_REACH = 3.0            # m along the road: the scan planes are oblique, so the shadows are, too
-RISE_FACE_HALF_WIDTH = 0.05   # m on either side of a place between which a face lies: cells that reach into it tell neither level
-RISE_HALF_LENGTH = 0.5        # m along the road on either side over which a rise is averaged
+from ..weights import CURBS
 
 
 class OcclusionGrid:
-    """Ground and tall things on one side of a road: profiles along, cells of OCCLUSION_CELL across.
+    """Ground and tall things on one side of a road: profiles along, cells of CURBS.occlusion_cell across.
 
     Parameters
     ----------
@@ -42,7 +34,7 @@ class OcclusionGrid:
 
     def __init__(self, width: float, first: int, count: int, reach: float):
         self.width, self.first = width, first
-        self.cells = int(np.ceil(reach / OCCLUSION_CELL))
+        self.cells = int(np.ceil(reach / CURBS.occlusion_cell))
         self.ground = np.full((count, self.cells), np.nan, np.float32)
         self.tall = np.zeros((count, self.cells), bool)
 
@@ -57,10 +49,10 @@ class OcclusionGrid:
         """
         first, last = profiles[0] - self.first, profiles[1] - self.first
         row = np.floor(s / self.width).astype(np.int64) - self.first
-        cell = np.floor(u / OCCLUSION_CELL).astype(np.int64)
-        tall = (h > MIN_OCCLUDER_HEIGHT) & (cell >= 0) & (cell < self.cells) & (row >= first) & (row < last)
+        cell = np.floor(u / CURBS.occlusion_cell).astype(np.int64)
+        tall = (h > CURBS.min_occluder_height) & (cell >= 0) & (cell < self.cells) & (row >= first) & (row < last)
         self.tall[row[tall], cell[tall]] = True
-        place = np.clip((lines.offset(np.arange(lines.shape[1])) / OCCLUSION_CELL).astype(np.int64), 0, self.cells - 1)
+        place = np.clip((lines.offset(np.arange(lines.shape[1])) / CURBS.occlusion_cell).astype(np.int64), 0, self.cells - 1)
         starts = np.flatnonzero(np.r_[True, np.diff(place) > 0])
         lowest = np.fmin.reduceat(lines.low, starts, axis=1)
         seen = self.ground[first:last]
@@ -88,8 +80,8 @@ class OcclusionGrid:
         nearest, farthest : (P,) m, outward offsets between which it lies
         height : (P,) m above the expected road
         """
-        cell = np.arange(self.cells) * OCCLUSION_CELL
-        there = (cell >= nearest[:, None]) & (cell + OCCLUSION_CELL <= farthest[:, None])
+        cell = np.arange(self.cells) * CURBS.occlusion_cell
+        there = (cell >= nearest[:, None]) & (cell + CURBS.occlusion_cell <= farthest[:, None])
         seen = self.ground[profiles[0] - self.first:profiles[1] - self.first]
         seen[:] = np.where(there, np.fmin(seen, height[:, None]), seen)
 
@@ -107,18 +99,18 @@ class OcclusionGrid:
         """
         rows = len(self.ground)
         row = np.clip(np.floor(s / self.width).astype(np.int64) - self.first, 0, rows - 1)
-        cell = np.floor(u / OCCLUSION_CELL).astype(np.int64)
+        cell = np.floor(u / CURBS.occlusion_cell).astype(np.int64)
         offsets = cell[:, None] + np.arange(-1, 2)
         inside = (offsets >= 0) & (offsets < self.cells)
         there = self.ground[row[:, None], np.clip(offsets, 0, self.cells - 1)]
         with np.errstate(invalid="ignore"):
-            seen = inside & (np.abs(there - h[:, None]) < MAX_BOTTOM_DIFFERENCE)
+            seen = inside & (np.abs(there - h[:, None]) < CURBS.max_bottom_difference)
         # a summed-area table gives the tall cells of any rectangle in four look-ups
         sums = np.zeros((rows + 1, self.cells + 1), np.int32)
         np.cumsum(np.cumsum(self.tall, 0, np.int32), 1, np.int32, out=sums[1:, 1:])
-        reach = int(round(SHADOW_REACH / self.width))
+        reach = int(round(CURBS.shadow_reach / self.width))
         r0, r1 = np.clip(row - reach, 0, rows), np.clip(row + reach + 1, 0, rows)
-        c0 = np.clip(np.floor(near / OCCLUSION_CELL).astype(np.int64) + 3, 0, self.cells)
+        c0 = np.clip(np.floor(near / CURBS.occlusion_cell).astype(np.int64) + 3, 0, self.cells)
         c1 = np.maximum(np.clip(cell + 1, 0, self.cells), c0)
         tall = sums[r1, c1] - sums[r0, c1] - sums[r1, c0] + sums[r0, c0]
         return (seen.sum(1) < 2) & (tall > 0) | self._in_water(row, cell, h)
@@ -133,14 +125,14 @@ class OcclusionGrid:
 
         Returns
         -------
-        (N,) m, the median over 2 * RISE_HALF_LENGTH of road; NaN where nowhere there ground was seen on both sides
+        (N,) m, the median over 2 * CURBS.rise_half_length of road; NaN where nowhere there ground was seen on both sides
         """
-        around = int(round(RISE_HALF_LENGTH / self.width))
+        around = int(round(CURBS.rise_half_length / self.width))
         rows = np.floor(s / self.width).astype(np.int64)[:, None] + np.arange(-around, around + 1)
         line = u[:, None] + skew[:, None] * ((rows + 0.5) * self.width - s[:, None])
         rows -= self.first
-        before = np.floor((line - RISE_FACE_HALF_WIDTH) / OCCLUSION_CELL).astype(np.int64) - 1
-        behind = np.ceil((line + RISE_FACE_HALF_WIDTH) / OCCLUSION_CELL).astype(np.int64)
+        before = np.floor((line - CURBS.rise_face_half_width) / CURBS.occlusion_cell).astype(np.int64) - 1
+        behind = np.ceil((line + CURBS.rise_face_half_width) / CURBS.occlusion_cell).astype(np.int64)
         there = (rows >= 0) & (rows < len(self.ground)) & (before >= 0) & (behind < self.cells)
         rows = np.clip(rows, 0, len(self.ground) - 1)
         low, high = (self.ground[rows, np.clip(cells, 0, self.cells - 1)] for cells in (before, behind))
@@ -150,10 +142,10 @@ class OcclusionGrid:
 
     def _in_water(self, row, cell, h):
         """(N,) bool, whether the road before a place returned nothing and the ground behind it is raised like the top of a curb."""
-        offsets = cell[:, None] + np.arange(-WATER_CELLS, WATER_CELLS)
+        offsets = cell[:, None] + np.arange(-CURBS.water_cells, CURBS.water_cells)
         rise = self.ground[row[:, None], np.clip(offsets, 0, self.cells - 1)] - h[:, None]
         with np.errstate(invalid="ignore"):
-            seen = np.abs(rise) < MAX_BOTTOM_DIFFERENCE
-            raised = seen & (rise > LEAST_WATER_STEP)
-        return ((offsets[:, 0] > 0) & ~seen[:, :WATER_CELLS].any(1) & raised[:, WATER_CELLS:].any(1)
-                & ~(seen & ~raised)[:, WATER_CELLS:].any(1))
+            seen = np.abs(rise) < CURBS.max_bottom_difference
+            raised = seen & (rise > CURBS.least_water_step)
+        return ((offsets[:, 0] > 0) & ~seen[:, :CURBS.water_cells].any(1) & raised[:, CURBS.water_cells:].any(1)
+                & ~(seen & ~raised)[:, CURBS.water_cells:].any(1))

@@ -22,21 +22,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...common.arrays import order_by
+from ..weights import CURBS
 
-MIN_GROUND_LAYER_SHARE = 0.15   # share of the points of its cell below which the lowest layer is multipath and not ground
-TOP_QUANTILE = 0.9              # quantile of the lowest layer that stands for its highest point
-TOP_QUANTILE_SIGMAS = 1.2816    # the same quantile of a normal distribution, in sigmas
-MIN_SCANNER_NOISE = 0.002       # m
-DEFAULT_SCANNER_NOISE = 0.005   # m, where too few cells hold enough points for an estimate
-SIGMA_PER_MEAN_DEVIATION = 1.2533   # of a normal distribution: sqrt(pi / 2)
-MAX_GROUND_DEVIATION = 0.15     # m from a cell's ground within which points count for the scanner's noise
-PROFILE_NOISE_POINTS = 4        # points of the lowest layer of a cell, and
-PROFILE_NOISE_CELLS = 20        # such cells of a profile, that an estimate of its noise needs
-MIN_SPREAD_POINTS = 5           # points of a cell, and
-MIN_SPREAD_CELLS = 10           # such cells of a profile, that an estimate of its spread needs
-SPREAD_PROFILES = 6             # profiles on either side that are estimated together
-GROUND_DEPTH = 2.0              # m below, and
-GROUND_HEIGHT = 2.0             # m above the expected road within which ground is looked for
+TOP_QUANTILE_SIGMAS = 1.2816   # derived: CURBS.top_quantile of a normal distribution, in sigmas
+SIGMA_PER_MEAN_DEVIATION = 1.2533   # derived: sqrt(pi / 2), of a normal distribution
 
 
 def lowest_layers(place: np.ndarray, h: np.ndarray, layer_jump: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -68,7 +57,7 @@ def lowest_layers(place: np.ndarray, h: np.ndarray, layer_jump: float) -> tuple[
         return ground, layer_start, layer_count
     layer_cell = np.cumsum(first_of_cell) - 1
     cell_count = np.bincount(layer_cell, layer_count)
-    real = layer_count >= MIN_GROUND_LAYER_SHARE * cell_count[layer_cell]
+    real = layer_count >= CURBS.min_ground_layer_share * cell_count[layer_cell]
     lowest = np.flatnonzero(real)
     lowest = lowest[np.r_[True, np.diff(layer_cell[lowest]) > 0]]
     other = np.ones(len(layer_start), bool)
@@ -220,7 +209,7 @@ def ground_of_profiles(points: Sequence[np.ndarray], inside: np.ndarray, place: 
     """
     rows = profiles[1] - profiles[0]
     u, s, h, along = (v.take(inside) for v in points)
-    height = h + GROUND_DEPTH
+    height = h + CURBS.ground_depth
     height *= 1e4
     order = order_by(np.rint(height, out=height).astype(np.int32), place)
     place, h = place.take(order), h.take(order)
@@ -228,9 +217,9 @@ def ground_of_profiles(points: Sequence[np.ndarray], inside: np.ndarray, place: 
     low, high = (np.full((rows, cells), np.nan) for _ in range(2))
     owner = place[first_of]
     middle = 0.5 * (h[first_of + (count - 1) // 2] + h[first_of + count // 2])
-    top = h[first_of + np.rint(TOP_QUANTILE * (count - 1)).astype(np.int64)]
+    top = h[first_of + np.rint(CURBS.top_quantile * (count - 1)).astype(np.int64)]
     low.flat[owner], high.flat[owner] = middle, top
-    many = np.flatnonzero(count >= PROFILE_NOISE_POINTS)
+    many = np.flatnonzero(count >= CURBS.profile_noise_points)
     noise = _profile_noise(owner.take(many) // cells, (top.take(many) - middle.take(many)) / TOP_QUANTILE_SIGMAS, rows)
     held = np.bincount(place, minlength=rows * cells).reshape(rows, cells)
     return _ProfileRun(profiles, order, u, s, along, h, ground, held, low, high, noise, _smooth(h, held, low))
@@ -242,7 +231,7 @@ def join_profile_runs(runs: Sequence[_ProfileRun], profiles: tuple[int, int], wi
     rows, cells = profiles[1] - profiles[0], runs[0].low.shape[1]
     low, high = np.full((rows, cells), np.nan), np.full((rows, cells), np.nan)
     held = np.zeros((rows, cells), np.int64)
-    noise, smooth = np.full(rows, DEFAULT_SCANNER_NOISE), np.full(rows, np.nan)
+    noise, smooth = np.full(rows, CURBS.default_scanner_noise), np.full(rows, np.nan)
     for run in runs:
         own = slice(run.profiles[0] - profiles[0], run.profiles[1] - profiles[0])
         low[own], high[own], held[own], noise[own], smooth[own] = run.low, run.high, run.count, run.noise, run.smooth
@@ -275,7 +264,8 @@ def cells_of_points(u: np.ndarray, s: np.ndarray, h: np.ndarray, rows: np.ndarra
     profile = np.floor(s / width).astype(np.int32)
     profile -= profiles[0]
     cell = np.floor((u - origin) / spacing).astype(np.int32)
-    within = (profile >= 0) & (profile < profiles[1] - profiles[0]) & (cell >= 0) & (cell < cells) & (h > -GROUND_DEPTH) & (h < GROUND_HEIGHT)
+    within = ((profile >= 0) & (profile < profiles[1] - profiles[0]) & (cell >= 0) & (cell < cells)
+              & (h > -CURBS.ground_depth) & (h < CURBS.ground_height))
     place = profile * np.int32(cells) + cell
     return (rows, place) if within.all() else (rows[within], place[within])
 
@@ -285,14 +275,14 @@ def _profile_noise(profile, spread, count):
     ordered, n = _sorted_rows(profile, spread, count)
     k, own = np.maximum(n - 1, 0), np.arange(count)
     median = 0.5 * (ordered[own, k // 2] + ordered[own, (k + 1) // 2])
-    return np.where(n >= PROFILE_NOISE_CELLS, np.fmax(median, MIN_SCANNER_NOISE), DEFAULT_SCANNER_NOISE)
+    return np.where(n >= CURBS.profile_noise_cells, np.fmax(median, CURBS.min_scanner_noise), CURBS.default_scanner_noise)
 
 
 def _smooth(h, held, low):
     """(P,) spread of heights about the ground of their cells, in the smoother cells of every profile; NaN where there are too few."""
     rows, cells = low.shape
     held, low = held.ravel(), low.ravel()
-    crowded = np.flatnonzero(held >= MIN_SPREAD_POINTS)
+    crowded = np.flatnonzero(held >= CURBS.min_spread_points)
     if not len(crowded):
         return np.full(rows, np.nan)
     size = held.take(crowded)
@@ -300,25 +290,25 @@ def _smooth(h, held, low):
     owner, index = expand_ranges(start, start + size)
     first = np.cumsum(size) - size
     off = np.abs(h.take(index) - low.take(crowded).take(owner))
-    near, count = off < MAX_GROUND_DEVIATION, size
+    near, count = off < CURBS.max_ground_deviation, size
     if not near.all():
         off = np.where(near, off, 0.0)
         count = np.add.reduceat(near, first, dtype=np.int64)
     mean = SIGMA_PER_MEAN_DEVIATION * np.add.reduceat(off, first) / np.maximum(count, 1)
-    enough = np.flatnonzero(count >= MIN_SPREAD_POINTS)
+    enough = np.flatnonzero(count >= CURBS.min_spread_points)
     # grass is rough to any scanner, so the smoother cells give the estimate
     ordered, n = _sorted_rows(crowded.take(enough) // cells, mean.take(enough), rows)
-    return np.where(n >= MIN_SPREAD_CELLS, ordered[np.arange(rows), np.maximum(n - 1, 0) * 3 // 10], np.nan)
+    return np.where(n >= CURBS.min_spread_cells, ordered[np.arange(rows), np.maximum(n - 1, 0) * 3 // 10], np.nan)
 
 
 def _spread(smooth):
     """(P,) spread of heights about the ground, in the smoother cells of profiles and their neighbours."""
     # a single profile beside a bush is no measure of the scanner
-    padded = np.pad(smooth, SPREAD_PROFILES, constant_values=np.nan)
-    around = np.sort(np.lib.stride_tricks.sliding_window_view(padded, 2 * SPREAD_PROFILES + 1), axis=1)
+    padded = np.pad(smooth, CURBS.spread_profiles, constant_values=np.nan)
+    around = np.sort(np.lib.stride_tricks.sliding_window_view(padded, 2 * CURBS.spread_profiles + 1), axis=1)
     known = np.isfinite(around).sum(1)
     middle = around[np.arange(len(smooth)), np.maximum(known - 1, 0) // 2]
-    return np.where(known > 0, middle, MIN_SCANNER_NOISE)
+    return np.where(known > 0, middle, CURBS.min_scanner_noise)
 
 
 def _sorted_rows(row, values, rows):

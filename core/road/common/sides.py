@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..weights import CURBS
 from .curb_points import CurbPoints, curb_points_at
-from .decimation import POINTS_PER_LEVEL_CELL, PointDecimation, limit_points_per_cell
-from .occlusion import HIDDEN_POINT_SPACING, MIN_OCCLUDER_HEIGHT, OcclusionGrid
+from .decimation import PointDecimation, limit_points_per_cell
+from .occlusion import OcclusionGrid
 from .pseudo_scanlines import PseudoScanLines, cells_of_points, expand_ranges, ground_of_profiles, join_profile_runs
 
 if TYPE_CHECKING:
@@ -18,13 +19,7 @@ if TYPE_CHECKING:
     from ...survey.store.records import Points
     from .curb_limits import CurbSettings
 
-SIDE_SIGNS = {"left": 1, "right": -1}   # side -> sign of its offsets
-BLOCK_SECTION_LENGTH = 20.0   # m of road for which the length of blocks is decided
-WORK_SECTION_LENGTH = 20.0    # m of road that are worked on together
-SECTIONS_TOGETHER = 4         # of these that a worker process is best given: it reads, and decimates, what two of them share once
-MAX_CURB_OFFSET = 20.0        # m from the reference line within which curbs are looked for
-HEIGHT_NODE_SPACING = 0.25    # m between the nodes of the expected height
-MAX_LOOK_ALONG = 4.0          # m along the road from the vehicle to a point that is used, plus as much as it lies across
+SIDE_SIGNS = {"left": 1, "right": -1}   # derived: side -> sign of its offsets
 
 
 class OutermostTrack:
@@ -52,7 +47,7 @@ class OutermostTrack:
 
 
 def work_sections(survey: Survey, road: int, width: float) -> list[tuple[int, int]]:
-    """(first, last + 1) profile numbers of the sections of a road, about WORK_SECTION_LENGTH each; `width` is m of road per profile."""
+    """(first, last + 1) profile numbers of the sections of a road, about CURBS.work_section_length each; `width` is m of road per profile."""
     start, end = survey.store.span(road)
     return fixed_sections(int(np.floor(start / width)), int(np.ceil(end / width)), width)
 
@@ -67,9 +62,9 @@ def fixed_sections(first: int, last: int, width: float) -> list[tuple[int, int]]
 
     Returns
     -------
-    list of (first, last + 1), each about WORK_SECTION_LENGTH long, those at the ends between half of that and one and a half
+    list of (first, last + 1), each about CURBS.work_section_length long, those at the ends between half of that and one and a half
     """
-    length = max(int(round(WORK_SECTION_LENGTH / width)), 1)
+    length = max(int(round(CURBS.work_section_length / width)), 1)
     cuts = np.arange(first // length + 1, -(-last // length)) * length
     bounds = np.r_[first, cuts[(cuts - first >= length / 2) & (last - cuts >= length / 2)], last]
     return [(int(a), int(b)) for a, b in zip(bounds[:-1], bounds[1:])]
@@ -82,7 +77,7 @@ def join_sections(parts: Sequence[tuple[Mapping[str, Any], Mapping[str, Occlusio
 
 
 def side_profiles(decimation: PointDecimation, road: int, section: tuple[int, int], tracks: Mapping[str, OutermostTrack],
-                  settings: CurbSettings, points_per_cell: int | None = POINTS_PER_LEVEL_CELL,
+                  settings: CurbSettings, points_per_cell: int | None = CURBS.points_per_level_cell,
                   ) -> Iterator[tuple[str, int, tuple[np.ndarray, ...], PseudoScanLines]]:
     """Profiles of one section, separately for each side and pass.
 
@@ -93,7 +88,7 @@ def side_profiles(decimation: PointDecimation, road: int, section: tuple[int, in
     section : (first, last + 1) profile numbers
     tracks : side -> OutermostTrack
     settings : CurbSettings
-    points_per_cell : see `PointDecimation.decimated_points`; None uses all points, up to POINTS_PER_UNEVEN_CELL of a cell
+    points_per_cell : see `PointDecimation.decimated_points`; None uses all points, up to CURBS.points_per_uneven_cell of a cell
 
     Yields
     ------
@@ -109,21 +104,21 @@ def side_profiles(decimation: PointDecimation, road: int, section: tuple[int, in
         if not len(s):
             continue
         along = ahead_of_vehicle(survey, block, s)
-        near = np.abs(along) < MAX_LOOK_ALONG + np.abs(d)
+        near = np.abs(along) < CURBS.max_look_along + np.abs(d)
         h = block.z - expected_height(survey, road, s)
         first = int(np.floor(s[0] / width))
         profiles = max(first, section[0]), min(int(np.floor(s[-1] / width)) + 1, section[1])
         for side, sign in SIDE_SIGNS.items():
             u = sign * d
-            cells = max(int(np.ceil((MAX_CURB_OFFSET - origins[side]) / spacing)), 1)
-            for number, rows in _rows_by_pass(block.pass_number, near & (u > origins[side]) & (u < MAX_CURB_OFFSET)):
+            cells = max(int(np.ceil((CURBS.max_curb_offset - origins[side]) / spacing)), 1)
+            for number, rows in _rows_by_pass(block.pass_number, near & (u > origins[side]) & (u < CURBS.max_curb_offset)):
                 key = side, number
                 inside, cell = cells_of_points(u, s, h, rows, profiles, cells, width, spacing, origins[side])
                 if points_per_cell is None:
                     few = limit_points_per_cell(cell)
                     inside, cell = inside[few], cell[few]
                 runs.setdefault(key, []).append(ground_of_profiles((u, s, h, along), inside, cell, profiles, cells, settings.layer_jump))
-                high = rows[h.take(rows) > MIN_OCCLUDER_HEIGHT]
+                high = rows[h.take(rows) > CURBS.min_occluder_height]
                 tall.setdefault(key, []).append([v.take(high) for v in (u, s, h)])
     for side, number in sorted(runs, key=lambda key: (list(SIDE_SIGNS).index(key[0]), key[1])):
         lines = join_profile_runs(runs[side, number], section, width, spacing, origins[side])
@@ -142,16 +137,16 @@ def _rows_by_pass(numbers, mask):
 
 
 def expected_height(survey: Any, road: int, s: np.ndarray) -> np.ndarray:
-    """(N,) m, local z at which the road is expected at (N,) stations, interpolated between nodes HEIGHT_NODE_SPACING apart.
+    """(N,) m, local z at which the road is expected at (N,) stations, interpolated between nodes CURBS.height_node_spacing apart.
 
     `survey` is a Survey, or whatever else has `road_height`.
     """
     if not len(s):
         return np.empty(0)
-    first = int(np.floor(np.min(s) / HEIGHT_NODE_SPACING))
-    last = int(np.floor(np.max(s) / HEIGHT_NODE_SPACING)) + 1
-    nodes = survey.road_height(road, np.arange(first, last + 1) * HEIGHT_NODE_SPACING)
-    at = s * (1.0 / HEIGHT_NODE_SPACING)
+    first = int(np.floor(np.min(s) / CURBS.height_node_spacing))
+    last = int(np.floor(np.max(s) / CURBS.height_node_spacing)) + 1
+    nodes = survey.road_height(road, np.arange(first, last + 1) * CURBS.height_node_spacing)
+    at = s * (1.0 / CURBS.height_node_spacing)
     at -= first
     k = at.astype(np.intp)
     at -= k
@@ -190,9 +185,6 @@ def ahead_of_vehicle(survey: Survey, points: Points, s: np.ndarray) -> np.ndarra
 
 # Hidden curb: places in the gaps of a main curb where something stands in front of it.
 
-MIN_HIDDEN_GAP = 2.0          # m between curb points from which one may be hidden: as far apart as points of automatic blocks lie
-MAX_HIDDEN_GAP = 30.0         # m between curbs within which hidden curb is reported
-
 
 def hidden_points(measured: np.ndarray, occlusion: OcclusionGrid, track: OutermostTrack) -> list[dict]:
     """Places in the gaps between curb points where something hides the curb.
@@ -211,9 +203,9 @@ def hidden_points(measured: np.ndarray, occlusion: OcclusionGrid, track: Outermo
         return []
     measured = measured[np.argsort(measured[:, 0], kind="stable")]
     start, end = measured[:-1, 0], measured[1:, 0]
-    wide = (end - start <= MAX_HIDDEN_GAP) & (end - start > MIN_HIDDEN_GAP)
+    wide = (end - start <= CURBS.max_hidden_gap) & (end - start > CURBS.min_hidden_gap)
     # counted from the gap's own ends: where station 0 lies does not matter
-    parts = np.where(wide, np.rint((end - start) / HIDDEN_POINT_SPACING), 0).astype(np.int64)
+    parts = np.where(wide, np.rint((end - start) / CURBS.hidden_point_spacing), 0).astype(np.int64)
     gap, number = expand_ranges(np.zeros(len(parts), np.int64), parts)
     s = start[gap] + (number + 0.5) * ((end - start) / np.maximum(parts, 1))[gap]
     u, h = (np.interp(s, measured[:, 0], measured[:, k]) for k in (1, 2))
@@ -251,7 +243,7 @@ def hidden_beside(pieces: CurbPoints, main: Mapping[str, np.ndarray], beside: Ma
         for row in hidden_points(measured, beside[side], OutermostTrack(survey.frame, road, sign)):
             k = np.searchsorted(ends, row["s"])
             at = np.searchsorted(reported, row["s"])
-            if (order[k - 1:k + 1] < len(later)).any() and np.abs(reported[at - 1:at + 1] - row["s"]).min() > 0.5 * HIDDEN_POINT_SPACING:
+            if (order[k - 1:k + 1] < len(later)).any() and np.abs(reported[at - 1:at + 1] - row["s"]).min() > 0.5 * CURBS.hidden_point_spacing:
                 rows.append(row)
         s, u, h = (np.array([row[name] for row in rows], float) for name in ("s", "u", "h"))
         places = survey.frame.to_map(road, s, sign * u, h + expected_height(survey, road, s))

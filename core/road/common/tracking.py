@@ -17,37 +17,10 @@ from numpy.polynomial import Polynomial
 
 from ...common.arrays import ROUNDING_TOLERANCE, linked_groups, stretch_of
 from ...common.parallel import check_cancelled
+from ..weights import CURBS
 from .corners import CurbSteps
-from .curb_limits import MIN_FAINT_LENGTH, CurbLimits
+from .curb_limits import CurbLimits
 from .pseudo_scanlines import expand_ranges
-
-MAX_LINK_LENGTH = 1.0       # m along the road that a link may span
-LINK_DRIFT = 0.20           # m across per m along that a link may differ from the faces' own direction
-LINK_TOLERANCE = 0.05       # m across that two steps of one line may differ in any case
-HEIGHT_TOLERANCE = 0.03     # m that bottom heights of neighbours may differ
-MIN_CHAIN_LENGTH = 0.75     # m of a chain that is used
-WEAK_SCATTER_FACTOR = 2.0   # times the scatter at which a faint step is still a curb where it continues one
-LOW_CURB_SHARE = 0.5        # share of the least curb height from which a lower curb that continues a full one is used
-MIN_SLOPED_LENGTH = 10.0    # m of a sloped curb: the edge of worn cobbles or of a track is straight over a few metres
-MAX_WANDER = 0.008          # m of a sloped curb about its own straight line
-FAINT_GAIN = 0.7            # value of a metre of low or sloped curb, where another may be chosen
-MIN_CURB_LENGTH = 4.0       # m of chains in one line that make a curb
-MAX_CHAIN_GAP = 8.0         # m between chains of one line
-MAX_STEADY_GAP = 15.0       # m between a curb and a piece of it, if their offsets differ by less than
-MAX_STEADY_JUMP = 0.5       # m
-MAX_JOINED_GAP = 2.5        # m along a curb between points, chains or lines that are joined without a sign of something in between
-END_DIRECTION_STEPS = 5     # steps at the end of a chain that give its direction
-MAX_EXTRAPOLATION = 3.0     # m that a chain is continued in its own direction
-MIN_CHAIN_DENSITY = 0.5     # share of its profiles in which a chain must be seen
-MAX_CHAIN_SCATTER = 0.02    # m, scatter about its own running line beyond the scanner's noise
-NOISY_SHARE = 0.125         # share of the least curb height: a scanner with a larger spread does not show a curb in one profile
-MAX_NOISE_ALLOWANCE = 0.3   # share of the least curb height by which such a scanner may have seen a curb too low
-MAX_ROAD_ROUGHNESS = 0.010  # m about the road side's line, if the scanner's noise is less than half of it
-JUMP_COST = 4.0             # m of curb that a lateral jump of 1 m must gain
-CLIMB_COST = 60.0           # m of curb that a difference of 1 m in height must gain: ground behind a curb is higher
-MAX_JUMP_COST = 10.0        # m of curb that any jump costs at most
-DISTANCE_PENALTY = 0.03     # share of its value that a metre of curb loses for each metre farther from the track
-TRACKING_MEMORY = 40.0      # m of road after which the best chain alone may still be continued
 
 
 @dataclass
@@ -115,7 +88,7 @@ def _best_partner(steps, width, direction):
     span = u.max() - u.min() + 1000.0
     key = profile * span + (u - u.min())
     best, cheapest = np.full(count, -1), np.full(count, np.inf)
-    for gap in range(1, max(int(round(MAX_LINK_LENGTH / width)), 1) + 1):
+    for gap in range(1, max(int(round(CURBS.max_link_length / width)), 1) + 1):
         on = u + steps.skew * direction * gap * width
         wanted = (profile + direction * gap) * span + (on - u.min())
         right = np.searchsorted(key, wanted)
@@ -124,9 +97,9 @@ def _best_partner(steps, width, direction):
             along = np.abs(s[k] - s)
             turn = 0.5 * (steps.skew + steps.skew[k]) * (s[k] - s)
             across, up = np.abs(u[k] - u - turn), np.abs(h[k] - h)
-            fits = (profile[k] == profile + direction * gap) & (across <= LINK_TOLERANCE + LINK_DRIFT * along) \
-                & (up <= HEIGHT_TOLERANCE + 0.05 * along)
-            cost = np.where(fits, (across / LINK_TOLERANCE) ** 2 + (up / HEIGHT_TOLERANCE) ** 2 + (gap - 1), np.inf)
+            fits = (profile[k] == profile + direction * gap) & (across <= CURBS.link_tolerance + CURBS.link_drift * along) \
+                & (up <= CURBS.height_tolerance + 0.05 * along)
+            cost = np.where(fits, (across / CURBS.link_tolerance) ** 2 + (up / CURBS.height_tolerance) ** 2 + (gap - 1), np.inf)
             better = cost < cheapest
             best[better], cheapest[better] = k[better], cost[better]
     return best
@@ -156,22 +129,23 @@ def curb_chains(steps: CurbSteps, label: np.ndarray, profile_width: float, limit
         check_cancelled()
         s = steps.s[members]
         length = (steps.profile[members[-1]] - steps.profile[members[0]] + 1) * profile_width
-        if length < MIN_CHAIN_LENGTH - 1e-9 or len(members) * profile_width < MIN_CHAIN_DENSITY * length:
+        if length < CURBS.min_chain_length - 1e-9 or len(members) * profile_width < CURBS.min_chain_density * length:
             continue
         height, scanner_noise = np.median(steps.height[members]), np.median(steps.scanner_noise[members])
         noise, scatter = np.median(steps.noise[members]), _chain_scatter(s, steps.u[members]) if len(members) > 2 else 0.0
         # blur widens a face and never narrows it, so the sharper profiles show its width
         slope = np.arctan2(height, max(np.quantile(steps.run[members], 0.3) - 2 * scanner_noise, 0.0))
         least = limits.clear_height
-        allowance = min(scanner_noise, MAX_NOISE_ALLOWANCE * least) if scanner_noise > NOISY_SHARE * least else 0.0
+        allowance = min(scanner_noise, CURBS.max_noise_allowance * least) if scanner_noise > CURBS.noisy_share * least else 0.0
         low, sloped = height < least - allowance, slope < limits.clear_slope
-        if sloped and (length < MIN_SLOPED_LENGTH or _wander(steps, members) > MAX_WANDER) or noise > max(MAX_ROAD_ROUGHNESS, 2 * scanner_noise) \
-                or np.mean(steps.behind[members] >= 2) < 0.5 or scatter > MAX_CHAIN_SCATTER + scanner_noise:
+        if sloped and (length < CURBS.min_sloped_length or _wander(steps, members) > CURBS.max_wander) \
+                or noise > max(CURBS.max_road_roughness, 2 * scanner_noise) or np.mean(steps.behind[members] >= 2) < 0.5 \
+                or scatter > CURBS.max_chain_scatter + scanner_noise:
             continue
         found = StepChain(members, float(s[0]), float(s[-1]), bool(low), bool(sloped))
         if not (low or sloped) or limits.automatic and limits.faint(height, slope, noise, len(members), scatter):
             chains.append(found)
-        elif limits.automatic and limits.faint(height, slope, noise, len(members), scatter / WEAK_SCATTER_FACTOR):
+        elif limits.automatic and limits.faint(height, slope, noise, len(members), scatter / CURBS.weak_scatter_factor):
             weak.append(found)
     return sorted([*chains, *_continuing(chains, weak, steps)], key=lambda c: (c.start, c.end))
 
@@ -184,9 +158,10 @@ def _continuing(chains, weak, steps):
         known = sorted(((c.end if onward else c.start, k) for k, c in enumerate([*chains, *found])))
         numbered = [*chains, *found]
         for own in sorted(weak, key=lambda c: c.start if onward else -c.end):
-            first = own.start - MAX_CHAIN_GAP if onward else own.end
-            nearby = known[bisect_left(known, (first - ROUNDING_TOLERANCE, -1)):bisect_left(known, (first + MAX_CHAIN_GAP + ROUNDING_TOLERANCE, -1))]
-            beside = [numbered[k] for tip, k in nearby if 0 < (own.start - tip if onward else tip - own.end) <= MAX_CHAIN_GAP]
+            first = own.start - CURBS.max_chain_gap if onward else own.end
+            last = first + CURBS.max_chain_gap + ROUNDING_TOLERANCE
+            nearby = known[bisect_left(known, (first - ROUNDING_TOLERANCE, -1)):bisect_left(known, (last, -1))]
+            beside = [numbered[k] for tip, k in nearby if 0 < (own.start - tip if onward else tip - own.end) <= CURBS.max_chain_gap]
             if any(_in_line(steps, *((one.steps, own.steps) if onward else (own.steps, one.steps)))[0] for one in beside):
                 insort(known, (own.end if onward else own.start, len(numbered)))
                 numbered.append(own)
@@ -197,9 +172,10 @@ def _continuing(chains, weak, steps):
 
 
 def _wander(steps, members):
-    """m, deviation of a chain from its own straight line over MIN_FAINT_LENGTH metres: the slope of a bank or of wear changes its place."""
+    """m, deviation of a chain from its own straight line over CURBS.min_faint_length metres: the slope of a bank or of wear changes its place."""
     s, u = steps.s[members], steps.u[members]
-    owner, index = expand_ranges(np.searchsorted(s, s - 0.5 * MIN_FAINT_LENGTH), np.searchsorted(s, s + 0.5 * MIN_FAINT_LENGTH, side="right"))
+    half = 0.5 * CURBS.min_faint_length
+    owner, index = expand_ranges(np.searchsorted(s, s - half), np.searchsorted(s, s + half, side="right"))
     ds, count = s[index] - s[owner], np.bincount(owner)
     ms, mu, ss, su = (np.bincount(owner, v) / count for v in (ds, u[index], ds * ds, ds * u[index]))
     slope = (su - ms * mu) / np.maximum(ss - ms * ms, 1e-6)
@@ -232,8 +208,8 @@ def select_along_road(chains: Sequence[StepChain], steps: CurbSteps,
     for a, b in zip(cuts[:-1], cuts[1:]):
         check_cancelled()
         # of the chains that ended long ago the best alone is continued
-        best = max((value[k] for k in continued if ends[k] + TRACKING_MEMORY < a), default=-np.inf)
-        value[[k for k in continued if ends[k] + TRACKING_MEMORY < a and value[k] < best]] = -np.inf
+        best = max((value[k] for k in continued if ends[k] + CURBS.tracking_memory < a), default=-np.inf)
+        value[[k for k in continued if ends[k] + CURBS.tracking_memory < a and value[k] < best]] = -np.inf
         continued = [k for k in continued if np.isfinite(value[k])]
         while waiting and starts[waiting[-1]] <= a:
             insort(active, waiting.pop())
@@ -243,14 +219,14 @@ def select_along_road(chains: Sequence[StepChain], steps: CurbSteps,
         middle, found = 0.5 * (a + b), []
         for c in active:
             farther = max(np.interp(middle, *places[c][:2]) - near(middle), 0.0)
-            gain = (b - a) * max(1.0 - DISTANCE_PENALTY * farther, 0.1) * (FAINT_GAIN if chains[c].low or chains[c].sloped else 1.0)
+            gain = (b - a) * max(1.0 - CURBS.distance_penalty * farther, 0.1) * (CURBS.faint_gain if chains[c].low or chains[c].sloped else 1.0)
             u, h = (np.interp(a, places[c][0], v) for v in places[c][1:])
             gap = np.maximum(a - ends[known], 0.0)
             # a gap is crossed in the mean direction of the end before and the start after it
-            turn = np.minimum(gap, MAX_EXTRAPOLATION) * 0.5 * (tips[known, 1] + (tips[c, 0] if a <= starts[c] else 0.0))
+            turn = np.minimum(gap, CURBS.max_extrapolation) * 0.5 * (tips[known, 1] + (tips[c, 0] if a <= starts[c] else 0.0))
             jump = np.maximum(np.abs(u - there[:, 0] - np.where(gap > 0, turn, 0.0)) - 0.05 - 0.1 * gap, 0.0)
             climb = np.maximum(np.abs(h - there[:, 1]) - 0.03 - 0.003 * gap, 0.0)
-            total = value[known] - np.where(known == c, 0.0, np.minimum(JUMP_COST * jump + CLIMB_COST * climb, MAX_JUMP_COST))
+            total = value[known] - np.where(known == c, 0.0, np.minimum(CURBS.jump_cost * jump + CURBS.climb_cost * climb, CURBS.max_jump_cost))
             best, before = 0.0, None       # the path that begins here
             if len(known) and total.max() >= best:
                 k = int(np.argmax(total))
@@ -291,17 +267,17 @@ def _goes_on(steps, chains, part, own, onward):
     number, a, b = part
     known = chains[number].steps
     known = known[(steps.s[known] >= a) & (steps.s[known] <= b)]
-    if not len(known) or np.abs(steps.u[own.steps] - steps.u[known[-1 if onward else 0]]).max() > MAX_STEADY_JUMP:
+    if not len(known) or np.abs(steps.u[own.steps] - steps.u[known[-1 if onward else 0]]).max() > CURBS.max_steady_jump:
         return False
     return any(_in_line(steps, *((known, own.steps) if onward else (own.steps, known))))
 
 
 def drop_short_curbs(selected: Sequence[tuple[int, float, float]], chains: Sequence[StepChain],
                      steps: CurbSteps) -> list[tuple[int, float, float]]:
-    """Selected intervals that make a curb: intervals in line with each other cover MIN_CURB_LENGTH together, faint ones MIN_FAINT_LENGTH.
+    """Selected intervals that make a curb: intervals in line with each other cover CURBS.min_curb_length together, faint ones CURBS.min_faint_length.
 
     A curb between parked cars is seen in pieces; a piece with nothing in line with it may be anything. A piece farther away, up to
-    MAX_STEADY_GAP, belongs to what is a curb by itself.
+    CURBS.max_steady_gap, belongs to what is a curb by itself.
 
     Parameters
     ----------
@@ -322,7 +298,7 @@ def drop_short_curbs(selected: Sequence[tuple[int, float, float]], chains: Seque
         group[k] = group[k - 1] + (not near)
     length = np.bincount(group, [b - a for _, a, b in selected])
     upright = np.bincount(group, [not (chains[chain].low or chains[chain].sloped) for chain, _, _ in selected]) > 0
-    curb = length >= np.where(upright, MIN_CURB_LENGTH, MIN_FAINT_LENGTH)
+    curb = length >= np.where(upright, CURBS.min_curb_length, CURBS.min_faint_length)
     # from one group to the next, along the road and back
     for order in (range(1, len(selected)), range(len(selected) - 1, 0, -1)):
         for k in order:
@@ -335,15 +311,15 @@ def _in_line(steps, before, after):
     """Does one run of steps continue the other a short gap away, and does it do so steadily a longer one away?"""
     a, b = before[-1], after[0]
     gap = steps.s[b] - steps.s[a]
-    turn = min(gap, MAX_EXTRAPOLATION) * 0.5 * (_end_directions(steps, before)[1] + _end_directions(steps, after)[0])
-    jump, level = abs(steps.u[b] - steps.u[a] - turn), abs(steps.h[b] - steps.h[a]) <= HEIGHT_TOLERANCE + 0.02 * gap
-    return level and gap <= MAX_CHAIN_GAP and jump <= 0.15 + 0.15 * gap, level and gap <= MAX_STEADY_GAP and jump <= MAX_STEADY_JUMP
+    turn = min(gap, CURBS.max_extrapolation) * 0.5 * (_end_directions(steps, before)[1] + _end_directions(steps, after)[0])
+    jump, level = abs(steps.u[b] - steps.u[a] - turn), abs(steps.h[b] - steps.h[a]) <= CURBS.height_tolerance + 0.02 * gap
+    return level and gap <= CURBS.max_chain_gap and jump <= 0.15 + 0.15 * gap, level and gap <= CURBS.max_steady_gap and jump <= CURBS.max_steady_jump
 
 
 def _end_directions(steps, members):
-    """Directions in which a run of steps begins and ends, m outward per m along, of its END_DIRECTION_STEPS outermost steps."""
+    """Directions in which a run of steps begins and ends, m outward per m along, of its CURBS.end_direction_steps outermost steps."""
     found = []
-    for tip in (members[:END_DIRECTION_STEPS], members[-END_DIRECTION_STEPS:]):
+    for tip in (members[:CURBS.end_direction_steps], members[-CURBS.end_direction_steps:]):
         ds = steps.s[tip] - steps.s[tip].mean()
         found.append(float(ds @ steps.u[tip] / (ds @ ds + 0.05)))
     return found
@@ -356,14 +332,14 @@ def _chain_scatter(s, u):
 
 
 def seen_stretch(profile: np.ndarray) -> slice:
-    """The rows of a run of steps in which it is seen densely enough: all, or those whose profiles exceed MIN_CHAIN_DENSITY by most.
+    """The rows of a run of steps in which it is seen densely enough: all, or those whose profiles exceed CURBS.min_chain_density by most.
 
     Parameters
     ----------
     profile : (N,) int, ascending, numbers of the profiles
     """
-    excess = np.arange(len(profile)) - MIN_CHAIN_DENSITY * (profile - profile[0])
-    if excess[-1] + 1 >= MIN_CHAIN_DENSITY:
+    excess = np.arange(len(profile)) - CURBS.min_chain_density * (profile - profile[0])
+    if excess[-1] + 1 >= CURBS.min_chain_density:
         return slice(None)
     last = int(np.argmax(excess - np.minimum.accumulate(excess)))
     return slice(int(np.argmin(excess[:last + 1])), last + 1)
@@ -387,17 +363,6 @@ def _merged(path):
 # one by one, upright or sloped, linked with each other or not: which of them were linked to a chain hangs on a millimetre. It may scatter more than
 # a curb that nothing else speaks for.
 
-LINE_FIT_LENGTH = 10.0      # m of curb before and after a gap that give the line across it
-WEIGHT_LENGTH = 5.0         # m from the gap at which a place counts half
-MIN_BEND_LENGTH = 3.0       # m of curb at an end from which its direction is known
-MAX_LINE_GAP = 50.0         # m between two stretches of one line: a row of parked cars
-IN_LINE_ACROSS = 0.08       # m from that line
-IN_LINE_AT_END, IN_LINE_DRIFT = 0.03, 0.01   # m, and m per m from the nearer end: less where a gap begins or ends
-IN_LINE_GRADE = 0.01        # m per m to the nearer end that the bottom may differ besides HEIGHT_TOLERANCE
-MAX_HEIGHT_RATIO = 1.6      # of the height of a piece over that of the curb before and after it
-MIN_PIECE_LENGTH = 0.5      # m
-MIN_PIECE_STEPS = 3
-
 
 def with_pieces_in_line(kept: Sequence[tuple[int, float, float]], chains: Sequence[StepChain], steps: CurbSteps,
                         to_plan: Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]) -> list[np.ndarray]:
@@ -419,10 +384,10 @@ def with_pieces_in_line(kept: Sequence[tuple[int, float, float]], chains: Sequen
         return []
     chosen, others = StepsByStation(steps[np.concatenate(found)]), StepsByStation(steps)
     for (_, _, a), (_, b, _) in zip(kept[:-1], kept[1:]):
-        if not MAX_JOINED_GAP < b - a <= MAX_LINE_GAP:
+        if not CURBS.max_joined_gap < b - a <= CURBS.max_line_gap:
             continue
         check_cancelled()
-        before, after = (chosen.steps[chosen.rows(*ends)] for ends in ((a - LINE_FIT_LENGTH, a + 1e-9), (b - 1e-9, b + LINE_FIT_LENGTH)))
+        before, after = (chosen.steps[chosen.rows(*ends)] for ends in ((a - CURBS.line_fit_length, a + 1e-9), (b - 1e-9, b + CURBS.line_fit_length)))
         found += [piece.steps for piece in pieces_between(before, after, others, to_plan)]
     return sorted(found, key=lambda members: float(steps.s[members[0]]))
 
@@ -475,7 +440,7 @@ def pieces_between(before: CurbSteps, after: CurbSteps, others: StepsByStation,
     """
     a, b = before.s.max(), after.s.min()
     rows, steps = others.rows(a + 1e-6, b - 1e-6), others.steps
-    if len(rows) < MIN_PIECE_STEPS:
+    if len(rows) < CURBS.min_piece_steps:
         return []
     line = GapLine(np.array(to_plan(before.s, before.u)), np.array(to_plan(after.s, after.u)))
     (s0, h0, height0), (s1, h1, height1) = ([np.median(v) for v in (end.s, end.h, end.height)] for end in (before, after))
@@ -483,17 +448,17 @@ def pieces_between(before: CurbSteps, after: CurbSteps, others: StepsByStation,
     share = (s - s0) / (s1 - s0)
     off = line.off(*to_plan(s, steps.u[rows]))
     up, from_end = np.abs(steps.h[rows] - h0 - share * (h1 - h0)), np.minimum(s - a, b - s)
-    across = np.minimum(IN_LINE_AT_END + IN_LINE_DRIFT * from_end, IN_LINE_ACROSS)
-    near = np.flatnonzero((np.abs(off) <= across) & (up <= HEIGHT_TOLERANCE + IN_LINE_GRADE * from_end))
+    across = np.minimum(CURBS.in_line_at_end + CURBS.in_line_drift * from_end, CURBS.in_line_across)
+    near = np.flatnonzero((np.abs(off) <= across) & (up <= CURBS.height_tolerance + CURBS.in_line_grade * from_end))
     if not len(near):
         return []
     # of the steps on one profile the one nearest to the line
     near = near[np.lexsort((np.abs(off[near]), steps.profile[rows[near]]))]
     near = near[np.r_[True, np.diff(steps.profile[rows[near]]) > 0]]
-    parted = (np.diff(s[near]) > MAX_LINK_LENGTH) | (np.abs(np.diff(off[near])) > LINK_TOLERANCE)
+    parted = (np.diff(s[near]) > CURBS.max_link_length) | (np.abs(np.diff(off[near])) > CURBS.link_tolerance)
     runs = [run[seen_stretch(steps.profile[rows[run]])] for run in np.split(near, np.flatnonzero(parted) + 1)]
     return [PieceInLine(rows[run], float(np.abs(off[run]).max()), float(s[run[0]]), float(s[run[-1]])) for run in runs
-            if len(run) >= MIN_PIECE_STEPS and np.ptp(s[run]) >= MIN_PIECE_LENGTH
+            if len(run) >= CURBS.min_piece_steps and np.ptp(s[run]) >= CURBS.min_piece_length
             and _is_curb(steps[rows[run]], off[run], across[run].min(), height0 + share[run] * (height1 - height0))]
 
 
@@ -502,9 +467,9 @@ def _is_curb(piece, off, across, height):
     ratio = np.median(piece.height / height)
     s = piece.s - piece.s.mean()
     turn, scanner_noise = s @ off / (s @ s), np.median(piece.scanner_noise)
-    return bool(1 / MAX_HEIGHT_RATIO <= ratio <= MAX_HEIGHT_RATIO and abs(turn) * np.ptp(s) <= across
-                and np.std(off - turn * s) <= MAX_CHAIN_SCATTER + scanner_noise and np.mean(piece.behind >= 2) >= 0.5
-                and np.median(piece.noise) <= max(MAX_ROAD_ROUGHNESS, 2 * scanner_noise))
+    return bool(1 / CURBS.max_height_ratio <= ratio <= CURBS.max_height_ratio and abs(turn) * np.ptp(s) <= across
+                and np.std(off - turn * s) <= CURBS.max_chain_scatter + scanner_noise and np.mean(piece.behind >= 2) >= 0.5
+                and np.median(piece.noise) <= max(CURBS.max_road_roughness, 2 * scanner_noise))
 
 
 class GapLine:
@@ -512,7 +477,7 @@ class GapLine:
 
     Parameters
     ----------
-    before, after : (2, N) and (2, M) m, x and y of the curb on both sides of the gap, in order; those within LINE_FIT_LENGTH
+    before, after : (2, N) and (2, M) m, x and y of the curb on both sides of the gap, in order; those within CURBS.line_fit_length
         of it are used
     max_degree : greatest degree; 2 is an even bend
 
@@ -525,14 +490,14 @@ class GapLine:
         ends, weights = [], []
         for part, tip in ((before, before[:, -1:]), (after, after[:, :1])):
             away = np.hypot(*(part - tip))
-            near = away <= LINE_FIT_LENGTH
+            near = away <= CURBS.line_fit_length
             ends.append(part[:, near])
             # both ends count alike, however many points each has, and near places more than far ones
-            weight = 1.0 / (1.0 + (away[near] / WEIGHT_LENGTH) ** 2)
+            weight = 1.0 / (1.0 + (away[near] / CURBS.weight_length) ** 2)
             weights.append(weight / weight.sum())
         known, (first, last) = np.concatenate(ends, axis=1), (end.mean(1) for end in ends)
         self.origin, self.along = first, (last - first) / max(np.hypot(*(last - first)), 1e-9)
-        degree = 1 + sum(np.hypot(*(end[:, -1] - end[:, 0])) >= MIN_BEND_LENGTH for end in ends)
+        degree = 1 + sum(np.hypot(*(end[:, -1] - end[:, 0])) >= CURBS.min_bend_length for end in ends)
         t, v = self.place(*known)
         self.ends = np.c_[before[:, -1], after[:, 0]]
         self.line = Polynomial.fit(t, v, min(degree, max_degree), w=np.sqrt(np.concatenate(weights)))
@@ -585,11 +550,11 @@ class SideChains:
 
         Returns
         -------
-        (N,) points per metre of road, over MAX_LINK_LENGTH of it, half on either side
+        (N,) points per metre of road, over CURBS.max_link_length of it, half on either side
         """
         order = np.argsort(self.steps.s, kind="stable")
         by_station = self.steps.s[order]
-        place, row = expand_ranges(*(np.searchsorted(by_station, s + end) for end in (-0.5 * MAX_LINK_LENGTH, 0.5 * MAX_LINK_LENGTH)))
+        place, row = expand_ranges(*(np.searchsorted(by_station, s + end) for end in (-0.5 * CURBS.max_link_length, 0.5 * CURBS.max_link_length)))
         row = order[row]
-        near = np.abs(self.steps.u[row] - u[place] - skew[place] * (self.steps.s[row] - s[place])) <= 2 * LINK_TOLERANCE
-        return np.bincount(place[near], self.steps.support[row[near]], len(s)) / MAX_LINK_LENGTH
+        near = np.abs(self.steps.u[row] - u[place] - skew[place] * (self.steps.s[row] - s[place])) <= 2 * CURBS.link_tolerance
+        return np.bincount(place[near], self.steps.support[row[near]], len(s)) / CURBS.max_link_length

@@ -11,10 +11,9 @@ import shapely
 from scipy.spatial import cKDTree
 
 from ...common.arrays import mask_runs
-from ..common.curb_limits import MIN_FAINT_LENGTH
 from ..common.sides import SIDE_SIGNS
-from ..common.tracking import MAX_CHAIN_SCATTER, MAX_JOINED_GAP, MAX_ROAD_ROUGHNESS, MIN_CURB_LENGTH
-from .main_curbs import OPENING_MARGIN, CurbLines
+from ..weights import CURBS, RETURN
+from .main_curbs import CurbLines
 from .steps import PlanSteps
 from .tracking import PlanStepChain, group_lines
 
@@ -23,25 +22,6 @@ if TYPE_CHECKING:
     from ...survey.frame.road import Road
     from ..common.curb_limits import CurbSettings
     from .main_curbs import SearchLimit
-
-MIN_RETURN_LENGTH = 1.0       # m of a line
-MIN_RETURN_STEPS = 3          # of a line: any two are in one
-MAX_STEP_SPACING = 0.6        # m between the steps of a line, on average: scan lines lie apart
-MIN_ROAD_COSINE = np.cos(np.radians(45.0))  # of the angle between a line and the road, above which it is the road's own curb
-MAIN_CURB_OVERLAP = 0.5       # m along the road that a piece of main curb may lie beside another
-MIN_PARALLEL_COSINE = np.cos(np.radians(20.0))  # of the angle between a line and the road, above which it runs along the road
-MAX_STRAIGHT_DEVIATION = 0.05     # m off its chord within which a curb that left the road is straight
-MIN_STRAIGHT_LENGTH = 2.0     # m of straight curb that make a side street
-MIN_ISLAND_SHARE = 0.6        # share of an island's steps behind which the ground comes down again
-MIN_ISLAND_LENGTH = 2.0       # m of lines about one island
-MAX_ISLAND_GAP = 3.0          # m between them
-OUTLINE_MARGIN = 0.3            # m from either side of an island within which a line is that side
-INNER_DISTANCE = 0.2          # m from the rays that lead across an island within which a line is on top of it
-MIN_ISOLATED_LENGTH = 5.0     # m of a line that belongs to a side street although nothing joins it to the main curb
-MAX_BEHIND_SHARE = 0.25       # share of such a line that may lie behind the main curb, which ends beside its corner
-MAX_SIDE_STREET_TURN = np.radians(35.0)   # of its steps from the direction of such a line
-SIDE_STREET_WIDTHS = (2.5, 16.0)  # m between the two curbs of a side street
-MAX_OPPOSITE_SHIFT = 4.0      # m along the side street by which its two curbs may miss each other
 
 
 @dataclass
@@ -79,15 +59,15 @@ def is_curb_like(chain: PlanStepChain, steps: PlanSteps, scanner_noise: np.ndarr
     """
     own = steps[chain.steps]
     length = _length(own.x, own.y)
-    if length < MIN_RETURN_LENGTH or len(own) < MIN_RETURN_STEPS or length > MAX_STEP_SPACING * len(own):
+    if length < RETURN.min_return_length or len(own) < RETURN.min_return_steps or length > RETURN.max_step_spacing * len(own):
         return False
     height, noise = np.median(own.height), np.median(scanner_noise[chain.steps])
     sharp = max(np.quantile(own.run, 0.3) - 2 * noise, 0.0)
     limits, slope, rough, scatter = settings.limits, np.arctan2(height, sharp), np.median(own.noise), _chain_scatter(own)
     if height < limits.clear_height or slope < limits.clear_slope \
-            and not (limits.automatic and length >= MIN_FAINT_LENGTH and limits.faint(height, slope, rough, len(own), scatter)):
+            and not (limits.automatic and length >= CURBS.min_faint_length and limits.faint(height, slope, rough, len(own), scatter)):
         return False
-    return bool(rough <= max(MAX_ROAD_ROUGHNESS, 2 * noise) and np.mean(own.behind >= 2) >= 0.5 and scatter <= MAX_CHAIN_SCATTER + noise)
+    return bool(rough <= max(CURBS.max_road_roughness, 2 * noise) and np.mean(own.behind >= 2) >= 0.5 and scatter <= CURBS.max_chain_scatter + noise)
 
 
 def _length(x, y):
@@ -144,13 +124,13 @@ def classify_curbs(chains: Sequence[PlanStepChain], steps: PlanSteps, falls: np.
             continue
         behind = np.any([limit.behind(s, d) for limit in limits.values()], axis=0)
         side = _side(s, d, passes)
-        if np.mean(np.isfinite(falls[chain.steps]) & ~behind) >= MIN_ISLAND_SHARE:
+        if np.mean(np.isfinite(falls[chain.steps]) & ~behind) >= RETURN.min_island_share:
             islands.append((CurbReturn(own, s, d, side, "island", chain.closed), falls[chain.steps]))
         elif _may_be_side_street(own, s, line, behind, lines):
             # a side street whose corner is hidden
             straight = _straight_part(own)
             found.append(CurbReturn(own[straight], s[straight], d[straight], side, "side_street"))
-        elif np.mean(behind) <= MAX_BEHIND_SHARE:
+        elif np.mean(behind) <= RETURN.max_behind_share:
             free.append(CurbReturn(own, s, d, side, "corner"))
     own_curbs = [(x, y) for _, (x, y, _) in runs] + [(curb.steps.x, curb.steps.y) for curb in found]
     before, beside = CurbLines(own_curbs), CurbLines([*own_curbs, *elsewhere])
@@ -163,11 +143,11 @@ def _own_curb(chain, steps, falls, line, limits, passes, elsewhere):
     own = steps[chain.steps]
     s, d = line.locate(own.x, own.y)
     side = _side(s, d, passes)
-    free = limits[side].far_from(s, OPENING_MARGIN)
+    free = limits[side].far_from(s, RETURN.opening_margin)
     out = SIDE_SIGNS[side] * (own.ny * np.cos(line.heading(s)) - own.nx * np.sin(line.heading(s)))
-    if chain.closed or not free.any() or np.ptp(s[free]) < MIN_CURB_LENGTH or np.median(out) < MIN_PARALLEL_COSINE \
-            or np.mean(np.isfinite(falls[chain.steps])) >= MIN_ISLAND_SHARE \
-            or elsewhere.lines and np.median(elsewhere.distances(own.x, own.y)) <= OUTLINE_MARGIN:
+    if chain.closed or not free.any() or np.ptp(s[free]) < CURBS.min_curb_length or np.median(out) < RETURN.min_parallel_cosine \
+            or np.mean(np.isfinite(falls[chain.steps])) >= RETURN.min_island_share \
+            or elsewhere.lines and np.median(elsewhere.distances(own.x, own.y)) <= RETURN.outline_margin:
         return None
     return CurbReturn(own, s, d, side, "main")
 
@@ -179,15 +159,15 @@ def _side(s, d, passes):
 
 def _may_be_side_street(own, s, line, behind, lines):
     """Is a line that nothing joins to the main curb the curb of a side street?"""
-    return _length(own.x, own.y) >= MIN_ISOLATED_LENGTH and np.mean(behind) <= MAX_BEHIND_SHARE \
-        and np.median(_road_cosine(own, s, line)) < MIN_ROAD_COSINE and _has_opposite_curb(own, lines)
+    return _length(own.x, own.y) >= RETURN.min_isolated_length and np.mean(behind) <= RETURN.max_behind_share \
+        and np.median(_road_cosine(own, s, line)) < RETURN.min_road_cosine and _has_opposite_curb(own, lines)
 
 
 def _straight_part(own):
     """The longest run of steps, as a slice, in the line's own direction: at its ends it may have caught a wall, or the back of a sidewalk."""
     along = np.arctan2(*_chords(own)[::-1])
     turn = np.abs((along - np.arctan2(np.median(np.sin(along)), np.median(np.cos(along))) + np.pi) % (2 * np.pi) - np.pi)
-    runs = mask_runs(turn <= MAX_SIDE_STREET_TURN)
+    runs = mask_runs(turn <= RETURN.max_side_street_turn)
     return slice(*max(runs, key=lambda run: run[1] - run[0])) if runs else slice(0, len(own))
 
 
@@ -205,12 +185,13 @@ def classify_continuation(own: PlanSteps, s: np.ndarray, d: np.ndarray, side: st
     runs : CurbLines, the main curbs
     """
     along = _road_cosine(own, s, line)
-    if np.median(along) > MIN_ROAD_COSINE and not limit.between(np.nanmin(s) + MAIN_CURB_OVERLAP, np.nanmax(s) - MAIN_CURB_OVERLAP):
+    if np.median(along) > RETURN.min_road_cosine and not limit.between(np.nanmin(s) + RETURN.main_curb_overlap,
+                                                                       np.nanmax(s) - RETURN.main_curb_overlap):
         return [CurbReturn(own, s, d, side, "main")]
     near = runs.end_distances(own.x[[0, -1]], own.y[[0, -1]])
     # in order from the main curb outward
     order = np.arange(len(own)) if near[0] <= near[1] else np.arange(len(own))[::-1]
-    cut = len(own) if max(near) <= MAX_JOINED_GAP else _where_straight(own, order, along)
+    cut = len(own) if max(near) <= CURBS.max_joined_gap else _where_straight(own, order, along)
     parts = [(order[:cut + 1], "corner"), (order[cut:], "side_street")]
     return [CurbReturn(own[np.sort(part)], s[np.sort(part)], d[np.sort(part)], side, kind) for part, kind in parts if len(part) > 1]
 
@@ -231,11 +212,11 @@ class _LinesOfSteps:
 def _has_opposite_curb(own, lines):
     """Is there another line along the opposite side of the street that this one bounds?"""
     k = len(own) // 2
-    for other in lines.about(own.x[k], own.y[k], SIDE_STREET_WIDTHS[1] + MAX_OPPOSITE_SHIFT):
+    for other in lines.about(own.x[k], own.y[k], RETURN.side_street_widths[1] + RETURN.max_opposite_shift):
         dx, dy = other.x - own.x[k], other.y - own.y[k]
         out, aside = -(dx * own.nx[k] + dy * own.ny[k]), np.abs(dx * own.ny[k] - dy * own.nx[k])
         opposite = other.nx * own.nx[k] + other.ny * own.ny[k] < -0.7
-        if np.any((out > SIDE_STREET_WIDTHS[0]) & (out < SIDE_STREET_WIDTHS[1]) & (aside < MAX_OPPOSITE_SHIFT) & opposite):
+        if np.any((out > RETURN.side_street_widths[0]) & (out < RETURN.side_street_widths[1]) & (aside < RETURN.max_opposite_shift) & opposite):
             return True
     return False
 
@@ -258,10 +239,10 @@ def _where_straight(own, order, along):
     x, y = own.x[order], own.y[order]
     for k in range(len(x) - 2):
         rest = np.hypot(x[-1] - x[k], y[-1] - y[k])
-        if rest < MIN_STRAIGHT_LENGTH:
+        if rest < RETURN.min_straight_length:
             break
         off = np.abs((x[-1] - x[k]) * (y[k:] - y[k]) - (y[-1] - y[k]) * (x[k:] - x[k])) / rest
-        if off.max() <= MAX_STRAIGHT_DEVIATION and np.median(along[order[k:]]) < MIN_ROAD_COSINE:
+        if off.max() <= RETURN.max_straight_deviation and np.median(along[order[k:]]) < RETURN.min_road_cosine:
             return k
     return len(x)
 
@@ -273,16 +254,16 @@ def island_outlines(islands: Sequence[tuple[CurbReturn, np.ndarray]]) -> list[Cu
     """
     inner = []
     for line, falls in islands:
-        out = np.arange(OUTLINE_MARGIN, np.nanmax(falls, initial=0.0) - OUTLINE_MARGIN, INNER_DISTANCE)
-        k, j = np.nonzero(out < (falls - OUTLINE_MARGIN)[:, None])
+        out = np.arange(RETURN.outline_margin, np.nanmax(falls, initial=0.0) - RETURN.outline_margin, RETURN.inner_distance)
+        k, j = np.nonzero(out < (falls - RETURN.outline_margin)[:, None])
         own = line.steps
         inner.append(np.c_[own.x[k] + out[j] * own.nx[k], own.y[k] + out[j] * own.ny[k]])
     owner = np.repeat(np.arange(len(inner)), [len(places) for places in inner])
     tree = cKDTree(np.concatenate([np.empty((0, 2)), *inner]))
     found = []
     for number, (line, _) in enumerate(islands):
-        near = tree.query_ball_point(np.c_[line.steps.x, line.steps.y], INNER_DISTANCE)
-        if np.mean([(owner[rows] != number).any() for rows in near]) < MIN_ISLAND_SHARE:
+        near = tree.query_ball_point(np.c_[line.steps.x, line.steps.y], RETURN.inner_distance)
+        if np.mean([(owner[rows] != number).any() for rows in near]) < RETURN.min_island_share:
             found.append(line)
     return found
 
@@ -294,20 +275,16 @@ def _long_islands(lines):
     trees = [cKDTree(np.c_[line.steps.x, line.steps.y]) for line in lines]
     length = np.array([_length(line.steps.x, line.steps.y) for line in lines])
     box = np.array([(*tree.mins, *tree.maxes) for tree in trees])
-    boxes, around = shapely.STRtree(shapely.box(*box.T)), shapely.box(*(box + np.array([-1, -1, 1, 1]) * MAX_ISLAND_GAP).T)
+    boxes, around = shapely.STRtree(shapely.box(*box.T)), shapely.box(*(box + np.array([-1, -1, 1, 1]) * RETURN.max_island_gap).T)
     long = []
     for k, line in enumerate(lines):
-        near = [j for j in np.sort(boxes.query(around[k])).tolist() if j == k or trees[k].count_neighbors(trees[j], MAX_ISLAND_GAP)]
-        if length[near].sum() >= MIN_ISLAND_LENGTH:
+        near = [j for j in np.sort(boxes.query(around[k])).tolist() if j == k or trees[k].count_neighbors(trees[j], RETURN.max_island_gap)]
+        if length[near].sum() >= RETURN.min_island_length:
             long.append(line)
     return long
 
 
 # What lies behind a curb is no island: a sidewalk between two ramps is raised on both sides as an island is.
-
-ROAD_WIDTH = 16.0     # m down from a step within which the first curb is looked for: two carriageways and a side street are no wider
-PLACES = 5            # of a line from which it is looked for
-OWN_CURB = 0.3        # m within which the line itself, or a double of it, is met
 
 
 def lies_behind(line: PlanSteps, curbs: CurbLines) -> bool:
@@ -322,18 +299,18 @@ def lies_behind(line: PlanSteps, curbs: CurbLines) -> bool:
     -------
     whether that holds at most places that meet a curb at all
     """
-    ax, ay, sx, sy = curbs.segments_about(line.x, line.y, 2 * ROAD_WIDTH).T
+    ax, ay, sx, sy = curbs.segments_about(line.x, line.y, 2 * RETURN.road_width).T
     if not len(ax):
         return False
     off = []
-    for k in np.unique(np.linspace(0, len(line) - 1, PLACES).round().astype(int)):
+    for k in np.unique(np.linspace(0, len(line) - 1, RETURN.places).round().astype(int)):
         rx, ry = -line.nx[k], -line.ny[k]
         dx, dy = ax - line.x[k], ay - line.y[k]
         # on the right of a segment is uphill, so where the cross product is negative the way across it leads down
         cross = rx * sy - ry * sx
         with np.errstate(divide="ignore", invalid="ignore"):
             away, share = (dx * sy - dy * sx) / cross, (dx * ry - dy * rx) / cross
-        met = np.flatnonzero((away > OWN_CURB) & (away < ROAD_WIDTH) & (share >= 0.0) & (share <= 1.0))
+        met = np.flatnonzero((away > RETURN.own_curb) & (away < RETURN.road_width) & (share >= 0.0) & (share <= 1.0))
         if len(met):
             off.append(cross[met[np.argmin(away[met])]] < 0.0)
     return bool(off) and float(np.mean(off)) > 0.5
@@ -341,12 +318,7 @@ def lies_behind(line: PlanSteps, curbs: CurbLines) -> bool:
 
 # Corners between two dropped crossings: nothing joins them to a curb, but they bend evenly from one curb end to another.
 
-MAX_CROSSING_GAP = 8.0        # m of dropped curb between a corner and the curb that goes on
-END_MARGIN = 0.01             # m, more than distances are rounded by
-CORNER_RADII = (1.0, 25.0)    # m
-MIN_CORNER_ANGLE = np.radians(15.0)   # that the seen part of a corner must turn
-MAX_BEND_DEVIATION = 0.04     # m from its circle
-POINTING_TOLERANCE = np.radians(12.0)   # by which a corner and a curb end may miss each other, besides the turn of the gap between them
+END_MARGIN = 0.01   # derived: m, more than distances are rounded by
 
 
 def is_free_corner(own: PlanSteps, curbs: CurbLines) -> bool:
@@ -364,19 +336,19 @@ def is_free_corner(own: PlanSteps, curbs: CurbLines) -> bool:
     x, y = own.x - mx, own.y - my
     (cx, cy, c), *_ = np.linalg.lstsq(np.c_[2 * x, 2 * y, np.ones(len(x))], x * x + y * y, rcond=None)
     radius = float(np.sqrt(max(c + cx * cx + cy * cy, 0.0)))
-    if not CORNER_RADII[0] <= radius <= CORNER_RADII[1]:
+    if not RETURN.corner_radii[0] <= radius <= RETURN.corner_radii[1]:
         return False
     off = np.abs(np.hypot(x - cx, y - cy) - radius)
     about = np.unwrap(np.arctan2(y - cy, x - cx))
     uphill = np.median((cx - x) * own.nx + (cy - y) * own.ny) > 0
-    if off.max() > MAX_BEND_DEVIATION or abs(about[-1] - about[0]) < MIN_CORNER_ANGLE or not uphill:
+    if off.max() > RETURN.max_bend_deviation or abs(about[-1] - about[0]) < RETURN.min_corner_angle or not uphill:
         return False
     way = np.sign(about[-1] - about[0])
     for k, out in ((0, -way), (-1, way)):
         tip = np.array([own.x[k], own.y[k]])
         # along the circle, out of the line
         direction = out * np.array([-np.sin(about[k]), np.cos(about[k])])
-        if not any(_points_at(tip, direction, end, radius, out) for end in curbs.ends_about(tip, MAX_CROSSING_GAP + END_MARGIN)):
+        if not any(_points_at(tip, direction, end, radius, out) for end in curbs.ends_about(tip, RETURN.max_crossing_gap + END_MARGIN)):
             return False
     return True
 
@@ -385,12 +357,12 @@ def _points_at(tip, direction, end, radius, way):
     """Does a circle that leaves `tip` along `direction` lead to a curb's end, between straight on and bending on as before?"""
     gap = end[:2] - tip
     length = np.hypot(*gap)
-    if not 1e-3 < length <= MAX_CROSSING_GAP:
+    if not 1e-3 < length <= RETURN.max_crossing_gap:
         return False
     chord = np.arctan2(direction[0] * gap[1] - direction[1] * gap[0], direction @ gap)
     half = 0.5 * length / radius
-    if not -POINTING_TOLERANCE <= way * chord <= half + POINTING_TOLERANCE:
+    if not -RETURN.pointing_tolerance <= way * chord <= half + RETURN.pointing_tolerance:
         return False
     # seen from the curb's end, the corner lies ahead or to the side to which the corner bends
     back = np.arctan2(end[2] * -gap[1] - end[3] * -gap[0], end[2:] @ -gap)
-    return bool(-POINTING_TOLERANCE <= -way * back <= half + POINTING_TOLERANCE)
+    return bool(-RETURN.pointing_tolerance <= -way * back <= half + RETURN.pointing_tolerance)

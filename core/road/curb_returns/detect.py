@@ -18,15 +18,15 @@ from ...execution.phase import Phase
 from ...survey.frame.placement import PlaceIndex
 from ...survey.frame.road import CORRIDOR
 from ..common.curb_points import CurbPoints, curb_points_at
-from ..common.decimation import POINTS_PER_LEVEL_CELL_IN_PLAN, PointDecimation
+from ..common.decimation import PointDecimation
 from ..common.occlusion import OcclusionGrid
-from ..common.sides import MAX_LOOK_ALONG, SECTIONS_TOGETHER, SIDE_SIGNS, ahead_of_vehicle, expected_height, hidden_beside, work_sections
-from ..common.tracking import MAX_JOINED_GAP
+from ..common.sides import SIDE_SIGNS, ahead_of_vehicle, expected_height, hidden_beside, work_sections
+from ..weights import CURBS, RETURN
 from .classify import CurbReturn, classify_curbs, is_curb_like
 from .extended_curbs import FollowedEnds, followed_steps, with_led_on
-from .ground_raster import PLAN_CELL, averaged, driven_ground, ground_raster, ground_slopes
-from .islands import MIN_ISLAND_WIDTH, are_replaced, far_sides, ground_behind, on_island_tops, on_main_islands
-from .main_curbs import MIN_OPENING_LENGTH, SEARCH_BEHIND_CURB, KnownPlaces, SearchLimit, main_curbs_of, main_runs, places_along
+from .ground_raster import averaged, driven_ground, ground_raster, ground_slopes
+from .islands import are_replaced, far_sides, ground_behind, on_island_tops, on_main_islands
+from .main_curbs import KnownPlaces, SearchLimit, main_curbs_of, main_runs, places_along
 from .side_streets import with_curbs_beyond
 from .steps import PlanSteps, measure_plan_steps, step_places
 from .tracking import join_chains, link_plan_steps
@@ -35,15 +35,6 @@ if TYPE_CHECKING:
     from ..common.curb_limits import CurbSettings
 
 KIND_TITLES = {"main": "of the road's own", "corner": "of corners", "side_street": "of side streets", "island": "of islands"}
-INNER_MARGIN = 0.5            # m from a main curb from which the ground inside is certainly road, if it lies within
-MAX_INNER_HEIGHT = 0.3        # m above or below the expected road
-LIMIT_NODE_SPACING = 0.05     # m along the road between the stations at which this is decided
-SECTION_MARGIN = 2.0          # m of road on either side of a section that its own steps need
-NOISY_RASTER_SHARE = 0.12     # share of the least curb height that heights within a cell scatter, above which they are averaged
-MIN_AVERAGING_POINTS = 6      # points in a cell, on average, that averaging needs
-MAIN_CURB_DISTANCE = 0.25     # m from a main curb within which a step belongs to it
-LED_PROGRESS = 0.9            # share of the work after which faint curbs are looked for
-MAX_ISLAND_WIDTH = 8.0        # m within which the ground behind an island's curb comes down again
 
 
 def with_curb_returns(curb_points: CurbPoints, decimation: PointDecimation, settings: CurbSettings,
@@ -126,28 +117,29 @@ def find_curb_returns(decimation: PointDecimation, road: int, main: Mapping[str,
     survey = decimation.survey
     limits = {side: SearchLimit(points, SIDE_SIGNS[side]) for side, points in main.items()}
     line = survey.frame.road(road)
-    known, barrier = KnownPlaces(places_along(line, main, MAX_JOINED_GAP)), PlaceIndex(places_along(line, main, MIN_OPENING_LENGTH), CORRIDOR)
+    known = KnownPlaces(places_along(line, main, CURBS.max_joined_gap))
+    barrier = PlaceIndex(places_along(line, main, RETURN.min_opening_length), CORRIDOR)
     runs = main_runs(main, line)
     tips = FollowedEnds.of([place for _, place in runs], np.full(len(runs), np.nan))
     phase = Phase(plan_steps_of_section, decimation, (road, limits, known, barrier, tips, settings, behind),
                   lambda section: survey.stretch(road, *(k * settings.profile_width for k in section)),
                   lambda section: survey.store.points_between(road, *(k * settings.profile_width for k in section)), _join_parts,
-                  SECTIONS_TOGETHER)
+                  CURBS.sections_together)
     sections = work_sections(survey, road, settings.profile_width)
-    found = _join_parts(decimation.executor.run(phase, sections, progress.part(0.0, LED_PROGRESS)))
+    found = _join_parts(decimation.executor.run(phase, sections, progress.part(0.0, RETURN.led_progress)))
     if found is None:
         return []
     steps, falls, scanner_noise = found
     chains = [c for c in join_chains(link_plan_steps(steps), steps) if is_curb_like(c, steps, scanner_noise, settings)]
     curbs = classify_curbs(chains, steps, falls, runs, line, limits, survey.frame.passes_of(road), elsewhere)
     noisy = _noisy_sections(sections, line, steps, scanner_noise, settings)
-    curbs = with_led_on(curbs, runs, decimation, road, noisy, known, limits, settings, progress.part(LED_PROGRESS, 1.0))
+    curbs = with_led_on(curbs, runs, decimation, road, noisy, known, limits, settings, progress.part(RETURN.led_progress, 1.0))
     return with_curbs_beyond(curbs, decimation, road, known)
 
 
 def _noisy_sections(sections, line, steps, scanner_noise, settings):
     """Sections with steps of which the scanner's noise hides faint ones in any single view."""
-    noisy = scanner_noise > NOISY_RASTER_SHARE * settings.limits.clear_height
+    noisy = scanner_noise > RETURN.noisy_raster_share * settings.limits.clear_height
     if not settings.limits.automatic_height or not noisy.any():
         return []
     number = np.sort(np.floor(line.locate(steps.x[noisy], steps.y[noisy])[0] / settings.profile_width))
@@ -165,7 +157,7 @@ def _join_parts(parts):
 
 def plan_steps_of_section(decimation: PointDecimation, section: tuple[int, int], road: int, limits: Mapping[str, SearchLimit],
                           known: KnownPlaces, barrier: PlaceIndex, tips: FollowedEnds, settings: CurbSettings, behind: np.ndarray,
-                          points_per_cell: int | None = POINTS_PER_LEVEL_CELL_IN_PLAN) -> tuple[PlanSteps, np.ndarray, np.ndarray] | None:
+                          points_per_cell: int | None = CURBS.points_per_level_cell_in_plan) -> tuple[PlanSteps, np.ndarray, np.ndarray] | None:
     """The phase of curb returns: steps in plan in one section of a road.
 
     Parameters
@@ -186,7 +178,7 @@ def plan_steps_of_section(decimation: PointDecimation, section: tuple[int, int],
     PlanSteps, (N,) bool where the raised ground behind each ends, and (N,) m the scanner's noise; None where there are no steps
     """
     survey, width = decimation.survey, decimation.width
-    margin = int(np.ceil(SECTION_MARGIN / width))
+    margin = int(np.ceil(RETURN.section_margin / width))
     profiles = section[0] - margin, section[1] + margin
     start, end, first, last = (k * width for k in (*section, *profiles))
     reach = _Reach(limits, first, last)
@@ -198,8 +190,8 @@ def plan_steps_of_section(decimation: PointDecimation, section: tuple[int, int],
     raster = ground_raster(place[0], place[1], place[2], settings.layer_jump)
     if raster is None:
         return None
-    dense = len(raster.x) >= MIN_AVERAGING_POINTS * np.isfinite(raster.low).sum()
-    noisy = dense and raster.noise > NOISY_RASTER_SHARE * settings.limits.clear_height
+    dense = len(raster.x) >= RETURN.min_averaging_points * np.isfinite(raster.low).sum()
+    noisy = dense and raster.noise > RETURN.noisy_raster_share * settings.limits.clear_height
     if noisy and limit is not None:
         # averages need every point
         return plan_steps_of_section(decimation, section, road, limits, known, barrier, tips, settings, behind, points_per_cell=None)
@@ -217,7 +209,7 @@ def plan_steps_of_section(decimation: PointDecimation, section: tuple[int, int],
         if before_curbs:
             fresh &= np.all([limit.outward(own, d) <= 0.0 for limit in limits.values()], axis=0)
         which = np.flatnonzero(fresh)
-        fresh[which] = ~known.within(x.take(which), y.take(which), MAIN_CURB_DISTANCE)
+        fresh[which] = ~known.within(x.take(which), y.take(which), RETURN.main_curb_distance)
         return fresh
 
     x, y, nx, ny = step_places(raster, slopes, driven, stepped, clear, settings.max_height, wanted)
@@ -240,13 +232,13 @@ def plan_steps_of_section(decimation: PointDecimation, section: tuple[int, int],
     hidden = far_sides(raster, steps, ground)
     hidden = hidden[wanted(hidden.x, hidden.y)]
     # its near side is the far side of a far side; an island ends where its top does, not where the ground comes out of its shadow
-    falls = np.r_[np.where(np.isfinite(ground.edge), ground.edge, ground.falls), np.full(len(hidden), MIN_ISLAND_WIDTH)]
+    falls = np.r_[np.where(np.isfinite(ground.edge), ground.edge, ground.falls), np.full(len(hidden), RETURN.min_island_width)]
     # averaging leaves the errors of single beams and the drift of positions
     return PlanSteps.join([steps, hidden]), falls, np.full(len(falls), raster.noise)
 
 
 def _behind(raster, slopes, steps):
-    return ground_behind(raster, slopes, steps.x, steps.y, steps.nx, steps.ny, steps.h, steps.height, MAX_ISLAND_WIDTH)
+    return ground_behind(raster, slopes, steps.x, steps.y, steps.nx, steps.ny, steps.h, steps.height, RETURN.max_island_width)
 
 
 def _beside_vehicle(survey, road, points, reach):
@@ -258,27 +250,27 @@ def _beside_vehicle(survey, road, points, reach):
     own = np.flatnonzero(inside)
     s, d, inner, points = s.take(own), d.take(own), inner.take(own), points[own]
     along = ahead_of_vehicle(survey, points, s)
-    near = np.flatnonzero(np.abs(along) < MAX_LOOK_ALONG + np.abs(d))
+    near = np.flatnonzero(np.abs(along) < CURBS.max_look_along + np.abs(d))
     if len(near) < len(s):
         s, inner, along, points = s.take(near), inner.take(near), along.take(near), points[near]
     h = points.z - expected_height(survey, road, s)
-    return points.x, points.y, h, along, inner & (np.abs(h) < MAX_INNER_HEIGHT)
+    return points.x, points.y, h, along, inner & (np.abs(h) < RETURN.max_inner_height)
 
 
 class _Reach:
-    """How far out both sides are searched between two stations, tabulated at nodes LIMIT_NODE_SPACING apart."""
+    """How far out both sides are searched between two stations, tabulated at nodes RETURN.limit_node_spacing apart."""
 
     def __init__(self, limits, first, last):
-        self.first = int(np.floor(first / LIMIT_NODE_SPACING))
-        nodes = np.arange(self.first, int(np.ceil(last / LIMIT_NODE_SPACING)) + 2) * LIMIT_NODE_SPACING
+        self.first = int(np.floor(first / RETURN.limit_node_spacing))
+        nodes = np.arange(self.first, int(np.ceil(last / RETURN.limit_node_spacing)) + 2) * RETURN.limit_node_spacing
         left, right = (np.minimum(limits[side](nodes), CORRIDOR) for side in SIDE_SIGNS)
         self.inside = -right, left
-        self.inner = [sign * np.where(limit < CORRIDOR, np.maximum(limit - SEARCH_BEHIND_CURB - INNER_MARGIN, 0.0), 0.0)
+        self.inner = [sign * np.where(limit < CORRIDOR, np.maximum(limit - RETURN.search_behind_curb - RETURN.inner_margin, 0.0), 0.0)
                       for sign, limit in ((-1, right), (1, left))]
 
     def __call__(self, s, d):
         """(N,) bool, within the limits, and (N,) bool, certainly between the road's own curbs."""
-        k = np.rint(s * (1.0 / LIMIT_NODE_SPACING)).astype(np.intp)
+        k = np.rint(s * (1.0 / RETURN.limit_node_spacing)).astype(np.intp)
         k -= self.first
         return tuple((d >= low.take(k)) & (d <= high.take(k)) for low, high in (self.inside, self.inner))
 
@@ -293,7 +285,7 @@ def _track(survey, road, first, last):
     """Local places along the tracks of all passes between two stations."""
     line, xs, ys = survey.frame.road(road), [], []
     for p in survey.frame.passes_of(road):
-        s = np.arange(max(first, p.span[0]), min(last, p.span[1]), 0.8 * PLAN_CELL)
+        s = np.arange(max(first, p.span[0]), min(last, p.span[1]), 0.8 * RETURN.plan_cell)
         x, y = line.to_map(s, p.at_station(s)[0])
         xs.append(x)
         ys.append(y)

@@ -15,15 +15,8 @@ import numpy as np
 
 from ...common.arrays import order_by
 from ...lazy import cv2
-from ..common.pseudo_scanlines import DEFAULT_SCANNER_NOISE, MIN_SCANNER_NOISE, lowest_layers
-
-PLAN_CELL = 0.10              # m
-PLAN_GROUND_DEPTH = 1.0       # m below, and
-PLAN_GROUND_HEIGHT = 1.0      # m above the expected road within which ground is looked for
-AVERAGING_CELL = 0.05         # m, cells whose points are averaged for a noisy scanner
-MIN_NOISE_POINTS = 4          # points of a cell, and
-MIN_NOISE_CELLS = 50          # such cells that an estimate of the scanner's noise needs
-NOISE_QUANTILE = 0.3          # quantile of the cells' spreads that is the estimate
+from ..common.pseudo_scanlines import lowest_layers
+from ..weights import CURBS, RETURN
 
 
 @dataclass
@@ -52,7 +45,7 @@ class GroundRaster:
     def box(self) -> tuple[np.ndarray, np.ndarray]:
         """(2,) m each, local corners of the grid and of a cell about it."""
         corner = np.array([self.x0, self.y0])
-        return corner - PLAN_CELL, corner + PLAN_CELL * (np.array(self.low.shape[::-1]) + 1)
+        return corner - RETURN.plan_cell, corner + RETURN.plan_cell * (np.array(self.low.shape[::-1]) + 1)
 
     def inside(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """(row, column) of those local places, (N,) m, that lie on the grid."""
@@ -62,7 +55,7 @@ class GroundRaster:
 
     def cells_at(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """(row, column) of local places, also of those beyond the grid."""
-        row, column = (np.floor(np.asarray(v) / PLAN_CELL - np.rint(v0 / PLAN_CELL)).astype(np.int64)
+        row, column = (np.floor(np.asarray(v) / RETURN.plan_cell - np.rint(v0 / RETURN.plan_cell)).astype(np.int64)
                        for v, v0 in ((y, self.y0), (x, self.x0)))
         return row, column
 
@@ -73,7 +66,7 @@ class GroundRaster:
 
     def middle(self, row: np.ndarray, column: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Local x, y of the middle of cells."""
-        return self.x0 + (column + 0.5) * PLAN_CELL, self.y0 + (row + 0.5) * PLAN_CELL
+        return self.x0 + (column + 0.5) * RETURN.plan_cell, self.y0 + (row + 0.5) * RETURN.plan_cell
 
     @cached_property
     def by_cell(self) -> tuple[np.ndarray, ...]:
@@ -99,11 +92,11 @@ def ground_raster(x: np.ndarray, y: np.ndarray, h: np.ndarray, layer_jump: float
     h : (N,) m above the expected road
     layer_jump : m of height between ground and what is above it
     """
-    near = np.flatnonzero((h > -PLAN_GROUND_DEPTH) & (h < PLAN_GROUND_HEIGHT))
+    near = np.flatnonzero((h > -RETURN.plan_ground_depth) & (h < RETURN.plan_ground_height))
     if not len(near):
         return None
     x, y, h = (v if len(near) == len(h) else v.take(near) for v in (x, y, h))
-    column, row = np.floor(x / PLAN_CELL).astype(np.int32), np.floor(y / PLAN_CELL).astype(np.int32)
+    column, row = np.floor(x / RETURN.plan_cell).astype(np.int32), np.floor(y / RETURN.plan_cell).astype(np.int32)
     first_column, first_row = int(column.min()), int(row.min())
     columns, rows = int(column.max()) - first_column + 1, int(row.max()) - first_row + 1
     row -= first_row
@@ -124,9 +117,10 @@ def ground_raster(x: np.ndarray, y: np.ndarray, h: np.ndarray, layer_jump: float
         low = total / n
         spread = np.sqrt(np.maximum(squares - total * low, 0.0) / (n - 1))
     # curbs and grass are rough to any scanner, so the smoother cells give the estimate
-    spread = spread[n >= MIN_NOISE_POINTS]
-    noise = max(float(np.quantile(spread, NOISE_QUANTILE)), MIN_SCANNER_NOISE) if len(spread) >= MIN_NOISE_CELLS else DEFAULT_SCANNER_NOISE
-    return GroundRaster(first_column * PLAN_CELL, first_row * PLAN_CELL, x, y, h, place, low.reshape(rows, columns), noise)
+    spread = spread[n >= RETURN.min_noise_points]
+    enough = len(spread) >= RETURN.min_noise_cells
+    noise = max(float(np.quantile(spread, RETURN.noise_quantile)), CURBS.min_scanner_noise) if enough else CURBS.default_scanner_noise
+    return GroundRaster(first_column * RETURN.plan_cell, first_row * RETURN.plan_cell, x, y, h, place, low.reshape(rows, columns), noise)
 
 
 def _above_ground(place, h, n, total, squares, layer_jump):
@@ -137,7 +131,7 @@ def _above_ground(place, h, n, total, squares, layer_jump):
     above = np.zeros(len(h), bool)
     own = np.flatnonzero(parted.take(place))
     if len(own):
-        order = own.take(order_by(np.rint((h.take(own) + PLAN_GROUND_DEPTH) * 1e4).astype(np.int32), place.take(own)))
+        order = own.take(order_by(np.rint((h.take(own) + RETURN.plan_ground_depth) * 1e4).astype(np.int32), place.take(own)))
         ground, _, _ = lowest_layers(place.take(order), h.take(order), layer_jump)
         above[order] = ~ground
     return parted, above
@@ -150,13 +144,13 @@ def _sums(place, h, cells):
 
 
 def averaged(raster: GroundRaster | None, layer_jump: float) -> GroundRaster | None:
-    """A raster of the mean points of cells AVERAGING_CELL wide, which reduces the noise; `noise` is what remains of it.
+    """A raster of the mean points of cells RETURN.averaging_cell wide, which reduces the noise; `noise` is what remains of it.
 
     None where there are no points.
     """
     if raster is None:
         return None
-    column, row = np.floor(raster.x / AVERAGING_CELL).astype(np.int64), np.floor(raster.y / AVERAGING_CELL).astype(np.int64)
+    column, row = np.floor(raster.x / RETURN.averaging_cell).astype(np.int64), np.floor(raster.y / RETURN.averaging_cell).astype(np.int64)
     cell = (row - row.min()) * (column.max() - column.min() + 1) + column - column.min()
     count = np.bincount(cell)
     held = np.flatnonzero(count)
@@ -165,20 +159,13 @@ def averaged(raster: GroundRaster | None, layer_jump: float) -> GroundRaster | N
     mean = ground_raster(x, y, h, layer_jump)
     if mean is None:
         raise ValueError("a raster with points has an average")
-    mean.noise = max(raster.noise / np.sqrt(np.median(count)), MIN_SCANNER_NOISE)
+    mean.noise = max(raster.noise / np.sqrt(np.median(count)), CURBS.min_scanner_noise)
     return mean
 
 
 # Level ground that is connected with the driven track, and where the ground is stepped.
 
-OUT_OF_RANGE_HEIGHT = 1e6     # m, farther up and down than any ground
-LEVEL_WINDOW_CELLS = 5        # cells, side of the square in which ground is tested for being level
-MAX_LEVEL_SHARE = 0.7         # share of the least step that level ground may differ within that square
-SLOPE_BLOCK_CELLS = 5         # cells, side of a block, and
-SLOPE_WINDOW_BLOCKS = 5       # blocks, side of the window from which the slope of the ground is estimated
-MAX_GROUND_SLOPE = 0.12       # rise over run of a road
-DRIVEN_HALF_WIDTH = 0.75      # m beside a driven track that is certainly road
-MAX_BRIDGED_CELLS = 3         # cells without points that count as drivable between others: scan lines lie apart
+OUT_OF_RANGE_HEIGHT = 1e6   # derived: m, farther up and down than any ground
 
 
 def ground_slopes(low: np.ndarray) -> list[np.ndarray]:
@@ -195,8 +182,8 @@ def ground_slopes(low: np.ndarray) -> list[np.ndarray]:
     two (rows, columns) arrays, m per m along columns and along rows
     """
     rows, columns = low.shape
-    padded = np.pad(low, ((0, -rows % SLOPE_BLOCK_CELLS), (0, -columns % SLOPE_BLOCK_CELLS)), constant_values=np.nan)
-    blocks = padded.reshape(padded.shape[0] // SLOPE_BLOCK_CELLS, SLOPE_BLOCK_CELLS, padded.shape[1] // SLOPE_BLOCK_CELLS, SLOPE_BLOCK_CELLS)
+    padded = np.pad(low, ((0, -rows % RETURN.slope_block_cells), (0, -columns % RETURN.slope_block_cells)), constant_values=np.nan)
+    blocks = padded.reshape(padded.shape[0] // RETURN.slope_block_cells, RETURN.slope_block_cells, -1, RETURN.slope_block_cells)
     there = np.isfinite(blocks)
     with np.errstate(invalid="ignore", divide="ignore"):
         mean = np.where(there, blocks, 0.0).sum((1, 3)) / there.sum((1, 3))
@@ -206,9 +193,9 @@ def ground_slopes(low: np.ndarray) -> list[np.ndarray]:
         ahead, behind = (slice(None), slice(1, None)), (slice(None), slice(None, -1))
         if axis == 0:
             ahead, behind = ahead[::-1], behind[::-1]
-        slope[behind] = (mean[ahead] - mean[behind]) / (SLOPE_BLOCK_CELLS * PLAN_CELL)
-        slope = np.clip(_median_about(slope, SLOPE_WINDOW_BLOCKS), -MAX_GROUND_SLOPE, MAX_GROUND_SLOPE)
-        found.append(np.repeat(np.repeat(slope, SLOPE_BLOCK_CELLS, 0), SLOPE_BLOCK_CELLS, 1)[:rows, :columns])
+        slope[behind] = (mean[ahead] - mean[behind]) / (RETURN.slope_block_cells * RETURN.plan_cell)
+        slope = np.clip(_median_about(slope, RETURN.slope_window_blocks), -RETURN.max_ground_slope, RETURN.max_ground_slope)
+        found.append(np.repeat(np.repeat(slope, RETURN.slope_block_cells, 0), RETURN.slope_block_cells, 1)[:rows, :columns])
     return found
 
 
@@ -233,7 +220,7 @@ def driven_ground(raster: GroundRaster, slopes: Sequence[np.ndarray], track_x: n
     ----------
     raster : GroundRaster
     slopes : result of `ground_slopes`
-    track_x, track_y : (N,) local m, places along the driven tracks, less than PLAN_CELL apart
+    track_x, track_y : (N,) local m, places along the driven tracks, less than RETURN.plan_cell apart
     inner : (x, y), each (K,) local m, places between the road's own curbs
     barrier_x, barrier_y : (L,) local m, places along lines that are known to bound the road
     min_height : m, the least step
@@ -244,17 +231,17 @@ def driven_ground(raster: GroundRaster, slopes: Sequence[np.ndarray], track_x: n
     stepped : (rows, columns) bool, occupied cells about which the ground rises more than its slope explains
     """
     there = np.isfinite(raster.low)
-    window = np.ones((LEVEL_WINDOW_CELLS, LEVEL_WINDOW_CELLS), np.uint8)
+    window = np.ones((RETURN.level_window_cells, RETURN.level_window_cells), np.uint8)
     span = cv2.dilate(np.where(there, raster.low, -OUT_OF_RANGE_HEIGHT), window) - cv2.erode(np.where(there, raster.low, OUT_OF_RANGE_HEIGHT), window)
-    level = span <= MAX_LEVEL_SHARE * min_height + (np.abs(slopes[0]) + np.abs(slopes[1])) * (LEVEL_WINDOW_CELLS - 1) * PLAN_CELL
-    passable = level & grown(there, diamond(MAX_BRIDGED_CELLS))
+    level = span <= RETURN.max_level_share * min_height + (np.abs(slopes[0]) + np.abs(slopes[1])) * (RETURN.level_window_cells - 1) * RETURN.plan_cell
+    passable = level & grown(there, diamond(RETURN.max_bridged_cells))
     barrier = np.zeros(there.shape, bool)
     barrier[raster.inside(barrier_x, barrier_y)] = True
     passable &= ~grown(barrier, np.ones((3, 3), np.uint8))
     count, label = cv2.connectedComponents(passable.view(np.uint8), connectivity=4)
     track = np.zeros(there.shape, bool)
     track[raster.inside(track_x, track_y)] = True
-    track = grown(track, diamond(int(round(DRIVEN_HALF_WIDTH / PLAN_CELL))))
+    track = grown(track, diamond(int(round(RETURN.driven_half_width / RETURN.plan_cell))))
     track[raster.inside(*inner)] = True
     wanted = np.zeros(count, bool)
     wanted[label[track & passable]] = True

@@ -16,22 +16,15 @@ from scipy.spatial import cKDTree
 
 from ...common.arrays import stretch_of
 from ..common.curb_points import CurbPoints
-from ..common.occlusion import OCCLUSION_CELL, OcclusionGrid
-from ..common.sides import MAX_HIDDEN_GAP, SIDE_SIGNS, expected_height
-from ..common.tracking import HEIGHT_TOLERANCE
-from .classify import MIN_ISLAND_SHARE, CurbReturn
-from .ground_raster import MAX_GROUND_SLOPE, PLAN_CELL, GroundRaster
+from ..common.occlusion import OcclusionGrid
+from ..common.sides import SIDE_SIGNS, expected_height
+from ..weights import CURBS, RETURN
+from .classify import CurbReturn
+from .ground_raster import GroundRaster
 from .steps import PlanSteps, line_directions, points_about
 
 if TYPE_CHECKING:
     from ...survey.open_survey import Survey
-
-MIN_SIDE_STEP = 1.0           # m across by which the road's curb lies farther out than an island's
-AVERAGED_LENGTH = 1.0         # m along the road either way whose ground is taken together
-SLOPE_LENGTH = 3.0            # m before a curb, where the slope of the road is taken
-MIN_SLOPE_CELLS = 4           # cells with ground that this needs
-MIN_ROAD_BEHIND = 2.0         # m of ground as low as the road that lie behind an island
-ISLAND_LINE_DISTANCE = 0.25   # m from a line about an island within which a point lies on it
 
 
 def on_main_islands(points: CurbPoints, survey: Survey,
@@ -49,7 +42,7 @@ def on_main_islands(points: CurbPoints, survey: Survey,
     (N,) bool, and number of the road -> (2, K) local x and y of places on the road behind
     """
     found, behind = np.zeros(len(points), bool), {road: [np.empty((2, 0))] for road in survey.store.roads()}
-    across = np.arange(0.0, MIN_ROAD_BEHIND, PLAN_CELL)
+    across = np.arange(0.0, RETURN.min_road_behind, RETURN.plan_cell)
     for road, sides in (beside or {}).items():
         for side, sign in SIDE_SIGNS.items():
             whole = np.flatnonzero((points.road == road) & (points.side == side))
@@ -81,10 +74,10 @@ def are_replaced(points: CurbPoints, curbs: Sequence[CurbReturn]) -> bool:
     for curb in curbs:
         if curb.kind == "main":
             behind |= (own.side == curb.side) & (own.station >= np.min(curb.s)) & (own.station <= np.max(curb.s))
-    if not about or np.mean(behind) < MIN_ISLAND_SHARE:
+    if not about or np.mean(behind) < RETURN.min_island_share:
         return False
     away = cKDTree(np.concatenate(about)).query(np.c_[own.x, own.y])[0]
-    return bool(np.mean(away <= ISLAND_LINE_DISTANCE) >= MIN_ISLAND_SHARE)
+    return bool(np.mean(away <= RETURN.island_line_distance) >= RETURN.min_island_share)
 
 
 def island_stretches(s: np.ndarray, u: np.ndarray, h: np.ndarray, height: np.ndarray,
@@ -101,49 +94,40 @@ def island_stretches(s: np.ndarray, u: np.ndarray, h: np.ndarray, height: np.nda
     -------
     list of (slice of the N points, m outward from each of these to where the ground is down again, NaN where that is not seen)
     """
-    jump = np.flatnonzero(np.abs(np.diff(u)) > MIN_SIDE_STEP) + 1
+    jump = np.flatnonzero(np.abs(np.diff(u)) > RETURN.min_side_step) + 1
     found = []
     for a, b in zip(jump[:-1], jump[1:]):
         out = min(u[a - 1] - u[a], u[b] - u[b - 1])
-        if out > MIN_SIDE_STEP and max(s[a] - s[a - 1], s[b] - s[b - 1]) <= MAX_HIDDEN_GAP:
+        if out > RETURN.min_side_step and max(s[a] - s[a - 1], s[b] - s[b - 1]) <= CURBS.max_hidden_gap:
             down = np.array([_down_behind(*place, out, beside) for place in zip(s[a:b], u[a:b], h[a:b], height[a:b])])
-            if np.mean(np.isfinite(down)) >= MIN_ISLAND_SHARE:
+            if np.mean(np.isfinite(down)) >= RETURN.min_island_share:
                 found.append((slice(int(a), int(b)), down))
     return found
 
 
 def _down_behind(s, u, h, height, out, beside):
     """m outward from one point of a curb to where the ground behind it, raised at first, is down again; NaN where it is not within `out`."""
-    around, row = int(round(AVERAGED_LENGTH / beside.width)), int(np.floor(s / beside.width)) - beside.first
+    around, row = int(round(RETURN.averaged_length / beside.width)), int(np.floor(s / beside.width)) - beside.first
     rows = beside.ground[max(row - around, 0):row + around + 1]
     seen = np.flatnonzero(np.isfinite(rows).any(axis=0))
-    ground, away = np.nanmedian(rows[:, seen], axis=0), (seen + 0.5) * OCCLUSION_CELL - u
-    before = (away > -SLOPE_LENGTH) & (away < -OCCLUSION_CELL)
-    if np.count_nonzero(before) < MIN_SLOPE_CELLS:
+    ground, away = np.nanmedian(rows[:, seen], axis=0), (seen + 0.5) * CURBS.occlusion_cell - u
+    before = (away > -RETURN.slope_length) & (away < -CURBS.occlusion_cell)
+    if np.count_nonzero(before) < RETURN.min_slope_cells:
         return np.nan
-    slope = np.clip(np.polyfit(away[before], ground[before], 1)[0], -MAX_GROUND_SLOPE, MAX_GROUND_SLOPE)
+    slope = np.clip(np.polyfit(away[before], ground[before], 1)[0], -RETURN.max_ground_slope, RETURN.max_ground_slope)
     share = (ground - h - slope * away) / height
-    behind = away > OCCLUSION_CELL
-    low = np.flatnonzero(behind & (share < ISLAND_DROP_SHARE))
-    if not len(low) or away[low[0]] >= out or not (share[:low[0]][behind[:low[0]]] >= MIN_EDGE_SHARE).any():
+    behind = away > CURBS.occlusion_cell
+    low = np.flatnonzero(behind & (share < RETURN.island_drop_share))
+    if not len(low) or away[low[0]] >= out or not (share[:low[0]][behind[:low[0]]] >= RETURN.min_edge_share).any():
         return np.nan
-    road = (away >= away[low[0]]) & (away <= min(away[low[0]] + MIN_ROAD_BEHIND, out))
-    return away[low[0]] if (share[road] < ISLAND_DROP_SHARE).mean() > 0.5 else np.nan
+    road = (away >= away[low[0]]) & (away <= min(away[low[0]] + RETURN.min_road_behind, out))
+    return away[low[0]] if (share[road] < RETURN.island_drop_share).mean() > 0.5 else np.nan
 
 
 # Far sides of islands: an island hides the foot of its own far curb, but the edge of its top is seen.
 #
 # Behind a step, the raised ground of an island ends where nothing is seen for a few decimetres, and what is seen then is as low as the road. The
 # curb stands upright beneath the outermost points of the top.
-
-EDGE_REACH = 0.25             # m either way of the last raised cell within which the edge of the top lies
-EDGE_HALF_LENGTH = 0.15       # m either way along the edge of the points that show it
-MIN_EDGE_POINTS = 4           # of the top
-MAX_EDGE_SPACING = 0.15       # m across between points of the top: the edge lies up to that much beyond the outermost
-SPACING_DEPTH = 0.40          # m of the top from its edge inward in which that is looked for
-MIN_TOP_SHARE = 0.6           # share of the height of the island's near side that its top has
-SEEN_STEP_DISTANCE = 0.4      # m from a step that was seen, within which nothing is hidden
-MIN_ISLAND_WIDTH = 0.4        # m
 
 
 def far_sides(raster: GroundRaster, steps: PlanSteps, behind: GroundBehind) -> PlanSteps:
@@ -159,23 +143,24 @@ def far_sides(raster: GroundRaster, steps: PlanSteps, behind: GroundBehind) -> P
     -------
     PlanSteps, at most one for each of the M; the bottom is where the plane of the road before the near side goes on
     """
-    near = np.flatnonzero(behind.edge >= MIN_ISLAND_WIDTH)
+    near = np.flatnonzero(behind.edge >= RETURN.min_island_width)
     if not len(near):
         return PlanSteps.none()
     own, out = steps[near], behind.edge[near]
     bottom = own.h + behind.slope[near] * out
     x, y = own.x + out * own.nx, own.y + out * own.ny
-    seen = cKDTree(np.c_[steps.x, steps.y]).query(np.c_[x, y])[0] <= SEEN_STEP_DISTANCE
+    seen = cKDTree(np.c_[steps.x, steps.y]).query(np.c_[x, y])[0] <= RETURN.seen_step_distance
     own, x, y, bottom = own[~seen], x[~seen], y[~seen], bottom[~seen]
     if not len(x):
         return PlanSteps.none()
     nx, ny, in_line = line_directions(x, y, -own.nx, -own.ny)
-    owner, u, _, h = points_about(raster, raster.by_cell, x, y, nx, ny, EDGE_HALF_LENGTH)
-    top = np.flatnonzero((h - bottom.take(owner) >= MIN_TOP_SHARE * own.height.take(owner)) & (np.abs(u) <= EDGE_REACH))
+    owner, u, _, h = points_about(raster, raster.by_cell, x, y, nx, ny, RETURN.edge_half_length)
+    top = np.flatnonzero((h - bottom.take(owner) >= RETURN.min_top_share * own.height.take(owner)) & (np.abs(u) <= RETURN.edge_reach))
     edge = np.full(len(x), np.inf)
     np.minimum.at(edge, owner.take(top), u.take(top))
     count = np.bincount(owner.take(top), minlength=len(x))
-    good = in_line & (count >= MIN_EDGE_POINTS) & (_largest_gap(owner, u - edge.take(owner), h - bottom.take(owner), own.height) <= MAX_EDGE_SPACING)
+    gap = _largest_gap(owner, u - edge.take(owner), h - bottom.take(owner), own.height)
+    good = in_line & (count >= RETURN.min_edge_points) & (gap <= RETURN.max_edge_spacing)
     edge = np.where(good, edge, 0.0)
     found = PlanSteps(x + edge * nx, y + edge * ny, nx, ny, bottom, own.height, np.zeros(len(x)), np.zeros(len(x)), count, count)
     return found[good]
@@ -183,8 +168,8 @@ def far_sides(raster: GroundRaster, steps: PlanSteps, behind: GroundBehind) -> P
 
 def _largest_gap(owner, inward, above, height):
     """(K,) m, the largest gap across between points of the tops of K islands, from the outermost inward; `height` : (K,) m of their near sides."""
-    top = np.flatnonzero((above >= MIN_TOP_SHARE * height.take(owner)) & (inward >= 0.0) & (inward < SPACING_DEPTH))
-    owner, inward = np.r_[owner.take(top), np.arange(len(height))], np.r_[inward.take(top), np.full(len(height), SPACING_DEPTH)]
+    top = np.flatnonzero((above >= RETURN.min_top_share * height.take(owner)) & (inward >= 0.0) & (inward < RETURN.spacing_depth))
+    owner, inward = np.r_[owner.take(top), np.arange(len(height))], np.r_[inward.take(top), np.full(len(height), RETURN.spacing_depth)]
     order = np.lexsort((inward, owner))
     owner, inward = owner[order], inward[order]
     gap = np.zeros(len(height))
@@ -193,10 +178,6 @@ def _largest_gap(owner, inward, above, height):
 
 
 # Steps on top of an island: a ramp that is lowered for a crossing has edges in it, whose foot is not on the road.
-
-RAY_SPACING = 0.2             # m between places along a ray
-RAY_REACH = 0.3               # m from such a place within which a step lies on it: the steps of a line are up to twice that apart
-MIN_FOOT_SHARE = 0.25         # share of the height of an island's curb by which the foot of a step on its top lies above the road
 
 
 def on_island_tops(steps: PlanSteps, behind: GroundBehind) -> np.ndarray:
@@ -213,25 +194,21 @@ def on_island_tops(steps: PlanSteps, behind: GroundBehind) -> np.ndarray:
     """
     on_top = np.zeros(len(steps), bool)
     end = np.where(np.isfinite(behind.edge), behind.edge, behind.falls)
-    out = np.arange(RAY_SPACING, np.nanmax(end, initial=0.0), RAY_SPACING)
+    out = np.arange(RETURN.ray_spacing, np.nanmax(end, initial=0.0), RETURN.ray_spacing)
     ray, place = np.nonzero(out < end[:, None])
     if not len(ray):
         return on_top
     away = out[place]
     places = np.c_[steps.x[ray] + away * steps.nx[ray], steps.y[ray] + away * steps.ny[ray]]
-    near = cKDTree(np.c_[steps.x, steps.y]).sparse_distance_matrix(cKDTree(places), RAY_REACH, output_type="ndarray")
+    near = cKDTree(np.c_[steps.x, steps.y]).sparse_distance_matrix(cKDTree(places), RETURN.ray_reach, output_type="ndarray")
     own, of = near["i"], ray[near["j"]]
     foot = steps.h[own] - steps.h[of] - behind.slope[of] * away[near["j"]]
-    above = (foot > np.maximum(MIN_FOOT_SHARE * steps.height[of], HEIGHT_TOLERANCE)) & (steps.height[own] < steps.height[of])
+    above = (foot > np.maximum(RETURN.min_foot_share * steps.height[of], CURBS.height_tolerance)) & (steps.height[own] < steps.height[of])
     on_top[own[above]] = True
     return on_top
 
 
 # What the ground behind a step does: back at the bottom of the step, as behind an island, or up.
-
-ROAD_BEFORE = 1.25            # m before a step, where the slope of the road is taken: the step itself is not in it
-ISLAND_DROP_SHARE = 0.4       # share of a step's height that the ground behind an island may lie above its bottom
-MIN_EDGE_SHARE = 0.7          # share of that height at which its far side begins
 
 
 @dataclass
@@ -264,20 +241,20 @@ def ground_behind(raster: GroundRaster, slopes: Sequence[np.ndarray], x: np.ndar
     farthest : m uphill that are searched
     """
     # the ground behind is down where the plane of the road before the step goes on
-    before = raster.nearest_cells(x - ROAD_BEFORE * nx, y - ROAD_BEFORE * ny)
+    before = raster.nearest_cells(x - RETURN.road_before * nx, y - RETURN.road_before * ny)
     slope = nx * slopes[0][before] + ny * slopes[1][before]
-    out = (np.arange(int(round(farthest / PLAN_CELL))) + 2) * PLAN_CELL
+    out = (np.arange(int(round(farthest / RETURN.plan_cell))) + 2) * RETURN.plan_cell
     row, column = raster.cells_at(x[:, None] + out * nx[:, None], y[:, None] + out * ny[:, None])
     on = (row >= 0) & (column >= 0) & (row < raster.low.shape[0]) & (column < raster.low.shape[1])
     there = np.where(on, raster.low[np.where(on, row, 0), np.where(on, column, 0)], np.nan)
     with np.errstate(invalid="ignore"):
         share = (there - bottom[:, None] - slope[:, None] * out) / height[:, None]
-        down, up = share < ISLAND_DROP_SHARE, share >= ISLAND_DROP_SHARE
+        down, up = share < RETURN.island_drop_share, share >= RETURN.island_drop_share
     first = np.where(down.any(1), np.argmax(down, axis=1), len(out))
     last = np.where(up, np.arange(len(out)), -1)
     last[np.arange(len(out)) >= first[:, None]] = -1
     last = last.max(axis=1)
     own = np.arange(len(x))
     # a ramp is seen all the way down
-    hidden = (first < len(out)) & (last >= 0) & (first - last > 1) & (share[own, last] >= MIN_EDGE_SHARE)
+    hidden = (first < len(out)) & (last >= 0) & (first - last > 1) & (share[own, last] >= RETURN.min_edge_share)
     return GroundBehind(np.where(first < len(out), out[np.minimum(first, len(out) - 1)], np.nan), np.where(hidden, out[last], np.nan), slope)

@@ -13,17 +13,11 @@ from scipy.spatial import cKDTree
 from ...survey.frame.road import CORRIDOR
 from ..common.curb_points import CurbPoints
 from ..common.sides import SIDE_SIGNS, expected_height
-from ..common.tracking import MAX_JOINED_GAP
-from .ground_raster import PLAN_CELL
+from ..weights import CURBS, RETURN
 
 if TYPE_CHECKING:
     from ...survey.frame.road import Road
     from ...survey.open_survey import Survey
-
-MIN_OPENING_LENGTH = 6.0      # m without main curb that are an opening and no driveway
-OPENING_MARGIN = 6.0          # m of main curb beside an opening behind which corners are looked for
-SEARCH_BEHIND_CURB = 0.6      # m behind a main curb that are searched elsewhere
-MAX_RUN_JUMP = 0.5            # m across between points of one run of main curb
 
 
 def main_curbs_of(curb_points: CurbPoints, survey: Survey, road: int) -> tuple[dict[str, np.ndarray], int]:
@@ -51,11 +45,11 @@ class SearchLimit:
     def __init__(self, points: np.ndarray, sign: int):
         self.sign = sign
         self.s, self.u, self.seen = points[:, 0], sign * points[:, 1], points[points[:, 3] > 0, 0]
-        cuts = np.flatnonzero(np.diff(self.s) > MIN_OPENING_LENGTH) + 1
+        cuts = np.flatnonzero(np.diff(self.s) > RETURN.min_opening_length) + 1
         # where runs of curb begin and end, both ascending: which of them is near a place is looked up
         self.begins, self.ends = (np.array([part[k] for part in np.split(self.s, cuts) if len(part)], float) for k in (0, -1))
 
-    def __call__(self, s: np.ndarray, behind: float = SEARCH_BEHIND_CURB, at_opening: float = OPENING_MARGIN) -> np.ndarray:
+    def __call__(self, s: np.ndarray, behind: float = RETURN.search_behind_curb, at_opening: float = RETURN.opening_margin) -> np.ndarray:
         """(N,) m, largest outward offset at (N,) stations: `behind` metres behind the curb, except for its last metres beside openings."""
         if not len(self.s):
             return np.full(len(s), CORRIDOR)
@@ -95,15 +89,15 @@ def places_along(line: Road, main: Mapping[str, np.ndarray], gap: float) -> np.n
     places = [np.empty((0, 2))]
     for points in main.values():
         for run in _split(points, gap):
-            s = np.arange(run[0, 0], run[-1, 0] + PLAN_CELL, PLAN_CELL)
+            s = np.arange(run[0, 0], run[-1, 0] + RETURN.plan_cell, RETURN.plan_cell)
             places.append(np.c_[line.to_map(s, np.interp(s, run[:, 0], run[:, 1]))])
     return np.concatenate(places)
 
 
-def _split(points, gap=MAX_JOINED_GAP):
+def _split(points, gap=CURBS.max_joined_gap):
     if not len(points):
         return []
-    apart = (np.diff(points[:, 0]) > gap) | (np.abs(np.diff(points[:, 1])) > MAX_RUN_JUMP + np.diff(points[:, 0]))
+    apart = (np.diff(points[:, 0]) > gap) | (np.abs(np.diff(points[:, 1])) > RETURN.max_run_jump + np.diff(points[:, 0]))
     return np.split(points, np.flatnonzero(apart) + 1)
 
 

@@ -4,8 +4,8 @@ Some tens of metres from the vehicle a metre of curb holds a few points, too few
 beside it still differ by its whole height. Therefore the straight course of a curb that leaves the corridor, or one that bends evenly, is
 fitted to all points about it from its end on, metre by metre farther out: the arc along which two levels with the curb's own height
 between them explain the heights best, and then the mean of all arcs about it that do so, each with its likelihood, whose spread is how
-uncertain the place is. It ends where less than MIN_SIDE_POINTS lie on either side of it along LED_LENGTH metres, or where they no longer
-show half of the curb's height.
+uncertain the place is. It ends where less than RETURN.min_side_points lie on either side of it along RETURN.led_length metres, or where they
+no longer show half of the curb's height.
 """
 
 from __future__ import annotations
@@ -17,38 +17,15 @@ import numpy as np
 
 from ...survey.frame.road import NODE_SPACING
 from ...survey.store.records import road_of
-from ..common.corners import FACE_LOWER_SHARE, FACE_PRIOR, FACE_UPPER_SHARE
-from ..common.curb_limits import SIGNIFICANT_SIGMAS
-from ..common.decimation import POINTS_PER_LEVEL_CELL_IN_PLAN, PointDecimation
+from ..common.decimation import PointDecimation
 from ..common.sides import expected_height
+from ..weights import CURBS, RETURN
 from .classify import CurbReturn
-from .extended_curbs import LED_LENGTH, MAX_LAYER_HEIGHT
 from .main_curbs import KnownPlaces
 from .steps import PlanSteps
-from .tracking import LINE_DIRECTION_LENGTH
 
 BEYOND_KINDS = "corner", "side_street"
-MAX_CORRIDOR_DISTANCE = 15.0  # m straight on from its end within which such a curb leaves the corridor
-MAX_BEYOND_LENGTH = 40.0      # m that it is led on: the ground of the survey reaches no farther
-MAX_DROPPED_LENGTH = 6.0      # m from its end that it may be dropped: a pedestrian crossing
-TRAIL_LENGTH = 6.0            # m of known curb whose direction it keeps
-MIN_HEIGHT_SHARE, MAX_HEIGHT_SHARE = 0.5, 1.5   # of the height that the curb is known to have
-MIN_LEVEL_SHARE = 0.75        # of the points on either side that are nearer to their own level than to the other
-GROWTH = 1.0                  # m by which the fitted length grows
-KNOWN_CURB_DISTANCE = 0.25    # m within which a curb is one that is known already
-STEP_SPACING = 0.5            # m between the places that are returned
-CELL_ALONG, CELL_ACROSS = 0.5, 0.1    # m, cells in which dense points are averaged: their errors are alike
-NO_OTHER_ARCS = np.zeros((3, 1))
-# Arcs that are weighed: those about the best, by steps (m) at three places, then by shares of what they spread
-SPREAD_STEP, SPREAD_STEP_SIGMAS, LEAST_SPREAD_STEP, SPREAD_ROUNDS = 0.03, 0.8, 0.002, 3
-SPREAD_GRID = np.stack(np.meshgrid(*3 * [np.arange(-3.0, 4.0)], indexing="ij"), axis=-1).reshape(-1, 3)
-# Shifts (m), turns (radians) and bends (1/m) of the arcs that are tried: first straight ones, then some about the best, and farther out about
-# the arc so far.
-FIRST_ARCS = np.arange(-0.06, 0.061, 0.03), np.radians(np.arange(-5.0, 5.01, 0.5)), np.zeros(1)
-FINER_ARCS = np.arange(-0.02, 0.021, 0.02), np.radians(np.arange(-0.4, 0.41, 0.2)), np.arange(-0.02, 0.0201, 0.004)
-FARTHER_ARCS = np.arange(-0.02, 0.021, 0.02), np.radians(np.arange(-0.3, 0.31, 0.15)), np.arange(-0.004, 0.0041, 0.002)
-
-
+SPREAD_GRID = np.stack(np.meshgrid(*3 * [RETURN.spread_grid], indexing="ij"), axis=-1).reshape(-1, 3)   # derived: all combinations at three places
 @dataclass
 class _CurbCourse:
     """An arc: shift (m), turn (radians) and bend (1/m), positive uphill; `levels`: bottom (m), grade, height (m), crossfall; from and to (m) it was
@@ -108,9 +85,9 @@ def _end_of(curb, at_tail, survey, road):
     """The end of a curb; None where it is too short for a direction."""
     steps, order = curb.steps, slice(None) if at_tail else slice(None, None, -1)
     x, y = steps.x[order], steps.y[order]
-    near = np.hypot(x - x[-1], y - y[-1]) <= TRAIL_LENGTH
+    near = np.hypot(x - x[-1], y - y[-1]) <= RETURN.trail_length
     x, y = x[near], y[near]
-    if np.hypot(x[-1] - x[0], y[-1] - y[0]) < LINE_DIRECTION_LENGTH:
+    if np.hypot(x[-1] - x[0], y[-1] - y[0]) < RETURN.line_direction_length:
         return None
     tx, ty = np.linalg.svd(np.c_[x - x.mean(), y - y.mean()])[2][0]
     out = np.sign(tx * (x[-1] - x[0]) + ty * (y[-1] - y[0]))
@@ -123,7 +100,7 @@ def _end_of(curb, at_tail, survey, road):
 
 def _leaves(end, roads):
     """Does the curb leave the corridors of all roads where it leads straight on?"""
-    t = np.arange(0.0, MAX_CORRIDOR_DISTANCE + 0.1, 1.0)
+    t = np.arange(0.0, RETURN.max_corridor_distance + 0.1, 1.0)
     inside = np.any([np.isfinite(road.locate(*end.ahead(t))[0]) for road in roads], axis=0)
     return not inside.all()
 
@@ -131,16 +108,17 @@ def _leaves(end, roads):
 def _ground(decimation, end):
     """Points about the straight continuation of a curb: metres along and uphill, and heights, averaged in cells."""
     survey, width, found = decimation.survey, decimation.width, []
-    ahead = np.arange(0.0, MAX_CORRIDOR_DISTANCE + LED_LENGTH + 0.1, 0.5)
+    ahead = np.arange(0.0, RETURN.max_corridor_distance + RETURN.led_length + 0.1, 0.5)
     x, y = end.ahead(ahead)
     numbers = survey.store.numbers()
     for road in survey.store.roads():
         line = survey.frame.road(road)
         s, _ = line.locate(x, y)
         if np.isfinite(s).any():
-            profiles = int(np.floor((np.nanmin(s) - GROUND_HALF_WIDTH) / width)), int(np.ceil((np.nanmax(s) + GROUND_HALF_WIDTH) / width)) + 1
-            found += [_beside(part, end) for part in decimation.decimated_points(road, profiles, POINTS_PER_LEVEL_CELL_IN_PLAN)]
-    reach = MAX_BEYOND_LENGTH + 2 * MAX_CORRIDOR_DISTANCE
+            low, high = np.nanmin(s) - RETURN.ground_half_width, np.nanmax(s) + RETURN.ground_half_width
+            profiles = int(np.floor(low / width)), int(np.ceil(high / width)) + 1
+            found += [_beside(part, end) for part in decimation.decimated_points(road, profiles, CURBS.points_per_level_cell_in_plan)]
+    reach = RETURN.max_beyond_length + 2 * RETURN.max_corridor_distance
     for number in numbers:
         if number >= 0:
             continue
@@ -158,15 +136,15 @@ def _ground(decimation, end):
 def _beside(points, end):
     x, y, z = points.x, points.y, points.z
     t, u = end.beside(x, y)
-    own = np.flatnonzero((t > -0.5) & (t < MAX_BEYOND_LENGTH) & (np.abs(u) < GROUND_HALF_WIDTH + 0.1 * np.maximum(t, 0.0) + 0.1)
-                         & (np.abs(z - end.z) < MAX_LAYER_HEIGHT + 0.05 * np.maximum(t, 0.0)))
+    own = np.flatnonzero((t > -0.5) & (t < RETURN.max_beyond_length) & (np.abs(u) < RETURN.ground_half_width + 0.1 * np.maximum(t, 0.0) + 0.1)
+                         & (np.abs(z - end.z) < RETURN.max_layer_height + 0.05 * np.maximum(t, 0.0)))
     return t[own], u[own], z[own]
 
 
 def _cell_means(t, u, z):
     if not len(t):
         return t, u, z
-    key = np.floor(t / CELL_ALONG).astype(np.int64) * 1000 + np.floor(u / CELL_ACROSS).astype(np.int64)
+    key = np.floor(t / RETURN.cell_along).astype(np.int64) * 1000 + np.floor(u / RETURN.cell_across).astype(np.int64)
     _, cell, count = np.unique(key, return_inverse=True, return_counts=True)
     return tuple(np.bincount(cell, v) / count for v in (t, u, z))
 
@@ -183,17 +161,17 @@ def led_beyond(t: np.ndarray, u: np.ndarray, z: np.ndarray, end: CurbEnd) -> _Cu
     -------
     the course as far as it is seen, None where it is not
     """
-    for start in np.arange(0.0, MAX_DROPPED_LENGTH + 0.1, 1.0):
-        course, length = None, LED_LENGTH
-        about = _best_arc(t, u, z, end, start, start + length, (0.0, 0.0, 0.0), FIRST_ARCS)
-        while about is not None and start + length <= MAX_BEYOND_LENGTH:
-            longer = _fitted(t, u, z, end, start, start + length, about, FINER_ARCS if course is None else FARTHER_ARCS)
+    for start in np.arange(0.0, RETURN.max_dropped_length + 0.1, 1.0):
+        course, length = None, RETURN.led_length
+        about = _best_arc(t, u, z, end, start, start + length, (0.0, 0.0, 0.0), RETURN.first_arcs)
+        while about is not None and start + length <= RETURN.max_beyond_length:
+            longer = _fitted(t, u, z, end, start, start + length, about, RETURN.finer_arcs if course is None else RETURN.farther_arcs)
             # the first arc must be seen along both halves
-            if longer is None or course is None and longer.end < start + 0.5 * LED_LENGTH:
+            if longer is None or course is None and longer.end < start + 0.5 * RETURN.led_length:
                 break
-            course, about, length = longer, longer.arc, length + GROWTH
+            course, about, length = longer, longer.arc, length + RETURN.growth
         if course is not None:
-            return _surest(t, u, z, end, course, start + length - GROWTH)
+            return _surest(t, u, z, end, course, start + length - RETURN.growth)
     return None
 
 
@@ -209,8 +187,8 @@ def _surest(t, u, z, end, course, stop):
     at = np.linspace(course.start, course.end, 3)
     # arcs by what they are aside at the beginning, in the middle and at the end
     to_arc = np.linalg.inv(np.stack([np.ones(3), at, 0.5 * at * at], axis=1))
-    mean, axes = _aside_of_arcs(np.array([course.arc]), at)[0], SPREAD_STEP * np.eye(3)
-    for _ in range(SPREAD_ROUNDS):
+    mean, axes = _aside_of_arcs(np.array([course.arc]), at)[0], RETURN.spread_step * np.eye(3)
+    for _ in range(RETURN.spread_rounds):
         aside = mean + SPREAD_GRID @ axes.T
         cost = ground.explained(aside @ to_arc.T)[0]
         weight = np.exp(-0.5 * (cost - cost.min()))
@@ -218,9 +196,9 @@ def _surest(t, u, z, end, course, stop):
         mean = weight @ aside
         spread = (aside - mean).T @ ((aside - mean) * weight[:, None])
         size, direction = np.linalg.eigh(spread)
-        axes = direction * np.maximum(SPREAD_STEP_SIGMAS * np.sqrt(np.maximum(size, 0.0)), LEAST_SPREAD_STEP)
+        axes = direction * np.maximum(RETURN.spread_step_sigmas * np.sqrt(np.maximum(size, 0.0)), RETURN.least_spread_step)
     shift, turn, bend = (to_arc @ (mean + ground.foot(to_arc @ mean))).tolist()
-    found = _fitted(t, u, z, end, course.start, stop, (shift, turn, bend), NO_OTHER_ARCS)
+    found = _fitted(t, u, z, end, course.start, stop, (shift, turn, bend), np.zeros((3, 1)))
     return replace(found or course, spread=to_arc @ spread @ to_arc.T)
 
 
@@ -238,32 +216,32 @@ def _best_levels(t, u, z, end, start, stop, about, arcs):
     tried = np.stack([v.ravel() + middle for v, middle in zip(np.meshgrid(*arcs, indexing="ij"), about)], axis=1)
     cost, levels, design, v = ground.explained(tried)
     k = int(np.argmin(cost))
-    near = np.abs(v[k]) > CURB_HALF_WIDTH
+    near = np.abs(v[k]) > RETURN.curb_half_width
     return (float(tried[k, 0]), float(tried[k, 1]), float(tried[k, 2])), levels[k], ground.prior, ground.t, ground.z, design[k], v[k], near
 
 
 def _fitted(t, u, z, end, start, stop, about, arcs):
-    """The course between two distances; None where its last LED_LENGTH show no curb."""
+    """The course between two distances; None where its last RETURN.led_length show no curb."""
     best = _best_levels(t, u, z, end, start, stop, about, arcs)
     if best is None:
         return None
     arc, levels, prior, t, z, design, v, near = best
-    seen = near & (t >= stop - LED_LENGTH)
+    seen = near & (t >= stop - RETURN.led_length)
     low, high = seen & (v < 0), seen & (v > 0)
-    if min(low.sum(), high.sum()) < MIN_SIDE_POINTS:
+    if min(low.sum(), high.sum()) < RETURN.min_side_points:
         return None
     reach = float(min(t[low].max(), t[high].max()))
     plain = z - design[:, [0, 1, 3]] @ levels[[0, 1, 3]]
     rise = np.median(plain[high]) - np.median(plain[low])
     middle = np.median(plain[low]) + 0.5 * rise
     apart = min(np.mean(plain[low] < middle), np.mean(plain[high] > middle))
-    if not MIN_HEIGHT_SHARE * end.height <= rise <= MAX_HEIGHT_SHARE * end.height or apart < MIN_LEVEL_SHARE:
+    if not RETURN.min_height_share * end.height <= rise <= RETURN.max_height_share * end.height or apart < RETURN.min_level_share:
         return None
     # a slope, however steep, must explain the last points worse
     every = np.ones((1, seen.sum()), bool)
     slope = _cost_of_arcs(_levels_of_arcs(design[None, seen][:, :, [0, 1, 3]], z[seen], every, np.full(3, 1e-6), np.zeros(3))[1])[0]
     step = _cost_of_arcs(_levels_of_arcs(design[None, seen], z[seen], every, prior, levels)[1])[0]
-    if slope - step < SIGNIFICANT_SIGMAS**2:
+    if slope - step < CURBS.significant_sigmas**2:
         return None
     residual = z[seen] - design[seen] @ levels
     return _CurbCourse(arc, levels, start, reach, (int(low.sum()), int(high.sum())), float(np.median(np.abs(residual)) / 0.6745))
@@ -271,7 +249,7 @@ def _fitted(t, u, z, end, start, stop, about, arcs):
 
 def _led(course, end, curb, at_tail, survey, road, line):
     """The curb along a course; from the known end on, unless it is dropped there."""
-    count = max(int(np.ceil((course.end - course.start) / STEP_SPACING)), 1) + 1
+    count = max(int(np.ceil((course.end - course.start) / RETURN.step_spacing)), 1) + 1
     t = np.linspace(course.start, course.end, count)
     shift, turn, bend = course.arc
     u, skew = shift + turn * t + 0.5 * bend * t * t, turn + bend * t
@@ -297,7 +275,7 @@ def _distinct(found, met):
     chosen: list[CurbReturn] = []
     for curb in sorted(found, key=lambda c: -len(c.steps)):
         x, y = curb.steps.x, curb.steps.y
-        if np.mean(met.within(x, y, KNOWN_CURB_DISTANCE)) > 0.5:
+        if np.mean(met.within(x, y, RETURN.known_curb_distance)) > 0.5:
             continue
         chosen.append(curb)
         met = met.and_places(x, y)
@@ -306,14 +284,6 @@ def _distinct(found, met):
 
 # The ground about an arc along which a curb may run: how well two levels with the curb's height between them explain its points.
 
-GROUND_HALF_WIDTH = 0.8       # m on either side of the points that show the levels
-CURB_HALF_WIDTH = 0.03        # m about the curb in which a point is on neither level, but anywhere between them
-MIN_SIDE_POINTS = 3           # along LED_LENGTH on either side
-POINT_HEIGHT_SIGMA, PLACE_SIGMA = 0.015, 0.03   # m, of a point about its level, and of a step of the known curb about its course
-MAX_RESIDUAL = 3.0            # sigmas beyond which a point counts no more: objects, plants
-# What is known beforehand: sigmas of the bottom's height at the end (m), of grade (m per m), height (m), crossfall (m per m) and bend (1/m)
-BOTTOM_SIGMA, GRADE_SIGMA, RISE_SIGMA, CROSSFALL_SIGMA, ARC_BEND_SIGMA = 0.02, 0.03, 0.03, 0.04, 0.005
-LEAST_STEPS = 8               # of the known curb, which are independent
 Arc = tuple[float, float, float]
 
 
@@ -357,10 +327,10 @@ class GroundAboutArc:
     @staticmethod
     def about(t: np.ndarray, u: np.ndarray, z: np.ndarray, end: CurbEnd, start: float, stop: float, arc: Arc) -> GroundAboutArc | None:
         """The points between two distances; None where there are too few."""
-        own = np.flatnonzero((t >= start) & (t < stop) & (np.abs(u - _aside_of_arcs(np.array([arc]), t)[0]) < GROUND_HALF_WIDTH))
-        if len(own) < 2 * MIN_SIDE_POINTS:
+        own = np.flatnonzero((t >= start) & (t < stop) & (np.abs(u - _aside_of_arcs(np.array([arc]), t)[0]) < RETURN.ground_half_width))
+        if len(own) < 2 * RETURN.min_side_points:
             return None
-        prior = np.array([BOTTOM_SIGMA + 0.01 * start, GRADE_SIGMA, RISE_SIGMA, CROSSFALL_SIGMA])**-2.0
+        prior = np.array([RETURN.bottom_sigma + 0.01 * start, RETURN.grade_sigma, RETURN.rise_sigma, RETURN.crossfall_sigma])**-2.0
         return GroundAboutArc(t[own], u[own], z[own] - end.z, end, prior)
 
     def explained(self, arcs: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
@@ -370,26 +340,27 @@ class GroundAboutArc:
         """
         t, z, end = self.t, self.z, self.end
         v = self.u - _aside_of_arcs(arcs, t)
-        on_level = np.abs(v) > CURB_HALF_WIDTH
+        on_level = np.abs(v) > RETURN.curb_half_width
         design = np.stack([np.ones_like(v), np.broadcast_to(t, v.shape), (v > 0).astype(float), v], axis=2)
         levels, residual = _levels_of_arcs(design, z, on_level, self.prior, np.array([0.0, 0.0, end.height, 0.0]))
-        low, height = residual + design[:, :, 2] * levels[:, 2:3] / POINT_HEIGHT_SIGMA, levels[:, 2:3] / POINT_HEIGHT_SIGMA
+        low, height = residual + design[:, :, 2] * levels[:, 2:3] / RETURN.point_height_sigma, levels[:, 2:3] / RETURN.point_height_sigma
         # the curb itself is as high as either level, or anywhere between them
         residual = np.where(on_level, residual, low - np.clip(low, 0.0, np.maximum(height, 0.0)))
         at, aside, _ = end.trail
-        off = (aside - _aside_of_arcs(arcs, at)) / PLACE_SIGMA
-        return _cost_of_arcs(residual) + (off**2).mean(axis=1) * min(len(at), LEAST_STEPS) + (arcs[:, 2] / ARC_BEND_SIGMA)**2, levels, design, v
+        off = (aside - _aside_of_arcs(arcs, at)) / RETURN.place_sigma
+        cost = _cost_of_arcs(residual) + (off**2).mean(axis=1) * min(len(at), RETURN.least_steps) + (arcs[:, 2] / RETURN.arc_bend_sigma)**2
+        return cost, levels, design, v
 
     def foot(self, arc: np.ndarray) -> float:
         """How far uphill from an arc, m, the foot of the curb is that leans where the points on it are; 0 where there are few."""
         _, (levels,), (design,), (v,) = self.explained(arc[None])
         rise = self.z - design[:, [0, 1, 3]] @ levels[[0, 1, 3]]
-        face = (np.abs(v) <= CURB_HALF_WIDTH) & (rise > FACE_LOWER_SHARE * levels[2]) & (rise < FACE_UPPER_SHARE * levels[2])
-        if face.sum() < MIN_SIDE_POINTS:
+        face = (np.abs(v) <= RETURN.curb_half_width) & (rise > CURBS.face_lower_share * levels[2]) & (rise < CURBS.face_upper_share * levels[2])
+        if face.sum() < RETURN.min_side_points:
             return 0.0
         v, rise = v[face], rise[face]
         off = rise - rise.mean()
-        return float(v.mean() - (v @ off) / (off @ off + face.sum() * FACE_PRIOR) * rise.mean())
+        return float(v.mean() - (v @ off) / (off @ off + face.sum() * CURBS.face_prior) * rise.mean())
 
 
 def _aside_of_arcs(arcs: np.ndarray, t: np.ndarray) -> np.ndarray:
@@ -402,14 +373,14 @@ def _levels_of_arcs(design: np.ndarray, z: np.ndarray, used: np.ndarray, prior: 
     """(C, P) parameters of each of C designs (C, N, P), and (C, N) sigmas that heights differ from them; `used` : (C, N) bool."""
     weight = used.astype(float)
     for _ in range(3):
-        normal = np.einsum("ck,cki,ckj->cij", weight, design, design, optimize=True) / POINT_HEIGHT_SIGMA**2 + np.diag(prior)
-        right = np.einsum("ck,cki,k->ci", weight, design, z, optimize=True) / POINT_HEIGHT_SIGMA**2 + prior * expected
+        normal = np.einsum("ck,cki,ckj->cij", weight, design, design, optimize=True) / RETURN.point_height_sigma**2 + np.diag(prior)
+        right = np.einsum("ck,cki,k->ci", weight, design, z, optimize=True) / RETURN.point_height_sigma**2 + prior * expected
         found = np.linalg.solve(normal, right[:, :, None])[:, :, 0]
-        residual = (z - np.einsum("cki,ci->ck", design, found)) / POINT_HEIGHT_SIGMA
-        weight = used / (1.0 + (residual / MAX_RESIDUAL)**2)
+        residual = (z - np.einsum("cki,ci->ck", design, found)) / RETURN.point_height_sigma
+        weight = used / (1.0 + (residual / RETURN.max_residual)**2)
     return found, residual
 
 
 def _cost_of_arcs(residual: np.ndarray) -> np.ndarray:
     """(C,) sums of squares of (C, N) differences in sigmas, cut off."""
-    return np.minimum(residual**2, MAX_RESIDUAL**2).sum(axis=1)
+    return np.minimum(residual**2, RETURN.max_residual**2).sum(axis=1)

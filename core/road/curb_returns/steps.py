@@ -9,21 +9,14 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ...common.arrays import Rows
-from ..common.corners import BEHIND_LENGTH, FACE_MARGIN, REMEASURE_SKEW, ROAD_SIDE_LENGTH, StepPatches
+from ..common.corners import StepPatches
 from ..common.pseudo_scanlines import expand_ranges
-from .ground_raster import PLAN_CELL, GroundRaster, diamond, grown
+from ..weights import CURBS, RETURN
+from .ground_raster import GroundRaster, diamond, grown
 
-SHORT_HALF_LENGTH = 0.30      # m either way along the curb of the points that measure one step, in dense scans,
-LONG_HALF_LENGTH = 0.90       # m, and in sparse ones
-LINE_RADIUS = 1.0             # m about a step within which others give the direction of their line
-MIN_LINE_STEPS = 3            # others that this needs
-MAX_LINE_SCATTER = 0.12       # m, scatter across that line
-MAX_FACE_OFFSET = 0.10        # m that a step may lie from the place where it is looked for
 # m either way across of the points that measure one step
-PATCH_HALF_WIDTH = max(ROAD_SIDE_LENGTH + FACE_MARGIN, BEHIND_LENGTH) + MAX_FACE_OFFSET
-CELL_ROUNDING = 1e-3          # cells, so that rounding leaves no point out
-MEASURING_ROUNDS = 3          # measurements of a step, each across the direction that the one before gave
-REMEASURE_OFFSET = 0.04       # m from where it was looked for above which a step is measured again
+PATCH_HALF_WIDTH = max(CURBS.road_side_length + CURBS.face_margin, CURBS.behind_length) + RETURN.max_face_offset
+CELL_ROUNDING = 1e-3   # derived: cells, so that rounding leaves no point out
 
 
 @dataclass
@@ -80,10 +73,10 @@ def measure_plan_steps(rasters: Sequence[GroundRaster], x: np.ndarray, y: np.nda
     found, left = [], np.arange(len(x))
     for raster in rasters:
         points = raster.by_cell
-        steps, good = _measured(raster, points, x[left], y[left], nx[left], ny[left], SHORT_HALF_LENGTH, min_height, max_height)
+        steps, good = _measured(raster, points, x[left], y[left], nx[left], ny[left], RETURN.short_half_length, min_height, max_height)
         found.append(steps)
         left = left[~good & in_line[left]]
-        for half in (SHORT_HALF_LENGTH, LONG_HALF_LENGTH):
+        for half in (RETURN.short_half_length, RETURN.long_half_length):
             if not len(left):
                 return PlanSteps.join(found)
             steps, good = _measured(raster, points, x[left], y[left], line_x[left], line_y[left], half, min_height, max_height)
@@ -95,10 +88,11 @@ def measure_plan_steps(rasters: Sequence[GroundRaster], x: np.ndarray, y: np.nda
 def _measured(raster, points, x, y, nx, ny, half, min_height, max_height):
     """The steps, and (M,) bool: which places proved to be steps; `points` are the raster's by cell."""
     proved, place, found = np.zeros(len(x), bool), np.arange(len(x)), []
-    for turn in range(MEASURING_ROUNDS):
+    for turn in range(RETURN.measuring_rounds):
         seen, steps = _seen_at(raster, points, x, y, nx, ny, half, min_height, max_height)
         # a step of another direction or place is measured again, across its own direction and from its own place
-        settled = seen["good"] & ((np.abs(seen["skew"]) <= REMEASURE_SKEW) & (np.abs(seen["u"]) <= REMEASURE_OFFSET) | (turn == MEASURING_ROUNDS - 1))
+        settled = seen["good"] & ((np.abs(seen["skew"]) <= CURBS.remeasure_skew) & (np.abs(seen["u"]) <= RETURN.remeasure_offset)
+                                  | (turn == RETURN.measuring_rounds - 1))
         proved[place[settled]] = True
         found.append(steps[settled])
         again = seen["good"] & ~settled
@@ -143,7 +137,7 @@ def line_directions(x: np.ndarray, y: np.ndarray, nx: np.ndarray, ny: np.ndarray
 
     x, y : (M,) local m; nx, ny : (M,) unit vectors uphill, good to some 30 degrees
     """
-    pairs = cKDTree(np.c_[x, y]).query_pairs(LINE_RADIUS, output_type="ndarray")
+    pairs = cKDTree(np.c_[x, y]).query_pairs(RETURN.line_radius, output_type="ndarray")
     # places on the other side of an island face the other way
     pairs = pairs[nx[pairs[:, 0]] * nx[pairs[:, 1]] + ny[pairs[:, 0]] * ny[pairs[:, 1]] > 0.3]
     a, b = np.r_[pairs[:, 0], pairs[:, 1]], np.r_[pairs[:, 1], pairs[:, 0]]
@@ -155,7 +149,7 @@ def line_directions(x: np.ndarray, y: np.ndarray, nx: np.ndarray, ny: np.ndarray
     lx, ly = -np.sin(along), np.cos(along)
     side = np.where(lx * nx + ly * ny < 0, -1.0, 1.0)
     across = 0.5 * (sxx + syy - np.hypot(sxx - syy, 2 * sxy)) / np.maximum(k, 1)
-    return side * lx, side * ly, (n >= MIN_LINE_STEPS) & (across <= MAX_LINE_SCATTER**2)
+    return side * lx, side * ly, (n >= RETURN.min_line_steps) & (across <= RETURN.max_line_scatter**2)
 
 
 def _rotated(nx, ny, skew):
@@ -169,15 +163,15 @@ def points_about(raster: GroundRaster, points: tuple[np.ndarray, ...], x: np.nda
     """Ground points near each place: owner, m uphill, m along, height; the parameters are those of `_seen_at`."""
     px, py, ph, starts = points
     rows, columns = raster.low.shape
-    reach = int(np.ceil(np.hypot(PATCH_HALF_WIDTH, half) / PLAN_CELL))
-    row = np.floor(y / PLAN_CELL - np.rint(raster.y0 / PLAN_CELL)).astype(np.int64)
-    column = np.floor(x / PLAN_CELL - np.rint(raster.x0 / PLAN_CELL)).astype(np.int64)
+    reach = int(np.ceil(np.hypot(PATCH_HALF_WIDTH, half) / RETURN.plan_cell))
+    row = np.floor(y / RETURN.plan_cell - np.rint(raster.y0 / RETURN.plan_cell)).astype(np.int64)
+    column = np.floor(x / RETURN.plan_cell - np.rint(raster.x0 / RETURN.plan_cell)).astype(np.int64)
     line = row[:, None] + np.arange(-reach, reach + 1)
     # the columns that the rectangle about the place covers in every row of cells
-    low = raster.y0 + line * PLAN_CELL - y[:, None]
-    left, right = _between(nx[:, None], ny[:, None], low, low + PLAN_CELL, half)
-    first = np.floor((x[:, None] + left - raster.x0) / PLAN_CELL - CELL_ROUNDING)
-    last = np.floor((x[:, None] + right - raster.x0) / PLAN_CELL + CELL_ROUNDING) + 1
+    low = raster.y0 + line * RETURN.plan_cell - y[:, None]
+    left, right = _between(nx[:, None], ny[:, None], low, low + RETURN.plan_cell, half)
+    first = np.floor((x[:, None] + left - raster.x0) / RETURN.plan_cell - CELL_ROUNDING)
+    last = np.floor((x[:, None] + right - raster.x0) / RETURN.plan_cell + CELL_ROUNDING) + 1
     # the columns of the patch that the raster has; np.clip takes five times as long on few values
     lowest, highest = (np.minimum(np.maximum(column[:, None] + end, 0), columns) for end in (-reach, reach + 1))
     first, last = (np.minimum(np.maximum(ends, lowest), highest).astype(np.int64) for ends in (first, last))
@@ -206,14 +200,6 @@ def _between(nx, ny, low, high, half):
 
 # Places where the ground rises beside driven ground, in any direction.
 
-MAX_CELLS_FROM_ROAD = 4       # cells from driven ground within which it may end at a step
-STEPS_PER_BATCH = 512         # steps that are measured together: they fit the processor's cache
-PATCH_CELLS = 4               # cells about a step whose ground gives its direction and height
-STEP_HALF_WIDTH = 0.11        # m from the middle of a step, beyond which ground is before or after it
-PATCH_HALF_LENGTH = 0.31      # m along a step of the ground that is compared
-MAX_PLAN_ROUGHNESS_SHARE = 0.25   # share of a step's height that the road before it may scatter
-MIN_PLAN_RISE_SHARE = 0.6     # share of the least step that the cells of one must show
-
 
 def step_places(raster: GroundRaster, slopes: Sequence[np.ndarray], driven: np.ndarray, stepped: np.ndarray, min_height: float,
                 max_height: float, wanted: Callable[[np.ndarray, np.ndarray], np.ndarray] | None = None) -> tuple[np.ndarray, ...]:
@@ -232,7 +218,7 @@ def step_places(raster: GroundRaster, slopes: Sequence[np.ndarray], driven: np.n
     x, y : (M,) local m
     nx, ny : (M,) unit vector uphill
     """
-    beside = grown(driven, diamond(MAX_CELLS_FROM_ROAD))
+    beside = grown(driven, diamond(RETURN.max_cells_from_road))
     row, column = np.nonzero(stepped & beside)
     asked = np.ones(len(row), bool)
     if wanted is not None:
@@ -241,9 +227,9 @@ def step_places(raster: GroundRaster, slopes: Sequence[np.ndarray], driven: np.n
         _, square = np.unique(_squares(x, y), return_inverse=True)
         own = np.flatnonzero(np.bincount(square, asked)[square])
         row, column, asked = row[own], column[own], asked[own]
-    ground = np.pad(raster.low, PATCH_CELLS, constant_values=np.nan)
-    parts = [_rises_at(raster, ground, slopes, row[a:a + STEPS_PER_BATCH], column[a:a + STEPS_PER_BATCH], min_height, max_height)
-             for a in range(0, len(row), STEPS_PER_BATCH)]
+    ground = np.pad(raster.low, RETURN.patch_cells, constant_values=np.nan)
+    parts = [_rises_at(raster, ground, slopes, row[a:a + RETURN.steps_per_batch], column[a:a + RETURN.steps_per_batch], min_height, max_height)
+             for a in range(0, len(row), RETURN.steps_per_batch)]
     good, rises = (np.concatenate(column, axis=-1) for column in zip(*parts)) if parts else (np.empty(0, bool), np.empty((5, 0)))
     x, y, nx, ny, cost = rises
     best = _one_of_each_square(x, y, cost)
@@ -254,13 +240,13 @@ def step_places(raster: GroundRaster, slopes: Sequence[np.ndarray], driven: np.n
 def _rises_at(raster, ground, slopes, row, column, min_height, max_height):
     """Which cells rise like a step, and of these x, y, unit vector uphill, and how far the middle of the step is off, (5, M).
 
-    ground : of the raster, padded by PATCH_CELLS empty cells
+    ground : of the raster, padded by RETURN.patch_cells empty cells
     """
-    reach = np.arange(-PATCH_CELLS, PATCH_CELLS + 1)
+    reach = np.arange(-RETURN.patch_cells, RETURN.patch_cells + 1)
     down, along = (v.ravel() for v in np.meshgrid(reach, reach, indexing="ij"))
     width = ground.shape[1]
-    around = ground.ravel().take(((row + PATCH_CELLS) * width + column + PATCH_CELLS)[:, None] + (down * width + along))
-    dx, dy = along * PLAN_CELL, down * PLAN_CELL
+    around = ground.ravel().take(((row + RETURN.patch_cells) * width + column + RETURN.patch_cells)[:, None] + (down * width + along))
+    dx, dy = along * RETURN.plan_cell, down * RETURN.plan_cell
     sx, sy = (v[row, column] for v in slopes)
     around -= sx[:, None] * dx + sy[:, None] * dy
     # heights of the step at this cell, without the wall behind a curb and the ground below a bridge
@@ -269,14 +255,15 @@ def _rises_at(raster, ground, slopes, row, column, min_height, max_height):
     size = np.maximum(np.hypot(gx, gy), 1e-9)
     nx, ny = gx / size, gy / size
     u, v = nx[:, None] * dx + ny[:, None] * dy, ny[:, None] * dx - nx[:, None] * dy
-    strip = near & (np.abs(v) <= PATCH_HALF_LENGTH)
-    before, after, at = (_mean(around, strip & m) for m in ((u < -STEP_HALF_WIDTH), (u > STEP_HALF_WIDTH), (np.abs(u) < STEP_HALF_WIDTH)))
+    strip = near & (np.abs(v) <= RETURN.patch_half_length)
+    before, after, at = (_mean(around, strip & m) for m in ((u < -RETURN.step_half_width), (u > RETURN.step_half_width),
+                                                            (np.abs(u) < RETURN.step_half_width)))
     rise = after - before
-    rough = np.sqrt(_mean((around - before[:, None]) ** 2, strip & (u < -STEP_HALF_WIDTH)))
+    rough = np.sqrt(_mean((around - before[:, None]) ** 2, strip & (u < -RETURN.step_half_width)))
     with np.errstate(invalid="ignore", divide="ignore"):
         part = (at - before) / rise
-        good = (part > 0.15) & (part < 0.85) & (rise >= MIN_PLAN_RISE_SHARE * min_height) & (rise <= max_height + 0.05) \
-            & (rough <= MAX_PLAN_ROUGHNESS_SHARE * rise)
+        good = (part > 0.15) & (part < 0.85) & (rise >= RETURN.min_plan_rise_share * min_height) & (rise <= max_height + 0.05) \
+            & (rough <= RETURN.max_plan_roughness_share * rise)
     # the middle of the step, not of the cell
     return good, np.array([*raster.middle(row[good], column[good]), nx[good], ny[good], np.abs(part - 0.5)[good]])
 
@@ -310,4 +297,4 @@ def _one_of_each_square(x, y, cost):
 
 def _squares(x, y):
     """(N,) number of the square of two cells in which places lie."""
-    return np.floor(y / (2 * PLAN_CELL)).astype(np.int64) * 10_000_000 + np.floor(x / (2 * PLAN_CELL)).astype(np.int64)
+    return np.floor(y / (2 * RETURN.plan_cell)).astype(np.int64) * 10_000_000 + np.floor(x / (2 * RETURN.plan_cell)).astype(np.int64)

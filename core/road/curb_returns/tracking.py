@@ -9,32 +9,10 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ...common.arrays import linked_groups
-from ..common.tracking import HEIGHT_TOLERANCE, MAX_JOINED_GAP
-from .steps import LONG_HALF_LENGTH, PlanSteps
+from ..weights import CURBS, RETURN
+from .steps import PlanSteps
 
-DUPLICATE_ALONG = 0.12        # m along, and
-DUPLICATE_ACROSS = 0.06       # m across within which the better supported of two steps stands for both
-MAX_PLAN_LINK = 1.2           # m along a curb that a link may span
-PLAN_LINK_TOLERANCE = 0.03    # m across that two steps of one line may differ in any case,
-PLAN_LINK_DRIFT = 0.06        # m per m along besides, and
-DRIFT_PER_TURN = 0.2          # m per m along and radian of turn
-MIN_CURB_RADIUS = 0.4         # m, of the sharpest curb, the nose of an island
-TURN_TOLERANCE = np.radians(25.0)
-MAX_HEIGHT_GRADE = 0.08       # m per m along that bottoms of neighbours may differ besides HEIGHT_TOLERANCE
-MAX_JOIN_TURN = np.radians(45.0)   # between two chains of one line
-MAX_NOSE_GAP = 1.5            # m between ends that may enclose the nose of an island
-NOSE_RADIUS = 0.5             # m, of that nose
-JOIN_DRIFT = 0.25             # m across per m that two such chains may miss each other, and
-JOIN_TOLERANCE = 0.05         # m in any case
-END_DIRECTION_LENGTH = 0.6    # m at the end of a chain that give its direction
-MAX_STRAIGHT_GAP = 15.0       # m that a straight curb may be dropped or hidden: a crossing, a drive, parked cars
-LINE_DIRECTION_LENGTH = 2.0   # m at the end of such a curb, or of one that is followed, that give its direction
-MAX_STRAIGHT_TURN = np.radians(8.0)   # between its two parts
-STRAIGHT_DRIFT = 0.03         # m across per m that they may miss each other, and
-STRAIGHT_TOLERANCE = 0.10     # m in any case
-STRAIGHT_GRADE = 0.01         # m per m that their bottoms may differ besides HEIGHT_TOLERANCE
-MAX_JOIN_OVERLAP = 0.3        # m that two such chains may overlap, and
-MAX_LINE_OVERLAP = LONG_HALF_LENGTH   # m that two lines of one curb may: a step of sparse points is known along the curb no better than that
+MAX_LINE_OVERLAP = RETURN.long_half_length   # m that two lines of one curb may: a step of sparse points is known along the curb no better than that
 
 
 @dataclass
@@ -71,9 +49,9 @@ def without_duplicates(steps: PlanSteps) -> np.ndarray:
     """Indices of the steps that have no better supported duplicate."""
     if not len(steps):
         return np.empty(0, np.int64)
-    a, b = cKDTree(np.c_[steps.x, steps.y]).query_pairs(DUPLICATE_ALONG, output_type="ndarray").T
+    a, b = cKDTree(np.c_[steps.x, steps.y]).query_pairs(RETURN.duplicate_along, output_type="ndarray").T
     dx, dy = steps.x[b] - steps.x[a], steps.y[b] - steps.y[a]
-    same = (steps.nx[a] * steps.nx[b] + steps.ny[a] * steps.ny[b] > 0.5) & (np.abs(dx * steps.nx[a] + dy * steps.ny[a]) < DUPLICATE_ACROSS)
+    same = (steps.nx[a] * steps.nx[b] + steps.ny[a] * steps.ny[b] > 0.5) & (np.abs(dx * steps.nx[a] + dy * steps.ny[a]) < RETURN.duplicate_across)
     a, b = a[same], b[same]
     # of equal support the place decides, so that the order of the work does not
     rank = np.empty(len(steps), np.int64)
@@ -89,7 +67,7 @@ def _links(steps):
     following = np.full(count, -1)
     if count < 2:
         return following
-    pairs = cKDTree(np.c_[steps.x, steps.y]).query_pairs(MAX_PLAN_LINK, output_type="ndarray")
+    pairs = cKDTree(np.c_[steps.x, steps.y]).query_pairs(RETURN.max_plan_link, output_type="ndarray")
     a, b = np.r_[pairs[:, 0], pairs[:, 1]], np.r_[pairs[:, 1], pairs[:, 0]]
     dx, dy = steps.x[b] - steps.x[a], steps.y[b] - steps.y[a]
     # on an arc the chord points in the mean direction of its ends
@@ -99,11 +77,11 @@ def _links(steps):
     turn = np.abs(np.arctan2(steps.nx[a] * steps.ny[b] - steps.ny[a] * steps.nx[b], steps.nx[a] * steps.nx[b] + steps.ny[a] * steps.ny[b]))
     up = np.abs(steps.h[b] - steps.h[a])
     # where a curb bends sharply its direction is less certain
-    good = (along > 0.02) & (across <= PLAN_LINK_TOLERANCE + (PLAN_LINK_DRIFT + DRIFT_PER_TURN * turn) * along) \
-        & (turn <= TURN_TOLERANCE + along / MIN_CURB_RADIUS) \
-        & (up <= HEIGHT_TOLERANCE + MAX_HEIGHT_GRADE * along)
+    good = (along > 0.02) & (across <= RETURN.plan_link_tolerance + (RETURN.plan_link_drift + RETURN.drift_per_turn * turn) * along) \
+        & (turn <= RETURN.turn_tolerance + along / RETURN.min_curb_radius) \
+        & (up <= CURBS.height_tolerance + RETURN.max_height_grade * along)
     a, b, along, across, turn, up = (v[good] for v in (a, b, along, across, turn, up))
-    cost = along / 0.3 + (across / PLAN_LINK_TOLERANCE) ** 2 + (turn / TURN_TOLERANCE) ** 2 + (up / HEIGHT_TOLERANCE) ** 2
+    cost = along / 0.3 + (across / RETURN.plan_link_tolerance) ** 2 + (turn / RETURN.turn_tolerance) ** 2 + (up / CURBS.height_tolerance) ** 2
     return _mutual(a, b, cost, count)
 
 
@@ -147,7 +125,7 @@ def join_chains(chains: Sequence[PlanStepChain], steps: PlanSteps) -> list[PlanS
     """The chains, those that lie in one line a short gap apart joined to one."""
     open_ones = [c for c in chains if not c.closed]
     tips = LineEnds.of([(steps.x[c.steps], steps.y[c.steps], steps.h[c.steps]) for c in open_ones])
-    runs = _paths(tips.successors(MAX_NOSE_GAP))
+    runs = _paths(tips.successors(RETURN.max_nose_gap))
     return [PlanStepChain(np.concatenate([open_ones[k].steps for k in run]), ring) for run, ring in runs] + [c for c in chains if c.closed]
 
 
@@ -163,8 +141,8 @@ def group_lines(places: Sequence[tuple[np.ndarray, np.ndarray, np.ndarray]]) -> 
     (K,) number of the line to which each belongs
     """
     ends = LineEnds.of(places)
-    long = np.array([np.hypot(np.diff(x), np.diff(y)).sum() >= LINE_DIRECTION_LENGTH for x, y, _ in places])
-    far = LineEnds.of(places, LINE_DIRECTION_LENGTH).straight_successors(long)
+    long = np.array([np.hypot(np.diff(x), np.diff(y)).sum() >= RETURN.line_direction_length for x, y, _ in places])
+    far = LineEnds.of(places, RETURN.line_direction_length).straight_successors(long)
     following = np.r_[ends.successors(overlap=MAX_LINE_OVERLAP), far]
     linked = np.flatnonzero(following >= 0)
     return linked_groups(linked % len(places), following[linked], len(places))
@@ -183,12 +161,12 @@ class LineEnds:
     tails: np.ndarray
 
     @staticmethod
-    def of(places: Sequence[tuple[np.ndarray, np.ndarray, np.ndarray]], length: float = END_DIRECTION_LENGTH) -> LineEnds:
+    def of(places: Sequence[tuple[np.ndarray, np.ndarray, np.ndarray]], length: float = RETURN.end_direction_length) -> LineEnds:
         """The ends of polylines (x, y, h), whose last `length` metres give the directions."""
         return LineEnds(*(np.array([_tip(x[::step], y[::step], h[::step], length) for x, y, h in places]).reshape(-1, 5) for step in (-1, 1)))
 
     def straight_successors(self, long: np.ndarray) -> np.ndarray:
-        """The line straight ahead of each, up to MAX_STRAIGHT_GAP away; `long` : (K,) bool, lines long enough for a direction.
+        """The line straight ahead of each, up to RETURN.max_straight_gap away; `long` : (K,) bool, lines long enough for a direction.
 
         Returns
         -------
@@ -197,17 +175,18 @@ class LineEnds:
         count = len(self.heads)
         if not count:
             return np.full(count, -1)
-        near = cKDTree(self.tails[:, :2]).sparse_distance_matrix(cKDTree(self.heads[:, :2]), MAX_STRAIGHT_GAP, output_type="ndarray")
+        near = cKDTree(self.tails[:, :2]).sparse_distance_matrix(cKDTree(self.heads[:, :2]), RETURN.max_straight_gap, output_type="ndarray")
         a, b, gap = near["i"], near["j"], near["v"]
         tail, head = self.tails[a], self.heads[b]
         dx, dy = head[:, 0] - tail[:, 0], head[:, 1] - tail[:, 1]
         turn = np.arccos(np.clip(-(tail[:, 3] * head[:, 3] + tail[:, 4] * head[:, 4]), -1, 1))
         miss = np.maximum(*(np.abs(dx * end[:, 4] - dy * end[:, 3]) for end in (tail, head)))
-        good = long[a] & long[b] & (a != b) & (dx * tail[:, 3] + dy * tail[:, 4] > 0) & (turn <= MAX_STRAIGHT_TURN) \
-            & (miss <= STRAIGHT_TOLERANCE + STRAIGHT_DRIFT * gap) & (np.abs(head[:, 2] - tail[:, 2]) <= HEIGHT_TOLERANCE + STRAIGHT_GRADE * gap)
+        good = long[a] & long[b] & (a != b) & (dx * tail[:, 3] + dy * tail[:, 4] > 0) & (turn <= RETURN.max_straight_turn) \
+            & (miss <= RETURN.straight_tolerance + RETURN.straight_drift * gap) \
+            & (np.abs(head[:, 2] - tail[:, 2]) <= CURBS.height_tolerance + RETURN.straight_grade * gap)
         return _mutual(a[good], b[good], (gap + 10 * miss)[good], count)
 
-    def successors(self, nose: float = 0.0, overlap: float = MAX_JOIN_OVERLAP) -> np.ndarray:
+    def successors(self, nose: float = 0.0, overlap: float = RETURN.max_join_overlap) -> np.ndarray:
         """The line whose head continues the tail of each line.
 
         Parameters
@@ -223,7 +202,7 @@ class LineEnds:
         following = np.full(count, -1)
         if not count:
             return following
-        near = cKDTree(self.tails[:, :2]).sparse_distance_matrix(cKDTree(self.heads[:, :2]), MAX_JOINED_GAP, output_type="ndarray")
+        near = cKDTree(self.tails[:, :2]).sparse_distance_matrix(cKDTree(self.heads[:, :2]), CURBS.max_joined_gap, output_type="ndarray")
         a, b, gap = near["i"], near["j"], near["v"]
         tail, head = self.tails[a], self.heads[b]
         dx, dy = head[:, 0] - tail[:, 0], head[:, 1] - tail[:, 1]
@@ -233,11 +212,11 @@ class LineEnds:
         turn = np.arccos(np.clip(-(tail[:, 3] * head[:, 3] + tail[:, 4] * head[:, 4]), -1, 1))
         # uphill is on the right, so the line bends about it where the way out of the head lies to the left of the tail's
         about = tail[:, 3] * head[:, 4] - tail[:, 4] * head[:, 3] > 0
-        most = MAX_JOIN_TURN + np.where(about & (gap <= nose), gap / NOSE_RADIUS, 0.0)
+        most = RETURN.max_join_turn + np.where(about & (gap <= nose), gap / RETURN.nose_radius, 0.0)
         along, across = (dx * tx + dy * ty) / size, np.abs(dx * ty - dy * tx) / size
         up = np.abs(head[:, 2] - tail[:, 2])
-        good = (a != b) & (along > -overlap) & (across <= JOIN_TOLERANCE + JOIN_DRIFT * np.abs(along)) & (turn <= most) \
-            & (up <= HEIGHT_TOLERANCE + MAX_HEIGHT_GRADE * gap)
+        good = (a != b) & (along > -overlap) & (across <= RETURN.join_tolerance + RETURN.join_drift * np.abs(along)) & (turn <= most) \
+            & (up <= CURBS.height_tolerance + RETURN.max_height_grade * gap)
         return _mutual(a[good], b[good], (gap + 2 * across + turn)[good], count)
 
 

@@ -14,14 +14,8 @@ from ...survey.frame.placement import COORDINATE_DECIMALS
 from ...survey.frame.road_frame import RoadFrame
 from ..common.curb_points import CurbPoints
 from ..common.pseudo_scanlines import expand_ranges
-from ..common.tracking import MAX_JOINED_GAP
-from .road_edges import CURB_RETURN, EdgePiece, edge_sigma
-
-RETURN_VERTEX_SPACING = 0.25  # m between vertices: the nose of an island has a radius below a metre
-MIN_CORNER_TURN = np.radians(50.0)  # from the chord before to the chord after a sharp corner
-MAX_CORNER_RADIUS = 0.45      # m, radius that such a turn would have
-SMOOTHING_HALF_LENGTH = 0.5   # m along a curb within which its points give its course
-SAME_PLACE_DISTANCE = 0.02    # m within which two places are one
+from ..weights import CURBS, EDGE
+from .road_edges import EdgePiece, edge_sigma
 
 
 def curb_return_lines(curb_points: CurbPoints, frame: RoadFrame) -> dict[int, list[tuple[CurbPoints, np.ndarray]]]:
@@ -68,7 +62,7 @@ def draw_curb_returns(edges: list[EdgePiece], road: int, lines: list[tuple[CurbP
     tree = cKDTree(ends[:, :2])
     for points, places in lines:
         kind = points.kind[0]
-        closed = kind == "island" and np.hypot(*(places[0, :2] - places[-1, :2])) <= SAME_PLACE_DISTANCE
+        closed = kind == "island" and np.hypot(*(places[0, :2] - places[-1, :2])) <= EDGE.same_place_distance
         first, last = (None, None) if kind == "island" else (_nearest(ends, tree, places[k]) for k in (0, -1))
         if first is not None and last is not None and np.array_equal(first, last):
             near = np.hypot(*(first[:2] - places[0, :2])) <= np.hypot(*(first[:2] - places[-1, :2]))
@@ -84,7 +78,7 @@ def draw_curb_returns(edges: list[EdgePiece], road: int, lines: list[tuple[CurbP
         vertices[0], vertices[-1] = vertices[0] if first is None else first, vertices[-1] if last is None else last
         vertices = vertices[np.r_[True, np.hypot(*np.diff(vertices[:, :2], axis=0).T) > 0]]
         passes = 0.0 if frame is None else float(np.sqrt(np.mean(frame.passes_sigma(road, points.station) ** 2)))
-        sigma = edge_sigma(along, along, residual, shares=CURB_RETURN, passes=passes, shared=shared)
+        sigma = edge_sigma(along, along, residual, shares=EDGE.curb_return, passes=passes, shared=shared)
         # where the returns thin out a line is cut; elsewhere one number speaks for all of it
         at = _chord_length(*vertices.T[:2])
         sigma = np.interp(at * along[-1] / at[-1], along, sigma) if shared.any() else np.full(len(at), sigma.mean())
@@ -119,7 +113,7 @@ def _sharp_chords(places):
     turn[1:-1] = np.abs((heading[2:] - heading[:-2] + np.pi) % (2 * np.pi) - np.pi)
     around = length.copy()
     around[1:-1] += 0.5 * (length[2:] + length[:-2])
-    turn[(turn < MIN_CORNER_TURN) | (turn < around / MAX_CORNER_RADIUS)] = 0.0
+    turn[(turn < EDGE.min_corner_turn) | (turn < around / EDGE.max_corner_radius)] = 0.0
     beside = np.maximum(np.r_[0.0, turn[:-1]], np.r_[turn[1:], 0.0])
     return np.flatnonzero((turn > beside) | (turn == beside) & (turn > 0) & (np.r_[0.0, turn[:-1]] < turn))
 
@@ -138,11 +132,11 @@ def _corner(before, after):
 
 
 def _smoothed(places):
-    """Places moved onto the parabolas fitted to their neighbours within SMOOTHING_HALF_LENGTH, which keeps arcs (local regression)."""
+    """Places moved onto the parabolas fitted to their neighbours within EDGE.smoothing_half_length, which keeps arcs (local regression)."""
     t = _chord_length(places[:, 0], places[:, 1])
-    owner, index = expand_ranges(np.searchsorted(t, t - SMOOTHING_HALF_LENGTH), np.searchsorted(t, t + SMOOTHING_HALF_LENGTH, side="right"))
+    owner, index = expand_ranges(np.searchsorted(t, t - EDGE.smoothing_half_length), np.searchsorted(t, t + EDGE.smoothing_half_length, side="right"))
     u = t[index] - t[owner]
-    weight = 1.0 - (u / (SMOOTHING_HALF_LENGTH * 1.1)) ** 2
+    weight = 1.0 - (u / (EDGE.smoothing_half_length * 1.1)) ** 2
     count = np.bincount(owner, minlength=len(t))
     powers = [np.bincount(owner, weight * u**k, len(t)) for k in range(5)]
     # the small term keeps the equations of few neighbours solvable
@@ -156,11 +150,11 @@ def _smoothed(places):
 
 
 def _through(places):
-    """(M, 3) vertices of an Akima curve through places, RETURN_VERTEX_SPACING apart."""
+    """(M, 3) vertices of an Akima curve through places, EDGE.return_vertex_spacing apart."""
     if len(places) < 3:
         return places
     t = _chord_length(places[:, 0], places[:, 1])
-    return Akima1DInterpolator(t, places)(np.linspace(0.0, t[-1], int(np.ceil(t[-1] / RETURN_VERTEX_SPACING)) + 1))
+    return Akima1DInterpolator(t, places)(np.linspace(0.0, t[-1], int(np.ceil(t[-1] / EDGE.return_vertex_spacing)) + 1))
 
 
 def _chord_length(x, y):
@@ -174,13 +168,13 @@ def _main_ends(edges, road):
     if not ends:
         return np.empty((0, 3))
     ends = np.array(ends)
-    return ends[cKDTree(ends[:, :2]).query_ball_point(ends[:, :2], SAME_PLACE_DISTANCE, return_length=True) == 1]
+    return ends[cKDTree(ends[:, :2]).query_ball_point(ends[:, :2], EDGE.same_place_distance, return_length=True) == 1]
 
 
 def _nearest(ends, tree, place):
-    """The end within MAX_JOINED_GAP of a place, None where there is none; `tree` : cKDTree of the ends in plan."""
+    """The end within CURBS.max_joined_gap of a place, None where there is none; `tree` : cKDTree of the ends in plan."""
     distance, k = tree.query(place[:2])
-    return ends[k] if distance <= MAX_JOINED_GAP else None
+    return ends[k] if distance <= CURBS.max_joined_gap else None
 
 
 # Corners where the curb is dropped for a crossing: arcs between the ends of edges that bend towards each other.
@@ -189,17 +183,6 @@ def _nearest(ends, tree, place):
 # corner it leaves the one curb along its tangent, bends evenly, and meets the other along its tangent. Where it has to go farther on the one
 # tangent than on the other it goes straight there first: a corner is an arc that two lines touch. A gap between two ends that point straight at
 # each other may as well be the mouth of a street, and stays open.
-
-MAX_DROPPED_GAP = 8.0         # m of dropped curb around a corner
-MIN_DROPPED_GAP = 0.3         # m
-MIN_ARC_TURN, MAX_ARC_TURN = np.radians(12.0), np.radians(100.0)   # from end to end
-BEND_LENGTH = 3.0             # m at the end of an edge that tell how it bends
-MIN_BEND_TURN = np.radians(8.0)   # within this length: the end belongs to a corner
-MAX_RADIUS_RATIO = 2.5        # of the arc in the gap over the bend at its end, and the other way
-DIRECTION_LENGTH = 1.0        # m at the end of an edge that give its direction
-MAX_END_STEP, MAX_END_GRADE = 0.03, 0.08   # m, and m per m, that both ends may differ in height
-MEETING_DISTANCE = 0.05             # m within which two ends meet
-ARC_VERTEX_SPACING = 0.25     # m
 
 
 @dataclass
@@ -225,9 +208,9 @@ def dropped_corners(pieces: Sequence[EdgePiece], frame: RoadFrame, number: int) 
     lines = [(piece, _uphill_right(piece)) for piece in pieces if piece.kind != "island" and piece.status != "inferred" and piece.part == "bottom"]
     tails, heads = ([_end(piece, line[::step]) for piece, line in lines] for step in (1, -1))
     places = np.array([end.place[:2] for end in tails + heads]).reshape(-1, 2)
-    free = cKDTree(places).query_ball_point(places, MEETING_DISTANCE, return_length=True) == 1
+    free = cKDTree(places).query_ball_point(places, EDGE.meeting_distance, return_length=True) == 1
     begin, end = np.flatnonzero(free[:len(tails)]), np.flatnonzero(free[len(tails):])
-    near = cKDTree(places[begin]).query_ball_tree(cKDTree(places[len(tails) + end]), MAX_DROPPED_GAP + MEETING_DISTANCE)
+    near = cKDTree(places[begin]).query_ball_tree(cKDTree(places[len(tails) + end]), EDGE.max_dropped_gap + EDGE.meeting_distance)
     found = []
     for i, ahead in zip(begin.tolist(), near):
         check_cancelled()
@@ -257,7 +240,7 @@ def _end(piece, line):
         far = np.flatnonzero(away >= length)
         return int(far[-1]) if len(far) else 0
 
-    near, first = back(DIRECTION_LENGTH), back(BEND_LENGTH)
+    near, first = back(EDGE.direction_length), back(EDGE.bend_length)
     out = line[-1, :2] - line[near, :2]
     middle = line[(first + len(line) - 1) // 2, :2]
     before, after = middle - line[first, :2], line[-1, :2] - middle
@@ -280,15 +263,15 @@ def _is_corner(tail, head):
     """Do two ends bend towards each other about the sidewalk, which lies right of the way from tail to head?"""
     chord = head.place - tail.place
     gap = float(np.hypot(*chord[:2]))
-    if not MIN_DROPPED_GAP <= gap <= MAX_DROPPED_GAP or abs(chord[2]) > MAX_END_STEP + MAX_END_GRADE * gap:
+    if not EDGE.min_dropped_gap <= gap <= EDGE.max_dropped_gap or abs(chord[2]) > EDGE.max_end_step + EDGE.max_end_grade * gap:
         return False
     first, last = _turns(tail, head)
-    if min(first, last) <= 0.0 or not MIN_ARC_TURN <= first + last <= MAX_ARC_TURN:
+    if min(first, last) <= 0.0 or not EDGE.min_arc_turn <= first + last <= EDGE.max_arc_turn:
         return False
     radius = _radius(gap, first, last)
     # seen from its own piece a head bends the other way
     for bend, length in ((-tail.turn, tail.length), (head.turn, head.length)):
-        if bend >= MIN_BEND_TURN and 1 / MAX_RADIUS_RATIO <= radius * bend / length <= MAX_RADIUS_RATIO:
+        if bend >= EDGE.min_bend_turn and 1 / EDGE.max_radius_ratio <= radius * bend / length <= EDGE.max_radius_ratio:
             return True
     return False
 
@@ -319,7 +302,7 @@ def _arc(tail, head, frame, number):
     radius, turn = _radius(gap, first, last), first + last
     straight, bend = max(before - behind, 0.0), radius * turn
     length = straight + bend + max(behind - before, 0.0)
-    along = np.linspace(0.0, length, int(np.ceil(length / ARC_VERTEX_SPACING)) + 1)
+    along = np.linspace(0.0, length, int(np.ceil(length / EDGE.arc_vertex_spacing)) + 1)
     angle = np.clip(along - straight, 0.0, bend) / radius
     ahead = np.minimum(along, straight) + radius * np.sin(angle)
     aside = radius * (1.0 - np.cos(angle))

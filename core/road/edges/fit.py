@@ -15,26 +15,12 @@ from ...common.setting import check_limits, setting
 from ...curves.robust import MAD_TO_SIGMA
 from ...survey.frame.road_frame import RoadFrame
 from ..common.curb_points import CurbPoints
-from ..common.occlusion import HIDDEN_POINT_SPACING
-from ..common.tracking import IN_LINE_ACROSS, LINE_FIT_LENGTH, MAX_JOINED_GAP, MIN_BEND_LENGTH, GapLine
+from ..common.tracking import GapLine
+from ..weights import CURBS, EDGE
 from .corner_edges import curb_return_lines, draw_curb_returns, dropped_corners
 from .road_edges import EdgePiece, RoadEdges, edge_sigma, joined_pieces
 
-MEDIAN_WINDOW = 5.0           # m of running median
-OUTLIER_MADS = 3.0            # median absolute deviations, as sigmas, and
-OUTLIER_FLOOR = 0.05          # m, the least distance from it at which a point is an outlier
-MIN_HIDDEN_SHARE = 0.5        # share of a gap that must be hidden for a bridge of a pavement edge or of a boundary line
-HIDDEN_CURB_SHARE = 0.33      # the same of a curb: where one goes on unseen, two fifths and more are hidden, at an opening next to nothing
-GAP_END_ALLOWANCE = 1.0       # m of a gap, half at each end, that need not be hidden
-IN_LINE_GAP_FACTOR = 2.0      # times the longest bridged gap that a curb may be hidden whose two parts lie in one line, turned by
-IN_LINE_TURN = IN_LINE_ACROSS / LINE_FIT_LENGTH   # rad at most; by more across shorter gaps
-MAX_EDGE_SKEW = 1.0           # m across per m along of a joined edge
-MAX_EDGE_JUMP = 0.25          # m across that two joined points may differ in any case
-BRIDGE_SPACING = 3.0          # m, about, between places on a line across a gap
-EDGE_VERTEX_SPACING = 0.5     # m between vertices
-MIN_EDGE_LENGTH = 2.0         # m of a piece with curb points
-GAP_SIGMA = 0.0005            # m per m of the longest bridged gap, least noise of the points of a curve across it
-MIN_POINT_SIGMA = 0.001       # m, least noise of a curb point
+IN_LINE_TURN = CURBS.in_line_across / CURBS.line_fit_length   # rad at most; by more across shorter gaps
 
 
 @dataclass(frozen=True)
@@ -119,19 +105,19 @@ def _pieces(rows, max_gap):
         return []
     gap = np.diff(points["s"])
     across = np.abs(np.diff(points["d"]))
-    joined = (gap <= MAX_JOINED_GAP) & (across <= MAX_EDGE_JUMP + MAX_EDGE_SKEW * gap)
+    joined = (gap <= CURBS.max_joined_gap) & (across <= EDGE.max_edge_jump + EDGE.max_edge_skew * gap)
     start, end = points["s"][:-1], points["s"][1:]
-    covered = HIDDEN_POINT_SPACING * (np.searchsorted(hidden, end) - np.searchsorted(hidden, start, side="right"))
-    bridged = (gap > MAX_JOINED_GAP) & (gap <= IN_LINE_GAP_FACTOR * max_gap) & (covered >= HIDDEN_CURB_SHARE * (gap - GAP_END_ALLOWANCE)) \
-        & (across <= MAX_EDGE_JUMP + 0.1 * gap)
+    covered = CURBS.hidden_point_spacing * (np.searchsorted(hidden, end) - np.searchsorted(hidden, start, side="right"))
+    bridged = (gap > CURBS.max_joined_gap) & (gap <= EDGE.in_line_gap_factor * max_gap) \
+        & (covered >= EDGE.hidden_curb_share * (gap - EDGE.gap_end_allowance)) & (across <= EDGE.max_edge_jump + 0.1 * gap)
     # the longer a gap is, the better both parts must show the direction of one line
     s = np.ascontiguousarray(points["s"])
     bridged[[k for k in np.flatnonzero(bridged & (gap > max_gap))
-             if _line_across(points, s, k)[0] > IN_LINE_TURN * IN_LINE_GAP_FACTOR * max_gap / gap[k]]] = False
+             if _line_across(points, s, k)[0] > IN_LINE_TURN * EDGE.in_line_gap_factor * max_gap / gap[k]]] = False
     breaks = np.flatnonzero(~(joined | bridged)) + 1
     pieces = []
     for part, flags in zip(np.split(points, breaks), np.split(np.r_[bridged, False], breaks)):
-        if len(part) >= 2 and part["s"][-1] - part["s"][0] >= MIN_EDGE_LENGTH:
+        if len(part) >= 2 and part["s"][-1] - part["s"][0] >= EDGE.min_edge_length:
             pieces.append((part, flags[:-1]))
     return pieces
 
@@ -146,11 +132,11 @@ def _line_across(points, s, k):
     three tell where it leads.
     """
     best = np.inf, None, ""
-    for reach in (LINE_FIT_LENGTH, MIN_BEND_LENGTH):
+    for reach in (CURBS.line_fit_length, CURBS.min_bend_length):
         if best[0] <= IN_LINE_TURN:
             break
         parts = points[stretch_of(s, s[k] - reach, s[k])], points[stretch_of(s, s[k + 1], s[k + 1] + reach)]
-        if reach == LINE_FIT_LENGTH and max(np.ptp(part["s"]) for part in parts) < MIN_BEND_LENGTH:
+        if reach == CURBS.line_fit_length and max(np.ptp(part["s"]) for part in parts) < CURBS.min_bend_length:
             break
         for axes in ("xy", "sd"):
             line = GapLine(*(np.array([part[axis] for axis in axes]) for part in parts), max_degree=2)
@@ -170,7 +156,7 @@ def _with_bridges(points, bridged, frame, road, led_across):
         if turn > IN_LINE_TURN:
             longest = max(longest, s[k + 1] - s[k])
             continue
-        places = line.between(BRIDGE_SPACING)
+        places = line.between(EDGE.bridge_spacing)
         places = np.array(places if axes == "xy" else frame.to_map(road, *places, np.zeros(places.shape[1]))[:2])
         bridge = np.repeat(points[k:k + 1], places.shape[1])
         bridge["x"], bridge["y"] = places
@@ -199,12 +185,12 @@ def without_outliers(points: np.ndarray) -> np.ndarray:
             continue
         s, d = points["s"][rows], points["d"][rows]
         spacing = np.median(np.diff(s))
-        window = int(np.clip(2 * round(0.5 * MEDIAN_WINDOW / max(spacing, 0.05)) + 1, 3, len(rows) | 1))
+        window = int(np.clip(2 * round(0.5 * EDGE.median_window / max(spacing, 0.05)) + 1, 3, len(rows) | 1))
         # an edge that changes direction is no outlier: its own running direction is subtracted first
         direction = median_filter(np.diff(d) / np.maximum(np.diff(s), 0.05), window, mode="nearest")
         off = d - np.r_[0.0, np.cumsum(direction * np.diff(s))]
         away = np.abs(off - median_filter(off, window, mode="nearest"))
-        limit = max(OUTLIER_MADS * MAD_TO_SIGMA * np.median(away), OUTLIER_FLOOR)
+        limit = max(EDGE.outlier_mads * MAD_TO_SIGMA * np.median(away), EDGE.outlier_floor)
         inliers[rows] = away <= limit
     return points[inliers]
 
@@ -235,7 +221,7 @@ class EdgeCurve:
         self.t = np.r_[0.0, np.cumsum(np.maximum(np.hypot(np.diff(x), np.diff(y)), 1e-3))]
         order = min(3, len(x) - 1)
         known = np.arange(len(x)) if measured is None else measured
-        across, up = (max(_noise(self.t[known], points[name][known]), GAP_SIGMA * longest_gap) for name in ("d", "z"))
+        across, up = (max(_noise(self.t[known], points[name][known]), EDGE.gap_sigma * longest_gap) for name in ("d", "z"))
         # the noise across divides between x and y: N points have the sum N sigma²
         self.plan, _ = splprep([x, y], u=self.t, k=order, s=len(x) * across**2)
         self.height = splrep(self.t, z, k=order, s=len(x) * up**2)
@@ -251,11 +237,11 @@ class EdgeCurve:
 def _noise(t, values):
     """Scatter of single points about a smooth line, from their distances to the chord of their neighbours."""
     if len(values) < 4:
-        return MIN_POINT_SIGMA
+        return EDGE.min_point_sigma
     left, right = np.diff(t)[:-1], np.diff(t)[1:]
     f = left / (left + right)
     off = values[1:-1] - ((1 - f) * values[:-2] + f * values[2:])
-    return max(float(np.median(np.abs(off) / np.sqrt(1 + f**2 + (1 - f) ** 2))) * MAD_TO_SIGMA, MIN_POINT_SIGMA)
+    return max(float(np.median(np.abs(off) / np.sqrt(1 + f**2 + (1 - f) ** 2))) * MAD_TO_SIGMA, EDGE.min_point_sigma)
 
 
 def _draw(found, frame, road, side, piece, number, led_across):
@@ -269,7 +255,7 @@ def _draw(found, frame, road, side, piece, number, led_across):
     for i, j in zip(bounds[:-1], bounds[1:]):
         check_cancelled()
         a, b = t[i], t[j]
-        along = np.linspace(a, b, max(int(np.ceil((b - a) / EDGE_VERTEX_SPACING)), 1) + 1)
+        along = np.linspace(a, b, max(int(np.ceil((b - a) / EDGE.edge_vertex_spacing)), 1) + 1)
         vertices, rows = curve.at(along), points[i:j + 1]
         passes = frame.passes_sigma(road, np.interp(along, t, points["s"]))
         sigma = edge_sigma(along, t, residual, points["support"], passes=passes)
@@ -291,9 +277,9 @@ def _draw_fallback(found, frame, road, side, drawn, width, number):
         at = max(at, b)
     free.append((at, end))
     for a, b in free:
-        if b - a < MAX_JOINED_GAP:
+        if b - a < CURBS.max_joined_gap:
             continue
-        s = np.linspace(a, b, max(int(np.ceil((b - a) / EDGE_VERTEX_SPACING)), 1) + 1)
+        s = np.linspace(a, b, max(int(np.ceil((b - a) / EDGE.edge_vertex_spacing)), 1) + 1)
         tracks = np.array([p.at_station(s)[0] for p in passes])
         offset = 0.5 * (tracks.min(0) + tracks.max(0)) + (0.5 if side == "left" else -0.5) * width
         x, y, z = frame.to_map(road.number, s, offset, frame.track_height(road.number, s))

@@ -15,47 +15,17 @@ from ...execution.phase import Phase
 from ..common.corners import CurbSteps
 from ..common.curb_limits import CurbSettings
 from ..common.curb_points import CurbPoints, curb_points_at
-from ..common.decimation import POINTS_PER_LEVEL_CELL, PointDecimation
+from ..common.decimation import PointDecimation
 from ..common.occlusion import OcclusionGrid
-from ..common.pseudo_scanlines import SPREAD_PROFILES
-from ..common.sides import (
-    BLOCK_SECTION_LENGTH,
-    MAX_CURB_OFFSET,
-    SECTIONS_TOGETHER,
-    SIDE_SIGNS,
-    OutermostTrack,
-    expected_height,
-    hidden_points,
-    join_sections,
-    side_profiles,
-    work_sections,
-)
-from ..common.tracking import (
-    LOW_CURB_SHARE,
-    NOISY_SHARE,
-    SideChains,
-    curb_chains,
-    drop_short_curbs,
-    link_steps,
-    select_along_road,
-    with_pieces_in_line,
-)
+from ..common.sides import SIDE_SIGNS, OutermostTrack, expected_height, hidden_points, join_sections, side_profiles, work_sections
+from ..common.tracking import SideChains, curb_chains, drop_short_curbs, link_steps, select_along_road, with_pieces_in_line
 from ..curb_returns.detect import with_curb_returns
-from .steps import AVERAGING_LENGTH, find_averaged_steps, find_steps
+from ..weights import CURBS, PROFILE
+from .steps import find_averaged_steps, find_steps
 
 if TYPE_CHECKING:
     from ...survey.frame.road import Road
     from ...survey.open_survey import Survey
-
-MIN_TRACK_DISTANCE = 0.6      # m from the track: no curb is nearer
-PASS_MERGE_ACROSS = 0.12      # m across, and
-PASS_MERGE_HEIGHT = 0.10      # m of height between the same step seen in two passes
-MAX_BLOCK_LENGTH = 2.0        # m, automatic blocks on straight road, and
-MIN_BLOCK_LENGTH = 0.5        # m, in sharp bends
-MAX_BLOCK_TURN = np.radians(1.0)   # turn of the road within a block
-MAX_BLOCK_BEND = 0.015        # m off its own straight line above which a block is divided
-CHAIN_END_STEPS = 3           # profiles that give the end point of a chain
-MAIN_CURB_PROGRESS = 0.6      # share of the work
 
 
 def detect_curbs(survey: Survey, settings: CurbSettings = CurbSettings(), progress: Progress = Progress(),
@@ -85,7 +55,7 @@ def detect_curbs(survey: Survey, settings: CurbSettings = CurbSettings(), progre
     parts, beside, side_chains = [], {} if beside is None else beside, {} if side_chains is None else side_chains
     roads = survey.store.roads()
     for i, road in enumerate(roads):
-        part = progress.part(MAIN_CURB_PROGRESS * i / len(roads), MAIN_CURB_PROGRESS * (i + 1) / len(roads))
+        part = progress.part(PROFILE.main_curb_progress * i / len(roads), PROFILE.main_curb_progress * (i + 1) / len(roads))
         steps, beside[road] = _steps_of_road(decimation, road, settings, part)
         for side in SIDE_SIGNS:
             if steps[side] is not None and len(steps[side]):
@@ -94,7 +64,7 @@ def detect_curbs(survey: Survey, settings: CurbSettings = CurbSettings(), progre
     found = CurbPoints.join(parts, survey.crs)
     measured, main = np.count_nonzero(found.status == "measured"), len(found)
     if include_returns:
-        found = with_curb_returns(found, decimation, settings, progress.part(MAIN_CURB_PROGRESS, 1.0), beside)
+        found = with_curb_returns(found, decimation, settings, progress.part(PROFILE.main_curb_progress, 1.0), beside)
     progress.info(f"Curb points: {measured:,} measured, {main - measured:,} hidden by something in front.")
     return found
 
@@ -104,9 +74,9 @@ def _steps_of_road(decimation, road, settings, progress):
     survey, width = decimation.survey, decimation.width
     sections = work_sections(survey, road, width)
     first, last = sections[0][0], sections[-1][1]
-    occlusion = {side: OcclusionGrid(width, first, last - first, MAX_CURB_OFFSET) for side in SIDE_SIGNS}
+    occlusion = {side: OcclusionGrid(width, first, last - first, CURBS.max_curb_offset) for side in SIDE_SIGNS}
     phase = Phase(steps_of_section, decimation, (road, settings), lambda section: survey.stretch(road, *(k * width for k in section)),
-                  lambda section: survey.store.points_between(road, *(k * width for k in section)), join_sections, SECTIONS_TOGETHER)
+                  lambda section: survey.store.points_between(road, *(k * width for k in section)), join_sections, CURBS.sections_together)
     parts = {side: [] for side in SIDE_SIGNS}
     for found, beside in decimation.executor.run(phase, sections, progress):
         for side, steps in found.items():
@@ -133,20 +103,20 @@ def steps_of_section(decimation: PointDecimation, section: tuple[int, int], road
     occlusion : side -> OcclusionGrid of these profiles
     """
     width = decimation.width
-    around = max(SPREAD_PROFILES, int(np.ceil(AVERAGING_LENGTH / width)))
+    around = max(CURBS.spread_profiles, int(np.ceil(PROFILE.averaging_length / width)))
     tracks = {side: OutermostTrack(decimation.survey.frame, road, sign) for side, sign in SIDE_SIGNS.items()}
-    occlusion = {side: OcclusionGrid(width, section[0], section[1] - section[0], MAX_CURB_OFFSET) for side in SIDE_SIGNS}
+    occlusion = {side: OcclusionGrid(width, section[0], section[1] - section[0], CURBS.max_curb_offset) for side in SIDE_SIGNS}
     found: dict[str, list[CurbSteps]] = {side: [] for side in SIDE_SIGNS}
     wide = section[0] - around, section[1] + around
-    limit = None if decimation.mostly_uneven(road, sum(section) // 2) else POINTS_PER_LEVEL_CELL
+    limit = None if decimation.mostly_uneven(road, sum(section) // 2) else CURBS.points_per_level_cell
     seen: Any = list(side_profiles(decimation, road, wide, tracks, settings, limit))
     # averages need every point
-    if limit and any((lines.part(*section).spread > NOISY_SHARE * settings.limits.clear_height).any() for *_, lines in seen):
+    if limit and any((lines.part(*section).spread > CURBS.noisy_share * settings.limits.clear_height).any() for *_, lines in seen):
         seen = side_profiles(decimation, road, wide, tracks, settings, points_per_cell=None)
     for side, _, (u, s, h), lines in seen:
         occlusion[side].add_points(u, s, h, section, lines.part(*section))
         steps = _steps_by_noise(lines, section, settings, overgrown=limit is None)
-        found[side].append(steps[steps.u > tracks[side](steps.s) + MIN_TRACK_DISTANCE])
+        found[side].append(steps[steps.u > tracks[side](steps.s) + PROFILE.min_track_distance])
     return {side: _merge_passes(steps) for side, steps in found.items() if steps}, occlusion
 
 
@@ -157,11 +127,11 @@ def _steps_by_noise(lines, section, settings, overgrown):
     """
     own = lines.part(*section)
     limits = settings.limits
-    noisy = own.spread > NOISY_SHARE * limits.clear_height
-    single = find_steps(own, LOW_CURB_SHARE * limits.least_height, settings.max_height)
+    noisy = own.spread > CURBS.noisy_share * limits.clear_height
+    single = find_steps(own, CURBS.low_curb_share * limits.least_height, settings.max_height)
     if not noisy.any():
         return single
-    averaged = find_averaged_steps(lines, LOW_CURB_SHARE * limits.clear_height, settings.max_height, settings.layer_jump, overgrown)
+    averaged = find_averaged_steps(lines, CURBS.low_curb_share * limits.clear_height, settings.max_height, settings.layer_jump, overgrown)
     averaged = averaged[(averaged.profile >= section[0]) & (averaged.profile < section[1])]
     return CurbSteps.join([single[~noisy[single.profile - own.first]], averaged[noisy[averaged.profile - own.first]]])
 
@@ -173,7 +143,7 @@ def _merge_passes(found):
         return steps
     order = np.lexsort((steps.u, steps.profile))
     steps = steps[order]
-    apart = (np.diff(steps.profile) > 0) | (np.diff(steps.u) > PASS_MERGE_ACROSS) | (np.abs(np.diff(steps.h)) > PASS_MERGE_HEIGHT)
+    apart = (np.diff(steps.profile) > 0) | (np.diff(steps.u) > PROFILE.pass_merge_across) | (np.abs(np.diff(steps.h)) > PROFILE.pass_merge_height)
     group = np.r_[0, np.cumsum(apart)]
     weight = np.sqrt(np.maximum(steps.support, 1))
     total = np.bincount(group, weight)
@@ -209,8 +179,8 @@ def _points_of_side(survey, road, side, known, occlusion):
 def block_bounds(road: Road, start: float, end: float, block_length: float) -> np.ndarray:
     """Stations at which blocks begin and end, counted from station 0.
 
-    Automatic blocks are MIN_BLOCK_LENGTH to MAX_BLOCK_LENGTH long, so that the road turns no
-    more than MAX_BLOCK_TURN within one; the length is decided for every 20 m of road.
+    Automatic blocks are PROFILE.min_block_length to PROFILE.max_block_length long, so that the road turns no
+    more than PROFILE.max_block_turn within one; the length is decided for every 20 m of road.
 
     Parameters
     ----------
@@ -223,14 +193,15 @@ def block_bounds(road: Road, start: float, end: float, block_length: float) -> n
     (K,) m, ascending
     """
     bounds = []
-    first, last = int(np.floor(start / BLOCK_SECTION_LENGTH)), int(np.ceil(end / BLOCK_SECTION_LENGTH))
+    first, last = int(np.floor(start / CURBS.block_section_length)), int(np.ceil(end / CURBS.block_section_length))
     if block_length:
         return np.arange(np.floor(start / block_length), np.ceil(end / block_length) + 1) * block_length
     for k in range(first, last):
-        bend = np.abs(road.curvature(np.arange(k * BLOCK_SECTION_LENGTH, (k + 1) * BLOCK_SECTION_LENGTH, 0.5))).max()
-        length = np.clip(MAX_BLOCK_TURN / max(bend, 1e-9), MIN_BLOCK_LENGTH, MAX_BLOCK_LENGTH)
-        bounds.append(np.linspace(k * BLOCK_SECTION_LENGTH, (k + 1) * BLOCK_SECTION_LENGTH, int(np.ceil(BLOCK_SECTION_LENGTH / length)) + 1)[:-1])
-    return np.r_[np.concatenate(bounds), last * BLOCK_SECTION_LENGTH] if bounds else np.array([start, end])
+        bend = np.abs(road.curvature(np.arange(k * CURBS.block_section_length, (k + 1) * CURBS.block_section_length, 0.5))).max()
+        length = np.clip(PROFILE.max_block_turn / max(bend, 1e-9), PROFILE.min_block_length, PROFILE.max_block_length)
+        bounds.append(np.linspace(k * CURBS.block_section_length, (k + 1) * CURBS.block_section_length,
+                                  int(np.ceil(CURBS.block_section_length / length)) + 1)[:-1])
+    return np.r_[np.concatenate(bounds), last * CURBS.block_section_length] if bounds else np.array([start, end])
 
 
 def _block_points(steps, bounds, chain):
@@ -274,11 +245,11 @@ def block_numbers(steps: CurbSteps, bounds: np.ndarray) -> np.ndarray:
     off = np.sqrt(np.bincount(member, (du - slope[member] * ds) ** 2) / n)
     start, length = bounds[names - 1], np.diff(bounds)[np.minimum(names, len(bounds) - 1) - 1]
     quarter = np.clip(np.floor(4 * (steps.s - start[member]) / length[member]), 0, 3).astype(np.int64)
-    block = 8 * block + 2 * np.where(off[member] > MAX_BLOCK_BEND, quarter, 0)  # even numbers leave odd ones for the ends
+    block = 8 * block + 2 * np.where(off[member] > PROFILE.max_block_bend, quarter, 0)  # even numbers leave odd ones for the ends
     # the ends of a chain keep their own place instead of the middle of their blocks
-    if len(steps) > 2 * CHAIN_END_STEPS:
-        block[:CHAIN_END_STEPS] = block[0] - 1
-        block[-CHAIN_END_STEPS:] = block[-1] + 1
+    if len(steps) > 2 * PROFILE.chain_end_steps:
+        block[:PROFILE.chain_end_steps] = block[0] - 1
+        block[-PROFILE.chain_end_steps:] = block[-1] + 1
     return block
 
 

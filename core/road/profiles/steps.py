@@ -5,30 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from ...common.arrays import best_within
-from ..common.corners import (
-    BEHIND_FIT_LENGTH,
-    BEHIND_LENGTH,
-    BLURRED_FACE_HALF_WIDTH,
-    FACE_MARGIN,
-    MAX_AVERAGED_SCATTER,
-    MAX_BED_SLOPE,
-    MAX_ROAD_SLOPE,
-    MIN_BED_SLOPE,
-    MIN_FILLED_SHARE,
-    MIN_STEEP_SHARE,
-    MIN_STEP_SIGMAS,
-    ROAD_FIT_LENGTH,
-    ROAD_SIDE_LENGTH,
-    STEEP_HALF_WIDTH,
-    CurbSteps,
-    RunningSums,
-    measure_corners,
-)
+from ..common.corners import MIN_BED_SLOPE, CurbSteps, RunningSums, measure_corners
 from ..common.pseudo_scanlines import TOP_QUANTILE_SIGMAS, PseudoScanLines, seen_from
-
-MAX_RISE_WIDTH = 0.15             # m across within which the whole rise must lie
-MIN_RAISED_CELLS = 3              # cells of raised ground behind a rise that a statement about its height needs
-MIN_RAISED_HEIGHT_SHARE = 0.65    # share of the least height that these cells must show
+from ..weights import CURBS, PROFILE
 
 
 def find_steps(lines: PseudoScanLines, min_height: float, max_height: float) -> CurbSteps:
@@ -50,7 +29,7 @@ def find_steps(lines: PseudoScanLines, min_height: float, max_height: float) -> 
 def _rising_cells(lines, min_height, max_height):
     """(row, cell) of the cells in which a profile crosses the middle of a step."""
     low, high, spacing = lines.low, lines.high, lines.spacing
-    span = max(int(round(MAX_RISE_WIDTH / spacing)), 2)
+    span = max(int(round(PROFILE.max_rise_width / spacing)), 2)
     # only occupied cells are looked at, profile by profile outward
     place = np.flatnonzero(np.isfinite(high))
     row = place // low.shape[1]
@@ -70,7 +49,8 @@ def _rising_cells(lines, min_height, max_height):
     with np.errstate(invalid="ignore"):
         step = top - base
         middle = base + 0.5 * step
-        found = np.flatnonzero((count >= 3) & (step >= np.maximum(0.8 * min_height, MIN_STEP_SIGMAS * np.maximum(lines.noise.take(row), rough) / 2))
+        least = np.maximum(0.8 * min_height, CURBS.min_step_sigmas * np.maximum(lines.noise.take(row), rough) / 2)
+        found = np.flatnonzero((count >= 3) & (step >= least)
                                & (step <= max_height + 0.05) & (own_high >= middle) & (before < middle))
     # of neighbouring cells only the best within the window is a step
     best = found[best_within(place.take(found), row.take(found), (step - 2 * rough).take(found), span)]
@@ -84,13 +64,13 @@ def _stays_up(low, base, slope, rows, columns, min_height, spacing):
 
     base, slope : (M,) of the road before each. A rise due to a single high point among many need not be measured.
     """
-    cells = np.arange(1, int(round(BEHIND_LENGTH / spacing)) + 1)
+    cells = np.arange(1, int(round(CURBS.behind_length / spacing)) + 1)
     padded = np.pad(low, ((0, 0), (0, len(cells))), constant_values=np.nan)
     rise = padded[rows[:, None], columns[:, None] + cells] - base[:, None] - slope[:, None] * cells * spacing
     with np.errstate(invalid="ignore"):
         raised = rise > 0.4 * min_height
     count = raised.sum(1)
-    return (count < MIN_RAISED_CELLS) | (np.where(raised, rise, 0.0).sum(1) >= MIN_RAISED_HEIGHT_SHARE * min_height * count)
+    return (count < PROFILE.min_raised_cells) | (np.where(raised, rise, 0.0).sum(1) >= PROFILE.min_raised_height_share * min_height * count)
 
 
 def _road_before(low, heights, offsets, spacing, rows, columns):
@@ -98,7 +78,7 @@ def _road_before(low, heights, offsets, spacing, rows, columns):
 
     low : (P, C) principal points; heights, offsets : (N,) m, of the occupied cells, in order
     """
-    reach, skip = int(round(ROAD_SIDE_LENGTH / spacing)), int(round(FACE_MARGIN / spacing))
+    reach, skip = int(round(CURBS.road_side_length / spacing)), int(round(CURBS.face_margin / spacing))
     # of the occupied cells, those before a cell are a range
     held = np.zeros(low.size + 1, np.int32)
     np.cumsum(np.isfinite(low), out=held[1:])
@@ -116,7 +96,7 @@ def _road_before(low, heights, offsets, spacing, rows, columns):
         mu, mz = su / n, sz / n
         vuu, vuz, vzz = suu / n - mu * mu, suz / n - mu * mz, szz / n - mz * mz
         slope = np.where(vuu > 1e-4, vuz / vuu, 0.0)
-        slope = np.clip(slope, -MAX_ROAD_SLOPE, MAX_ROAD_SLOPE)
+        slope = np.clip(slope, -CURBS.max_road_slope, CURBS.max_road_slope)
         rough = np.sqrt(np.maximum(vzz - 2 * slope * vuz + slope * slope * vuu, 0.0))
         return mz + slope * (columns * spacing - mu), slope, rough, n
 
@@ -137,24 +117,12 @@ def _max_ahead(values, span):
 #
 # The heights of a spinning multi-beam scanner scatter by centimetres, and positions that drift between one view and the next blur a face sideways.
 # A curb of 5 cm is then no higher than the scatter of one profile, but it continues along the road and noise does not. So profiles are averaged
-# over AVERAGING_LENGTH metres in every direction that a curb may have. The level of the road and of the ground behind are fitted separately. The
-# step between the two must be higher than the uncertainty of both levels, and must rise within the width of a blurred face, so that ramps and banks
-# are not taken for curbs.
+# over PROFILE.averaging_length metres in every direction that a curb may have. The level of the road and of the ground behind are fitted
+# separately. The step between the two must be higher than the uncertainty of both levels, and must rise within the width of a blurred face, so
+# that ramps and banks are not taken for curbs.
 #
 # Where plants or a wall stand right behind a curb there is no level ground. What rises behind is then no part of the step: the step is as high as
 # its line is at the face.
-
-AVERAGING_LENGTH = 1.25       # m of road that are averaged
-SKEW_STEP = 0.125             # m outward per m along between the directions tried: 4 cm at the ends of the average
-SKEW_STEPS = 8                # such steps on either side of the road's direction
-OBLIQUE_FACTOR = 1.15         # how much higher a rise must be in a direction farther from the road's own
-MIN_PROFILE_SHARE = 0.5       # share of the averaged profiles that must have ground in a cell
-STAYS_UP_SIGMAS = 2.0         # of the heights behind such a curb: that far below their mean they are still above half of its height
-MIN_STEP_SPACING = 0.12       # m across within which one step is reported
-ALL_VIEWS_SIGMAS = 2.0        # sigmas of single heights that a step must rise in all views together, and
-SINGLE_VIEW_SIGMAS = 2.5      # in a single view
-SAME_STEP_DISTANCE = 0.25     # m across within which a step seen from one side only is the one already found
-MAX_NETWORK_ROWS = 9          # profiles that are sorted element by element; for more, numpy's sort is faster
 
 
 def find_averaged_steps(lines: PseudoScanLines, min_height: float, max_height: float, layer_jump: float, overgrown: bool) -> CurbSteps:
@@ -166,7 +134,7 @@ def find_averaged_steps(lines: PseudoScanLines, min_height: float, max_height: f
 
     Parameters
     ----------
-    lines : PseudoScanLines; the first and last AVERAGING_LENGTH / 2 metres serve the averages of the others
+    lines : PseudoScanLines; the first and last PROFILE.averaging_length / 2 metres serve the averages of the others
     min_height, max_height : m, of a step
     layer_jump : m of height between two layers
     overgrown : whether steps before plants or a wall are looked for, too
@@ -176,12 +144,12 @@ def find_averaged_steps(lines: PseudoScanLines, min_height: float, max_height: f
     CurbSteps, sorted by profile, then outward. The offset is that of half the height, since a
     blurred face does not separate its bottom from its top.
     """
-    least = np.maximum(min_height, ALL_VIEWS_SIGMAS * lines.spread)[:, None]
+    least = np.maximum(min_height, PROFILE.all_views_sigmas * lines.spread)[:, None]
     found, *before_plants = _steps_in(lines, least, max_height, (True, False) if overgrown else (True,))
     for nearest, farthest in ((0.0, np.inf), (-np.inf, 0.0)):
         # a single view averages few rings of a multi-beam scanner, each with an error of its own
         single, = _steps_in(seen_from(lines, nearest, farthest, layer_jump),
-                            np.maximum(min_height, SINGLE_VIEW_SIGMAS * lines.spread)[:, None], max_height)
+                            np.maximum(min_height, PROFILE.single_view_sigmas * lines.spread)[:, None], max_height)
         found = CurbSteps.join([found, single[~_beside(single, found)]])
     for steps in before_plants:
         # level ground behind is the surer sign
@@ -190,7 +158,7 @@ def find_averaged_steps(lines: PseudoScanLines, min_height: float, max_height: f
 
 
 def _beside(steps, others):
-    """(M,) bool: does one of the others lie within SAME_STEP_DISTANCE metres across in the same profile?"""
+    """(M,) bool: does one of the others lie within PROFILE.same_step_distance metres across in the same profile?"""
     if not len(others):
         return np.zeros(len(steps), bool)
     order = np.lexsort((others.u, others.profile))
@@ -198,7 +166,7 @@ def _beside(steps, others):
     wanted = steps.profile * 1000.0 + steps.u
     right = np.searchsorted(key, wanted)
     return np.minimum(np.abs(key[np.clip(right, 0, len(key) - 1)] - wanted),
-                      np.abs(key[np.clip(right - 1, 0, len(key) - 1)] - wanted)) < SAME_STEP_DISTANCE
+                      np.abs(key[np.clip(right - 1, 0, len(key) - 1)] - wanted)) < PROFILE.same_step_distance
 
 
 def _steps_in(lines, min_height, max_height, behind=(True,)):
@@ -206,10 +174,10 @@ def _steps_in(lines, min_height, max_height, behind=(True,)):
     names = "height", "doubt", "scatter", "before", "behind", "shift", "bottom", "skew"
     kinds = [{name: np.zeros(lines.shape) for name in names} | {"rise": np.full(lines.shape, -np.inf)} for _ in behind]
     sums = RunningSums(lines.shape, lines.spacing)
-    for skew in sorted(np.arange(-SKEW_STEPS, SKEW_STEPS + 1) * SKEW_STEP, key=abs):
+    for skew in sorted(np.arange(-PROFILE.skew_steps, PROFILE.skew_steps + 1) * PROFILE.skew_step, key=abs):
         sums.add(_averaged(lines, skew))
         for best, is_level in zip(kinds, behind):
-            cells, seen = _rises(sums, OBLIQUE_FACTOR * best["rise"], is_level)
+            cells, seen = _rises(sums, PROFILE.oblique_factor * best["rise"], is_level)
             for name, values in seen.items():
                 best[name].flat[cells] = values
             best["skew"].flat[cells] = skew
@@ -218,14 +186,14 @@ def _steps_in(lines, min_height, max_height, behind=(True,)):
 
 def _steps_of(lines, best, min_height, max_height):
     """The steps among the largest rises of cells, which rise more than those next to them."""
-    good = ((best["height"] >= min_height) & (best["height"] <= max_height) & (best["height"] >= MIN_STEP_SIGMAS * best["doubt"])
-            & (best["rise"] >= MIN_STEEP_SHARE * best["height"]) & (best["scatter"] <= MAX_AVERAGED_SCATTER)
-            & (np.abs(best["before"]) <= MAX_ROAD_SLOPE) & (np.abs(best["behind"]) <= MAX_ROAD_SLOPE))
+    good = ((best["height"] >= min_height) & (best["height"] <= max_height) & (best["height"] >= CURBS.min_step_sigmas * best["doubt"])
+            & (best["rise"] >= CURBS.min_steep_share * best["height"]) & (best["scatter"] <= CURBS.max_averaged_scatter)
+            & (np.abs(best["before"]) <= CURBS.max_road_slope) & (np.abs(best["behind"]) <= CURBS.max_road_slope))
     score = np.where(good, best["rise"], -np.inf)
-    rows, cells = np.nonzero(good & (score >= _largest_near(score, int(round(MIN_STEP_SPACING / lines.spacing)))))
+    rows, cells = np.nonzero(good & (score >= _largest_near(score, int(round(PROFILE.min_step_spacing / lines.spacing)))))
     pick = {name: values[rows, cells] for name, values in best.items()}
     count = np.diff(lines.starts).reshape(lines.shape)
-    reach = int(round((BLURRED_FACE_HALF_WIDTH + ROAD_FIT_LENGTH) / lines.spacing))
+    reach = int(round((CURBS.blurred_face_half_width + CURBS.road_fit_length) / lines.spacing))
     total = np.concatenate([np.zeros((len(count), 1), np.int64), np.cumsum(count, axis=1)], axis=1)
     first, last = np.maximum(cells - reach, 0), np.minimum(cells + reach + 1, lines.shape[1])
     return CurbSteps(profile=lines.first + rows, s=(lines.first + rows + 0.5) * lines.width,
@@ -235,14 +203,14 @@ def _steps_of(lines, best, min_height, max_height):
 
 
 def _averaged(lines, skew):
-    """(P, C) median heights of AVERAGING_LENGTH metres of road about every profile, along one direction."""
-    half = max(int(round(0.5 * AVERAGING_LENGTH / lines.width)), 1)
+    """(P, C) median heights of PROFILE.averaging_length metres of road about every profile, along one direction."""
+    half = max(int(round(0.5 * PROFILE.averaging_length / lines.width)), 1)
     low = np.where(np.isnan(lines.low), np.inf, lines.low)
     stack = [_shifted(low, k, int(round(skew * k * lines.width / lines.spacing))) for k in range(-half, half + 1)]
     count = np.zeros(low.shape, np.int8)
     for row in stack:
         count += row < np.inf
-    return _median(stack, count, max(MIN_PROFILE_SHARE * len(stack), 2))
+    return _median(stack, count, max(PROFILE.min_profile_share * len(stack), 2))
 
 
 def _rises(sums, min_rise, is_level):
@@ -251,20 +219,21 @@ def _rises(sums, min_rise, is_level):
     is_level : is the ground behind level, or do plants or a wall rise there?
     """
     spacing = sums.spacing
-    gap, fit, short = (int(round(v / spacing)) for v in (BLURRED_FACE_HALF_WIDTH, ROAD_FIT_LENGTH, BEHIND_FIT_LENGTH))
-    near = int(round(STEEP_HALF_WIDTH / spacing))
+    gap, fit, short = (int(round(v / spacing)) for v in (CURBS.blurred_face_half_width, CURBS.road_fit_length, CURBS.behind_fit_length))
+    near = int(round(CURBS.steep_half_width / spacing))
     before, behind = sums.line(-gap - fit, -gap), sums.line(gap, gap + short)
     smooth = sums.mean(-1, 1)
     with np.errstate(invalid="ignore", divide="ignore"):
         slope = behind.slope if is_level else before.slope
         height = behind.level - before.level
         rise = _moved(smooth, near) - _moved(smooth, -near) - near * spacing * (before.slope + slope)
-        cells = np.flatnonzero((rise > min_rise) & (before.n >= MIN_FILLED_SHARE * (fit + 1)) & (behind.n >= MIN_FILLED_SHARE * (short + 1))
+        cells = np.flatnonzero((rise > min_rise) & (before.n >= CURBS.min_filled_share * (fit + 1))
+                               & (behind.n >= CURBS.min_filled_share * (short + 1))
                                & (sums.mean(gap, gap + fit) - before.level > 0.5 * height) & np.isfinite(rise))
         if not is_level:
-            lowest = behind.mz.take(cells) - STAYS_UP_SIGMAS * behind.deviation(cells)
+            lowest = behind.mz.take(cells) - PROFILE.stays_up_sigmas * behind.deviation(cells)
             bed = behind.slope.take(cells)
-            cells = cells[(lowest > before.level.take(cells) + 0.5 * height.take(cells)) & (bed > MIN_BED_SLOPE) & (bed <= MAX_BED_SLOPE)]
+            cells = cells[(lowest > before.level.take(cells) + 0.5 * height.take(cells)) & (bed > MIN_BED_SLOPE) & (bed <= CURBS.max_bed_slope)]
         height = height.take(cells)
         rough = before.scatter(cells)
         uneven = behind.scatter(cells) if is_level else rough
@@ -272,7 +241,7 @@ def _rises(sums, min_rise, is_level):
         bottom = before.level.take(cells)
         # where the profile crosses half the height: the mean height of the face gives the distance from this cell
         shift = (0.5 - (sums.mean(-gap, gap).take(cells) - bottom) / height) * (2 * gap + 1) * spacing
-        shift = np.nan_to_num(np.clip(shift, -BLURRED_FACE_HALF_WIDTH, BLURRED_FACE_HALF_WIDTH))
+        shift = np.nan_to_num(np.clip(shift, -CURBS.blurred_face_half_width, CURBS.blurred_face_half_width))
     return cells, dict(rise=rise.take(cells), height=height, doubt=doubt, scatter=np.maximum(rough, uneven), shift=shift, bottom=bottom,
                        before=before.slope.take(cells), behind=slope.take(cells))
 
@@ -283,7 +252,7 @@ def _median(rows, count, min_count):
     rows : list of (P, C), infinite where there is none; they are overwritten
     count : (P, C) of those that are not
     """
-    if len(rows) > MAX_NETWORK_ROWS:
+    if len(rows) > PROFILE.max_network_rows:
         rows = np.sort(rows, axis=0)
     else:
         # odd-even transposition sort of the layers

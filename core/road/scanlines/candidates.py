@@ -19,23 +19,9 @@ from ...common.arrays import Rows, best_within
 from ...common.errors import RoadExtractionError
 from ...common.setting import check_limits, setting
 from ...lazy import cv2
-from ..common.corners import FACE_MARGIN, MAX_ROAD_SLOPE, ROAD_SIDE_LENGTH
 from ..common.curb_limits import CurbLimits
-from .grid import LINE_SEPARATION, MAX_GROUND_DEPTH, SCANLINE_RESOLUTION, HeightGrid, Scanlines, row_of_lines
-
-USUAL_STEP_HEIGHT, USUAL_ANGLE = 0.03, 60.0  # m and degrees of table 1 of the paper: such a step is a curb wherever it is seen
-MIN_RISE_SHARE = 0.7      # of min_height: the planes measure the height of the curb more exactly later
-MAX_ROUGHNESS_SHARE = 0.4  # of a rise: standard deviation of the road before it
-MIN_ROAD_CELLS = 6        # cells of road before a rise
-BEHIND_RISE = (0.06, 0.40)  # m beyond a rise, where the ground must stay raised
-MAX_SUNK_SHARE = 0.25     # of the cells there that may lie below half the rise
-MIN_CELLS_BEHIND = 4      # cells there that must be occupied
-GAP_FILL_REACH = 0.30     # m along the road on either side, from which gaps of a scanline are filled
-MATCH_ACROSS, MATCH_UP = 0.08, 0.04  # m between candidates of one curb on neighbouring scanlines
-NEIGHBOUR_LINES, MIN_LINES_SHOWING = 2, 3  # scanlines on either side; scanlines that must show a candidate, itself included
-HEIGHT_WEIGHT = 2.0       # m across that a metre of height counts as, so that low faces have enough vertices
-PLACE_CELL = 0.10         # m across, cells in which the surroundings of candidates are marked
-PLACES_PER_BATCH = 8192   # places processed at a time; they fit into the cache of the processor
+from ..weights import CURBS, SCANLINE
+from .grid import LINE_SEPARATION, HeightGrid, Scanlines, row_of_lines
 
 
 @dataclass(frozen=True)
@@ -79,7 +65,7 @@ class ScanlineBoundarySettings:
     @property
     def limits(self) -> CurbLimits:
         """The least height and slope of curbs."""
-        return CurbLimits.of(self.min_height, self.vertical_angle, min(USUAL_STEP_HEIGHT, self.clipping_height), USUAL_ANGLE)
+        return CurbLimits.of(self.min_height, self.vertical_angle, min(SCANLINE.usual_step_height, self.clipping_height), SCANLINE.usual_angle)
 
 
 @dataclass
@@ -120,15 +106,16 @@ def find_candidates(side: HeightGrid, measured: np.ndarray, nearest: np.ndarray,
     CurbCandidates
     """
     low = side.low
-    span = max(int(round(settings.search_width / SCANLINE_RESOLUTION)), 2)
-    row, cell, before, top = _rising(low, span, MIN_RISE_SHARE * settings.limits.least_height)
+    span = max(int(round(settings.search_width / SCANLINE.scanline_resolution)), 2)
+    row, cell, before, top = _rising(low, span, SCANLINE.min_rise_share * settings.limits.least_height)
     outside = side.offset(cell) > np.asarray(nearest)[row]
     row, cell, before, top = (values[outside] for values in (row, cell, before, top))
     base, slope, rough, count = _road_before(low, row, cell)
     step = top - base
     middle = base + 0.5 * step
-    rising = np.flatnonzero((count >= MIN_ROAD_CELLS) & (step >= MIN_RISE_SHARE * settings.limits.least_height) & (step <= settings.clipping_height)
-                            & (rough <= MAX_ROUGHNESS_SHARE * step) & (low[row, cell] >= middle) & (before < middle))
+    rising = np.flatnonzero((count >= SCANLINE.min_road_cells) & (step >= SCANLINE.min_rise_share * settings.limits.least_height)
+                            & (step <= settings.clipping_height)
+                            & (rough <= SCANLINE.max_roughness_share * step) & (low[row, cell] >= middle) & (before < middle))
     best = rising[best_within((row * low.shape[1] + cell)[rising], row[rising], (step - 2 * rough)[rising], span)]
     row, cell = row[best], cell[best]
     found = CurbCandidates(row, cell, side.offset(cell), *(values[best].astype(float) for values in (base, slope, step, rough)))
@@ -162,14 +149,14 @@ def _rising(low, span, least):
 
 def _road_before(low, row, cell):
     """Line through the ground before some cells: its height there, slope, standard deviation, and count of cells."""
-    reach, skip = int(round(ROAD_SIDE_LENGTH / SCANLINE_RESOLUTION)), int(round(FACE_MARGIN / SCANLINE_RESOLUTION))
+    reach, skip = int(round(CURBS.road_side_length / SCANLINE.scanline_resolution)), int(round(CURBS.face_margin / SCANLINE.scanline_resolution))
     back = np.arange(-reach - skip + 1, -skip + 1)
     padded = cv2.copyMakeBorder(low, 0, 0, reach + skip, 0, cv2.BORDER_CONSTANT, value=np.nan)
     place = row * padded.shape[1] + cell + reach + skip
-    powers = np.stack([np.ones(reach), back * SCANLINE_RESOLUTION, (back * SCANLINE_RESOLUTION) ** 2], axis=1).astype(np.float32)
+    powers = np.stack([np.ones(reach), back * SCANLINE.scanline_resolution, (back * SCANLINE.scanline_resolution) ** 2], axis=1).astype(np.float32)
     found = []
-    for first in range(0, len(place), PLACES_PER_BATCH):
-        heights = padded.reshape(-1).take(place[first:first + PLACES_PER_BATCH, None] + back)
+    for first in range(0, len(place), SCANLINE.places_per_batch):
+        heights = padded.reshape(-1).take(place[first:first + SCANLINE.places_per_batch, None] + back)
         there = np.isfinite(heights)
         np.copyto(heights, 0.0, where=~there)
         n, su, suu = (there.astype(np.float32) @ powers).T
@@ -178,7 +165,7 @@ def _road_before(low, row, cell):
         with np.errstate(all="ignore"):
             mu, mz = su / n, sz / n
             vuu, vuz, vzz = suu / n - mu * mu, suz / n - mu * mz, szz / n - mz * mz
-            slope = np.clip(np.where(vuu > 1e-4, vuz / vuu, 0.0), -MAX_ROAD_SLOPE, MAX_ROAD_SLOPE)
+            slope = np.clip(np.where(vuu > 1e-4, vuz / vuu, 0.0), -CURBS.max_road_slope, CURBS.max_road_slope)
             rough = np.sqrt(np.maximum(vzz - 2 * slope * vuz + slope * slope * vuu, 0.0))
             found.append((mz - slope * mu, slope, rough, n))
     return (np.concatenate(values) for values in zip(*found)) if found else (np.empty(0, np.float32),) * 4
@@ -191,7 +178,7 @@ def gap_fill_rows(interval: float) -> int:
     ----------
     interval : m between section planes
     """
-    return max(int(round(GAP_FILL_REACH / interval)), 1)
+    return max(int(round(SCANLINE.gap_fill_reach / interval)), 1)
 
 
 def _measured_itself(low, candidates, span):
@@ -202,13 +189,13 @@ def _measured_itself(low, candidates, span):
 
 def _stays_up(low, candidates):
     """Whether the ground behind stays above half the rise."""
-    first, last = (int(round(reach / SCANLINE_RESOLUTION)) for reach in BEHIND_RISE)
+    first, last = (int(round(reach / SCANLINE.scanline_resolution)) for reach in SCANLINE.behind_rise)
     cells = candidates.cell[:, None] + np.arange(first, last + 1)
     heights = np.where(cells < low.shape[1], low[candidates.row[:, None], np.minimum(cells, low.shape[1] - 1)], np.nan)
     occupied = np.isfinite(heights).sum(1)
     with np.errstate(invalid="ignore"):
         sunk = (heights < (candidates.base + 0.5 * candidates.step)[:, None]).sum(1)
-    return (occupied >= MIN_CELLS_BEHIND) & (sunk <= MAX_SUNK_SHARE * occupied)
+    return (occupied >= SCANLINE.min_cells_behind) & (sunk <= SCANLINE.max_sunk_share * occupied)
 
 
 def _persistent(candidates):
@@ -220,7 +207,7 @@ def _persistent(candidates):
     order = np.lexsort((candidates.u, candidates.row))
     key = (candidates.row * span + candidates.u)[order]
     showing = np.ones(count, np.int64)
-    for ahead in range(-NEIGHBOUR_LINES, NEIGHBOUR_LINES + 1):
+    for ahead in range(-SCANLINE.neighbour_lines, SCANLINE.neighbour_lines + 1):
         if not ahead:
             continue
         right = np.searchsorted(key, (candidates.row + ahead) * span + candidates.u)
@@ -228,10 +215,10 @@ def _persistent(candidates):
         for k in (np.clip(right - 1, 0, count - 1), np.clip(right, 0, count - 1)):
             other = order[k]
             partner |= (candidates.row[other] == candidates.row + ahead) \
-                & (np.abs(candidates.u[other] - candidates.u) <= MATCH_ACROSS * max(abs(ahead), 1)) \
-                & (np.abs(candidates.base[other] - candidates.base) <= MATCH_UP)
+                & (np.abs(candidates.u[other] - candidates.u) <= SCANLINE.match_across * max(abs(ahead), 1)) \
+                & (np.abs(candidates.base[other] - candidates.base) <= SCANLINE.match_up)
         showing += partner
-    return showing >= MIN_LINES_SHOWING
+    return showing >= SCANLINE.min_lines_showing
 
 
 @dataclass
@@ -286,22 +273,22 @@ def samples_near(lines: Scanlines, heights: np.ndarray, rows: tuple[int, int], i
     row = row_of_lines(lines, rows, interval)
     segments, line = _segments_near(lines, row, rows[1] - rows[0], *places, across, along)
     line, d, h, steep = _at_equal_steps(lines, heights, segments, line)
-    near_ground = np.flatnonzero((h > -MAX_GROUND_DEPTH) & (h <= clipping_height))
+    near_ground = np.flatnonzero((h > -SCANLINE.max_ground_depth) & (h <= clipping_height))
     return ScanlineSamples(rows[0], interval, rows[1] - rows[0], row[line[near_ground]], d[near_ground], h[near_ground], steep[near_ground])
 
 
 def _segments_near(lines, row, count, place_row, place_d, across, along):
     """First vertices of the line segments that cross marked cells, and their lines."""
     low, high = lines.d.min(), lines.d.max()
-    cells = int((high - low) / PLACE_CELL) + 1
+    cells = int((high - low) / SCANLINE.place_cell) + 1
     marked = np.zeros((count, cells), np.uint8)
-    marked[place_row, np.clip(((place_d - low) / PLACE_CELL).astype(np.int64), 0, cells - 1)] = 1
+    marked[place_row, np.clip(((place_d - low) / SCANLINE.place_cell).astype(np.int64), 0, cells - 1)] = 1
     # one cell more, so that every sample has both neighbours, from which its slope is computed
-    aside = int(np.ceil(across / PLACE_CELL)) + 2
+    aside = int(np.ceil(across / SCANLINE.place_cell)) + 2
     marked = cv2.dilate(marked, np.ones((2 * along + 1, 2 * aside + 1), np.uint8))
     before = np.zeros((count, cells + 1), np.int32)
     np.cumsum(marked, axis=1, out=before[:, 1:])
-    cell = ((lines.d - low) * (1.0 / PLACE_CELL)).astype(np.int32)
+    cell = ((lines.d - low) * (1.0 / SCANLINE.place_cell)).astype(np.int32)
     inside = (row >= 0) & (row < count)
     line = np.repeat(np.arange(len(lines)), np.diff(lines.first))
     cell += (np.where(inside, row, 0) * (cells + 1)).astype(np.int32).take(line)
@@ -313,22 +300,22 @@ def _segments_near(lines, row, count, place_row, place_d, across, along):
 
 
 def _at_equal_steps(lines, heights, segment, line):
-    """(line, d, h, slope) at equal steps along some segments of lines; a metre of height counts as HEIGHT_WEIGHT metres."""
+    """(line, d, h, slope) at equal steps along some segments of lines; a metre of height counts as SCANLINE.height_weight metres."""
     step = np.abs(np.diff(lines.d))
-    step += HEIGHT_WEIGHT * np.abs(np.diff(heights))
+    step += SCANLINE.height_weight * np.abs(np.diff(heights))
     step[lines.first[1:-1] - 1] = 0.0
     along = np.concatenate([[0.0], np.cumsum(step)])
     begin, end = along.take(segment), along.take(segment + 1)
     start = along.take(lines.first[:-1]).take(line)
     begin, end = begin - start, end - start
-    first = np.ceil(begin / SCANLINE_RESOLUTION - 1e-9).astype(np.int64)
-    last = np.ceil(end / SCANLINE_RESOLUTION - 1e-9).astype(np.int64)
+    first = np.ceil(begin / SCANLINE.scanline_resolution - 1e-9).astype(np.int64)
+    last = np.ceil(end / SCANLINE.scanline_resolution - 1e-9).astype(np.int64)
     # the end of a line is a sample where a step falls on it
-    closing = (segment + 2 == lines.first[1:][line]) & (last * SCANLINE_RESOLUTION <= end)
+    closing = (segment + 2 == lines.first[1:][line]) & (last * SCANLINE.scanline_resolution <= end)
     number = last + closing - first
     which = np.repeat(np.arange(len(segment)), number)
     count = np.arange(len(which)) + (first - (np.cumsum(number) - number)).take(which)
-    share = np.clip((count * SCANLINE_RESOLUTION - begin.take(which)) / np.maximum(end - begin, 1e-9).take(which), 0.0, 1.0)
+    share = np.clip((count * SCANLINE.scanline_resolution - begin.take(which)) / np.maximum(end - begin, 1e-9).take(which), 0.0, 1.0)
     d0, h0 = lines.d.take(segment), heights.take(segment)
     d = d0.take(which) + share * (lines.d.take(segment + 1) - d0).take(which)
     h = h0.take(which) + share * (heights.take(segment + 1) - h0).take(which)

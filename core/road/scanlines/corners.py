@@ -18,39 +18,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...common.arrays import Rows
-from ..common.corners import MAX_FACE_SKEW, CurbSteps
+from ..common.corners import CurbSteps
 from ..common.pseudo_scanlines import SIGMA_PER_MEAN_DEVIATION, expand_ranges
+from ..weights import CURBS, SCANLINE
 from .candidates import CurbCandidates, ScanlineSamples
 from .grid import LINE_SEPARATION, nearest_distance
 
 if TYPE_CHECKING:
     from .candidates import ScanlineBoundarySettings
 
-RANSAC_TRIALS = 32            # few are enough: most samples of a class belong to its plane
-RANSAC_SEED = 20
-SCORED_POINTS = 48            # samples on which the trials are compared
-INLIER_SIGMAS = 1.5           # times the standard deviation, or the RANSAC distance where that is more
-TRUNCATED_SIGMA_FACTOR = 1.35  # sigma of a normal distribution over that of its part within INLIER_SIGMAS
-RANSAC_REFITS = 3             # least-squares fits after the best trial
-SETS_PER_BATCH = 96           # planes fitted at a time; their samples fit into the cache of the processor
-MIN_PLANE_VARIANCE = 1e-6     # m², ridge: the plane of samples on one line stays level across that line
-
-MAX_LEVEL_VERTICES, MAX_FACE_VERTICES = 96, 64  # samples of the planes of road and raised ground, and of the face
-MAX_PLANE_ROWS = 9            # scanlines around a candidate; with narrower intervals some are left out
-MIN_PLANE_INLIERS = 15        # inliers of a plane
-MIN_INLIER_SHARE = 0.5        # inliers of a plane among its samples
-MAX_ROAD_SHARE, MIN_RAISED_SHARE = 0.30, 0.70  # of the rise: road is lower, raised ground is higher
-FACE_SHARE = (0.12, 0.88)     # of the rise: the face lies between
-FACE_HALF_WIDTH = 0.12        # m across from the middle of the rise: the face is nearer
-FACE_SLOPE_TOLERANCE = 20.0   # degrees by which the slope of a scanline on a face may be below vertical_angle
-FACE_CLEARANCE = 0.02         # m across from the middle of the rise: road and raised ground are farther
-GUTTER_DEPTH, RAISED_MARGIN = 0.12, 0.10  # m below the line of the road, and above the rise: a gutter; a sloping sidewalk
-MAX_CORNER_DISTANCE = 0.10    # m from a corner to the nearest sample of each of its planes
-MIN_MEETING = 0.1             # 1 - product of the slopes: flatter intersections give no corner
-
-_RANSAC_DRAWS = np.random.default_rng(RANSAC_SEED).random((RANSAC_TRIALS, 3))
+TRUNCATED_SIGMA_FACTOR = 1.35   # derived: sigma of a normal distribution over that of its part within SCANLINE.inlier_sigmas
 
 
+_RANSAC_DRAWS = np.random.default_rng(SCANLINE.ransac_seed).random((SCANLINE.ransac_trials, 3))   # derived: the same draws in every run
 @dataclass
 class Planes(Rows):
     """M planes v = c0 + c1 p + c2 q, one through each set of points.
@@ -92,8 +72,8 @@ def _fit_planes(v: np.ndarray, p: np.ndarray, q: np.ndarray, count: np.ndarray, 
     coefficients, sigma = np.full((sets, 3), np.nan), np.full(sets, np.nan)
     inliers = np.zeros(sets, np.int64)
     reach = np.broadcast_to(np.maximum(distance, tolerance), sets)
-    for first in range(0, sets, SETS_PER_BATCH):
-        part = slice(first, first + SETS_PER_BATCH)
+    for first in range(0, sets, SCANLINE.sets_per_batch):
+        part = slice(first, first + SCANLINE.sets_per_batch)
         found = _fit_batch(v[part], p[part], q[part], count[part], reach[part].astype(np.float32), np.float32(distance))
         coefficients[part], sigma[part], inliers[part] = found
     return Planes(coefficients, sigma, inliers, count)
@@ -102,7 +82,7 @@ def _fit_planes(v: np.ndarray, p: np.ndarray, q: np.ndarray, count: np.ndarray, 
 def _fit_batch(v, p, q, count, reach, distance):
     there = np.arange(v.shape[1]) < count[:, None]
     coefficients = _best_trial(v, p, q, count, reach)
-    for _ in range(RANSAC_REFITS):
+    for _ in range(SCANLINE.ransac_refits):
         off = v - coefficients[:, :1]
         off -= coefficients[:, 1:2] * p
         off -= coefficients[:, 2:] * q
@@ -110,14 +90,14 @@ def _fit_batch(v, p, q, count, reach, distance):
         off /= np.sqrt(1 + coefficients[:, 1:2] ** 2 + coefficients[:, 2:] ** 2)
         inside = there & (off <= reach[:, None])
         coefficients, sigma = _least_squares(v, p, q, inside.astype(np.float32))
-        reach = np.maximum(distance, INLIER_SIGMAS * TRUNCATED_SIGMA_FACTOR * sigma)
+        reach = np.maximum(distance, SCANLINE.inlier_sigmas * TRUNCATED_SIGMA_FACTOR * sigma)
     few = count < 3
     coefficients[few], sigma[few] = np.nan, np.nan
     return coefficients, sigma, np.where(few, 0, inside.sum(1))
 
 
 def _best_trial(v, p, q, count, reach):
-    """(B, 3) the plane through three random points, of RANSAC_TRIALS, that has the lowest cost."""
+    """(B, 3) the plane through three random points, of SCANLINE.ransac_trials, that has the lowest cost."""
     first = np.arange(0, v.size, v.shape[1])[:, None]
     drawn = (_RANSAC_DRAWS[None] * np.maximum(count, 1)[:, None, None]).astype(np.int64) + first[:, None]
     dv, dp, dq = (values.take(drawn) for values in (v, p, q))
@@ -130,7 +110,7 @@ def _best_trial(v, p, q, count, reach):
     c1, c2 = (v1 * q2 - v2 * q1) / det, (p1 * v2 - p2 * v1) / det
     c0 = dv[..., 0] - c1 * dp[..., 0] - c2 * dq[..., 0]
     # the trials are compared on an even subset of the points
-    size = min(SCORED_POINTS, v.shape[1])
+    size = min(SCANLINE.scored_points, v.shape[1])
     scored = (np.arange(size) * np.maximum(count, 1)[:, None]) // size + first
     points = np.stack([np.ones(scored.shape, np.float32), p.take(scored), q.take(scored)], axis=1)
     off = np.matmul(np.stack([c0, c1, c2], axis=-1).astype(np.float32), points)
@@ -150,7 +130,7 @@ def _least_squares(v, p, q, weight):
     mv, mp, mq = ((weight * values).sum(1) / n for values in (v, p, q))
     dv, dp, dq = v - mv[:, None], p - mp[:, None], q - mq[:, None]
     wp, wq, wv = weight * dp, weight * dq, weight * dv
-    spp, spq, sqq = (wp * dp).sum(1) / n + MIN_PLANE_VARIANCE, (wp * dq).sum(1) / n, (wq * dq).sum(1) / n + MIN_PLANE_VARIANCE
+    spp, spq, sqq = (wp * dp).sum(1) / n + SCANLINE.min_plane_variance, (wp * dq).sum(1) / n, (wq * dq).sum(1) / n + SCANLINE.min_plane_variance
     spv, sqv = (wp * dv).sum(1) / n, (wq * dv).sum(1) / n
     det = spp * sqq - spq * spq
     c1, c2 = (spv * sqq - sqv * spq) / det, (sqv * spp - spv * spq) / det
@@ -197,7 +177,7 @@ def corners_of(side: ScanlineSamples, candidates: CurbCandidates, settings: Scan
         return usual
     # a sloped face is looked for where no upright one is
     wanted = (side.first + candidates.row) * LINE_SEPARATION + candidates.u
-    again = nearest_distance(wanted, usual.profile * LINE_SEPARATION + usual.u) >= FACE_HALF_WIDTH
+    again = nearest_distance(wanted, usual.profile * LINE_SEPARATION + usual.u) >= SCANLINE.face_half_width
     sloped = _corners_with_face(near, again, limits.least_slope)
     sloped.sloped[:] = True
     found = CurbCorners.join([usual, sloped])
@@ -213,9 +193,10 @@ class _Surroundings:
         # heights above the line of the road, so that its slope is no part of the rise
         over = h - candidates.slope.astype(np.float32).take(owner) * u
         share = over / candidates.step.astype(np.float32).take(owner)
-        road = (u < -FACE_CLEARANCE) & (share < MAX_ROAD_SHARE) & (over > -GUTTER_DEPTH)
-        self.face = np.flatnonzero((np.abs(u) < FACE_HALF_WIDTH) & (share > FACE_SHARE[0]) & (share < FACE_SHARE[1]))
-        raised = (u > FACE_CLEARANCE) & (share > MIN_RAISED_SHARE) & (over < (candidates.step + RAISED_MARGIN).astype(np.float32).take(owner))
+        road = (u < -SCANLINE.face_clearance) & (share < SCANLINE.max_road_share) & (over > -SCANLINE.gutter_depth)
+        self.face = np.flatnonzero((np.abs(u) < SCANLINE.face_half_width) & (share > SCANLINE.face_share[0]) & (share < SCANLINE.face_share[1]))
+        raised = (u > SCANLINE.face_clearance) & (share > SCANLINE.min_raised_share) \
+            & (over < (candidates.step + SCANLINE.raised_margin).astype(np.float32).take(owner))
         self.road, self.raised = (_VertexSet(np.flatnonzero(part), owner, count) for part in (road, raised))
         # grass behind a curb scatters more than the road before it
         self.scatter = np.maximum(candidates.rough, _scatter(owner, over, self.raised.vertices, count))
@@ -223,7 +204,7 @@ class _Surroundings:
     def faces(self, least_slope: float) -> _VertexSet:
         """The samples of faces with at least this slope, radians."""
         # between sparse points a scanline is less steep than the face
-        upright = self.steep.take(self.face) > np.tan(max(least_slope - np.radians(FACE_SLOPE_TOLERANCE), 0.0))
+        upright = self.steep.take(self.face) > np.tan(max(least_slope - np.radians(SCANLINE.face_slope_tolerance), 0.0))
         return _VertexSet(self.face[upright], self.owner, len(self.candidates))
 
 
@@ -231,19 +212,19 @@ def _corners_with_face(near, which, least_slope):
     """`corners_of` some candidates, whose faces have at least this slope, radians; `which` : (M,) bool."""
     side, candidates, settings, s, u, h, scatter = near.side, near.candidates, near.settings, near.s, near.u, near.h, near.scatter
     parts = [near.road, near.faces(least_slope), near.raised]
-    alive = np.flatnonzero(np.all([which, *(part.number >= MIN_PLANE_INLIERS for part in parts)], axis=0))
+    alive = np.flatnonzero(np.all([which, *(part.number >= SCANLINE.min_plane_inliers for part in parts)], axis=0))
     lean = np.tan(np.radians(settings.horizontal_angle))
     # the face first: it has the fewest samples and rejects most candidates
-    front, front_points, good = _planes(parts[1], alive, MAX_FACE_VERTICES, (u, h, s), candidates.rough, settings)
+    front, front_points, good = _planes(parts[1], alive, SCANLINE.max_face_vertices, (u, h, s), candidates.rough, settings)
     with np.errstate(invalid="ignore"):
         # angle between the normal of the face and the vertical
         over_run = np.abs(front.coefficients[:, 1] / np.hypot(1.0, front.coefficients[:, 2]))
-        good &= (np.arctan2(1.0, over_run) >= least_slope) & (np.abs(front.coefficients[:, 2]) <= MAX_FACE_SKEW)
+        good &= (np.arctan2(1.0, over_run) >= least_slope) & (np.abs(front.coefficients[:, 2]) <= CURBS.max_face_skew)
     alive, front, front_points = alive[good], front[good], front_points[good]
-    ground, ground_points, good = _planes(parts[0], alive, MAX_LEVEL_VERTICES, (h, u, s), candidates.rough, settings)
+    ground, ground_points, good = _planes(parts[0], alive, SCANLINE.max_level_vertices, (h, u, s), candidates.rough, settings)
     good &= ground.steepness() <= lean
     alive, front, front_points, ground, ground_points = (x[good] for x in (alive, front, front_points, ground, ground_points))
-    top, top_points, good = _planes(parts[2], alive, MAX_LEVEL_VERTICES, (h, u, s), scatter, settings)
+    top, top_points, good = _planes(parts[2], alive, SCANLINE.max_level_vertices, (h, u, s), scatter, settings)
     good &= top.steepness() <= lean
     bottom_u, bottom_h, bottom_meets = _meeting(ground, front)
     top_u, top_h, top_meets = _meeting(top, front)
@@ -251,7 +232,7 @@ def _corners_with_face(near, which, least_slope):
         good &= (bottom_meets & top_meets & (top_h - bottom_h >= settings.limits.least_height) & (top_h - bottom_h <= settings.clipping_height))
     for points, plane, at_u, at_h in ((ground_points, ground, bottom_u, bottom_h), (front_points, front, bottom_u, bottom_h),
                                       (front_points, front, top_u, top_h), (top_points, top, top_u, top_h)):
-        good &= _distance(u, h, points, plane.points, at_u, at_h) <= MAX_CORNER_DISTANCE
+        good &= _distance(u, h, points, plane.points, at_u, at_h) <= SCANLINE.max_corner_distance
     total = ground.inliers + front.inliers + top.inliers
     residual = np.sqrt((ground.sigma**2 * ground.inliers + front.sigma**2 * front.inliers + top.sigma**2 * top.inliers)
                        / np.maximum(total, 1))
@@ -284,8 +265,8 @@ class _VertexSet:
 def _planes(part, which, most, coordinates, scatter, settings):
     """Planes of one class of some candidates, their samples, and whether enough of these are inliers."""
     index, number = part.evenly(which, most)
-    planes = _fit_planes(*(values.take(index) for values in coordinates), number, settings.ransac_distance, INLIER_SIGMAS * scatter[which])
-    return planes, index, (planes.inliers >= MIN_PLANE_INLIERS) & (planes.inliers >= MIN_INLIER_SHARE * planes.points)
+    planes = _fit_planes(*(values.take(index) for values in coordinates), number, settings.ransac_distance, SCANLINE.inlier_sigmas * scatter[which])
+    return planes, index, (planes.inliers >= SCANLINE.min_plane_inliers) & (planes.inliers >= SCANLINE.min_inlier_share * planes.points)
 
 
 def _scatter(owner, values, selected, count):
@@ -310,7 +291,7 @@ def plane_fit_rows(interval: float, settings: ScanlineBoundarySettings) -> int:
 def _neighbourhood(side, candidates, settings):
     """(owner, s, u, h, slope) of the samples around every candidate, relative to its place."""
     reach = plane_fit_rows(side.interval, settings)
-    stride = max(int(np.ceil((2 * reach + 1) / MAX_PLANE_ROWS)), 1)
+    stride = max(int(np.ceil((2 * reach + 1) / SCANLINE.max_plane_rows)), 1)
     key = side.row * 1000.0 + side.u
     ahead = np.arange(-(reach // stride), reach // stride + 1) * stride
     row = candidates.row[:, None] + ahead
@@ -335,7 +316,7 @@ def _meeting(level, face):
     det = 1.0 - b * d
     with np.errstate(invalid="ignore", divide="ignore"):
         u = (c + d * a) / det
-        return u, a + b * u, np.abs(det) > MIN_MEETING
+        return u, a + b * u, np.abs(det) > SCANLINE.min_meeting
 
 
 def _distance(u, h, points, count, at_u, at_h):

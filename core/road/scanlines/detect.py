@@ -20,26 +20,18 @@ import numpy as np
 from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
 from ...execution.phase import THREADS, Executor, Phase, Recipe
-from ...survey.blocks import DEFAULT_SENSOR_HEIGHT, sensor_height_of
+from ...survey.blocks import sensor_height_of
 from ...survey.lattice.scan_lattice import ScanLattice, find_lattice
+from ...survey.weights import READING
 from ..common.curb_points import CurbPoints, curb_points_at
-from ..common.occlusion import HIDDEN_POINT_SPACING, MIN_OCCLUDER_HEIGHT, OcclusionGrid
-from ..common.pseudo_scanlines import MIN_SCANNER_NOISE
-from ..common.sides import (
-    MAX_CURB_OFFSET,
-    SECTIONS_TOGETHER,
-    SIDE_SIGNS,
-    OutermostTrack,
-    expected_height,
-    fixed_sections,
-    hidden_points,
-    join_sections,
-)
+from ..common.occlusion import OcclusionGrid
+from ..common.sides import SIDE_SIGNS, OutermostTrack, expected_height, fixed_sections, hidden_points, join_sections
 from ..common.tracking import SideChains, curb_chains, drop_short_curbs, link_apart, select_along_road, with_pieces_in_line
-from ..edges.fit import EDGE_VERTEX_SPACING, MAX_EDGE_JUMP, MAX_EDGE_SKEW, MIN_EDGE_LENGTH, MIN_HIDDEN_SHARE, EdgeCurve, without_outliers
+from ..edges.fit import EdgeCurve, without_outliers
 from ..edges.road_edges import EdgePiece, RoadEdges, edge_sigma, joined_pieces
-from ..profiles.detect import MIN_TRACK_DISTANCE, PASS_MERGE_ACROSS, PASS_MERGE_HEIGHT, block_bounds, block_numbers
-from .candidates import NEIGHBOUR_LINES, ScanlineBoundarySettings, find_candidates, gap_fill_rows, samples_near
+from ..profiles.detect import block_bounds, block_numbers
+from ..weights import CURBS, EDGE, PROFILE, SCANLINE
+from .candidates import ScanlineBoundarySettings, find_candidates, gap_fill_rows, samples_near
 from .corners import CurbCorners, corners_of, plane_fit_rows
 from .grid import LINE_SEPARATION, Scanlines, height_grid, nearest_distance
 from .section_planes import ScanlineSettings, scanline_runs
@@ -49,10 +41,6 @@ if TYPE_CHECKING:
     from ...survey.survey import Survey
     from ..common.decimation import LevelGround
 
-MAX_USUAL_NOISE = 0.005  # m: a higher scatter about the planes is rough ground, such as a verge
-MAX_MEASURED_GAP = 1.0   # m between consecutive corners of a measured line; wider gaps are bridged
-SAME_CURB_DISTANCE = 0.3  # m across within which a sloped face is part of an upright one
-CORNER_BLOCK = 0.5       # m of road per corner of the CORNERS output
 
 _POINT = [("s", float), ("d", float), ("x", float), ("y", float), ("z", float), ("height", float), ("chain", int),
           ("support", int)]
@@ -100,9 +88,9 @@ def _corners_of_road(source, road, settings, progress):
     start, end = source.span(road)
     sections = fixed_sections(int(np.floor(start / interval)), int(np.ceil(end / interval)) + 1, interval)
     first, last = sections[0][0], sections[-1][1]
-    occlusion = {side: OcclusionGrid(interval, first, last - first, MAX_CURB_OFFSET) for side in SIDE_SIGNS}
+    occlusion = {side: OcclusionGrid(interval, first, last - first, CURBS.max_curb_offset) for side in SIDE_SIGNS}
     phase = Phase(corners_of_section, source, (road, settings), lambda section: source.stretch(road, *(k * interval for k in section)),
-                  lambda section: source.points_between(road, *(k * interval for k in section)), join_sections, SECTIONS_TOGETHER)
+                  lambda section: source.points_between(road, *(k * interval for k in section)), join_sections, CURBS.sections_together)
     parts = {side: [] for side in SIDE_SIGNS}
     for found, beside in source.executor.run(phase, sections, progress):
         for side, corners in found.items():
@@ -129,16 +117,16 @@ def corners_of_section(source: SurveyScanlines | LayerScanlines, section: tuple[
     occlusion : side -> OcclusionGrid of these planes
     """
     interval, (begin, end) = source.interval, section
-    margin = max(plane_fit_rows(interval, settings), NEIGHBOUR_LINES + gap_fill_rows(interval)) + 1
+    margin = max(plane_fit_rows(interval, settings), SCANLINE.neighbour_lines + gap_fill_rows(interval)) + 1
     tracks = {side: OutermostTrack(source.frame, road, sign) for side, sign in SIDE_SIGNS.items()}
-    occlusion = {side: OcclusionGrid(interval, begin, end - begin, MAX_CURB_OFFSET) for side in SIDE_SIGNS}
+    occlusion = {side: OcclusionGrid(interval, begin, end - begin, CURBS.max_curb_offset) for side in SIDE_SIGNS}
     rows = begin - margin, end + margin
     stations = np.arange(*rows) * interval
-    nearest = {side: tracks[side](stations) + MIN_TRACK_DISTANCE for side in SIDE_SIGNS}
+    nearest = {side: tracks[side](stations) + PROFILE.min_track_distance for side in SIDE_SIGNS}
     found: dict[str, list[CurbCorners]] = {side: [] for side in SIDE_SIGNS}
     for lines in source.runs(road, (rows[0] - 0.5) * interval, (rows[1] - 0.5) * interval):
         heights = lines.z - np.repeat(expected_height(source, road, lines.station), np.diff(lines.first))
-        grid = height_grid(lines, heights, rows, interval, min(MAX_CURB_OFFSET, source.corridor), settings.clipping_height)
+        grid = height_grid(lines, heights, rows, interval, min(CURBS.max_curb_offset, source.corridor), settings.clipping_height)
         closed = grid.closed(gap_fill_rows(interval))
         tall = _tall(lines, heights, interval)
         candidates, strip = {}, _level_beside(source, road, int(lines.pass_number[0]), stations[margin:-margin])
@@ -166,7 +154,7 @@ def _level_beside(source, road, number, stations):
 
 def _tall(lines, heights, interval):
     """(d, s, h) of the vertices of objects that can hide a curb."""
-    vertex = np.flatnonzero(heights > MIN_OCCLUDER_HEIGHT)
+    vertex = np.flatnonzero(heights > CURBS.min_occluder_height)
     line = np.searchsorted(lines.first, vertex, side="right") - 1
     return lines.d[vertex], lines.station[line] + 0.5 * interval, heights[vertex]
 
@@ -196,9 +184,9 @@ def merged_corners(found: Sequence[CurbCorners]) -> CurbCorners:
     """
     upright, sloped = (_merged([part[part.sloped == kind] for part in found]) for kind in (False, True))
     # where one pass or scanner shows an upright face, what others show less sharply is no other curb
-    around = np.arange(-NEIGHBOUR_LINES, NEIGHBOUR_LINES + 1)[:, None]
+    around = np.arange(-SCANLINE.neighbour_lines, SCANLINE.neighbour_lines + 1)[:, None]
     keys = ((upright.profile + around) * LINE_SEPARATION + upright.u).ravel()
-    sloped = sloped[nearest_distance(sloped.profile * LINE_SEPARATION + sloped.u, keys) > SAME_CURB_DISTANCE]
+    sloped = sloped[nearest_distance(sloped.profile * LINE_SEPARATION + sloped.u, keys) > SCANLINE.same_curb_distance]
     return CurbCorners.join([upright, sloped])
 
 
@@ -208,7 +196,8 @@ def _merged(found):
     if len(found) < 2 or not len(corners):
         return corners
     corners = corners[np.lexsort((corners.u, corners.profile))]
-    apart = (np.diff(corners.profile) > 0) | (np.diff(corners.u) > PASS_MERGE_ACROSS) | (np.abs(np.diff(corners.h)) > PASS_MERGE_HEIGHT)
+    apart = (np.diff(corners.profile) > 0) | (np.diff(corners.u) > PROFILE.pass_merge_across) \
+        | (np.abs(np.diff(corners.h)) > PROFILE.pass_merge_height)
     group = np.r_[0, np.cumsum(apart)]
     weight = np.sqrt(np.maximum(corners.support, 1))
     total = np.bincount(group, weight)
@@ -222,7 +211,7 @@ def _merged(found):
 def _with_scanner_noise(corners):
     """The corners with `scanner_noise` set to the median noise of this road."""
     if len(corners):
-        corners.scanner_noise = np.full(len(corners), np.clip(np.median(corners.noise), MIN_SCANNER_NOISE, MAX_USUAL_NOISE))
+        corners.scanner_noise = np.full(len(corners), np.clip(np.median(corners.noise), CURBS.min_scanner_noise, SCANLINE.max_usual_noise))
     return corners
 
 
@@ -315,13 +304,13 @@ def _pieces(points, hidden, max_gap):
     if len(points) < 2:
         return []
     gap, across = np.diff(points["s"]), np.abs(np.diff(points["d"]))
-    near = gap <= MAX_MEASURED_GAP
-    joined = (near | (gap <= max_gap)) & (across <= MAX_EDGE_JUMP + MAX_EDGE_SKEW * gap)
-    covered = HIDDEN_POINT_SPACING * (np.searchsorted(hidden, points["s"][1:]) - np.searchsorted(hidden, points["s"][:-1], side="right"))
-    status = np.where(near, "measured", np.where(covered >= MIN_HIDDEN_SHARE * gap, "occluded", "bridged"))
+    near = gap <= SCANLINE.max_measured_gap
+    joined = (near | (gap <= max_gap)) & (across <= EDGE.max_edge_jump + EDGE.max_edge_skew * gap)
+    covered = CURBS.hidden_point_spacing * (np.searchsorted(hidden, points["s"][1:]) - np.searchsorted(hidden, points["s"][:-1], side="right"))
+    status = np.where(near, "measured", np.where(covered >= EDGE.min_hidden_share * gap, "occluded", "bridged"))
     breaks = np.flatnonzero(~joined) + 1
     parts = zip(np.split(points, breaks), np.split(np.append(status, ""), breaks))
-    return [(part, flags[:-1]) for part, flags in parts if len(part) >= 2 and part["s"][-1] - part["s"][0] >= MIN_EDGE_LENGTH]
+    return [(part, flags[:-1]) for part, flags in parts if len(part) >= 2 and part["s"][-1] - part["s"][0] >= EDGE.min_edge_length]
 
 
 def _draw(pieces, points, status, passes, **fields):
@@ -330,7 +319,7 @@ def _draw(pieces, points, status, passes, **fields):
     bounds = np.r_[0, np.flatnonzero(status[1:] != status[:-1]) + 1, len(points) - 1]
     for i, j in zip(bounds[:-1], bounds[1:]):
         a, b = curve.t[i], curve.t[j]
-        along = np.linspace(a, b, max(int(np.ceil((b - a) / EDGE_VERTEX_SPACING)), 1) + 1)
+        along = np.linspace(a, b, max(int(np.ceil((b - a) / EDGE.edge_vertex_spacing)), 1) + 1)
         vertices, rows = curve.at(along), points[i:j + 1]
         pieces.append(EdgePiece(vertices, status=str(status[i]), station=float(rows["s"][0]), end=float(rows["s"][-1]),
                                 length=float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum()), height=float(np.median(rows["height"])),
@@ -452,7 +441,7 @@ class LayerScanlines:
             height = sensor_height_of(drops)
             if height is not None:
                 known[p.number] = height
-        typical = float(np.median(list(known.values()))) if known else DEFAULT_SENSOR_HEIGHT
+        typical = float(np.median(list(known.values()))) if known else READING.default_sensor_height
         return {p.number: known.get(p.number, typical) for p in self.frame.passes}
 
     def stretch(self, road: int, start: float, end: float) -> str:

@@ -7,10 +7,9 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-SCANLINE_RESOLUTION = 0.02  # m across between cells, and along a scanline between resampled vertices
-MAX_GROUND_DEPTH = 1.0  # m below the expected road, down to which points are ground
-CELLS_AT_ONCE = 1 << 15   # that heights are computed for: they fit the processor's cache
-LINE_SEPARATION = 1e3   # m between the offsets of consecutive lines in one sorted array
+from ..weights import SCANLINE
+
+LINE_SEPARATION = 1e3   # derived: m between the offsets of consecutive lines in one sorted array, beyond any offset
 
 
 @dataclass
@@ -44,7 +43,7 @@ class HeightGrid:
 
     def offset(self, cell: np.ndarray | int) -> np.ndarray:
         """Offsets of the middles of cells, m."""
-        return self.origin + (np.asarray(cell) + 0.5) * SCANLINE_RESOLUTION
+        return self.origin + (np.asarray(cell) + 0.5) * SCANLINE.scanline_resolution
 
     def outward(self, sign: int, origin: float) -> HeightGrid:
         """The grid of one side, with cells counted outward.
@@ -59,7 +58,7 @@ class HeightGrid:
         HeightGrid
         """
         low = self.low[:, ::sign]
-        skipped = int(round((origin - self.origin) / SCANLINE_RESOLUTION))
+        skipped = int(round((origin - self.origin) / SCANLINE.scanline_resolution))
         if skipped < 0:
             low = np.concatenate([np.full((len(low), -skipped), np.nan, np.float32), low], axis=1)
         return HeightGrid(self.first, self.interval, origin, np.ascontiguousarray(low[:, max(skipped, 0):]))
@@ -101,13 +100,13 @@ def height_grid(lines: Scanlines, heights: np.ndarray, rows: tuple[int, int], in
     -------
     HeightGrid with origin -reach, or up to a cell less
     """
-    half = int(np.ceil(reach / SCANLINE_RESOLUTION))
+    half = int(np.ceil(reach / SCANLINE.scanline_resolution))
     low = np.full((rows[1] - rows[0], 2 * half), np.nan, np.float32)
-    found = HeightGrid(rows[0], interval, -half * SCANLINE_RESOLUTION, low)
+    found = HeightGrid(rows[0], interval, -half * SCANLINE.scanline_resolution, low)
     row = row_of_lines(lines, rows, interval)
     if len(heights) < 2:
         return found
-    column = lines.d * (1.0 / SCANLINE_RESOLUTION)
+    column = lines.d * (1.0 / SCANLINE.scanline_resolution)
     column += half - 0.5
     floor = np.floor(column)
     np.minimum(np.maximum(floor, -1.0, out=floor), 2.0 * half - 1.0, out=floor)
@@ -132,13 +131,13 @@ def height_grid(lines: Scanlines, heights: np.ndarray, rows: tuple[int, int], in
     base *= slope
     np.subtract(heights.take(segment), base, out=base)
     flat = low.reshape(-1)
-    cuts = np.searchsorted(end, np.arange(CELLS_AT_ONCE, end[-1:].sum() + CELLS_AT_ONCE, CELLS_AT_ONCE)) + 1
+    cuts = np.searchsorted(end, np.arange(SCANLINE.cells_at_once, end[-1:].sum() + SCANLINE.cells_at_once, SCANLINE.cells_at_once)) + 1
     cuts = np.unique(np.r_[0, np.minimum(cuts, len(end))]).tolist()
     for first, last in zip(cuts[:-1], cuts[1:]):
         part = slice(first, last)
         _lower_to(flat, *_heights_of_segments(end[part], int(end[first] - number[first]), ahead[part], slope[part], base[part]))
     with np.errstate(invalid="ignore"):
-        flat[(flat > clipping_height) | (flat <= -MAX_GROUND_DEPTH)] = np.nan
+        flat[(flat > clipping_height) | (flat <= -SCANLINE.max_ground_depth)] = np.nan
     return found
 
 

@@ -20,6 +20,7 @@ import numpy as np
 
 from ...survey.lattice.scan_lattice import time_order
 from ...survey.store.records import COORDINATE_SCALE, take_rows
+from ..weights import SCANLINE
 
 if TYPE_CHECKING:
     from ...survey.frame.passes import Pass
@@ -27,23 +28,8 @@ if TYPE_CHECKING:
     from ...survey.store.columns import Columns
     from ..common.decimation import LevelStrip
 
-MIN_DRIVEN = 0.01          # m driven between scan lines: of a standing vehicle one line is used
-MAX_RIB = 0.30             # m, or MAX_LINES_AHEAD times the way driven during a turn where that is more
-MAX_LINES_AHEAD = 3        # lines ahead on which the same phase is searched
-MAX_MISSING_PULSES = 3     # pulses that may be missing between neighbours on a line,
-MAX_NEIGHBOUR_DISTANCE = 0.15  # or m between them, however many are missing
-MAX_EDGE = 1.0             # m between neighbours on a line; wider gaps are ground seen at grazing incidence
-RANGE_JUMP = 0.30          # m, difference of range between neighbours that is checked for an edge of an object
-RIB_TOLERANCE = 1e-6       # of the way between two points; a place nearer to a point is the point itself
-SLANT_SHARE = 0.5          # of the way driven during a turn: edges longer along the road are intersected too
-GRAZING_TANGENT = 0.09     # tangent of the angle to the beam; a flatter jump of range is the edge of an object
-MAX_BACKWARD = 0.05        # m by which a line may run back across the road, as noise on a face makes it
-# Pieces of other objects between two pieces of one line: a scanner that looks ahead measures a car and the ground beside
-# it at one phase of its mirror, in different turns.
-MAX_PIECES_BETWEEN = 3
-OFFSET_UNIT = 1e-7         # m, unit of offsets while they are sorted
-LINE_OFFSET_UNITS = 2 * 10**10  # 2 km between the offsets of consecutive lines in one sorted array
-PHASE_STEPS = 65535        # steps of a turn by which vertices are sorted
+LINE_OFFSET_UNITS = 2 * 10**10   # derived: 2 km between the offsets of consecutive lines in one sorted array
+PHASE_STEPS = 65535   # derived: steps of a turn by which vertices are sorted, 16 bits
 
 
 @dataclass
@@ -134,7 +120,7 @@ def scanner_lines(records: Columns | np.ndarray, p: Pass, mirror: MirrorPhase, c
     begins = mirror.times_at(turns)
     begins[0], begins[-1] = min(begins[0], time[0]), max(begins[-1], np.nextafter(time[-1], np.inf))
     driven = p.progress_at(begins)
-    new = np.floor(driven[:-1] / MIN_DRIVEN) > np.floor(p.progress_at(mirror.times_at(turns[:-1] - 1)) / MIN_DRIVEN)
+    new = np.floor(driven[:-1] / SCANLINE.min_driven) > np.floor(p.progress_at(mirror.times_at(turns[:-1] - 1)) / SCANLINE.min_driven)
     bounds = np.searchsorted(time, begins)
     counts = np.diff(bounds)
     used = np.flatnonzero(new)
@@ -159,13 +145,13 @@ def _side_by_side(line, phase, ranges, places, mirror):
     joined = np.zeros(len(phase), bool)
     joined[:-1] = same = line[1:] == line[:-1]
     # only pairs with missing points between them or with a jump of range are checked further
-    far = np.flatnonzero(same & (apart > (MAX_MISSING_PULSES + 1.5) * mirror.pulse))
-    joined[far[sum((c[far + 1] - c[far]) ** 2 for c in places) > MAX_NEIGHBOUR_DISTANCE**2]] = False
+    far = np.flatnonzero(same & (apart > (SCANLINE.max_missing_pulses + 1.5) * mirror.pulse))
+    joined[far[sum((c[far + 1] - c[far]) ** 2 for c in places) > SCANLINE.max_neighbour_distance**2]] = False
     leap = np.abs(np.diff(ranges))
-    jump = np.flatnonzero(same & (leap > RANGE_JUMP))
-    edge = GRAZING_TANGENT * leap[jump] > 2 * np.pi * apart[jump] * ranges[jump]
+    jump = np.flatnonzero(same & (leap > SCANLINE.range_jump))
+    edge = SCANLINE.grazing_tangent * leap[jump] > 2 * np.pi * apart[jump] * ranges[jump]
     for c in places[:2]:
-        edge |= np.abs(c[jump + 1] - c[jump]) > MAX_EDGE
+        edge |= np.abs(c[jump + 1] - c[jump]) > SCANLINE.max_edge
     joined[jump[edge]] = False
     return joined
 
@@ -202,12 +188,12 @@ def ribs_of(lines: ScannerLines, direction: int, mirror: MirrorPhase, interval: 
     station = lines.s / interval
     cell = np.ceil(station).astype(np.int32)
     cell_after = np.append(cell[1:], cell[-1:])
-    longest = np.maximum(MAX_RIB, MAX_LINES_AHEAD * mirror.spacing * lines.driven) / interval
+    longest = np.maximum(SCANLINE.max_rib, SCANLINE.max_lines_ahead * mirror.spacing * lines.driven) / interval
     found, rest = [], None   # rest: points without a place ahead so far, None for all
-    for step in range(1, MAX_LINES_AHEAD * mirror.spacing + 1):
+    for step in range(1, SCANLINE.max_lines_ahead * mirror.spacing + 1):
         own_key, own_line, own_cell = (values if rest is None else values.take(rest) for values in (key, lines.line, cell))
         place = np.interp(own_key + step, key, number)
-        place += RIB_TOLERANCE
+        place += SCANLINE.rib_tolerance
         ahead = place.astype(np.int64)
         hit = lines.joined.take(ahead)
         hit &= lines.line.take(ahead) == own_line + step
@@ -227,7 +213,7 @@ def _ribs_on_surface(lines, station, longest, direction, point, ahead, place):
     """The ribs from points to places ahead that planes intersect and that lie on a surface."""
     share = place - ahead
     # a rib that ends near a point ends in it, so that no plane passes between this rib and the next one
-    share = np.where(share < 2 * RIB_TOLERANCE, 0.0, share - RIB_TOLERANCE)
+    share = np.where(share < 2 * SCANLINE.rib_tolerance, 0.0, share - SCANLINE.rib_tolerance)
     after = ahead + 1
     near, far = station.take(point), station.take(ahead)
     far += share * (station.take(after) - far)
@@ -237,7 +223,7 @@ def _ribs_on_surface(lines, station, longest, direction, point, ahead, place):
     difference += share * (lines.ranges.take(after) - difference)
     difference -= lines.ranges.take(point)
     good = np.ceil(near) != np.ceil(far)
-    good &= (onward > 0) & (onward <= longest[lines.line[point]]) & (np.abs(difference) <= RANGE_JUMP)
+    good &= (onward > 0) & (onward <= longest[lines.line[point]]) & (np.abs(difference) <= SCANLINE.range_jump)
     good = np.flatnonzero(good)
     return Ribs(*(values.take(good) for values in (point, ahead, share, near, far)))
 
@@ -257,7 +243,8 @@ def slanting_edges(lines: ScannerLines, mirror: MirrorPhase, interval: float) ->
     """
     station = lines.s / interval
     point = np.flatnonzero((np.diff(np.ceil(station)) != 0) & lines.joined[:-1])   # most have no plane between them and the next point
-    point = point[np.abs(lines.s.take(point + 1) - lines.s.take(point)) > SLANT_SHARE * mirror.spacing * lines.driven[lines.line.take(point)]]
+    least = SCANLINE.slant_share * mirror.spacing * lines.driven[lines.line.take(point)]
+    point = point[np.abs(lines.s.take(point + 1) - lines.s.take(point)) > least]
     return Ribs(point, point, np.ones(len(point)), station.take(point), station.take(point + 1))
 
 
@@ -300,7 +287,7 @@ class PlaneVertices:
         """
         first = int(plane[0])
         track_d, track_z = p.at_station(np.arange(first, int(plane[-1]) + 1) * interval)
-        return cls(plane, phase, d, z, d - track_d[plane - first], z - track_z[plane - first], (MAX_MISSING_PULSES + 1.5) * mirror.pulse)
+        return cls(plane, phase, d, z, d - track_d[plane - first], z - track_z[plane - first], (SCANLINE.max_missing_pulses + 1.5) * mirror.pulse)
 
     def __post_init__(self) -> None:
         self.away = np.sqrt(self.across * self.across + self.above * self.above)
@@ -317,16 +304,16 @@ class PlaneVertices:
         (M,) bool
         """
         step = self.d[j] - self.d[i]
-        side = (self.plane[j] == self.plane[i]) & (step >= -MAX_BACKWARD) & (step <= MAX_EDGE)
+        side = (self.plane[j] == self.plane[i]) & (step >= -SCANLINE.max_backward) & (step <= SCANLINE.max_edge)
         leap = np.abs(self.away[j] - self.away[i])
         # only pairs with missing points between them or with a jump of range are checked further
         far = np.flatnonzero(side & (np.abs(self.phase[j] - self.phase[i]) > self.gap))
-        side[far] = step[far] ** 2 + (self.z[j] - self.z[i])[far] ** 2 <= MAX_NEIGHBOUR_DISTANCE**2
+        side[far] = step[far] ** 2 + (self.z[j] - self.z[i])[far] ** 2 <= SCANLINE.max_neighbour_distance**2
         # one behind the other as seen from the track: the edge of an object and its background
-        jump = np.flatnonzero(side & (leap > RANGE_JUMP))
+        jump = np.flatnonzero(side & (leap > SCANLINE.range_jump))
         across, above, away = ((values[i][jump], values[j][jump]) for values in (self.across, self.above, self.away))
         aside = np.abs(across[1] * above[0] - across[0] * above[1])
-        side[jump[aside < GRAZING_TANGENT * leap[jump] * away[0]]] = False
+        side[jump[aside < SCANLINE.grazing_tangent * leap[jump] * away[0]]] = False
         return side
 
     def lines(self) -> tuple[np.ndarray | None, np.ndarray]:
@@ -342,7 +329,7 @@ class PlaneVertices:
         end = np.r_[begin[1:], count] - 1
         before = np.full(len(begin), -1)   # the piece that a piece continues
         ahead = np.zeros(len(begin), bool)
-        for lag in range(2, min(MAX_PIECES_BETWEEN + 2, len(begin))):
+        for lag in range(2, min(SCANLINE.max_pieces_between + 2, len(begin))):
             free = np.flatnonzero(~ahead[:-lag] & (before[lag:] < 0))
             free = free[self.side_by_side(end[free], begin[free + lag])]
             before[free + lag], ahead[free] = free, True
@@ -391,9 +378,9 @@ def increasing(d: np.ndarray, first: np.ndarray) -> np.ndarray:
     -------
     (V,) m
     """
-    place = np.rint(d / OFFSET_UNIT).astype(np.int64)
+    place = np.rint(d / SCANLINE.offset_unit).astype(np.int64)
     apart = np.repeat(np.arange(len(first) - 1) * LINE_OFFSET_UNITS, np.diff(first))
     place += apart
     middle = np.maximum.accumulate(place)
     middle += np.minimum.accumulate(place[::-1])[::-1]
-    return (middle - 2 * apart) * (0.5 * OFFSET_UNIT)
+    return (middle - 2 * apart) * (0.5 * SCANLINE.offset_unit)

@@ -21,18 +21,15 @@ from ...common.progress import Progress
 from ...common.setting import check_limits, setting
 from ...execution.phase import Phase
 from ...survey.lattice.scan_lattice import ScanLattice, find_lattice, scanner_runs
-from ..common.occlusion import MIN_OCCLUDER_HEIGHT
 from ..common.pseudo_scanlines import pseudo_scan_lines
 from ..common.sides import expected_height, fixed_sections
-from .grid import SCANLINE_RESOLUTION, Scanlines
-from .mesh import MAX_EDGE, MAX_LINES_AHEAD, MAX_RIB, PlaneVertices, Ribs, increasing, plane_order, ribs_of, scanner_lines, slanting_edges
+from ..weights import CURBS, SCANLINE
+from .grid import Scanlines
+from .mesh import PlaneVertices, Ribs, increasing, plane_order, ribs_of, scanner_lines, slanting_edges
 
 if TYPE_CHECKING:
     from ...survey.open_survey import Survey
     from ..common.decimation import LevelStrip
-
-MIN_PLANE_LINE_VERTICES = 2  # vertices of a line
-MAX_SPEED = 60.0             # m/s: faster is an error of the trajectory
 
 
 @dataclass(frozen=True)
@@ -101,7 +98,7 @@ def scanline_runs(survey: Survey, road: int, start: float, end: float, settings:
         lattice = find_lattice(survey, settings.rotation_frequency)
     parts, apart = [], not lattice.mirror_phases
     if lattice.mirror_phases:
-        margin = max(_margin(survey, road, lattice), MIN_SLICE_LENGTH, interval)
+        margin = max(_margin(survey, road, lattice), SCANLINE.min_slice_length, interval)
         window = first * interval - margin, (last - 1) * interval + margin
         records = survey.window(road, *window).records
         for key, own in scanner_runs(records):
@@ -148,13 +145,13 @@ def _scanlines_of_section(survey: Survey, section: tuple[float, float], road: in
 
 def _margin(survey, road, lattice):
     """m beyond the outer planes within which points are part of their mesh."""
-    margin = MAX_RIB
+    margin = SCANLINE.max_rib
     for (number, _), mirror in lattice.mirror_phases.items():
         p = survey.frame.passes[number]
         if p.road == road:
             speed = np.diff(p.progress_at(p.time)).max(initial=0.0) / np.diff(p.time).min(initial=np.inf)
-            margin = max(margin, MAX_LINES_AHEAD * mirror.spacing * min(speed, MAX_SPEED) / abs(mirror.frequency))
-    return margin + MAX_EDGE
+            margin = max(margin, SCANLINE.max_lines_ahead * mirror.spacing * min(speed, SCANLINE.max_speed) / abs(mirror.frequency))
+    return margin + SCANLINE.max_edge
 
 
 def _cut(records, p, key, mirror, planes, settings, intensity, level):
@@ -178,7 +175,7 @@ def _cut(records, p, key, mirror, planes, settings, intensity, level):
     count = len(first) - 1
     found = Scanlines(plane[first[:-1]] * settings.interval, np.full(count, key[0]), np.full(count, key[1]), first,
                       increasing(d, first), z, bright)
-    return found[np.diff(first) >= MIN_PLANE_LINE_VERTICES]
+    return found[np.diff(first) >= SCANLINE.min_plane_line_vertices]
 
 
 def _planes_through(ribs, planes):
@@ -227,19 +224,11 @@ class Crossings:
 # binned across the road instead, and the lowest layer of every bin is the ground. Points above the ground are kept as separate lines: they show
 # what hides a curb. The method is our own.
 
-SLICE_LAYER_JUMP = 0.05   # m of height between the ground and the layer above it
-MIN_STEEP_RISE, STEEP_NOISE_SIGMAS = 0.02, 6.0  # m of height within one cell, and times the noise: more is a face,
-FACE_VERTEX_STEP = 0.01       # m of height between the vertices of a face
-MAX_VERTEX_GAP = 0.30     # m between neighbouring vertices of one line
-MIN_SLICE_LINE_VERTICES = 3  # vertices of a line
-SLICE_MARGIN = 0.01       # m read beyond the slices; the slices then select their points exactly
-MIN_SLICE_LENGTH = 0.20   # m along the road: thinner slices may lie between two turns of a scanner
-
 
 def point_scanlines(survey: Survey, road: int, start: float, end: float, interval: float, corridor: float) -> Scanlines:
     """Scanlines of the points near the section planes at k * interval, start <= k * interval < end.
 
-    A slice holds the points within interval / 2 of its plane, or within MIN_SLICE_LENGTH / 2 where that is more.
+    A slice holds the points within interval / 2 of its plane, or within SCANLINE.min_slice_length / 2 where that is more.
 
     Parameters
     ----------
@@ -254,10 +243,10 @@ def point_scanlines(survey: Survey, road: int, start: float, end: float, interva
     Scanlines
     """
     first, last = int(np.ceil(start / interval - 1e-9)), int(np.ceil(end / interval - 1e-9))
-    half = 0.5 * max(MIN_SLICE_LENGTH, interval)
+    half = 0.5 * max(SCANLINE.min_slice_length, interval)
     if last <= first:
         return Scanlines.none()
-    points = survey.window(road, first * interval - half - SLICE_MARGIN, (last - 1) * interval + half + SLICE_MARGIN)
+    points = survey.window(road, first * interval - half - SCANLINE.slice_margin, (last - 1) * interval + half + SCANLINE.slice_margin)
     points = points[np.abs(points.d) < corridor]
     s, d = points.s, points.d
     h = points.z - expected_height(survey, road, s)
@@ -269,8 +258,8 @@ def point_scanlines(survey: Survey, road: int, start: float, end: float, interva
         index = own[index]
         # the row replaces the station, so that slices may overlap
         cells = pseudo_scan_lines(d[index], rows + 0.5, h[index], points.intensity[index].astype(float), (first, last), 1.0,
-                                  SCANLINE_RESOLUTION, SLICE_LAYER_JUMP, -corridor, corridor)
-        for selected, quantile in ((cells.ground, 0.5), (~cells.ground & (cells.h > MIN_OCCLUDER_HEIGHT), 1.0)):
+                                  SCANLINE.scanline_resolution, SCANLINE.slice_layer_jump, -corridor, corridor)
+        for selected, quantile in ((cells.ground, 0.5), (~cells.ground & (cells.h > CURBS.min_occluder_height), 1.0)):
             row, across, height, intensity = _vertices(cells, np.flatnonzero(selected), quantile)
             parts.append(_joined(row, across, height, intensity, first, interval, int(value) // 256, int(value) % 256))
     lines = Scanlines.join(parts)
@@ -296,7 +285,8 @@ def slice_lines(d: np.ndarray, z: np.ndarray, half_width: float) -> list[np.ndar
     if not len(d):
         return []
     level = float(np.median(z))
-    cells = pseudo_scan_lines(d, np.full(len(d), 0.5), z - level, np.zeros(len(d)), (0, 1), 1.0, SCANLINE_RESOLUTION, SLICE_LAYER_JUMP,
+    cells = pseudo_scan_lines(d, np.full(len(d), 0.5), z - level, np.zeros(len(d)), (0, 1), 1.0, SCANLINE.scanline_resolution,
+                              SCANLINE.slice_layer_jump,
                               -half_width, half_width)
     row, across, height, bright = _vertices(cells, np.flatnonzero(cells.ground), 0.5)
     lines = _joined(row, across, height, bright, 0, 1.0, 0, 0)
@@ -328,8 +318,8 @@ def _vertices(cells, selected, quantile):
     cell = np.cumsum(begins) - 1
     lowest, highest = h[first], h[np.r_[first[1:], len(h)] - 1]
     noise = cells.noise[place[first] // count]
-    steep = (highest - lowest > np.maximum(MIN_STEEP_RISE, STEEP_NOISE_SIGMAS * noise)) & (quantile < 1.0)
-    level = np.where(steep[cell], np.floor((h - lowest[cell]) / FACE_VERTEX_STEP), 0.0).astype(np.int64)
+    steep = (highest - lowest > np.maximum(SCANLINE.min_steep_rise, SCANLINE.steep_noise_sigmas * noise)) & (quantile < 1.0)
+    level = np.where(steep[cell], np.floor((h - lowest[cell]) / SCANLINE.face_vertex_step), 0.0).astype(np.int64)
     begins = begins | np.r_[True, np.diff(level) != 0]
     start = np.flatnonzero(begins)
     number = np.diff(np.r_[start, len(h)])
@@ -346,11 +336,11 @@ def _joined(row, d, h, intensity, first, interval, pass_number, scanner):
     """Lines of consecutive vertices, split where these are far apart."""
     if not len(row):
         return Scanlines.none()
-    new = np.r_[True, (np.diff(row) != 0) | (np.diff(d) > MAX_VERTEX_GAP) | (np.abs(np.diff(h)) > 2 * MAX_VERTEX_GAP)]
+    new = np.r_[True, (np.diff(row) != 0) | (np.diff(d) > SCANLINE.max_vertex_gap) | (np.abs(np.diff(h)) > 2 * SCANLINE.max_vertex_gap)]
     begins = np.flatnonzero(new)
     count = len(begins)
     # noise disorders the offsets on a face
     d = increasing(d, np.r_[begins, len(row)])
     lines = Scanlines((row[begins] + first) * interval, np.full(count, pass_number), np.full(count, scanner),
                       np.r_[begins, len(row)], d, h, intensity.astype(np.float32))
-    return lines[np.diff(lines.first) >= MIN_SLICE_LINE_VERTICES]
+    return lines[np.diff(lines.first) >= SCANLINE.min_slice_line_vertices]

@@ -19,8 +19,9 @@ from ...common.setting import check_limits, setting
 from ...execution.phase import Phase
 from ...survey.store.road_points import RoadPoints
 from ...survey.store.section_store import STRETCH_POINTS
-from .ground_change import ROUGHNESS_FACTOR, ROUGHNESS_FLOOR, follow_road, smooth_road
-from .ground_grid import COLUMN_WIDTH, ROW_LENGTH, WINDOW_ROWS, GroundCells, MeasuredGround
+from ..weights import SURFACE
+from .ground_change import follow_road, smooth_road
+from .ground_grid import GroundCells, MeasuredGround
 from .pavement_edge import Carriageway, edge_offsets, grown_limit, rows_with_edge
 from .road_points import surface_about, surface_points
 from .road_surface import SurfaceOutlines, outlines
@@ -29,13 +30,6 @@ if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame
     from ...survey.open_survey import Survey
     from ..edges.road_edges import RoadEdges
-
-TOLERANCE_FLOOR = 0.03        # m, height tolerance of a scanner without noise
-TOLERANCE_SIGMAS = 4.0        # times the noise of the heights, added to it
-TRACK_REACH = 1.5             # m either side of the reference line where ground must be measured
-GROWN_INSET = 0.05            # m off a limit that is no edge: on a road that is too wide, verge is extracted as paint
-MIN_SURFACE_WIDTH = 0.5       # m between the limits of a row with road
-MEASURED_PROGRESS = 0.9       # share of the work on a carriageway at which its ground is measured
 
 
 @dataclass(frozen=True)
@@ -126,14 +120,15 @@ def find_carriageway(survey: Survey, road: int, edges: RoadEdges | None, setting
     Carriageway, or None where no ground was measured near the track
     """
     start, end = survey.store.span(road)
-    windows = [WINDOW_ROWS * k for k in range(int(np.floor(start / ROW_LENGTH / WINDOW_ROWS)), int(np.ceil(end / ROW_LENGTH / WINDOW_ROWS)))]
+    windows = [SURFACE.window_rows * k for k in range(int(np.floor(start / SURFACE.row_length / SURFACE.window_rows)),
+                                                      int(np.ceil(end / SURFACE.row_length / SURFACE.window_rows)))]
 
-    stations = (windows[0] + np.arange(WINDOW_ROWS * len(windows)) + 0.5) * ROW_LENGTH
+    stations = (windows[0] + np.arange(SURFACE.window_rows * len(windows)) + 0.5) * SURFACE.row_length
     measured = edge_offsets(edges, road, stations)
     missing = np.isnan(measured["left"][0]) | np.isnan(measured["right"][0])
 
-    per_window = missing.reshape(-1, WINDOW_ROWS).any(axis=1)
-    cells, profiles = (ground or MeasuredGround(survey)).windows(road, windows, per_window.tolist(), progress.part(0.0, MEASURED_PROGRESS))
+    per_window = missing.reshape(-1, SURFACE.window_rows).any(axis=1)
+    cells, profiles = (ground or MeasuredGround(survey)).windows(road, windows, per_window.tolist(), progress.part(0.0, SURFACE.measured_progress))
     prior = survey.road_height(road, stations)
     followed = follow_road(cells, prior)
     if followed is None:
@@ -146,12 +141,12 @@ def find_carriageway(survey: Survey, road: int, edges: RoadEdges | None, setting
         closed[side] = np.isfinite(offset) & ~known
         if profiles is not None and np.isnan(offset).any():
             grown[side] = grown_limit(profiles, cells, height, prior, sign, track, settings.max_width)
-            offset = np.where(np.isnan(offset), grown[side].offset - sign * GROWN_INSET, offset)
+            offset = np.where(np.isnan(offset), grown[side].offset - sign * SURFACE.grown_inset, offset)
         limits[side] = offset, known
-        progress.report(MEASURED_PROGRESS + (1.0 - MEASURED_PROGRESS) * (0.6 if side == "left" else 0.9))
+        progress.report(SURFACE.measured_progress + (1.0 - SURFACE.measured_progress) * (0.6 if side == "left" else 0.9))
     limits = _with_mouths(limits, closed, tracks, cells, followed.ground, cells_driven(survey.frame, road, cells), settings.max_width)
-    there = _has_road(followed.ground, cells.offsets) & (limits["left"][0] > limits["right"][0] + MIN_SURFACE_WIDTH)
-    tolerance = float(np.clip(TOLERANCE_FLOOR + TOLERANCE_SIGMAS * followed.noise, 0.0, settings.height_tolerance))
+    there = _has_road(followed.ground, cells.offsets) & (limits["left"][0] > limits["right"][0] + SURFACE.min_surface_width)
+    tolerance = float(np.clip(SURFACE.tolerance_floor + SURFACE.tolerance_sigmas * followed.noise, 0.0, settings.height_tolerance))
     return Carriageway(cells, height, followed.ground, np.where(there, limits["right"][0], np.nan),
                        np.where(there, limits["left"][0], np.nan), limits["right"][1], limits["left"][1], tolerance,
                        grown)
@@ -172,7 +167,7 @@ def _with_mouths(limits, closed, tracks, cells, ground, driven, max_width):
 
 def _has_road(ground, offsets):
     """Rows that show ground near the reference line, or lie within 2.5 m of such a row."""
-    measured = ground[:, np.abs(offsets) < TRACK_REACH].any(axis=1)
+    measured = ground[:, np.abs(offsets) < SURFACE.track_reach].any(axis=1)
     return np.convolve(measured, np.ones(11), "same") > 0
 
 
@@ -197,17 +192,6 @@ def _take_points(survey, road, carriageway, road_points, progress):
 # ground as level and as smooth as the road, wide and deep enough for a street, and lower than the sidewalks on its sides. Behind a dropped curb
 # lies a sidewalk that goes on to both sides at one height. The rules are our own.
 
-MIN_MOUTH_WIDTH = 7.0          # m along the road: a lane of 3 m with corners of 2 m radius; driveways and dropped curbs are narrower
-MIN_STREET_WIDTH = 2.5         # m: a lane
-MIN_MOUTH_DEPTH = 5.0          # m beyond the line that closes the opening in which the street is still as wide: one car's length
-FLANK_DEPTH = 2.0              # m beyond that line from which the sides of the street are looked at: nearer, its corners are dropped
-FLANK_ROWS = 2                 # 1 m along the road from the outermost cell of the street to the ground beside it
-MIN_FLANK_STEP = 0.03          # m between them: the lowest curbs
-MAX_LEVEL_FLANKS = 1 / 3       # of the places along its sides that may lie level with the street: driveways and crossings of its own
-MAX_UNSEEN_COLUMNS = 5         # 1.25 m across the road between two tracks of the scan, far from the vehicle
-STEP_COLUMNS = 2               # 0.5 m of other ground end the street; one cell alone is a thing on it
-SMOOTHED_ROWS = 5              # 2.5 m along the road: the far end of the scan frays
-
 
 def street_ground(cells: GroundCells, ground: np.ndarray, right: np.ndarray, left: np.ndarray) -> np.ndarray:
     """Cells of ground that are no rougher than the road.
@@ -226,7 +210,7 @@ def street_ground(cells: GroundCells, ground: np.ndarray, right: np.ndarray, lef
     with np.errstate(invalid="ignore"):
         inside = (offsets > right[:, None]) & (offsets < left[:, None]) & np.isfinite(cells.rough)
         usual = np.median(cells.rough[inside]) if inside.any() else 0.0
-        return ground & ~(cells.rough > ROUGHNESS_FACTOR * usual + ROUGHNESS_FLOOR)
+        return ground & ~(cells.rough > SURFACE.roughness_factor * usual + SURFACE.roughness_floor)
 
 
 def cells_driven(frame: RoadFrame, road: int, cells: GroundCells) -> np.ndarray:
@@ -280,7 +264,7 @@ def opened_limits(limit: np.ndarray, closed: np.ndarray, height: np.ndarray, gro
     ends = np.flatnonzero(closed & ~np.r_[closed[1:], False]) + 1
     for first, end in zip(starts, ends):
         rows = slice(first, end)
-        if (end - first) * ROW_LENGTH < MIN_MOUTH_WIDTH and not _goes_on_wider(limit, first, end):
+        if (end - first) * SURFACE.row_length < SURFACE.min_mouth_width and not _goes_on_wider(limit, first, end):
             continue
         beyond = (offsets > limit[rows, None]) & (offsets < farthest[rows, None])
         street = _street(beyond, np.isfinite(height[rows]), ground[rows])
@@ -288,10 +272,11 @@ def opened_limits(limit: np.ndarray, closed: np.ndarray, height: np.ndarray, gro
         between = np.logical_or.accumulate(street, axis=0) & np.logical_or.accumulate(street[::-1], axis=0)[::-1]
         if (between & driven[rows]).any():
             continue
-        deep = between & (offsets > limit[rows, None] + MIN_MOUTH_DEPTH)
-        if deep.sum(axis=0).max() * ROW_LENGTH < MIN_STREET_WIDTH or _level_share(between, first, height, limit, offsets) > MAX_LEVEL_FLANKS:
+        deep = between & (offsets > limit[rows, None] + SURFACE.min_mouth_depth)
+        if deep.sum(axis=0).max() * SURFACE.row_length < SURFACE.min_street_width \
+                or _level_share(between, first, height, limit, offsets) > SURFACE.max_level_flanks:
             continue
-        reach = median_filter(_outermost(between & ground[rows], offsets), SMOOTHED_ROWS, mode="nearest")
+        reach = median_filter(_outermost(between & ground[rows], offsets), SURFACE.smoothed_rows, mode="nearest")
         result[rows] = np.fmax(limit[rows], np.minimum(reach, farthest[rows]))
     return result
 
@@ -299,7 +284,7 @@ def opened_limits(limit: np.ndarray, closed: np.ndarray, height: np.ndarray, gro
 def _goes_on_wider(limit, first, end):
     """Whether the road before or after some rows is known to be as much wider as a mouth is deep."""
     beside = limit[[k for k in (first - 1, end) if 0 <= k < len(limit)]]
-    return bool((beside > limit[first:end].max() + MIN_MOUTH_DEPTH).any())
+    return bool((beside > limit[first:end].max() + SURFACE.min_mouth_depth).any())
 
 
 def _street(beyond, seen, ground):
@@ -311,7 +296,7 @@ def _street(beyond, seen, ground):
         here = beyond[:, column] & going
         unseen = np.where(here, np.where(seen[:, column], 0, unseen + 1), unseen)
         other = np.where(here & seen[:, column], np.where(ground[:, column], 0, other + 1), other)
-        going &= (unseen <= MAX_UNSEEN_COLUMNS) & (other < STEP_COLUMNS)
+        going &= (unseen <= SURFACE.max_unseen_columns) & (other < SURFACE.step_columns)
         street[:, column] = here & going & ground[:, column]
     return street
 
@@ -321,32 +306,21 @@ def _level_share(street, first, height, limit, offsets):
     level = []
     for column in np.flatnonzero(street.any(axis=0)):
         rows = first + np.flatnonzero(street[:, column])[[0, -1]]
-        beside = rows + [-FLANK_ROWS, FLANK_ROWS]
+        beside = rows + [-SURFACE.flank_rows, SURFACE.flank_rows]
         known = (beside >= 0) & (beside < len(height))
-        known[known] = (offsets[column] > limit[beside[known]]) & (offsets[column] > limit[rows[known]] + FLANK_DEPTH)
+        known[known] = (offsets[column] > limit[beside[known]]) & (offsets[column] > limit[rows[known]] + SURFACE.flank_depth)
         level.append(height[rows[known], column] - height[beside[known], column])
     apart = np.abs(np.concatenate(level)) if level else np.empty(0)
     apart = apart[np.isfinite(apart)]
-    return float((apart < MIN_FLANK_STEP).mean()) if len(apart) else 0.0
+    return float((apart < SURFACE.min_flank_step).mean()) if len(apart) else 0.0
 
 
 def _outermost(cells, offsets):
     """(N,) m, the outer end of the outermost cell of each row that is on; minus infinity where none is."""
-    return np.where(cells, offsets + COLUMN_WIDTH / 2, -np.inf).max(axis=1)
+    return np.where(cells, offsets + SURFACE.column_width / 2, -np.inf).max(axis=1)
 
 
 # Where no curb was found and the points lie too far apart to say that there is none.
-
-# points per m² of ground. A face of 10 cm of curb is 2 to 4 cm broad in plan and has some ten points per metre then. On simulated surveys of which
-# a quarter and a tenth of the points was kept nearly all curbs were found where more lay at their foot, and few where fewer did.
-MIN_CURB_DENSITY = 80.0
-MARGIN = 1.0              # m inside the limits of the carriageway in which points are counted
-STRETCH_ROWS = 20         # rows of ground cells that are looked at together
-SEEN_SHARE = 0.3          # of the cells of a stretch that must hold ground: where something hides it, nothing is said
-SHORTEST_TOLD = 20.0      # m of all thin margins together from which they are told
-TOLD_STRETCHES = 4        # that are named, the longest first
-SHORTEST_SEEN = 50.0      # m of margins without a curb that hold points enough, from which a survey shows whether its roads have curbs
-FEW_CURBS = 0.05          # share of the margins that have a curb on roads without curbs: one at a bridge or a bus stop
 
 
 class ThinMargin(NamedTuple):
@@ -388,14 +362,14 @@ class Margins:
         curbs, pavement : side to (R,) bool, the rows beside which a curb, or an edge of the pavement, was drawn
         """
         cells = carriageway.cells
-        length = STRETCH_ROWS * cells.row_size
+        length = SURFACE.stretch_rows * cells.row_size
         for side, sign, limit in (("left", 1.0, carriageway.left), ("right", -1.0, carriageway.right)):
             density = _densities(cells, carriageway.ground, sign, np.where(curbs[side], np.nan, limit))
             self.curb += float(curbs[side].sum()) * cells.row_size
-            self.bare += float((density >= MIN_CURB_DENSITY).sum()) * length
+            self.bare += float((density >= SURFACE.min_curb_density).sum()) * length
             paved = _mostly(pavement[side])
             # 0 where it is not thin, 1 where it is, 2 where it is and the pavement was seen to end
-            state = np.r_[0, np.where(density < MIN_CURB_DENSITY, 1 + paved, 0), 0]
+            state = np.r_[0, np.where(density < SURFACE.min_curb_density, 1 + paved, 0), 0]
             turns = np.flatnonzero(np.diff(state))
             for first, after in zip(turns[:-1], turns[1:]):
                 if state[first + 1]:
@@ -408,26 +382,26 @@ class Margins:
 
         On a survey that has hardly a curb where one could be seen, as on a motorway, what ends the pavement elsewhere is none either.
         """
-        none = self.bare >= SHORTEST_SEEN and self.curb <= FEW_CURBS * (self.curb + self.bare)
+        none = self.bare >= SURFACE.shortest_seen and self.curb <= SURFACE.few_curbs * (self.curb + self.bare)
         return [margin for margin in self.thin if not (none and margin.pavement)]
 
 
 def _mostly(rows):
-    """(K,) bool, whether most rows of stretches of STRETCH_ROWS are true."""
-    first = np.arange(0, len(rows), STRETCH_ROWS)
+    """(K,) bool, whether most rows of stretches of SURFACE.stretch_rows are true."""
+    first = np.arange(0, len(rows), SURFACE.stretch_rows)
     return 2 * np.add.reduceat(rows.astype(int), first) >= np.diff(np.r_[first, len(rows)]) if len(rows) else np.zeros(0, bool)
 
 
 def _densities(cells: GroundCells, ground: np.ndarray, sign: float, limit: np.ndarray) -> np.ndarray:
-    """(K,) points per m² along one margin, of stretches of STRETCH_ROWS; NaN where it was hardly seen."""
+    """(K,) points per m² along one margin, of stretches of SURFACE.stretch_rows; NaN where it was hardly seen."""
     found = []
-    for first in range(0, len(limit), STRETCH_ROWS):
-        rows = slice(first, first + STRETCH_ROWS)
+    for first in range(0, len(limit), SURFACE.stretch_rows):
+        rows = slice(first, first + SURFACE.stretch_rows)
         inside = sign * (limit[rows, None] - cells.offsets)   # NaN is not inside
-        margin = (inside > 0) & (inside < MARGIN)
+        margin = (inside > 0) & (inside < SURFACE.margin)
         count = cells.count[rows]
         count = count[margin & ground[rows] & (count > 0)]
-        enough = 2 * np.isfinite(limit[rows]).sum() >= STRETCH_ROWS and len(count) >= max(SEEN_SHARE * margin.sum(), 1)
+        enough = 2 * np.isfinite(limit[rows]).sum() >= SURFACE.stretch_rows and len(count) >= max(SURFACE.seen_share * margin.sum(), 1)
         found.append(float(np.median(count)) / (cells.row_size * cells.column_size) if enough else np.nan)
     return np.array(found)
 
@@ -435,13 +409,13 @@ def _densities(cells: GroundCells, ground: np.ndarray, sign: float, limit: np.nd
 def said_of_thin(margins: Sequence[ThinMargin]) -> str:
     """What a user is told of them, one sentence after the other; "" where there is little to tell."""
     total = sum(margin.end - margin.start for margin in margins)
-    if total < SHORTEST_TOLD:
+    if total < SURFACE.shortest_told:
         return ""
-    longest = sorted(margins, key=lambda margin: margin.start - margin.end)[:TOLD_STRETCHES]
+    longest = sorted(margins, key=lambda margin: margin.start - margin.end)[:SURFACE.told_stretches]
     density = float(np.average([margin.density for margin in margins], weights=[margin.end - margin.start for margin in margins]))
     where = "; ".join(f"road {m.road}, {m.side} side, station {m.start:.0f} to {m.end:.0f} m" for m in longest)
     where += "; …" if len(margins) > len(longest) else ""
     return (f"The points are too few to find curbs along {total:.0f} m, where none was drawn ({where}): {density:.0f} per m² beside "
             f"the limit of the road surface, some {100 / np.sqrt(density):.0f} cm apart. A curb of 10 cm needs about "
-            f"{MIN_CURB_DENSITY:.0f}, a lower one more; whether there is one is not known. Give the whole cloud if this one was thinned, or "
+            f"{SURFACE.min_curb_density:.0f}, a lower one more; whether there is one is not known. Give the whole cloud if this one was thinned, or "
             "drive slower or nearer to that side.")

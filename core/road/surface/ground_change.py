@@ -14,33 +14,8 @@ import numpy as np
 from scipy.ndimage import correlate1d, median_filter, uniform_filter1d
 
 from ...common.parallel import by_rows, check_cancelled
-from .ground_grid import COLUMN_WIDTH, ROW_LENGTH, GroundCells, known_median
-from .pavement_limit import INNER_CELLS
-
-CERTAIN_ROAD = 1.2           # m beside the track that belong to the road: the vehicle drove there
-MIN_CHANGE_CELLS = 4         # cells over which a change must last
-MAX_HEIGHT_CHANGE = 0.025    # m from the median height of the cells before
-UNEVENNESS_FACTOR = 2.0      # times the unevenness of the road, added to either height limit
-CELLS_OF_UNEVENNESS = 8      # cells at least whose steps tell how uneven the road is
-ROUGHNESS_FACTOR, ROUGHNESS_FLOOR = 1.6, 0.0025  # times the roughness of the road, and m added to it
-CELLS_OF_ROUGHNESS = 15      # cells before a place whose roughness is the road's
-MIN_TILT_CHANGE = 0.10       # m per m: change of tilt at which a bank or a ditch begins,
-CELLS_OF_TILT = 10, 6        # between so many cells before a place and from it on,
-MIN_CELLS_OF_TILT = 5, 4     # of which so many were measured
-MAX_EMPTY_GROUND_CELLS = 5   # consecutive cells without points at which the road ends,
-MAX_BLIND_CELLS = 12         # unless at most so many are empty and road follows: the blind zone beside the vehicle
-CELLS_BEFORE_BLIND = 10      # cells before a blind zone whose roughness the road behind must have
-MIN_MEASURED_BEHIND = 0.75   # of the cells behind a blind zone, for road to follow
-OBSTACLE_HEIGHT = 0.25       # m above the road of a cell that hides the road behind it, such as the side of a car,
-OBSTACLE_CELLS = 5           # where road follows within so many cells
-MIN_AGREEING_SHARE = 0.7     # of the cells ahead that must show the change
-PROFILES_PER_BATCH = 64      # profiles compared at a time; their windows take some megabytes
-COMPARED_CELLS = 10          # either side of a step of brightness: 1 m, of which paint covers less than half
-BRIGHTER = np.log(1.5)       # step of the logarithm of brightness; asphalt of another age differs by less
-LASTING_SHARE = 1.0 / 3.0    # of the median step by which the ground right before the limit is still brighter: it falls off with range
-LASTING_PROFILES = 31        # 2 m apart, of which most must show it: patches of asphalt are shorter
-AGREEING_PROFILES = 5        # whose median place of the step counts,
-MAX_STRIP_SHIFT = 5          # cells from it to the step of a profile of the same strip: half of what is compared
+from ..weights import SURFACE
+from .ground_grid import GroundCells, known_median
 
 
 @dataclass
@@ -60,10 +35,10 @@ class HalfProfiles:
 
     def __post_init__(self) -> None:
         """Cells of obstacles are no ground."""
-        low = np.isfinite(self.off) & (np.abs(self.off) < MAX_HEIGHT_DEVIATION)
-        follows = _ahead(np.pad(low, ((0, 0), (0, 1)))[:, 1:], OBSTACLE_CELLS, fill=False).any(axis=2)
+        low = np.isfinite(self.off) & (np.abs(self.off) < SURFACE.max_height_deviation)
+        follows = _ahead(np.pad(low, ((0, 0), (0, 1)))[:, 1:], SURFACE.obstacle_cells, fill=False).any(axis=2)
         with np.errstate(invalid="ignore"):
-            self.off = np.where((self.off > OBSTACLE_HEIGHT) & follows, np.nan, self.off)
+            self.off = np.where((self.off > SURFACE.obstacle_height) & follows, np.nan, self.off)
 
     def changes(self, beside: np.ndarray, max_width: float) -> np.ndarray:
         """(P,) int, the first cell of other ground, or the one at the largest width; -1 where nothing was measured before it.
@@ -73,14 +48,14 @@ class HalfProfiles:
         beside : (P,) m, outward offset of the track
         max_width : m from the track
         """
-        start = np.searchsorted(self.u, beside + CERTAIN_ROAD)
+        start = np.searchsorted(self.u, beside + SURFACE.certain_road)
         stop = np.searchsorted(self.u, beside + max_width)
         empty = self.blind()
         found = np.empty(len(self.off), np.int64)
-        for first in range(0, len(found), PROFILES_PER_BATCH):
+        for first in range(0, len(found), SURFACE.profiles_per_batch):
             check_cancelled()
-            part = slice(first, first + PROFILES_PER_BATCH)
-            uneven = _unevenness(self.off[part], np.maximum(start[part], CELLS_OF_UNEVENNESS))
+            part = slice(first, first + SURFACE.profiles_per_batch)
+            uneven = _unevenness(self.off[part], np.maximum(start[part], SURFACE.cells_of_unevenness))
             differs = _differs(self.u, self.off[part], self.rough[part], uneven)
             for k in range(len(uneven)):
                 at = first + k
@@ -89,7 +64,7 @@ class HalfProfiles:
 
     def blind(self) -> np.ndarray:
         """(P, K) bool, whether nothing was measured in the cells from a cell on."""
-        return ~_ahead(np.isfinite(self.off), MAX_EMPTY_GROUND_CELLS, fill=False).any(axis=2)
+        return ~_ahead(np.isfinite(self.off), SURFACE.max_empty_ground_cells, fill=False).any(axis=2)
 
     def _change(self, profile, start, stop, empty, differs, uneven):
         """The change of one profile between two cells."""
@@ -112,16 +87,16 @@ class HalfProfiles:
         measured in another part of the scanner's turn.
         """
         off, rough = self.off[profile], self.rough[profile]
-        measured = np.flatnonzero(np.isfinite(off[k:k + MAX_BLIND_CELLS + 1]))
+        measured = np.flatnonzero(np.isfinite(off[k:k + SURFACE.max_blind_cells + 1]))
         if not len(measured):
             return 0
         again = k + int(measured[0])
-        behind, inner = slice(again, again + 2 * MIN_CHANGE_CELLS), slice(max(k - CELLS_BEFORE_BLIND, 0), k)
-        if np.isfinite(off[behind]).mean() < MIN_MEASURED_BEHIND \
-                or (np.abs(off[behind]) > MAX_HEIGHT_DEVIATION + UNEVENNESS_FACTOR * uneven).any():
+        behind, inner = slice(again, again + 2 * SURFACE.min_change_cells), slice(max(k - SURFACE.cells_before_blind, 0), k)
+        if np.isfinite(off[behind]).mean() < SURFACE.min_measured_behind \
+                or (np.abs(off[behind]) > SURFACE.max_height_deviation + SURFACE.unevenness_factor * uneven).any():
             return 0
         with np.errstate(invalid="ignore"):
-            smooth = known_median(rough[behind], 0) <= ROUGHNESS_FACTOR * known_median(rough[inner], 0) + ROUGHNESS_FLOOR
+            smooth = known_median(rough[behind], 0) <= SURFACE.roughness_factor * known_median(rough[inner], 0) + SURFACE.roughness_floor
         return again if smooth else 0
 
 
@@ -143,20 +118,21 @@ def _unevenness(off, cells):
 
 def _differs(u, off, rough, uneven):
     """(P, K) bool, whether the ground from a cell on is no longer that of the road."""
-    ahead, before = _ahead(off, MIN_CHANGE_CELLS), _before(off, MIN_CHANGE_CELLS)
+    ahead, before = _ahead(off, SURFACE.min_change_cells), _before(off, SURFACE.min_change_cells)
     seen = np.isfinite(ahead)
     count = seen.sum(axis=2)
-    slack = UNEVENNESS_FACTOR * uneven[:, None]
+    slack = SURFACE.unevenness_factor * uneven[:, None]
     with np.errstate(invalid="ignore"):
-        away = np.abs(ahead) > MAX_HEIGHT_DEVIATION + slack[..., None]
-        high = (count > 1) & away[..., 0] & (away.sum(axis=2) > MIN_AGREEING_SHARE * count)
+        away = np.abs(ahead) > SURFACE.max_height_deviation + slack[..., None]
+        high = (count > 1) & away[..., 0] & (away.sum(axis=2) > SURFACE.min_agreeing_share * count)
         # the step may cut the first cell that was measured
-        stepped = (np.abs(ahead - known_median(before, 2)[..., None]) > MAX_HEIGHT_CHANGE + slack[..., None]) | ~seen | (np.cumsum(seen, axis=2) == 1)
+        stepped = (np.abs(ahead - known_median(before, 2)[..., None]) > SURFACE.max_height_change + slack[..., None]) \
+            | ~seen | (np.cumsum(seen, axis=2) == 1)
         step = (count > 2) & (np.isfinite(before).sum(axis=2) > 2) & stepped.all(axis=2)
-        rough_ahead, usual = _ahead(rough, MIN_CHANGE_CELLS), _before(rough, CELLS_OF_ROUGHNESS)
-        rougher = rough_ahead > (ROUGHNESS_FACTOR * known_median(usual, 2) + ROUGHNESS_FLOOR)[..., None]
+        rough_ahead, usual = _ahead(rough, SURFACE.min_change_cells), _before(rough, SURFACE.cells_of_roughness)
+        rougher = rough_ahead > (SURFACE.roughness_factor * known_median(usual, 2) + SURFACE.roughness_floor)[..., None]
         known = np.isfinite(rough_ahead).sum(axis=2)
-        rugged = (known > 1) & (np.isfinite(usual).sum(axis=2) > 3) & rougher[..., 0] & (rougher.sum(axis=2) > MIN_AGREEING_SHARE * known)
+        rugged = (known > 1) & (np.isfinite(usual).sum(axis=2) > 3) & rougher[..., 0] & (rougher.sum(axis=2) > SURFACE.min_agreeing_share * known)
     return high | step | rugged | _turns(u, off, slack)
 
 
@@ -164,8 +140,8 @@ def _turns(u, off, slack):
     """(P, K) bool, whether the ground from a cell on tilts away from the metre before."""
     # cells are of one width, so places are counted from the cell itself
     size = u[1] - u[0]
-    after, inner = _ahead(off, CELLS_OF_TILT[1]), _before(off, CELLS_OF_TILT[0])
-    at_after, at_inner = np.arange(CELLS_OF_TILT[1]) * size, np.arange(-CELLS_OF_TILT[0], 0) * size
+    after, inner = _ahead(off, SURFACE.cells_of_tilt[1]), _before(off, SURFACE.cells_of_tilt[0])
+    at_after, at_inner = np.arange(SURFACE.cells_of_tilt[1]) * size, np.arange(-SURFACE.cells_of_tilt[0], 0) * size
     a, b = np.isfinite(after), np.isfinite(inner)
     level, slope = _lines(at_inner, inner, b)
     over = np.where(a, after - level[..., None] - slope[..., None] * at_after, np.nan)
@@ -174,9 +150,9 @@ def _turns(u, off, slack):
     most = known_median(over / (at_after + 0.5 * size), 2)
     with np.errstate(invalid="ignore"):
         # the bank may begin farther out
-        begins = np.abs(over[..., 0]) >= 0.5 * MIN_TILT_CHANGE * size + slack
-        return (b.sum(axis=2) >= MIN_CELLS_OF_TILT[0]) & (a.sum(axis=2) >= MIN_CELLS_OF_TILT[1]) & a[..., 0] & begins \
-            & (np.minimum(np.abs(most), np.abs(tilt)) > MIN_TILT_CHANGE)
+        begins = np.abs(over[..., 0]) >= 0.5 * SURFACE.min_tilt_change * size + slack
+        return (b.sum(axis=2) >= SURFACE.min_cells_of_tilt[0]) & (a.sum(axis=2) >= SURFACE.min_cells_of_tilt[1]) & a[..., 0] & begins \
+            & (np.minimum(np.abs(most), np.abs(tilt)) > SURFACE.min_tilt_change)
 
 
 def _lines(at, values, known):
@@ -208,17 +184,17 @@ def other_ground_begins(brightness: np.ndarray, stations: np.ndarray, track: np.
     """
     begins, step, still = by_rows(lambda some: _brighter_from(brightness[some], track[some], limit[some]), len(brightness)).T
     there = begins >= 0
-    holds = np.flatnonzero(there & (still >= LASTING_SHARE * step))
+    holds = np.flatnonzero(there & (still >= SURFACE.lasting_share * step))
     if not len(holds):
         return np.full(len(begins), np.nan)
     # a single profile tells little of how far a strip goes on, which has dark patches and fades with range, but where it begins
-    place = median_filter(np.interp(np.arange(len(begins)), holds, begins[holds]), AGREEING_PROFILES, mode="nearest")
-    alike = there & (np.abs(begins - place) <= MAX_STRIP_SHIFT)
+    place = median_filter(np.interp(np.arange(len(begins)), holds, begins[holds]), SURFACE.agreeing_profiles, mode="nearest")
+    alike = there & (np.abs(begins - place) <= SURFACE.max_strip_shift)
     lasting = np.zeros(len(begins), bool)
     for first, end in zip(*_stretches(stations)):
         about = first + _profiles_about(end - first)
-        some = np.where(alike, still - LASTING_SHARE * step, np.nan)[about]
-        lasting[first:end] = alike[first:end] & (alike[about].sum(1) > 0.5 * LASTING_PROFILES) & (known_median(some, 1) >= 0.0)
+        some = np.where(alike, still - SURFACE.lasting_share * step, np.nan)[about]
+        lasting[first:end] = alike[first:end] & (alike[about].sum(1) > 0.5 * SURFACE.lasting_profiles) & (known_median(some, 1) >= 0.0)
     return np.where(lasting, place, np.nan)
 
 
@@ -229,8 +205,8 @@ def _stretches(stations):
 
 
 def _profiles_about(count):
-    """(P, LASTING_PROFILES) int, the profiles nearest to each one; at an end of the road as many on the other side."""
-    several = min(LASTING_PROFILES, count)
+    """(P, SURFACE.lasting_profiles) int, the profiles nearest to each one; at an end of the road as many on the other side."""
+    several = min(SURFACE.lasting_profiles, count)
     first = np.clip(np.arange(count) - several // 2, 0, count - several)
     return first[:, None] + np.arange(several)
 
@@ -242,32 +218,22 @@ def _brighter_from(brightness, track, limit):
     """
     count = brightness.shape[1]
     level = np.log(np.maximum(brightness, 1.0))
-    padded = np.pad(level, ((0, 0), (COMPARED_CELLS, COMPARED_CELLS)), constant_values=np.nan)
-    beside = known_median(np.lib.stride_tricks.sliding_window_view(padded, COMPARED_CELLS, axis=1), 2)
+    padded = np.pad(level, ((0, 0), (SURFACE.compared_cells, SURFACE.compared_cells)), constant_values=np.nan)
+    beside = known_median(np.lib.stride_tricks.sliding_window_view(padded, SURFACE.compared_cells, axis=1), 2)
     # median of the cells before each cell, and of those from it on
-    inner, outer = beside[:, :count], beside[:, COMPARED_CELLS:COMPARED_CELLS + count]
+    inner, outer = beside[:, :count], beside[:, SURFACE.compared_cells:SURFACE.compared_cells + count]
     cell = np.arange(count)
     # medians rise half a window before the step itself
-    between = (cell >= track[:, None]) & (cell + COMPARED_CELLS // 2 + INNER_CELLS < limit[:, None])
+    between = (cell >= track[:, None]) & (cell + SURFACE.compared_cells // 2 + SURFACE.inner_cells < limit[:, None])
     step = np.where(between & np.isfinite(outer - inner), outer - inner, -np.inf)
     rows, begins = np.arange(len(step)), step.argmax(axis=1)
     last = beside[rows, np.clip(np.rint(limit).astype(np.int64), 0, count)]
-    there = step[rows, begins] >= BRIGHTER
+    there = step[rows, begins] >= SURFACE.brighter
     still = np.where(there, last - inner[rows, begins], np.nan)
     return np.c_[np.where(there, begins, -1), np.where(there, step[rows, begins], np.nan), still]
 
 
 # The height of the road, followed outward from the track of the vehicle, cell by cell.
-
-MAX_HEIGHT_DEVIATION = 0.035  # m from the predicted height: more is a curb, a car or an island
-NOISE_FACTOR = 2.0            # times the standard error of the height of a cell, added to it
-TOLERANCE_GAIN, MAX_TOLERANCE_GAIN = 0.02, 0.05  # m per m without ground, and m at most: behind an island the prediction is uncertain
-TRACK_HALF_WIDTH = 0.6        # m either side of the reference line, where the road is known to be
-HEIGHT_GAIN, TILT_GAIN = 0.5, 0.15  # share of a deviation by which predicted height and tilt are corrected
-MAX_CROSS_SLOPE = 0.12        # m per m across the road
-ROW_SMOOTHING_SIGMA = 1.0     # m along the road
-SMOOTHED_COLUMNS = 16         # columns smoothed along the road at a time
-CELLS_BETWEEN_QUESTIONS = 100_000   # followed until Cancel is asked for: some 50 ms
 
 
 @dataclass
@@ -303,7 +269,7 @@ def follow_road(cells: GroundCells, prior: np.ndarray) -> _RoadHeight | None:
     _RoadHeight, or None where no ground was measured near the track
     """
     offsets = cells.offsets
-    track = np.abs(offsets) < TRACK_HALF_WIDTH
+    track = np.abs(offsets) < SURFACE.track_half_width
     base = known_median(cells.height[:, track] - prior[:, None], 1)
     noise = float(known_median(cells.rough[:, np.abs(offsets) < 3.0].ravel(), 0))
     if not np.isfinite(base).any():
@@ -331,27 +297,27 @@ def _running_median(values, reach):
 
 def _starting_tilt(height, base, offsets):
     """(R,) m per m, cross slope under the vehicle."""
-    near = np.abs(offsets) < 2 * TRACK_HALF_WIDTH
+    near = np.abs(offsets) < 2 * SURFACE.track_half_width
     left, right = (known_median(height[:, near & side] - base[:, None], 1) for side in (offsets > 0, offsets < 0))
-    tilt = (left - right) / (2 * TRACK_HALF_WIDTH)
-    return np.clip(_running_median(tilt, 5), -MAX_CROSS_SLOPE, MAX_CROSS_SLOPE) if np.isfinite(tilt).any() else np.zeros(len(tilt))
+    tilt = (left - right) / (2 * SURFACE.track_half_width)
+    return np.clip(_running_median(tilt, 5), -SURFACE.max_cross_slope, SURFACE.max_cross_slope) if np.isfinite(tilt).any() else np.zeros(len(tilt))
 
 
 def _walk(cells, base, columns, start, noise, height, ground):
     """Follow both sides outward from the heights `base` under the vehicle, (K, 2) columns; fills `height` and `ground` in place."""
     tilt = np.stack([start, -start])
     z, skipped = np.zeros_like(tilt), np.zeros_like(tilt)
-    kernel = _bell(ROW_SMOOTHING_SIGMA / ROW_LENGTH)
-    step = max(CELLS_BETWEEN_QUESTIONS // tilt.size, 1)
+    kernel = _bell(SURFACE.row_smoothing_sigma / SURFACE.row_length)
+    step = max(SURFACE.cells_between_questions // tilt.size, 1)
     # one pair of columns after the other: of the whole road nothing is there but what comes in and goes out
     for k, pair in enumerate(columns):
         if k % step == step - 1:
             check_cancelled()
-        predicted = z + tilt * (0.5 * COLUMN_WIDTH if k == 0 else COLUMN_WIDTH)
+        predicted = z + tilt * (0.5 * SURFACE.column_width if k == 0 else SURFACE.column_width)
         there, count = (cells.height[:, pair] - base[:, None]).T, np.nan_to_num(cells.count[:, pair]).T
         off = there - predicted
-        tolerance = MAX_HEIGHT_DEVIATION + NOISE_FACTOR * noise / np.sqrt(np.clip(count, 1.0, 25.0)) \
-            + np.minimum(TOLERANCE_GAIN * np.maximum(skipped - 0.5, 0.0), MAX_TOLERANCE_GAIN)
+        tolerance = SURFACE.max_height_deviation + SURFACE.noise_factor * noise / np.sqrt(np.clip(count, 1.0, 25.0)) \
+            + np.minimum(SURFACE.tolerance_gain * np.maximum(skipped - 0.5, 0.0), SURFACE.max_tolerance_gain)
         near = np.abs(off) < tolerance   # False where there is no ground
         off = np.where(near, off, 0.0)
         # cells near the tolerance have little weight: the surface must not climb a low curb
@@ -361,10 +327,10 @@ def _walk(cells, base, columns, start, noise, height, ground):
         around /= np.maximum(total, 1e-9)
         certainty = np.minimum(total / 3.0, 1.0)
         # behind a gap the measured height replaces the prediction
-        z = predicted + np.where(skipped > 0.5, 1.0, HEIGHT_GAIN) * certainty * around
-        tilt = np.clip(tilt + TILT_GAIN * certainty * around / COLUMN_WIDTH, -MAX_CROSS_SLOPE, MAX_CROSS_SLOPE)
+        z = predicted + np.where(skipped > 0.5, 1.0, SURFACE.height_gain) * certainty * around
+        tilt = np.clip(tilt + SURFACE.tilt_gain * certainty * around / SURFACE.column_width, -SURFACE.max_cross_slope, SURFACE.max_cross_slope)
         tilt = correlate1d(tilt, kernel, mode="nearest")
-        skipped = np.where(certainty > 0.5, 0.0, skipped + COLUMN_WIDTH)
+        skipped = np.where(certainty > 0.5, 0.0, skipped + SURFACE.column_width)
         height[:, pair] = (z + base).T
         ground[:, pair] = (np.abs(there - z) < tolerance).T
 
@@ -392,8 +358,8 @@ def smooth_road(road: _RoadHeight, cells: GroundCells) -> np.ndarray:
     """
     # a running mean along the road depends on its rows, and not on other columns
     total, rise = np.empty((2, *road.height.shape), np.float32)
-    for first in range(0, road.height.shape[1], SMOOTHED_COLUMNS):
-        some = slice(first, first + SMOOTHED_COLUMNS)
+    for first in range(0, road.height.shape[1], SURFACE.smoothed_columns):
+        some = slice(first, first + SURFACE.smoothed_columns)
         ground = road.ground[:, some]
         weight = np.where(ground, np.minimum(cells.count[:, some], 20.0), 0.0)
         off = np.where(ground, np.nan_to_num(cells.height[:, some] - road.height[:, some]), 0.0)

@@ -20,22 +20,12 @@ from ...survey.frame.road import CORRIDOR
 from ...survey.store.records import COORDINATE_SCALE, Points
 from ...survey.store.spill_file import SpillFile, StoredColumn
 from ..common.sides import ahead_of_vehicle
+from ..weights import SURFACE
 
 if TYPE_CHECKING:
     from ...survey.open_survey import Survey
 
-ROW_LENGTH, COLUMN_WIDTH = 0.5, 0.25  # m along and across the road
-GROUND_LAYER_JUMP = 0.06    # m of height between two layers: the ground and the sill of a car
-GROUND_LAYER_DEPTH = 0.12   # m of the lowest layer that count as ground: a wall is one layer up to its top
-MIN_LAYER_SHARE = 0.08      # of the points of a cell: a smaller lowest layer is multipath below the road
-GOLDEN_RATIO_32 = 0x9E3779B9  # golden ratio times 2^32: its multiples, modulo 2^32, are evenly distributed
-MAX_POINTS_PER_CELL = 100   # denser cells are subsampled: more points do not change the result
-GROUND_POINTS_PER_BATCH = 1 << 15  # points processed at a time; they fit into the cache of the processor
-MIN_LAYER_POINTS = 3        # points of a layer
-MIN_PLANE_POINTS = 6        # points of a plane; cells with fewer have a mean height and no roughness
-PROFILE_ROW, PROFILE_COLUMN = 1.0, 0.1  # m along and across the road, size of a cell
-FARTHEST_AHEAD = 25.0        # m from the vehicle of points whose brightness counts: across a bend a place is seen from far away too, nearly dark
-GROUND_REACH, GROUND_REACH_PER_METRE = 0.7, 0.12  # m above or below the road under the vehicle, and more per m of offset
+GOLDEN_RATIO_32 = 0x9E3779B9   # source: golden ratio times 2^32; its multiples, modulo 2^32, are evenly distributed (Knuth, TAOCP 3, 6.4)
 
 
 @dataclass
@@ -79,9 +69,9 @@ class SurfaceProfiles:
         -------
         SurfaceProfiles
         """
-        first_row, rows = int(round(start / PROFILE_ROW)), int(round(length / PROFILE_ROW))
-        cells = _ground_cells(points, first_row, rows, reach, road_height, PROFILE_ROW, PROFILE_COLUMN,
-                             lambda seen: np.abs(ahead(seen)) <= FARTHEST_AHEAD)
+        first_row, rows = int(round(start / SURFACE.profile_row)), int(round(length / SURFACE.profile_row))
+        cells = _ground_cells(points, first_row, rows, reach, road_height, SURFACE.profile_row, SURFACE.profile_column,
+                             lambda seen: np.abs(ahead(seen)) <= SURFACE.farthest_ahead)
         above = cells.height - road_height(cells.stations)[:, None]
         return cls(cells.stations, cells.offsets, *(v.astype(np.float32) for v in (above, cells.rough, cells.brightness, cells.scatter, cells.count)))
 
@@ -157,7 +147,7 @@ def _ground_columns(reach: float, column_size: float) -> int:
 
 
 def _ground_cells(points: Points, first_row: int, rows: int, reach: float, road_height: Callable[[np.ndarray], np.ndarray],
-                 row_size: float = ROW_LENGTH, column_size: float = COLUMN_WIDTH,
+                 row_size: float = SURFACE.row_length, column_size: float = SURFACE.column_width,
                  bright: Callable[[Points], np.ndarray] | None = None) -> GroundCells:
     """The ground cells of a window of the road.
 
@@ -195,13 +185,13 @@ def _ground_cells(points: Points, first_row: int, rows: int, reach: float, road_
 
 
 def _near_ground(records, first_row, rows, half, prior, row_size, column_size):
-    """Indices of the records near the height of the road, at most MAX_POINTS_PER_CELL per cell, and the cell of each."""
+    """Indices of the records near the height of the road, at most SURFACE.max_points_per_cell per cell, and the cell of each."""
     prior = np.rint(prior / COORDINATE_SCALE).astype(np.int32)
     along, across = (np.int32(round(size / COORDINATE_SCALE)) for size in (row_size, column_size))
     nowhere = rows * 2 * half
     cell, count = np.empty(len(records), np.int32), np.zeros(nowhere + 1, np.int64)
-    for first in range(0, len(records), GROUND_POINTS_PER_BATCH):
-        s, d, z = (records[name][first:first + GROUND_POINTS_PER_BATCH] for name in ("s", "d", "z"))
+    for first in range(0, len(records), SURFACE.ground_points_per_batch):
+        s, d, z = (records[name][first:first + SURFACE.ground_points_per_batch] for name in ("s", "d", "z"))
         row = s // along
         row -= np.int32(first_row)
         column = d // across
@@ -210,21 +200,21 @@ def _near_ground(records, first_row, rows, half, prior, row_size, column_size):
         inside = row.view(np.uint32) < np.uint32(rows)
         inside &= column.view(np.uint32) < np.uint32(2 * half)
         above = z - prior.take(row, mode="clip")
-        reach = np.abs(d * np.float32(GROUND_REACH_PER_METRE))
-        reach += np.float32(GROUND_REACH / COORDINATE_SCALE)
+        reach = np.abs(d * np.float32(SURFACE.ground_reach_per_metre))
+        reach += np.float32(SURFACE.ground_reach / COORDINATE_SCALE)
         inside &= np.abs(above) < reach
         row *= np.int32(2 * half)
         row += column
         row[~inside] = nowhere
-        cell[first:first + GROUND_POINTS_PER_BATCH] = row
+        cell[first:first + SURFACE.ground_points_per_batch] = row
         count += np.bincount(row, minlength=nowhere + 1)
     # multiples of the golden ratio: an even subset whichever points of a cell come one after the other
-    share = np.floor(0xFFFFFFFF * np.minimum(MAX_POINTS_PER_CELL / np.maximum(count, 1), 1.0)).astype(np.uint32)
+    share = np.floor(0xFFFFFFFF * np.minimum(SURFACE.max_points_per_cell / np.maximum(count, 1), 1.0)).astype(np.uint32)
     share[nowhere] = 0
-    turn = np.arange(1, GROUND_POINTS_PER_BATCH + 1, dtype=np.uint32) * np.uint32(GOLDEN_RATIO_32)
+    turn = np.arange(1, SURFACE.ground_points_per_batch + 1, dtype=np.uint32) * np.uint32(GOLDEN_RATIO_32)
     indices = [np.empty(0, np.intp)]
-    for first in range(0, len(cell), GROUND_POINTS_PER_BATCH):
-        here = share.take(cell[first:first + GROUND_POINTS_PER_BATCH])
+    for first in range(0, len(cell), SURFACE.ground_points_per_batch):
+        here = share.take(cell[first:first + SURFACE.ground_points_per_batch])
         selected = np.flatnonzero(turn[:len(here)] + np.uint32(first * GOLDEN_RATIO_32 % 2**32) < here)
         selected += first
         indices.append(selected)
@@ -236,16 +226,16 @@ def _in_lowest_layer(cell, z, total):
     """Mask of the points in the lowest sufficiently large layer of their cell; points are sorted by cell and height."""
     if not len(cell):
         return np.zeros(0, bool)
-    begins = np.r_[True, (np.diff(cell) > 0) | (np.diff(z) > GROUND_LAYER_JUMP)]
+    begins = np.r_[True, (np.diff(cell) > 0) | (np.diff(z) > SURFACE.ground_layer_jump)]
     layer = np.cumsum(begins) - 1
     size = np.bincount(layer)
     of_cell = cell[begins]
-    solid = size >= np.maximum(MIN_LAYER_POINTS, MIN_LAYER_SHARE * total[of_cell])
+    solid = size >= np.maximum(SURFACE.min_layer_points, SURFACE.min_layer_share * total[of_cell])
     layer_of_cell = np.full(len(total), -1)
     numbers = np.flatnonzero(solid)[::-1]
     layer_of_cell[of_cell[numbers]] = numbers
     lowest = z[begins]
-    return (layer_of_cell[cell] == layer) & (z - lowest[layer] < GROUND_LAYER_DEPTH)
+    return (layer_of_cell[cell] == layer) & (z - lowest[layer] < SURFACE.ground_layer_depth)
 
 
 def _planes(at, count, u, v, z):
@@ -268,7 +258,7 @@ def _planes(at, count, u, v, z):
     determinant = uu * vv - uv * uv
     across, along = (uz * vv - vz * uv) / determinant, (vz * uu - uz * uv) / determinant
     rest = np.maximum(zz - across * uz - along * vz, 0.0)
-    enough, any_ground = count >= MIN_PLANE_POINTS, count >= MIN_LAYER_POINTS
+    enough, any_ground = count >= SURFACE.min_plane_points, count >= SURFACE.min_layer_points
     rough = np.sqrt(rest * n / np.maximum(n - 3, 1))
     height = np.where(enough, mz - across * mu - along * mv, mz)
     return np.where(any_ground, height, np.nan), np.where(enough, rough, np.nan)
@@ -285,7 +275,7 @@ def _looks(points, at, shape, column_size, bright):
     values = intensity[order_by(intensity.view(np.int32), at)].astype(float)
     count = np.bincount(at, minlength=shape[0] * shape[1])
     start = np.cumsum(count) - count
-    filled = count >= MIN_LAYER_POINTS
+    filled = count >= SURFACE.min_layer_points
     median, spread = np.full(len(count), np.nan), np.full(len(count), np.nan)
     median[filled] = values[(start + count // 2)[filled]]
     spread[filled] = (median[filled] - values[(start + count // 4)[filled]]) / 0.6745
@@ -297,11 +287,6 @@ def _looks(points, at, shape, column_size, bright):
 # Two scanners that see one place return different intensities: their gains differ, and so do the ranges and angles at which they see it. A cell
 # that both have measured then seems to scatter by half of its brightness, in which gravel beside asphalt drowns; and where only one of them sees
 # the ground, the road seems to change. What they differ by where both see the same ground does not depend on what that ground is.
-
-LEVEL_WIDTH = 1.0        # m across the road in which the levels of views differ by one factor
-POINT_SIGMA = 0.2        # of the logarithm of the intensity of a point about that of its cell: texture, speckle, paint
-CHANGE_SIGMA = 0.1       # of the logarithm of a factor from one LEVEL_WIDTH to the next: range and angle change evenly
-LEVEL_SIGMA = 2.0        # of the logarithm of a factor itself: it is unknown
 
 
 def at_one_level(intensity: np.ndarray, view: np.ndarray, cell: np.ndarray, shape: tuple[int, int], column_size: float) -> np.ndarray:
@@ -342,21 +327,21 @@ def _levels(count, mean, column_size):
     # normal equations without the unknown brightness of each cell
     both = -np.einsum("rcv,rcw->cvw", count / total, count)
     both[:, np.arange(views), np.arange(views)] += count.sum(0)
-    bin_of = (np.arange(columns) * column_size / LEVEL_WIDTH).astype(np.int64)
+    bin_of = (np.arange(columns) * column_size / SURFACE.level_width).astype(np.int64)
     bins = int(bin_of[-1]) + 1
     first = np.searchsorted(bin_of, np.arange(bins))
     both, off = np.add.reduceat(both, first, axis=0), np.add.reduceat(off.sum(0), first, axis=0)
-    smooth = (POINT_SIGMA / CHANGE_SIGMA) ** 2
+    smooth = (SURFACE.point_sigma / SURFACE.change_sigma) ** 2
     neighbours = np.full(bins, 2.0)
     neighbours[[0, -1]] -= 1.0
-    both[:, np.arange(views), np.arange(views)] += (neighbours * smooth)[:, None] + (POINT_SIGMA / LEVEL_SIGMA) ** 2
+    both[:, np.arange(views), np.arange(views)] += (neighbours * smooth)[:, None] + (SURFACE.point_sigma / SURFACE.level_sigma) ** 2
     # bins are coupled to the next ones alone: a band of one value per view
     band = np.zeros((views + 1, bins * views))
     for k in range(views):
         band[views - k].reshape(bins, views)[:, k:] = np.diagonal(both, k, 1, 2)
     band[0, views:] = -smooth if bins > 1 else 0.0
     found = solveh_banded(band, off.ravel()).reshape(bins, views)
-    middles = (np.arange(bins) + 0.5) * LEVEL_WIDTH
+    middles = (np.arange(bins) + 0.5) * SURFACE.level_width
     return np.array([np.interp((np.arange(columns) + 0.5) * column_size, middles, found[:, k]) for k in range(views)])
 
 
@@ -364,16 +349,14 @@ def _levels(count, mean, column_size):
 #
 # The edges of the pavement and the surface are found in the same ground, which takes longer to measure than to look at.
 
-WINDOW_ROWS = 10              # rows of cells in memory at a time: 5 m
-MEASURED_WINDOWS = 8          # that a worker process is given together: at everyday density a twentieth of a second of its time
-PROFILES_PER_WINDOW = round(WINDOW_ROWS * ROW_LENGTH / PROFILE_ROW)
+PROFILES_PER_WINDOW = round(SURFACE.window_rows * SURFACE.row_length / SURFACE.profile_row)
 CELL_NAMES = ("height", "rough", "count")   # what is known of the cells: the brightness of ground is that of its profiles
 
 Wanted = tuple[int, bool, bool]   # first row of a window, and whether its cells and its profiles are to be measured
 
 
 class MeasuredGround:
-    """Ground cells and surface profiles of windows of WINDOW_ROWS rows, kept in a temporary file, however long the road is.
+    """Ground cells and surface profiles of windows of SURFACE.window_rows rows, kept in a temporary file, however long the road is.
 
     Parameters
     ----------
@@ -402,21 +385,22 @@ class MeasuredGround:
         profiles : SurfaceProfiles of the windows where they are wanted; None where they are wanted nowhere
         """
         self._measure(road, rows, profiled, progress)
-        half = _ground_columns(CORRIDOR, COLUMN_WIDTH)
-        cells = np.empty((len(CELL_NAMES), WINDOW_ROWS * len(rows), 2 * half), np.float32)
+        half = _ground_columns(CORRIDOR, SURFACE.column_width)
+        cells = np.empty((len(CELL_NAMES), SURFACE.window_rows * len(rows), 2 * half), np.float32)
         for place, row in enumerate(rows):
-            self._read(0, road, row, cells[:, WINDOW_ROWS * place:WINDOW_ROWS * (place + 1)])
+            self._read(0, road, row, cells[:, SURFACE.window_rows * place:SURFACE.window_rows * (place + 1)])
         known = dict(zip(CELL_NAMES, cells), **dict.fromkeys(("brightness", "scatter"), np.broadcast_to(np.float32(np.nan), cells.shape[1:])))
-        ground = GroundCells(rows[0], -half, ROW_LENGTH, COLUMN_WIDTH, **known)
+        ground = GroundCells(rows[0], -half, SURFACE.row_length, SURFACE.column_width, **known)
         wanted = [row for row, want in zip(rows, profiled) if want]
         if not wanted:
             return ground, None
-        half = _ground_columns(CORRIDOR, PROFILE_COLUMN)
+        half = _ground_columns(CORRIDOR, SURFACE.profile_column)
         profiles = np.empty((len(SurfaceProfiles.NAMES), PROFILES_PER_WINDOW * len(wanted), 2 * half), np.float32)
         for place, row in enumerate(wanted):
             self._read(1, road, row, profiles[:, PROFILES_PER_WINDOW * place:PROFILES_PER_WINDOW * (place + 1)])
-        first = np.array(wanted)[:, None] // round(PROFILE_ROW / ROW_LENGTH) + np.arange(PROFILES_PER_WINDOW)
-        return ground, SurfaceProfiles((first.ravel() + 0.5) * PROFILE_ROW, (np.arange(-half, half) + 0.5) * PROFILE_COLUMN, *profiles)
+        first = np.array(wanted)[:, None] // round(SURFACE.profile_row / SURFACE.row_length) + np.arange(PROFILES_PER_WINDOW)
+        return ground, SurfaceProfiles((first.ravel() + 0.5) * SURFACE.profile_row, (np.arange(-half, half) + 0.5) * SURFACE.profile_column,
+                                       *profiles)
 
     def _measure(self, road, rows, profiled, progress):
         """Keep what is wanted of windows and not known yet."""
@@ -424,10 +408,10 @@ class MeasuredGround:
         windows = [window for window in ((row, (road, row) not in known, wanted and (road, row) not in seen) for row, wanted in zip(rows, profiled))
                    if any(window[1:])]
         executor = self.survey.executor.passing()
-        size = MEASURED_WINDOWS if executor.folder else 1
+        size = SURFACE.measured_windows if executor.folder else 1
         items = [windows[k:k + size] for k in range(0, len(windows), size)]
         phase = Phase(ground_of_windows, self.survey, (road,), lambda item: self.survey.stretch(
-            road, item[0][0] * ROW_LENGTH, (item[-1][0] + WINDOW_ROWS) * ROW_LENGTH))
+            road, item[0][0] * SURFACE.row_length, (item[-1][0] + SURFACE.window_rows) * SURFACE.row_length))
         self._file = self._file or SpillFile()
         for item, found in zip(items, executor.run(phase, items, progress)):
             for kind, (kept, parts) in enumerate(zip(self._kept, found), 1):
@@ -459,12 +443,12 @@ def ground_of_windows(survey: Survey, windows: Sequence[Wanted], road: int) -> t
         return survey.road_height(road, s)
 
     for row, with_cells, with_profiles in windows:
-        points = survey.window(road, row * ROW_LENGTH, (row + WINDOW_ROWS) * ROW_LENGTH)
+        points = survey.window(road, row * SURFACE.row_length, (row + SURFACE.window_rows) * SURFACE.row_length)
         if with_profiles:
-            profiles.append(SurfaceProfiles.of(points, row * ROW_LENGTH, WINDOW_ROWS * ROW_LENGTH, CORRIDOR, height,
+            profiles.append(SurfaceProfiles.of(points, row * SURFACE.row_length, SURFACE.window_rows * SURFACE.row_length, CORRIDOR, height,
                                                lambda seen: ahead_of_vehicle(survey, seen, seen.s)))
         if with_cells:
-            cells.append(_ground_cells(points, row, WINDOW_ROWS, CORRIDOR, height))
+            cells.append(_ground_cells(points, row, SURFACE.window_rows, CORRIDOR, height))
     return _stacked(cells, CELL_NAMES), _stacked(profiles, SurfaceProfiles.NAMES)
 
 

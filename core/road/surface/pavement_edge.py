@@ -13,24 +13,18 @@ import numpy as np
 
 from ...common.arrays import stretch_of
 from ...common.parallel import by_rows
-from ..edges.fit import MAX_EDGE_JUMP
+from ..weights import EDGE, SURFACE
 from .ground_change import HalfProfiles, other_ground_begins
-from .ground_grid import PROFILE_COLUMN, PROFILE_ROW, GroundCells, SurfaceProfiles, known_median
+from .ground_grid import GroundCells, SurfaceProfiles, known_median
 from .pavement_limit import cheapest_path, pavement_limits
 
 if TYPE_CHECKING:
     from ..edges.road_edges import RoadEdges
 
-POOLED_ROWS, ROWS_PER_STEP = 5, 2  # rows of cells that make one profile, and rows from one profile to the next: 5 m every 2 m
-MAX_MISS = 1.5               # m by which a profile may miss the edge and say so, farther is no worse
-BLIND_SHARE = 0.3            # of the miss of a limit farther out than a profile that ends where nothing was measured
-WIDENING_COST = 1.5            # m of misses that a change of the edge by 1 m must save: three profiles (6 m) in a row
-LARGEST_WIDENING_COST = 3.0    # m of misses that any change must save: a street joins over at least five profiles (10 m)
-
 
 @dataclass(frozen=True)
 class _PooledProfiles:
-    """The ground across the road every ROWS_PER_STEP rows of SurfaceProfiles: medians of the cells of POOLED_ROWS rows.
+    """The ground across the road every SURFACE.rows_per_step rows of SurfaceProfiles: medians of the cells of SURFACE.pooled_rows rows.
 
     stations : (Q,) m; height, rough, brightness : (Q, K)
     """
@@ -43,19 +37,19 @@ class _PooledProfiles:
     @classmethod
     def of(cls, rows: SurfaceProfiles) -> _PooledProfiles:
         """Those of P rows."""
-        return cls(rows.stations[::ROWS_PER_STEP], *(_pooled(values) for values in (rows.height, rows.rough, rows.brightness)))
+        return cls(rows.stations[::SURFACE.rows_per_step], *(_pooled(values) for values in (rows.height, rows.rough, rows.brightness)))
 
 
 def _pooled(values):
     """(Q, K) medians of (P, K) cells."""
-    half = POOLED_ROWS // 2
+    half = SURFACE.pooled_rows // 2
 
     def medians(some):
-        first, end = some.start * ROWS_PER_STEP - half, (some.stop - 1) * ROWS_PER_STEP + half + 1
+        first, end = some.start * SURFACE.rows_per_step - half, (some.stop - 1) * SURFACE.rows_per_step + half + 1
         here = np.pad(values[max(first, 0):end], ((max(-first, 0), max(end - len(values), 0)), (0, 0)), constant_values=np.nan)
-        return known_median(np.lib.stride_tricks.sliding_window_view(here, POOLED_ROWS, axis=0)[::ROWS_PER_STEP], 2)
+        return known_median(np.lib.stride_tricks.sliding_window_view(here, SURFACE.pooled_rows, axis=0)[::SURFACE.rows_per_step], 2)
 
-    return by_rows(medians, -(-len(values) // ROWS_PER_STEP))
+    return by_rows(medians, -(-len(values) // SURFACE.rows_per_step))
 
 
 @dataclass(frozen=True)
@@ -114,21 +108,23 @@ def grown_limit(profiles: SurfaceProfiles, cells: GroundCells, height: np.ndarra
     # at the last cell, nothing beyond it was looked for
     blind = np.pad(halves.blind(), ((0, 0), (0, 1)))[np.arange(len(changes)), changes]
     changes = np.interp(pooled.stations, pooled.stations[known], _agreed(changes[known], blind[known], len(rows.offsets)))
-    other = other_ground_begins(pooled.brightness, pooled.stations, (beside - rows.offsets[0]) / PROFILE_COLUMN, changes)
+    other = other_ground_begins(pooled.brightness, pooled.stations, (beside - rows.offsets[0]) / SURFACE.profile_column, changes)
     changes = np.interp(rows.stations, pooled.stations, np.where(np.isfinite(other), other, changes))
     found = pavement_limits(rows, changes)
-    outward = np.interp(stations, rows.stations, rows.offsets[0] + (found.cell - 0.5) * PROFILE_COLUMN)
-    row = np.clip(np.searchsorted(rows.stations + 0.5 * PROFILE_ROW, stations), 0, len(rows.stations) - 1)
+    outward = np.interp(stations, rows.stations, rows.offsets[0] + (found.cell - 0.5) * SURFACE.profile_column)
+    row = np.clip(np.searchsorted(rows.stations + 0.5 * SURFACE.profile_row, stations), 0, len(rows.stations) - 1)
     farthest = sign * track + max_width
-    return _GrownLimit(sign * np.minimum(outward, farthest), found.gap[row] * PROFILE_COLUMN / np.sqrt(12.0), found.shown[row] & (outward < farthest),
-                      found.likely[row] & (outward < farthest), found.hidden[row])
+    within = outward < farthest
+    return _GrownLimit(sign * np.minimum(outward, farthest), found.gap[row] * SURFACE.profile_column / np.sqrt(12.0),
+                       found.shown[row] & within, found.likely[row] & within, found.hidden[row])
 
 
 def _agreed(changes, blind, cells):
     """(P,) cell at which the ground changes, along the path that most profiles agree with."""
-    miss = (np.arange(cells + 1) - changes[:, None]) * PROFILE_COLUMN
-    cost = np.minimum(np.abs(miss), MAX_MISS)
-    return cheapest_path(np.where(blind[:, None] & (miss > 0), BLIND_SHARE * cost, cost), WIDENING_COST * PROFILE_COLUMN, LARGEST_WIDENING_COST)
+    miss = (np.arange(cells + 1) - changes[:, None]) * SURFACE.profile_column
+    cost = np.minimum(np.abs(miss), SURFACE.max_miss)
+    return cheapest_path(np.where(blind[:, None] & (miss > 0), SURFACE.blind_share * cost, cost), SURFACE.widening_cost * SURFACE.profile_column,
+                         SURFACE.largest_widening_cost)
 
 
 def _rise(height, prior, cells, stations, offsets):
@@ -145,10 +141,6 @@ def _rise(height, prior, cells, stations, offsets):
 
 
 # The limits of the road from its edges, as offsets at given stations.
-
-MAX_OPENING = 30.0       # m of missing edge that is closed by a straight line
-EDGE_CONTINUATION = 5.0  # m by which the offset of an edge holds before its first and after its last vertex
-MAX_BRIDGED_SKEW = 0.15  # m across per m along of a gap, beside MAX_EDGE_JUMP: tapers widen by 1 in 10 and less
 
 
 @dataclass
@@ -237,11 +229,11 @@ def _lines_of(edges, road, side, wanted):
 
 
 def _closed(stations, offset):
-    """Offsets with openings closed that the edges before and after them reach across: each holds for EDGE_CONTINUATION beyond its end."""
+    """Offsets with openings closed that the edges before and after them reach across: each holds for SURFACE.edge_continuation beyond its end."""
     known = np.flatnonzero(np.isfinite(offset))
     before, after = known[:-1], known[1:]
     length, shift = stations[after] - stations[before], np.abs(offset[after] - offset[before])
-    reached = np.r_[False, (length <= 2 * EDGE_CONTINUATION) & (shift <= MAX_EDGE_JUMP + MAX_BRIDGED_SKEW * length), False]
+    reached = np.r_[False, (length <= 2 * SURFACE.edge_continuation) & (shift <= EDGE.max_edge_jump + SURFACE.max_bridged_skew * length), False]
     if not reached.any():
         return offset
     inside = np.isnan(offset) & reached[np.searchsorted(stations[known], stations)]
@@ -258,5 +250,5 @@ def _continued(stations, offset):
     s0 = stations[known][np.maximum(after - 1, 0)]
     s1 = stations[known][np.minimum(after, len(known) - 1)]
     between = (after > 0) & (after < len(known))
-    near = np.minimum(np.abs(stations - s0), np.abs(stations - s1)) <= EDGE_CONTINUATION
-    return np.where(np.isfinite(offset), offset, np.where((between & (s1 - s0 <= MAX_OPENING)) | near, filled, np.nan))
+    near = np.minimum(np.abs(stations - s0), np.abs(stations - s1)) <= SURFACE.edge_continuation
+    return np.where(np.isfinite(offset), offset, np.where((between & (s1 - s0 <= SURFACE.max_opening)) | near, filled, np.nan))

@@ -18,24 +18,18 @@ from ...common.arrays import stretch_of
 from ...common.parallel import check_cancelled
 from ...common.progress import Progress
 from ..common.tracking import GapLine
-from ..edges.fit import EDGE_VERTEX_SPACING, IN_LINE_GAP_FACTOR, MAX_EDGE_JUMP, MIN_HIDDEN_SHARE, EdgeSettings
+from ..edges.fit import EdgeSettings
 from ..edges.road_edges import EdgePiece, RoadEdges
+from ..weights import EDGE, SURFACE
 from .extract import SurfaceSettings, find_carriageway
-from .ground_grid import COLUMN_WIDTH, ROW_LENGTH
-from .pavement_edge import MAX_BRIDGED_SKEW, Carriageway, edge_offsets
+from .pavement_edge import Carriageway, edge_offsets
 
 if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame
     from ...survey.open_survey import Survey
     from .ground_grid import MeasuredGround
 
-AGREEING_LENGTH = 7.0       # m of road of which most must show the edge
-MIN_PAVEMENT_LENGTH = 10.0  # m of a line and of the curb beside it: rows are averages of 7 m, so what is shorter is a single observation
-MIN_OWN_LENGTH = 0.5 * AGREEING_LENGTH  # m of a line without that curb: which rows begin it is no better known
-MAX_ROW_JUMP = 0.5          # m across from one row to the next at which a line ends: a street joins
-MAX_LINE_MISS = 0.2         # m, of single rows from one even bend through both sides of a gap that is longer than `max_gap`
-MEETING_LENGTH = 0.5        # m at the end of a line in which it may meet a curb
-MIN_LIKELY_SHARE = 0.5      # of a gap in which the edge is rather there than not, for the line to go on as measured
+MIN_OWN_LENGTH = 0.5 * SURFACE.agreeing_length   # derived: m of a line without that curb; which rows begin it is no better known
 
 
 def with_pavement_edges(survey: Survey, edges: RoadEdges, settings: EdgeSettings = EdgeSettings(), surface: SurfaceSettings = SurfaceSettings(),
@@ -92,8 +86,8 @@ def _pavement_pieces(frame: RoadFrame, road: int, carriageway: Carriageway, edge
         curb = curbs[side][0]
         free = there & np.isnan(curb)
         # beside a curb that goes on from it the edge is shown, too
-        shown = grown.shown & (free | there & (np.abs(np.nan_to_num(curb, nan=np.inf) - grown.offset) <= MAX_ROW_JUMP))
-        agreeing = uniform_filter1d(shown.astype(float), int(AGREEING_LENGTH / ROW_LENGTH) | 1, mode="constant") > 0.5
+        shown = grown.shown & (free | there & (np.abs(np.nan_to_num(curb, nan=np.inf) - grown.offset) <= SURFACE.max_row_jump))
+        agreeing = uniform_filter1d(shown.astype(float), int(SURFACE.agreeing_length / SURFACE.row_length) | 1, mode="constant") > 0.5
         places, rows = np.array(frame.to_map(road, stations, grown.offset)), free
         known: dict[tuple[tuple[int, int], ...], tuple[list[EdgePiece], np.ndarray]] = {}   # lines drawn so far, and where they cross curbs
         while True:
@@ -107,7 +101,7 @@ def _pavement_pieces(frame: RoadFrame, road: int, carriageway: Carriageway, edge
                     known[runs] = pieces, np.concatenate([_crossings(piece, curb_lines) for piece in pieces])
             # whatever was taken for an edge that crosses a curb, it is seen in averages of that length
             more = np.concatenate([np.empty(0), *(known[runs][1] for runs in lines)])
-            taken = rows & (_distance(stations, more) <= AGREEING_LENGTH)
+            taken = rows & (_distance(stations, more) <= SURFACE.agreeing_length)
             if not taken.any():
                 break
             rows = rows & ~taken
@@ -132,7 +126,7 @@ def _crossings(piece, curb_lines):
     met = shapely.union_all(curb_lines.geometries[np.sort(curb_lines.query(line, predicate="intersects"))])
     points = shapely.points(shapely.get_coordinates(shapely.intersection(line, met)))
     along = shapely.line_locate_point(line, points)
-    inside = (along > MEETING_LENGTH) & (along < line.length - MEETING_LENGTH)
+    inside = (along > SURFACE.meeting_length) & (along < line.length - SURFACE.meeting_length)
     away = np.r_[0.0, np.cumsum(np.hypot(*np.diff(piece.vertices[:, :2], axis=0).T))]
     return np.interp(along[inside], away, np.linspace(piece.station, piece.end, len(away)))
 
@@ -142,16 +136,16 @@ def _lines(shown, confirmed, likely, possible, offset, places, max_gap):
 
     `confirmed` : (R,) bool, rows that show the edge, those where a curb goes on from it included
     """
-    broken = np.abs(np.diff(offset)) > MAX_ROW_JUMP
+    broken = np.abs(np.diff(offset)) > SURFACE.max_row_jump
     runs = _runs(shown, broken)
     lines: list[list[tuple[int, int]]] = []
     for run in runs:
         last = lines[-1][-1] if lines else (0, -len(offset))
         gap = slice(last[1], run[0])
-        if not lines or not _go_on(offset, gap, IN_LINE_GAP_FACTOR * max_gap) or not possible[gap].mean() >= MIN_HIDDEN_SHARE \
-                or (gap.stop - gap.start) * ROW_LENGTH > max_gap and not _in_line(places[:, slice(*last)], places[:, slice(*run)]):
+        if not lines or not _go_on(offset, gap, EDGE.in_line_gap_factor * max_gap) or not possible[gap].mean() >= EDGE.min_hidden_share \
+                or (gap.stop - gap.start) * SURFACE.row_length > max_gap and not _in_line(places[:, slice(*last)], places[:, slice(*run)]):
             lines.append([run])
-        elif likely[gap].mean() >= MIN_LIKELY_SHARE:
+        elif likely[gap].mean() >= SURFACE.min_likely_share:
             lines[-1][-1] = (last[0], run[1])
         else:
             lines[-1].append(run)
@@ -161,7 +155,7 @@ def _lines(shown, confirmed, likely, possible, offset, places, max_gap):
         first, end = line[0][0], line[-1][1]
         begin, stop = seen[np.searchsorted(seen[:, 0], first, "right") - 1, 0], seen[np.searchsorted(seen[:, 1], end), 1]
         own = sum(b - a for a, b in line)
-        return own * ROW_LENGTH >= MIN_OWN_LENGTH and (own + first - begin + stop - end) * ROW_LENGTH >= MIN_PAVEMENT_LENGTH
+        return own * SURFACE.row_length >= MIN_OWN_LENGTH and (own + first - begin + stop - end) * SURFACE.row_length >= SURFACE.min_pavement_length
 
     return [line for line in lines if long_enough(line)]
 
@@ -174,14 +168,14 @@ def _runs(rows, broken):
 
 def _go_on(offset, gap, max_gap):
     """Whether a line may go on after a gap of rows."""
-    length = (gap.stop - gap.start) * ROW_LENGTH
-    return 0 < length <= max_gap and abs(offset[gap.stop] - offset[gap.start - 1]) <= MAX_EDGE_JUMP + MAX_BRIDGED_SKEW * length
+    length = (gap.stop - gap.start) * SURFACE.row_length
+    return 0 < length <= max_gap and abs(offset[gap.stop] - offset[gap.start - 1]) <= EDGE.max_edge_jump + SURFACE.max_bridged_skew * length
 
 
 def _in_line(before, after):
     """Whether the (2, N) and (2, M) places before and after a gap lie on one even bend."""
-    long = min(before.shape[1], after.shape[1]) * ROW_LENGTH >= AGREEING_LENGTH
-    return long and GapLine(before, after, max_degree=2).miss <= MAX_LINE_MISS
+    long = min(before.shape[1], after.shape[1]) * SURFACE.row_length >= SURFACE.agreeing_length
+    return long and GapLine(before, after, max_degree=2).miss <= SURFACE.max_line_miss
 
 
 def _drawn(frame, road, side, carriageway, grown, runs):
@@ -201,7 +195,7 @@ def _drawn(frame, road, side, carriageway, grown, runs):
             pieces.append(("measured", stations[a], stations[b - 1]))
     found = []
     for status, start, end in pieces:
-        s = np.linspace(start, end, max(int(np.ceil((end - start) / EDGE_VERTEX_SPACING)), 1) + 1)
+        s = np.linspace(start, end, max(int(np.ceil((end - start) / EDGE.edge_vertex_spacing)), 1) + 1)
         d = splev(s, curve) if status == "measured" else np.interp(s, [start, end], splev([start, end], curve))
         vertices = np.c_[frame.to_map(road, s, d, _height(carriageway, s, d))]
         near = stretch_of(stations[rows], start, end)
@@ -216,8 +210,8 @@ def _drawn(frame, road, side, carriageway, grown, runs):
 def _height(carriageway, s, d):
     """(N,) m, local z of the road at its edge."""
     cells = carriageway.cells
-    row = np.clip(s / ROW_LENGTH - cells.first_row - 0.5, 0, len(carriageway.height) - 1)
-    column = np.clip(np.floor(d / COLUMN_WIDTH).astype(int) - cells.first_column, 0, carriageway.height.shape[1] - 1)
+    row = np.clip(s / SURFACE.row_length - cells.first_row - 0.5, 0, len(carriageway.height) - 1)
+    column = np.clip(np.floor(d / SURFACE.column_width).astype(int) - cells.first_column, 0, carriageway.height.shape[1] - 1)
     i = np.minimum(row.astype(int), len(carriageway.height) - 2)
     low, high = carriageway.height[i, column], carriageway.height[i + 1, column]
     return low + (row - i) * (high - low)

@@ -11,16 +11,11 @@ from scipy import ndimage
 from ...survey.store.records import COORDINATE_SCALE, Points
 from ...survey.store.road_points import packed_mask
 from ...survey.store.section_store import Stretch
-from .ground_grid import COLUMN_WIDTH, GROUND_POINTS_PER_BATCH, ROW_LENGTH
+from ..weights import SURFACE
 
 if TYPE_CHECKING:
     from ...survey.open_survey import Survey
     from .pavement_edge import Carriageway
-
-MIN_OBSTACLE_HEIGHT, MAX_OBSTACLE_HEIGHT = 0.25, 2.0  # m above the road: curbs and stray points are lower, signs and branches higher
-OBSTACLE_SQUARE = 0.20       # m, side of the squares in which obstacles are counted
-ROWS_BESIDE = 4              # rows of cells beyond a stretch that tell of its points, and of what stands within two squares beside it
-MIN_OBSTACLE_SHARE = 1 / 3   # of the points in a square and the eight around it
 
 
 def covered_by_obstacles(road_points: Points, above: Points) -> np.ndarray:
@@ -29,7 +24,7 @@ def covered_by_obstacles(road_points: Points, above: Points) -> np.ndarray:
     Parameters
     ----------
     road_points : N Points of the road
-    above : Points MIN_OBSTACLE_HEIGHT to MAX_OBSTACLE_HEIGHT above it; both must reach one square farther along the road
+    above : Points SURFACE.min_obstacle_height to SURFACE.max_obstacle_height above it; both must reach one square farther along the road
         than the points that are asked for
 
     Returns
@@ -42,24 +37,24 @@ def covered_by_obstacles(road_points: Points, above: Points) -> np.ndarray:
     road, high = (ndimage.uniform_filter(np.bincount(p, minlength=shape[0] * shape[1]).reshape(shape).astype(float), 3, mode="constant")
                   for p in (places, high_places))
     # counts of nine squares: rounding removes the error of the running mean
-    dark = np.rint(9 * high) > MIN_OBSTACLE_SHARE * np.rint(9 * (road + high))
+    dark = np.rint(9 * high) > SURFACE.min_obstacle_share * np.rint(9 * (road + high))
     return dark.ravel().take(places) if dark.any() else np.zeros(len(road_points), bool)
 
 
 def _squares(*points):
     """(N,) int32 number of the square of each point, for several sets of points, and the (rows, columns) of all squares."""
-    size = np.int32(round(OBSTACLE_SQUARE / COORDINATE_SCALE))
+    size = np.int32(round(SURFACE.obstacle_square / COORDINATE_SCALE))
     low = [min(int(records[name].min()) for records in points) // size - 1 for name in ("s", "d")]
     shape = tuple(max(int(records[name].max()) for records in points) // size - first + 2 for name, first in zip(("s", "d"), low))
     found = []
     for records in points:
         place = np.empty(len(records), np.int32)
-        for first in range(0, len(place), GROUND_POINTS_PER_BATCH):
-            run = place[first:first + GROUND_POINTS_PER_BATCH]
-            np.floor_divide(records["s"][first:first + GROUND_POINTS_PER_BATCH], size, out=run)
+        for first in range(0, len(place), SURFACE.ground_points_per_batch):
+            run = place[first:first + SURFACE.ground_points_per_batch]
+            np.floor_divide(records["s"][first:first + SURFACE.ground_points_per_batch], size, out=run)
             run -= np.int32(low[0])
             run *= np.int32(shape[1])
-            run += records["d"][first:first + GROUND_POINTS_PER_BATCH] // size
+            run += records["d"][first:first + SURFACE.ground_points_per_batch] // size
             run -= np.int32(low[1])
         found.append(place)
     return *found, shape
@@ -96,9 +91,10 @@ def surface_about(carriageway: Carriageway, stretch: Stretch, section_length: fl
     section_length : m
     """
     cells, count = carriageway.cells, len(carriageway.height)
-    low, high = stretch[1] * section_length - ROWS_BESIDE * ROW_LENGTH, stretch[2] * section_length + ROWS_BESIDE * ROW_LENGTH
-    a = int(np.clip(np.floor(low / ROW_LENGTH) - cells.first_row, 0, count - 1))
-    b = int(np.clip(np.ceil(high / ROW_LENGTH) - cells.first_row, a + 1, count))
+    beside = SURFACE.rows_beside * SURFACE.row_length
+    low, high = stretch[1] * section_length - beside, stretch[2] * section_length + beside
+    a = int(np.clip(np.floor(low / SURFACE.row_length) - cells.first_row, 0, count - 1))
+    b = int(np.clip(np.ceil(high / SURFACE.row_length) - cells.first_row, a + 1, count))
     none = cells.height[:0]
     here = replace(cells, first_row=cells.first_row + a, height=cells.height[a:b], rough=none, brightness=none, scatter=none, count=none)
     rows = {name: getattr(carriageway, name)[a:b] for name in ("height", "ground", "right", "left", "right_bounded", "left_bounded")}
@@ -121,8 +117,8 @@ def _points_of_section(survey, road, number, carriageway):
     store = survey.store
     start, end = (np.array([number, number + 1]) * store.section_length).tolist()
     # an obstacle beside a point may lie in the next section
-    first_square, last_square = np.floor(start / OBSTACLE_SQUARE - 1.01), np.ceil(end / OBSTACLE_SQUARE + 1.01)
-    points = survey.window(road, first_square * OBSTACLE_SQUARE, last_square * OBSTACLE_SQUARE)
+    first_square, last_square = np.floor(start / SURFACE.obstacle_square - 1.01), np.ceil(end / SURFACE.obstacle_square + 1.01)
+    points = survey.window(road, first_square * SURFACE.obstacle_square, last_square * SURFACE.obstacle_square)
     found = points_on_road(points, carriageway)
     beneath = covered_by_obstacles(points[found.surface], points[found.above])
     # points are sorted by station
@@ -130,7 +126,7 @@ def _points_of_section(survey, road, number, carriageway):
     first, last = np.searchsorted(stations, np.array([store.first_unit(number), store.first_unit(number + 1)], stations.dtype))
     own = slice(*np.searchsorted(found.surface, [first, last]))
     rows, first_row, count = found.surface[own], carriageway.cells.first_row, len(carriageway.height)
-    row = np.floor(stations.take(rows) * COORDINATE_SCALE / ROW_LENGTH).astype(np.int64) - first_row
+    row = np.floor(stations.take(rows) * COORDINATE_SCALE / SURFACE.row_length).astype(np.int64) - first_row
     per_row = np.bincount(np.clip(row, 0, count - 1), minlength=count)
     return _SurfaceOfSection(number, packed_mask(rows - first), found.half_width[own], beneath[own].astype(np.uint8), first_row, per_row)
 
@@ -143,7 +139,7 @@ class _OnRoad:
     ----------
     surface : (M,) int, points of the road surface
     half_width : (M,) uint16 mm, from the reference line to the limit of the road on the side of each point
-    above : (K,) int, points MIN_OBSTACLE_HEIGHT to MAX_OBSTACLE_HEIGHT above the surface
+    above : (K,) int, points SURFACE.min_obstacle_height to SURFACE.max_obstacle_height above the surface
     """
 
     surface: np.ndarray
@@ -176,8 +172,8 @@ def points_on_road(points: Points, carriageway: Carriageway) -> _OnRoad:
         return _OnRoad(np.empty(0, np.intp), np.empty(0, np.uint16), np.empty(0, np.intp))
     here = _SurfaceTables(carriageway, records["s"], records["d"])
     parts = []
-    for first in range(0, len(records), GROUND_POINTS_PER_BATCH):
-        found = here.points(*(records[name][first:first + GROUND_POINTS_PER_BATCH] for name in ("s", "d", "z")))
+    for first in range(0, len(records), SURFACE.ground_points_per_batch):
+        found = here.points(*(records[name][first:first + SURFACE.ground_points_per_batch] for name in ("s", "d", "z")))
         parts.append((found[0] + first, found[1], found[2] + first))
     return _OnRoad(*(np.concatenate(part) for part in zip(*parts)))
 
@@ -190,7 +186,7 @@ class _SurfaceTables:
         # as many rows and columns as the points need; beyond the outermost cells height and limits are constant
         (self.s0, rows), (self.d0, columns) = (
             _middles(values, size, first, count) for values, size, first, count in
-            ((s, ROW_LENGTH, cells.first_row, cells.height.shape[0]), (d, COLUMN_WIDTH, cells.first_column, cells.height.shape[1])))
+            ((s, SURFACE.row_length, cells.first_row, cells.height.shape[0]), (d, SURFACE.column_width, cells.first_column, cells.height.shape[1])))
         height = carriageway.height[np.ix_(rows, columns)].astype(float) / COORDINATE_SCALE
         self.columns = len(columns) - 1
         self.left, self.right = (_half_rows(limit[rows] / COORDINATE_SCALE) for limit in (carriageway.left, carriageway.right))
@@ -200,15 +196,15 @@ class _SurfaceTables:
         self.tables = [table.astype(np.float32).ravel() for table in (height[:-1, :-1] - np.rint(height[:-1, :-1]), across[:-1],
                                                                       np.diff(height, axis=0)[:, :-1], np.diff(across, axis=0))]
         self.tolerance, self.low, self.high = (np.float32(metres / COORDINATE_SCALE) for metres in
-                                               (carriageway.tolerance, MIN_OBSTACLE_HEIGHT, MAX_OBSTACLE_HEIGHT))
+                                               (carriageway.tolerance, SURFACE.min_obstacle_height, SURFACE.max_obstacle_height))
 
     def points(self, s, d, z):
         """Indices of the points on the road, their half widths (mm), and indices of the points above it."""
-        row, u = _steps(s, self.s0, ROW_LENGTH)
+        row, u = _steps(s, self.s0, SURFACE.row_length)
         half = row + row
         half += u >= np.float32(0.5)
         left, right = (_line(*limit, half, u) for limit in (self.left, self.right))
-        cell, v = _steps(d, self.d0, COLUMN_WIDTH)
+        cell, v = _steps(d, self.d0, SURFACE.column_width)
         row *= np.int32(self.columns)
         cell += row
         rest, across, along, twist = (table.take(cell, mode="clip") for table in self.tables)

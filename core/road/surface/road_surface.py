@@ -12,7 +12,7 @@ import shapely
 from ...common.features import ROAD_SURFACE
 from ...common.layer_rows import LayerRows, column
 from ...survey.frame.placement import COORDINATE_DECIMALS
-from .ground_grid import COLUMN_WIDTH, ROW_LENGTH
+from ..weights import SURFACE
 
 if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame
@@ -59,8 +59,6 @@ class SurfaceOutlines(LayerRows):
 
 # Outlines of the road surface: one polygon for each stretch of one status.
 
-MIN_SURFACE_STATUS_LENGTH = 5.0  # m: shorter changes of status are not drawn
-
 
 def outlines(frame: RoadFrame, road: int, carriageway: Carriageway, points_per_row: np.ndarray) -> list[tuple]:
     """The stretches of one road; consecutive ones share two vertices.
@@ -79,7 +77,7 @@ def outlines(frame: RoadFrame, road: int, carriageway: Carriageway, points_per_r
     found = []
     cells = carriageway.cells
     there = _as_far_as_measured(np.isfinite(carriageway.left) & np.isfinite(carriageway.right), points_per_row)
-    measured = _without_short_runs(carriageway.left_bounded & carriageway.right_bounded, int(MIN_SURFACE_STATUS_LENGTH / ROW_LENGTH))
+    measured = _without_short_runs(carriageway.left_bounded & carriageway.right_bounded, int(SURFACE.min_surface_status_length / SURFACE.row_length))
     kind = np.where(there, np.where(measured, 2, 1), 0)
     cuts = np.r_[0, np.flatnonzero(np.diff(kind)) + 1, len(kind)]
     for a, b in zip(cuts[:-1], cuts[1:]):
@@ -93,7 +91,7 @@ def outlines(frame: RoadFrame, road: int, carriageway: Carriageway, points_per_r
         stations = cells.stations[rows]
         sides = []
         for offset in (carriageway.left[rows], carriageway.right[rows]):
-            column = np.clip(np.floor(offset / COLUMN_WIDTH).astype(int) - cells.first_column, 0, cells.height.shape[1] - 1)
+            column = np.clip(np.floor(offset / SURFACE.column_width).astype(int) - cells.first_column, 0, cells.height.shape[1] - 1)
             x, y, z = frame.to_map(road, stations, offset, carriageway.height[rows, column].astype(float))
             sides.append(np.c_[x, y, z])
         ring = np.round(np.concatenate([sides[0], sides[1][::-1]]), COORDINATE_DECIMALS)

@@ -13,9 +13,8 @@ import numpy as np
 from ...common.progress import Progress
 from ...curves.robust import MAD_TO_SIGMA
 from ...io.crs import FOOT
-from ..estimation.adjustment import MAX_RAY_MISFIT, MAX_UNEXPLAINED
-from ..estimation.poses import EXPECTED_HEIGHT, MIN_SHARE_IN_FRONT, RESECTION_ROUNDS, resected, vehicle_axes
-from ..estimation.samples import DENSITY_ROUNDS, DENSITY_WIDTH, GROUND_WEIGHT_DEPTH, LOWEST_SHARE, SAMPLED_LAYERS
+from ..estimation.poses import resected, vehicle_axes
+from ..estimation.samples import SAMPLED_LAYERS
 from ..frame.road import CORRIDOR
 from ..las.parallel_reader import ParallelCloudReader
 from ..las.point_fields import ScannerCensus, numbers_by_value, times_by_value, valid_points
@@ -23,6 +22,7 @@ from ..las.reader import CloudHeader
 from ..lattice.scan_lattice import MIN_ROTATION_PEAK, ROTATION_WINDOW, rotation_spectrum, strongest_rotation
 from ..trajectory.shape import shaped_trajectory
 from ..trajectory.trajectory import Trajectory, clean_trajectory
+from ..weights import MIRROR, RAYS, TRACK
 from .adjust import AGREEMENT_PLAN
 
 
@@ -81,12 +81,12 @@ def _near(mountings):
 
 def _met(mountings):
     """Those of the mountings whose rays meet in one place."""
-    return [one for one in mountings if one.misfit <= MAX_UNEXPLAINED]
+    return [one for one in mountings if one.misfit <= RAYS.max_unexplained]
 
 
 def _other_heights(sample, trajectory, mountings, progress):
     """Whether heights are in another unit than places, or upside down; it is said."""
-    if max(one.misfit for one in mountings) > MAX_UNEXPLAINED:
+    if max(one.misfit for one in mountings) > RAYS.max_unexplained:
         for stretch, said in ((FOOT, "in feet where x and y are in metres"), (1.0 / FOOT, "in metres where x and y are in feet")):
             other = scanner_mountings(sample, trajectory, stretch)
             if len(other) >= len(mountings) and len(_met(other)) == len(other):
@@ -336,7 +336,7 @@ def _mounting_of(number, time, place):
         return None
     lever = middle + u[:, None] * across + v[:, None] * upright
     away = place - lever[window]
-    below = away[(np.hypot(*away.T[:2]) < EXPECTED_HEIGHT) & good[window], 2]
+    below = away[(np.hypot(*away.T[:2]) < TRACK.usual_height) & good[window], 2]
     return _Mounting(number, middles[good], lever[good], float(np.median(below)) if len(below) else np.nan, misfit)
 
 
@@ -350,9 +350,9 @@ def _scan_plane(place, window, size):
         return np.stack([np.bincount(window, weight * column, size) for column in values.T], axis=1) / np.bincount(window, weight, size)[:, None]
 
     far = np.linalg.norm(place - means(np.ones(len(place)), place)[window], axis=1)
-    variance = MAX_RAY_MISFIT**2 + (ATTITUDE_NOISE * far) ** 2
+    variance = RAYS.max_ray_misfit**2 + (ATTITUDE_NOISE * far) ** 2
     weight = 1.0 / variance
-    for _ in range(DENSITY_ROUNDS):
+    for _ in range(TRACK.density_rounds):
         middle = means(weight, place)
         away = place - middle[window]
         normal = np.linalg.eigh((weight[:, None] * away).T @ away)[1][:, 0]
@@ -366,11 +366,11 @@ def _rate(time, a, b, window, size):
     foot, ground = np.zeros(size), np.zeros(size)
     order = np.lexsort((b, window))
     held = np.bincount(window, minlength=size)
-    ground = b[order][np.cumsum(held) - held + (held * LOWEST_SHARE).astype(int)]
-    for _ in range(DENSITY_ROUNDS):
-        weight = 1.0 / ((1.0 + ((a - foot[window]) / DENSITY_WIDTH) ** 2) * (1.0 + ((b - ground[window]) / GROUND_WEIGHT_DEPTH) ** 2))
+    ground = b[order][np.cumsum(held) - held + (held * TRACK.lowest_share).astype(int)]
+    for _ in range(TRACK.density_rounds):
+        weight = 1.0 / ((1.0 + ((a - foot[window]) / TRACK.density_width) ** 2) * (1.0 + ((b - ground[window]) / TRACK.ground_weight_depth) ** 2))
         foot, ground = (np.bincount(window, weight * values, size) / np.bincount(window, weight, size) for values in (a, b))
-    phasor = b - ground[window] - EXPECTED_HEIGHT + 1j * (a - foot[window])
+    phasor = b - ground[window] - TRACK.usual_height + 1j * (a - foot[window])
     phasor /= np.maximum(np.abs(phasor), 1e-9)
     piece = np.floor((time - time[0]) / ROTATION_WINDOW)
     cuts = np.flatnonzero(np.r_[True, np.diff(piece) > 0, True])
@@ -381,9 +381,9 @@ def _rate(time, a, b, window, size):
 
 def _resected_places(a, b, since, window, middles, rate):
     """(W,) m of the scanner along and up its plane, (W,) bool of good windows, and m of their misfit, by a rate that is made better."""
-    for _ in range(RESECTION_ROUNDS):
+    for _ in range(MIRROR.resection_rounds):
         u, v, phase, misfit, in_front = resected(a, b, 2 * np.pi * rate * since, window, len(middles))
-        good = in_front >= MIN_SHARE_IN_FRONT
+        good = in_front >= MIRROR.min_share_in_front
         apart = np.diff(middles)
         step = np.diff(phase) - 2 * np.pi * rate * apart
         step = (step + np.pi) % (2 * np.pi) - np.pi

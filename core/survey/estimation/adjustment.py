@@ -13,34 +13,15 @@ from scipy.linalg import cho_solve_banded, cholesky_banded
 
 from ...common.progress import Progress
 from ...curves.robust import robustly_smoothed
-from .poses import KNOT_SPACING, PITCH, POSE, ROLL, YAW, Poses, X, Y, Z, spline_slopes, spline_weights, vehicle_axes
-
-ACCELERATION = 3.0          # m/s^2, usual of a vehicle on the road
-ANGULAR_ACCELERATION = 0.5  # rad/s^2
-PHASE_ACCELERATION = 10.0   # rad/s^2: a rotation rate of 100 Hz that swings by 1 % within seconds
-SLIP = np.radians(3.0)      # between nose and way
-PITCH_SWAY = np.radians(1.0)  # between nose and climb of the way
-ROLL_SWAY = np.radians(2.0)   # between the vehicle and the crossfall under it
-MIN_SPEED = 1.0             # m/s: slower, the way says little about the attitude
-TURN_PRIOR, LEAN_PRIOR = np.radians(30.0), np.radians(20.0)  # of mountings about the first guess
-LEVER_PRIOR = 1.0           # m between scanners
-ANGLE_NOISE = 2e-4          # radians of a ray's direction
-FIRST_NOISE, LEAST_NOISE = 0.1, 0.002   # m, of places across the ray
-OUTLIER_SIGMAS = 3.0        # at which a return has half its weight
-ADJUSTMENT_ROUNDS = 12
-CONVERGED = 2e-4            # m
-BLOCK_INTERVALS = 200       # intervals of one block of returns
-PER_INTERVAL = 300          # returns of a scanner that are used of each interval
+from ..weights import MIRROR, RAYS
+from .poses import PITCH, POSE, ROLL, YAW, Poses, X, Y, Z, spline_slopes, spline_weights, vehicle_axes
 
 
 @dataclass
 class Returns:
     """The returns that are adjusted, in order of intervals.
 
-    interval, share : (N,) place in the splines
-    time : (N,) s
-    place : (N, 3) m
-    scanner : (N,)
+    interval, share : (N,) place in the splines; time : (N,) s; place : (N, 3) m; scanner : (N,) numbers
     tick : s to which the times are rounded; 0 where they are exact
     """
 
@@ -59,11 +40,8 @@ class Returns:
 class Adjusted:
     """The adjusted poses.
 
-    poses : Poses
-    usual : m, median of the misfits
-    unexplained : m, median of what the rounding of the times does not explain of them
-    misfit : (K, S) m, mean misfit of each interval and scanner; NaN without returns
-    noise : (K, S) m, by which returns were weighted
+    usual, unexplained : m, medians of the misfits and of what the rounding of the times does not explain of them
+    misfit, noise : (K, S) m, mean misfit of each interval and scanner, NaN without returns, and by which returns were weighted
     place_covariance : (K, 3, 3) m^2 of each control value's place; includes what the mounting leaves open
     mounting_sigma : (S, 5) radians and metres
     """
@@ -81,27 +59,25 @@ def _adjust_poses(poses: Poses, guess: Poses, crossfall: np.ndarray, returns: Re
                   progress: Progress = Progress()) -> Adjusted:
     """Adjust poses and mountings to the returns by Gauss-Newton steps with robust weights.
 
-    poses : Poses near the truth: within a metre, mirror phases within half a radian
-    guess : Poses with the mounting that the unknown one scatters about
-    crossfall : (K,) radians of the road under the vehicle at every interval, positive where it rises to the left
-    noise : (K, S) m, how far returns of each interval and scanner may lie off their rays to begin with
+    poses : near the truth: within a metre, mirror phases within half a radian; guess : with the mounting that the unknown one scatters about
+    crossfall : (K,) radians of the road under the vehicle, positive where it rises to the left; noise : (K, S) m off the rays to begin with
     """
-    for number in range(ADJUSTMENT_ROUNDS):
+    for number in range(RAYS.rounds):
         equations, misfit, by_rounding, count = _equations(poses, guess, crossfall, returns, noise, progress)
         change, common, covariance, follow = equations.solve()
         poses = poses.changed(change, common.reshape(-1, MOUNTING))
         with np.errstate(invalid="ignore"):
-            calm = np.fmin(noise, np.maximum(NOISE_OF_MISFIT * np.sqrt(np.maximum(misfit**2 - by_rounding**2, 0.0)), LEAST_NOISE))
-        settled = np.nanmax(noise / calm) < SETTLED and np.abs(change[:, :3]).max() < CONVERGED
+            calm = np.fmin(noise, np.maximum(RAYS.noise_of_misfit * np.sqrt(np.maximum(misfit**2 - by_rounding**2, 0.0)), RAYS.least_noise))
+        settled = np.nanmax(noise / calm) < RAYS.settled and np.abs(change[:, :3]).max() < RAYS.converged
         noise = calm
-        progress.report((number + 1) / ADJUSTMENT_ROUNDS)
+        progress.report((number + 1) / RAYS.rounds)
         if settled:
             break
     by_mounting = follow[:, :3]
     own = equations.variances()[:, :3, :3]
     place = own + np.einsum("kia,ab,kjb->kij", by_mounting, covariance, by_mounting)
     usual = float(np.median(misfit[count > 0]))
-    unexplained = float(np.median(np.maximum(misfit - MOST_OF_MEAN * by_rounding, 0.0)[count > 0]))
+    unexplained = float(np.median(np.maximum(misfit - RAYS.most_of_mean * by_rounding, 0.0)[count > 0]))
     return Adjusted(poses, usual, unexplained, misfit, noise, place, np.sqrt(np.diag(covariance)).reshape(-1, MOUNTING))
 
 
@@ -111,7 +87,7 @@ def _equations(poses, guess, crossfall, returns, noise, progress):
     equations = _BandedEquations(knots, columns, MOUNTING * poses.scanners)
     total, count, known = (np.zeros((knots, poses.scanners)) for _ in range(3))
     turned = 2 * np.pi * np.abs(poses.rate) * returns.tick / np.sqrt(12.0)
-    cuts = np.searchsorted(returns.interval, np.arange(0, knots + BLOCK_INTERVALS, BLOCK_INTERVALS))
+    cuts = np.searchsorted(returns.interval, np.arange(0, knots + RAYS.block_intervals, RAYS.block_intervals))
     for first, last in zip(cuts[:-1], cuts[1:]):
         if first == last:
             continue
@@ -120,17 +96,17 @@ def _equations(poses, guess, crossfall, returns, noise, progress):
         rounded = turned[scanner]
         uncertain = (noise[interval, scanner], rounded) if returns.tick else None
         found = misfits(poses, interval, share, returns.time[own], returns.place[own], scanner, uncertain)
-        variance = noise[interval, scanner] ** 2 + (ANGLE_NOISE**2 + rounded**2) * found.range**2
-        weight = (found.range > MIN_RANGE) / variance / (1.0 + found.off**2 / variance / OUTLIER_SIGMAS**2)
+        variance = noise[interval, scanner] ** 2 + (RAYS.angle_noise**2 + rounded**2) * found.range**2
+        weight = (found.range > RAYS.min_range) / variance / (1.0 + found.off**2 / variance / RAYS.outlier_sigmas**2)
         weights = spline_weights(share)
         starts = np.flatnonzero(np.r_[True, np.diff(interval) > 0, True])
         for a, b in zip(starts[:-1], starts[1:]):
             equations.add_rows(int(interval[a]), np.concatenate([weights[a:b]] * 2), found.pose[:, a:b].reshape(2 * (b - a), columns),
                                found.mounting[:, a:b].reshape(2 * (b - a), -1), found.off[:, a:b].ravel(), weight[:, a:b].ravel())
-        size = np.where(found.range > MIN_RANGE, np.minimum(np.abs(found.off).max(axis=0), MAX_COUNTED_MISFIT), MAX_COUNTED_MISFIT)
+        size = np.where(found.range > RAYS.min_range, np.minimum(np.abs(found.off).max(axis=0), RAYS.max_counted_misfit), RAYS.max_counted_misfit)
         np.add.at(total, (interval, scanner), size)
         np.add.at(count, (interval, scanner), 1)
-        np.add.at(known, (interval, scanner), np.minimum(rounded * np.abs(found.range), MAX_COUNTED_MISFIT))
+        np.add.at(known, (interval, scanner), np.minimum(rounded * np.abs(found.range), RAYS.max_counted_misfit))
         progress.check_cancelled()
     _add_motion(equations, poses, crossfall)
     _add_mounting(equations, poses, guess)
@@ -138,17 +114,14 @@ def _equations(poses, guess, crossfall, returns, noise, progress):
         return equations, total / count, MEAN_OF_SIGMA * known / count, count
 
 
-MAX_COUNTED_MISFIT = 0.3   # m: a ghost counts no more than this
-NOISE_OF_MISFIT = 1.5      # noise against the mean misfit of an interval
-MEAN_OF_SIGMA = 0.8        # mean size of errors against their standard deviation
-MOST_OF_MEAN = 1.25        # that rounding explains, of its mean: an interval's returns lie at uneven distances
-SETTLED = 1.1              # factor by which the noise still falls
+MEAN_OF_SIGMA = 0.8        # derived: sqrt(2 / pi), rounded; mean size of errors against their standard deviation
 
 
 def _add_motion(equations, poses, crossfall):
     """What is known of vehicles and mirrors: smooth motion, nose ahead, level with the road."""
     columns = poses.control.shape[1]
-    steady = 1.0 / (KNOT_SPACING**2 * np.r_[[ACCELERATION] * 3, [ANGULAR_ACCELERATION] * 3, [PHASE_ACCELERATION] * poses.scanners]) ** 2
+    usual = np.r_[[RAYS.acceleration] * 3, [RAYS.angular_acceleration] * 3, [RAYS.phase_acceleration] * poses.scanners]
+    steady = 1.0 / (MIRROR.knot_spacing**2 * usual) ** 2
     begin, slope = spline_weights(0.0), spline_slopes(0.0)
     for drive in poses.drives:
         control = poses.control[drive.first:drive.first + drive.count]
@@ -160,24 +133,24 @@ def _add_motion(equations, poses, crossfall):
         size = drive.count - 3
         value = sum(begin[j] * control[j:j + size] for j in range(4))
         speed = sum(slope[j] * control[j:j + size, :3] for j in range(4))
-        yaw, flat = value[:, YAW], np.maximum(np.hypot(speed[:, X], speed[:, Y]), MIN_SPEED)
+        yaw, flat = value[:, YAW], np.maximum(np.hypot(speed[:, X], speed[:, Y]), RAYS.min_speed)
         cos, sin = np.cos(yaw), np.sin(yaw)
         change = np.zeros((size, 4, columns))
         change[:, :, X], change[:, :, Y] = -sin[:, None] * slope, cos[:, None] * slope
         change[:, :, YAW] = -(cos * speed[:, X] + sin * speed[:, Y])[:, None] * begin
-        equations.add_each(drive.first, change, cos * speed[:, Y] - sin * speed[:, X], 1.0 / (SLIP * flat) ** 2)
+        equations.add_each(drive.first, change, cos * speed[:, Y] - sin * speed[:, X], 1.0 / (RAYS.slip * flat) ** 2)
         change = np.zeros((size, 4, columns))
         change[:, :, PITCH], change[:, :, Z] = flat[:, None] * begin, -slope
-        equations.add_each(drive.first, change, value[:, PITCH] * flat - speed[:, Z], 1.0 / (PITCH_SWAY * flat) ** 2)
+        equations.add_each(drive.first, change, value[:, PITCH] * flat - speed[:, Z], 1.0 / (RAYS.pitch_sway * flat) ** 2)
         change = np.zeros((size, 4, columns))
         change[:, :, ROLL] = begin
         tilted = value[:, ROLL] - crossfall[drive.first:drive.first + size]
-        equations.add_each(drive.first, change, tilted, np.full(size, 1.0 / ROLL_SWAY**2))
+        equations.add_each(drive.first, change, tilted, np.full(size, 1.0 / RAYS.roll_sway**2))
 
 
 def _add_mounting(equations, poses, guess):
     """Weak knowledge of the mounting; the levers' mean is held at 0."""
-    sigma = np.array([TURN_PRIOR, LEAN_PRIOR, LEVER_PRIOR, LEVER_PRIOR, LEVER_PRIOR])
+    sigma = np.array([RAYS.turn_prior, RAYS.lean_prior, RAYS.lever_prior, RAYS.lever_prior, RAYS.lever_prior])
     off = np.column_stack([poses.turn - guess.turn, poses.lean - guess.lean, poses.lever - guess.lever])
     for number in range(poses.scanners):
         own = MOUNTING * number + np.arange(MOUNTING)
@@ -185,78 +158,59 @@ def _add_mounting(equations, poses, guess):
         equations.common[own] -= off[number] / sigma**2
     for axis in range(3):
         every = MOUNTING * np.arange(poses.scanners) + 2 + axis
-        equations.corner[np.ix_(every, every)] += HELD
-        equations.common[every] -= HELD * poses.lever[:, axis].sum()
+        equations.corner[np.ix_(every, every)] += RAYS.held
+        equations.common[every] -= RAYS.held * poses.lever[:, axis].sum()
 
 
-HELD = 1e8  # weight of what is held
 
 
 # The adjustment, begun where the poses are known well enough and grown along time from there.
 
-REACH = 10            # intervals that poses are carried on at a time: for a second a vehicle's motion is foreseen within decimetres
-MAX_GROWTHS = 12
-GROWTH_STRIDE = 3     # every n-th return is enough while growing
-MAX_TRIES = 4         # of an interval: with longer known motion beside it, it may come right after failing
-MAX_RAY_MISFIT = 0.03     # m: an interval of a scanner whose returns lie farther off the rays is not understood
-MAX_UNEXPLAINED = 0.05    # m: where returns usually lie farther off, the rays are not those of these scanners
-MAX_TIMES_USUAL = 10.0  # times the usual misfit, where that is larger
-POSE_STIFFNESS, PHASE_STIFFNESS = 10.0, 1e3   # of the curves by which they are carried on
 
 
 def grown_poses(poses: Poses, known: np.ndarray, returns: Returns, progress: Progress = Progress()) -> Adjusted:
-    """Adjust poses to the returns, from the known intervals on.
+    """Adjust poses to the returns, from the (K, S) intervals of each scanner on that are `known` to be near the truth.
 
-    Parameters
-    ----------
-    poses : Poses to start from
-    known : (K, S) bool, intervals of each scanner where they are near the truth
-
-    Returns
-    -------
-    Adjusted; its misfit is NaN in the intervals of scanners whose returns were not used
+    The misfit of the result is NaN in the intervals of scanners whose returns were not used.
     """
     guess, crossfall = poses, np.zeros(len(poses.control))
     held = np.zeros(known.shape, bool)
     held[returns.interval, returns.scanner] = True
     tries = known.astype(int)
-    noise = np.full(known.shape, FIRST_NOISE)
-    some = returns[np.arange(0, len(returns.interval), GROWTH_STRIDE)]
-    for number in range(MAX_GROWTHS):
-        part = progress.part(number / (MAX_GROWTHS + 2), (number + 1) / (MAX_GROWTHS + 2))
+    noise = np.full(known.shape, RAYS.first_noise)
+    some = returns[np.arange(0, len(returns.interval), RAYS.growth_stride)]
+    for number in range(RAYS.max_growths):
+        part = progress.part(number / (RAYS.max_growths + 2), (number + 1) / (RAYS.max_growths + 2))
         found = _adjust_poses(poses, guess, crossfall, some[known[some.interval, some.scanner]], noise, part)
-        limit = max(MAX_RAY_MISFIT, MAX_TIMES_USUAL * found.usual)
+        limit = max(RAYS.max_ray_misfit, RAYS.max_times_usual * found.usual)
         with np.errstate(invalid="ignore"):
             good = known & (found.misfit <= limit)
-        fresh = _reached(found.poses, good) & held & ~good & (tries < MAX_TRIES)
+        fresh = _reached(found.poses, good) & held & ~good & (tries < RAYS.max_tries)
         poses = _carried_on(found.poses, good)
         crossfall = _crossfall_of(poses, some[good[some.interval, some.scanner]])
-        noise = np.where(good, found.noise, FIRST_NOISE)
+        noise = np.where(good, found.noise, RAYS.first_noise)
         if not fresh.any():
             break
         tries += fresh
         known = good | fresh
     return _adjust_poses(poses, guess, crossfall, returns[good[returns.interval, returns.scanner]], noise,
-                        progress.part(MAX_GROWTHS / (MAX_GROWTHS + 2), 1.0))
+                        progress.part(RAYS.max_growths / (RAYS.max_growths + 2), 1.0))
 
 
 def _reached(poses, good):
-    """Intervals within REACH of good ones of their drive."""
+    """Intervals within reach of good ones of their drive."""
     reached = np.zeros(good.shape, bool)
     for drive in poses.drives:
         own = slice(drive.first, drive.first + drive.count - 3)
         total = np.concatenate([np.zeros((1, good.shape[1]), int), np.cumsum(good[own], axis=0)])
         places = np.arange(drive.count - 3)
-        low, high = np.maximum(places - REACH, 0), np.minimum(places + REACH + 1, drive.count - 3)
+        low, high = np.maximum(places - RAYS.reach, 0), np.minimum(places + RAYS.reach + 1, drive.count - 3)
         reached[own] = total[high] > total[low]
     return reached
 
 
 def _carried_on(poses: Poses, good: np.ndarray) -> Poses:
-    """The poses with values where no interval is good replaced by smooth continuation.
-
-    good : (K, S) bool of intervals
-    """
+    """The poses with values where no interval is `good`, (K, S) bool, replaced by smooth continuation."""
     control = poses.control.copy()
     for drive in poses.drives:
         own = slice(drive.first, drive.first + drive.count)
@@ -264,8 +218,8 @@ def _carried_on(poses: Poses, good: np.ndarray) -> Poses:
         known = np.zeros((drive.count, poses.scanners), bool)
         for step in range(4):
             known[step:] |= good[own][:drive.count - step]
-        parts = [(slice(0, POSE), known.any(axis=1), POSE_STIFFNESS)]
-        parts += [(slice(POSE + k, POSE + k + 1), known[:, k], PHASE_STIFFNESS) for k in range(poses.scanners)]
+        parts = [(slice(0, POSE), known.any(axis=1), RAYS.pose_stiffness)]
+        parts += [(slice(POSE + k, POSE + k + 1), known[:, k], RAYS.phase_stiffness) for k in range(poses.scanners)]
         for columns, rows, stiffness in parts:
             if rows.any() and not rows.all():
                 values = control[own, columns]
@@ -276,18 +230,14 @@ def _carried_on(poses: Poses, good: np.ndarray) -> Poses:
 
 # How far returns lie off the rays that the mirror had at their times, and how that changes with the poses.
 
-MIN_RANGE = 0.3       # m: nearer than this no scanner measures
-MOUNTING = 5          # unknowns of a scanner's mounting: turn, lean and lever
+MOUNTING = 5          # derived: unknowns of a scanner's mounting: turn, lean and lever
 
 
 @dataclass
 class _Misfits:
-    """Of N returns: off the scan plane and, within it, off the ray.
+    """Of N returns: off the scan plane and, within it, off the ray, (2, N) m, and the range along the ray, negative behind the scanner.
 
-    off : (2, N) m
-    pose : (2, N, 6 + S) change per change of the values of the spline
-    mounting : (2, N, 5 S) change per change of turn, lean and lever of each scanner
-    range : (N,) m along the ray; negative behind the scanner
+    pose, mounting : (2, N, 6 + S) and (2, N, 5 S) change per change of the values of the spline, and of turn, lean and lever of each scanner
     """
 
     off: np.ndarray
@@ -298,14 +248,8 @@ class _Misfits:
 
 def misfits(poses: Poses, interval: np.ndarray, share: np.ndarray, time: np.ndarray, place: np.ndarray, scanner: np.ndarray,
             noise: tuple[np.ndarray, np.ndarray] | None = None) -> _Misfits:
-    """The _Misfits of returns.
+    """The _Misfits of returns at places in the splines, (N,) s, (N, 3) m and (N,) numbers of scanners.
 
-    Parameters
-    ----------
-    interval, share : (N,) place in the splines
-    time : (N,) s
-    place : (N, 3) m
-    scanner : (N,) numbers
     noise : (N,) m of the returns' places and (N,) radians of the rays' directions; None where the directions are exact
     """
     values = poses.at(interval, share)
@@ -348,13 +292,7 @@ def misfits(poses: Poses, interval: np.ndarray, share: np.ndarray, time: np.ndar
 # Normal equations of splines with a few common unknowns: a band along time with a border.
 
 class _BandedEquations:
-    """Sums of the normal equations; control values of one drive only meet those up to three knots away.
-
-    Parameters
-    ----------
-    knots, columns : control values are (knots, columns)
-    common : number of common unknowns
-    """
+    """Sums of the normal equations of (knots, columns) control values, which only meet those up to three knots away, and of common unknowns."""
 
     def __init__(self, knots: int, columns: int, common: int):
         self.band = np.zeros((knots, 4, columns, columns))  # of knot k with knot k + j
@@ -363,16 +301,10 @@ class _BandedEquations:
         self.corner, self.common = np.zeros((common, common)), np.zeros(common)
 
     def add_rows(self, interval: int, weights: np.ndarray, pose: np.ndarray, common: np.ndarray, off: np.ndarray, weight: np.ndarray) -> None:
-        """Observations of one interval.
+        """N observations of one interval.
 
-        Parameters
-        ----------
-        interval : number
-        weights : (N, 4) of the spline
-        pose : (N, columns) change per change of the spline's values
-        common : (N, common) change per change of the common unknowns
-        off : (N,) misfit
-        weight : (N,)
+        weights : (N, 4) of the spline; off, weight : (N,) misfit and its weight
+        pose, common : (N, columns) and (N, common) change per change of the spline's values and of the common unknowns
         """
         columns = pose.shape[1]
         rows = (weights[:, :, None] * pose[:, None, :]).reshape(len(off), 4 * columns)
@@ -387,14 +319,7 @@ class _BandedEquations:
         self.common -= common.T @ (weight * off)
 
     def add_each(self, first: int, change: np.ndarray, off: np.ndarray, weight: np.ndarray) -> None:
-        """One observation for each of M consecutive intervals.
-
-        Parameters
-        ----------
-        first : number of the first interval
-        change : (M, W, columns) change per change of its first W control values
-        off, weight : (M,)
-        """
+        """One observation, (M,) misfit and weight, for each of M intervals; `change`, (M, W, columns), per change of its first W control values."""
         size, width = change.shape[:2]
         for i in range(width):
             for j in range(i, width):
@@ -412,7 +337,7 @@ class _BandedEquations:
                     below = step * columns + b - a
                     if below >= 0:
                         lower[below, a:(knots - step) * columns:columns] = self.band[:knots - step, step, a, b]
-        lower[0] += TINY
+        lower[0] += RAYS.tiny
         factor = (cholesky_banded(lower, lower=True, overwrite_ab=True, check_finite=False), True)
         border = self.border.reshape(knots * columns, -1)
         solved = cho_solve_banded(factor, np.concatenate([self.right.reshape(-1, 1), border], axis=1), check_finite=False)
@@ -424,8 +349,7 @@ class _BandedEquations:
     def variances(self) -> np.ndarray:
         """(knots, columns, columns) covariance of each knot's control values, common unknowns held.
 
-        Blocks of three knots form a block-tridiagonal matrix, the diagonal blocks of whose inverse follow from one sweep
-        from either end.
+        Blocks of three knots form a block-tridiagonal matrix; the diagonal blocks of its inverse follow from one sweep from either end.
         """
         knots, _, columns, _ = self.band.shape
         blocks = -(-knots // 3)
@@ -439,7 +363,7 @@ class _BandedEquations:
             for step in range(min(4, knots - knot)):
                 other = knot + step
                 to = slice((other % 3) * columns, (other % 3 + 1) * columns)
-                part = self.band[knot, step] + (step == 0) * TINY * np.eye(columns)
+                part = self.band[knot, step] + (step == 0) * RAYS.tiny * np.eye(columns)
                 if other // 3 == knot // 3:
                     own[knot // 3, at, to] += part
                     if step:
@@ -456,30 +380,20 @@ class _BandedEquations:
                               axis=1).reshape(3 * blocks, columns, columns)[:knots]
 
 
-TINY = 1e-6  # added to the diagonal: keeps a control value that nothing determines where it is
 
 
 # How the road is inclined across under the vehicle, by the returns on its own way.
 
-UNDER_VEHICLE = 1.5        # m either side of the track: what the vehicle stands on
-AHEAD_REACH = 5.0        # m along: nearer than this a road's grade changes little
-HEIGHT_BAND = 0.15       # m about the usual height below the track: road, not what stands on it
-BESIDE_INTERVALS = 10    # either side that are taken together: a second of driving
-MIN_RETURNS, MIN_SPREAD = 50, 0.3   # and m across (standard deviation), or nothing is known
-MAX_CROSSFALL = 0.1      # roads are no steeper across
 
 
 def _crossfall_of(poses: Poses, returns: Returns) -> np.ndarray:
-    """Crossfall under the vehicle.
-
-    Returns: (K,) radians at the start of every interval, positive where the road rises to the left; 0 where it is not seen
-    """
+    """(K,) radians of crossfall under the vehicle at every interval, positive where the road rises to the left; 0 where it is not seen."""
     found = np.zeros(len(poses.control))
     for drive in poses.drives:
         rows = slice(*np.searchsorted(returns.interval, [drive.first, drive.first + drive.count]))
         if rows.start < rows.stop:
             found[drive.first:drive.first + drive.count] = _of_drive(poses, drive, returns, rows)
-    return np.arctan(np.clip(found, -MAX_CROSSFALL, MAX_CROSSFALL))
+    return np.arctan(np.clip(found, -RAYS.max_crossfall, RAYS.max_crossfall))
 
 
 def _of_drive(poses, drive, returns, rows):
@@ -493,19 +407,20 @@ def _of_drive(poses, drive, returns, rows):
     ahead, left = away[:, 0] * cos + away[:, 1] * sin, away[:, 1] * cos - away[:, 0] * sin
     # the road keeps to the track's own climb
     below = away[:, 2] - ahead * speed[:, 2] / flat
-    near = np.flatnonzero((np.abs(left) < UNDER_VEHICLE) & (np.abs(ahead) < AHEAD_REACH) & (below < 0))
+    near = np.flatnonzero((np.abs(left) < RAYS.under_vehicle) & (np.abs(ahead) < RAYS.ahead_reach) & (below < 0))
     if not len(near):
         return np.zeros(drive.count)
-    near = near[np.abs(below[near] - np.median(below[near])) < HEIGHT_BAND]
+    near = near[np.abs(below[near] - np.median(below[near])) < RAYS.height_band]
     # where the vehicle rolls over them
-    cell = np.clip(interval[near] - drive.first + np.rint(ahead[near] / flat[near] / KNOT_SPACING).astype(np.int64), 0, drive.count - 1)
+    cell = np.clip(interval[near] - drive.first + np.rint(ahead[near] / flat[near] / MIRROR.knot_spacing).astype(np.int64), 0, drive.count - 1)
     sums = np.stack([np.bincount(cell, weight, drive.count) for weight in
                      (np.ones(len(near)), left[near], below[near], left[near] ** 2, left[near] * below[near])])
     total = np.concatenate([np.zeros((5, 1)), np.cumsum(sums, axis=1)], axis=1)
     places = np.arange(drive.count)
-    count, x, y, xx, xy = (total[:, np.minimum(places + BESIDE_INTERVALS + 1, drive.count)] - total[:, np.maximum(places - BESIDE_INTERVALS, 0)])
+    low, high = np.maximum(places - RAYS.beside_intervals, 0), np.minimum(places + RAYS.beside_intervals + 1, drive.count)
+    count, x, y, xx, xy = total[:, high] - total[:, low]
     count = np.maximum(count, 1.0)
     spread = xx / count - (x / count) ** 2
-    known = (count >= MIN_RETURNS) & (spread > MIN_SPREAD**2)
+    known = (count >= RAYS.min_returns) & (spread > RAYS.min_spread**2)
     slope = (xy / count - x * y / count**2) / np.where(known, spread, 1.0)
     return np.interp(places, places[known], slope[known]) if known.any() else np.zeros(drive.count)

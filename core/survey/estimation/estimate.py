@@ -15,46 +15,25 @@ from ...io.crs import check_projected, crs_note, unit_note
 from ..las.reader import read_headers
 from ..las.samples import without_copies
 from ..trajectory.trajectory import Trajectory
-from .adjustment import MAX_UNEXPLAINED, PER_INTERVAL, Adjusted, Returns, grown_poses
+from ..weights import ESTIMATE, HEAD, MIRROR, RAYS, TRACK
+from .adjustment import Adjusted, Returns, grown_poses
 from .interleaved import ScannerSplitter, lines_of_each, scan_line_directions, steps_of, told_apart
-from .poses import KNOT_SPACING, YAW, Poses, Spinning, first_poses, known_intervals, spinning_scanners
-from .samples import (
-    FIRST_HEIGHT,
-    MAX_GAP_IN_DRIVE,
-    MIN_WINDOW_SAMPLES,
-    UNKNOWN_SCANNER,
-    WINDOW,
-    FirstTrack,
-    Samples,
-    first_track,
-    read_samples,
-    ridge_of,
-    rounding_of,
-)
-from .turning_head import HEAD_HEIGHT, HEAD_HEIGHT_SIGMA, HeadTrack, head_heights, turning_heads
+from .poses import YAW, Poses, Spinning, first_poses, known_intervals, spinning_scanners
+from .samples import UNKNOWN_SCANNER, FirstTrack, Samples, first_track, read_samples, ridge_of, rounding_of
+from .turning_head import HeadTrack, head_heights, turning_heads
 
-ROW_SPACING = 0.02         # s between the positions written: a third of a metre on a motorway
-MAX_SIGMA = 0.15           # m: a position that is known less well is not written; errors of twice that happen
-LEAST_SIGMA = 0.002        # m: what calibration leaves, however many returns agree
-DENSITY_SIGMA, DENSITY_HEIGHT_SIGMA = 0.5, 0.3   # m, of a track by density alone: rms of twelve simulated surveys 0.56 and 0.28
-READ, TRACKED = 0.4, 0.55  # of the work
-MIN_TAKING_PART = 0.95     # of the points are of scanners that turn, where a field tells them apart
-SHARE_OF_UNEXPLAINED = 0.4 # of what returns lie off the rays, in the uncertainty of the place
 WAYS = {"rays": "the rays of the mirrors", "turns": "the turns of a many-beam head", "density": "the density of the points, which is rough"}
 
 
 @dataclass
 class EstimatedTrajectory:
-    """A trajectory and how well it is known.
+    """A trajectory of the middle of the scanners, and how well it is known.
 
-    trajectory : Trajectory of the middle of the scanners
     sigma, sigma_height : (N,) m, standard deviation of the place on the map and of the height
     method : "rays" of mirrors, "turns" of a many-beam head, or "density" of points alone, which is rough
-    scanners : the scanners that took part
-    adjusted : Adjusted, None with density alone
+    scanners, adjusted : that took part, and the adjustment of their poses; none with density alone
     above_road : m, median height above the road where it was measured, NaN where it was not
-    notes : sentences for the user
-    cloud_notes : the same on the point clouds, which whoever reads them with this trajectory says too
+    notes, cloud_notes : sentences for the user, the latter on the point clouds, which whoever reads them with this trajectory says too
     """
 
     trajectory: Trajectory
@@ -77,7 +56,7 @@ class EstimatedTrajectory:
         """Metres driven, gaps between drives left out."""
         track = self.trajectory
         step = np.hypot(np.diff(track.x), np.diff(track.y))
-        return float(step[np.diff(track.time) <= MAX_GAP_IN_DRIVE].sum())
+        return float(step[np.diff(track.time) <= TRACK.max_gap_in_drive].sum())
 
 
 def estimate_trajectory(paths: Sequence[str | Path], crs: str = "", scanner_field: str = "automatic",
@@ -112,7 +91,7 @@ def estimate_trajectory(paths: Sequence[str | Path], crs: str = "", scanner_fiel
 
 def _estimated(files, scanner_field, wkt, progress):
     """The trajectory from the points, of a CRS in metres or none."""
-    samples = read_samples(files, scanner_field, progress.part(0.0, READ))
+    samples = read_samples(files, scanner_field, progress.part(0.0, ESTIMATE.read_progress))
     if not samples.has_time:
         return _without_time(samples, wkt)
     if not samples.drives:
@@ -122,7 +101,7 @@ def _estimated(files, scanner_field, wkt, progress):
     tracks = []
     for number, drive in enumerate(samples.drives):
         tracks.append(first_track(samples.time[drive], samples.place[drive]))
-        progress.report(READ + (TRACKED - READ) * (number + 1) / len(samples.drives))
+        progress.report(ESTIMATE.read_progress + (ESTIMATE.tracked_progress - ESTIMATE.read_progress) * (number + 1) / len(samples.drives))
     _refuse_clocks_that_overlap(samples, tracks)
     _refuse_airborne(tracks)
     heads = turning_heads(samples, tracks)
@@ -132,7 +111,7 @@ def _estimated(files, scanner_field, wkt, progress):
         return _of_heads(samples, tracks, heads, wkt)
     scanners = spinning_scanners(samples, tracks)
     _refuse_terrestrial(tracks, [fixes.place for one in scanners for fixes in one.fixes])
-    return _of_mirrors(samples, tracks, scanners, wkt, progress.part(TRACKED, 1.0))
+    return _of_mirrors(samples, tracks, scanners, wkt, progress.part(ESTIMATE.tracked_progress, 1.0))
 
 
 def _of_mirrors(samples, tracks, scanners, wkt, progress):
@@ -140,7 +119,7 @@ def _of_mirrors(samples, tracks, scanners, wkt, progress):
     found = None
     if by_field := samples.scanners > 1 and _all_take_part(samples, scanners):
         found = _adjusted(samples, tracks, scanners, progress)
-    if found is None or found.unexplained > MAX_UNEXPLAINED:
+    if found is None or found.unexplained > RAYS.max_unexplained:
         # a field may have numbered tiles or files
         if (apart := separated(samples, tracks, progress)) is not None:
             result = _of_rays(apart[0], tracks, *apart[1:], wkt)
@@ -149,7 +128,7 @@ def _of_mirrors(samples, tracks, scanners, wkt, progress):
         if not by_field:
             refuse_handheld(tracks, scanners)
             found = _adjusted(samples, tracks, scanners, progress) if scanners else None
-    if found is not None and found.unexplained <= MAX_UNEXPLAINED:
+    if found is not None and found.unexplained <= RAYS.max_unexplained:
         return _of_rays(samples, tracks, scanners, found, wkt)
     refuse_handheld(tracks, [])
     if found is None or not _could_be_driven(found):
@@ -157,7 +136,8 @@ def _of_mirrors(samples, tracks, scanners, wkt, progress):
         return _by_density(samples, tracks, wkt)
     # tilted heads of many beams turn, too, and the mean of their beams is nearly the ray of a mirror
     result = _of_rays(samples, tracks, scanners, found, wkt)
-    result.sigma, result.sigma_height = (np.maximum(sigma, SHARE_OF_UNEXPLAINED * found.unexplained) for sigma in (result.sigma, result.sigma_height))
+    least = ESTIMATE.share_of_unexplained * found.unexplained
+    result.sigma, result.sigma_height = np.maximum(result.sigma, least), np.maximum(result.sigma_height, least)
     result.notes.append(f"Returns lie {found.unexplained:.2f} m off the rays of a mirror (median), as those of tilted heads of many beams do: the "
                         "trajectory is less certain than where they keep to them.")
     return result
@@ -166,13 +146,13 @@ def _of_mirrors(samples, tracks, scanners, wkt, progress):
 def _could_be_driven(found):
     """Whether a vehicle can have moved as the poses say."""
     tracks = [found.poses.control[drive.first:drive.first + drive.count, :2] for drive in found.poses.drives]
-    return _usual_acceleration(tracks, KNOT_SPACING) <= MAX_ACCELERATION
+    return _usual_acceleration(tracks, MIRROR.knot_spacing) <= ESTIMATE.max_acceleration
 
 
 def _all_take_part(samples, scanners):
     """Whether nearly all points are of scanners whose mirrors turn."""
     taking = np.isin(samples.scanner, [one.number for one in scanners])
-    return np.count_nonzero(taking) >= MIN_TAKING_PART * len(samples)
+    return np.count_nonzero(taking) >= ESTIMATE.min_taking_part * len(samples)
 
 
 def _adjusted(samples, tracks, scanners, progress):
@@ -181,17 +161,7 @@ def _adjusted(samples, tracks, scanners, progress):
 
 
 def separated(samples: Samples, tracks: list[FirstTrack], progress: Progress = Progress()) -> tuple[Samples, list[Spinning], Adjusted] | None:
-    """Scanners that no field tells apart.
-
-    Parameters
-    ----------
-    samples : Samples, whose own numbers of scanners do not count
-    tracks : FirstTrack of each drive
-
-    Returns
-    -------
-    The samples with their scanners, these, and the poses; None where the points are of one scanner, or cannot be told apart
-    """
+    """The samples with scanners that no field tells apart, these, and the poses; None for one scanner, or where they cannot be told apart."""
     steps = [steps_of(samples.place[drive], track, samples.time[drive]) for drive, track in zip(samples.drives, tracks)]
     ways = scan_line_directions(np.concatenate([direction for _, direction in steps]))
     if len(ways) < 2:
@@ -205,23 +175,18 @@ def separated(samples: Samples, tracks: list[FirstTrack], progress: Progress = P
     if len(scanners) < 2:
         return None
     found = _adjusted(apart, tracks, scanners, progress.part(0.0, 0.6))
-    if found.unexplained > MAX_UNEXPLAINED:
+    if found.unexplained > RAYS.max_unexplained:
         return None
     # the rays tell the other points apart, too, and the few that were wrong
     splitter = ScannerSplitter(found.poses, 0.0, np.zeros(3))
     apart = replace(samples, scanner=splitter.numbers(samples.time, samples.place))
     scanners = [replace(one, number=number) for number, one in enumerate(scanners)]
     found = grown_poses(found.poses, np.isfinite(found.misfit), _returns(apart, found.poses, scanners), progress.part(0.6, 1.0))
-    return (apart, scanners, found) if found.unexplained <= MAX_UNEXPLAINED else None
+    return (apart, scanners, found) if found.unexplained <= RAYS.max_unexplained else None
 
 
 def splitter_of(samples: Samples, progress: Progress = Progress()) -> ScannerSplitter | None:
-    """What tells scanners apart whose points no field distinguishes; None where there is one, or they cannot be told apart.
-
-    Parameters
-    ----------
-    samples : Samples of one scanner, as it seems
-    """
+    """What tells scanners apart whose points no field distinguishes; None where there is one, or they cannot be told apart."""
     if not samples.drives:
         return None
     tracks = [first_track(samples.time[drive], samples.place[drive]) for drive in samples.drives]
@@ -230,7 +195,7 @@ def splitter_of(samples: Samples, progress: Progress = Progress()) -> ScannerSpl
 
 
 def _returns(samples: Samples, poses: Poses, scanners: list[Spinning]) -> Returns:
-    """Up to PER_INTERVAL returns of every interval and scanner."""
+    """Up to `per_interval` returns of every interval and scanner."""
     order = np.full(256, -1)
     order[[one.number for one in scanners]] = np.arange(len(scanners))
     parts = []
@@ -241,7 +206,7 @@ def _returns(samples: Samples, poses: Poses, scanners: list[Spinning]) -> Return
         by_key = np.argsort(key, kind="stable")
         ordered = key[by_key]
         rank = np.arange(len(key)) - np.searchsorted(ordered, ordered)
-        thinned = rank % -(-np.bincount(ordered)[ordered] // PER_INTERVAL) == 0
+        thinned = rank % -(-np.bincount(ordered)[ordered] // RAYS.per_interval) == 0
         rows = np.sort(by_key[thinned & (scanner[by_key] >= 0)])
         parts.append((interval[rows], share[rows], samples.time[drive][rows], samples.place[drive][rows], scanner[rows]))
     interval, share, time, place, scanner = (np.concatenate(column) for column in zip(*parts))
@@ -253,18 +218,19 @@ def _of_rays(samples, tracks, scanners, found, crs):
     rows, lost = [], 0.0
     for drive, knots in zip(samples.drives, found.poses.drives):
         first, last = float(samples.time[drive.start]), float(samples.time[drive.stop - 1])
-        time = np.append(np.arange(first, last, ROW_SPACING), last)
+        time = np.append(np.arange(first, last, ESTIMATE.row_spacing), last)
         interval, share = knots.interval(time)
         covariance = found.place_covariance[interval + 1 + (share > 0.5)]
-        flat = np.sqrt(covariance[:, 0, 0] + covariance[:, 1, 1] + LEAST_SIGMA**2)
-        known = flat <= MAX_SIGMA
-        lost += np.count_nonzero(~known) * ROW_SPACING
-        rows.append(np.column_stack([time, found.poses.at(interval, share)[:, :YAW + 1], flat, np.sqrt(covariance[:, 2, 2] + LEAST_SIGMA**2)])[known])
+        flat = np.sqrt(covariance[:, 0, 0] + covariance[:, 1, 1] + ESTIMATE.least_sigma**2)
+        known = flat <= ESTIMATE.max_sigma
+        lost += np.count_nonzero(~known) * ESTIMATE.row_spacing
+        up = np.sqrt(covariance[:, 2, 2] + ESTIMATE.least_sigma**2)
+        rows.append(np.column_stack([time, found.poses.at(interval, share)[:, :YAW + 1], flat, up])[known])
     time, x, y, z, roll, pitch, yaw, flat, up = np.concatenate(rows).T
     if not len(time):
         raise RoadExtractionError(
-            f"The places of the scanner could not be told to {MAX_SIGMA:g} m anywhere. The times may be those of an export, not of the measuring: "
-            "give the cloud as the scanner's own program writes it, or a trajectory.")
+            f"The places of the scanner could not be told to {ESTIMATE.max_sigma:g} m anywhere. The times may be those of an export, not of the "
+            "measuring: give the cloud as the scanner's own program writes it, or a trajectory.")
     ox, oy, oz = samples.origin
     trajectory = Trajectory(time + samples.start, x + ox, y + oy, z + oz, np.degrees(roll), np.degrees(pitch), (90.0 - np.degrees(yaw)) % 360.0, crs)
     ground = np.interp(time, *(np.concatenate(column) for column in zip(*((track.time, track.foot[:, 2]) for track in tracks))))
@@ -273,7 +239,7 @@ def _of_rays(samples, tracks, scanners, found, crs):
     if left_out:
         result.notes.append(f"{left_out} of {samples.scanners} scanners show no steadily turning mirror and took no part.")
     if lost >= 1.0:
-        result.notes.append(f"For {lost:.0f} s of the survey the place is not known to {MAX_SIGMA:g} m and was left out; "
+        result.notes.append(f"For {lost:.0f} s of the survey the place is not known to {ESTIMATE.max_sigma:g} m and was left out; "
                             "points measured then will be, too.")
     if samples.left_out:
         result.notes.append(f"{samples.left_out:,} points came in short pieces between gaps of time and were left out.")
@@ -286,11 +252,11 @@ def _of_heads(samples, tracks, heads, crs):
     ground, height, height_sigma = head_heights(samples, tracks, heads)
     told = (f"the elevations of its beams give its height above the road, {height:.2f} m, known to {height_sigma:.2f} m: that of where they "
             "lead out, of which the head's own reference point may lie two decimetres off" if height is not None else
-            f"its height above the road, known to {HEAD_HEIGHT_SIGMA:g} m, is a usual one, since its beams fall on too little that stands up")
+            f"its height above the road, known to {HEAD.usual_height_sigma:g} m, is a usual one, since its beams fall on too little that stands up")
     if height is None:
-        height, height_sigma = HEAD_HEIGHT, HEAD_HEIGHT_SIGMA
+        height, height_sigma = HEAD.usual_height, HEAD.usual_height_sigma
     place = np.column_stack([np.concatenate([head.place for head in heads]), np.concatenate(ground) + height])
-    known = sigma <= MAX_SIGMA
+    known = sigma <= ESTIMATE.max_sigma
     trajectory = _rough(time[known] + samples.start, place[known], heading[known], samples.origin, crs, True)
     return EstimatedTrajectory(trajectory, sigma[known], np.full(int(known.sum()), height_sigma), "turns", notes=[
         f"The points are those of a head of many beams that turns {abs(heads[0].rate):.1f} times a second. Its place follows from the "
@@ -300,10 +266,10 @@ def _of_heads(samples, tracks, heads, crs):
 def _by_density(samples, tracks, crs):
     """The first track as the trajectory, where no mirror was seen to turn."""
     time, place, heading = (np.concatenate(column) for column in zip(*((track.time, track.foot, track.heading) for track in tracks)))
-    trajectory = _rough(time + samples.start, place + [0.0, 0.0, FIRST_HEIGHT], heading, samples.origin, crs, True)
-    return EstimatedTrajectory(trajectory, np.full(len(time), DENSITY_SIGMA), np.full(len(time), DENSITY_HEIGHT_SIGMA), "density", notes=[
+    trajectory = _rough(time + samples.start, place + [0.0, 0.0, TRACK.usual_height], heading, samples.origin, crs, True)
+    return _with_density_sigma(trajectory, [
         "No mirror was seen to turn in the points' times, so the track follows the density of the points alone: it is rough, its place "
-        f"known to about {DENSITY_SIGMA:g} m and its height above the road to {DENSITY_HEIGHT_SIGMA:g} m."])
+        f"known to about {ESTIMATE.density_sigma:g} m and its height above the road to {ESTIMATE.density_height_sigma:g} m."])
 
 
 def _without_time(samples, crs):
@@ -312,11 +278,16 @@ def _without_time(samples, crs):
     step = np.gradient(place[:, :2], axis=0)
     trajectory = _rough(np.arange(len(place), dtype=float), place, np.arctan2(step[:, 1], step[:, 0]), samples.origin, crs, False)
     trajectory = replace(trajectory, way_known=False)
-    notes = [f"The points have no times, so the track is the ridge of their density: it is rough, its place known to about {DENSITY_SIGMA:g} m, "
-             f"its height above the road to {DENSITY_HEIGHT_SIGMA:g} m, "
+    notes = [f"The points have no times, so the track is the ridge of their density: it is rough, its place known to about "
+             f"{ESTIMATE.density_sigma:g} m, its height above the road to {ESTIMATE.density_height_sigma:g} m, "
              "and which way was driven is not known. It is the longest drive; what branches off is not in it, and where a road was driven both "
              "ways it lies between the drives, up to 2 m beside either."]
-    return EstimatedTrajectory(trajectory, np.full(len(place), DENSITY_SIGMA), np.full(len(place), DENSITY_HEIGHT_SIGMA), "density", notes=notes)
+    return _with_density_sigma(trajectory, notes)
+
+
+def _with_density_sigma(trajectory, notes):
+    sigma, sigma_height = (np.full(len(trajectory), sigma) for sigma in (ESTIMATE.density_sigma, ESTIMATE.density_height_sigma))
+    return EstimatedTrajectory(trajectory, sigma, sigma_height, "density", notes=notes)
 
 
 def _rough(time, place, yaw, origin, crs, has_time):
@@ -326,39 +297,20 @@ def _rough(time, place, yaw, origin, crs, has_time):
 
 # Clouds that no vehicle on a road has measured are refused by name.
 
-FARTHEST_MEDIAN = 15.0     # m: half of what a vehicle on a road sees at a time is nearer; an aircraft's swath is wider
-MIN_SHARE_ELSEWHERE = 0.1  # of the points of a moment that lie in another place, where two drives have the same times
-MIN_FAR_APART = 50.0       # m between two such places
-PLACE_RADIUS = 15.0        # m: half of what lies in either is nearer to its middle
-SPLIT_ROUNDS = 5
-MAX_ROAD_REACH = 8.0       # m: half of the points are nearer where the road under the vehicle is among them
-MAX_ACCELERATION = 8.0     # m/s^2, which road vehicles reach in an emergency stop
-DRIVABLE_SHARE = 0.9         # of a track that keeps below it, if a vehicle drove it
-MIN_PATH = 5.0           # m between the outermost places: less is no drive
-WALKING_PACE = 2.0       # m/s: nobody surveys a road by car at that pace all the time
-PACE_TIME = 3.0          # s over which a pace is told
-STEADY_PLACES = 7        # of some tenths of a second together: fewer than half of them may be wrong
-MIN_STANDING_TIME = 2.0  # s of measuring before standing still means anything
 
 
 def _refuse_airborne(tracks: list[FirstTrack]) -> None:
-    """Refuse a cloud whose points are spread so wide at any time that they were measured from high above.
-
-    Raises RoadExtractionError if it is one.
-    """
+    """Refuse a cloud whose points are spread so wide at any time that they were measured from high above."""
     reach = float(np.nanmedian(np.concatenate([track.reach for track in tracks])))
-    if reach > FARTHEST_MEDIAN:
+    if reach > ESTIMATE.farthest_median:
         raise RoadExtractionError(
             f"This looks like an airborne survey: at any moment half of its points lie more than {reach:.0f} m from where they are densest, and "
-            f"a vehicle on the road sees half of them within {FARTHEST_MEDIAN:.0f} m. A trajectory is estimated for mobile laser scanning from "
-            "the road alone.")
+            f"a vehicle on the road sees half of them within {ESTIMATE.farthest_median:.0f} m. A trajectory is estimated for mobile laser "
+            "scanning from the road alone.")
 
 
 def _refuse_clocks_that_overlap(samples: Samples, tracks: list[FirstTrack]) -> None:
-    """Refuse points that were measured in two places at the same times: drives whose clocks overlap.
-
-    Raises RoadExtractionError if most moments of the survey show two such places.
-    """
+    """Refuse points that were measured in two places at most of the times: drives whose clocks overlap."""
     apart = np.concatenate([_places_apart(samples.time[drive], samples.place[drive, :2], track) for drive, track in zip(samples.drives, tracks)])
     if len(apart) and np.mean(np.isfinite(apart)) > 0.5:
         raise RoadExtractionError(
@@ -369,43 +321,37 @@ def _refuse_clocks_that_overlap(samples: Samples, tracks: list[FirstTrack]) -> N
 def _places_apart(time, flat, track):
     """(W,) m between the two places in which the points of a window lie; NaN where they lie in one, or spread."""
     size = len(track.time)
-    window = np.clip(((time - track.time[0] + WINDOW / 2) / WINDOW).astype(np.int64), 0, size - 1)
+    window = np.clip(((time - track.time[0] + TRACK.window / 2) / TRACK.window).astype(np.int64), 0, size - 1)
     # one place about the densest of the window, and what lies farthest from it
     away = flat - track.foot[window, :2]
     order = np.lexsort((np.hypot(*away.T), window))
     held = np.bincount(window, minlength=size)
     last = np.maximum(np.cumsum(held) - 1, 0)
     middles = np.stack([np.zeros((size, 2)), away[order[last]]])
-    for _ in range(SPLIT_ROUNDS):
+    for _ in range(ESTIMATE.split_rounds):
         far = np.stack([np.hypot(*(away - middle[window]).T) for middle in middles])
         second = far[1] < far[0]
         for number, own in enumerate((~second, second)):
             count = np.maximum(np.bincount(window[own], minlength=size), 1)
             middles[number] = np.stack([np.bincount(window[own], column, size) / count for column in away[own].T], axis=1)
     share = np.bincount(window, second, size) / np.maximum(held, 1)
-    near = np.bincount(window, far.min(axis=0) < PLACE_RADIUS, size) / np.maximum(held, 1)
+    near = np.bincount(window, far.min(axis=0) < ESTIMATE.place_radius, size) / np.maximum(held, 1)
     between = np.hypot(*(middles[1] - middles[0]).T)
-    two = (np.minimum(share, 1.0 - share) >= MIN_SHARE_ELSEWHERE) & (between > MIN_FAR_APART) & (near > 0.5)
-    return np.where(two, between, np.nan)[held >= MIN_WINDOW_SAMPLES]
+    two = (np.minimum(share, 1.0 - share) >= ESTIMATE.min_share_elsewhere) & (between > ESTIMATE.min_far_apart) & (near > 0.5)
+    return np.where(two, between, np.nan)[held >= TRACK.min_window_samples]
 
 
 def _usual_acceleration(tracks: list[np.ndarray], spacing: float) -> float:
-    """m/s^2 that nine tenths of the tracks keep below.
-
-    tracks : (N, 2 or more) m each, at times `spacing` (s) apart
-    """
+    """m/s^2 that nine tenths of the tracks keep below, (N, 2 or more) m each, at times `spacing` (s) apart."""
     bends = np.concatenate([np.hypot(*np.diff(track[:, :2], 2, axis=0).T) for track in tracks])
-    return float(np.quantile(bends, DRIVABLE_SHARE)) / spacing**2 if len(bends) else 0.0
+    return float(np.quantile(bends, ESTIMATE.drivable_share)) / spacing**2 if len(bends) else 0.0
 
 
 def _refuse_without_road(tracks: list[FirstTrack]) -> None:
-    """Refuse to follow the density of points among which the road under the vehicle is not.
-
-    Raises RoadExtractionError if most points lie far from where they are densest, or that place moves as no vehicle does.
-    """
+    """Refuse points of which most lie far from where they are densest, or where that place moves as no vehicle does."""
     reach = float(np.nanmedian(np.concatenate([track.reach for track in tracks])))
-    sharp = _usual_acceleration([track.foot for track in tracks], WINDOW)
-    if reach > MAX_ROAD_REACH or sharp > MAX_ACCELERATION:
+    sharp = _usual_acceleration([track.foot for track in tracks], TRACK.window)
+    if reach > ESTIMATE.max_road_reach or sharp > ESTIMATE.max_acceleration:
         raise RoadExtractionError(
             "No mirror is seen to turn in the points' times, and their density does not show the way either: half of the points lie more than "
             f"{reach:.1f} m from where they are densest, and that place moves with accelerations of {sharp:.0f} m/s². The road under the vehicle may "
@@ -416,50 +362,39 @@ def _refuse_without_road(tracks: list[FirstTrack]) -> None:
 def _refuse_terrestrial(tracks: list[FirstTrack], places: list[np.ndarray]) -> None:
     """Refuse a cloud that was measured from one place.
 
-    tracks : FirstTrack of each drive
     places : (N, 2 or more) m, where scanners were seen, in order of time, some of them wrong; none where that is not known
-
-    Raises RoadExtractionError if it is one.
     """
     if places := [place[:, :2] for place in places if len(place)]:
         # a vehicle may stand most of the time, but where it drives, it is seen several times
-        steady = np.concatenate([median_filter(place, (STEADY_PLACES, 1), mode="nearest") for place in places])
+        steady = np.concatenate([median_filter(place, (ESTIMATE.steady_places, 1), mode="nearest") for place in places])
         low, high = steady.min(axis=0), steady.max(axis=0)
     else:
         feet = np.concatenate([track.foot[:, :2] for track in tracks])
         low, high = np.quantile(feet, 0.05, axis=0), np.quantile(feet, 0.95, axis=0)
     seconds = sum(float(np.ptp(track.time)) for track in tracks)
-    if np.hypot(*(high - low)) < MIN_PATH and seconds > MIN_STANDING_TIME:
+    if np.hypot(*(high - low)) < ESTIMATE.min_path and seconds > ESTIMATE.min_standing_time:
         raise RoadExtractionError(
             f"This looks like a terrestrial scan: in {seconds:.0f} s the scanner stayed within {np.hypot(*(high - low)):.1f} m. A trajectory is "
             "estimated for clouds measured while driving; give those, or the scanner's position as a trajectory where a map is wanted from here.")
 
 
 def refuse_handheld(tracks: list[FirstTrack], scanners: list[Spinning], heads: Sequence[HeadTrack] = ()) -> None:
-    """Refuse a cloud measured at walking pace by a scanner without a steadily mounted mirror.
+    """Raise RoadExtractionError for a cloud measured at walking pace by a scanner without a steadily mounted mirror.
 
-    Parameters
-    ----------
-    tracks : FirstTrack of each drive
     scanners : whose mirrors turn steadily; where there is one, nobody carries it
     heads : of many beams; their places are sharper than the first track
-
-    Raises
-    ------
-    RoadExtractionError
-        If it is one.
     """
     if scanners:
         return
     if heads:
         # a vehicle may stand most of the time, but where it drives, it is faster than anybody walks
         pace = np.concatenate([_paces_of(head) for head in heads])
-        walks = len(pace) > 0 and pace.max() < WALKING_PACE
+        walks = len(pace) > 0 and pace.max() < ESTIMATE.walking_pace
     else:
-        # between places PACE_TIME apart: the track swings from window to window by more than anybody walks meanwhile
-        apart = round(PACE_TIME / WINDOW)
-        pace = np.concatenate([np.hypot(*(track.foot[apart:, :2] - track.foot[:-apart, :2]).T) / PACE_TIME for track in tracks])
-        walks = len(pace) > 0 and np.quantile(pace, 0.9) < WALKING_PACE
+        # between places some seconds apart: the track swings from window to window by more than anybody walks meanwhile
+        apart = round(ESTIMATE.pace_time / TRACK.window)
+        pace = np.concatenate([np.hypot(*(track.foot[apart:, :2] - track.foot[:-apart, :2]).T) / ESTIMATE.pace_time for track in tracks])
+        walks = len(pace) > 0 and np.quantile(pace, 0.9) < ESTIMATE.walking_pace
     if walks:
         raise RoadExtractionError(
             f"This looks like a handheld or backpack survey: it moved at {np.median(pace):.1f} m/s, at walking pace, and no mirror turns steadily "
@@ -467,8 +402,8 @@ def refuse_handheld(tracks: list[FirstTrack], scanners: list[Spinning], heads: S
 
 
 def _paces_of(head):
-    """m/s over PACE_TIME, from the places of a head without single wrong ones."""
-    place = median_filter(head.place, (STEADY_PLACES, 1), mode="nearest")
-    start = np.flatnonzero(head.time <= head.time[-1] - PACE_TIME)
-    end = np.searchsorted(head.time, head.time[start] + PACE_TIME)
+    """m/s over `pace_time`, from the places of a head without single wrong ones."""
+    place = median_filter(head.place, (ESTIMATE.steady_places, 1), mode="nearest")
+    start = np.flatnonzero(head.time <= head.time[-1] - ESTIMATE.pace_time)
+    end = np.searchsorted(head.time, head.time[start] + ESTIMATE.pace_time)
     return np.hypot(*(place[end] - place[start]).T) / (head.time[end] - head.time[start])

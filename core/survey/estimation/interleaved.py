@@ -10,22 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .adjustment import MIN_RANGE, misfits
+from ..weights import MIRROR, RAYS
+from .adjustment import misfits
 from .poses import Poses
 from .samples import FirstTrack
-
-FOLLOWERS = 8            # points after a point, to which its line may lead: beside a scanner of many pulses those of another come seldom
-NEAREST_STEP, FARTHEST_STEP = 0.02, 1.5   # m of them apart: nearer, noise turns the direction, farther it is another line
-NEAR_TRACK = 8.0         # m from the track
-GROUND_BAND_OF_LINES = 0.4   # m either side of the ground
-DIRECTIONS = 90          # of half a turn, in which steps are counted
-BLURRED = 2              # directions either side that are counted together
-# share of the steps of the most frequent direction that another one needs, and how often what is usual of a direction
-CLEAR_DIRECTIONS = (0.3, 3.0), (0.05, 10.0)   # as many as the first, or few but clear
-MIN_APART = 10           # directions between two: 20 degrees
-MAX_DIRECTIONS = 4       # scanners of a vehicle
-MIN_STEPS = 2000         # steps that a judgement needs
-DIRECTION_TOLERANCE = 4       # directions off its own that a step may lead
 
 
 def told_apart(scanners: int) -> str:
@@ -34,73 +22,53 @@ def told_apart(scanners: int) -> str:
 
 
 def steps_of(place: np.ndarray, track: FirstTrack, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Steps between points that follow each other in time, on the road near the track.
+    """Steps between points that follow each other in time, on the road near the track: (M,) rows of their first points, and (M,) directions.
 
-    Parameters
-    ----------
-    place : (N, 3) m, in order of time
-    time : (N,) s
-
-    Returns
-    -------
-    row : (M,) of the first point of every step
-    direction : (M,) number of its direction among DIRECTIONS, relative to the way driven
+    place, time : (N, 3) m and (N,) s, ascending. A direction is a number among those of half a turn, relative to the way driven
     """
     foot, heading = track.at(time)
     away = place - foot
-    near = np.flatnonzero((np.abs(away[:, 2]) < GROUND_BAND_OF_LINES) & (np.hypot(away[:, 0], away[:, 1]) < NEAR_TRACK))
+    near = np.flatnonzero((np.abs(away[:, 2]) < MIRROR.ground_band) & (np.hypot(away[:, 0], away[:, 1]) < MIRROR.near_foot))
     rows, directions = [], []
-    for ahead in range(1, FOLLOWERS + 1):
+    for ahead in range(1, MIRROR.followers + 1):
         a, b = near[:-ahead], near[ahead:]
-        close = b - a <= FOLLOWERS
+        close = b - a <= MIRROR.followers
         a, b = a[close], b[close]
         step = away[b, :2] - away[a, :2]
         size = np.hypot(*step.T)
-        used = (size > NEAREST_STEP) & (size < FARTHEST_STEP)
+        used = (size > MIRROR.nearest_step) & (size < MIRROR.farthest_step)
         angle = np.arctan2(step[used, 1], step[used, 0]) - heading[a[used]]
         rows.append(a[used].astype(np.int32))
-        directions.append(np.floor(angle % np.pi / np.pi * DIRECTIONS).astype(np.int16) % DIRECTIONS)
+        directions.append(np.floor(angle % np.pi / np.pi * MIRROR.directions).astype(np.int16) % MIRROR.directions)
     return np.concatenate(rows), np.concatenate(directions)
 
 
 def scan_line_directions(direction: np.ndarray) -> list[int]:
-    """The directions in which steps lead, the most frequent first; one where the points are of one scanner, none where they lead anywhere.
-
-    Parameters
-    ----------
-    direction : (M,) as of `steps_of`
-    """
-    if len(direction) < MIN_STEPS:
+    """The directions in which (M,) steps lead, the most frequent first; one where the points are of one scanner, none where they lead anywhere."""
+    if len(direction) < MIRROR.min_steps:
         return []
-    alone = np.bincount(direction, minlength=DIRECTIONS).astype(float)
-    count = np.sum([np.roll(alone, shift) for shift in range(-BLURRED, BLURRED + 1)], axis=0)
+    alone = np.bincount(direction, minlength=MIRROR.directions).astype(float)
+    count = np.sum([np.roll(alone, shift) for shift in range(-MIRROR.blurred, MIRROR.blurred + 1)], axis=0)
     most, usual = float(count.max()), float(np.median(count))
-    needed = min(max(share * most, clearness * usual) for share, clearness in CLEAR_DIRECTIONS)
+    needed = min(max(share * most, clearness * usual) for share, clearness in MIRROR.clear_directions)
     found: list[int] = []
-    while len(found) < MAX_DIRECTIONS:
+    while len(found) < MIRROR.max_directions:
         best = int(np.argmax(count))
         if count[best] < needed:
             break
         found.append(best)
-        count[_apart(np.arange(DIRECTIONS), best) < MIN_APART] = -1.0
+        count[_apart(np.arange(MIRROR.directions), best) < MIRROR.min_apart] = -1.0
     return found
 
 
 def _apart(direction, one):
     """Directions from one to others, either way round."""
-    return np.abs((direction - one + DIRECTIONS // 2) % DIRECTIONS - DIRECTIONS // 2)
+    return np.abs((direction - one + MIRROR.directions // 2) % MIRROR.directions - MIRROR.directions // 2)
 
 
 def lines_of_each(direction: np.ndarray, row: np.ndarray, size: int, ways: list[int]) -> np.ndarray:
-    """(size,) number of the scanner of every point, -1 where its steps do not tell.
-
-    Parameters
-    ----------
-    direction, row : (M,) as of `steps_of`
-    size : number of points
-    ways : the directions of the scanners, of `scan_line_directions`
-    """
-    votes = np.stack([np.bincount(row[_apart(direction, one) <= DIRECTION_TOLERANCE], minlength=size) for one in ways])
+    """(size,) number of the scanner of every point, among the directions `ways` of their scan lines; -1 where its steps do not tell."""
+    votes = np.stack([np.bincount(row[_apart(direction, one) <= MIRROR.direction_tolerance], minlength=size) for one in ways])
     first = votes.argmax(axis=0)
     most = votes.max(axis=0)
     return np.where((votes == most).sum(axis=0) == 1, first, -1)
@@ -110,9 +78,7 @@ def lines_of_each(direction: np.ndarray, row: np.ndarray, size: int, ways: list[
 class ScannerSplitter:
     """Tells by the rays which of several scanners measured a point.
 
-    poses : Poses with all of them
-    start : s of time 0 of the poses
-    origin : (3,) map coordinates of their places
+    poses : with all of them; start : s of time 0 of the poses; origin : (3,) map coordinates of their places
     """
 
     poses: Poses
@@ -137,4 +103,4 @@ class ScannerSplitter:
 def _ray_distance(poses: Poses, interval: np.ndarray, share: np.ndarray, time: np.ndarray, place: np.ndarray, number: int) -> np.ndarray:
     """(N,) m by which points lie off the rays of one scanner; inf behind it."""
     found = misfits(poses, interval, share, time, place, np.full(len(time), number))
-    return np.where(found.range > MIN_RANGE, np.abs(found.off).max(axis=0), np.inf)
+    return np.where(found.range > RAYS.min_range, np.abs(found.off).max(axis=0), np.inf)

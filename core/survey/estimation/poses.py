@@ -8,11 +8,10 @@ import numpy as np
 
 from ...curves.robust import robustly_smoothed
 from ..lattice.scan_lattice import MIN_ROTATION_PEAK, ROTATION_WINDOW, rotation_spectrum, strongest_rotation
-from .samples import MIN_WINDOW_SAMPLES, WINDOW, FirstTrack, Samples, headings_of
+from ..weights import MIRROR, TRACK
+from .samples import FirstTrack, Samples, headings_of
 
-KNOT_SPACING = 0.1   # s between the knots of the splines: suspensions swing at 1 to 3 Hz
-X, Y, Z, ROLL, PITCH, YAW = range(6)   # columns of the control values; the phases of the scanners follow
-POSE = 6             # columns before the phases
+X, Y, Z, ROLL, PITCH, YAW, POSE = range(7)   # columns of the control values, and the first of the phases of the scanners
 
 
 @dataclass(frozen=True)
@@ -25,25 +24,23 @@ class _DriveKnots:
 
     def interval(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Number among all intervals, and share of it that has passed, at (N,) times of the drive."""
-        since = (np.asarray(time, float) - self.start) / KNOT_SPACING
+        since = (np.asarray(time, float) - self.start) / MIRROR.knot_spacing
         number = np.clip(np.floor(since).astype(np.int64), 0, self.count - 4)
         return number + self.first, since - number
 
     @property
     def middles(self) -> np.ndarray:
         """(count,) s at which each control value weighs most."""
-        return self.start + (np.arange(self.count) - 1.0) * KNOT_SPACING
+        return self.start + (np.arange(self.count) - 1.0) * MIRROR.knot_spacing
 
 
 @dataclass(frozen=True)
 class Poses:
     """Cubic B-splines of place, attitude and mirror phases, and the mounting of S scanners.
 
-    drives : _DriveKnots of each drive
     control : (K, 6 + S) control values: x, y, z (m), roll (right side down), pitch (nose up), yaw (counter-clockwise from east; radians),
         and of each scanner what its direction angle is ahead of 2 pi rate t (radians)
-    rate : (S,) Hz
-    turn : (S,) radians by which the scan line is turned counter-clockwise from straight across
+    rate : (S,) Hz; turn : (S,) radians by which the scan line is turned counter-clockwise from straight across
     lean : (S,) radians by which the scan plane leans, its upper half forward
     lever : (S, 3) m ahead, left and up from the place of the pose; their mean is 0
     """
@@ -86,7 +83,7 @@ def spline_weights(share: np.ndarray) -> np.ndarray:
 def spline_slopes(share: np.ndarray) -> np.ndarray:
     """(N, 4) weights for the change per second."""
     u = np.asarray(share, float)
-    return np.stack([-((1 - u) ** 2), 3 * u**2 - 4 * u, -3 * u**2 + 2 * u + 1, u**2], axis=-1) / (2.0 * KNOT_SPACING)
+    return np.stack([-((1 - u) ** 2), 3 * u**2 - 4 * u, -3 * u**2 + 2 * u + 1, u**2], axis=-1) / (2.0 * MIRROR.knot_spacing)
 
 
 def vehicle_axes(roll: np.ndarray, pitch: np.ndarray, yaw: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -107,27 +104,15 @@ def vehicle_axes(roll: np.ndarray, pitch: np.ndarray, yaw: np.ndarray) -> tuple[
 #
 # is linear and homogeneous in cos(phi), sin(phi) and two combinations of them with u and v; the smallest eigenvector solves it.
 
-EXPECTED_HEIGHT = 2.3        # m of the scanner above the ground, to tell in which direction and how fast its mirror turns
-ROTATION_SAMPLES_PER_DRIVE = 8   # windows in which the rate is sought
-MIN_SPECTRUM_SAMPLES = 200
-NEAR_FOOT = 8.0              # m from the track, within which ground points show the direction of the scan lines
-GROUND_BAND = 0.4            # m either side of the ground
-HEIGHT_RANGE_ABOVE = 0.6, 15.0   # m of a scanner on a vehicle above the ground; of clouds in feet that do not say so, too
-MIN_SHARE_IN_FRONT = 0.95    # of the points lie before the scanner, not behind it
-MAX_WORSE = 4.0              # times the median misfit: windows beyond are not used
-MAX_WINDOW_POINTS = 400      # used of a window
-RESECTION_ROUNDS = 3
 
 
 @dataclass
 class _Fixes:
     """Places of one scanner in windows of one drive; only windows with a good one.
 
-    time : (W,) s, middles
-    place : (W, 3) m, as if the scan plane stood upright
+    time, place : (W,) s, middles, and (W, 3) m, as if the scan plane stood upright; misfit : (W,) m
     phase : (W,) radians that the direction of a point was ahead of 2 pi rate t, in the plane, 0 to the left, from the middle of the window
     yaw : (W,) radians by which the scan line is turned, counter-clockwise, from straight across
-    misfit : (W,) m
     """
 
     time: np.ndarray
@@ -138,20 +123,17 @@ class _Fixes:
 
 
 def _rotation_rate_of(runs: list[tuple[np.ndarray, np.ndarray, FirstTrack]]) -> float | None:
-    """The rate at which one scanner's mirror turns, Hz; None where its points show none.
-
-    runs : per drive (N,) times, (N, 3) places and the drive's FirstTrack
-    """
+    """Hz of one scanner's mirror, by (N,) times, (N, 3) places and the FirstTrack of every drive; None where its points show none."""
     spectra = []
     for time, place, track in runs:
-        for middle in np.linspace(track.time[0], track.time[-1], ROTATION_SAMPLES_PER_DRIVE + 2)[1:-1]:
+        for middle in np.linspace(track.time[0], track.time[-1], MIRROR.rotation_samples_per_drive + 2)[1:-1]:
             own = slice(*np.searchsorted(time, [middle - ROTATION_WINDOW / 2, middle + ROTATION_WINDOW / 2]))
-            if own.stop - own.start < MIN_SPECTRUM_SAMPLES:
+            if own.stop - own.start < MIRROR.min_spectrum_samples:
                 continue
             foot, heading = track.at(time[own])
             away = place[own] - foot
             across = away[:, 1] * np.cos(heading) - away[:, 0] * np.sin(heading)
-            phasor = away[:, 2] - EXPECTED_HEIGHT + 1j * across
+            phasor = away[:, 2] - TRACK.usual_height + 1j * across
             spectra.append(rotation_spectrum(time[own], phasor / np.maximum(np.abs(phasor), 1e-9)))
     if not spectra:
         return None
@@ -160,22 +142,20 @@ def _rotation_rate_of(runs: list[tuple[np.ndarray, np.ndarray, FirstTrack]]) -> 
 
 
 def _fixes_of(time: np.ndarray, place: np.ndarray, track: FirstTrack, rate: float) -> _Fixes:
-    """The places of one scanner in the windows of one drive.
+    """The places of one scanner in the windows of one drive, by (N,) ascending times and (N, 3) places.
 
-    time : (N,) s, ascending
-    place : (N, 3) m
     track : FirstTrack of the drive, against which the vehicle's motion within a window is removed
     rate : Hz, positive where directions turn counter-clockwise seen from ahead, looking back
     """
-    window = np.clip(((time - track.time[0] + WINDOW / 2) / WINDOW).astype(np.int64), 0, len(track.time) - 1)
+    window = np.clip(((time - track.time[0] + TRACK.window / 2) / TRACK.window).astype(np.int64), 0, len(track.time) - 1)
     rank = np.arange(len(window)) - np.searchsorted(window, window)
     held = np.bincount(window, minlength=len(track.time))
-    kept = rank % -(-held // MAX_WINDOW_POINTS)[window] == 0
+    kept = rank % -(-held // MIRROR.max_window_points)[window] == 0
     time, place, window = time[kept], place[kept], window[kept]
     size = len(track.time)
     foot, heading = track.at(time)
     away = place - foot
-    near = np.flatnonzero((np.abs(away[:, 2]) < GROUND_BAND) & (np.hypot(away[:, 0], away[:, 1]) < NEAR_FOOT))
+    near = np.flatnonzero((np.abs(away[:, 2]) < MIRROR.ground_band) & (np.hypot(away[:, 0], away[:, 1]) < MIRROR.near_foot))
     direction, middle, grounded = _line_directions(away[near, :2], window[near], size)
     # scan lines run to the left of the way driven
     yaw = (direction - track.heading + 0.0) % np.pi - np.pi / 2
@@ -186,10 +166,10 @@ def _fixes_of(time: np.ndarray, place: np.ndarray, track: FirstTrack, rate: floa
     u, v, phase, misfit, in_front = resected(along, away[:, 2], angle, window, size)
     found = track.foot + np.stack([u * np.cos(direction) - beside * np.sin(direction), u * np.sin(direction) + beside * np.cos(direction), v], axis=1)
     count = np.bincount(window, minlength=size)
-    good = (count >= MIN_WINDOW_SAMPLES) & (grounded >= MIN_WINDOW_SAMPLES / 2) & (in_front >= MIN_SHARE_IN_FRONT)
-    good &= (v > HEIGHT_RANGE_ABOVE[0]) & (v < HEIGHT_RANGE_ABOVE[1])
+    good = (count >= TRACK.min_window_samples) & (grounded >= TRACK.min_window_samples / 2) & (in_front >= MIRROR.min_share_in_front)
+    good &= (v > MIRROR.heights[0]) & (v < MIRROR.heights[1])
     if good.any():
-        good &= misfit <= MAX_WORSE * np.median(misfit[good])
+        good &= misfit <= MIRROR.max_worse * np.median(misfit[good])
     return _Fixes(track.time[good], found[good], phase[good], yaw[good], misfit[good])
 
 
@@ -204,22 +184,15 @@ def _line_directions(place, window, size):
 
 
 def resected(a: np.ndarray, b: np.ndarray, angle: np.ndarray, window: np.ndarray, size: int) -> tuple[np.ndarray, ...]:
-    """The places from which the rays of windows lead.
+    """The places from which the rays of `size` windows lead.
 
-    Parameters
-    ----------
-    a, b : (N,) m, places of returns in the scan plane
-    angle : (N,) radians that the mirror has turned through, from any start in each window
-    window : (N,) number of the window, below `size`
-
-    Returns
-    -------
-    u, v, phase, misfit, in_front : (size,) m of the place, radians of the angle's start, m, and share of the returns that lie before the place
+    a, b : (N,) m, places of returns in the scan plane; angle : (N,) radians that the mirror has turned through, from any start in each window;
+    window : (N,) its number. Returns (size,) m of the places u and v, radians of the angle's start, misfit (m), and share of the returns in front
     """
     sin, cos = np.sin(angle), np.cos(angle)
     rows = (a * sin - b * cos, a * cos + b * sin, -sin, -cos)
     weight = np.ones(len(a))
-    for _ in range(RESECTION_ROUNDS):
+    for _ in range(MIRROR.resection_rounds):
         total = np.empty((size, 4, 4))
         for i in range(4):
             for j in range(i, 4):
@@ -241,20 +214,11 @@ def resected(a: np.ndarray, b: np.ndarray, angle: np.ndarray, window: np.ndarray
 
 # Poses to start the adjustment from, of the fixes of every scanner.
 
-MIN_FIXES = 5             # good windows of a scanner, or it is left out
-FIX_STIFFNESS = 10.0      # (0.1 m of scatter / 0.03 m, see TRACK_STIFFNESS)^2
-PHASE_STIFFNESSES = 1e8, 1e6, 1e4, 1e2, 0.1   # from a mirror that turns evenly for seconds to one whose rate swings from window to window
-MAX_WORSE_PHASES = 1.5    # times the median deviation of the most flexible curve: a stiffer one deviates no more than this
 
 
 @dataclass
 class Spinning:
-    """A scanner whose mirror was seen to turn.
-
-    number : of the scanner
-    rate : Hz, signed
-    fixes : of each drive
-    """
+    """A scanner whose mirror was seen to turn: its number, signed rate (Hz), and fixes of each drive."""
 
     number: int
     rate: float
@@ -275,7 +239,7 @@ def spinning_scanners(samples: Samples, tracks: list[FirstTrack]) -> list[Spinni
         # seen from either side a mirror turns either way: the true way gives more windows that make sense, and a smaller misfit
         both = [Spinning(number, sign * rate, [_fixes_of(*run, sign * rate) if len(run[0]) else EMPTY for run in runs]) for sign in (1, -1)]
         best = max(both, key=lambda one: _quality(one.fixes))
-        if sum(len(fixes.time) for fixes in best.fixes) >= MIN_FIXES:
+        if sum(len(fixes.time) for fixes in best.fixes) >= MIRROR.min_fixes:
             found.append(_with_true_rate(best))
     return found
 
@@ -291,30 +255,24 @@ def _quality(fixes):
 def _with_true_rate(one):
     """The scanner with its mean rate, by which the phases of neighbouring windows agree."""
     change = np.concatenate([_phase_steps(fixes, one.rate) for fixes in one.fixes])
-    return Spinning(one.number, one.rate + float(np.median(change)) / (2 * np.pi * WINDOW), one.fixes) if len(change) else one
+    return Spinning(one.number, one.rate + float(np.median(change)) / (2 * np.pi * TRACK.window), one.fixes) if len(change) else one
 
 
 def _phase_steps(fixes, rate):
     """(M,) radians by which the phase gains on an even rate between neighbouring windows."""
     apart = np.diff(fixes.time)
     step = np.diff(fixes.phase) - 2 * np.pi * rate * apart
-    return ((step + np.pi) % (2 * np.pi) - np.pi)[apart < 1.5 * WINDOW]
+    return ((step + np.pi) % (2 * np.pi) - np.pi)[apart < 1.5 * TRACK.window]
 
 
 def first_poses(samples: Samples, tracks: list[FirstTrack], scanners: list[Spinning]) -> Poses:
-    """Poses through the fixes of all scanners; mountings upright.
-
-    Parameters
-    ----------
-    tracks : FirstTrack of each drive
-    scanners : those that spin; they are numbered anew in this order
-    """
+    """Poses through the fixes of all scanners that spin, which are numbered anew in this order; mountings upright."""
     turn = np.array([np.median(np.concatenate([fixes.yaw for fixes in one.fixes])) for one in scanners])
     lever = _levers(tracks, scanners)
     drives, control, first = [], [], 0
     for number, (drive, track) in enumerate(zip(samples.drives, tracks)):
-        start = float(samples.time[drive.start]) - KNOT_SPACING / 2
-        count = int(np.ceil((samples.time[drive.stop - 1] - start) / KNOT_SPACING)) + 4
+        start = float(samples.time[drive.start]) - MIRROR.knot_spacing / 2
+        count = int(np.ceil((samples.time[drive.stop - 1] - start) / MIRROR.knot_spacing)) + 4
         knots = _DriveKnots(start, first, count)
         values = np.zeros((count, POSE + len(scanners)))
         values[:, :3] = _places(track, [one.fixes[number] for one in scanners], lever, knots.middles)
@@ -353,14 +311,14 @@ def _places(track, fixes, lever, middles):
         heading = np.interp(own.time, track.time, track.heading)
         cos, sin = np.cos(heading), np.sin(heading)
         place = own.place - np.stack([cos * arm[0] - sin * arm[1], sin * arm[0] + cos * arm[1], np.full(len(cos), arm[2])], axis=1)
-        cell = np.clip(np.rint((own.time - middles[0]) / KNOT_SPACING).astype(np.int64), 0, cells - 1)
+        cell = np.clip(np.rint((own.time - middles[0]) / MIRROR.knot_spacing).astype(np.int64), 0, cells - 1)
         # a window's middle lies off the knot; the track tells how far the vehicle got in between
         place[:, :2] += (track.at(middles[cell])[0] - track.at(own.time)[0])[:, :2]
         total += np.stack([np.bincount(cell, column, cells) for column in place.T], axis=1)
         weight += np.bincount(cell, minlength=cells)
     if not weight.any():
         return track.at(middles)[0] + [0.0, 0.0, 2.0]
-    return robustly_smoothed(total / np.maximum(weight, 1)[:, None], weight, FIX_STIFFNESS)
+    return robustly_smoothed(total / np.maximum(weight, 1)[:, None], weight, MIRROR.fix_stiffness)
 
 
 def _phases(fixes, rate, middles):
@@ -368,12 +326,12 @@ def _phases(fixes, rate, middles):
     if not len(fixes.time):
         return np.zeros(len(middles))
     ahead = np.unwrap(fixes.phase - 2 * np.pi * rate * fixes.time)
-    cell = np.clip(np.rint((fixes.time - middles[0]) / KNOT_SPACING).astype(np.int64), 0, len(middles) - 1)
+    cell = np.clip(np.rint((fixes.time - middles[0]) / MIRROR.knot_spacing).astype(np.int64), 0, len(middles) - 1)
     values, weight = np.zeros((len(middles), 1)), np.zeros(len(middles))
     values[cell, 0], weight[cell] = ahead, 1.0
-    curves = [robustly_smoothed(values, weight, stiffness) for stiffness in PHASE_STIFFNESSES]
+    curves = [robustly_smoothed(values, weight, stiffness) for stiffness in MIRROR.phase_stiffnesses]
     off = [float(np.median(np.abs(curve - values)[weight > 0])) for curve in curves]
-    return next(curve for curve, one in zip(curves, off) if one <= MAX_WORSE_PHASES * off[-1] + 1e-3)[:, 0]
+    return next(curve for curve, one in zip(curves, off) if one <= MIRROR.max_worse_phases * off[-1] + 1e-3)[:, 0]
 
 
 def known_intervals(poses: Poses, scanners: list[Spinning]) -> np.ndarray:

@@ -13,35 +13,24 @@ from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ...curves.robust import robustly_smoothed
 from ..las.parallel_reader import ParallelCloudReader
-from ..las.point_fields import ScannerCensus, numbers_by_value, times_by_value, valid_points
-from ..las.reader import POINTS_PER_BLOCK, CloudHeader
+from ..las.point_fields import SCANNER_FIELDS, ScannerCensus, numbers_by_value, times_by_value, valid_points
+from ..las.reader import CloudHeader
 from ..las.samples import TimeSlots
 from ..trajectory.time_systems import SECONDS_PER_WEEK, wrapped_week
+from ..weights import LAS, TRACK
 
 SAMPLED_LAYERS = ("z", "point_source_id", "gps_time", "flags", "classification")  # LAZ layers that are decoded
-MAX_SAMPLES = 6_000_000   # points held in memory: 250 MB while they are sorted
-MAX_GAP_IN_DRIVE = 1.0    # s without points end a drive
-UNKNOWN_SCANNER = 255     # number of a point whose scanner is not known
-MIN_DRIVE_SAMPLES = 2000  # a drive with fewer is not estimated
-MIN_DRIVE_TIME = 1.0      # s: points at one wrong time, however many, are no drive
-ROUNDINGS = tuple(sorted((*(10.0**-k for k in range(2, 7)), *(2.0**-k for k in range(6, 20))), reverse=True))   # s, of decimals and of bits
-MIN_ROUNDED_SHARE = 0.99  # of the times are multiples of what they are rounded to
-ROUNDED_TOLERANCE = 0.25 # of it, which the precision of large times may leave
-MAX_ROUNDING_SAMPLES = 100_000
-COLUMN_OF_FIELD = {"point_source_id": 0, "scanner_channel": 1}
+UNKNOWN_SCANNER = 255     # derived: the last of 8 bits; number of a point whose scanner is not known
+ROUNDINGS = tuple(sorted((*(10.0**-k for k in range(2, 7)), *(2.0**-k for k in range(6, 20))), reverse=True))   # derived: s, of decimals and of bits
 
 
 @dataclass
 class Samples:
     """Points in order of time.
 
-    time : (N,) seconds since `start`, of the drives; zeros without time
-    place : (N, 3) metres from `origin`
-    scanner : (N,) numbers of the scanners from 0
-    start : s, the gps_time of the first drive's first point
-    origin : (3,) map coordinates
-    has_time : whether the points' times differ
-    drives : slices of the rows between gaps in time
+    time : (N,) seconds since `start`, of the drives; zeros without time; start : s, the gps_time of the first drive's first point
+    place : (N, 3) metres from `origin`, (3,) map coordinates; scanner : (N,) numbers of the scanners from 0
+    has_time : whether the points' times differ; drives : slices of the rows between gaps in time
     left_out : points of drives too short to be estimated
     """
 
@@ -65,37 +54,30 @@ class Samples:
 
 
 def read_samples(files: Sequence[CloudHeader], scanner_field: str = "automatic", progress: Progress = Progress()) -> Samples:
-    """First returns of the files in an even sample of at most MAX_SAMPLES.
+    """First returns of the files in an even sample of at most `max_samples`; RoadExtractionError if a file cannot be read, or too few are left.
 
-    Parameters
-    ----------
-    files : headers of the clouds
     scanner_field : "automatic", "scanner_channel" or "point_source_id"
-
-    Raises
-    ------
-    RoadExtractionError
-        If a file cannot be read, or too few points are left.
     """
-    slots = TimeSlots.for_points(sum(file.count for file in files), MAX_SAMPLES)
+    slots = TimeSlots.for_points(sum(file.count for file in files), TRACK.max_samples)
     origin = np.floor(np.min([file.minimum for file in files if file.count], axis=0))
     census, parts = ScannerCensus(), []
 
     with ParallelCloudReader(SAMPLED_LAYERS) as readers:
-        for found in ordered_map(lambda load: _sample(load(), slots, origin), readers.blocks(files, POINTS_PER_BLOCK), progress):
+        for found in ordered_map(lambda load: _sample(load(), slots, origin), readers.blocks(files, LAS.points_per_block), progress):
             time, place, numbers = found
-            for name, column in COLUMN_OF_FIELD.items():
+            for column, name in enumerate(SCANNER_FIELDS):
                 census.take(name, times_by_value(numbers[:, column], time))
             parts.append(found)
     time, place, numbers = (np.concatenate(column) for column in zip(*parts))
     del parts
-    if len(time) < MIN_DRIVE_SAMPLES:
+    if len(time) < TRACK.min_drive_samples:
         raise RoadExtractionError(
-            f"The point clouds have {len(time)} usable points; a trajectory is estimated from {MIN_DRIVE_SAMPLES} and more. Give the whole survey.")
+            f"The point clouds have {len(time)} usable points; a trajectory is estimated from {TRACK.min_drive_samples} and more. Give the whole "
+            "survey.")
     field, values = census.choose(scanner_field)
     scanner = np.zeros(len(time), np.uint8)
     if field is not None:
-        column = numbers[:, COLUMN_OF_FIELD[field]]
+        column = numbers[:, SCANNER_FIELDS.index(field)]
         scanner = numbers_by_value(values, int(column.max()) + 1)[column]
     span = float(time.min()), float(time.max())
     if span[0] == span[1]:
@@ -106,21 +88,15 @@ def read_samples(files: Sequence[CloudHeader], scanner_field: str = "automatic",
 
 
 def samples_of(time: np.ndarray, place: np.ndarray, scanner: np.ndarray, origin: np.ndarray, stride: int = 1) -> Samples:
-    """Points in any order as Samples.
+    """Points in any order as Samples: (N,) s, not all the same, (N, 3) m from the origin, and (N,) uint8 scanners.
 
-    Parameters
-    ----------
-    time : (N,) s, not all the same
-    place : (N, 3) m from the origin
-    scanner : (N,) uint8
-    origin : (3,) map coordinates
     stride : every how many points of the survey are among them one is
     """
     order = np.argsort(time, kind="stable")
     time, place, scanner = time[order], place[order], scanner[order]
-    cuts = np.flatnonzero(np.diff(time) > MAX_GAP_IN_DRIVE) + 1
+    cuts = np.flatnonzero(np.diff(time) > TRACK.max_gap_in_drive) + 1
     pieces = zip(np.r_[0, cuts].tolist(), np.r_[cuts, len(time)].tolist())
-    long = [(a, b) for a, b in pieces if b - a >= MIN_DRIVE_SAMPLES and time[b - 1] - time[a] >= MIN_DRIVE_TIME]
+    long = [(a, b) for a, b in pieces if b - a >= TRACK.min_drive_samples and time[b - 1] - time[a] >= TRACK.min_drive_time]
     # from the first drive on: times long before it, which are wrong, would cost the precision of all others
     start = float(time[long[0][0]]) if long else float(time[0])
     ends = np.cumsum([0] + [b - a for a, b in long]).tolist()
@@ -133,17 +109,11 @@ def samples_of(time: np.ndarray, place: np.ndarray, scanner: np.ndarray, origin:
 
 
 def rounding_of(time: np.ndarray, start: float) -> float:
-    """What times are rounded to, s; 0 where that is no power of ten or two.
-
-    Parameters
-    ----------
-    time : (N,) s since `start`
-    start : s
-    """
-    some = time[::max(len(time) // MAX_ROUNDING_SAMPLES, 1)] + start
+    """What (N,) times in seconds since `start` are rounded to, s; 0 where that is no power of ten or two."""
+    some = time[::max(len(time) // TRACK.max_rounding_samples, 1)] + start
     for tick in ROUNDINGS:
         steps = some / tick
-        if np.mean(np.abs(steps - np.rint(steps)) <= ROUNDED_TOLERANCE) >= MIN_ROUNDED_SHARE:
+        if np.mean(np.abs(steps - np.rint(steps)) <= TRACK.rounded_tolerance) >= TRACK.min_rounded_share:
             return tick
     return 0.0
 
@@ -168,26 +138,14 @@ def _sample(block, slots, origin):
 
 # The first track: in every short window of time, the place around which points lie densest, on the ridge of density.
 
-WINDOW = 0.1             # s: the vehicle gets a few metres, every mirror turns once at least
-MIN_WINDOW_SAMPLES = 30
-MAX_WINDOW_SAMPLES = 1000   # used of a window
-MIN_STEP = 0.02          # m in a window: below, the direction is noise and the vehicle stands
-BACKING_STEP = 2.0       # m: no vehicle turns about within that
-DENSITY_WIDTH = 2.6      # m: the half width of the density under a scanner at its usual height
-GROUND_WEIGHT_DEPTH = 0.4       # m either side of the ground: points there weigh at least a half
-LOWEST_SHARE = 0.25      # of a window's points lie below the ground as first guessed
-DENSITY_ROUNDS = 15
-TRACK_STIFFNESS = 300.0  # (0.5 m of scatter / 0.03 m by which a braking vehicle's place differs from even motion in a window)^2
 
 
 @dataclass
 class FirstTrack:
     """The rough track of one drive.
 
-    time : (W,) s, middles of windows
-    foot : (W, 3) m, on the ground
+    time, foot, count : (W,) s, middles of windows, (W, 3) m, on the ground, and (W,) samples
     heading : (W,) radians, where the vehicle looked ahead, counter-clockwise from east, continuous
-    count : (W,) samples
     reach : (W,) m, median horizontal distance of the samples from the densest place
     """
 
@@ -204,53 +162,44 @@ class FirstTrack:
 
 
 def first_track(time: np.ndarray, place: np.ndarray) -> FirstTrack:
-    """The ridge of density of one drive.
+    """The ridge of density of one drive, of (N,) ascending times (s) and (N, 3) places (m).
 
     On a flat road the density of a scan line falls off with the distance x from the scanner's foot as
     h / (h^2 + x^2): a Cauchy distribution, whose place is estimated by its likelihood.
-
-    Parameters
-    ----------
-    time : (N,) s, ascending
-    place : (N, 3) m
     """
     begin = float(time[0])
-    window = ((time - begin) / WINDOW).astype(np.int64)
+    window = ((time - begin) / TRACK.window).astype(np.int64)
     size = int(window[-1]) + 1
     rank = np.arange(len(window)) - np.searchsorted(window, window)
-    kept = rank % -(-np.bincount(window) // MAX_WINDOW_SAMPLES)[window] == 0
+    kept = rank % -(-np.bincount(window) // TRACK.max_window_samples)[window] == 0
     time, place, window = time[kept], place[kept], window[kept]
     count = np.bincount(window, minlength=size)
     start = np.r_[0, np.cumsum(count)[:-1]]
-    middle, low = (np.minimum(start + (count * share).astype(np.int64), len(time) - 1) for share in (0.5, LOWEST_SHARE))
+    middle, low = (np.minimum(start + (count * share).astype(np.int64), len(time) - 1) for share in (0.5, TRACK.lowest_share))
     foot = np.stack([column[np.lexsort((column, window))][rank] for column, rank in zip(place.T, (middle, middle, low))], axis=1)
-    for _ in range(DENSITY_ROUNDS):
+    for _ in range(TRACK.density_rounds):
         away = place - foot[window]
-        weight = 1.0 / ((1.0 + (away[:, :2] ** 2).sum(axis=1) / DENSITY_WIDTH**2) * (1.0 + (away[:, 2] / GROUND_WEIGHT_DEPTH) ** 2))
+        weight = 1.0 / ((1.0 + (away[:, :2] ** 2).sum(axis=1) / TRACK.density_width**2) * (1.0 + (away[:, 2] / TRACK.ground_weight_depth) ** 2))
         total = np.maximum(np.bincount(window, weight, size), 1e-9)
         foot = np.stack([np.bincount(window, weight * column, size) / total for column in place.T], axis=1)
-    track = robustly_smoothed(foot, (count >= MIN_WINDOW_SAMPLES).astype(float), TRACK_STIFFNESS)
+    track = robustly_smoothed(foot, (count >= TRACK.min_window_samples).astype(float), TRACK.stiffness)
     far = np.hypot(*(place - foot[window])[:, :2].T)
     order = np.lexsort((far, window))
     start = np.r_[0, np.cumsum(count)[:-1]]
     reach = np.where(count > 0, far[order][np.minimum(start + count // 2, len(far) - 1)], np.nan)
-    middles = begin + (np.arange(size) + 0.5) * WINDOW
+    middles = begin + (np.arange(size) + 0.5) * TRACK.window
     return FirstTrack(middles, track, headings_of(track), count, reach)
 
 
 def headings_of(track: np.ndarray, about: np.ndarray | None = None) -> np.ndarray:
-    """(N,) continuous headings, radians counter-clockwise from east, of a track of (N, 2 or more) evenly timed places.
+    """(N,) continuous headings, radians counter-clockwise from east, of a track of (N, 2 or more) evenly timed places, m.
 
     Where the vehicle stands, it keeps the heading in which it came; where it backs up, it keeps looking ahead.
-
-    Parameters
-    ----------
-    track : (N, 2 or more) m
     about : (N,) radians, headings known to less than a right angle; None for those of the track itself
     """
     velocity = np.gradient(track[:, :2], axis=0) if len(track) > 1 else np.zeros((len(track), 2))
     step = np.hypot(*velocity.T)
-    moving = np.flatnonzero(step > MIN_STEP)
+    moving = np.flatnonzero(step > TRACK.min_step)
     if not len(moving):
         return np.zeros(len(track))
     way = np.arctan2(velocity[moving, 1], velocity[moving, 0])
@@ -261,13 +210,13 @@ def headings_of(track: np.ndarray, about: np.ndarray | None = None) -> np.ndarra
 
 
 def _headings_by_distance(track):
-    """(N,) continuous headings between places BACKING_STEP apart; None for a track that is shorter.
+    """(N,) continuous headings between places `backing_step` apart; None for a track that is shorter.
 
     A vehicle that goes back within so short a way has not turned about but changed its gear. More of the way is driven forward.
     """
     row, (x0, y0) = [0], track[0, :2]
     for number, (x, y) in enumerate(track[:, :2].tolist()):
-        if (x - x0) ** 2 + (y - y0) ** 2 >= BACKING_STEP**2:
+        if (x - x0) ** 2 + (y - y0) ** 2 >= TRACK.backing_step**2:
             row.append(number)
             x0, y0 = x, y
     if len(row) < 2:
@@ -280,84 +229,58 @@ def _headings_by_distance(track):
 
 # The track of a cloud without times: the ridge of its density on the ground.
 
-CELL = 0.5               # m
-LOW_CELL = 2.0           # m in which the low points are ground
-LOW_SHARE = 0.2          # of a cell's points lie lower than its ground: also those that wet roads mirror below themselves
-GROUND_LAYER = 0.3       # m either side of it
-BLUR = 1.0               # m of the density
-CREST_WINDOW = 12.0      # m in which the densest cell stands for the crest
-MIN_CREST_SHARE = 0.05   # of the crest's density: cells over which a way may lead
-MIN_DENSITY_SHARE, DENSE_SHARE = 0.15, 0.9   # of the density that nine cells in ten do not reach: beyond the road there is no crest
-END_CREST_SHARE = 0.7    # of the crest's density, where a way may begin and end
-CREST_COST = 3           # power by which leaving the crest costs
-MIN_RIDGE = 20.0         # m
-FIRST_HEIGHT = 2.3       # m of scanners above the road, which the density does not tell
-RIDGE_SPACING = 0.5      # m between the places given
-RIDGE_STIFFNESS = 200.0
-MAX_CELLS = 4_000_000    # of the density: 1 km^2
 
 
 def ridge_of(place: np.ndarray) -> np.ndarray:
-    """The longest way along the ridge of density.
+    """The longest way along the ridge of density of (N, 3) points: (M, 3) m, places of the scanner at a usual height, `ridge_spacing` apart.
 
-    Parameters
-    ----------
-    place : (N, 3) m
-
-    Returns
-    -------
-    (M, 3) m, places of the scanner at a usual height, RIDGE_SPACING apart
-
-    Raises
-    ------
-    RoadExtractionError
-        If there is none.
+    RoadExtractionError if there is none.
     """
     ground = place[_on_ground(place)]
     corner = ground[:, :2].min(axis=0)
-    column, row = ((ground[:, :2] - corner) / CELL).astype(np.int64).T
+    column, row = ((ground[:, :2] - corner) / TRACK.cell).astype(np.int64).T
     shape = int(row.max()) + 1, int(column.max()) + 1
-    if shape[0] * shape[1] > MAX_CELLS:
+    if shape[0] * shape[1] > TRACK.max_cells:
         raise RoadExtractionError(
-            f"The point clouds have no times and cover {shape[1] * CELL / 1000:.1f} by {shape[0] * CELL / 1000:.1f} km; without times a track is "
-            f"sought in up to {MAX_CELLS * CELL**2 / 1e6:.0f} km². Give fewer files, or clouds with gps_time.")
+            f"The point clouds have no times and cover {shape[1] * TRACK.cell / 1000:.1f} by {shape[0] * TRACK.cell / 1000:.1f} km; without times a "
+            f"track is sought in up to {TRACK.max_cells * TRACK.cell**2 / 1e6:.0f} km². Give fewer files, or clouds with gps_time.")
     cell = row * shape[1] + column
     count = np.bincount(cell, minlength=shape[0] * shape[1]).reshape(shape).astype(float)
-    density = ndimage.gaussian_filter(count, BLUR / CELL)
-    crest = density / np.maximum(ndimage.maximum_filter(density, int(CREST_WINDOW / CELL) | 1), 1e-9)
-    crest[density < MIN_DENSITY_SHARE * np.quantile(density[count > 0], DENSE_SHARE)] = 0.0
+    density = ndimage.gaussian_filter(count, TRACK.blur / TRACK.cell)
+    crest = density / np.maximum(ndimage.maximum_filter(density, int(TRACK.crest_window / TRACK.cell) | 1), 1e-9)
+    crest[density < TRACK.min_density_share * np.quantile(density[count > 0], TRACK.dense_share)] = 0.0
     number = np.full(shape, -1)
-    used = crest >= MIN_CREST_SHARE
+    used = crest >= TRACK.min_crest_share
     number[used] = np.arange(used.sum())
     graph = _graph(number, crest)
-    path = _longest_path(graph, crest[used] >= END_CREST_SHARE)
+    path = _longest_path(graph, crest[used] >= TRACK.end_crest_share)
     cells = np.stack(np.nonzero(used), axis=1)[path]
-    track = (cells[:, ::-1] + 0.5) * CELL + corner
+    track = (cells[:, ::-1] + 0.5) * TRACK.cell + corner
     driven = np.r_[0.0, np.cumsum(np.hypot(*np.diff(track, axis=0).T))]
-    if driven[-1] < MIN_RIDGE:
+    if driven[-1] < TRACK.min_ridge:
         raise RoadExtractionError(
-            f"No track shows in the density of the points: the longest ridge is {driven[-1]:.0f} m long, and {MIN_RIDGE:.0f} m are needed. "
+            f"No track shows in the density of the points: the longest ridge is {driven[-1]:.0f} m long, and {TRACK.min_ridge:.0f} m are needed. "
             "A terrestrial scan and an evenly thinned cloud have none, and these points have no times that would tell more.")
-    even = np.arange(0.0, driven[-1], RIDGE_SPACING)
+    even = np.arange(0.0, driven[-1], TRACK.ridge_spacing)
     flat = np.stack([np.interp(even, driven, axis) for axis in track.T], axis=1)
-    flat = robustly_smoothed(flat, np.ones(len(flat)), RIDGE_STIFFNESS)
+    flat = robustly_smoothed(flat, np.ones(len(flat)), TRACK.ridge_stiffness)
     total = np.maximum(np.bincount(cell, minlength=count.size), 1e-9)
     height = (np.bincount(cell, ground[:, 2], minlength=count.size) / total).reshape(shape)
-    c, r = np.clip(((flat - corner) / CELL).astype(np.int64), 0, [shape[1] - 1, shape[0] - 1]).T
-    z = robustly_smoothed(height[r, c][:, None], (count[r, c] > 0).astype(float), RIDGE_STIFFNESS)[:, 0]
-    return np.column_stack([flat, z + FIRST_HEIGHT])
+    c, r = np.clip(((flat - corner) / TRACK.cell).astype(np.int64), 0, [shape[1] - 1, shape[0] - 1]).T
+    z = robustly_smoothed(height[r, c][:, None], (count[r, c] > 0).astype(float), TRACK.ridge_stiffness)[:, 0]
+    return np.column_stack([flat, z + TRACK.usual_height])
 
 
 def _on_ground(place):
     """(N,) bool of the points on the ground of their cell."""
-    column, row = ((place[:, :2] - place[:, :2].min(axis=0)) / LOW_CELL).astype(np.int64).T
+    column, row = ((place[:, :2] - place[:, :2].min(axis=0)) / TRACK.low_cell).astype(np.int64).T
     cell = row * (int(column.max()) + 1) + column
     order = np.lexsort((place[:, 2], cell))
     first = np.flatnonzero(np.r_[True, np.diff(cell[order]) > 0])
     held = np.diff(np.r_[first, len(cell)])
-    ground = np.repeat(place[order[first + (held * LOW_SHARE).astype(np.int64)], 2], held)
+    ground = np.repeat(place[order[first + (held * TRACK.low_share).astype(np.int64)], 2], held)
     found = np.empty(len(cell), bool)
-    found[order] = np.abs(place[order, 2] - ground) <= GROUND_LAYER
+    found[order] = np.abs(place[order, 2] - ground) <= TRACK.ground_layer
     return found
 
 
@@ -371,7 +294,7 @@ def _graph(number, crest):
         both = (number[a] >= 0) & (number[b] >= 0)
         rows.append(number[a][both])
         columns.append(number[b][both])
-        costs.append(np.hypot(dr, dc) * CELL * 2.0 / (crest[a][both] ** CREST_COST + crest[b][both] ** CREST_COST))
+        costs.append(np.hypot(dr, dc) * TRACK.cell * 2.0 / (crest[a][both] ** TRACK.crest_cost + crest[b][both] ** TRACK.crest_cost))
     size = int(number.max()) + 1
     return sparse.csr_matrix((np.concatenate(costs), (np.concatenate(rows), np.concatenate(columns))), shape=(size, size))
 

@@ -12,27 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...curves.robust import MAD_TO_SIGMA
+from ..weights import HEAD
 from .samples import FirstTrack, Samples, headings_of
-
-TURNING_RATES = 4.0, 25.0          # turns per second that heads make
-RATE_STEP = 0.05           # 1/s
-RATE_SECONDS = 2.0         # s from which the rate is found: the vehicle hardly turns meanwhile
-MAX_RATE_SAMPLES = 20_000
-MIN_COHERENCE = 0.8        # of bearings with a steady turning, about the first track
-MAX_BEARING_NOISE = np.radians(0.5)  # of bearings about the head: those of a mirror that turns about another axis are degrees off
-FAR_FROM_TRACK = 4.0                  # m from the first track, at which its error of a metre does not spoil a bearing
-MAX_TURN_SAMPLES = 4000    # used of a turn
-MIN_TURN_SAMPLES = 200
-MIN_GAP_OF_TURN = 0.2            # of a turn without points, after which the next turn begins
-MIN_SEEN_SHARE_OF_TURN = 0.5      # of a turn that must have been seen
-NEAREST_AT_FIRST, NEAREST_RETURN = 3.0, 2.0   # m: nearer returns do not count, in the first rounds and later
-FIRST_HEAD_ROUNDS, HEAD_ROUNDS = 5, 15
-MAX_HEAD_STEP = 0.7             # m a round
-LEAST_BEARING_NOISE = np.radians(0.1)       # of a bearing
-MAX_TURN_MISFIT = 2.5           # times the usual noise: a turn of more is no turn of one head
-HEAD_HEIGHT, HEAD_HEIGHT_SIGMA = 2.0, 0.5   # m above the road: on the roofs of cars and of vans
-LEAST_HEAD_SIGMA = 0.02    # m: what the beams' own directions leave, which no field tells
-RATE_SCALE = 50.0          # 1/s: rates and speeds in units that make the equations even
 
 
 @dataclass
@@ -54,55 +35,38 @@ class HeadTrack:
 
 
 def turning_heads(samples: Samples, tracks: list[FirstTrack]) -> list[HeadTrack] | None:
-    """The places of a many-beam head in every drive; None where the points are not those of one.
-
-    Parameters
-    ----------
-    samples : Samples with times
-    tracks : FirstTrack of each drive
-    """
+    """The places of a many-beam head in every drive; None where the points are not those of one."""
     rate = _turning_rate(samples, tracks)
     if rate is None:
         return None
     heads = []
     for drive, track in zip(samples.drives, tracks):
         head = _head_track(samples.time[drive], samples.place[drive], track, rate)
-        if head is None or len(head.time) < 2 or head.noise > MAX_BEARING_NOISE:
+        if head is None or len(head.time) < 2 or head.noise > HEAD.max_bearing_noise:
             return None
         heads.append(head)
     return heads
 
 
 def _turning_rate(samples: Samples, tracks: list[FirstTrack]) -> float | None:
-    """Turns per second of a head, negative where it turns clockwise; None where bearings do not turn steadily.
-
-    samples : Samples with times
-    tracks : FirstTrack of each drive
-    """
+    """Turns per second of a head, negative where it turns clockwise; None where bearings do not turn steadily."""
     drive, track = max(zip(samples.drives, tracks), key=lambda pair: pair[0].stop - pair[0].start)
     middle = 0.5 * (samples.time[drive.start] + samples.time[drive.stop - 1])
-    rows = drive.start + np.flatnonzero(np.abs(samples.time[drive] - middle) <= RATE_SECONDS / 2)
+    rows = drive.start + np.flatnonzero(np.abs(samples.time[drive] - middle) <= HEAD.rate_seconds / 2)
     away = samples.place[rows, :2] - track.at(samples.time[rows])[0][:, :2]
-    rows, away = rows[far := np.hypot(*away.T) > FAR_FROM_TRACK], away[far]
-    kept = slice(None, None, max(len(rows) // MAX_RATE_SAMPLES, 1))
-    if len(rows) < MIN_TURN_SAMPLES:
+    rows, away = rows[far := np.hypot(*away.T) > HEAD.far_from_track], away[far]
+    kept = slice(None, None, max(len(rows) // HEAD.max_rate_samples, 1))
+    if len(rows) < HEAD.min_turn_samples:
         return None
     time, bearing = samples.time[rows][kept] - middle, np.exp(1j * np.arctan2(away[kept, 1], away[kept, 0]))
-    rates = np.arange(*TURNING_RATES, RATE_STEP)
+    rates = np.arange(*HEAD.turning_rates, HEAD.rate_step)
     rates = np.concatenate([rates, -rates])
     coherence = np.array([abs(np.mean(bearing * np.exp(-2j * np.pi * rate * time))) for rate in rates])
-    return float(rates[coherence.argmax()]) if coherence.max() >= MIN_COHERENCE else None
+    return float(rates[coherence.argmax()]) if coherence.max() >= HEAD.min_coherence else None
 
 
 def _head_track(time: np.ndarray, place: np.ndarray, track: FirstTrack, rate: float) -> HeadTrack | None:
-    """The places of the head in one drive.
-
-    time : (N,) s, ascending
-    place : (N, 3) m
-    track : FirstTrack of the drive
-    rate : turns per second, of `_turning_rate`
-    Returns: HeadTrack; None where no whole turn was seen
-    """
+    """The places of the head in one drive, of (N,) ascending times (s) and (N, 3) places (m); None where no whole turn was seen."""
     time, flat, turn = _turns(time, place[:, :2], 1.0 / abs(rate))
     if not len(time):
         return None
@@ -117,13 +81,13 @@ def _head_track(time: np.ndarray, place: np.ndarray, track: FirstTrack, rate: fl
     away = flat - head[turn]
     first = np.exp(1j * (np.arctan2(away[:, 1], away[:, 0]) - omega[turn] * since))
     phi = np.angle(np.bincount(turn, first.real, count) + 1j * np.bincount(turn, first.imag, count))
-    for number in range(HEAD_ROUNDS):
+    for number in range(HEAD.rounds):
         away = flat - head[turn] - speed[turn] * since[:, None]
         square = np.maximum((away**2).sum(axis=1), 1e-6)
         off = np.angle(np.exp(1j * (np.arctan2(away[:, 1], away[:, 0]) - phi[turn] - omega[turn] * since)))
-        noise = max(1.4826 * float(np.median(np.abs(off))), LEAST_BEARING_NOISE)
-        weight = (square > (NEAREST_AT_FIRST if number < FIRST_HEAD_ROUNDS else NEAREST_RETURN) ** 2) / (1.0 + (off / noise) ** 2)
-        by_x, by_y, by_time = away[:, 1] / square, -away[:, 0] / square, since * RATE_SCALE
+        noise = max(1.4826 * float(np.median(np.abs(off))), HEAD.least_bearing_noise)
+        weight = (square > (HEAD.nearest_at_first if number < HEAD.first_rounds else HEAD.nearest_return) ** 2) / (1.0 + (off / noise) ** 2)
+        by_x, by_y, by_time = away[:, 1] / square, -away[:, 0] / square, since * HEAD.rate_scale
         slopes = [by_x, by_y, -np.ones(len(off)), -by_time, by_x * by_time, by_y * by_time]
         weighted = [weight * a for a in slopes]
         normal = np.array([[np.bincount(turn, a * b, count) for b in slopes] for a in weighted]).transpose(2, 0, 1)
@@ -131,28 +95,28 @@ def _head_track(time: np.ndarray, place: np.ndarray, track: FirstTrack, rate: fl
         normal += np.diag([1e-3, 1e-3, 1e-3, 1e-3, 1.0, 1.0])
         right = np.array([np.bincount(turn, a * off, count) for a in weighted]).T
         step = -np.linalg.solve(normal, right[..., None])[..., 0]
-        head += np.clip(step[:, :2], -MAX_HEAD_STEP, MAX_HEAD_STEP)
-        phi, omega = phi + step[:, 2], omega + step[:, 3] * RATE_SCALE
-        speed += np.clip(step[:, 4:] * RATE_SCALE, -MAX_HEAD_STEP / 0.1, MAX_HEAD_STEP / 0.1)
+        head += np.clip(step[:, :2], -HEAD.max_step, HEAD.max_step)
+        phi, omega = phi + step[:, 2], omega + step[:, 3] * HEAD.rate_scale
+        speed += np.clip(step[:, 4:] * HEAD.rate_scale, -HEAD.max_step / 0.1, HEAD.max_step / 0.1)
     misfit = np.sqrt(np.bincount(turn, weight * off**2, count) / np.maximum(np.bincount(turn, weight, count), 1e-9))
     usual = float(np.median(misfit))
     covariance = np.linalg.inv(normal) * usual**2
-    sigma = np.sqrt(covariance[:, 0, 0] + covariance[:, 1, 1] + LEAST_HEAD_SIGMA**2)
-    good = misfit <= MAX_TURN_MISFIT * usual
+    sigma = np.sqrt(covariance[:, 0, 0] + covariance[:, 1, 1] + HEAD.least_sigma**2)
+    good = misfit <= HEAD.max_turn_misfit * usual
     return HeadTrack(middle[good], head[good], sigma[good], _headings(middle[good], head[good]), speed[good], usual, rate)
 
 
 def _turns(time, flat, period):
     """(N,) times, (N, 2) places and (N,) numbers of the turns that were seen long enough, thinned."""
-    cuts = np.flatnonzero(np.diff(time) > MIN_GAP_OF_TURN * period) + 1
+    cuts = np.flatnonzero(np.diff(time) > HEAD.min_gap_of_turn * period) + 1
     group = np.searchsorted(cuts, np.arange(len(time)), side="right")
     begun = time[np.r_[0, cuts]][group]
     raw = np.cumsum(np.r_[0, (np.diff(group) > 0) | (np.diff(np.floor((time - begun) / period + 1e-6)) != 0)])
     size = np.bincount(raw)
     first = np.r_[0, np.cumsum(size)[:-1]]
-    whole = (time[first + size - 1] - time[first] >= MIN_SEEN_SHARE_OF_TURN * period) & (size >= MIN_TURN_SAMPLES)
+    whole = (time[first + size - 1] - time[first] >= HEAD.min_seen_share_of_turn * period) & (size >= HEAD.min_turn_samples)
     rank = np.arange(len(raw)) - first[raw]
-    kept = whole[raw] & (rank % -(-size // MAX_TURN_SAMPLES)[raw] == 0)
+    kept = whole[raw] & (rank % -(-size // HEAD.max_turn_samples)[raw] == 0)
     return time[kept], flat[kept], (np.cumsum(whole) - 1)[raw[kept]]
 
 
@@ -170,59 +134,27 @@ def _headings(time, place):
 # Seen from too high or too low they have not, and the elevations of all points smear. The height sought is that from which they lie closest
 # together. Ground, and the slope of the road, come from the points about each turn.
 
-MAX_HEIGHT_POINTS = 200_000       # of a survey that are looked at
-TURNS_OF_GROUP = 10        # consecutive turns over which the vehicle tilts alike
-PLANE_REACH, OBJECT_REACH = 12.0, 40.0       # m from the head, of points on the road and on what stands about
-OWN_VEHICLE_REACH = 3.0    # m from the head: nearer lies the vehicle itself
-LEAST_GROUND_POINTS = 30   # of a turn
-GROUND_ROUNDS = 15
-FIRST_GROUND_SCALE, GROUND_SCALE = 0.3, 0.05   # m from the ground at which a point's weight is one half, in the first rounds and later
-ABOVE_GROUND = 0.3         # m: higher points are on something; those on a level road would be rings seen from any height
-MIN_OBJECTS = 0.1          # share of the points that must be on something
-FIRST_HEAD_HEIGHT = 1.9    # m
-# fineness of elevations and the steps of height (m) and of tilts in which the sharpest is looked for, from coarse to fine
-SEARCH = [(np.radians(0.3), 0.1, np.radians(0.3)), (np.radians(0.15), 0.05, np.radians(0.15)),
-          (np.radians(0.08), 0.03, np.radians(0.08)), (np.radians(0.05), 0.02, np.radians(0.04))]
-SEARCH_STEPS, SEARCH_ROUNDS = 5, 3
-COARSE = np.radians(1.5)   # of elevation: what lies within it is spread as walls and trees are, whatever the beams
-MIN_SHARING = 1.15       # times as many points share a fine interval as would by chance
-LEAST_HEIGHT_SIGMA = 0.15  # m: the beams of a head leave it up to two decimetres above the place that its maker calls its own
-MAX_HEIGHT_SIGMA = 0.30    # m: what is known less well is not known
-HEIGHTS = 1.0, 4.5         # m above the road at which heads are mounted
 
 
 def head_heights(samples: Samples, tracks: list[FirstTrack], heads: list[HeadTrack]) -> tuple[list[np.ndarray], float | None, float]:
-    """Ground beneath the head, and its height above it.
-
-    Parameters
-    ----------
-    samples : Samples with times
-    tracks : FirstTrack of each drive
-    heads : HeadTrack of each drive
-
-    Returns
-    -------
-    ground : (T,) m for each head, height of the road beneath it at every turn
-    height : m of the head above it; None where the beams do not tell it
-    sigma : m, of the height
-    """
+    """Ground beneath the head, (T,) m for each drive, and its height above it with one sigma, m; None where the beams do not tell it."""
     ground, parts, turns = [], [], 0
-    share = max(sum(drive.stop - drive.start for drive in samples.drives) // MAX_HEIGHT_POINTS, 1)
+    share = max(sum(drive.stop - drive.start for drive in samples.drives) // HEAD.max_height_points, 1)
     for drive, track, head in zip(samples.drives, tracks, heads):
         turn, away, z = _seen_from(samples.time[drive], samples.place[drive], head, share)
         plane = _ground_planes(turn, away, z, track.at(head.time)[0][:, 2])
         ground.append(plane[:, 0])
         reach = np.hypot(*away.T)
         above = z - plane[turn, 0] - (plane[turn, 1:] * away).sum(axis=1)
-        near = (reach > OWN_VEHICLE_REACH) & (reach < OBJECT_REACH)
+        near = (reach > HEAD.own_vehicle_reach) & (reach < HEAD.object_reach)
         bearing = np.arctan2(away[near, 1], away[near, 0]) - head.heading[turn[near]]
         parts.append((turns + turn[near], reach[near], above[near], bearing))
-        turns += -(-len(head.time) // TURNS_OF_GROUP) * TURNS_OF_GROUP
+        turns += -(-len(head.time) // HEAD.turns_of_group) * HEAD.turns_of_group
     turn, reach, above, bearing = (np.concatenate(column) for column in zip(*parts))
-    objects = above > ABOVE_GROUND
-    if objects.mean() < MIN_OBJECTS:
+    objects = above > HEAD.above_ground
+    if objects.mean() < HEAD.min_objects:
         return ground, None, np.nan
-    height, sigma = _sharpest(turn[objects], turns // TURNS_OF_GROUP, reach[objects], above[objects], bearing[objects])
+    height, sigma = _sharpest(turn[objects], turns // HEAD.turns_of_group, reach[objects], above[objects], bearing[objects])
     return ground, height, sigma
 
 
@@ -238,22 +170,20 @@ def _seen_from(time, place, head, share):
 
 
 def _ground_planes(turn: np.ndarray, away: np.ndarray, z: np.ndarray, first: np.ndarray) -> np.ndarray:
-    """The road about every turn as a plane, by robust least squares from a first height.
+    """The road about every turn as a plane, (T, 3) height beneath the head and slopes to the east and north, by robust least squares.
 
-    turn : (N,) int; away : (N, 2) m from the head; z : (N,) m
-    first : (T,) m, heights to begin with
-    Returns: (T, 3) height beneath the head and slopes to the east and north; level at the first height where few points are
+    turn, away, z : (N,) numbers, (N, 2) m from the head, (N,) m; first : (T,) m, heights to begin with, which stay where few points are
     """
-    near = np.hypot(*away.T) < PLANE_REACH
+    near = np.hypot(*away.T) < HEAD.plane_reach
     turn, z = turn[near], z[near]
     design = np.column_stack([np.ones(len(turn)), away[near]])
     count = len(first)
     planes = np.column_stack([first, np.zeros((count, 2))])
-    enough = np.bincount(turn, minlength=count) >= LEAST_GROUND_POINTS
-    for number in range(GROUND_ROUNDS):
+    enough = np.bincount(turn, minlength=count) >= HEAD.least_ground_points
+    for number in range(HEAD.ground_rounds):
         off = z - (planes[turn] * design).sum(axis=1)
         # what stands on the road lies above it, so points above lose their weight sooner than those below
-        scale = FIRST_GROUND_SCALE if number < GROUND_ROUNDS // 3 else GROUND_SCALE
+        scale = HEAD.first_ground_scale if number < HEAD.ground_rounds // 3 else HEAD.ground_scale
         weight = 1.0 / (1.0 + (np.where(off > 0, 2.0 * off, off) / scale) ** 2) ** 2
         normal = np.array([[np.bincount(turn, weight * a * b, count) for b in design.T] for a in design.T]).transpose(2, 0, 1)
         right = np.array([np.bincount(turn, weight * a * off, count) for a in design.T]).T
@@ -265,8 +195,8 @@ def _ground_planes(turn: np.ndarray, away: np.ndarray, z: np.ndarray, first: np.
 
 def _sharpest(turn, groups, reach, above, bearing):
     """Height from which elevations lie closest together in every turn, and its sigma by those of groups of turns; None where they hardly do."""
-    ahead, left, group = np.cos(bearing), np.sin(bearing), turn // TURNS_OF_GROUP
-    height, tilt = FIRST_HEAD_HEIGHT, np.zeros((groups, 2))
+    ahead, left, group = np.cos(bearing), np.sin(bearing), turn // HEAD.turns_of_group
+    height, tilt = HEAD.first_height, np.zeros((groups, 2))
 
     def sharpness(height, ahead_tilt, left_tilt, fine):
         elevation = np.arctan((above - height) / reach + ahead_tilt[group] * ahead + left_tilt[group] * left)
@@ -275,34 +205,34 @@ def _sharpest(turn, groups, reach, above, bearing):
     def best(values):
         return np.argmax(values, axis=0)
 
-    for fine, up, lean in SEARCH:
-        steps = np.arange(-SEARCH_STEPS, SEARCH_STEPS + 1)
-        for _ in range(SEARCH_ROUNDS):
+    for fine, up, lean in HEAD.search:
+        steps = np.arange(-HEAD.search_steps, HEAD.search_steps + 1)
+        for _ in range(HEAD.search_rounds):
             height += up * steps[best([_pooled(sharpness(height + up * step, *tilt.T, fine)) for step in steps])]
             for axis in (0, 1):
                 moved = [tilt + lean * step * np.eye(2)[axis] for step in steps]
                 tilt[:, axis] += lean * steps[best([_ratio(sharpness(height, *one.T, fine)) for one in moved])]
-    fine, up, _ = SEARCH[-1]
-    if not HEIGHTS[0] < height < HEIGHTS[1] or _pooled(sharpness(height, *tilt.T, fine)) < MIN_SHARING:
+    fine, up, _ = HEAD.search[-1]
+    if not HEAD.heights[0] < height < HEAD.heights[1] or _pooled(sharpness(height, *tilt.T, fine)) < HEAD.min_sharing:
         return None, np.nan
-    around = up * np.arange(-4 * SEARCH_STEPS, 4 * SEARCH_STEPS + 1)
+    around = up * np.arange(-4 * HEAD.search_steps, 4 * HEAD.search_steps + 1)
     own = around[best([_ratio(sharpness(height + shift, *tilt.T, fine)) for shift in around])]
-    sigma = float(np.hypot(MAD_TO_SIGMA * np.median(np.abs(own)) / np.sqrt(groups), LEAST_HEIGHT_SIGMA))
-    return (float(height), sigma) if sigma <= MAX_HEIGHT_SIGMA else (None, np.nan)
+    sigma = float(np.hypot(MAD_TO_SIGMA * np.median(np.abs(own)) / np.sqrt(groups), HEAD.least_height_sigma))
+    return (float(height), sigma) if sigma <= HEAD.max_height_sigma else (None, np.nan)
 
 
 def _pairs(elevation, turn, groups, fine):
-    """(2, G) pairs of points of one turn in one fine interval of elevation, and as many as there would be by chance within COARSE."""
-    ratio = int(round(COARSE / fine))
+    """(2, G) pairs of points of one turn in one fine interval of elevation, and as many as there would be by chance within a coarse one."""
+    ratio = int(round(HEAD.coarse / fine))
     cell = np.floor(elevation / fine).astype(np.int64)
     cell -= cell.min()
     size = (int(cell.max()) // ratio + 1) * ratio
-    turns = groups * TURNS_OF_GROUP
+    turns = groups * HEAD.turns_of_group
     count = np.bincount(turn * size + cell, minlength=turns * size).reshape(turns, size).astype(float)
     wide = count.reshape(turns, -1, ratio).sum(axis=2)
     total = count.sum(axis=1)
     pairs = np.array([(count**2).sum(axis=1) - total, ((wide**2).sum(axis=1) - total) / ratio])
-    return pairs.reshape(2, groups, TURNS_OF_GROUP).sum(axis=2)
+    return pairs.reshape(2, groups, HEAD.turns_of_group).sum(axis=2)
 
 
 def _ratio(pairs):

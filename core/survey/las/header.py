@@ -11,22 +11,23 @@ from typing import BinaryIO
 
 import numpy as np
 
-VLR_HEADER_SIZE, EVLR_HEADER_SIZE = 54, 60  # bytes
-LASZIP_USER, LASZIP_RECORD = b"laszip encoded", 22204
-COMPRESSED_BIT = 0x80        # of the point format
-VARIABLE_CHUNKS = 0xFFFFFFFF  # as the size of chunks: each has its own number of points
-EXTRA_BYTES_USER, EXTRA_BYTES_RECORD, EXTRA_BYTES_SIZE = b"LASF_Spec", 4, 192
-CRS_USER, CRS_TEXTS = b"LASF_Projection", (2111, 2112, 34737)   # whose records are text: WKT, and names of the GeoKeys
-MAX_NAME = 24    # bytes of a name to which a number is added, of the 32 that a name may have
-TYPE_SIZES = 1, 1, 2, 2, 4, 4, 8, 8, 4, 8   # bytes of the types 1 to 10 of extra bytes; 11 to 20 are pairs of these, 21 to 30 triples
+from ..weights import LAS
+
+VLR_HEADER_SIZE, EVLR_HEADER_SIZE = 54, 60  # source: bytes (LAS 1.4 R15, tables 6 and 7)
+LASZIP_USER, LASZIP_RECORD = b"laszip encoded", 22204   # source: LASzip, as the next two
+COMPRESSED_BIT = 0x80        # source: of the point format
+VARIABLE_CHUNKS = 0xFFFFFFFF  # source: as the size of chunks: each has its own number of points
+EXTRA_BYTES_USER, EXTRA_BYTES_RECORD, EXTRA_BYTES_SIZE = b"LASF_Spec", 4, 192   # source: LAS 1.4 R15, table 24
+CRS_USER, CRS_TEXTS = b"LASF_Projection", (2111, 2112, 34737)   # source: LAS 1.4 R15; its records of text: WKT, and names of the GeoKeys
+MAX_NAME = 24    # derived: bytes of a name to which a number is added, of the 32 that a name may have
+TYPE_SIZES = 1, 1, 2, 2, 4, 4, 8, 8, 4, 8   # source: bytes (LAS 1.4 R15, table 25) of types 1 to 10; 11 to 20 are pairs of these, 21 to 30 triples
 
 
 @dataclass(frozen=True)
 class HeaderFields:
-    """The numbers of a header, as they stand there.
+    """The numbers of a header as they stand there.
 
-    head : its first bytes
-    counts : those of the counts of points that are not 0, that of 64 bits first
+    head : its first bytes; counts : its counts of points that are not 0, that of 64 bits first
     first_waveform : byte of the first waveform packet, 0 without any in the file
     """
 
@@ -108,10 +109,7 @@ class HeaderFields:
 
 @dataclass(frozen=True)
 class _Compression:
-    """How the points of a file are compressed, as the LASzip record says.
-
-    data : the record
-    """
+    """How the points of a file are compressed; `data` is the LASzip record."""
 
     data: bytes
 
@@ -138,13 +136,7 @@ class _Compression:
 
 @dataclass(frozen=True)
 class _Record:
-    """A variable length record.
-
-    at : byte of the file at which it begins
-    head : its header
-    length : of its data, as it states
-    data : as much of it as there is and is looked into
-    """
+    """A variable length record: where it begins, its header, the length that it states, and as much of its data as is there and looked into."""
 
     at: int
     head: bytes
@@ -221,12 +213,7 @@ def _extra_bytes_described(records: list[_Record]) -> int:
 
 
 def _readable_extra_bytes(record: _Record, point_format: int, room: int) -> _Record:
-    """A record of extra bytes that describes no more than there is room for, in names that a table can have; itself where nothing is wrong.
-
-    record : which describes extra bytes
-    point_format : whose own fields have their names already
-    room : extra bytes of a point
-    """
+    """A record of extra bytes that describes at most `room` bytes, in names that the point format leaves free; itself where nothing is wrong."""
     from laspy import PointFormat
 
     taken, left, kept = {*PointFormat(point_format).dimension_names, *PointFormat(point_format).dtype().names, "ExtraBytes"}, room, []
@@ -282,21 +269,16 @@ def _decodable(text: bytes) -> bytes:
 # the encoding of their country. laspy believes all of them. Here such bytes are replaced in memory before laspy reads them, and what may matter to
 # the survey is told. Offsets are those of LAS 1.4 (ASPRS, R15, tables 3, 6 and 7) and of its extra bytes (table 25).
 
-MAX_RECORD_SIZE = 65535     # bytes of a point
-SAMPLED_RECORDS = 1000     # of those behind the last point that a header states, to see whether they are points too
+MAX_RECORD_SIZE = 65535     # derived: bytes of a point, as 16 bits state them
 # derived: whole numbers of 32 bits within which points lie about those stated: the road goes on, but what is read as places and is none lies
 # anywhere, or, as text and floating-point numbers, near the upper end; one in eight of it in each axis lies as near by chance
 NEAR_STATED = 2**31 // 8
-COUNT_AT, LONG_COUNT_AT, RECORD_SIZE_AT, POINTS_AT, EVLR_COUNT_AT = 107, 247, 105, 96, 243
+COUNT_AT, LONG_COUNT_AT, RECORD_SIZE_AT, POINTS_AT, EVLR_COUNT_AT = 107, 247, 105, 96, 243   # source: bytes (LAS 1.4 R15, table 3)
 
 
 @dataclass(frozen=True)
 class _MendedHeader:
-    """What is read in place of some bytes of a file, and what to tell of it.
-
-    patches : (first byte, bytes)
-    notes : the ends of sentences about the file
-    """
+    """What is read in place of some bytes of a file, (first byte, bytes) each, and the ends of sentences about it."""
 
     patches: tuple[tuple[int, bytes], ...] = ()
     notes: tuple[str, ...] = ()
@@ -334,16 +316,7 @@ def opened(path: str | os.PathLike[str], mended: _MendedHeader) -> io.BufferedRe
 
 
 def mend(path: str | os.PathLike[str]) -> _MendedHeader:
-    """What a file says of itself against what is in it; the points in compressed chunks are not counted here.
-
-    Parameters
-    ----------
-    path : of a LAS or LAZ file
-
-    Returns
-    -------
-    _MendedHeader; without patches where nothing is wrong, or nothing is sure
-    """
+    """What a LAS or LAZ file says of itself against what is in it; points in compressed chunks are not counted here."""
     size = os.path.getsize(path)
     with open(path, "rb") as file:
         stated = HeaderFields.read(file)
@@ -459,9 +432,9 @@ def _are_points(file, fields, first, end, rest):
 
 
 def _sampled_places(file: BinaryIO, fields: HeaderFields, first: int, end: int) -> np.ndarray:
-    """(N, 3) coordinates, as they are stored, of up to SAMPLED_RECORDS points of an uncompressed file from `first` to before `end`."""
+    """(N, 3) coordinates, as they are stored, of some points of an uncompressed file from `first` to before `end`."""
     found = []
-    for row in np.unique(np.linspace(first, end - 1, min(SAMPLED_RECORDS, max(end - first, 0))).astype(np.int64)).tolist():
+    for row in np.unique(np.linspace(first, end - 1, min(LAS.points_looked_at, max(end - first, 0))).astype(np.int64)).tolist():
         file.seek(fields.points_at + row * fields.record_size)
         place = file.read(12)
         if len(place) < 12:   # of a file cut off
@@ -475,27 +448,13 @@ def _sampled_places(file: BinaryIO, fields: HeaderFields, first: int, end: int) 
 # The decoder does not check them: with a wrong number of chunks it asks for more memory than any machine has, which ends the whole program. Offsets
 # and sizes are those of LAS 1.4 (ASPRS, R15, tables 3 and 6) and of the LASzip VLR.
 
-MAX_CHUNK_SIZE = 50_000_000  # points; LASzip writes 50,000
-CHUNKED_COMPRESSOR = 2       # of the other point formats, where each chunk begins anew
-LAYERED_COMPRESSOR = 3       # of point formats 6 and above: a chunk holds its values layer by layer
-MAX_DECODED = 400_000        # points of a last chunk that is decoded to count them: larger ones take too much memory
-FLUSHED_BYTES = 16           # at most that a coder writes behind its last point: points that need fewer bytes are not all there are
-MAX_LOOKS = 1000             # chunks whose first point is looked at
-LAYERS_OF_ITEM = {10: 9, 11: 1, 12: 2, 13: 1}  # POINT14, RGB14, RGBNIR14, WAVEPACKET14; BYTE14 has one layer for each byte
+CHUNKED_COMPRESSOR = 2       # source: LASzip; of point formats 0 to 5, where each chunk begins anew
+LAYERED_COMPRESSOR = 3       # source: LASzip; of point formats 6 and above: a chunk holds its values layer by layer
+LAYERS_OF_ITEM = {10: 9, 11: 1, 12: 2, 13: 1}  # source: LASzip; POINT14, RGB14, RGBNIR14, WAVEPACKET14; BYTE14 has one layer for each byte
 
 
 def find_damage(path: str | os.PathLike[str], mended: _MendedHeader | None = None) -> str:
-    """What is wrong with the lengths in a file's header.
-
-    Parameters
-    ----------
-    path : of a LAS or LAZ file
-    mended : what is read in place of some of its bytes; by default as `mend` says
-
-    Returns
-    -------
-    The end of a sentence; "" where nothing is wrong, or the file is not a LAS file at all
-    """
+    """What is wrong with the lengths in a file's header, as the end of a sentence; "" where nothing is, or the file is no LAS file."""
     size = os.path.getsize(path)
     with opened(path, mend(path) if mended is None else mended) as file:
         fields = HeaderFields.read(file)
@@ -516,7 +475,7 @@ def find_damage(path: str | os.PathLike[str], mended: _MendedHeader | None = Non
             return "it is compressed, but the record that describes the compression is missing"
         if compression.point_size != fields.record_size:
             return f"its header states {fields.record_size} bytes per point, the compressor {compression.point_size}"
-        if compression.chunk_size != VARIABLE_CHUNKS and not 0 < compression.chunk_size <= MAX_CHUNK_SIZE:
+        if compression.chunk_size != VARIABLE_CHUNKS and not 0 < compression.chunk_size <= LAS.max_chunk_size:
             return f"its compressor states chunks of {compression.chunk_size:,} points"
         return _chunk_table_damage(file, fields.points_at, size, compression)
 
@@ -524,8 +483,8 @@ def find_damage(path: str | os.PathLike[str], mended: _MendedHeader | None = Non
 def with_points_of_chunks(path: str | os.PathLike[str], mended: _MendedHeader) -> _MendedHeader:
     """The header of an undamaged file, with as many points as its chunks hold where it is compressed.
 
-    Chunks of point formats 6 and above, and those of all sizes, state their points. Of the others each but the last is full, and how many
-    points the last has shows when it is decoded: points beyond its last need bytes that are not there.
+    Chunks of point formats 6 and above, and those of varying size, state their points. Of the others only the last may not be full: it is decoded,
+    since points beyond its last need bytes that are not there.
     """
     with opened(path, mended) as file:
         fields = HeaderFields.read(file)
@@ -539,12 +498,7 @@ def with_points_of_chunks(path: str | os.PathLike[str], mended: _MendedHeader) -
 
 
 def places_here_and_there(path: str | os.PathLike[str], mended: _MendedHeader) -> np.ndarray:
-    """Coordinates of points all over an undamaged file, without decoding it.
-
-    Returns
-    -------
-    (N, 3) map coordinates: of the first point of every chunk, which is not compressed, or of points evenly spread in a file without chunks
-    """
+    """(N, 3) map coordinates of points all over an undamaged file: evenly spread, or the first of each chunk, which is not compressed."""
     with opened(path, mended) as file:
         fields = HeaderFields.read(file)
         if fields is None or not fields.count:
@@ -556,7 +510,7 @@ def places_here_and_there(path: str | os.PathLike[str], mended: _MendedHeader) -
             at = begin + np.cumsum([0] + [length for points, length in table if points and length])[:-1]
             places = np.empty((0, 3), "<i4")
             if len(at):
-                places = np.array([_integers_at(file, int(place)) for place in at[np.unique(np.linspace(0, len(at) - 1, MAX_LOOKS).astype(int))]])
+                places = np.array([_integers_at(file, int(at[k])) for k in np.unique(np.linspace(0, len(at) - 1, LAS.points_looked_at).astype(int))])
         return places * fields.scales + fields.offsets
 
 
@@ -580,9 +534,9 @@ def _points_of(file, compression, begin, table, fields):
         raw = compression.point_size
         return full + struct.unpack_from("<I", chunk, raw)[0] if len(chunk) >= raw + 4 else fields.count
     stated = next((count for count in fields.counts if full < count <= full + size), 0)
-    if min(size, stated - full if stated else size) > MAX_DECODED:
+    if min(size, stated - full if stated else size) > LAS.max_decoded:
         return stated or fields.count
-    if stated and not _holds(compression, chunk[:length - max(FLUSHED_BYTES, length // 100)], stated - full):
+    if stated and not _holds(compression, chunk[:length - max(LAS.flushed_bytes, length // 100)], stated - full):
         return stated
     low, high = max(stated - full, 1), size + 1   # points that can be decoded, and that cannot
     while high - low > 1:
@@ -611,14 +565,7 @@ def points_per_chunk(path: str | os.PathLike[str]) -> int:
 
 
 def chunks_of(path: str | os.PathLike[str]) -> tuple[bytes, int, list[tuple[int, int]]]:
-    """The chunks of an undamaged LAZ file.
-
-    Returns
-    -------
-    record : the LASzip record
-    begin : byte at which the chunks begin
-    table : [(points, bytes)] of each chunk
-    """
+    """The LASzip record of an undamaged LAZ file, the byte at which its chunks begin, and (points, bytes) of each."""
     with open(path, "rb") as file:
         compression, begin, table = _chunks(file)
         return compression.data, begin, table

@@ -9,22 +9,13 @@ from typing import Any
 
 import numpy as np
 
+from ..weights import LAS
 from .header import chunks_of
 from .reader import CloudHeader, layer_selection, open_cloud, read_blocks, read_points, truncated_file_error, wrap_read_error
 
-MAX_BLOCKS_PER_CHUNK = 4   # larger chunks are not decoded as a whole: the points are read one block after the other
-MOST_LAYOUTS = 64          # files whose header and chunks are remembered
-SAMPLED_PLACES = 5                # places in a file at which points are looked at
-POINTS_PER_SAMPLE = 1000
-
 
 class ParallelCloudReader:
-    """Files read by several threads, each of which reuses one buffer for the points that it decodes.
-
-    Parameters
-    ----------
-    layers : names of the layers that are decoded, as in `open_cloud`
-    """
+    """Files read by several threads, each of which reuses one buffer for its points; `layers` as in `open_cloud`."""
 
     def __init__(self, layers: Sequence[str] | None = None):
         self._layers = layers
@@ -42,8 +33,7 @@ class ParallelCloudReader:
     def blocks(self, files: Sequence[CloudHeader], size: int) -> Iterator[Callable[[], Any]]:
         """Yield functions, in the order of the points, that return a laspy point record of about `size` points.
 
-        Any thread may call them; its next call may overwrite the record. A file that cannot be
-        decoded in parallel is read here, one block after the other.
+        Any thread may call them; its next call may overwrite the record.
         """
         for number, first, count in self.ranges(files, size):
             if _in_one_piece(files[number], size):
@@ -55,7 +45,7 @@ class ParallelCloudReader:
     def ranges(self, files: Sequence[CloudHeader], size: int) -> Iterator[tuple[int, int, int]]:
         """Yield (number of a file, index of the first point, points) of ranges of about `size` points, in the order of the points.
 
-        A range is whole chunks of a file; one that cannot be decoded in parallel is one range.
+        A range is whole chunks of a file, or the whole file where its chunks are too large to be decoded apart.
         """
         for number, file in enumerate(files):
             if not file.count:
@@ -101,7 +91,7 @@ class ParallelCloudReader:
                 chunks = record, place, np.array(table, np.int64).reshape(-1, 2)
             found = header, chunks
             with self._lock:
-                while len(self._layouts) >= MOST_LAYOUTS:
+                while len(self._layouts) >= LAS.most_layouts:
                     self._layouts.pop(next(iter(self._layouts)))
                 self._layouts[file.path] = found
         return found
@@ -115,13 +105,13 @@ class ParallelCloudReader:
         """Yield a few points at several places of a file, its first and last among them, as laspy point records; the next may overwrite one."""
         loads: list[Callable[[], Any]]
         if file.chunk:
-            starts = np.linspace(0, max(file.count - POINTS_PER_SAMPLE, 0), SAMPLED_PLACES).astype(int)
+            starts = np.linspace(0, max(file.count - LAS.points_per_sample, 0), LAS.sampled_places).astype(int)
             starts[:-1] -= starts[:-1] % file.chunk   # a chunk is decoded from its start on
-            loads = [partial(self._read_points, file, int(start), POINTS_PER_SAMPLE) for start in np.unique(starts)]
+            loads = [partial(self._read_points, file, int(start), LAS.points_per_sample) for start in np.unique(starts)]
         else:
             header, chunks = self._layout(file)
             loads = [partial(self._read_chunks, file.path, header, *run) for run in _chunk_runs(file, 1, chunks)]
-            loads = [loads[k] for k in np.unique(np.linspace(0, len(loads) - 1, SAMPLED_PLACES).astype(int))]
+            loads = [loads[k] for k in np.unique(np.linspace(0, len(loads) - 1, LAS.sampled_places).astype(int))]
         for load in loads:
             yield load()
 
@@ -134,9 +124,9 @@ class ParallelCloudReader:
         return int(ends[k - 1]) if k else 0
 
     def following(self, file: CloudHeader, start: int, count: int) -> Iterator[Any]:
-        """Yield `count` points after another as laspy point records, or chunk after chunk where their size varies; the next may overwrite one.
+        """Yield laspy point records of `count` points, or of chunks where their size varies, from the first point of a chunk on.
 
-        They begin with the first point of a chunk, which is decoded no further than the points are asked for.
+        A chunk is decoded no further than its points are asked for; the next record may overwrite one.
         """
         if file.chunk:
             for first in range(start, file.count, count):
@@ -210,7 +200,7 @@ def _point_record(buffer, header):
 
 def _in_one_piece(file, size):
     """Whether the chunks of a file are too large to be decoded apart."""
-    return min(file.chunk, file.count) > MAX_BLOCKS_PER_CHUNK * size
+    return min(file.chunk, file.count) > LAS.max_blocks_per_chunk * size
 
 
 def _chunk_runs(file, size, chunks):

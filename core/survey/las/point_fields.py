@@ -12,21 +12,18 @@ import numpy as np
 
 from ...common.errors import RoadExtractionError
 from ..store.records import COORDINATE_SCALE, MAX_XY_32_BIT, fill_units
+from ..weights import LAS
 from .reader import CloudHeader, read_blocks
 from .samples import FileSample
 
-MAX_SCANNERS = 8
-MIN_INTERLEAVED_SHARE = 0.8   # of the points: their values must overlap in time if the values identify scanners
 EVER = (-np.inf, np.inf)      # s
 
 
 @dataclass
 class ScannerCensus:
-    """Counts and time spans of scanner_channel and point_source_id, gathered while reading.
+    """Times at which each value of the fields that may tell scanners apart was measured: {LAS field: {value: (first, last, count)}}.
 
-    In a cloud without times stations along the road stand in their place: scanners measure the same stretches of it, files and tiles do not.
-
-    spans : {LAS field: {value: (first time, last time, count)}}
+    Without times stations along the road stand in their place: scanners measure the same stretches of it, files and tiles do not.
     """
 
     spans: dict[str, dict[int, tuple[float, float, int]]] = field(default_factory=lambda: {"scanner_channel": {}, "point_source_id": {}})
@@ -38,50 +35,36 @@ class ScannerCensus:
     def take(self, name: str, times: dict[int, tuple[float, float, int]]) -> None:
         """Add the result of `times_by_value` for a block."""
         seen = self.spans[name]
-        if len(seen) > 4 * MAX_SCANNERS:
+        if len(seen) > 4 * LAS.max_scanners:
             return
         for value, (start, end, number) in times.items():
             first, last, count = seen.get(value, (np.inf, -np.inf, 0))
             seen[value] = min(first, start), max(last, end), count + number
 
     def choose(self, wanted: str | None = "automatic") -> tuple[str | None, list[Any]]:
-        """The LAS field that identifies the scanners.
+        """The LAS field that identifies the scanners, None for one scanner, and the values of each scanner, a tuple for several recordings.
 
-        This is `scanner_channel` if it has more than one value, else `point_source_id` if it has 2 to 32 values that
-        overlap in time, or along the road where there are no times. LAS defines the latter as a flight line or file number;
-        some exporters count frames in it, others number every recording of every scanner.
-
-        Parameters
-        ----------
-        wanted : "automatic", or the LAS field to use
-
-        Returns
-        -------
-        name : of the field; None if there is one scanner
-        values : one entry per scanner in ascending order, a tuple where successive recordings belong to one scanner
-
-        Raises
-        ------
-        RoadExtractionError
-            If the wanted field is unknown or has too many values.
+        This is `scanner_channel` if it has more than one value, else `point_source_id` if its values overlap in time. LAS defines the latter
+        as a flight line or file number; some exporters count frames in it, others number every recording of every scanner.
+        RoadExtractionError where the wanted field is unknown or has too many values.
         """
         if wanted not in ("", "automatic", None):
             if wanted not in self.spans:
                 raise RoadExtractionError(
                     f"Scanner field {wanted!r} is not known; choose automatic, scanner_channel or point_source_id.")
             values = sorted(self.spans[wanted])
-            if len(values) > 4 * MAX_SCANNERS:
+            if len(values) > 4 * LAS.max_scanners:
                 raise RoadExtractionError(
-                    f"{wanted} has more than {4 * MAX_SCANNERS} different values, too many to be scanners. "
+                    f"{wanted} has more than {4 * LAS.max_scanners} different values, too many to be scanners. "
                     "Set the scanner field to automatic.")
-            return wanted, values if len(values) <= MAX_SCANNERS else _heads(self.spans[wanted])
+            return wanted, values if len(values) <= LAS.max_scanners else _heads(self.spans[wanted])
         channels = self.spans["scanner_channel"]
-        if 1 < len(channels) <= MAX_SCANNERS:
+        if 1 < len(channels) <= LAS.max_scanners:
             return "scanner_channel", sorted(channels)
         sources = self.spans["point_source_id"]
-        if 1 < len(sources) <= 4 * MAX_SCANNERS and _interleaved(sources.values()):
+        if 1 < len(sources) <= 4 * LAS.max_scanners and _interleaved(sources.values()):
             heads = _heads(sources)
-            if 1 < len(heads) <= MAX_SCANNERS:
+            if 1 < len(heads) <= LAS.max_scanners:
                 return "point_source_id", heads
         return None, [0]
 
@@ -89,7 +72,7 @@ class ScannerCensus:
 def times_by_value(values: np.ndarray, time: np.ndarray, span: tuple[float, float] = EVER) -> dict[int, tuple[float, float, int]]:
     """{value: (first time, last time, count)} of (N,) small integers and times; incomplete if there are too many values.
 
-    Points at times out of the span, or at none, do not count: some exporters write a wrong time here and there.
+    Points at times out of the span do not count: some exporters write a wrong time here and there.
     """
     if len(values) and not (time.min() >= span[0] and time.max() <= span[1]):
         usable = np.flatnonzero((time >= span[0]) & (time <= span[1]))
@@ -99,7 +82,7 @@ def times_by_value(values: np.ndarray, time: np.ndarray, span: tuple[float, floa
     # a broadcast column has one value
     few = values if values.strides[0] else values[:1]
     low, high = int(few.min()), int(few.max())
-    present = [low, high][:high - low + 1] if high - low < 2 else np.flatnonzero(np.bincount(values))[: 4 * MAX_SCANNERS + 1].tolist()
+    present = [low, high][:high - low + 1] if high - low < 2 else np.flatnonzero(np.bincount(values))[: 4 * LAS.max_scanners + 1].tolist()
     found = {}
     for value in present:
         times = time if low == high else time[values == value]
@@ -141,34 +124,28 @@ def _interleaved(spans):
         total += count
         # at the ends of a recording one scanner may see the road alone
         shared += count * (longest > 0 and longest >= 0.5 * (last - first))
-    return shared >= MIN_INTERLEAVED_SHARE * total
+    return shared >= LAS.min_interleaved_share * total
 
 
 # What the intensity of a point is read from, and how: exporters write it with a sign, in decibels, or into an extra field.
 
+SCANNER_FIELDS = "point_source_id", "scanner_channel"
 INTENSITY_SOURCES = "intensity", "rgb"
 COLOUR_FIELDS = "red", "green", "blue"
-LUMINANCE_WEIGHTS = 0.2126, 0.7152, 0.0722   # of red, green and blue (ITU-R BT.709-6, section 3.2)
+LUMINANCE_WEIGHTS = 0.2126, 0.7152, 0.0722   # source: of red, green and blue (ITU-R BT.709-6, section 3.2)
 USUAL_FIELDS = "reflect", "amplitude", "intensity"   # parts of names of extra fields that hold what a scanner received, the best first
-MAX_INTENSITY = 65535
-SIGN = 2**15
-EMPTY_MIDDLE = 0.001      # share of values in the middle half of 16 bits, at most, where values with a sign were wrapped
-LEAST_SHARE = 0.01        # of values in the uppermost quarter, which were negative
-USUAL_SPREAD = 20.0       # dB between dark asphalt and paint or signs, at one range and another
-MAX_SPREAD = 60.0         # dB that no survey exceeds
-VALUES_PER_DECIBEL = 1, 10, 100   # as exporters store it
-MAX_POWER = 290.0         # of ten, with which a double can be multiplied
-TOP, TOP_STEP = 30_000, 5.0   # intensity of the brightest points, and dB to which they are rounded, so that samples agree
+MAX_INTENSITY = 2**16 - 1   # derived: of 16 bits
+SIGN = 2**15   # derived: from here on the values of 16 bits are negative, where they have a sign
+VALUES_PER_DECIBEL = 1, 10, 100   # source: as exporters store it
+MAX_POWER = 290.0         # derived: of ten, with which a double can be multiplied
 
 
 @dataclass(frozen=True)
 class IntensitySource:
     """How the intensity of points is read.
 
-    field : of the points: "intensity", an extra field, or "rgb" for the luminance of their colours
-    signed : whether values from SIGN on stand for negative ones
-    per_decibel : values that make a decibel; 0 where they are linear
-    zero : of linear values, what counts as 0
+    field : "intensity", an extra field, or "rgb" for the luminance of colours; signed : whether values from SIGN on stand for negative ones
+    per_decibel : values that make a decibel, 0 where they are linear; zero : of linear values, what counts as 0
     factor : by which linear values, or those of decibels made linear, are multiplied
     """
 
@@ -204,17 +181,9 @@ class IntensitySource:
 
 
 def intensity_source_of(samples: Sequence[FileSample], wanted: str) -> tuple[IntensitySource, str]:
-    """How the intensities of files are to be read.
+    """How the intensities of all files are to be read, and what the user should know of it.
 
-    Parameters
-    ----------
-    samples : of all files
     wanted : one of INTENSITY_SOURCES
-
-    Returns
-    -------
-    source : IntensitySource
-    note : what the user should know of it, "" where intensities are read as they are
     """
     if wanted == "rgb":
         return IntensitySource("rgb"), ""
@@ -239,12 +208,12 @@ def intensity_source_of(samples: Sequence[FileSample], wanted: str) -> tuple[Int
 
 
 def _wrapped(values):
-    """Whether (N,) intensities are negative and positive values that were written without their sign: one body or two, with nothing between.
+    """Whether (N,) intensities are negative and positive values written without their sign: one body or two, with nothing between.
 
-    What a saturated scanner has at the upper end is mostly one value, and signs brighter than all else are few.
+    A saturated scanner has mostly one value at the upper end, and signs brighter than all else are few.
     """
     quarter = np.bincount(values >> 14, minlength=4) / len(values)
-    if quarter[1] + quarter[2] > EMPTY_MIDDLE or quarter[3] < LEAST_SHARE:
+    if quarter[1] + quarter[2] > LAS.empty_middle or quarter[3] < LAS.least_upper_share:
         return False
     counts = np.bincount(values[values >= 3 * SIGN // 2])
     return bool(counts.max() < 0.5 * counts.sum())
@@ -254,13 +223,14 @@ def _source(field, values, signed=False):
     """The source that makes linear intensities of (N,) values."""
     low, high = np.quantile(values, [0.005, 0.995])
     spread = float(high - low)
-    decibels = spread <= MAX_SPREAD * VALUES_PER_DECIBEL[-1] and (low < 0 or "amplitude" in field.lower() and USUAL_SPREAD / 4 < spread <= MAX_SPREAD)
+    named = "amplitude" in field.lower() and LAS.usual_spread / 4 < spread <= LAS.max_spread
+    decibels = spread <= LAS.max_spread * VALUES_PER_DECIBEL[-1] and (low < 0 or named)
     if not decibels:
         zero = min(float(values.min()), 0.0)
-        return IntensitySource(field, signed, zero=zero, factor=TOP / max(float(high) - zero, 1e-12))
-    unit = float(min(VALUES_PER_DECIBEL, key=lambda each: abs(np.log(max(spread, 1e-9) / each / USUAL_SPREAD))))
-    top = np.ceil(high / unit / TOP_STEP) * TOP_STEP
-    return IntensitySource(field, signed, unit, factor=float(TOP / 10.0 ** (top / 10.0)))
+        return IntensitySource(field, signed, zero=zero, factor=LAS.brightest / max(float(high) - zero, 1e-12))
+    unit = float(min(VALUES_PER_DECIBEL, key=lambda each: abs(np.log(max(spread, 1e-9) / each / LAS.usual_spread))))
+    top = np.ceil(high / unit / LAS.brightest_step) * LAS.brightest_step
+    return IntensitySource(field, signed, unit, factor=float(LAS.brightest / 10.0 ** (top / 10.0)))
 
 
 def _unit(source):
@@ -269,27 +239,12 @@ def _unit(source):
 
 
 def luminance(points: Any) -> np.ndarray:
-    """Brightness of coloured points, the weighted sum of their colours.
-
-    Parameters
-    ----------
-    points : laspy point record with red, green and blue
-
-    Returns
-    -------
-    (N,) uint16, in the unit of the colours
-    """
+    """(N,) uint16 brightness of points with colours, the weighted sum of their red, green and blue, in the unit of these."""
     return np.rint(sum(weight * np.asarray(points[name], np.float32) for name, weight in zip(COLOUR_FIELDS, LUMINANCE_WEIGHTS))).astype(np.uint16)
 
 
 def check_coloured(files: Sequence[CloudHeader]) -> None:
-    """Refuse files whose points have no colours.
-
-    Raises
-    ------
-    RoadExtractionError
-        If the point format of a file that has points holds no colours.
-    """
+    """Raise RoadExtractionError where the point format of a file that has points holds no colours."""
     grey = [file for file in files if file.count and not file.has_colour]
     if grey:
         raise RoadExtractionError(
@@ -298,18 +253,7 @@ def check_coloured(files: Sequence[CloudHeader]) -> None:
 
 
 def without_intensity(files: Sequence[CloudHeader], taken_from: str, fields: Sequence[str] = ()) -> str:
-    """What to say of a cloud whose points are all equally bright.
-
-    Parameters
-    ----------
-    files : headers of the clouds
-    taken_from : one of INTENSITY_SOURCES, what was read as intensity
-    fields : extra fields of the points
-
-    Returns
-    -------
-    A sentence that names the colours, or else the extra fields, where they are a way out; "" where they are not
-    """
+    """A sentence on points that are all equally bright: whether colours, or else extra fields, are a way out; "" where they are not."""
     if taken_from == "rgb":
         return "The colours of the points are all the same, so they do not stand in for intensity."
     if any(_has_colours(file) for file in files):
@@ -330,7 +274,7 @@ def _has_colours(file):
 # Points that whoever made the cloud marked as none of the survey: withheld ones, which "should not be included in processing (synonymous with
 # Deleted)", and noise, classes 7 and 18 (ASPRS, LAS specification 1.4 R15, table 17).
 
-NOISE_CLASSES = 7, 18
+NOISE_CLASSES = 7, 18   # source: as above
 
 
 def flagged(block: laspy.ScaleAwarePointRecord) -> bool:
@@ -340,12 +284,7 @@ def flagged(block: laspy.ScaleAwarePointRecord) -> bool:
 
 
 def valid_points(block: laspy.ScaleAwarePointRecord) -> np.ndarray | None:
-    """Which points of a block are neither withheld nor classified as noise: (N,) bool, None for all.
-
-    Parameters
-    ----------
-    block : laspy point record of N points, of whose LAZ layers `flags` and `classification` are decoded
-    """
+    """(N,) bool: the points of a block that are neither withheld nor noise; None for all. Its layers `flags` and `classification` are decoded."""
     there = flagged(block) and "withheld" in block.point_format.dimension_names
     withheld = np.asarray(block["withheld"]) != 0 if there else np.zeros(1, bool)
     classes = np.asarray(block["classification"])
@@ -358,21 +297,10 @@ def valid_points(block: laspy.ScaleAwarePointRecord) -> np.ndarray | None:
 
 # Coordinates of a LAS file, stored as integers, converted to the local integers of a record.
 
-# m from the frame's origin: points beyond are outliers, and would overflow the integers of a record
-MAX_COORDINATE = {"X": MAX_XY_32_BIT, "Y": MAX_XY_32_BIT, "Z": 2e4}
-MAX_COORDINATE_64_BIT = 1e8    # m, where the records have 64 bits
 
 
 class LasAxis:
-    """One coordinate axis of a file.
-
-    Parameters
-    ----------
-    name : "X", "Y" or "Z"
-    scale, offset : of the file's header, metres
-    origin : metres, of the road frame
-    dtype : of the units, int32 or int64
-    """
+    """One coordinate axis of a file, "X", "Y" or "Z": its integers, with scale and offset in metres, converted to units of 0.1 mm from an origin."""
 
     def __init__(self, name: str, scale: float, offset: float, origin: float, dtype: np.dtype | type = np.int32):
         self._dtype = np.dtype(dtype)
@@ -385,23 +313,15 @@ class LasAxis:
         self._step, self._start = (np.array(round(value) % modulus if self._integer else 0, unsigned).view(self._dtype)
                                    for value in (step, start))
 
-        # the file's integers of places within MAX_COORDINATE
-        farthest = MAX_COORDINATE[name] if self._dtype == np.int32 else MAX_COORDINATE_64_BIT
+        # the file's integers of places that are no outliers
+        farthest = LAS.farthest_place if self._dtype != np.int32 else LAS.farthest_height if name == "Z" else MAX_XY_32_BIT
         limits = sorted((sign * farthest - self.shift) / scale for sign in (-1, 1))
         self._least, self._most = np.ceil(limits[0]), np.floor(limits[1])
 
     def units(self, raw: np.ndarray, buffer: Callable[..., np.ndarray]) -> tuple[np.ndarray, np.ndarray | None]:
-        """Local coordinates of raw points.
+        """Local coordinates of (N,) raw points in units of 0.1 mm, and (N,) bool of those that are no outliers, None for all.
 
-        Parameters
-        ----------
-        raw : (N,) structured array with the column `name` of the file's integers
         buffer : function of a name and a dtype (float64 by default) that returns an (N,) working array
-
-        Returns
-        -------
-        units : (N,) units of 0.1 mm
-        valid : (N,) bool, whether a point lies within MAX_COORDINATE; None where all do
         """
         numbers = buffer(self.name, self._dtype)
         np.copyto(numbers, raw[self.name])

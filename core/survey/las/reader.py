@@ -13,17 +13,15 @@ import numpy as np
 
 from ...common.errors import Cancelled, RoadExtractionError
 from ...common.parallel import check_cancelled
-from ...io.crs import METRES, SAME_DATUM, SAME_UNIT, FileUnits, horizontal_part, in_metres, moved_by
+from ...io.crs import METRES, FileUnits, horizontal_part, in_metres, moved_by
+from ...io.weights import IO
+from ..weights import LAS
 from .header import HeaderFields, find_damage, mend, opened, places_here_and_there, points_per_chunk, with_points_of_chunks
 
 if TYPE_CHECKING:
     from pyproj import CRS
 
-POINTS_PER_BLOCK = 400_000  # points decoded at a time
 CLOUD_SUFFIXES = (".las", ".laz")
-MAX_HEADER_SCALE, MAX_HEADER_OFFSET = 1e3, 1e12  # m, of coordinates stored as integers; beyond them no place on earth is described
-MAX_MAP_COORDINATE = 1e8      # m or feet: bounds beyond were never those of points
-BOUNDS_TOLERANCE = 0.01      # m: bounds are often rounded to centimetres
 NOT_FILE_ERRORS = (KeyboardInterrupt, SystemExit, GeneratorExit, Cancelled, MemoryError)  # they say nothing about the file
 
 ReadResult = TypeVar("ReadResult")
@@ -33,17 +31,11 @@ ReadResult = TypeVar("ReadResult")
 class CloudHeader:
     """The header of one LAS, LAZ or COPC file.
 
-    path : of the file
-    version : such as "1.4"
-    point_format : number of the ASPRS point data record format
-    count : points
-    minimum, maximum : (3,) map coordinates
-    scales : (3,) metres
-    crs : WKT, metric, "" where the file has none
-    has_time, has_channel : whether the points have gps_time and a scanner channel
+    version : such as "1.4"; point_format : number of the ASPRS point data record format; count : points
+    minimum, maximum : (3,) map coordinates; scales : (3,) metres; crs : WKT, metric, "" where the file has none
+    has_time, has_channel, has_colour : whether the points have gps_time, a scanner channel, and colours
     adjusted_time : whether gps_time is adjusted standard GPS time (global encoding bit 0), not seconds of the GPS week
     chunk : points that are compressed together; 1 in a LAS file, 0 where the number varies
-    has_colour : whether the points have red, green and blue
     notes : sentences about what the header states otherwise than the file shows
     units : of the coordinates in the file; all others here are in metres
     crs_problem : why what the file says about its coordinates is not used, "" for nothing
@@ -69,19 +61,14 @@ class CloudHeader:
 
 def open_cloud(path: str | os.PathLike[str], layers: Iterable[str] | None = None, known: CloudHeader | None = None, sparse: bool = False,
                units: FileUnits = METRES) -> Any:
-    """Open a LAS, LAZ or COPC file with laspy, its coordinates in metres.
+    """Open a LAS, LAZ or COPC file with laspy: a LasReader whose header has scales, offsets and bounds in metres.
 
     Parameters
     ----------
-    path : of the file
     layers : names of the layers of a LAZ 1.4 file that are decoded beside x, y and the return numbers ("z", "intensity" ...); all by default
     known : the file's header, where it was read and checked for damage before
     sparse : few points are read here and there: a chunk is decoded no further than they lie in it, by one thread
     units : of its coordinates, where it does not state them by its CRS
-
-    Returns
-    -------
-    laspy.LasReader, whose header has scales, offsets and bounds in metres
 
     Raises
     ------
@@ -113,13 +100,7 @@ def _to_metres(header, units):
 
 
 def _mended(path):
-    """What is read in place of some bytes of a file, which is checked for damage.
-
-    Raises
-    ------
-    RoadExtractionError
-        As `open_cloud`.
-    """
+    """What is read in place of some bytes of a file, which is checked for damage; raises as `open_cloud`."""
     path = str(path)
     if not Path(path).exists():
         raise RoadExtractionError(f"There is no file {path}. Check the path of the point cloud.")
@@ -168,21 +149,14 @@ def layer_selection(layers: Iterable[str] | None) -> Any:
 def read_header(path: str | os.PathLike[str], given: str = "") -> CloudHeader:
     """The header of a file; bounds that it does not give, or outside of which points lie, are computed from the points.
 
-    Parameters
-    ----------
-    path : of the file
-    given : WKT of the CRS, where the file states none
-
-    Raises
-    ------
-    RoadExtractionError
-        If the file is missing, is not LAS or LAZ, or cannot be read.
+    given : WKT of the CRS, where the file states none. RoadExtractionError if the file is missing, is not LAS or LAZ, or cannot be read.
     """
     mended = _mended(path)
     with _open(path, mended, None) as reader:
         header = reader.header
         names = set(header.point_format.dimension_names)
-        if not ((np.abs(header.scales) < MAX_HEADER_SCALE).all() and (np.abs(header.offsets) < MAX_HEADER_OFFSET).all() and np.all(header.scales)):
+        scales, offsets = np.abs(header.scales), np.abs(header.offsets)
+        if not ((scales > 0) & (scales < LAS.max_header_scale) & (offsets < LAS.max_header_offset)).all():
             raise RoadExtractionError(
                 f"{path} gives its points no coordinates: its header says scales of {_listed(header.scales)} and offsets of "
                 f"{_listed(header.offsets)}. Export the file again, with a scale such as 0.001 m.")
@@ -202,7 +176,8 @@ def _overflow(header):
     """What to tell of coordinates that the integers of a file cannot hold, by the bounds that its header states; () where they can."""
     reach = 2.0**31 * np.abs(header.scales)   # of coordinates stored as 32-bit integers
     for axis, low, high, least, most in zip("xyz", header.mins, header.maxs, header.offsets - reach, header.offsets + reach):
-        if -MAX_MAP_COORDINATE < low < high < MAX_MAP_COORDINATE and not (low >= least - BOUNDS_TOLERANCE and high <= most + BOUNDS_TOLERANCE):
+        held = least - LAS.bounds_tolerance <= low and high <= most + LAS.bounds_tolerance
+        if -LAS.farthest_place < low < high < LAS.farthest_place and not held:
             return (f"its header says that {axis} runs from {low:.1f} to {high:.1f}, and its scale and offset can hold {least:.1f} to "
                     f"{most:.1f} alone: points lie elsewhere than they were measured. Export it again with an offset near the survey",)
     return ()
@@ -215,7 +190,7 @@ def _bounds_hold(path, mended, header):
     plausible = (header.offsets - reach <= low) & (low <= high) & (high <= header.offsets + reach)
     if not (plausible.all() and (low < high).any()):
         return False
-    places, margin = places_here_and_there(path, mended), np.abs(header.scales) + BOUNDS_TOLERANCE
+    places, margin = places_here_and_there(path, mended), np.abs(header.scales) + LAS.bounds_tolerance
     return bool(((places >= low - margin) & (places <= high + margin)).all())
 
 
@@ -238,7 +213,6 @@ def read_headers(paths: Iterable[str | os.PathLike[str]], warn: Callable[[str], 
 
     Parameters
     ----------
-    paths : of the files
     warn : is told what headers state otherwise than their files show
     given : WKT of the CRS of those that state none
 
@@ -263,24 +237,11 @@ def read_headers(paths: Iterable[str | os.PathLike[str]], warn: Callable[[str], 
     return files
 
 
-def read_blocks(path: str | os.PathLike[str], size: int = POINTS_PER_BLOCK, layers: Sequence[str] | None = None,
+def read_blocks(path: str | os.PathLike[str], size: int = LAS.points_per_block, layers: Sequence[str] | None = None,
                 units: FileUnits = METRES) -> Iterator[Any]:
-    """Yield the points of a file in blocks.
+    """Yield the points of a file in blocks of `size` points, as laspy.ScaleAwarePointRecord in file order.
 
-    Parameters
-    ----------
-    path : of the file
-    size : points of a block
-    layers, units : as in `open_cloud`
-
-    Returns
-    -------
-    laspy.ScaleAwarePointRecord of each block, in file order
-
-    Raises
-    ------
-    RoadExtractionError
-        If the file ends early or is damaged.
+    layers, units : as in `open_cloud`. RoadExtractionError if the file ends early or is damaged.
     """
     with open_cloud(path, layers, units=units) as reader:
         promised, read = reader.header.point_count, 0
@@ -292,23 +253,9 @@ def read_blocks(path: str | os.PathLike[str], size: int = POINTS_PER_BLOCK, laye
 
 
 def read_points(reader: Any, path: str | os.PathLike[str], first: int, count: int) -> Any:
-    """Read some points of an open file.
+    """`count` points of an open laspy.LasReader from index `first` on, as a laspy.ScaleAwarePointRecord; fewer where the file has no more.
 
-    Parameters
-    ----------
-    reader : laspy.LasReader
-    path : of the file, for messages
-    first : index of the first point
-    count : points; fewer are returned where the file has no more
-
-    Returns
-    -------
-    laspy.ScaleAwarePointRecord
-
-    Raises
-    ------
-    RoadExtractionError
-        If they cannot be read, or the file ends early.
+    RoadExtractionError, which names `path`, if they cannot be read or the file ends early.
     """
     promised = reader.header.point_count
 
@@ -329,20 +276,7 @@ def truncated_file_error(path: str | os.PathLike[str], promised: int, found: int
 
 
 def wrap_read_error(read: Callable[[], ReadResult], path: str | os.PathLike[str], promised: int, first: int) -> ReadResult:
-    """Call a function that reads points; errors of the file become one sentence.
-
-    Parameters
-    ----------
-    read : function without arguments
-    path : of the file, for the message
-    promised : points of the file
-    first : index of the first point that is read
-
-    Raises
-    ------
-    RoadExtractionError
-        If the points cannot be read.
-    """
+    """The result of a function that reads points of a file from `first` on; errors of the file become a RoadExtractionError of one sentence."""
     try:
         return read()
     except BaseException as problem:
@@ -358,21 +292,11 @@ def wrap_read_error(read: Callable[[], ReadResult], path: str | os.PathLike[str]
 RECORDS_OF = "LASF_Projection"  # user id of the records
 WKT_RECORD, KEYS_RECORD, DOUBLES_RECORD = 2112, 34735, 34736
 PROJECTED, GEODETIC, LENGTH_UNIT, LENGTH_SIZE, VERTICAL, HEIGHT_UNIT = 3072, 2048, 3076, 3077, 4096, 4099   # GeoKeys, OGC 19-008r4
-EPSG_CODES = range(1024, 32767)
+EPSG_CODES = range(1024, 32767)   # source: OGC 19-008r4, as are those of the records and keys above
 
 
 def crs_of_records(header: Any) -> tuple[str, str]:
-    """The CRS that a file states.
-
-    Parameters
-    ----------
-    header : laspy.LasHeader
-
-    Returns
-    -------
-    wkt : of the file's CRS with the unit of its heights, "" where it has none, or none that is understood
-    problem : a sentence on why what the file says cannot be used, "" for none
-    """
+    """The CRS that a laspy header states, as WKT with the unit of its heights, and a sentence on why it cannot be used; "" for either."""
     records = [record for record in [*header.vlrs, *(header.evlrs or ())] if record.user_id == RECORDS_OF]
     texts = [record.record_data_bytes() for record in records if record.record_id == WKT_RECORD]
     keys = [record.record_data_bytes() for record in records if record.record_id == KEYS_RECORD]
@@ -397,7 +321,7 @@ def _stated(text, keys, doubles, place):
         written, vertical = plane, written
     if written is None:
         return "", problem or ("" if _same_unit(vertical, 1.0) else f"only the CRS of its heights is known ({vertical.name})")
-    if plane is not None and moved_by(plane, horizontal_part(written), place) > SAME_DATUM:
+    if plane is not None and moved_by(plane, horizontal_part(written), place) > IO.same_datum:
         problem = problem or f"its WKT says {horizontal_part(written).name}, its GeoKeys say {plane.name}"
     own = written.sub_crs_list[-1] if written.is_compound else None
     if own is not None and vertical is not None and not _same_unit(own, vertical.axis_info[0].unit_conversion_factor):
@@ -412,7 +336,7 @@ def _of_keys(values: Mapping[int, Any]) -> tuple[CRS | None, CRS | None, str]:
         plane = None
     factor, unit = _length(values.get(LENGTH_UNIT), values.get(LENGTH_SIZE))
     problem = ""
-    if factor and plane is None and abs(factor - 1.0) > SAME_UNIT:
+    if factor and plane is None and abs(factor - 1.0) > IO.same_unit:
         problem = f"its x and y are in {unit}, and the CRS that they lie in is not known"
     elif factor and plane is not None and not plane.is_geographic and not _same_unit(plane, factor):
         problem = f"its code says {plane.name}, whose unit is {plane.axis_info[0].unit_name}, and its unit key says {unit}"
@@ -458,7 +382,7 @@ def _of_heights(crs):
 
 def _same_unit(crs, factor):
     """Whether the first axis of a CRS has a unit of `factor` metres."""
-    return abs(crs.axis_info[0].unit_conversion_factor / factor - 1.0) < SAME_UNIT
+    return abs(crs.axis_info[0].unit_conversion_factor / factor - 1.0) < IO.same_unit
 
 
 def _length(code, size):

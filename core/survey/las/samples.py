@@ -11,23 +11,14 @@ import numpy as np
 import shapely
 
 from ...common.progress import Progress
-from .parallel_reader import POINTS_PER_SAMPLE, SAMPLED_PLACES, ParallelCloudReader
+from ..weights import LAS
+from .parallel_reader import ParallelCloudReader
 from .reader import CloudHeader, read_blocks, read_headers
-
-COARSE_COORDINATES = 0.02        # m: coordinates in steps of more scatter by more than half a centimetre, which is what curbs and lines are told by
-VALUES_FOR_STEP = 1000       # of a file, from which the step of its coordinates is told
-GAPS_FOR_STEP = 10           # between different values of a coordinate: fewer may be chance
-SHARE_OF_OTHER_GAPS = 0.01        # of the gaps between different values may be less than the step, as where other points were added
 
 
 @dataclass(frozen=True)
 class FileSample:
-    """N points of a file.
-
-    raw : (N, 3) int64, x, y and z as they are stored
-    intensity : (N,) uint16
-    fields : {name: (N,) float64} of the extra fields with one number a point
-    """
+    """N points of a file: (N, 3) int64 places as they are stored, (N,) uint16 intensities, and (N,) extra fields with one number a point."""
 
     file: CloudHeader
     raw: np.ndarray
@@ -41,20 +32,14 @@ class FileSample:
 
 
 def sample_files(files: Sequence[CloudHeader]) -> list[FileSample]:
-    """Samples of the files that have points.
-
-    Raises
-    ------
-    RoadExtractionError
-        If a file cannot be read.
-    """
+    """Samples of the files that have points; RoadExtractionError where one cannot be read."""
     found = []
     with ParallelCloudReader(("z", "intensity", "all_extra_bytes")) as reader:
         for file in files:
             if file.count:
-                places = np.linspace(0, file.count - 1, SAMPLED_PLACES).astype(int).tolist()
+                places = np.linspace(0, file.count - 1, LAS.sampled_places).astype(int).tolist()
                 starts = sorted({reader.chunk_start(file, at) for at in places})
-                parts = [_sample(next(reader.following(file, start, POINTS_PER_SAMPLE))) for start in starts]
+                parts = [_sample(next(reader.following(file, start, LAS.points_per_sample))) for start in starts]
                 raw, intensity = (np.concatenate([part[k] for part in parts]) for k in (0, 1))
                 found.append(FileSample(file, raw, intensity, {name: np.concatenate([part[2][name] for part in parts]) for name in parts[0][2]}))
     return found
@@ -70,22 +55,20 @@ def _sample(points):
 def _step(values):
     """Between neighbouring ones of (N,) integers."""
     gaps = np.diff(np.unique(values))
-    return float(np.quantile(gaps, SHARE_OF_OTHER_GAPS, method="lower")) if len(values) >= VALUES_FOR_STEP and len(gaps) >= GAPS_FOR_STEP else 0.0
+    enough = len(values) >= LAS.values_for_step and len(gaps) >= LAS.gaps_for_step
+    return float(np.quantile(gaps, LAS.share_of_other_gaps, method="lower")) if enough else 0.0
 
 
 def coarse_coordinates(samples: Sequence[FileSample]) -> tuple[str, float]:
-    """What to tell of coordinates that lie in steps of centimetres and more since their numbers hold no finer ones, and what that leaves open.
+    """What to tell of coordinates in coarse steps, as their numbers hold no finer ones, and what that leaves open: m across, one sigma.
 
-    Returns
-    -------
-    The warning, "" where there are no such steps, and m across, one sigma. Edges lie between two points, each of which may be off by half of a step,
-    as may all others of its line: the sum of two uniform errors
+    Edges lie between two points, each of which may be off by half of a step, as may all others of its line: the sum of two uniform errors.
     """
     for sample in samples:
         steps, scales = sample.steps, np.abs(sample.file.scales)
         ends = np.array([sample.file.minimum, sample.file.maximum], np.float32)
         short = (np.abs(steps - np.abs(np.spacing(ends))) <= scales).any(axis=0)
-        coarse = steps > COARSE_COORDINATES
+        coarse = steps > LAS.coarse_coordinates
         told = coarse & (short | np.isclose(steps, scales, rtol=0.01))
         # Coarse steps on another axis that neither explains are those of a raster on which the points lie, as after thinning by voxels
         if not told.any() or (coarse & ~told).any():
@@ -101,15 +84,11 @@ def coarse_coordinates(samples: Sequence[FileSample]) -> tuple[str, float]:
 
 # An even sample of a survey's points that keeps neighbours together, whatever the order of the files.
 
-SLOT = 0.001   # s: some hundred pulses, a part of a mirror's turn
 
 
 @dataclass(frozen=True)
 class TimeSlots:
-    """Every `stride`-th slot of time.
-
-    Points of one slot follow each other along a scan line; slots pass through all parts of a turn.
-    """
+    """Every `stride`-th slot of time: points of one slot follow each other along a scan line, and slots pass through all parts of a turn."""
 
     stride: int
 
@@ -126,7 +105,7 @@ class TimeSlots:
         """(N,) bool of the points in the sample, by (N,) times in seconds."""
         if self.stride == 1:
             return np.ones(len(time), bool)
-        slot = np.asarray(time, float) / SLOT
+        slot = np.asarray(time, float) / LAS.slot
         np.floor(slot, out=slot)
         # the nearest multiple of the stride, exact for whole numbers: a remainder takes ten times as long
         nearest = slot * (1.0 / self.stride)
@@ -140,17 +119,15 @@ class TimeSlots:
 # Points about a place, for a look at it.
 
 def points_near(paths: Iterable[str | os.PathLike[str]], x: float, y: float, radius: float, progress: Progress = Progress()) -> np.ndarray:
-    """The points within a square about a place.
+    """The points within a square about a place, (N, 4) x, y, z in map coordinates and intensity, in file order.
+
+    Files whose bounds lie elsewhere are not opened beyond their header. Only these points and the block being read are held in memory.
 
     Parameters
     ----------
-    paths : of point clouds; those whose bounds lie elsewhere are not opened beyond their header
+    paths : of point clouds
     x, y : map coordinates of the middle
     radius : m, half the side of the square
-
-    Returns
-    -------
-    (N, 4) x, y, z in map coordinates and intensity, in file order. Only these are held in memory, and the block being read.
 
     Raises
     ------
@@ -177,27 +154,12 @@ def points_near(paths: Iterable[str | os.PathLike[str]], x: float, y: float, rad
 
 # Copies of files and of points among the files of a survey: they would count twice.
 
-PER_METRE = 1000.0   # places are compared in millimetres: a copy may store them with other scales and offsets
 
 
 def without_copies(files: list[CloudHeader], warn: Callable[[str], None]) -> list[CloudHeader]:
     """The files without those that hold the same points as an earlier one, such as a COPC beside the LAZ it was made from.
 
-    Only files with the same number of points and the same bounds are read.
-
-    Parameters
-    ----------
-    files : headers
-    warn : is told of every copy
-
-    Returns
-    -------
-    headers, in the order given
-
-    Raises
-    ------
-    RoadExtractionError
-        If a file that must be read is damaged.
+    Only files with the same number of points and the same bounds are read; `warn` is told of every copy.
     """
     first: dict[tuple, CloudHeader] = {}
     contents: dict[str, tuple[int, ...]] = {}
@@ -227,24 +189,14 @@ def may_overlap(files: Sequence[CloudHeader]) -> bool:
 
 
 def distinct_rows(time: np.ndarray, place: np.ndarray) -> np.ndarray:
-    """Indices of the points that are no copies of earlier ones.
-
-    Parameters
-    ----------
-    time : (N,) s
-    place : (N, 3) in any unit
-
-    Returns
-    -------
-    (M,) intp, ascending
-    """
+    """(M,) ascending indices of the points that are no copies of earlier ones, by (N,) times and (N, 3) places."""
     order = np.lexsort((*place.T, time))
     same = (time[order[1:]] == time[order[:-1]]) & (place[order[1:]] == place[order[:-1]]).all(axis=1)
     return np.sort(order[np.r_[True, ~same][:len(order)]])
 
 
 def _whole(places):
-    return tuple(np.rint(np.asarray(places, float) * PER_METRE).astype(np.int64).tolist())
+    return tuple(np.rint(np.asarray(places, float) * LAS.places_per_metre).astype(np.int64).tolist())
 
 
 def _content(file):
@@ -257,7 +209,7 @@ def _content(file):
             if name == "gps_time":
                 values = np.ascontiguousarray(values, np.float64).view(np.uint64)
             elif name != "intensity":
-                values = np.rint(values * PER_METRE).astype(np.int64).view(np.uint64)
+                values = np.rint(values * LAS.places_per_metre).astype(np.int64).view(np.uint64)
             # sums beyond 64 bits start again from 0, in any order the same
             sums[k] += values.sum(dtype=np.uint64)
     return tuple(sums.tolist())

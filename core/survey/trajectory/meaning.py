@@ -12,8 +12,9 @@ import numpy as np
 
 from ...common.errors import RoadExtractionError
 from ...io.text_table import read_number_table
-from .columns import LONGEST_NAME, ROLES, Unit, candidates_by_role, listed
-from .table_columns import CHECKED_ROWS, TableColumn, first_row, is_record, titled_columns, with_week
+from ..weights import TRAJECTORY
+from .columns import ROLES, candidates_by_role, listed
+from .table_columns import TableColumn, first_row, is_record, titled_columns, with_week
 from .time_systems import (
     ADJUSTED_OFFSET,
     SECONDS_PER_DAY,
@@ -24,7 +25,6 @@ from .time_systems import (
     counted_days,
     hemisphere_signs,
     hold_angles,
-    hold_times,
     is_to_come,
     leap_seconds,
     unix_time_found,
@@ -32,14 +32,13 @@ from .time_systems import (
     whole_seconds,
 )
 from .trajectory import Trajectory
-from .unnamed_columns import MIN_MAP_COORDINATE, columns_from_numbers, rough_metres
+from .unnamed_columns import columns_from_numbers, rough_metres
 
-EARTH_RADIUS = 6.33e6, 6.42e6    # m from the centre of the earth to its surface, with mountains
-HIGHEST_ROAD = 9000.0            # m: a third coordinate beyond it is no height
+EARTH_RADIUS = 6.33e6, 6.42e6    # source: m (WGS 84: 6.357e6 to 6.378e6) from the centre of the earth to its surface, with mountains
+FROM_CENTRE = ("ecef_x", "ecef_y", "ecef_z")   # roles of earth-centred coordinates
 MEAN_SEA_LEVEL = ("ortho", "msl", "sea", "geoid")   # in names of heights
-LARGEST_SECONDS = 1e10           # times beyond it are counted in smaller units
-LEAST_EVEN = 0.95                # of the steps of a column that may be time are near the usual one
 COUNTS_OTHERS = re.compile(r"id\b|\b(no|nr)\b|num|count|index|station|chainage|dist|length|km|frame|image|photo|row|line|record", re.IGNORECASE)
+CLOCK_WORDS = {"UTC": "utc|gmt|zulu", "GPS": "gps"}   # in names of times
 TOLD_CLOCKS = {"gps": "GPS", "utc": "UTC"}          # words of Columns that say what a clock shows
 
 
@@ -53,54 +52,55 @@ class _Meaning:
 
 
 def meaning_of(columns: Sequence[TableColumn], label: str, given: Sequence[str] = ()) -> _Meaning:
-    """The roles of named columns.
+    """The roles of named columns, without those that are `given` from elsewhere, such as x and y from the points of a layer.
 
-    Parameters
-    ----------
-    columns : of the table
-    label : of the table, for notes
-    given : roles that come from elsewhere, such as x and y from the points of a layer
-
-    Returns
-    -------
-    _Meaning; geodetic coordinates are preferred to earth-centred ones, numbers to clock times, and the usual names to others
+    Geodetic coordinates are preferred to earth-centred ones, numbers to clock times, and the usual names to others.
     """
-    named = candidates_by_role([column.title for column in columns])
     notes: list[str] = []
-    full = {role: [k for k in places if columns[k].first or not columns[k].is_text] for role, places in named.items()}
+    full = _filled_columns(columns)
     _prefer_geodetic(columns, full, label, notes)
     place = {role: places[0] for role, places in full.items() if places and role not in given}
     if "minute" in place:
         place["minute"] = full["minute"][-1]                  # mm may be months too, which come first
         full["time"] = [k for k in full.get("time", ()) if k != place.get("hour")]
-    times = [k for k in full.get("time", ()) if not columns[k].is_text] or full.get("time", []) or \
-        [k for k, column in enumerate(columns) if k not in place.values() and column.holds_texts and hold_times(column.written()[:CHECKED_ROWS])]
-    if not times:
-        times = [k for k in full.get("date", ()) if (columns[k].values % 1 > 0).any()]   # days of a spreadsheet, with the time as their share
+    times = _time_columns(columns, full, set(place.values()))
     if times and "time" not in given:
         place["time"] = times[0]
-    heights = full.get("z", [])
-    if len(heights) > 1 and "z" in place and len({_sea_level(columns[k].title) for k in heights}) > 1:
-        others = [columns[k].title for k in heights[1:]]
-        notes.append(f"{label} has several heights; {listed([columns[heights[0]].title])} is used, not {listed(others)}.")
+    if "z" in place:
+        notes += _note_on_heights([columns[k].title for k in full["z"]], label)
     return _Meaning(place, tuple(notes))
 
 
-def _sea_level(title):
-    return any(word in title.lower() for word in MEAN_SEA_LEVEL)
+def _filled_columns(columns):
+    """{role: columns that may be it by their names and hold something, the likeliest first}."""
+    named = candidates_by_role([column.title for column in columns])
+    return {role: [k for k in places if not columns[k].is_empty] for role, places in named.items()}
+
+
+def _time_columns(columns, candidates, used):
+    """Columns that may be the time, the likeliest first: numbers with its name, texts, clocks without a name, days with their share."""
+    named = candidates.get("time", [])
+    return [k for k in named if not columns[k].is_text] or named \
+        or [k for k, column in enumerate(columns) if k not in used and column.holds_clock_times] \
+        or [k for k in candidates.get("date", ()) if (columns[k].values % 1 > 0).any()]
+
+
+def _note_on_heights(titles, label):
+    """A sentence where some heights are above mean sea level and others are not."""
+    above_sea = {any(word in title.lower() for word in MEAN_SEA_LEVEL) for title in titles}
+    return [f"{label} has several heights; {listed(titles[:1])} is used, not {listed(titles[1:])}."] if len(above_sea) > 1 else []
 
 
 def _prefer_geodetic(columns, places, label, notes):
     """Keep earth-centred X, Y, Z apart from x, y, z on a map, whatever they are called; drop them beside longitude and latitude."""
-    if all(places.get(axis) for axis in "xyz") and _earth_centred(*(columns[places[axis][0]].values for axis in "xyz")):
-        for axis in "xyz":
-            places.setdefault(f"ecef_{axis}", []).insert(0, places[axis].pop(0))
-    earth = [role for role in ("ecef_x", "ecef_y", "ecef_z") if places.get(role)]
-    if earth and all(places.get(role) for role in ("lon", "lat", "z")):
+    axes = [places.get(axis) for axis in "xyz"]
+    if all(axes) and _earth_centred(*(columns[axis[0]].values for axis in axes)):
+        for role, axis in zip(FROM_CENTRE, axes):
+            places.setdefault(role, []).insert(0, axis.pop(0))
+    if any(map(places.get, FROM_CENTRE)) and all(map(places.get, ("lon", "lat", "z"))):
         notes.append(f"{label} has earth-centred coordinates beside longitude and latitude; the latter are used, with the heights in "
                      f"{listed([columns[places['z'][0]].title])}.")
-        for role in earth:
-            del places[role]
+        places.update(dict.fromkeys(FROM_CENTRE, []))
 
 
 def _earth_centred(x, y, z):
@@ -109,69 +109,53 @@ def _earth_centred(x, y, z):
     if not good.any():
         return False
     away = np.median(np.sqrt(x[good]**2 + y[good]**2 + z[good]**2))
-    return bool(EARTH_RADIUS[0] < away < EARTH_RADIUS[1] and np.median(np.abs(z[good])) > HIGHEST_ROAD)
+    return bool(EARTH_RADIUS[0] < away < EARTH_RADIUS[1] and np.median(np.abs(z[good])) > TRAJECTORY.highest_road)
 
 
 def values_by_role(columns: Sequence[TableColumn], meaning: _Meaning, label: str, notes: list[str], doubts: list[str]) -> dict[str, np.ndarray]:
-    """The values of a trajectory: seconds, metres, degrees; roll, pitch and heading in the unit of their columns.
+    """{role: (N,) float64} of a trajectory's columns: seconds, metres, degrees; roll, pitch and heading in the unit of their columns.
 
-    Parameters
-    ----------
-    columns : of the table
-    meaning : of these
-    label : of the table, for messages
-    notes, doubts : sentences for the user, and warnings, are added to them
-
-    Returns
-    -------
-    {role: (N,) float64} of time, x, y, z, lon, lat, roll, pitch, heading as far as they are there
-
-    Raises
-    ------
-    RoadExtractionError
-        If times are clock times of which it is not said what they show, or count from 1970.
+    Sentences for the user and warnings are added to `notes` and `doubts`. RoadExtractionError if times are clock times of which it is not said what
+    they show, or count from 1970.
     """
     place = meaning.place
-    found = {role: columns[k].values for role, k in place.items() if role in ("x", "y", "z", "roll", "pitch", "heading")}
-    for role in {"x", "y", "z"} & set(found):
-        unit = columns[place[role]].unit
-        if unit.name == "metres" and unit.factor != 1.0:
-            found[role] = found[role] * unit.factor
-    for role in ("lon", "lat"):
-        if role in place:
-            found[role] = _angle(columns, place[role], 180.0 if role == "lon" else 90.0)
-    if "lon" not in found and "x" not in found and all(role in place for role in ("ecef_x", "ecef_y", "ecef_z")):
-        found.update(_from_the_centre(*(columns[place[f"ecef_{axis}"]].values for axis in "xyz")))
+    values = {role: columns[k].in_metres if role in "xyz" else columns[k].values for role, k in place.items() if role in ROLES[1:]}
+    values.update({role: _angle(columns, place[role], most) for role, most in (("lon", 180.0), ("lat", 90.0)) if role in place})
+    if not {"lon", "x"} & set(values) and set(FROM_CENTRE) <= set(place):
+        values.update(_from_the_centre(*(columns[place[role]].values for role in FROM_CENTRE)))
         notes.append(f"{label} gives earth-centred coordinates; they were converted to longitude, latitude and height above the ellipsoid.")
     if "time" in place:
-        found["time"] = _time(columns, meaning, label, notes, doubts)
+        values["time"] = _time(columns, meaning, label, notes, doubts)
     else:
         doubts += _like_time(columns, set(place.values()), label)
-    return found
+    return values
 
 
 def _angle(columns, k, most):
     """(N,) degrees of a column of longitudes or latitudes, with the hemisphere in the column behind it or before it."""
     column = columns[k]
-    values = column.values
+    if not column.holds_texts and column.unit.name == "packed minutes":
+        return whole_minutes(column.values)
+    if not column.holds_texts and column.unit.name == "packed seconds":
+        return whole_minutes(whole_seconds(column.values * column.unit.factor))
+    values = _degrees(column)
+    sides = [hemisphere_signs(column.written()) for column in (*columns[k + 1:k + 2], *columns[max(k - 1, 0):k]) if column.holds_texts]
+    signs = next((signs for signs in sides if signs is not None), None)
+    if signs is None:
+        return values
+    together = most < np.nanmax(np.abs(values), initial=0.0) < 100 * most
+    return np.where(signs < 0, -1.0, 1.0) * np.abs(whole_minutes(values) if together else values)
+
+
+def _degrees(column):
+    """(N,) degrees of a column of angles, without the hemisphere beside it."""
+    unit, values = column.unit, column.values
     if column.holds_texts:
-        texts = column.written()
-        if hold_angles(texts):
-            values = angles_of(texts)
-    elif column.unit.name == "packed minutes":
-        return whole_minutes(values)
-    elif column.unit.name == "packed seconds":
-        return whole_minutes(whole_seconds(values * column.unit.factor))
-    elif column.unit.name == "radians" or (column.unit.name == "degrees" and column.unit.factor != 1.0):
-        factor = column.unit.factor if column.unit.name == "degrees" else np.degrees(column.unit.factor)
+        return angles_of(column.written()) if hold_angles(column.written()) else values
+    if unit.name == "radians":
         # np.degrees gives the last bit that a product would not
-        values = np.degrees(values) if column.unit == Unit("radians") else values * factor
-    for beside in (k + 1, k - 1):
-        signs = hemisphere_signs(columns[beside].written()) if 0 <= beside < len(columns) and columns[beside].holds_texts else None
-        if signs is not None:
-            together = np.nanmax(np.abs(values), initial=0.0) > most and np.nanmax(np.abs(values), initial=0.0) < 100 * most
-            return np.where(signs < 0, -1.0, 1.0) * np.abs(whole_minutes(values) if together else values)
-    return values
+        return np.degrees(values) if unit.factor == 1.0 else values * np.degrees(unit.factor)
+    return values * unit.factor if unit.name == "degrees" else values
 
 
 def _from_the_centre(x, y, z):
@@ -191,11 +175,11 @@ def _time(columns, meaning, label, notes, doubts):
         return _gps_seconds(times, column, titles, meaning.clock, label, notes)
     if column.holds_texts:
         raise RoadExtractionError(
-            f"The column {listed([column.title])} of {label} should be the time, but holds {column.first[:LONGEST_NAME]!r}, which is neither a "
-            f"number nor a clock time. The first row reads {first_row(columns)}. Rename the column, or say which is "
+            f"The column {_named(column)} of {label} should be the time, but holds {column.first[:TRAJECTORY.longest_name]!r}, which is "
+            f"neither a number nor a clock time. The first row reads {first_row(columns)}. Rename the column, or say which is "
             "which in Columns of Import trajectory.")
     if "utc" in column.title.lower():
-        doubts.append(f"The column {listed([column.title])} of {label} counts seconds of UTC by its name; no leap seconds were added. If points and "
+        doubts.append(f"The column {_named(column)} of {label} counts seconds of UTC by its name; no leap seconds were added. If points and "
                       "lines come out shifted along the road, export the trajectory with GPS time.")
     seconds = _counted_seconds(column, label, doubts)
     if "week" in place and place["week"] != place["time"]:
@@ -205,23 +189,20 @@ def _time(columns, meaning, label, notes, doubts):
 
 def _written_time(columns, place, label):
     """The ClockTimes of a table whose time is a clock, in one column or several, or counts days; None where it counts seconds."""
-    column = columns[place["time"]]
-    date = columns[place["date"]] if "date" in place and place["date"] != place["time"] else None
+    column, date = columns[place["time"]], _date_column(columns, place)
     days = _days(columns, place, date)
-    if column.is_text:
-        texts = list(column.written())
-    else:
-        hour_and_minute = [columns[place[role]].values for role in ("hour", "minute") if role in place]
-        title = column.title.lower()
-        named = "hhmmss" in title or (days is not None and "utc" in title and not column.unit.name)
-        texts = _hours_minutes_seconds(column.values, *hour_and_minute, named=named)
-        if texts is None:
-            whole = date.values if date is not None and np.nanmax(column.values, initial=0.0) < 1.0 else 0.0
-            return counted_days(column.values + whole, column.written, f"The column {listed([column.title or 'without a name'])} of {label}")
+    texts = list(column.written()) if column.is_text else _clock_in_numbers(columns, place, days)
+    if texts is None:
+        shares_of_days = date is not None and np.nanmax(column.values, initial=0.0) < 1.0
+        return counted_days(column.values + (date.values if shares_of_days else 0.0), column.written, f"The column {_named(column)} of {label}")
     times = clock_times(texts)
     if times is not None and not times.dated and days is not None:
         times = clock_times([f"{day} {text}" for day, text in zip(days, texts)]) or times
     return times
+
+
+def _date_column(columns, place):
+    return columns[place["date"]] if place.get("date", place["time"]) != place["time"] else None
 
 
 def _days(columns, place, date):
@@ -238,8 +219,8 @@ def _counted_seconds(column, label, doubts):
     """(N,) seconds of a column that counts them, or smaller units."""
     seconds = column.values * column.unit.factor if column.unit.name == "seconds" else column.values
     largest = np.nanmax(np.abs(seconds), initial=0.0)
-    if column.unit.name != "seconds" and largest > LARGEST_SECONDS:
-        factor = next((10.0**-power for power in (3, 6, 9) if largest * 10.0**-power < LARGEST_SECONDS), 1.0)
+    if column.unit.name != "seconds" and largest > TRAJECTORY.largest_seconds:
+        factor = next((10.0**-power for power in (3, 6, 9) if largest * 10.0**-power < TRAJECTORY.largest_seconds), 1.0)
         seconds = seconds * factor
         doubts.append(f"The times of {label} are so large that they are taken as counts of {factor:g} s.")
     return seconds
@@ -258,44 +239,58 @@ def _from_1970(seconds, title, shown, label, notes):
     return seconds
 
 
-def _hours_minutes_seconds(values, hour=None, minute=None, named=False):
-    """(N,) texts of clock times that stand in three columns, or in one as hhmmss; None for other times. `named` where a date or name says so."""
-    if hour is None or minute is None or np.nanmax(values, initial=0.0) > 61.0:
-        known = values[np.isfinite(values)]
-        step = np.diff(known)
-        if not len(step) or known.min() < 0 or known.max() >= 240_000 or (known % 100 >= 60).any() or (known // 100 % 100 >= 60).any():
-            return None
-        # from 59 s to the next minute such a number goes up by 40 more than the seconds do, and other times never do
-        over = np.floor(known[1:] / 100) > np.floor(known[:-1] / 100)
-        if not named and (not over.any() or over.all()) or not (step[over] > 40.0).all() or not (step[~over] < 40.0).all():
-            return None
+def _clock_in_numbers(columns, place, days):
+    """(N,) texts of clock times that stand in three columns of numbers, or in one as hhmmss; None for other times."""
+    column = columns[place["time"]]
+    title, values = column.title.lower(), column.values
+    if {"hour", "minute"} <= set(place) and np.nanmax(values, initial=0.0) <= 61.0:
+        hour, minute = (columns[place[role]].values for role in ("hour", "minute"))
+    elif _are_packed_clocks(values, "hhmmss" in title or days is not None and "utc" in title and not column.unit.name):
         hour, minute, values = values // 10_000, values // 100 % 100, values % 100
-    return [f"{h:02.0f}:{m:02.0f}:{s:09.6f}" if h + m + s == h + m + s else "" for h, m, s in zip(hour, minute, values)]
+    else:
+        return None
+    return ["" if np.isnan(h + m + s) else f"{h:02.0f}:{m:02.0f}:{s:09.6f}" for h, m, s in zip(hour, minute, values)]
+
+
+def _are_packed_clocks(values, named):
+    """Whether (N,) numbers are clock times hhmmss; `named` where a date or their name says so."""
+    known = values[np.isfinite(values)]
+    step = np.diff(known)
+    if not len(step) or known.min() < 0 or known.max() >= 240_000 or (known % 100 >= 60).any() or (known // 100 % 100 >= 60).any():
+        return False
+    # from 59 s to the next minute such a number goes up by 40 more than the seconds do, and other times never do
+    over = np.diff(np.floor(known / 100)) > 0
+    return bool((named or over.any() and not over.all()) and (step[over] > 40.0).all() and (step[~over] < 40.0).all())
 
 
 def _gps_seconds(times, column, titles, clock, label, notes):
     """(N,) GPS seconds of ClockTimes, where it is known what the clock shows."""
-    named = "UTC" if any(word in titles for word in ("utc", "gmt", "zulu")) else "GPS" if "gps" in titles else ""
-    contradict = {times.zone, named} == {"UTC", "GPS"}
-    shows = clock or ("" if contradict else times.zone or named)
-    if shows == "GPS" and times.order_known:
+    named = next((shown for shown, words in CLOCK_WORDS.items() if re.search(words, titles)), "")
+    shows = clock or ("" if {times.zone, named} == {"UTC", "GPS"} else times.zone or named)
+    if times.order_known and shows == "GPS":
         return times.seconds
-    if shows == "UTC" and times.dated and times.order_known:
+    if times.order_known and shows == "UTC" and times.dated:
         return _added_leap_seconds(times.seconds, label, notes)
+    why, advice = _unknown_clock(times, shows)
+    raise RoadExtractionError(
+        f"The column {_named(column)} of {label} holds {times.kind} such as {times.first[:TRAJECTORY.longest_name]!r}. "
+        f"GPS seconds are needed, and {why}. Export the trajectory with GPS time in seconds; or {advice}.")
+
+
+def _named(column):
+    return listed([column.title or "without a name"])
+
+
+def _unknown_clock(times, shows):
+    """Why the GPS seconds of ClockTimes are not known, and what to do about it."""
+    if shows and not times.order_known:
+        return "day and month cannot be told apart", "write dates as year-month-day"
+    if shows:
+        return f"without a date it is not known by how many seconds {shows} differs from them", "add the date"
     known = times.seconds[np.isfinite(times.seconds)]
     apart = f"by {leap_seconds(known[:1])[0]:.0f} s on this day" if times.dated and len(known) else "by leap seconds"
-    if shows and not times.order_known:
-        why = "day and month cannot be told apart"
-        advice = "write dates as year-month-day"
-    elif shows:
-        why = f"without a date it is not known by how many seconds {shows} differs from them"
-        advice = "add the date"
-    else:
-        why = f"it is not said whether the clock shows GPS time, UTC, which differs {apart}, or local time"
-        advice = "call the column GPS time or UTC, or write gps or utc in place of time in Columns of Import trajectory, if you know what it shows"
-    raise RoadExtractionError(
-        f"The column {listed([column.title or 'without a name'])} of {label} holds {times.kind} such as {times.first[:LONGEST_NAME]!r}. GPS seconds "
-        f"are needed, and {why}. Export the trajectory with GPS time in seconds; or {advice}.")
+    return (f"it is not said whether the clock shows GPS time, UTC, which differs {apart}, or local time",
+            "call the column GPS time or UTC, or write gps or utc in place of time in Columns of Import trajectory, if you know what it shows")
 
 
 def _added_leap_seconds(utc, label, notes):
@@ -309,47 +304,36 @@ def _added_leap_seconds(utc, label, notes):
 
 def _like_time(columns, used, label):
     """A sentence for columns that increase evenly like time and are not used."""
-    likely = []
-    for k, column in enumerate(columns):
-        values = column.values[np.isfinite(column.values)]
-        step = np.diff(values)
-        if k in used or len(step) < 3 or not (step > 0).all() or COUNTS_OTHERS.search(column.title):
-            continue
-        usual = np.median(step)
-        counts_rows = (step == 1).all() and values[0] in (0, 1)
-        if not counts_rows and np.mean(np.abs(step - usual) <= 0.2 * usual) > LEAST_EVEN:
-            likely.append(f"{listed([column.title or f'column {k + 1}'])} ({values[0]:.10g} to {values[-1]:.10g})")
+    likely = [f"{listed([column.title or f'column {k + 1}'])} ({column.values[known][0]:.10g} to {column.values[known][-1]:.10g})"
+              for k, column in enumerate(columns) if k not in used and _increases_evenly(column.values[known := np.isfinite(column.values)])
+              and not COUNTS_OTHERS.search(column.title)]
     if not likely:
         return []
     return [f"{label} has a column that increases evenly like time and is not used: {listed(likely)}. If it is the time, name it time, or say so in "
             "Columns of Import trajectory."]
 
 
+def _increases_evenly(values):
+    """Whether (N,) numbers increase in nearly equal steps, and do not count rows."""
+    step = np.diff(values)
+    if len(step) < 3 or not (step > 0).all() or (step == 1).all() and values[0] in (0, 1):
+        return False
+    usual = np.median(step)
+    return np.mean(np.abs(step - usual) <= 0.2 * usual) > TRAJECTORY.least_even
+
+
 # Columns of a trajectory that the user assigned by hand, and what was understood of a table.
 
 ASSIGNABLE = (*ROLES, "lon", "lat", *TOLD_CLOCKS, "week", "date")
 LEFT_OUT = ("-", "", "skip")
-FIRST_GPS_SECONDS, LAST_GPS_SECONDS = 0.6e9, 1.7e9     # s since 1980: 1999 to 2033
 
 
 def assigned_columns(text: str, count: int, path: str | os.PathLike[str]) -> dict[str, int]:
-    """Which column of a table has which role, as the user wrote it.
+    """{role: column} as the user wrote it: one word a column, from the left, separated by commas.
 
-    Parameters
-    ----------
-    text : one word a column, from the left, separated by commas: a role of ASSIGNABLE, or - for a column that is left out. Columns
-        after the last word are left out. gps and utc are times of which it is known what the clock shows
-    count : columns of the table
-    path : of the file, for messages
-
-    Returns
-    -------
-    {role: column}
-
-    Raises
-    ------
-    RoadExtractionError
-        If a word is no role, a role is there twice, there are more words than columns, or a place or the height is missing.
+    A word is a role of ASSIGNABLE, or - for a column that is left out, as are those after the last word. gps and utc are times of which it is known
+    what the clock shows. RoadExtractionError if a word is no role, a role is there twice, there are more words than columns (`count`), or a place
+    or the height is missing.
     """
     place: dict[str, int] = {}
     for column, word in enumerate(_words(text)):
@@ -376,13 +360,7 @@ def _words(text):
 
 @dataclass(frozen=True)
 class TableColumns:
-    """The columns of a text table.
-
-    titles : what stands above each column, "" where nothing does
-    roles : of each column, "" for one that is left out
-    rows : the first rows as texts, (R, K)
-    problem : why the roles are not known, "" where they are
-    """
+    """The columns of a text table: titles and roles, "" without one, the first rows as (R, K) texts, and why the roles are not known."""
 
     titles: tuple[str, ...]
     roles: tuple[str, ...]
@@ -391,18 +369,9 @@ class TableColumns:
 
 
 def columns_of_table(path: str | os.PathLike[str], columns: str = "", rows: int = 4) -> TableColumns:
-    """What is understood of the columns of a text file.
+    """What is understood of the columns of a text file, with the first `rows` of them.
 
-    Parameters
-    ----------
-    path : of the file
-    columns : as `assigned_columns` takes them; "" recognises them
-    rows : how many are given back at most
-
-    Raises
-    ------
-    RoadExtractionError
-        If the file holds no table of numbers.
+    columns : as `assigned_columns` takes them; "" recognises them. RoadExtractionError if the file holds no table of numbers.
     """
     if is_record(Path(path)):
         raise RoadExtractionError(f"{path} is a log or a track, whose columns are known. Leave Columns empty.")
@@ -423,24 +392,21 @@ def columns_of_table(path: str | os.PathLike[str], columns: str = "", rows: int 
 def meaning_of_table(columns: Sequence[TableColumn], unmatched: Sequence[str] | None, path: Path, assigned: str = "") -> _Meaning:
     """The _Meaning of the columns of a file: as assigned, otherwise by the names above them, otherwise by their numbers.
 
-    Parameters
-    ----------
-    columns, unmatched : as `titled_columns` gives them
-    path : of the file
-    assigned : as `assigned_columns` takes it; "" where nothing was assigned
-
-    Raises
-    ------
-    RoadExtractionError
-        If the columns are not recognised.
+    columns, unmatched : as `titled_columns` gives them; assigned : as `assigned_columns` takes it, "" where nothing was assigned.
+    RoadExtractionError if the columns are not recognised.
     """
     if assigned.strip():
         clock = next((TOLD_CLOCKS[word] for word in _words(assigned) if word in TOLD_CLOCKS), "")
         return _Meaning(assigned_columns(assigned, len(columns), path), clock=clock)
     if any(column.title for column in columns):
         return meaning_of(columns, path.name)
-    clocks = [k for k, column in enumerate(columns) if column.holds_texts and hold_times(column.written()[:CHECKED_ROWS])]
-    numbers = [k for k in range(len(columns)) if k not in clocks]
+    return _meaning_by_numbers(columns, unmatched, path)
+
+
+def _meaning_by_numbers(columns, unmatched, path):
+    """The _Meaning of columns without names; `unmatched` are names above them of which there are not as many."""
+    clocks = [k for k, column in enumerate(columns) if column.holds_clock_times]
+    numbers = np.setdiff1d(np.arange(len(columns)), clocks).tolist()
     try:
         place = {role: numbers[k] for role, k in columns_from_numbers(np.stack([columns[k].values for k in numbers], axis=1), path).items()}
     except RoadExtractionError as refused:
@@ -448,12 +414,12 @@ def meaning_of_table(columns: Sequence[TableColumn], unmatched: Sequence[str] | 
             raise RoadExtractionError(f"{refused} The first row reads {first_row(columns)}.") from refused
         place = {}
     # small numbers are guessed by their order alone, which names that do not fit contradict
-    if unmatched and (not place or "x" in place and np.nanmedian(np.abs(columns[place["x"]].values)) < MIN_MAP_COORDINATE):
+    guessed = "x" in place and np.nanmedian(np.abs(columns[place["x"]].values)) < TRAJECTORY.min_map_coordinate
+    if unmatched and (guessed or not place):
         raise RoadExtractionError(
             f"{path} names {len(unmatched)} columns ({listed(unmatched)}), but its rows have {len(columns)}, and the numbers do not show which "
             f"is which. The first row reads {first_row(columns)}. Say which is which in Columns of Import trajectory.")
-    if clocks and "time" not in place:
-        place["time"] = clocks[0]
+    place = {"time": clocks[0], **place} if clocks else place
     listing = ", ".join(f"{role} in column {place[role] + 1}" for role in (*ROLES, "lon", "lat") if role in place)
     return _Meaning(place, (f"{path.name} has no line of names; recognised by the numbers: {listing}.",))
 
@@ -461,9 +427,10 @@ def meaning_of_table(columns: Sequence[TableColumn], unmatched: Sequence[str] | 
 def time_system_by_size(time: np.ndarray) -> str:
     """What (N,) times most likely count, by their size alone: gps, adjusted, week or day; "" where that is not clear."""
     first, last = float(np.nanmin(time)), float(np.nanmax(time))
-    if FIRST_GPS_SECONDS < first and last < LAST_GPS_SECONDS:
+    earliest, latest = TRAJECTORY.first_gps_seconds, TRAJECTORY.last_gps_seconds
+    if earliest < first and last < latest:
         return "gps"
-    if first < 0 and first > FIRST_GPS_SECONDS - ADJUSTED_OFFSET or SECONDS_PER_WEEK < first and last < LAST_GPS_SECONDS - ADJUSTED_OFFSET:
+    if earliest - ADJUSTED_OFFSET < first < 0 or SECONDS_PER_WEEK < first and last < latest - ADJUSTED_OFFSET:
         return "adjusted"
     if 0 <= first and SECONDS_PER_DAY < last <= SECONDS_PER_WEEK:
         return "week"

@@ -13,18 +13,17 @@ import numpy as np
 
 from ...common.errors import RoadExtractionError
 from ...io.crs import horizontal_part, parse_crs
-from ...io.text_table import SAMPLE_BYTES, finite_or_nan, read_number_table
+from ...io.text_table import finite_or_nan, read_number_table
+from ...io.weights import IO
+from ..weights import TRAJECTORY
 from .columns import listed, stated_angle_unit
 from .meaning import meaning_of, meaning_of_table, values_by_role
 from .table_columns import columns_of_record, columns_of_rows, is_record, titled_columns
-from .trajectory import MAX_VEHICLE_SPEED, Trajectory, lengths_in_metres, reproject_trajectory
-from .unnamed_columns import HEADING_TOLERANCE, angle_between, driven_course, geographic_unit, rough_metres
+from .trajectory import Trajectory, lengths_in_metres, reproject_trajectory
+from .unnamed_columns import angle_between, driven_course, geographic_unit, rough_metres
 
-SBET_DOUBLES = 17  # time, lat, lon, height, 3 velocities, roll, pitch, heading, wander angle, 6 more
+SBET_DOUBLES = 17  # source: Applanix POSPac; time, lat, lon, height, 3 velocities, roll, pitch, heading, wander angle, 6 more
 WGS84 = "EPSG:4326"
-SLOWEST_DRIVE = 0.07  # m/s: a survey whose fastest seconds are slower counts its time in thousandths
-# A vehicle on a road rolls by more than 3 degrees somewhere, but never by 0.2 radians.
-MAX_ROLL_RADIANS = 0.15
 
 
 def read_trajectory(path: str | os.PathLike[str], crs: str = "", target_crs: str = "", columns: str = "") -> Trajectory:
@@ -32,17 +31,14 @@ def read_trajectory(path: str | os.PathLike[str], crs: str = "", target_crs: str
 
     Parameters
     ----------
-    path : of the file
-    crs : WKT or "EPSG:n" of its coordinates; by default the one that the file states, and
-        WGS 84 for longitude and latitude
+    crs : WKT or "EPSG:n" of its coordinates; by default the one that the file states, and WGS 84 for longitude and latitude
     target_crs : WKT or "EPSG:n"; where it is given and the trajectory's CRS is known, the trajectory is reprojected
     columns : of a text table, as `assigned_columns` takes them; "" recognises them
 
     Returns
     -------
-    Trajectory, not yet cleaned: rows in file order, angles in degrees; `notes`
-    state what was recognised. Longitude and latitude stay in degrees (x is the
-    longitude) when no `target_crs` is given.
+    Trajectory, not yet cleaned: rows in file order, angles in degrees; `notes` state what was recognised. Longitude and latitude stay in degrees
+    (x is the longitude) when no `target_crs` is given.
 
     Raises
     ------
@@ -63,21 +59,16 @@ def read_trajectory(path: str | os.PathLike[str], crs: str = "", target_crs: str
 
 def trajectory_from_columns(columns: Mapping[str, Any], crs: str = "", angle_unit: str = "", label: str = "The trajectory",
                             notes: Sequence[str] = (), stated_units: Sequence[tuple[str, str]] = ()) -> Trajectory:
-    """A trajectory from columns of numbers, such as those of a layer.
+    """A trajectory, not yet cleaned, from columns of numbers.
 
     Parameters
     ----------
-    columns : {role: (N,) array}; roles are time, x, y, z, roll, pitch, heading,
-        and lon, lat instead of x, y. Without `time` the positions are in driving order
+    columns : {role: (N,) array}; roles are time, x, y, z, roll, pitch, heading, and lon, lat instead of x, y. Without `time` the positions are in
+        driving order
     crs : WKT or "EPSG:n" of x, y, in its units; "" where unknown
     angle_unit : "degrees" or "radians"; "" recognises it
-    label : the source, for messages
-    notes : of the Trajectory so far
+    label, notes : of the source for messages, and of the Trajectory so far
     stated_units : (role, "metres" or "feet") of x, y and z where their columns state a unit
-
-    Returns
-    -------
-    Trajectory, not yet cleaned
 
     Raises
     ------
@@ -103,20 +94,14 @@ def trajectory_from_columns(columns: Mapping[str, Any], crs: str = "", angle_uni
 
 def trajectory_from_rows(titles: Sequence[str], rows: Sequence[Sequence[object]], given: Mapping[str, Any], crs: str = "",
                          label: str = "The trajectory", heights_needed: bool = True) -> Trajectory:
-    """A trajectory from the rows of a layer, by the same names and units as those of a file.
+    """A trajectory, not yet cleaned, from the rows of a layer, by the same names and units as those of a file.
 
     Parameters
     ----------
-    titles : names of the fields
-    rows : a list of values for each position, None where one is missing
+    titles, rows : names of the fields, and a list of their values for each position, None where one is missing
     given : {role: (N,) array} of what the fields need not tell, such as x and y from the points of the layer
     crs : WKT or "EPSG:n" of x, y; "" where unknown
-    label : the layer, for messages
     heights_needed : without them 0 is taken where no height is known
-
-    Returns
-    -------
-    Trajectory, not yet cleaned
 
     Raises
     ------
@@ -173,8 +158,8 @@ def _in_seconds(trajectory, label):
     speed = step[seconds > 0] / seconds[seconds > 0]
     speed = speed[np.isfinite(speed)]
     fastest = np.percentile(speed, 98) if len(speed) else 0.0
-    factor = next((10.0**-power for power in (3, 6, 9) if SLOWEST_DRIVE < fastest * 10.0**power < MAX_VEHICLE_SPEED), 1.0)
-    if not trajectory.has_time or not 0.0 < fastest < SLOWEST_DRIVE or factor == 1.0:
+    factor = next((10.0**-power for power in (3, 6, 9) if TRAJECTORY.slowest_drive < fastest * 10.0**power < TRAJECTORY.max_vehicle_speed), 1.0)
+    if not trajectory.has_time or not 0.0 < fastest < TRAJECTORY.slowest_drive or factor == 1.0:
         return trajectory
     note = f"The times of {label} are taken as counts of {factor:g} s: in seconds the drive would be at most {fastest:.2g} m/s fast."
     return replace(trajectory, time=trajectory.time * factor, doubts=(*trajectory.doubts, note))
@@ -192,8 +177,8 @@ def _stated_crs(path, preamble, projected, notes):
 
 def _check_complete(source, columns, place, heights_needed=True):
     """Refuse a table without coordinates."""
-    missing = [role for role, others in (("x", ("lon", "ecef_x")), ("y", ("lat", "ecef_y")), ("z", ("ecef_z",)))
-               if role not in place and not any(other in place for other in others) and (role != "z" or heights_needed)]
+    ways = {"x": {"x", "lon", "ecef_x"}, "y": {"y", "lat", "ecef_y"}, **({"z": {"z", "ecef_z"}} if heights_needed else {})}
+    missing = [role for role, roles in ways.items() if not roles & set(place)]
     if missing:
         titles = [column.title or f"column {k + 1}" for k, column in enumerate(columns)]
         raise RoadExtractionError(
@@ -217,13 +202,14 @@ def _plane_coordinates(columns, time, crs, label, notes):
     """x, y and their CRS; longitude and latitude in degrees where they are geographic."""
     known = parse_crs(crs)
     geographic = known is not None and horizontal_part(known).is_geographic
-    if "x" in columns and "y" in columns and ("lon" not in columns or (known is not None and not geographic)):
+    projected = known is not None and not geographic
+    if {"x", "y"} <= set(columns) and (projected or "lon" not in columns):
         x, y = columns["x"], columns["y"]
         unit = geographic_unit(x, y, time)
         _check_map(x, y, unit, time, known, label)
         if not geographic and not unit:
-            return x, y, "" if known is None else known.to_wkt()
-    elif "lon" in columns and "lat" in columns:
+            return x, y, known.to_wkt() if projected else ""
+    elif {"lon", "lat"} <= set(columns):
         x, y = columns["lon"], columns["lat"]
         unit = geographic_unit(x, y, time)
         _check_degrees(x, y, unit, label)
@@ -240,23 +226,24 @@ def _plane_coordinates(columns, time, crs, label, notes):
 
 def _check_map(x, y, unit, time, known, label):
     """Refuse x and y that contradict their CRS, `known`, or are latitude and longitude; `unit` is that of angles, "" of what is none."""
-    geographic = known is not None and horizontal_part(known).is_geographic
-    if geographic and not unit and (np.abs(np.stack([x, y])) > 360).any():
-        raise RoadExtractionError(
-            f"{label} has the CRS {horizontal_part(known).name} (degrees), but its coordinates reach "
-            f"{_farthest(x):.0f}, {_farthest(y):.0f}. Give the CRS that its x and y are in.")
-    if not geographic and known is not None and unit:
+    if known is not None and horizontal_part(known).is_geographic:
+        if not unit and max(_farthest(x), _farthest(y)) > 360:
+            raise RoadExtractionError(
+                f"{label} has the CRS {horizontal_part(known).name} (degrees), but its coordinates reach "
+                f"{_farthest(x):.0f}, {_farthest(y):.0f}. Give the CRS that its x and y are in.")
+        return
+    if known is not None and unit:
         raise RoadExtractionError(
             f"{label} has the CRS {horizontal_part(known).name}, but its coordinates look like longitude and latitude "
             f"(about {np.nanmedian(x):.4f}, {np.nanmedian(y):.4f}). Set its CRS to EPSG:4326.")
-    if not geographic and not unit and geographic_unit(y, x, time) == "degrees" and _farthest(y) > 90.0:
+    if not unit and geographic_unit(y, x, time) == "degrees" and _farthest(y) > 90.0:
         raise RoadExtractionError(f"{label} has x and y that look like latitude and longitude (about {np.nanmedian(x):.4f}, "
                                   f"{np.nanmedian(y):.4f}), in this order. Name the columns latitude and longitude.")
 
 
 def _check_degrees(lon, lat, unit, label):
     """Refuse longitudes and latitudes that are no angles, or exchanged."""
-    if not unit and (np.abs(np.stack([lon, lat])) > 360).any():
+    if not unit and max(_farthest(lon), _farthest(lat)) > 360:
         raise RoadExtractionError(
             f"{label} has longitude and latitude up to {_farthest(lon):.0f}, {_farthest(lat):.0f}; these are not degrees. Write their unit behind "
             "their names, such as latitude (ddmm.mmmm) or latitude (1e-7 deg), or name the columns x and y where they are metres.")
@@ -267,46 +254,48 @@ def _check_degrees(lon, lat, unit, label):
 
 def _angles(columns, x, y, crs, unit, notes):
     """roll, pitch, heading in degrees, heading clockwise from north; None where a column is missing."""
-    found = {role: columns.get(role) for role in ("roll", "pitch", "heading")}
-    if all(values is None for values in found.values()):
-        return [None, None, None]
+    angles = {role: columns[role] for role in ("roll", "pitch", "heading") if role in columns}
+    heading = angles.get("heading", np.full(len(x), np.nan))
     x, y = rough_metres(x, y, crs)
-    heading = found["heading"]
-    good = np.isfinite(x) & np.isfinite(y) & np.isfinite(np.nan if heading is None else heading)
-    if good.sum() > 2:
-        rows, course = driven_course(x[good], y[good])
-        heading_there = heading[good][rows]
-        if np.abs(heading[good]).max() > 2 * np.pi + 0.1:
-            unit = "degrees"
-        elif not unit and len(rows):
-            unit = min(("degrees", "radians"), key=lambda u: _median_difference(heading_there, u, course))
-        if len(rows):
-            in_degrees = np.degrees(heading_there) if unit == "radians" else heading_there
-            heading, note = _from_north(heading, in_degrees, course, unit)
-            found["heading"] = heading
-            notes += note
-    elif not unit:
-        largest = max((np.nanmax(np.abs(v)) for v in found.values() if v is not None and np.isfinite(v).any()), default=1.0)
-        unit = "radians" if largest < MAX_ROLL_RADIANS else "degrees"
-    if unit == "radians":
+    good = np.flatnonzero(np.isfinite(x + y + heading))
+    rows, course = driven_course(x[good], y[good]) if len(good) > 2 else (good[:0], heading[:0])
+    driven = heading[good][rows]
+    unit = _angle_unit(angles, heading[good], driven, course, unit)
+    if len(rows):
+        angles["heading"], note = _from_north(heading, np.degrees(driven) if unit == "radians" else driven, course, unit)
+        notes += note
+    if angles and unit == "radians":
         notes.append("Roll, pitch and heading are in radians; they were converted to degrees.")
-        found = {role: None if values is None else np.degrees(values) for role, values in found.items()}
-    if found["heading"] is not None:
-        found["heading"] = found["heading"] % 360.0
-    return [found["roll"], found["pitch"], found["heading"]]
+        angles = {role: np.degrees(values) for role, values in angles.items()}
+    if "heading" in angles:
+        angles["heading"] = angles["heading"] % 360.0
+    return [angles.get(role) for role in ("roll", "pitch", "heading")]
 
 
-def _median_difference(heading, unit, course):
-    """Median difference in degrees between a heading in some unit and the course."""
-    return float(np.median(angle_between(np.degrees(heading) if unit == "radians" else heading, course)))
+def _angle_unit(angles, headings, driven, course, unit):
+    """The unit of {role: (N,) angles}: `unit` where it is stated, unless the headings, of which (K,) have a course (degrees), exceed radians."""
+    if len(headings) > 2:
+        return "degrees" if np.abs(headings).max() > 2 * np.pi + 0.1 else unit or _likelier_unit(driven, course)
+    if unit or not angles:
+        return unit
+    largest = np.nanmax(np.abs(np.concatenate([*angles.values()])), initial=-1.0)
+    return "radians" if 0.0 <= largest < TRAJECTORY.max_roll_radians else "degrees"
+
+
+def _likelier_unit(heading, course):
+    """The unit in which (N,) headings differ less from the course, degrees; "" of none."""
+    if not len(heading):
+        return ""
+    as_degrees, as_radians = (float(np.median(angle_between(angles, course))) for angles in (heading, np.degrees(heading)))
+    return "degrees" if as_degrees <= as_radians else "radians"
 
 
 def _from_north(heading, in_degrees, course, unit):
     """The heading clockwise from north, and a note where it was counted from east or contradicts the course."""
     difference = float(np.median(angle_between(in_degrees, course)))
-    if difference < 3 * HEADING_TOLERANCE:
+    if difference < 3 * TRAJECTORY.heading_tolerance:
         return heading, []
-    if np.median(angle_between(90.0 - in_degrees, course)) < HEADING_TOLERANCE:
+    if np.median(angle_between(90.0 - in_degrees, course)) < TRAJECTORY.heading_tolerance:
         quarter = np.pi / 2 if unit == "radians" else 90.0
         return quarter - heading, ["The heading is counted counter-clockwise from east; it was converted to clockwise from north."]
     return heading, [f"The heading differs from the course driven by {difference:.0f}° in the median; the course is used, not the heading."]
@@ -316,7 +305,7 @@ def _is_sbet(path):
     """Whether a file consists of binary records of 17 doubles with valid latitude, longitude and increasing time."""
     size = path.stat().st_size
     with open(path, "rb") as file:
-        head = file.read(SAMPLE_BYTES)
+        head = file.read(IO.sample_bytes)
     if b"\0" not in head or head[:2] in (b"\xff\xfe", b"\xfe\xff") or size < 2 * SBET_DOUBLES * 8:
         return False
     usable = len(head) // (SBET_DOUBLES * 8) * SBET_DOUBLES
@@ -350,18 +339,14 @@ def _read_sbet(path, crs):
 
 # The accuracy of a trajectory as Applanix POSPac writes it beside an SBET: smrmsg_MISSION.out for sbet_MISSION.out.
 
-SMRMSG_DOUBLES = 10   # time, RMS north, east, down (m), of three velocities (m/s), roll, pitch, heading (arc minutes)
-WORST = 100.0         # m: a position that is known worse than this is none, and the file another one
+SMRMSG_DOUBLES = 10   # source: Applanix POSPac; time, RMS north, east, down (m), of three velocities (m/s), roll, pitch, heading (arc minutes)
 
 
 def _accuracy_across(sbet: Path, time: np.ndarray, x: np.ndarray, y: np.ndarray) -> tuple[float, str]:
-    """One sigma of a trajectory across its way, from the file beside it.
+    """One sigma of a trajectory across its way in metres, from the file beside its SBET, and a sentence on it; 0 and "" without one.
 
-    sbet : path of the SBET
-    time : (N,) s, as it stands in the SBET
-    x, y : (N,) longitude and latitude, degrees
-    Returns: sigma : m, the root of the mean square over the way driven, so that waiting does not count; 0 where nothing is known
-    note : a sentence on it, "" where there is no such file
+    It is the root of the mean square over the way driven, so that waiting does not count. time, x, y : (N,) s, and longitude and latitude in
+    degrees, as they stand in the SBET.
     """
     try:
         path = _beside(sbet)
@@ -399,5 +384,6 @@ def _records(path):
     if len(rows) < 2 or len(data) != rows.size:
         return None
     with np.errstate(invalid="ignore"):
-        usable = np.isfinite(rows).all() and (np.diff(rows[:, 0]) > 0).all() and (rows[:, 1:4] >= 0).all() and (rows[:, 1:4] < WORST).all()
+        rms = rows[:, 1:4]
+        usable = np.isfinite(rows).all() and (np.diff(rows[:, 0]) > 0).all() and ((rms >= 0) & (rms < TRAJECTORY.worst_accuracy)).all()
     return rows if usable else None

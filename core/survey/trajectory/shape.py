@@ -6,7 +6,7 @@ passes such bends; how far it is off shows where every second vertex is left out
 Practical Guide to Splines, ch. V). Every number below has where it comes from: see adjustment/trajectory_fit.py.
 
 Positions of a receiver that nobody filtered scatter from row to row by more than any vehicle shakes. A cubic over a second follows the vehicle
-to centimetres (see VEHICLE_JERK), so what is left beyond that is the noise.
+to centimetres (see `vehicle_jerk`), so what is left beyond that is the noise.
 """
 
 from __future__ import annotations
@@ -17,33 +17,24 @@ import numpy as np
 from scipy.interpolate import CubicHermiteSpline, CubicSpline
 
 from ...curves.robust import MAD_TO_SIGMA
+from ..weights import TRAJECTORY
 from .trajectory import Trajectory
-from .unnamed_columns import HEADING_TOLERANCE, angle_between
+from .unnamed_columns import angle_between
 
-GAP_FACTOR, SHORTEST_PAUSE = 3.0, 1.0     # weight: times the usual step of time, and s, beyond which the vehicle is not interpolated
-MAX_SAGITTA = 0.05      # weight: m; bends are curved that straight lines between vertices miss by more
-LEFT_SAGITTA = MAX_SAGITTA / 5   # derived: m that the curved trajectory still misses, which is nothing beside what is tolerated
+LEFT_SAGITTA = TRAJECTORY.max_sagitta / 5   # derived: m that the curved trajectory still misses, which is nothing beside what is tolerated
 LEAST_RADIUS = 6.4      # source: m of the middle of a car that turns as sharply as it can (AASHTO, design vehicle P, 21 ft)
-MIN_SPACING = float(np.sqrt(8 * LEAST_RADIUS * MAX_SAGITTA))   # derived: m between vertices that miss such a bend by MAX_SAGITTA
+MIN_SPACING = float(np.sqrt(8 * LEAST_RADIUS * TRAJECTORY.max_sagitta))   # derived: m between vertices that miss such a bend by that
 SHARPEST_TURN = np.radians(90.0) / 2   # derived: from vertex to vertex; every second one, which tells the error, then turns by a right angle
 MIN_SPLINE_ROWS = 3     # derived: vertices with a turn between them
 SPLINE_ORDER_SHARE = 1.0 / 16.0   # derived: of the error with every second vertex that is left with all, (1/2)^4
-NOISE_TIME, SMOOTH_TIME = 1.0, 2.0   # weight: s over which a cubic tells the noise, and removes it
-MIN_CUBIC_ROWS = 7      # derived: in NOISE_TIME; a cubic through four of them leaves three to tell the noise by
-EVEN_STEPS = 0.2        # weight: share by which steps of time may differ
-VEHICLE_JERK = 10.0     # weight: m/s³, as of somebody who brakes or steers hard
-# derived: m, root mean square of a motion with that jerk that turns once in NOISE_TIME; a cubic over that time leaves most of it
-MAX_NOISE = float(VEHICLE_JERK * (NOISE_TIME / (2 * np.pi)) ** 3 / np.sqrt(2.0))
+MIN_CUBIC_ROWS = 7      # derived: in `noise_time`; a cubic through four of them leaves three to tell the noise by
+# derived: m, root mean square of a motion with that jerk that turns once in `noise_time`; a cubic over that time leaves most of it
+MAX_NOISE = float(TRAJECTORY.vehicle_jerk * (TRAJECTORY.noise_time / (2 * np.pi)) ** 3 / np.sqrt(2.0))
 
 
 @dataclass(frozen=True)
 class _TrackShape:
-    """What is found of a trajectory's shape, and what was done.
-
-    trajectory : Trajectory with curved bends, or smoothed
-    sigma : m, one sigma of its place that stays unknown for that
-    said : the warnings
-    """
+    """A trajectory with curved bends, or smoothed; one sigma of its place that stays unknown for that (m), and the warnings."""
 
     trajectory: Trajectory
     sigma: float = 0.0
@@ -51,22 +42,14 @@ class _TrackShape:
 
 
 def shaped_trajectory(trajectory: Trajectory) -> _TrackShape:
-    """A trajectory without noise that no vehicle can have caused, and with curves where its vertices are too far apart for its bends.
-
-    Parameters
-    ----------
-    trajectory : Trajectory, cleaned
-    """
+    """A cleaned trajectory without noise that no vehicle can have caused, and with curves where its vertices are too far apart for its bends."""
     smooth = _smoothed_track(trajectory)
     curved = _curved_track(smooth.trajectory)
     return _TrackShape(curved.trajectory, float(np.hypot(smooth.sigma, curved.sigma)), smooth.said + curved.said)
 
 
 def _smoothed_track(trajectory: Trajectory) -> _TrackShape:
-    """A trajectory without the noise that no vehicle can have caused; as it is where there is none.
-
-    trajectory : Trajectory, cleaned
-    """
+    """A trajectory without the noise that no vehicle can have caused; as it is where there is none."""
     if not trajectory.has_time:
         return _TrackShape(trajectory)
     pieces = [piece for piece in _pieces(trajectory) if _even(trajectory.time[piece])]
@@ -81,25 +64,22 @@ def _smoothed_track(trajectory: Trajectory) -> _TrackShape:
     return _TrackShape(
         replace(trajectory, **columns), left,
         (f"The positions of the trajectory scatter by {100 * worst:.0f} cm from row to row, as those of an unfiltered receiver "
-        f"({share:.0f} % of the rows, from {first:.1f} s on); no vehicle shakes so. They were smoothed over {SMOOTH_TIME:g} s, and the way driven "
-        f"is known to about {100 * left:.1f} cm. Give the trajectory that was adjusted together with the inertial unit.",))
+        f"({share:.0f} % of the rows, from {first:.1f} s on); no vehicle shakes so. They were smoothed over {TRAJECTORY.smooth_time:g} s, and the "
+        f"way driven is known to about {100 * left:.1f} cm. Give the trajectory that was adjusted together with the inertial unit.",))
 
 
 def _smooth(columns, piece, step):
     """Smooth a piece of columns in place, with rows so many seconds apart; the share of the noise that is left."""
     from scipy.signal import savgol_filter  # slow to load, and noisy trajectories alone use it
 
-    rows = min(_odd(SMOOTH_TIME / step), _odd(piece.stop - piece.start - 1))
+    rows = min(_odd(TRAJECTORY.smooth_time / step), _odd(piece.stop - piece.start - 1))
     for values in columns.values():
         values[piece] = savgol_filter(values[piece], rows, 3)
     return float(np.sqrt(_cubic_weights(rows).max()))
 
 
 def _curved_track(trajectory: Trajectory) -> _TrackShape:
-    """A trajectory with curves through its vertices where they are too far apart for its bends; as it is where they are not.
-
-    trajectory : Trajectory, cleaned
-    """
+    """A trajectory with curves through its vertices where they are too far apart for its bends; as it is where they are not."""
     found, worst, sigma, unsafe = [], (0.0, 0.0, 0), 0.0, 0
     for piece in _pieces(trajectory):
         rows = trajectory.rows(piece)
@@ -107,7 +87,7 @@ def _curved_track(trajectory: Trajectory) -> _TrackShape:
             found.append(rows)
             continue
         sagitta, turn, length = _sagittas(rows)
-        far = (sagitta > MAX_SAGITTA) & (length > MIN_SPACING)
+        far = (sagitta > TRAJECTORY.max_sagitta) & (length > MIN_SPACING)
         if not far.any():
             found.append(rows)
             continue
@@ -136,7 +116,7 @@ def _pieces(trajectory):
     step = np.diff(trajectory.time)
     if not trajectory.has_time or not len(step):
         return [slice(0, len(trajectory))]
-    cuts = np.flatnonzero(step > max(GAP_FACTOR * np.median(step), SHORTEST_PAUSE)) + 1
+    cuts = np.flatnonzero(step > max(TRAJECTORY.gap_factor * np.median(step), TRAJECTORY.shortest_pause)) + 1
     return [slice(i, j) for i, j in zip([0, *cuts.tolist()], [*cuts.tolist(), len(trajectory)])]
 
 
@@ -149,12 +129,12 @@ def _odd(rows):
 
 
 def _even(time):
-    """Whether times follow each other evenly, and so often that a cubic over NOISE_TIME can be told from noise."""
+    """Whether times follow each other evenly, and so often that a cubic over `noise_time` can be told from noise."""
     if len(time) < 4 * MIN_CUBIC_ROWS:
         return False
     step = np.diff(time)
     usual = _step(time)
-    return _odd(NOISE_TIME / usual) >= MIN_CUBIC_ROWS and float(np.quantile(np.abs(step - usual), 0.95)) <= EVEN_STEPS * usual
+    return _odd(TRAJECTORY.noise_time / usual) >= MIN_CUBIC_ROWS and float(np.quantile(np.abs(step - usual), 0.95)) <= TRAJECTORY.even_steps * usual
 
 
 def _cubic_weights(rows):
@@ -168,8 +148,8 @@ def _cubic_weights(rows):
 
 
 def _noise(trajectory, piece):
-    """m, one sigma of a position of a piece along one axis on the map, against a cubic over NOISE_TIME."""
-    rows = min(_odd(NOISE_TIME / _step(trajectory.time[piece])), _odd(piece.stop - piece.start - 1))
+    """m, one sigma of a position of a piece along one axis on the map, against a cubic over `noise_time`."""
+    rows = min(_odd(TRAJECTORY.noise_time / _step(trajectory.time[piece])), _odd(piece.stop - piece.start - 1))
     weights, inner = _cubic_weights(rows), slice(rows // 2, -(rows // 2))
     off = [values[inner] - np.convolve(values, weights, "valid") for values in (getattr(trajectory, name)[piece] for name in "xy")]
     return MAD_TO_SIGMA * float(np.median(np.abs(off))) / np.sqrt(1.0 - weights.max())
@@ -215,6 +195,6 @@ def _plan(knots, rows):
     free = CubicSpline(knots, places)
     velocity, yaw = free(knots, 1), np.radians(90.0 - rows.heading)
     off = angle_between(90.0 - np.degrees(np.arctan2(velocity[:, 1], velocity[:, 0])), rows.heading)
-    if not (off < HEADING_TOLERANCE).all():
+    if not (off < TRAJECTORY.heading_tolerance).all():
         return free
     return CubicHermiteSpline(knots, places, np.hypot(*velocity.T)[:, None] * np.c_[np.cos(yaw), np.sin(yaw)])

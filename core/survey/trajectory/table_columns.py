@@ -13,20 +13,18 @@ import numpy as np
 
 from ...common.errors import RoadExtractionError
 from ...io.text_table import NumberTable, as_number, finite_or_nan
-from .columns import MAX_HEADER_LINES, Unit, candidates_by_role, listed, split_header, unit_named, unit_of_name, units_above
+from ..weights import TRAJECTORY
+from .columns import Unit, candidates_by_role, listed, split_header, unit_named, unit_of_name, units_above
 from .time_systems import SECONDS_PER_WEEK, degrees_of, hemisphere_signs, hold_times, whole_minutes
 
-FIRST_WHOLE_WEEK, LAST_WEEK = 1024.0, 4096.0  # weeks since 1980; smaller ones are those of old receivers, which begin anew after 1024
-LEAST_NAMED = 2         # roles in the line of names
-CHECKED_ROWS = 200      # by which it is told whether a column takes several fields
+FIRST_WHOLE_WEEK, LAST_WEEK = 1024.0, 4096.0  # source: weeks since 1980 (IS-GPS-200); smaller ones begin anew after 1024, as old receivers do
 
 
 @dataclass(frozen=True)
 class TableColumn:
-    """A column of a table, or several fields of it that are one value.
+    """A column of a table, or several fields of it that are one value: (N,) float64, NaN where no number stands.
 
-    title : "" without a name; values : (N,) float64, NaN where no number stands; unit : of the values
-    written : gives the (N,) texts as they stand in the table; first : the first of them
+    title : "" without a name; written : gives the (N,) texts as they stand in the table; first : the first of them
     """
 
     title: str
@@ -41,39 +39,51 @@ class TableColumn:
         return not np.isfinite(self.values).any()
 
     @property
+    def is_empty(self) -> bool:
+        """Whether it holds neither texts nor numbers."""
+        return not self.first and self.is_text
+
+    @property
+    def in_metres(self) -> np.ndarray:
+        """(N,) lengths in metres where they are given in these or in parts of them, otherwise as they stand."""
+        return self.values * (self.unit.factor if self.unit.name == "metres" else 1.0)
+
+    @property
     def holds_texts(self) -> bool:
         """Whether it holds something, but no number at all."""
         return bool(self.first) and self.is_text
 
+    @property
+    def holds_clock_times(self) -> bool:
+        """Whether it holds clock times or dates as texts, by its first rows."""
+        return self.holds_texts and hold_times(self.written()[:TRAJECTORY.checked_rows])
+
 
 def titled_columns(table: NumberTable) -> tuple[list[TableColumn], list[str] | None]:
-    """The columns of a table with the names above it.
-
-    Returns
-    -------
-    columns : in the order of the fields; without titles where the names are not known
-    unmatched : the names in a line that has another number of them, None otherwise
-    """
+    """The columns of a table in the order of its fields, with the names above it, and those names where their number is another one."""
     fields = _fields(table)
-    best: tuple[int, list[str], list[tuple[int, str]]] = (LEAST_NAMED - 1, [], [])
-    unmatched: tuple[int, list[str]] = (LEAST_NAMED, [])
-    for line in table.preamble[-MAX_HEADER_LINES:]:
-        for names in split_header(line):
-            named = candidates_by_role(names) if len(names) <= len(fields) + 20 else {}
-            if len(named) <= min(best[0], unmatched[0]):
-                continue
-            spans = _spans(names, named, fields) if len(named) > best[0] else None
-            if spans is not None:
-                best = len(named), names, spans
-            elif len(named) > unmatched[0]:
-                unmatched = len(named), names
-    _, names, spans = best
+    names, spans, unmatched = _names_above(table, fields)
     if not names:
-        return _together([""] * len(fields), _spans_without_names(fields), [Unit()] * len(fields), fields), unmatched[1] or None
+        return _together([""] * len(fields), _spans_without_names(fields), [Unit()] * len(fields), fields), unmatched or None
     units = [unit_of_name(name) for name in names]
     if not any(unit.name for unit in units):
         units = units_above(table.preamble, len(names)) or units
     return _together(names, spans, units, fields), None
+
+
+def _names_above(table, fields):
+    """The names in the lines above a table that give the most roles, with their spans, and those of another number that give even more."""
+    most, names, spans = TRAJECTORY.least_named - 1, [], []
+    most_unmatched, unmatched = TRAJECTORY.least_named, []
+    for line in table.preamble[-TRAJECTORY.max_header_lines:]:
+        for words in split_header(line):
+            named = candidates_by_role(words) if len(words) <= len(fields) + 20 else {}
+            fitting = _spans(words, named, fields) if len(named) > most else None
+            if fitting is not None:
+                most, names, spans = len(named), words, fitting
+            elif len(named) > most_unmatched:
+                most_unmatched, unmatched = len(named), words
+    return names, spans, unmatched
 
 
 def columns_of_rows(titles: Sequence[str], rows: Sequence[Sequence[object]]) -> list[TableColumn]:
@@ -137,24 +147,27 @@ def _possible_spans(role, fields):
         yield together, "time"
     elif role == "time" and len(fields) > 1 and _week(fields[0].values) and _within(fields[1].values, 0.0, SECONDS_PER_WEEK + 1.0):
         yield 2, "week"
-    elif role in ("lon", "lat") and len(fields) > 2:
-        degrees, minutes, seconds = (column.values[:CHECKED_ROWS] for column in fields[:3])
-        if _whole(degrees) and _within(minutes, 0.0, 60.0):
-            if _whole(minutes) and _within(seconds, 0.0, 60.0):
-                yield 3, "angle"
-            if not _whole(minutes):
-                yield 2, "angle"
+    elif role in ("lon", "lat"):
+        yield from ((count, "angle") for count in _fields_of_an_angle(fields))
     yield 1, ""
+
+
+def _fields_of_an_angle(fields):
+    """The numbers of fields in which degrees with minutes, and with seconds, may stand."""
+    parts = [column.values[:TRAJECTORY.checked_rows] for column in fields[:3]]
+    if len(parts) < 3 or not _whole(parts[0]) or not _within(parts[1], 0.0, 60.0):
+        return []
+    return ([3] if _within(parts[2], 0.0, 60.0) else []) if _whole(parts[1]) else [2]
 
 
 def _fields_of_a_time(fields):
     """2 for a date with a clock behind it, 3 for one with AM or PM behind that, otherwise 1."""
-    if len(fields) < 2 or not (fields[0].is_text or _within(fields[0].values, 19_800_106.0, 21_000_101.0)) or not fields[1].is_text or \
-            not (fields[0].first[:1].isdigit() and ":" in fields[1].first):
+    first, second, third = (*fields, None, None)[:3]
+    if second is None or ":" not in second.first or not second.holds_clock_times or not re.match(r"\d[^:]*$", first.first):
         return 1
-    if ":" in fields[0].first or not hold_times(fields[1].written()[:CHECKED_ROWS]):
+    if not first.is_text and not _within(first.values, 19_800_106.0, 21_000_101.0):
         return 1
-    return 3 if len(fields) > 2 and fields[2].first.upper() in ("AM", "PM") else 2
+    return 3 if third is not None and third.first.upper() in ("AM", "PM") else 2
 
 
 def _within(values, low, high):
@@ -180,29 +193,27 @@ def with_week(seconds: np.ndarray, week: np.ndarray) -> np.ndarray:
 
 def _together(names, spans, units, fields):
     """One TableColumn a name."""
-    found, start = [], 0
-    for name, (count, kind), unit in zip(names, spans, units):
-        parts = fields[start:start + count]
-        start += count
-        unit, values = unit if unit.name else parts[0].unit, parts[0].values
-        if kind == "week":
-            values = with_week(parts[1].values, values)
-        elif kind == "angle":
-            values, unit = degrees_of(*(part.values for part in parts), *[np.zeros(len(values))] * (3 - count)), Unit("degrees")
-        elif kind == "time":
-            values = np.full(len(values), np.nan)
-        written = parts[0].written if count == 1 else lambda parts=parts: [" ".join(texts) for texts in zip(*(part.written() for part in parts))]
-        found.append(TableColumn(name, values, unit, written, " ".join(part.first for part in parts)))
-    return found
+    ends = np.cumsum([count for count, _ in spans])
+    return [_joined(name, fields[end - count:end], kind, unit) for name, (count, kind), unit, end in zip(names, spans, units, ends.tolist())]
+
+
+def _joined(name, parts, kind, unit):
+    """The TableColumn of fields that are one value together."""
+    values, unit = parts[0].values, unit if unit.name else parts[0].unit
+    if kind == "week":
+        values = with_week(parts[1].values, values)
+    elif kind == "angle":
+        values, unit = degrees_of(*(part.values for part in parts), *[np.zeros(len(values))] * (3 - len(parts))), Unit("degrees")
+    elif kind == "time":
+        values = np.full(len(values), np.nan)
+    written = parts[0].written if len(parts) == 1 else lambda: [" ".join(texts) for texts in zip(*(part.written() for part in parts))]
+    return TableColumn(name, values, unit, written, " ".join(part.first for part in parts))
 
 
 # What receivers and telephones keep: sentences of NMEA 0183 and NovAtel's ASCII logs, and tracks in GPX and KML.
 
-HEAD_BYTES = 20_000
 KINDS_OF_POSITIONS = ("trkpt", "coord", "rtept", "coordinates", "wpt", "point")   # in GPX and KML, the likeliest drive first
 TRACK_ENDINGS = (".gpx", ".kml")
-CHUNK = 1 << 16            # bytes handed to the parser at once
-MOST_TEXT = 200            # characters of a coordinate or time that are kept
 
 
 class _Sentence(NamedTuple):
@@ -214,7 +225,7 @@ class _Sentence(NamedTuple):
 
 # NMEA 0183: fields behind the name of the sentence. NovAtel (OEM7 Commands and Logs Reference): fields behind the semicolon, and of
 # the header before it the week and the seconds. Heights of NMEA and BESTPOS are above mean sea level; "geoid" leads to the ellipsoid.
-SENTENCES = {
+SENTENCES = {   # source: as above
     "GGA": _Sentence(0, {"clock": 1, "lat": 2, "lat_side": 3, "lon": 4, "lon_side": 5, "quality": 6, "z": 9, "geoid": 11}),
     "GNS": _Sentence(1, {"clock": 1, "lat": 2, "lat_side": 3, "lon": 4, "lon_side": 5, "z": 9, "geoid": 10}),
     **{name: _Sentence(0, {"week": 0, "seconds": 1, "lat": 2, "lon": 3, "z": 4, "roll": 8, "pitch": 9, "heading": 10})
@@ -228,10 +239,7 @@ NOVATEL = re.compile(r"[#%](?P<name>[A-Z]+A),(?P<head>[^;\n]*);(?P<rest>[^*\n]*)
 
 
 def _read_log(path: Path) -> list[TableColumn]:
-    """The positions in a log of sentences, as columns with names.
-
-    Raises RoadExtractionError if its sentences hold no positions.
-    """
+    """The positions in a log of sentences, as columns with names; RoadExtractionError where there are none."""
     kept: dict[str, list[list[str]]] = {}
     day = ""
     for line in path.read_text(encoding="latin-1").split("\n"):
@@ -307,12 +315,10 @@ def _gps_column(rows, number):
 
 
 def _read_track(path: Path) -> list[TableColumn]:
-    """The positions of a GPX or KML file, as columns with names.
+    """The positions of a GPX or KML file, as columns with names; RoadExtractionError if it is no XML, or holds none.
 
     Of GPX the points of tracks are taken, otherwise those of its route, otherwise its waypoints; of KML the tracks (gx:Track), otherwise the
     lines, otherwise the points.
-
-    Raises RoadExtractionError if it is no XML, or holds neither track nor line.
     """
     reader = _TrackReader()
     try:
@@ -352,7 +358,7 @@ class _TrackReader:
 
     def read(self, path):
         with open(path, "rb") as file:
-            while chunk := file.read(CHUNK):
+            while chunk := file.read(TRAJECTORY.chunk):
                 self._parser.Parse(chunk)
             self._parser.Parse(b"", True)
 
@@ -368,7 +374,7 @@ class _TrackReader:
 
     def _characters(self, text):
         # the coordinates of a line in KML are one text
-        self._text = self._text + text if len(self._text) < MOST_TEXT or self._point is None else self._text
+        self._text = self._text + text if len(self._text) < TRAJECTORY.most_text or self._point is None else self._text
 
     def _end(self, name):
         name, text = name.rpartition(":")[2], self._text.strip()
@@ -388,7 +394,7 @@ class _TrackReader:
 def is_record(path: Path) -> bool:
     """Whether a file is a track or a log of sentences, by its ending and its beginning."""
     with open(path, "rb") as file:
-        head = file.read(HEAD_BYTES)
+        head = file.read(TRAJECTORY.head_bytes)
     text = head.decode("latin-1")
     return path.suffix.lower() in TRACK_ENDINGS or bool(NMEA.search(text) or NOVATEL.search(text))
 

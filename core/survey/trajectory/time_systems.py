@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from ...common.errors import RoadExtractionError
+from ..weights import TRAJECTORY
 
 # Times and angles that are written as text: dates and clocks, degrees with minutes and seconds, hemispheres.
 
@@ -27,11 +28,9 @@ MONTH_NAME = re.compile(r"(\d{1,2})[-/. ](jan|feb|mar|apr|may|jun|jul|aug|sep|oc
 YEAR_SIGN = re.compile(r"(\d{4}) ?年 ?(\d{1,2}) ?月 ?(\d{1,2}) ?日")               # 2021年10月13日
 CLOCK_SIGNS = re.compile(r"(\d{1,2}) ?[时時] ?(\d{1,2}) ?分(?: ?(\d{1,2}(?:[.,]\d*)?) ?秒)?")   # 23时46分40秒
 MONTHS = ("jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec")
-LOOKED_AT = 50          # texts of a column by which it is told what they are
-MOST = 0.9              # of them
-GPS_EPOCH = datetime(1980, 1, 6)
-SECONDS_PER_WEEK, SECONDS_PER_DAY = 604800.0, 86400.0
-UNIX_EPOCH = 315_964_800.0   # s from 1970 to the start of GPS time
+GPS_EPOCH = datetime(1980, 1, 6)   # source: IS-GPS-200
+SECONDS_PER_WEEK, SECONDS_PER_DAY = 604800.0, 86400.0   # source: definition
+UNIX_EPOCH = (GPS_EPOCH - datetime.fromisoformat("1970-01-01")).total_seconds()   # s from 1970 to the start of GPS time
 # Days on which a second was inserted into UTC since GPS time began (IERS Bulletin C); none is announced after the last
 LEAP_DAYS = ("1981-07-01", "1982-07-01", "1983-07-01", "1985-07-01", "1988-01-01", "1990-01-01", "1991-01-01", "1992-07-01", "1993-07-01",
              "1994-07-01", "1996-01-01", "1997-07-01", "1999-01-01", "2006-01-01", "2009-01-01", "2012-07-01", "2015-07-01", "2017-01-01")
@@ -41,7 +40,6 @@ LEAP_DAYS = ("1981-07-01", "1982-07-01", "1983-07-01", "1985-07-01", "1988-01-01
 DAY_COUNTS = {"modified Julian days": "1858-11-17", "days of a spreadsheet": "1899-12-30", "days of MATLAB": "-0001-12-31",
               "days of the Julian date": "-4713-11-24T12"}
 FIRST_SURVEY, LAST_SURVEY = "1990-01-01", "2050-01-01"
-SHORTEST_STEP = 5e-4    # weight: s from row to row; no trajectory has 2000 positions a second, and a vehicle drives a centimetre in it
 
 
 @dataclass(frozen=True)
@@ -49,9 +47,8 @@ class ClockTimes:
     """Clock times that were written as text, or as days.
 
     seconds : (N,) since 6 January 1980 as the clock counts, or since its midnight where no date is written; NaN where a text is no time
-    dated : whether dates are written
+    dated, order_known : whether dates are written, and whether day and month can be told apart
     zone : "UTC" or "GPS" where the texts say so, "" otherwise; times with an offset from UTC are brought to UTC
-    order_known : whether day and month can be told apart
     kind, first : what was written, and the first of them
     """
 
@@ -65,10 +62,10 @@ class ClockTimes:
 
 def hold_times(texts: Sequence[str]) -> bool:
     """Whether most texts of a column are clock times, with dates or without, or dates."""
-    some = [text for text in texts if text.strip()][:LOOKED_AT]
+    some = [text for text in texts if text.strip()][:TRAJECTORY.texts_looked_at]
     found = [_match(text) for text in some]
     times = [match for match in found if match and (match["hour"] or match["date"] and not match["date"].isdigit())]
-    return bool(some) and len(times) >= MOST * len(some)
+    return bool(some) and len(times) >= TRAJECTORY.most_of_texts * len(some)
 
 
 def _match(text):
@@ -80,27 +77,30 @@ def _match(text):
 
 def clock_times(texts: Sequence[str]) -> ClockTimes | None:
     """Clock times of (N,) texts; None where they are none."""
-    if not hold_times(texts) and not all(re.fullmatch(r"\d{8} .*:.*", text) for text in texts[:LOOKED_AT] if text):
+    if not hold_times(texts) and not all(re.fullmatch(r"\d{8} .*:.*", text) for text in texts[:TRAJECTORY.texts_looked_at] if text):
         return None
-    found = [_match(text) for text in texts]
-    dates = {match["date"] for match in found if match and match["date"]}
+    matches = [*map(_match, texts)]
+    dates = {match["date"] for match in filter(None, matches)} - {None}
     day_first, order_known = _order(dates)
-    midnight = {date: _midnight(date, day_first) for date in dates}
-    seconds = np.full(len(texts), np.nan)
-    zones = set()
-    for row, match in enumerate(found):
-        if match is None or (match["hour"] is None and not match["date"]) or (dates and not match["date"]):
-            continue
-        value = midnight[match["date"]] if match["date"] else 0.0
-        if match["hour"]:
-            value += _since_midnight(match)
-        zone = (match["zone"] or "").upper()
-        zones.add(zone)
-        if zone[:1] in ("+", "-") and zone:
-            value -= (60 * int(zone[1:3]) + int(zone[-2:])) * 60.0 * (1 if zone[0] == "+" else -1)
-        seconds[row] = value
-    zone = "" if "" in zones or not zones else "GPS" if all(name.startswith("GPS") for name in zones) else "UTC"
+    # without any date the clock alone counts, and with dates a clock without one is none
+    midnight = {date: _midnight(date, day_first) for date in dates} or {None: 0.0}
+    seconds = np.array([np.nan if match is None else _clock_seconds(match, midnight) for match in matches])
+    zone = _common_zone({(match["zone"] or "").upper() for match, second in zip(matches, seconds) if not np.isnan(second)})
     return ClockTimes(seconds, bool(dates), zone, order_known, first=next(filter(None, texts), ""))
+
+
+def _common_zone(zones):
+    """"GPS" or "UTC" where every time says what it is of, otherwise ""."""
+    return "" if "" in zones or not zones else "GPS" if all(name.startswith("GPS") for name in zones) else "UTC"
+
+
+def _clock_seconds(match, midnight):
+    """Seconds of a clock time in UTC, where it says how far off that it is; NaN where it lacks a date that others have, or a clock and a date."""
+    if match["date"] not in midnight or not match["hour"] and not match["date"]:
+        return np.nan
+    zone = match["zone"] or ""
+    ahead = (60 * int(zone[1:3]) + int(zone[-2:])) * 60.0 * (1 if zone[0] == "+" else -1) if zone[:1] in ("+", "-") and zone else 0.0
+    return midnight[match["date"]] + (_since_midnight(match) if match["hour"] else 0.0) - ahead
 
 
 def _since_midnight(match):
@@ -137,29 +137,21 @@ def _midnight(date, day_first):
 def counted_days(values: np.ndarray, texts: Callable[[], Sequence[str]], what: str) -> ClockTimes | None:
     """The clock times of (N,) days and their shares, as MJD or spreadsheets count them; None of values that count seconds.
 
-    Parameters
-    ----------
-    values : (N,) numbers
-    texts : gives the (N,) texts as they are written
-    what : the beginning of a message
-
-    Raises
-    ------
-    RoadExtractionError
-        If they go up like days, but are of no known count, or have too few decimals.
+    texts : gives the (N,) texts as they are written; what : the beginning of a message. RoadExtractionError if they go up like days, but are of no
+    known count, or have too few decimals.
     """
     steps = np.diff(values)
     steps = steps[steps > 0]
-    if not len(steps) or not np.median(steps) < SHORTEST_STEP:
+    if not len(steps) or not np.median(steps) < TRAJECTORY.shortest_step:
         return None
     first = values[np.isfinite(values)][0]
     kind = next((kind for kind, begins in DAY_COUNTS.items() if _days_from(begins, FIRST_SURVEY) <= first < _days_from(begins, LAST_SURVEY)), "")
-    last_decimal = SECONDS_PER_DAY * 10.0 ** -max(len(re.split("[.,]", text)[-1]) for text in texts()[:LOOKED_AT])
+    last_decimal = SECONDS_PER_DAY * 10.0 ** -max(len(re.split("[.,]", text)[-1]) for text in texts()[:TRAJECTORY.texts_looked_at])
     said = f"{what} goes up by {np.median(steps):.2g} from row to row as if it counted days, "
     if not kind:
         raise RoadExtractionError(f"{said}but {first:.10g} is no day of a known count (MJD, Julian days, a spreadsheet). GPS seconds are needed: "
                                   "export the trajectory with these.")
-    if last_decimal / 2 > SHORTEST_STEP:   # by half of it times are rounded
+    if last_decimal / 2 > TRAJECTORY.shortest_step:   # by half of it times are rounded
         raise RoadExtractionError(f"{said}and its last decimal is {last_decimal:.2g} s, while a vehicle drives centimetres in a thousandth of a "
                                   "second. Export the trajectory with GPS seconds, or with 8 decimals of a day or more.")
     seconds = (values - _days_from(DAY_COUNTS[kind], GPS_EPOCH)) * SECONDS_PER_DAY
@@ -178,9 +170,9 @@ def leap_seconds(seconds: np.ndarray) -> np.ndarray:
 
 def hold_angles(texts: Sequence[str]) -> bool:
     """Whether most texts of a column are degrees with minutes, or with a hemisphere."""
-    some = [text.strip() for text in texts if text.strip()][:LOOKED_AT]
+    some = [text.strip() for text in texts if text.strip()][:TRAJECTORY.texts_looked_at]
     return bool(some) and sum(bool((found := ANGLE.match(text)) and (found["minutes"] or found["before"] or found["after"] or "°" in text))
-                              for text in some) >= MOST * len(some)
+                              for text in some) >= TRAJECTORY.most_of_texts * len(some)
 
 
 def angles_of(texts: Sequence[str]) -> np.ndarray:
@@ -222,26 +214,16 @@ def whole_seconds(values: np.ndarray) -> np.ndarray:
     return np.copysign(np.floor(size / 100.0) + size % 100.0 / 60.0, values)
 
 
-ADJUSTED_OFFSET = 1e9  # s by which adjusted standard GPS time is less than GPS time (ASPRS LAS 1.4)
+ADJUSTED_OFFSET = 1e9  # source: s by which adjusted standard GPS time is less than GPS time (ASPRS LAS 1.4)
 TIME_SYSTEMS = ("automatic", "gps", "adjusted", "week", "day")
 TIME_SYSTEM_NAMES = {"as it is": "the cloud's own seconds", "gps": "GPS seconds since 1980", "adjusted": "adjusted GPS seconds (GPS less 1e9)",
                      "week": "seconds of the week", "day": "seconds of the day"}
-TIME_TOLERANCE = 1.0  # s between the ends of the times of cloud and trajectory, which may be rounded
 TAI_TO_GPS = 19.0     # source: s by which TAI is ahead of GPS time (IS-GPS-200)
 LARGEST_SHIFT = TAI_TO_GPS + len(LEAP_DAYS)   # derived: s between two clocks, TAI and UTC
 
 
 def unwrap_time(time: np.ndarray) -> np.ndarray:
-    """Seconds of the week or day, continued past midnight or the end of the week.
-
-    Parameters
-    ----------
-    time : (N,) seconds, in driving order
-
-    Returns
-    -------
-    (N,) float64 seconds; the same values where the count does not start again
-    """
+    """(N,) seconds of the week or day in driving order, continued past midnight or the end of the week; the same where neither ends."""
     time = np.asarray(time, float)
     known = np.flatnonzero(np.isfinite(time))
     if len(known) < 2:
@@ -265,30 +247,22 @@ def wrapped_week(span: tuple[float, float]) -> bool:
 
 
 def align_time(time: np.ndarray, cloud_span: tuple[float, float], system: str = "automatic", adjusted: bool = True) -> tuple[float, str]:
-    """Seconds to add to a trajectory's time to convert it to the cloud's.
+    """Seconds to add to a trajectory's time to convert it to the cloud's, and a sentence for the user, "" where nothing is to be told.
+
+    Leap seconds are never guessed: where a shift of 18 s (or 17, 37 ...) would make the two agree, the note or the message says so, and the user
+    decides.
 
     Parameters
     ----------
     time : (N,) seconds of the trajectory, in driving order where the count starts again from zero
     cloud_span : (first, last) gps_time of the cloud, seconds
-    system : the time system of the trajectory: "gps" (seconds since 1980), "adjusted"
-        (the same minus 1e9), "week", "day", or "automatic"
+    system : "gps" (seconds since 1980), "adjusted" (the same minus 1e9), "week", "day", or "automatic"
     adjusted : whether the header of the cloud states adjusted standard GPS time
-
-    Returns
-    -------
-    offset : seconds
-    note : a sentence for the user; "" where nothing was changed and nothing is doubtful
 
     Raises
     ------
     RoadExtractionError
         If the time system is not known, the trajectory has no times, or cloud and trajectory overlap in no time system.
-
-    Notes
-    -----
-    Leap seconds are never guessed: where a shift of 18 s (or 17, 37 ...) would
-    make the two agree, the note or the message says so, and the user decides.
     """
     if system not in TIME_SYSTEMS:
         raise RoadExtractionError(f"The time system {system!r} is not known; choose one of {', '.join(TIME_SYSTEMS)}.")
@@ -302,9 +276,9 @@ def align_time(time: np.ndarray, cloud_span: tuple[float, float], system: str = 
     def overlap(offset):
         return min(last + offset, cloud_last) - max(first + offset, cloud_first)
 
-    name, offset = max(options, key=lambda option: (overlap(option[1]) > -TIME_TOLERANCE and option[0] == "as it is", overlap(option[1])))
+    name, offset = max(options, key=lambda option: (overlap(option[1]) > -TRAJECTORY.time_tolerance and option[0] == "as it is", overlap(option[1])))
     hint = _leap_hint(first + offset, last + offset, cloud_first, cloud_last)
-    if overlap(offset) <= -TIME_TOLERANCE:
+    if overlap(offset) <= -TRAJECTORY.time_tolerance:
         tried = "One of them may use another time system: set the trajectory's time system (gps, adjusted, week or day) and run again." \
             if system == "automatic" else \
             f"The trajectory was taken to count {TIME_SYSTEM_NAMES[system]}: set its time system to automatic and run again."
@@ -321,30 +295,37 @@ def align_time(time: np.ndarray, cloud_span: tuple[float, float], system: str = 
 
 def _offsets(first, last, cloud, system):
     """[(system, offset)]: the offsets that may convert each time system to the cloud's."""
-    absolute_cloud = cloud + ADJUSTED_OFFSET if cloud < ADJUSTED_OFFSET else cloud
-    absolute = cloud > 1.5 * SECONDS_PER_WEEK  # the count of the cloud does not start again every week
+    options = [*_absolute_offsets(first, cloud, system), *_period_offsets(first, last, cloud, system)]
+    kept = [(name, float(offset)) for name, offset in options if system in ("automatic", name)]
+    return [("as it is", 0.0), *kept] if system == "automatic" else kept
+
+
+def _absolute_offsets(first, cloud, system):
+    """Those of times that count from 1980, "adjusted" or not."""
+    shifts = (("adjusted", ADJUSTED_OFFSET), ("gps", 0.0))
+    if cloud > 1.5 * SECONDS_PER_WEEK:   # the count of the cloud does not start again every week
+        return [(name, shift + cloud - _since_1980(cloud)) for name, shift in shifts]
+    periods = (SECONDS_PER_WEEK, SECONDS_PER_DAY) if cloud < 1.5 * SECONDS_PER_DAY else (SECONDS_PER_WEEK,)
+    return [(name, -np.floor((first + shift) / period) * period + shift + turn * period) for name, shift in shifts
+            if system == name or first > 2 * SECONDS_PER_WEEK or first < 0 for period in periods for turn in (0, -1, 1)]
+
+
+def _period_offsets(first, last, cloud, system):
+    """Those of times that start again every week or day."""
     options = []
-    for name, shift in (("adjusted", ADJUSTED_OFFSET), ("gps", 0.0)):
-        if absolute:
-            options.append((name, shift + cloud - absolute_cloud))
-        elif system == name or first > 2 * SECONDS_PER_WEEK or first < 0:
-            start = first + shift
-            options += [(name, -np.floor(start / period) * period + shift + turn * period)
-                        for period in ((SECONDS_PER_WEEK, SECONDS_PER_DAY) if cloud < 1.5 * SECONDS_PER_DAY else (SECONDS_PER_WEEK,))
-                        for turn in (0, -1, 1)]
     for name, period in (("week", SECONDS_PER_WEEK), ("day", SECONDS_PER_DAY)):
-        if last > 2 * period and system != name:
-            continue
-        if absolute:
-            start = np.floor(absolute_cloud / period) * period - absolute_cloud + cloud
-        else:
-            start = np.floor(cloud / period) * period
-        options += [(name, start + turn * period) for turn in (0, -1, 1)]
+        if last <= 2 * period or system == name:
+            whole = _since_1980(cloud) if cloud > 1.5 * SECONDS_PER_WEEK else cloud
+            start = np.floor(whole / period) * period - whole + cloud
+            options += [(name, start + turn * period) for turn in (0, -1, 1)]
     if cloud < 1.5 * SECONDS_PER_DAY <= first and last <= 2 * SECONDS_PER_WEEK:
-        options += [("week", -np.floor(first / SECONDS_PER_DAY) * SECONDS_PER_DAY)]
-    if system == "automatic":
-        return [("as it is", 0.0), *((name, float(offset)) for name, offset in options)]
-    return [(name, float(offset)) for name, offset in options if name == system]
+        options.append(("week", -np.floor(first / SECONDS_PER_DAY) * SECONDS_PER_DAY))
+    return options
+
+
+def _since_1980(cloud):
+    """GPS time of an absolute time of a cloud, adjusted or not."""
+    return cloud + ADJUSTED_OFFSET if cloud < ADJUSTED_OFFSET else cloud
 
 
 def is_to_come(seconds: float) -> bool:
@@ -372,7 +353,7 @@ def _unix_hint(first, last, cloud_first, cloud_last):
 def _leap_hint(first, last, cloud_first, cloud_last):
     """A sentence where a shift by leap seconds would cover a scan that is not covered now; otherwise ""."""
     early, late = first - cloud_first, cloud_last - last
-    if max(early, late) <= TIME_TOLERANCE or max(early, late) > LARGEST_SHIFT + TIME_TOLERANCE:
+    if max(early, late) <= TRAJECTORY.time_tolerance or max(early, late) > LARGEST_SHIFT + TRAJECTORY.time_tolerance:
         return ""
     gps_to_utc = [float(len(LEAP_DAYS) - years) for years in range(5)]   # since the last leap second, and before each of the last four
     for leap in (*gps_to_utc, *(TAI_TO_GPS + shift for shift in gps_to_utc[:3]), TAI_TO_GPS):

@@ -10,13 +10,8 @@ import numpy as np
 
 from ...common.errors import RoadExtractionError
 from ...io.crs import FOOT, check_metric, horizontal_part, in_metres, parse_crs, plane_wkt, same_crs
+from ..weights import TRAJECTORY
 from .time_systems import unwrap_time
-
-MAX_VEHICLE_SPEED = 70.0    # m/s of a survey vehicle
-MIN_POSITION_JUMP = 2.0     # m: shorter steps are not outliers, whatever their speed
-LONGEST_STEP = 100_000.0    # m between positions without time: far beyond what is left out of a drive, and within a zone of a projection
-MOST_OUTLIERS = 10, 0.02    # rows, and of all rows: more are no outliers but another drive at the same time
-MIN_ORIGIN_DISTANCE = 1000.0  # m: a drive whose positions are all farther from the origin of the coordinates does not pass through it
 
 
 @dataclass(frozen=True)
@@ -75,18 +70,9 @@ class Trajectory:
 
 
 def clean_trajectory(trajectory: Trajectory) -> Trajectory:
-    """The trajectory sorted by time, without repeated times, outliers and rows that have no position.
+    """The trajectory sorted by time, without repeated times, outliers and rows that have no position; its notes say what was changed.
 
-    Standstills remain, since time goes on while the vehicle waits; the road's reference line, which is
-    sampled by distance, does not contain them.
-
-    Parameters
-    ----------
-    trajectory : Trajectory, as read
-
-    Returns
-    -------
-    Trajectory, whose notes also say what was changed
+    Standstills remain, since time goes on while the vehicle waits; the road's reference line, which is sampled by distance, does not contain them.
 
     Raises
     ------
@@ -120,7 +106,7 @@ def clean_trajectory(trajectory: Trajectory) -> Trajectory:
         trajectory = trajectory.rows(~jumps)
     refuse_standstill(trajectory)
     step = np.hypot(np.diff(trajectory.x), np.diff(trajectory.y))
-    if not trajectory.has_time and step.max() > LONGEST_STEP:
+    if not trajectory.has_time and step.max() > TRAJECTORY.longest_step:
         raise RoadExtractionError(f"The trajectory has no time and leaps {step.max() / 1000:,.0f} km from one position to the next. Remove the "
                                   "positions that do not belong to the drive, or give each drive by itself.")
     return replace(trajectory, notes=tuple(notes))
@@ -140,8 +126,8 @@ def refuse_standstill(trajectory: Trajectory) -> None:
 def _refuse_two_drives(trajectory, rows):
     """Refuse positions, sorted by time, of which many are at once at two places."""
     apart = np.hypot(np.diff(trajectory.x), np.diff(trajectory.y))
-    at_once = np.r_[False, (np.diff(trajectory.time) <= 0) & (apart > MIN_POSITION_JUMP)] | _outlier_rows(trajectory)
-    if not trajectory.has_time or at_once.sum() <= max(MOST_OUTLIERS[0], MOST_OUTLIERS[1] * len(rows)):
+    at_once = np.r_[False, (np.diff(trajectory.time) <= 0) & (apart > TRAJECTORY.min_position_jump)] | _outlier_rows(trajectory)
+    if not trajectory.has_time or at_once.sum() <= max(TRAJECTORY.most_outliers[0], TRAJECTORY.most_outliers[1] * len(rows)):
         return
     second = int(np.argmax(at_once))
     first = second - 1
@@ -155,7 +141,7 @@ def _zero_rows(trajectory, good):
     """(N,) bool: rows at exactly (0, 0), as receivers write a missing position, unless other usable rows are near."""
     zero = (trajectory.x == 0) & (trajectory.y == 0)
     distance = np.hypot(trajectory.x[good & ~zero], trajectory.y[good & ~zero])
-    return zero & bool(len(distance) and distance.min() > MIN_ORIGIN_DISTANCE)
+    return zero & bool(len(distance) and distance.min() > TRAJECTORY.min_origin_distance)
 
 
 def _outlier_rows(trajectory):
@@ -164,14 +150,14 @@ def _outlier_rows(trajectory):
     if len(trajectory) < 3:
         return outlier
     if not trajectory.has_time:
-        far = np.hypot(np.diff(trajectory.x), np.diff(trajectory.y)) > LONGEST_STEP
+        far = np.hypot(np.diff(trajectory.x), np.diff(trajectory.y)) > TRAJECTORY.longest_step
         outlier[1:-1] = far[:-1] & far[1:]
         outlier[[0, -1]] = far[0] and not far[1], far[-1] and not far[-2]
         return outlier
     seconds, dx, dy = (np.diff(a) for a in (trajectory.time, trajectory.x, trajectory.y))
     step = np.hypot(dx, dy)
-    jump = (step > MAX_VEHICLE_SPEED * seconds) & (step > MIN_POSITION_JUMP)
-    reachable = np.hypot(dx[:-1] + dx[1:], dy[:-1] + dy[1:]) <= MAX_VEHICLE_SPEED * (seconds[:-1] + seconds[1:])
+    jump = (step > TRAJECTORY.max_vehicle_speed * seconds) & (step > TRAJECTORY.min_position_jump)
+    reachable = np.hypot(dx[:-1] + dx[1:], dy[:-1] + dy[1:]) <= TRAJECTORY.max_vehicle_speed * (seconds[:-1] + seconds[1:])
     outlier[1:-1] = jump[:-1] & jump[1:] & reachable
     return outlier
 
@@ -188,22 +174,13 @@ def _refuse_degrees(trajectory):
 
 # A trajectory in another coordinate reference system.
 
-HEADING_STEP = 10.0  # m ahead of a position, reprojected with it for the heading
 
 
 def reproject_trajectory(trajectory: Trajectory, target_wkt: str) -> Trajectory:
-    """The trajectory in another CRS: its positions, and its heading from the target's grid north.
+    """The trajectory in another CRS, WKT or "EPSG:n": its positions, and its heading from the target's grid north.
 
-    Heights stay as they are; whether they are ellipsoidal or orthometric is absorbed by
-    the estimated height of the sensor.
-
-    Parameters
-    ----------
-    target_wkt : WKT or "EPSG:n", projected; "" where unknown
-
-    Returns
-    -------
-    Trajectory; unchanged where its CRS or the target is unknown
+    It is unchanged where its CRS or the target is unknown. Heights stay as they are; whether they are ellipsoidal or orthometric is absorbed by the
+    estimated height of the sensor.
 
     Raises
     ------
@@ -246,10 +223,7 @@ def reproject_trajectory(trajectory: Trajectory, target_wkt: str) -> Trajectory:
 def taken_to_be_in(trajectory: Trajectory, wkt: str) -> Trajectory:
     """A trajectory without a CRS, its coordinates taken to be those of another file's CRS; it is unchanged where they are in metres.
 
-    Raises
-    ------
-    RoadExtractionError
-        If its columns say feet, and the CRS does not.
+    RoadExtractionError if its columns say feet, and the CRS does not.
     """
     crs, (x, y, z), left = lengths_in_metres(wkt, (trajectory.x, trajectory.y, trajectory.z), trajectory.stated_units, "The trajectory")
     if "feet" in dict(left).values():
@@ -261,25 +235,10 @@ def taken_to_be_in(trajectory: Trajectory, wkt: str) -> Trajectory:
 
 def lengths_in_metres(crs: str, places: tuple[np.ndarray, np.ndarray, np.ndarray], stated: Sequence[tuple[str, str]],
                       label: str) -> tuple[str, tuple[np.ndarray, ...], Sequence[tuple[str, str]]]:
-    """Coordinates of a trajectory in metres.
+    """Coordinates of a trajectory in metres: the WKT of their metric CRS, x, y and z, and what is still to be looked at once the CRS is known.
 
-    Parameters
-    ----------
-    crs : WKT of their CRS, "" where unknown
-    places : x, y and z, (N,) each, in its units, or where their columns state one, in that
-    stated : (role, "feet" or "metres") of x, y and z
-    label : the source, for messages
-
-    Returns
-    -------
-    crs : WKT, metric
-    places : in metres, or as they were where the CRS is unknown
-    stated : what is still to be looked at once the CRS is known
-
-    Raises
-    ------
-    RoadExtractionError
-        If x or y are stated in feet, and the CRS is in another unit.
+    crs : WKT, "" where unknown: then they stay as they were; places : x, y and z, (N,) each, in its units, or where `stated` says one, in that
+    stated : (role, "feet" or "metres") of x, y and z. RoadExtractionError if x or y are stated in feet, and the CRS is in another unit.
     """
     known = dict(stated)
     if not crs:
@@ -297,13 +256,13 @@ def lengths_in_metres(crs: str, places: tuple[np.ndarray, np.ndarray, np.ndarray
 
 
 def _reproject_heading(trajectory, source, transformer, x, y):
-    """Headings from the target's grid north: of each position, a point HEADING_STEP ahead is reprojected too."""
+    """Headings from the target's grid north: of each position, a point `heading_step` ahead is reprojected too."""
     known = np.isfinite(trajectory.heading) & np.isfinite(x)
     heading = np.full(len(x), np.nan)
     if not known.any():
         return heading
     ahead = np.radians(trajectory.heading[known])
-    step_x, step_y = HEADING_STEP * np.sin(ahead), HEADING_STEP * np.cos(ahead)
+    step_x, step_y = TRAJECTORY.heading_step * np.sin(ahead), TRAJECTORY.heading_step * np.cos(ahead)
     if source.is_geographic:
         latitude = np.radians(trajectory.y[known])
         per_degree_y, per_degree_x = _metres_per_degree(source.ellipsoid, latitude)

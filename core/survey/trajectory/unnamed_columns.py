@@ -8,68 +8,42 @@ import numpy as np
 
 from ...common.errors import RoadExtractionError
 from ...io.crs import horizontal_part, parse_crs
-from .trajectory import MAX_VEHICLE_SPEED
-
-MAX_SAMPLE_ROWS = 20_000      # rows from which the columns are recognised
-MAX_LEAN = 20.0               # degrees: no vehicle on a road rolls or pitches by more
-LEAST_SWING = 0.05            # of the rows on either side of zero
-MIN_MAP_COORDINATE = 9000.0   # m: x and y of map coordinates are larger, heights are smaller
+from ..weights import TRAJECTORY
 
 
 def columns_from_numbers(values: np.ndarray, path: str | os.PathLike[str]) -> dict[str, int]:
-    """The roles of the columns of a table without names.
+    """{role: index of the column} of a table without names, (N, K) numbers in driving order, with x, y or lon, lat.
 
-    Time increases evenly; x and y are large and change no faster than a vehicle drives; z follows
-    them; the heading agrees with the course driven. Nothing is guessed where several columns qualify.
-
-    Parameters
-    ----------
-    values : (N, K) numbers, in driving order
-    path : of the file, for messages
-
-    Returns
-    -------
-    {role: index of the column}, with x, y or lon, lat
-
-    Raises
-    ------
-    RoadExtractionError
-        If time, x, y and z cannot be recognised.
+    Time increases evenly; x and y are large and change no faster than a vehicle drives; z follows them; the heading agrees with the course driven.
+    Nothing is guessed where several columns qualify. RoadExtractionError, which names `path`, if time, x, y and z cannot be recognised.
     """
-    values = values[np.isfinite(values).sum(axis=1) >= 3]
-    sample = values[:MAX_SAMPLE_ROWS]
+    sample = values[np.isfinite(values).sum(axis=1) >= 3][:TRAJECTORY.max_sample_rows]
     count = sample.shape[1]
-    if not len(sample):
-        raise _unrecognised_columns(path, count)
     time = _time_column(sample) if count > 3 else None
-    others = [k for k in range(count) if k != time and not _is_counter(sample[:, k]) and np.isfinite(sample[:, k]).mean() > 0.9]
+    others = [k for k in range(count) if k != time and not _is_counter(sample[:, k]) and np.isfinite(sample[:, k]).sum() > 0.9 * len(sample)]
     plane, heading = _plane(sample, time, others)
-    if plane is None:
-        raise _unrecognised_columns(path, count)
-    roles = dict(zip(("x", "y") if plane[2] == "metres" else ("lon", "lat"), plane[:2]))
-    z = _height_column(sample, time, others, plane[:2], heading)
-    if z is None:
-        raise _unrecognised_columns(path, count)
-    roles["z"] = z
-    if time is not None:
-        roles["time"] = time
+    z = None if plane is None else _height_column(sample, time, others, plane[:2], heading)
+    if plane is None or z is None:
+        raise RoadExtractionError(
+            f"{path} has {count} columns without names, and time, x, y and z cannot be recognised from their numbers. "
+            "Put a line of names above them, such as time,x,y,z,roll,pitch,heading.")
+    roles = {**dict(zip(("x", "y") if plane[2] == "metres" else ("lon", "lat"), plane[:2])), "z": z}
+    roles.update({} if time is None else {"time": time})
+    return {**roles, **_attitude_columns(sample, set(roles.values()), max(plane[:2]), z, heading)}
+
+
+def _attitude_columns(sample, used, plane_end, z, heading):
+    """{role: column} of roll, pitch and heading as far as they are known, beside the columns in use."""
     if heading is not None:
-        roles["heading"] = heading
         # roll, pitch, heading is the usual order; in another, roll and pitch cannot be distinguished
-        if heading - z == 3 or (_after_roll_and_pitch(sample, heading) and not {heading - 1, heading - 2} & set(roles.values())):
-            roles["roll"], roles["pitch"] = heading - 2, heading - 1
-    elif max(plane[:2]) < z <= count - 4:
-        following = [z + 1, z + 2, z + 3]
-        # a heading that disagrees with the course (driven backwards, another zero direction) still exceeds 45 degrees
-        if time not in following and np.nanmax(np.abs(sample[:, z + 3])) > 45 >= np.nanmax(np.abs(sample[:, [z + 1, z + 2]])):
-            roles["roll"], roles["pitch"], roles["heading"] = following
-    return roles
-
-
-def _unrecognised_columns(path, count):
-    return RoadExtractionError(
-        f"{path} has {count} columns without names, and time, x, y and z cannot be recognised from their numbers. "
-        "Put a line of names above them, such as time,x,y,z,roll,pitch,heading.")
+        ordered = heading - z == 3 or _after_roll_and_pitch(sample, heading) and not {heading - 1, heading - 2} & used
+        return {"heading": heading, **({"roll": heading - 2, "pitch": heading - 1} if ordered else {})}
+    following = range(z + 1, z + 4)
+    if not plane_end < z <= sample.shape[1] - 4 or used & set(following):
+        return {}
+    # a heading that disagrees with the course (driven backwards, another zero direction) still exceeds 45 degrees
+    leans, turns = (np.nanmax(np.abs(sample[:, columns])) for columns in (following[:2], following[2:]))
+    return dict(zip(("roll", "pitch", "heading"), following)) if turns > 45 >= leans else {}
 
 
 def _is_counter(column):
@@ -106,23 +80,25 @@ def _rate(sample, time, k, percent):
 
 def _plane(sample, time, others):
     """((x column, y column, unit) or None, heading column or None): coordinates that a heading confirms are preferred."""
-    rate = {k: _rate(sample, time, k, 98) for k in others}
-    size = {k: np.nanmedian(np.abs(sample[:, k])) for k in others}
-    map_like = [k for k in others if size[k] > MIN_MAP_COORDINATE and rate[k] < MAX_VEHICLE_SPEED]
-    if len(map_like) > 2:
+    on_map = [k for k in others if _size(sample, k) > TRAJECTORY.min_map_coordinate and _rate(sample, time, k, 98) < TRAJECTORY.max_vehicle_speed]
+    if len(on_map) > 2:
         return None, None
-    if len(map_like) == 2:
-        pairs = [(map_like[0], map_like[1], "metres"), (map_like[1], map_like[0], "metres")]
+    if len(on_map) == 2:
+        pairs = [(*on_map, "metres"), (*on_map[::-1], "metres")]
     else:
-        pairs = _geographic_pairs(sample, time, others) or _local_pairs(sample, time, others, size, rate)
+        pairs = _geographic_pairs(sample, time, others) or _local_pairs(sample, time, others)
     agreeing = _agreeing_headings(sample, time, others, pairs)
     if agreeing:
         return min(agreeing)[4:]
-    if len(map_like) == 2:
-        return _usual_order(pairs[0], size), None
-    if pairs and pairs[0][2] != "metres":
-        return _longitude_first(pairs, sample), None
-    return (pairs[0] if pairs else None), None
+    if not pairs:
+        return None, None
+    if pairs[0][2] != "metres":
+        return _longitude_first(pairs), None
+    return (_usual_order(sample, *on_map) if len(on_map) == 2 else pairs[0]), None
+
+
+def _size(sample, k):
+    return np.nanmedian(np.abs(sample[:, k]))
 
 
 def _agreeing_headings(sample, time, others, pairs):
@@ -131,7 +107,7 @@ def _agreeing_headings(sample, time, others, pairs):
     for a, b, unit in pairs:
         x, y = sample[:, a].copy(), sample[:, b].copy()
         if unit != "metres":
-            scale = METRES_PER_DEGREE * (np.degrees(1.0) if unit == "radians" else 1.0)
+            scale = TRAJECTORY.metres_per_degree * (np.degrees(1.0) if unit == "radians" else 1.0)
             middle = np.nanmedian(y) * (1.0 if unit == "radians" else np.pi / 180)
             x, y = x * scale * np.cos(middle), y * scale
         for h in others:
@@ -146,14 +122,14 @@ def _agreeing_headings(sample, time, others, pairs):
     return agreeing
 
 
-def _local_pairs(sample, time, others, size, rate):
+def _local_pairs(sample, time, others):
     """x and y of local coordinates, whose values are too small to be recognised: only in the order x, y, z with time before or after it."""
     first = next((k for k in range(sample.shape[1]) if k != time and not _is_counter(sample[:, k])), 0)
-    in_order = all(k in others for k in range(first, first + 3)) and (time is None or time < first or time == first + 3)
-    unexplained = [k for k in others if k >= first + 3 and size[k] > 360.0]
-    if not in_order or unexplained or not 0.1 < np.hypot(rate[first], rate[first + 1]) < MAX_VEHICLE_SPEED:
+    if not set(range(first, first + 3)) <= set(others) or time is not None and time > first + 3:
         return []
-    return [(first, first + 1, "metres")]
+    unexplained = [k for k in others if k >= first + 3 and _size(sample, k) > 360.0]
+    speed = np.hypot(*(_rate(sample, time, k, 98) for k in (first, first + 1)))
+    return [(first, first + 1, "metres")] if not unexplained and 0.1 < speed < TRAJECTORY.max_vehicle_speed else []
 
 
 def _geographic_pairs(sample, time, others):
@@ -168,33 +144,29 @@ def _geographic_pairs(sample, time, others):
     return pairs
 
 
-def _usual_order(pair, size):
+def _usual_order(sample, a, b):
     """x first, unless the values show that the first is the northing of a zone (easting 100 to 900 km)."""
-    a, b, unit = pair
-    a, b = min(a, b), max(a, b)
-    return (b, a, unit) if size[a] > 1e6 and 1e5 <= size[b] < 9e5 else (a, b, unit)
+    return (b, a, "metres") if _size(sample, a) > 1e6 and 1e5 <= _size(sample, b) < 9e5 else (a, b, "metres")
 
 
-def _longitude_first(pairs, sample):
+def _longitude_first(pairs):
     """The pair whose second column must be the latitude, None where either may be."""
     clear = [pair for pair in pairs if (pair[1], pair[0], pair[2]) not in pairs]
-    if len(clear) == 1:
-        return clear[0]
-    return None
+    return clear[0] if len(clear) == 1 else None
 
 
 def _height_column(sample, time, others, plane, heading):
     """The slowly changing column that follows x and y, otherwise the only one left."""
-    left = [k for k in others if k not in plane and k != heading and np.nanmax(np.abs(sample[:, k])) < MIN_MAP_COORDINATE]
-    slow = [k for k in left if _rate(sample, time, k, 90) < 20.0]
-    following = [k for k in slow if k == max(plane) + 1]
-    if heading == max(plane) + 3 and _after_roll_and_pitch(sample, heading):
+    slow = [k for k in others if k not in (*plane, heading) and np.nanmax(np.abs(sample[:, k])) < TRAJECTORY.min_map_coordinate
+            and _rate(sample, time, k, 90) < 20.0]
+    behind = max(plane) + 1
+    if heading == behind + 2 and _after_roll_and_pitch(sample, heading):
         slow = [k for k in slow if k not in (heading - 1, heading - 2)] or slow  # x, y, roll, pitch, heading, height
-    if following and following[0] in slow:
-        return following[0]
+    if behind in slow:
+        return behind
     # roll and pitch stay near zero, heights seldom do
     high = [k for k in slow if abs(np.nanmedian(sample[:, k])) > 8.0]
-    return slow[0] if len(slow) == 1 else high[0] if len(high) == 1 else None
+    return next((columns[0] for columns in (slow, high) if len(columns) == 1), None)
 
 
 def _after_roll_and_pitch(sample, k):
@@ -202,45 +174,28 @@ def _after_roll_and_pitch(sample, k):
     if k is None or k < 2:
         return False
     before = sample[:, [k - 2, k - 1]]
-    swings = (np.nanmean(before > 0, axis=0) > LEAST_SWING) & (np.nanmean(before < 0, axis=0) > LEAST_SWING)
-    return bool(swings.all() and np.nanmax(np.abs(before)) < MAX_LEAN)
+    swings = (np.nanmean(before > 0, axis=0) > TRAJECTORY.least_swing) & (np.nanmean(before < 0, axis=0) > TRAJECTORY.least_swing)
+    return bool(swings.all() and np.nanmax(np.abs(before)) < TRAJECTORY.max_lean)
 
 
 # Whether numbers can be the headings and coordinates of a drive.
 
-METRES_PER_DEGREE = 111_000.0   # of latitude, rounded
-HEADING_TOLERANCE = 10.0        # degrees between the heading and the course driven, median
-MIN_COURSE_STEP = 1.0           # m of driving between two courses: the positions of a standing vehicle scatter in all directions
-MAX_COURSE_ROWS = 5000          # courses of a drive
 
 
 def rough_metres(x: np.ndarray, y: np.ndarray, crs: str) -> tuple[np.ndarray, np.ndarray]:
-    """(N,) x and y in metres, of longitude and latitude as far as speeds and courses need it.
-
-    Parameters
-    ----------
-    x, y : (N,) in the CRS
-    crs : WKT or "EPSG:n"; "" where unknown, which is taken to be metric
-    """
+    """(N,) x and y in metres, of longitude and latitude as far as speeds and courses need it; an unknown CRS is taken to be metric."""
     if crs and horizontal_part(parse_crs(crs)).is_geographic:
-        return x * np.cos(np.radians(np.nanmedian(y))) * METRES_PER_DEGREE, y * METRES_PER_DEGREE
+        return x * np.cos(np.radians(np.nanmedian(y))) * TRAJECTORY.metres_per_degree, y * TRAJECTORY.metres_per_degree
     return x, y
 
 
 def driven_course(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The course of a drive.
+    """(K,) indices of positions, at least `min_course_step` of driving apart, and (K,) courses there, degrees clockwise from north.
 
-    Parameters
-    ----------
     x, y : (N,) metres, in driving order
-
-    Returns
-    -------
-    rows : (K,) indices of positions, at least MIN_COURSE_STEP of driving apart
-    course : (K,) degrees clockwise from north at these
     """
     driven = np.r_[0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y)))]
-    spacing = max(MIN_COURSE_STEP, driven[-1] / MAX_COURSE_ROWS)
+    spacing = max(TRAJECTORY.min_course_step, driven[-1] / TRAJECTORY.max_course_rows)
     cell = np.floor(driven / spacing)
     rows = np.flatnonzero(np.r_[True, np.diff(cell) > 0])
     if len(rows) < 3:
@@ -255,54 +210,42 @@ def angle_between(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def _heading_disagreement(x: np.ndarray, y: np.ndarray, heading: np.ndarray) -> float | None:
-    """How far a column that may be the heading differs from the course driven.
-
-    x, y : (N,) metres
-    heading : (N,) degrees or radians
-    Returns: Median difference in degrees; None beyond HEADING_TOLERANCE or where the column cannot be an angle
-    """
+    """Median difference, degrees, of a column that may be the heading from the course driven; None beyond the tolerance, or where it is no angle."""
     good = np.isfinite(x) & np.isfinite(y) & np.isfinite(heading)
     rows, course = driven_course(x[good], y[good])
     # The course of a straight drive equals many a constant column: values beyond an angle's range exclude it.
     if len(rows) < 3 or np.abs(heading[good]).max() > 361.0:
         return None
     found = min(float(np.median(angle_between(heading[good][rows] * factor, course))) for factor in (1.0, np.degrees(1.0)))
-    return found if found < HEADING_TOLERANCE else None
+    return found if found < TRAJECTORY.heading_tolerance else None
 
 
 def geographic_unit(lon: np.ndarray, lat: np.ndarray, time: np.ndarray | None = None) -> str:
-    """The unit of two columns that may be the longitude and latitude of a drive.
+    """The unit, "degrees" or "radians", of two columns that may be the longitude and latitude of a drive; "" where they are not.
 
-    They are if their values are in range and change at the speed of a vehicle when taken as angles.
-
-    Parameters
-    ----------
-    lon, lat : (N,) numbers
-    time : (N,) seconds; None where unknown
-
-    Returns
-    -------
-    "degrees" or "radians"; "" where they are not longitude and latitude
+    They are if their values are in range and change at the speed of a vehicle when taken as angles. time : (N,) seconds; None where unknown
     """
     good = np.isfinite(lon) & np.isfinite(lat)
     lon, lat = lon[good], lat[good]
     if len(lon) < 2 or np.abs(lon).max() > 360 or np.abs(lat).max() > 90:
         return ""
-    step = np.hypot(np.diff(lon) * np.cos(np.radians(np.median(lat))), np.diff(lat))
     if time is None:
-        extent = max(np.ptp(lon), np.ptp(lat))
-        if not 0 < extent < 0.5:
-            return ""
-        speed = None
+        speed, drives = np.nan, 0 < max(np.ptp(lon), np.ptp(lat)) < 0.5
     else:
-        seconds = np.diff(np.asarray(time)[good])
-        speed = np.percentile(step[seconds > 0] / seconds[seconds > 0], 95) if (seconds > 0).any() else 0.0
-        if not 0 < speed < 2 * MAX_VEHICLE_SPEED / METRES_PER_DEGREE:
-            return ""
-        # a constant, or the noise of a standard deviation, varies but does not travel
-        if np.hypot(*(np.diff(column).sum() for column in (lon, lat))) < 0.02 * step.sum():
-            return ""
+        speed, drives = _angular_speed(lon, lat, np.asarray(time)[good])
+    if not drives:
+        return ""
     if np.abs(lon).max() > np.pi or np.abs(lat).max() > np.pi / 2:
         return "degrees"
-    in_radians = None if speed is None else speed * METRES_PER_DEGREE * np.degrees(1.0)
-    return "radians" if in_radians is not None and in_radians < MAX_VEHICLE_SPEED else "degrees" if speed is not None else ""
+    if time is None:
+        return ""
+    return "radians" if speed * TRAJECTORY.metres_per_degree * np.degrees(1.0) < TRAJECTORY.max_vehicle_speed else "degrees"
+
+
+def _angular_speed(lon, lat, time):
+    """Degrees per second that nearly all steps keep below, and whether a vehicle can have travelled so."""
+    step, seconds = np.hypot(np.diff(lon) * np.cos(np.radians(np.median(lat))), np.diff(lat)), np.diff(time)
+    speed = np.percentile(step[seconds > 0] / seconds[seconds > 0], 95) if (seconds > 0).any() else 0.0
+    # a constant, or the noise of a standard deviation, varies but does not travel
+    travelled = np.hypot(*(np.diff(column).sum() for column in (lon, lat))) >= 0.02 * step.sum()
+    return speed, travelled and 0 < speed < 2 * TRAJECTORY.max_vehicle_speed / TRAJECTORY.metres_per_degree

@@ -13,7 +13,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 import shapely
 
-from ....core.io.crs import FOOT, SAME_UNIT, US_SURVEY_FOOT, FileUnits, as_in_file, horizontal_part, parse_crs
+from ....core.io.crs import FOOT, US_SURVEY_FOOT, FileUnits, as_in_file, horizontal_part, parse_crs
+from ....core.io.weights import IO
 from ..opendrive.exporter import OpenDriveSettings, draft_opendrive
 from ..opendrive.geometry import PlanElement, PlanView
 from ..opendrive.reference_line import fit_reference
@@ -36,7 +37,7 @@ def landxml_text(alignments: Sequence[Alignment], crs: str = "", name: str = "Ro
     """
     root = XmlElement("LandXML", {"xmlns": NAMESPACE, "version": "1.2", "date": date, "time": time, "language": "English", "readOnly": "false"})
     file_wkt, units = as_in_file(crs)
-    unit = next((name for name, foot in FEET_IN_LANDXML.items() if abs(units.across / foot - 1) < SAME_UNIT), "")
+    unit = next((name for name, foot in FEET_IN_LANDXML.items() if abs(units.across / foot - 1) < IO.same_unit), "")
     if unit:
         crs = file_wkt
         root.add("Units").add("Imperial", areaUnit="squareFoot", linearUnit=unit, volumeUnit="cubicFeet", temperatureUnit="fahrenheit",

@@ -79,8 +79,6 @@ def find_chains(uprights: Uprights, road: int, side: int, max_gap: float, min_le
                 look: Callable[[Gaps], Gaps] | None = None) -> list[Chain]:
     """Chains of the uprights on one side of a road.
 
-    Parameters
-    ----------
     uprights : sorted by slice and offset
     road, side : as in Chain
     max_gap, min_length : m along the road
@@ -223,13 +221,7 @@ class Gaps(Rows):
 
 
 def _gaps_between(uprights: Uprights, ends: list[np.ndarray], begins: list[np.ndarray]) -> Gaps:
-    """Gaps between pieces of lines.
-
-    Parameters
-    ----------
-    uprights : Uprights
-    ends, begins : G times rows of the last uprights before a gap, and of the first after it, in order
-    """
+    """Gaps between pieces of lines."""
     sides = [[_end(uprights[rows]) for rows in some] for some in (ends, begins)]
     d, low, high, points, behind = np.array(sides, float).reshape(2, len(ends), 5).transpose(2, 1, 0)
     before, after = (np.array([rows[k] for rows in some], np.int64) for some, k in ((ends, -1), (begins, 0)))
@@ -297,9 +289,6 @@ def pulses_at(gaps: Gaps, side: int, s: np.ndarray, d: np.ndarray, h: np.ndarray
 def judged(gaps: Gaps, parts: Iterable[tuple[list[int], np.ndarray]]) -> Gaps:
     """Gaps with what pulses tell of them.
 
-    Parameters
-    ----------
-    gaps : Gaps
     parts : rows of some of the gaps and their pulses as `pulses_at` counts them
     """
     length = gaps.last - gaps.first + 1
@@ -407,9 +396,6 @@ def things_of(chain: Chain, min_length: float) -> list[tuple[str, Chain]]:
     The chain is halved where height, thickness and what is seen through it change most, as long as both parts are long enough and differ by more
     than their own scatter; neighbours of one kind are one thing all the same.
 
-    Parameters
-    ----------
-    chain : Chain
     min_length : m along the road of a thing
     """
     cuts = [0, *_cuts(_sections(chain), chain.members.slice, 0, len(chain.members), min_length), len(chain.members)]

@@ -38,16 +38,7 @@ def find_roadside(survey: Survey, layers: BorderLayers = BorderLayers(), setting
                   progress: Progress = Progress()) -> Roadside:
     """Lines of rails, barriers, walls, fences and hedges beside every road.
 
-    Parameters
-    ----------
-    survey : Survey
     layers : BorderLayers; without them what is more than 2 m from a track counts as beside the road
-    settings : RoadsideSettings
-    progress : Progress
-
-    Returns
-    -------
-    Roadside
     """
     borders = RoadBorders(layers, survey.frame, country(settings.country))
     found = Roadside([], {}, {}, survey.frame, survey.crs, settings)
@@ -77,7 +68,7 @@ def find_roadside(survey: Survey, layers: BorderLayers = BorderLayers(), setting
             else:
                 things = along_faces([thing for chain in chains for thing in things_of(chain, settings.min_length)])
             for kind, part in things:
-                found.lines.append(SideLine(kind, part, float(np.median(part.members.foot)), edges.beyond(side, part.s, part.d)))
+                found.lines.append(SideLine(kind, part, float(np.median(part.members.foot))))
     if unknown:
         found.notes.append(f"{unknown:.0f} m of what stands beside the road are as high as the scanner, which sees hardly higher, as heads of many "
                            "beams do. They are left out, for house fronts look the same to it.")

@@ -10,14 +10,14 @@ from scipy.ndimage import grey_opening, median_filter, minimum_filter1d
 
 from ....core.common.arrays import order_by
 from ....core.road.common.pseudo_scanlines import lowest_layers
-from ....core.survey.blocks import DEFAULT_SENSOR_HEIGHT
+from ....core.survey.weights import READING
 from ..surface_grid import CROSS_CELL, SLICE_LENGTH, SurfaceGrid, smoothed, surface_grid
 from .uprights import TOP_BINS, UPRIGHT_SLICE, Uprights
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from ....core.survey.open_survey import Survey
+    from ....core.survey.survey import Survey
 
 GROUND_SLICE, GROUND_CELL = 1.0, 0.20   # m along and across
 STANDING_WIDTH = 2.5      # m: narrower humps of the lowest layer stand on the ground (parked cars, hedges)
@@ -56,8 +56,6 @@ class _LocalGround:
 def local_ground(s: np.ndarray, d: np.ndarray, h: np.ndarray, start: float, slices: int, offsets: tuple[float, float]) -> _LocalGround:
     """The ground under points.
 
-    Parameters
-    ----------
     s, d, h : (N,) m, stations, offsets and heights above the expected road
     start : m, station of the first slice
     slices : number of slices along the road
@@ -176,16 +174,10 @@ def lines_of_sight(survey: Survey, road: int, number: int, s: np.ndarray, d: np.
                    time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Horizontal vectors from points of a pass to the scanner, and how much higher the scanner is.
 
-    Parameters
-    ----------
-    survey : Survey
     road, number : of the road and of the pass
     s, d, h : (N,) m, station, offset, and height above the road
     time : (N,) s
-
-    Returns
-    -------
-    (2, N) m ahead and left along the road, and (N,) m
+    Returns (2, N) m ahead and left along the road, and (N,) m
     """
     driven, line = survey.frame.passes[number], survey.frame.road(road)
     x, y = line.to_map(s, d)
@@ -193,7 +185,7 @@ def lines_of_sight(survey: Survey, road: int, number: int, s: np.ndarray, d: np.
     heading = line.heading(s)
     ahead, left = np.cos(heading), np.sin(heading)
     dx, dy = eye_x - x, eye_y - y
-    return np.stack([dx * ahead + dy * left, dy * ahead - dx * left]), survey.sensor_height.get(number, DEFAULT_SENSOR_HEIGHT) - h
+    return np.stack([dx * ahead + dy * left, dy * ahead - dx * left]), survey.sensor_height.get(number, READING.default_sensor_height) - h
 
 
 def level_views(survey: Survey) -> dict[int, float]:
@@ -202,13 +194,7 @@ def level_views(survey: Survey) -> dict[int, float]:
     In open country nothing stands that a mirror could see above it. That its view ends is told by the ground beside the vehicle, which only a
     mirror sees; without times, which tell where the scanner was, nothing high is taken for a view that ends.
 
-    Parameters
-    ----------
-    survey : Survey
-
-    Returns
-    -------
-    {number of the pass: m above the road, height of its scanner}
+    Returns {number of the pass: m above the road, height of its scanner}
     """
     slopes: dict[int, list[np.ndarray]] = {}
     far: dict[int, list[np.ndarray]] = {}
@@ -224,7 +210,7 @@ def level_views(survey: Survey) -> dict[int, float]:
                 slope = -up / np.maximum(away, 1e-3)
                 slopes.setdefault(number, []).append(slope)
                 far.setdefault(number, []).append(slope[away > LEAST_RANGE])
-    return {number: float(survey.sensor_height.get(number, DEFAULT_SENSOR_HEIGHT)) for number in slopes if _is_level(
+    return {number: float(survey.sensor_height.get(number, READING.default_sensor_height)) for number in slopes if _is_level(
         np.concatenate(far[number]), np.concatenate(slopes[number]), survey.frame.has_time)}
 
 

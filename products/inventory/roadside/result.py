@@ -45,13 +45,11 @@ class SideLine:
     kind : guard_rail, barrier, wall, fence, hedge or gutter
     chain : Chain
     foot : m, lower end of what is seen of it above the ground
-    from_edge : m from the carriageway's edge, outward positive; NaN where no layer says where it is
     """
 
     kind: str
     chain: Chain
     foot: float
-    from_edge: float
 
 
 @dataclass
@@ -75,13 +73,7 @@ class Roadside:
 def told_once(found: Roadside) -> tuple[list[SideLine], dict]:
     """Lines and poles of all roads without those parts that a road nearer to them has too.
 
-    Parameters
-    ----------
-    found : Roadside
-
-    Returns
-    -------
-    lines, in the order they had, and poles by road
+    Returns lines, in the order they had, and poles by road
     """
     return _lines(found), _poles(found)
 
@@ -133,13 +125,8 @@ def _away(found, road, s, d, side):
 def along_faces(things: list[tuple[str, Chain]]) -> list[tuple[str, Chain]]:
     """Things of which those of one kind that run beside each other, nearer than two things stand, are one.
 
-    Parameters
-    ----------
     things : kinds and chains of one side of a road
-
-    Returns
-    -------
-    The same, in order of station; where two are joined, the uprights nearer to the road are kept
+    Returns the same, in order of station; where two are joined, the uprights nearer to the road are kept
     """
     found: list[tuple[str, Chain]] = []
     for kind, chain in sorted(things, key=lambda thing: int(thing[1].members.slice[0])):

@@ -263,8 +263,6 @@ class Pole:
 def find_poles(s: np.ndarray, d: np.ndarray, above: np.ndarray, ground: np.ndarray, own: tuple[float, float], min_height: float) -> list[Pole]:
     """Poles, signs and trunks of a stretch of road.
 
-    Parameters
-    ----------
     s, d : (N,) m, stations and offsets of points beside the carriageway, with a margin before and after the stretch
     above, ground : (N,) m, heights above the ground, and local z of it
     own : stations (m) between which the middle of a pole must lie: a pole belongs to one stretch

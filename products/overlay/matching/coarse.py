@@ -28,8 +28,6 @@ _FINER = (0.5, 0.25)      # of a step, tried about each place in the second roun
 class Place(NamedTuple):
     """A similarity from the photo's middle to the map.
 
-    Attributes
-    ----------
     x, y : m, local, of the photo's middle
     turn : radians, counter-clockwise, from the rows of the photo to east
     size : m of a pixel
@@ -49,8 +47,6 @@ class Place(NamedTuple):
 class Bounds:
     """What is tried.
 
-    Attributes
-    ----------
     x, y : m, local, about where the photo's middle lies
     reach : m, how far off that may be; infinite where nothing is known
     turns : (from, to) radians
@@ -79,7 +75,6 @@ def find_places(photo: np.ndarray, paint: np.ndarray, cell: float, bounds: Bound
     cell : m, pixel of the intensity image
     bounds : Bounds, of the pixels of `photo`
     sign : 1, or -1 where paint is darker than the road
-    progress : Progress
 
     Returns
     -------
@@ -218,8 +213,6 @@ def paint_about(image: SourceImage, intensity: IntensityImage, rough: RoughPlace
 
     Parameters
     ----------
-    image : SourceImage
-    intensity : IntensityImage
     rough : RoughPlace in its CRS
 
     Returns

@@ -17,8 +17,6 @@ _LEAST_STRUCTURE = 0.02   # mean square contrast of a patch, below which there i
 class Found(NamedTuple):
     """Patches found again.
 
-    Attributes
-    ----------
     x, y : (N,) m, local, middles of the patches
     dx, dy : (N,) m, from there to where the drawn photo has them
     score : (N,) correlation, 0 to 1
@@ -70,13 +68,8 @@ def correlation_maps(paint: np.ndarray, drawn: np.ndarray, cell: float, x: np.nd
                      search: float) -> Iterator[np.ndarray | None]:
     """The correlation of each patch with the photo, for every shift by whole cells.
 
-    Parameters
-    ----------
     as of `find_patches`
-
-    Returns
-    -------
-    iterator of (2 n + 1, 2 n + 1) float32, the shift by nothing in the middle; None where a patch holds no paint or the photo is empty
+    Returns iterator of (2 n + 1, 2 n + 1) float32, the shift by nothing in the middle; None where a patch holds no paint or the photo is empty
     """
     reach, margin = max(2, round(half / cell)), max(2, round(search / cell))
     edge = reach + margin + 1

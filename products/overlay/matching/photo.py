@@ -21,8 +21,6 @@ _LUMINANCE = (0.299, 0.587, 0.114)  # of red, green and blue (ITU-R BT.601)
 class SurveyedPaint:
     """Contrast of a part of the intensity image, north up.
 
-    Attributes
-    ----------
     contrast : (H, W) float32, 0 where unknown
     values : (H, W) float32 intensity, NaN where unknown
     cell : m
@@ -45,8 +43,6 @@ class SurveyedPaint:
 class Photo:
     """Contrast of the photo.
 
-    Attributes
-    ----------
     contrast : (H, W) float32
     luminance : (H, W) float32, NaN where there is none
     factor : pixels of the image side by side in a pixel here
@@ -60,14 +56,8 @@ class Photo:
 def read_paint(image: IntensityImage, box: tuple[float, float, float, float] | None = None) -> SurveyedPaint:
     """The part of an intensity image within a box of map coordinates, its cells made no finer than FINEST_CELL.
 
-    Parameters
-    ----------
-    image : IntensityImage
     box : west, south, east, north, m; None: the whole image
-
-    Returns
-    -------
-    SurveyedPaint; empty where the box lies outside the image
+    Returns SurveyedPaint; empty where the box lies outside the image
     """
     cell = image.cell_size
     first, last = (0, 0), (image.width, image.height)
@@ -84,7 +74,7 @@ def read_paint(image: IntensityImage, box: tuple[float, float, float, float] | N
         pixels = image.read_pixels(first[0], first[1] + row * step, values.shape[1] * step, count * step)
         values[row:row + count] = pixels if step == 1 else _means(pixels, step)
     left, top = image.geotransform[0] + first[0] * cell, image.geotransform[3] - first[1] * cell
-    return SurveyedPaint(_paint_contrast(values, cell * step)[0], values, cell * step, left, top)
+    return SurveyedPaint(_paint_contrast(values, cell * step), values, cell * step, left, top)
 
 
 def _means(pixels, step):
@@ -102,13 +92,8 @@ def read_photo(image: SourceImage, size: float, cell: float) -> Photo:
 
     Parameters
     ----------
-    image : SourceImage
     size : m of a pixel, roughly
     cell : m of a cell of the intensity image
-
-    Returns
-    -------
-    Photo
 
     Raises
     ------
@@ -138,7 +123,7 @@ def read_photo(image: SourceImage, size: float, cell: float) -> Photo:
     except RuntimeError as problem:
         raise RoadExtractionError(f"{image.path} cannot be read as an image ({problem}). Export it anew as a TIFF or JPEG.") from problem
     luminance[(seen < 128) | ~np.isfinite(luminance)] = np.nan
-    return Photo(_paint_contrast(luminance, size * factor)[0], luminance, factor)
+    return Photo(_paint_contrast(luminance, size * factor), luminance, factor)
 
 
 # Paint against its surroundings, made comparable between a photo and an intensity image.
@@ -149,29 +134,18 @@ _DARKEST = 0.1       # of the range of values, added before the logarithm: black
 _RANGE = (1.0, 99.5)  # percentiles of the values taken for black and white
 
 
-def _paint_contrast(values: np.ndarray, pixel_size: float) -> tuple[np.ndarray, np.ndarray]:
-    """How much brighter each pixel is than its surroundings, as a logarithm, so that sun and shadow look alike.
-
-    Parameters
-    ----------
-    values : (H, W) float, NaN where unknown
-    pixel_size : m
-
-    Returns
-    -------
-    contrast : (H, W) float32, -1 to 1; 0 where the value is unknown
-    known : (H, W) bool
-    """
+def _paint_contrast(values: np.ndarray, pixel_size: float) -> np.ndarray:
+    """How much brighter each pixel is than its surroundings, -1 to 1, as a logarithm, so that sun and shadow look alike; 0 where unknown."""
     known = np.isfinite(values)
     if not known.any():
-        return np.zeros(values.shape, np.float32), known
+        return np.zeros(values.shape, np.float32)
     low, high = np.percentile(values[known][:: max(1, int(known.sum()) // 1_000_000)], _RANGE)
     share = (np.where(known, values, low) - low) / max(float(high - low), 1e-9)
     logarithm = np.log(np.clip(share, 0.0, 1.0) + _DARKEST).astype(np.float32)
     weight = known.astype(np.float32)
     around = SURROUNDINGS / pixel_size
     mean = _smooth(logarithm * weight, around) / np.maximum(_smooth(weight, around), 1e-3)
-    return np.clip((logarithm - mean) / FULL_CONTRAST, -1.0, 1.0) * weight, known
+    return np.clip((logarithm - mean) / FULL_CONTRAST, -1.0, 1.0) * weight
 
 
 def _smooth(values, deviation):
@@ -188,14 +162,9 @@ def _smooth(values, deviation):
 def reduced(contrast: np.ndarray, factor: int) -> np.ndarray:
     """The contrast in pixels that are `factor` times as wide, each the mean of those it covers.
 
-    Parameters
-    ----------
     contrast : (H, W)
     factor : at least 1; the last columns and rows that fill no pixel are left out
-
-    Returns
-    -------
-    (H // factor, W // factor) float32
+    Returns (H // factor, W // factor) float32
     """
     if factor == 1:
         return contrast

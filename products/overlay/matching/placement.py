@@ -29,8 +29,6 @@ _NODE = 16  # cells between places whose pixels are computed; between them they 
 class Placement:
     """From local map coordinates to pixel and line.
 
-    Attributes
-    ----------
     polynomial : ImagePolynomial whose input is x and y, m, and whose output is pixel and line
     sign : -1 where paint is darker than the road
     """
@@ -58,13 +56,8 @@ class Placement:
     def metres(self, x: np.ndarray, y: np.ndarray, pixel: np.ndarray, line: np.ndarray) -> np.ndarray:
         """How far on the map pixels lie from those of places.
 
-        Parameters
-        ----------
         x, y, pixel, line : (N,)
-
-        Returns
-        -------
-        (N, 2) m, to first order
+        Returns (N, 2) m, to first order
         """
         at = np.column_stack(self.pixels(x, y))
         slope = self.polynomial.jacobian(x, y)
@@ -212,15 +205,10 @@ def highest_order(x: np.ndarray, y: np.ndarray, most: int) -> int:
 def left_out_residuals(x: np.ndarray, y: np.ndarray, pixel: np.ndarray, line: np.ndarray, used: np.ndarray, order: int) -> np.ndarray:
     """Residuals of pairs on the map against a polynomial from pixel and line to the map that was fitted without each.
 
-    Parameters
-    ----------
     x, y, pixel, line : (N,)
     used : (N,) bool, pairs that are fitted
     order : of the polynomial
-
-    Returns
-    -------
-    (N,) m
+    Returns (N,) m
     """
     fit = fit_image_polynomial(pixel[used], line[used], x[used], y[used], order)
     away = np.column_stack([x, y]) - np.column_stack(fit.polynomial.to_map(pixel, line))

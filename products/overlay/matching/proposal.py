@@ -22,8 +22,6 @@ from .placement import Placement
 class ProposalSettings:
     """How pairs are found and accepted.
 
-    Attributes
-    ----------
     search : m, how far off the rough position may be
     tolerance : m, largest distance of a pair that is accepted from where the others place it
     min_score : smallest correlation of the two cut-outs of a pair that is accepted
@@ -46,8 +44,6 @@ class ProposalSettings:
 class Proposal:
     """N pairs of places, in the image and on the map, the most certain first.
 
-    Attributes
-    ----------
     image, intensity : as given
     settings : ProposalSettings
     rough : RoughPlace
@@ -123,8 +119,6 @@ _UNLIKE = 0.4         # correlation below which a corner is not what lies there
 class _Rival(NamedTuple):
     """Another place that the paint might allow.
 
-    Attributes
-    ----------
     dx, dy : m, from the place
     votes_for, votes_against : corners that speak for the place, and for the rival
     """
@@ -144,16 +138,8 @@ class _Rival(NamedTuple):
 def corner_scores(placement: Placement, paint: SurveyedPaint, photo: Photo, x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """How well the photo fits about corners of paint.
 
-    Parameters
-    ----------
-    placement : Placement
-    paint : SurveyedPaint
-    photo : Photo
     x, y : (N,) m, local
-
-    Returns
-    -------
-    (N,) correlation of the best place within some decimetres; NaN outside the photo
+    Returns (N,) correlation of the best place within some decimetres; NaN outside the photo
     """
     maps = _maps(placement, paint, photo, x, y, _OFF)
     return np.array([np.nan if one is None else one.max() for one in maps])
@@ -162,13 +148,8 @@ def corner_scores(placement: Placement, paint: SurveyedPaint, photo: Photo, x: n
 def nearby_rival(placement: Placement, paint: SurveyedPaint, photo: Photo, x: np.ndarray, y: np.ndarray) -> _Rival | None:
     """The shift by some metres that the corners allow best, besides none at all.
 
-    Parameters
-    ----------
     as of `corner_scores`
-
-    Returns
-    -------
-    _Rival, None where no corner lies in the photo
+    Returns _Rival, None where no corner lies in the photo
     """
     near = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * round(_OFF / _CELL) + 1,) * 2)
     maps = [cv2.dilate(one, near) for one in _maps(placement, paint, photo, x, y, _AROUND) if one is not None]
@@ -187,8 +168,6 @@ def nearby_rival(placement: Placement, paint: SurveyedPaint, photo: Photo, x: np
 def rival_elsewhere(best: np.ndarray, other: np.ndarray, shift: tuple[float, float]) -> _Rival:
     """A place against another one that lies too far away to be compared corner by corner: by the corners that look unlike at each.
 
-    Parameters
-    ----------
     best, other : (N,) `corner_scores` of the two placements, NaN outside the photo
     shift : m, from the one to the other
     """

@@ -34,15 +34,8 @@ def propose_control_points(image: SourceImage, intensity: IntensityImage, rough:
 
     Parameters
     ----------
-    image : SourceImage
     intensity : IntensityImage in a projected CRS in metres
     rough : RoughPlace in that CRS
-    settings : ProposalSettings
-    progress : Progress
-
-    Returns
-    -------
-    Proposal
 
     Raises
     ------
@@ -176,17 +169,6 @@ _BORDER = 0.3        # m from where the intensity image ends
 def _paint_corners(paint: np.ndarray, known: np.ndarray, cell: float, count: int) -> tuple[np.ndarray, np.ndarray]:
     """Places where paint has edges in two directions, spread over the image.
 
-    Parameters
-    ----------
-    paint : (H, W) contrast, its corner at local 0, 0
-    known : (H, W) bool
-    cell : m
-    count : most corners
-
-    Returns
-    -------
-    x, y : (N,) m, local, the strongest first
-
     References
     ----------
     .. [1] Shi and Tomasi (1994), Good features to track, CVPR: the smaller eigenvalue of the structure tensor.
@@ -213,19 +195,7 @@ _MOST_SECOND_OF_PATCHES = 0.8     # share of the best correlation that another p
 
 
 def _align(placement: Placement, paint: SurveyedPaint, photo: Photo, progress: Progress = Progress()) -> Placement | None:
-    """Follow the photo's distortion from patches of the intensity image that are found in it, in ever smaller ones.
-
-    Parameters
-    ----------
-    placement : Placement, right to some metres
-    paint : SurveyedPaint
-    photo : Photo
-    progress : Progress
-
-    Returns
-    -------
-    Placement of order 2, or 1 where few patches hold paint; None where they do not agree
-    """
+    """Follow the photo's distortion from patches of the intensity image that are found in it, in ever smaller ones; None where they do not agree."""
     for half, search, tolerance, cell in _ALIGNING_ROUNDS:
         progress.check_cancelled()
         factor = max(1, round(cell / paint.cell))
@@ -261,8 +231,6 @@ WEAK, REPEATS, AWAY = "looks different", "repeats nearby", "does not fit the oth
 class Pairs(NamedTuple):
     """N corners of paint and where the image has them.
 
-    Attributes
-    ----------
     placement : Placement that those that agree were fitted to
     order : of the polynomial that the residuals belong to
     x, y : (N,) m, local
@@ -284,20 +252,7 @@ class Pairs(NamedTuple):
 
 
 def _pair_corners(placement: Placement, paint: SurveyedPaint, photo: Photo, x: np.ndarray, y: np.ndarray, settings: ProposalSettings) -> Pairs | None:
-    """Find corners of paint in a photo that lies on the map to some decimetres.
-
-    Parameters
-    ----------
-    placement : Placement of the photo
-    paint : SurveyedPaint
-    photo : Photo
-    x, y : (M,) m, corners of paint, local
-    settings : ProposalSettings
-
-    Returns
-    -------
-    Pairs; None where too few agree on one placement
-    """
+    """Corners of paint found in a photo that lies on the map to some decimetres; None where too few agree on one placement."""
     for search, times in _ROUNDS:
         drawn = placement.sign * placement.drawn(photo.contrast, photo, paint.cell, paint.contrast.shape,
                                                  reduction=placement.reduction(photo, paint.cell))

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.io.geotiff import IntensityImage, new_geotiff
-from lanewright.core.io.local_files import ABANDONED_TIME
+from lanewright.core.io.weights import IO
 
 SIDE = 600   # px, more than one tile
 PLACE = (500_000.0, 0.04, 0.0, 5_500_000.0, 0.0, -0.04)
@@ -50,7 +50,7 @@ def test_a_run_that_fails_leaves_the_file_of_another_that_is_at_work(tmp_path):
 def test_what_a_killed_run_left_is_removed_a_day_later_and_what_others_write_stays(tmp_path):
     path, other = tmp_path / "street [1].tif", tmp_path / "street 1.tif"
     left = []
-    for target, age in ((path, ABANDONED_TIME + 60), (path, ABANDONED_TIME - 60), (other, ABANDONED_TIME + 60)):
+    for target, age in ((path, IO.abandoned_time + 60), (path, IO.abandoned_time - 60), (other, IO.abandoned_time + 60)):
         with writer(target):
             left.append(next(file for file in tmp_path.iterdir() if file.name not in {path.name, other.name} and file not in left))
         left[-1].write_bytes(b"half an image")

@@ -13,7 +13,8 @@ from lanewright.core.road.curb_returns.main_curbs import KnownPlaces, SearchLimi
 from lanewright.core.road.edges import corner_edges, road_edges
 from lanewright.core.road.edges.road_edges import EdgePiece, joined_pieces
 from lanewright.core.road.surface import ground_grid, pavement_edge, pavement_lines
-from lanewright.core.road.surface.ground_grid import WINDOW_ROWS, MeasuredGround
+from lanewright.core.road.surface.ground_grid import MeasuredGround
+from lanewright.core.road.weights import SURFACE
 from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.trajectory.trajectory import Trajectory
 
@@ -218,13 +219,13 @@ def test_the_ground_is_measured_once_for_edges_and_surface(monkeypatch):
         return plain(source, windows, road)
 
     monkeypatch.setattr(ground_grid, "ground_of_windows", counted)
-    ground, rows = MeasuredGround(survey), [WINDOW_ROWS * k for k in range(5)]
+    ground, rows = MeasuredGround(survey), [SURFACE.window_rows * k for k in range(5)]
     cells, none = ground.windows(0, rows, [False] * 5)
     assert none is None and count[0] == 5 and np.isfinite(cells.height).any()
     _, profiles = ground.windows(0, rows, [True, False, True, True, False])
     assert count[0] == 8 and len(profiles.stations) == 15
     again, more = ground.windows(0, rows[1:], [False, True, True, False])
     assert count[0] == 8
-    np.testing.assert_array_equal(again.height, cells.height[WINDOW_ROWS:])
+    np.testing.assert_array_equal(again.height, cells.height[SURFACE.window_rows:])
     np.testing.assert_array_equal(more.height, profiles.height[5:])
     np.testing.assert_array_equal(more.stations, profiles.stations[5:])

@@ -1,5 +1,7 @@
 """Ground beyond the corridor, which shows how side streets go on."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from drives import ahead, chain, drive, surveyed_points, write_cloud
@@ -56,7 +58,7 @@ def test_it_depends_neither_on_the_order_of_points_nor_on_blocks_sections_and_me
 
 
 def test_worker_processes_and_a_work_folder_keep_what_threads_keep(arm, tmp_path, monkeypatch):
-    monkeypatch.setattr(survey_reader, "PART_POINTS", 2000)
+    monkeypatch.setattr(survey_reader, "READING", replace(survey_reader.READING, part_points=2000))
     trajectory, points, *_ = arm
     path = cloud(tmp_path, points)
     here, settings, work = ground_beyond(open_survey([path], trajectory)), SurveySettings(block=1500), str(tmp_path / "work")

@@ -26,8 +26,8 @@ SETTINGS = SurveySettings(block=700)   # points
 
 @pytest.fixture(autouse=True)
 def small_parts(monkeypatch):
-    monkeypatch.setattr(survey_reader, "PART_POINTS", 2000)
-    monkeypatch.setattr(survey_reader, "HEIGHT_SAMPLES", 20)   # the first blocks are read by the caller
+    # few samples of the height: only the first blocks are read by the caller
+    monkeypatch.setattr(survey_reader, "READING", replace(survey_reader.READING, part_points=2000, height_samples=20))
     monkeypatch.setattr(ordering, "STRETCH_POINTS", 2000)
 
 
@@ -69,7 +69,7 @@ def known(survey):
 @pytest.fixture(scope="module")
 def by_threads(street):
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(survey_reader, "HEIGHT_SAMPLES", 20)
+        patch.setattr(survey_reader, "READING", replace(survey_reader.READING, height_samples=20))
         return opened(street)
 
 
@@ -87,7 +87,7 @@ def test_worker_processes_read_what_threads_read_and_leave_nothing(street, by_th
 
 @pytest.mark.parametrize("block, points", [(700, 700), (997, 10**6), (10**6, 1), (40, 500)])
 def test_neither_blocks_nor_parts_change_a_point(street, by_threads, python, monkeypatch, block, points):
-    monkeypatch.setattr(survey_reader, "PART_POINTS", points)
+    monkeypatch.setattr(survey_reader, "READING", replace(survey_reader.READING, part_points=points))
     assert opened(street, WorkerProcesses(python, 1), settings=SurveySettings(block=block)) == by_threads
 
 

@@ -5,7 +5,7 @@ from datetime import datetime, timezone
 
 import pytest
 from lanewright.algorithms.provenance import Provenance
-from lanewright.processing_provider.results.layer_tree import place_layer, replaces_last_run, set_replaces_last_run
+from lanewright.processing_provider.results.layer_tree import REPLACES_LAST_RUN, place_layer
 from lanewright.processing_provider.results.runs import Run, run_of, survey_name
 from qgis.core import QgsFeature, QgsGeometry, QgsProcessingContext, QgsVectorLayer
 
@@ -13,7 +13,7 @@ from qgis.core import QgsFeature, QgsGeometry, QgsProcessingContext, QgsVectorLa
 @pytest.fixture(autouse=True)
 def runs_stay_beside_each_other(qgis_app):
     yield
-    set_replaces_last_run(False)
+    REPLACES_LAST_RUN.keep(False)
 
 
 def added(project, run, output, name="layer", at=0.0):
@@ -72,14 +72,14 @@ def test_runs_stay_beside_each_other_unless_the_last_is_to_be_replaced(project):
     for run in runs[:2]:
         added(project, run, "ROAD_EDGES"), added(project, run, "DRIVING_LINES")
     assert len(names(project)) == 2
-    set_replaces_last_run(True)
-    assert replaces_last_run()
+    REPLACES_LAST_RUN.keep(True)
+    assert REPLACES_LAST_RUN.holds()
     added(project, runs[2], "ROAD_EDGES", "edges"), added(project, runs[2], "DRIVING_LINES", "lanes")
     assert names(project) == {"Lanewright – B12, 10": ["lanes", "edges"], "Lanewright – B12, 8": ["layer", "layer"]}
 
 
 def test_only_results_of_the_same_survey_and_algorithm_are_replaced_and_never_the_users_layers(project):
-    set_replaces_last_run(True)
+    REPLACES_LAST_RUN.keep(True)
     monday, tuesday = (run_in(f"Lanewright – {day}", day) for day in ("monday", "tuesday"))
     mine = QgsVectorLayer("Point?crs=EPSG:32650", "mine", "memory")
     added(project, monday, "ROAD_EDGES")

@@ -25,6 +25,12 @@ SCENES = {
 }
 
 
+def from_edge(found, line):
+    """m of a line from the carriageway's edge, outward positive."""
+    return found.edges[line.chain.road].beyond(line.chain.side, line.chain.s, line.chain.d)
+
+
+
 def found_in(survey, edges, **settings):
     return find_roadside(survey, BorderLayers(edges=edges), RoadsideSettings(**settings))
 
@@ -255,10 +261,11 @@ def test_what_only_hangs_beside_the_road_is_no_line():
 
 def test_a_gutter_lies_where_the_road_falls_to_and_not_on_its_higher_side():
     survey, edges = road_with((), crown=False, crossfall=0.03)
-    gutters = [line for line in found_in(survey, edges).lines if line.kind == "gutter"]
+    found = found_in(survey, edges)
+    gutters = [line for line in found.lines if line.kind == "gutter"]
     assert {line.chain.side for line in gutters} == {-1}
     assert sum(line.chain.length for line in gutters) > 0.9 * LENGTH
-    assert abs(gutters[0].from_edge) < 0.1 and np.median(gutters[0].chain.ground) + 100 - GROUND < 5
+    assert abs(from_edge(found, gutters[0])) < 0.1 and np.median(gutters[0].chain.ground) + 100 - GROUND < 5
 
 
 def test_a_crowned_road_has_a_gutter_on_both_sides():
@@ -333,7 +340,7 @@ def test_without_layers_it_says_that_parked_cars_are_not_known():
     survey, _ = road_with((Thing("wall", 5.0),))
     found = find_roadside(survey)
     assert any("parked cars too" in note for note in found.notes)
-    assert {line.kind for line in found.lines} == {"wall"} and np.isnan(found.lines[0].from_edge)
+    assert {line.kind for line in found.lines} == {"wall"} and np.isnan(from_edge(found, found.lines[0]))
     assert roadside_to_features(found)[0].rows[0]["edge_m"] is None
 
 

@@ -17,7 +17,7 @@ def rail(road, left, first=0.0, last=LENGTH, kind="guard_rail"):
     number = np.arange(int(first / UPRIGHT_SLICE), int(last / UPRIGHT_SLICE))
     same = np.ones(len(number))
     members = Uprights(number, left * same, 0 * same, 0.75 * same, 0.4 * same, np.ones((len(number), LOW_BINS), bool), *[same] * 4, same < 0, same)
-    return SideLine(kind, Chain(road, 1 if left > 0 else -1, members, left * same, 0 * same, 0.75 * same, 0 * number), 0.4, abs(left) - HALF)
+    return SideLine(kind, Chain(road, 1 if left > 0 else -1, members, left * same, 0 * same, 0.75 * same, 0 * number), 0.4)
 
 
 def seen(*lines, poles=None):

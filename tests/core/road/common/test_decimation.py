@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 from curbed_streets import driven, survey_of
-from lanewright.core.road.common.decimation import LEVEL_CELL_STD, POINTS_PER_LEVEL_CELL, PointDecimation
+from lanewright.core.road.common.decimation import PointDecimation
+from lanewright.core.road.weights import CURBS
 from lanewright.core.survey.store.records import COORDINATE_SCALE
 
 WIDTH, SPACING = 0.25, 0.025
@@ -35,8 +36,8 @@ def in_cells(points):
 
 def test_of_level_ground_a_few_points_of_every_cell_are_taken():
     survey = survey_of(crowded(), driven(20.0))
-    assert np.median(in_cells(taken(survey, points_per_cell=None))) > 4 * POINTS_PER_LEVEL_CELL
-    assert abs(np.mean(in_cells(taken(survey))) - POINTS_PER_LEVEL_CELL) < 0.1 * POINTS_PER_LEVEL_CELL
+    assert np.median(in_cells(taken(survey, points_per_cell=None))) > 4 * CURBS.points_per_level_cell
+    assert abs(np.mean(in_cells(taken(survey))) - CURBS.points_per_level_cell) < 0.1 * CURBS.points_per_level_cell
     assert in_cells(taken(survey)).min() > 0
 
 
@@ -51,7 +52,7 @@ def test_a_curbs_face_keeps_its_points():
 
 
 def test_what_a_noisy_scanner_saw_is_taken_as_far_as_it_tells():
-    survey = survey_of(crowded(noise=2.5 * LEVEL_CELL_STD), driven(20.0))
+    survey = survey_of(crowded(noise=2.5 * CURBS.level_cell_std), driven(20.0))
     assert np.mean(in_cells(taken(survey))) > 0.9 * np.mean(np.minimum(in_cells(taken(survey, points_per_cell=None)), 60))
 
 

@@ -8,11 +8,12 @@ import shapely
 from lanewright.core.road.common.curb_limits import CurbSettings
 from lanewright.core.road.common.curb_points import CurbPoints, curb_points_at
 from lanewright.core.road.common.decimation import PointDecimation
-from lanewright.core.road.common.occlusion import OCCLUSION_CELL, OcclusionGrid
+from lanewright.core.road.common.occlusion import OcclusionGrid
 from lanewright.core.road.common.sides import expected_height
 from lanewright.core.road.curb_returns.detect import with_curb_returns
 from lanewright.core.road.curb_returns.islands import island_stretches
 from lanewright.core.road.profiles.detect import detect_curbs
+from lanewright.core.road.weights import CURBS
 from street_plans import LENGTH, scan, sidewalks, survey_along
 
 ISLAND, CURB = (10.0, 30.0, 4.0, 6.0), 9.0     # m: an island from 10 to 30 along and 4 to 6 across, the curb of the road
@@ -22,7 +23,7 @@ HEIGHT = 0.15
 def beside(slope=0.0, behind=0.0, curb=CURB):
     """Ground about the island, `behind` it as high above the plane of the road as that, and about the curb."""
     grid = OcclusionGrid(0.25, 0, 160, 20.0)
-    s, u = (np.arange(160) + 0.5) * 0.25, (np.arange(grid.cells) + 0.5) * OCCLUSION_CELL
+    s, u = (np.arange(160) + 0.5) * 0.25, (np.arange(grid.cells) + 0.5) * CURBS.occlusion_cell
     along = (s > ISLAND[0]) & (s < ISLAND[1])
     top = along[:, None] & (u > ISLAND[2]) & (u < ISLAND[3])
     grid.ground[:] = slope * u + np.where(top | (u > curb), HEIGHT, 0.0) + np.where(along[:, None] & (u >= ISLAND[3]) & (u < curb), behind, 0.0)
@@ -42,7 +43,7 @@ def stretches(grid, slope=0.0, before=CURB, after=CURB):
 def test_an_island_has_road_behind_it_and_curbs_farther_out_before_and_after(slope):
     (first, last, away), = stretches(beside(slope), slope)
     assert (first, last) == (10.5, 29.5)
-    assert away == pytest.approx(ISLAND[3] - ISLAND[2] + 0.5 * OCCLUSION_CELL)
+    assert away == pytest.approx(ISLAND[3] - ISLAND[2] + 0.5 * CURBS.occlusion_cell)
 
 
 def test_a_sidewalk_that_is_wider_along_a_stretch_is_none():

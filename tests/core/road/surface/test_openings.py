@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 from lanewright.core.road.surface.extract import opened_limits
-from lanewright.core.road.surface.ground_grid import COLUMN_WIDTH, ROW_LENGTH
+from lanewright.core.road.weights import SURFACE
 
-ROWS, OFFSETS = 80, (np.arange(80) + 0.5) * COLUMN_WIDTH   # 40 m of road, 20 m outward
-STATIONS = (np.arange(ROWS) + 0.5) * ROW_LENGTH
+ROWS, OFFSETS = 80, (np.arange(80) + 0.5) * SURFACE.column_width   # 40 m of road, 20 m outward
+STATIONS = (np.arange(ROWS) + 0.5) * SURFACE.row_length
 CURB = 5.0                                                 # m from the reference line
 FARTHEST = np.full(ROWS, 17.0)
 
@@ -36,7 +36,7 @@ def limits(height, ground, opening, driven=None):
 def test_the_road_goes_on_into_a_street_as_far_as_it_was_scanned(scanned):
     found = limits(*place((14, 24), scanned=scanned), (14, 24))
     street = (STATIONS > 15) & (STATIONS < 23)
-    np.testing.assert_allclose(found[street], scanned, atol=COLUMN_WIDTH)
+    np.testing.assert_allclose(found[street], scanned, atol=SURFACE.column_width)
     np.testing.assert_array_equal(found[(STATIONS < 14) | (STATIONS > 24)], CURB)
 
 

@@ -8,7 +8,8 @@ from lanewright.core.road.edges.fit import EdgeSettings
 from lanewright.core.road.edges.road_edges import EdgePiece, RoadEdges, joined_pieces
 from lanewright.core.road.surface import pavement_lines
 from lanewright.core.road.surface.extract import extract_road_surface
-from lanewright.core.road.surface.pavement_lines import AGREEING_LENGTH, with_pavement_edges
+from lanewright.core.road.surface.pavement_lines import with_pavement_edges
+from lanewright.core.road.weights import SURFACE
 from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.open_survey import Survey
 from lanewright.core.survey.store.records import SURVEY_POINT, to_units
@@ -269,7 +270,8 @@ def test_an_edge_of_the_pavement_does_not_run_across_a_curb(plain):
     drawn = with_pavement_edges(survey, curb_across(survey, (30.0, 1.5), (30.0, 8.0)))
     left = [places[:, 0] for (_, places), side, what in zip(on_map(drawn, survey), drawn.side, drawn.what) if (side, what) == ("left", "pavement")]
     assert len(left) == 2
-    assert left[0].max() == pytest.approx(30.0 - AGREEING_LENGTH, abs=1.0) and left[1].min() == pytest.approx(30.0 + AGREEING_LENGTH, abs=1.0)
+    assert left[0].max() == pytest.approx(30.0 - SURFACE.agreeing_length, abs=1.0)
+    assert left[1].min() == pytest.approx(30.0 + SURFACE.agreeing_length, abs=1.0)
     right = drawn[drawn.side == "right"]
     assert len(right) == 1 and right.length[0] > LENGTH - 5.0
 

@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
-from lanewright.core.road.surface.ground_grid import COLUMN_WIDTH, ROW_LENGTH, GroundCells
+from lanewright.core.road.surface.ground_grid import GroundCells
 from lanewright.core.road.surface.pavement_edge import Carriageway
 from lanewright.core.road.surface.road_points import points_on_road
+from lanewright.core.road.weights import SURFACE
 from lanewright.core.survey.store.columns import Columns
 from lanewright.core.survey.store.records import SURVEY_POINT, Points, to_units
 
@@ -18,14 +19,14 @@ def carriageway(rows, seed=5):
     left, right = 4 + rng.normal(0, 0.3, rows), -5 + rng.normal(0, 0.3, rows)
     left[rng.random(rows) < 0.2] = np.nan
     none = np.empty((rows, 0))
-    cells = GroundCells(FIRST_ROW, FIRST_COLUMN, ROW_LENGTH, COLUMN_WIDTH, height.astype(np.float32), none, none, none, none)
+    cells = GroundCells(FIRST_ROW, FIRST_COLUMN, SURFACE.row_length, SURFACE.column_width, height.astype(np.float32), none, none, none, none)
     return Carriageway(cells, height.astype(np.float32), none, right, left, none, none, TOLERANCE)
 
 
 def points_about(road, count=40_000, seed=6):
     rng = np.random.default_rng(seed)
     records = np.zeros(count, SURVEY_POINT)
-    s = np.sort(rng.uniform(FIRST_ROW * ROW_LENGTH - 1, (FIRST_ROW + len(road.height)) * ROW_LENGTH + 1, count))
+    s = np.sort(rng.uniform(FIRST_ROW * SURFACE.row_length - 1, (FIRST_ROW + len(road.height)) * SURFACE.row_length + 1, count))
     d = rng.uniform(-11, 11, count)
     records["s"], records["d"] = to_units(s), to_units(d)
     records["z"] = to_units(height_at(road, s, d) + rng.choice([0.0, 0.0, 1.0], count) + rng.normal(0, 0.04, count))
@@ -34,7 +35,8 @@ def points_about(road, count=40_000, seed=6):
 
 def height_at(road, s, d):
     rows, columns = road.height.shape
-    row, column = np.clip(s / ROW_LENGTH - FIRST_ROW - 0.5, 0, rows - 1), np.clip(d / COLUMN_WIDTH - FIRST_COLUMN - 0.5, 0, columns - 1)
+    row = np.clip(s / SURFACE.row_length - FIRST_ROW - 0.5, 0, rows - 1)
+    column = np.clip(d / SURFACE.column_width - FIRST_COLUMN - 0.5, 0, columns - 1)
     k, j = np.minimum(row.astype(int), max(rows - 2, 0)), np.minimum(column.astype(int), columns - 2)
     u, v, after = row - k, column - j, np.minimum(k + 1, rows - 1)
     h = road.height.astype(float)
@@ -42,7 +44,7 @@ def height_at(road, s, d):
 
 
 def limit_at(limit, s):
-    row = np.clip(s / ROW_LENGTH - FIRST_ROW - 0.5, 0, len(limit) - 1)
+    row = np.clip(s / SURFACE.row_length - FIRST_ROW - 0.5, 0, len(limit) - 1)
     k = np.minimum(row.astype(int), max(len(limit) - 2, 0))
     u, after = row - k, np.minimum(k + 1, len(limit) - 1)
     between = (1 - u) * limit[k] + u * limit[after]
@@ -59,7 +61,7 @@ def test_each_point_is_told_as_in_double_precision(rows):
     found = points_on_road(points, road)
     # a hundredth of a millimetre from a limit, or from where two rows are equally near, either answer is right
     sure = (np.abs(np.abs(rise) - TOLERANCE) > 1e-5) & ~(np.abs(points.d - left) < 1e-5) & ~(np.abs(points.d - right) < 1e-5)
-    sure &= np.abs(points.s / ROW_LENGTH % 1.0) > 1e-5
+    sure &= np.abs(points.s / SURFACE.row_length % 1.0) > 1e-5
     on_road = np.zeros(len(points), bool)
     on_road[found.surface] = True
     np.testing.assert_array_equal(on_road[sure], (within & (np.abs(rise) < TOLERANCE))[sure])

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from drives import EAST, NORTH, write_cloud
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.survey.estimation.estimate import MAX_SIGMA, estimate_trajectory, refuse_handheld
+from lanewright.core.survey.estimation.estimate import estimate_trajectory, refuse_handheld
 from lanewright.core.survey.estimation.samples import FirstTrack, rounding_of
+from lanewright.core.survey.weights import ESTIMATE
 from mirror_drives import START, Mirror, mirror_drive, section, swaying
 from scipy.interpolate import PchipInterpolator
 
@@ -77,7 +78,7 @@ def test_the_uncertainty_grows_where_few_points_are(tmp_path, street):
     at = found.trajectory.time - START
     gap, rest = (at > 2.3) & (at < 2.6), (at > 0.5) & (at < 1.7)
     assert found.sigma[gap].max() > 3 * found.sigma[rest].max()
-    assert found.sigma.max() <= MAX_SIGMA
+    assert found.sigma.max() <= ESTIMATE.max_sigma
     ahead, left, _ = street.errors(found.trajectory)
     assert np.mean(np.hypot(ahead, left) <= 3 * found.sigma) > 0.9
 

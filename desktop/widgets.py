@@ -1,0 +1,77 @@
+"""What the windows are made of, and how places and words come into QGIS's own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+
+from qgis.core import Qgis, QgsCoordinateReferenceSystem, QgsCoordinateTransform, QgsCsException, QgsProject, QgsRectangle
+from qgis.gui import QgsMapCanvas
+from qgis.PyQt.QtWidgets import QComboBox, QDialog, QDialogButtonBox, QHBoxLayout, QLabel, QPushButton, QWidget
+
+
+def button(text: str, what: Callable[[], object] | None = None, tip: str = "") -> QPushButton:
+    """A button that calls a function without arguments."""
+    made = QPushButton(text)
+    made.setToolTip(tip)
+    if what is not None:
+        made.clicked.connect(lambda checked=False: what())
+    return made
+
+
+def wrapped(text: str = "") -> QLabel:
+    """A text in as many lines as it needs."""
+    label = QLabel(text)
+    label.setWordWrap(True)
+    return label
+
+
+def choices(items: Iterable[tuple[str, object]], changed: Callable[[], object] | None = None) -> QComboBox:
+    """A box with (title, value) to choose from."""
+    box = QComboBox()
+    for title, value in items:
+        box.addItem(title, value)
+    if changed is not None:
+        box.currentIndexChanged.connect(lambda index: changed())
+    return box
+
+
+def row(*widgets: QWidget | None) -> QHBoxLayout:
+    """Widgets beside each other; None takes the width that is left, else texts and boxes share it."""
+    made = QHBoxLayout()
+    for widget in widgets:
+        if widget is None:
+            made.addStretch()
+        else:
+            made.addWidget(widget, 0 if None in widgets or isinstance(widget, QPushButton) else 1)
+    return made
+
+
+def answers(dialog: QDialog, *others: QPushButton) -> QDialogButtonBox:
+    """OK, Cancel and other buttons of a dialog."""
+    box = QDialogButtonBox(QDialogButtonBox.StandardButton.Ok | QDialogButtonBox.StandardButton.Cancel)
+    box.accepted.connect(dialog.accept)
+    box.rejected.connect(dialog.reject)
+    for other in others:
+        box.addButton(other, QDialogButtonBox.ButtonRole.ResetRole)
+    return box
+
+
+def brought_to(extent: QgsRectangle, source: QgsCoordinateReferenceSystem, target: QgsCoordinateReferenceSystem) -> QgsRectangle:
+    """An extent in another CRS; an empty one where it has no place there."""
+    try:
+        return QgsCoordinateTransform(source, target, QgsProject.instance()).transformBoundingBox(extent)
+    except QgsCsException:
+        return QgsRectangle()
+
+
+def show_extent(canvas: QgsMapCanvas, extent: QgsRectangle, crs: QgsCoordinateReferenceSystem) -> None:
+    """Let the map show an extent, where it has a place in the map's CRS."""
+    shown = brought_to(extent, crs, canvas.mapSettings().destinationCrs())
+    if not shown.isEmpty():
+        canvas.setExtent(shown)
+        canvas.refresh()
+
+
+def say(iface, text: str, level: Qgis.MessageLevel = Qgis.MessageLevel.Info) -> None:
+    """A line in QGIS's message bar."""
+    iface.messageBar().pushMessage("Lanewright", text, level=level)
