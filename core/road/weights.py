@@ -515,6 +515,7 @@ class _EdgeWeights:
     max_end_grade: float = 0.08   # m per m that both ends may differ in height
     meeting_distance: float = 0.05   # m within which two ends meet
     arc_vertex_spacing: float = 0.25   # m
+    arc_sigma: float = 0.005   # m per m of an arc: seven of a simulated crossing, 3 to 7 m long, lay 0.1 to 4.9 cm beside the curb
     # main edges
     median_window: float = 5.0   # m of running median
     outlier_mads: float = 3.0   # median absolute deviations, as sigmas, and

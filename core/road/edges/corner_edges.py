@@ -314,5 +314,7 @@ def _arc(tail, head, frame, number):
     piece = tail.piece
     s, _ = frame.road(piece.road).locate(*(vertices[:, :2] - frame.origin[:2]).T)
     s = s[np.isfinite(s)] if np.isfinite(s).any() else np.array([piece.end])
+    # as uncertain as what it joins, and a guess between
+    sigma = np.hypot(max(float(np.mean(np.nan_to_num(end.piece.sigma))) for end in (tail, head)), EDGE.arc_sigma * length)
     return EdgePiece(vertices, piece.road, piece.side, "bridged", number, float(s.min()), float(s.max()),
-                     float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum()), kind="corner")
+                     float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum()), kind="corner", sigma=float(sigma))

@@ -1,5 +1,7 @@
 """Corners of streets where the curb is dropped for a crossing."""
 
+from dataclasses import replace
+
 import curbed_streets as streets
 import numpy as np
 import pytest
@@ -52,6 +54,14 @@ def test_the_edge_goes_on_around_a_corner_across_two_dropped_crossings():
         assert away.max() < 0.10
     # each begins and ends where an edge does
     assert {tuple(np.round(piece.vertices[0, :2] - [EAST, NORTH], 2)) for piece in found} >= {(17.0, -3.5)}
+
+
+def test_an_arc_across_a_dropped_crossing_is_less_certain_than_the_edges_it_joins_and_the_longer_the_less():
+    seen, after = edge(corner(np.linspace(35, 60, 10)), "corner", 1), edge(into_side_street(), "side_street", 2)
+    sure, doubtful = replace(seen, sigma=0.004), replace(seen, sigma=np.full(10, 0.09))
+    before, shorter = (replace(edge(along(2, end)), sigma=0.004) for end in (17.0, 19.0))
+    assert all(0.09 < piece.sigma < 0.15 for piece in arcs(before, doubtful, after))
+    assert 0.004 < arcs(shorter, sure)[0].sigma < arcs(before, sure)[0].sigma
 
 
 @pytest.mark.parametrize("first", [14.0, 18.0, 22.0])
