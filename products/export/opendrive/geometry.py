@@ -178,7 +178,7 @@ class PlanView:
 
     @cached_property
     def _table(self):
-        """(E,) s of the elements, (5, E) x, y, heading, curvature and its change of those that are lines, arcs and spirals, (E,) bool of the others."""
+        """(E,) s of the elements, (5, E) x, y, heading, curvature and its change, and (E,) bool: those without curvatures."""
         polynomial = np.array([element.is_polynomial for element in self.elements])
         bends = np.array([(0.0, 0.0) if element.is_polynomial else element.bends() for element in self.elements])
         starts, *poses = np.array([(element.s, element.x, element.y, element.heading) for element in self.elements]).T

@@ -115,10 +115,11 @@ def test_a_shoulder_within_a_junction_is_left_out_and_counted():
     from made_lanes import hermite
     apart = [hermite(line.at([40], [t])[0], line.at([60], [t])[0], -0.1, 0.1) for t in (-3.5, -5.0)]
     scene.piece(*apart, road=1, lane=3, piece=2, type="shoulder", direction=0, **unmarked)
-    for number, (at, inner, outer, heading, place, way) in enumerate(((40, 0.0, -3.5, 0.0, -12.0, -np.pi / 2), (60, 0.0, 3.5, np.pi, 12.0, np.pi / 2))):
+    turns = (40, -3.5, 0.0, -12.0, -np.pi / 2), (60, 3.5, np.pi, 12.0, np.pi / 2)
+    for number, (at, outer, heading, place, way) in enumerate(turns):
         side = Axis(((40.0, 0.0, 0.0),), 50.0, place, way)
         scene.add(side, 0.0, -3.5, road=2 + number, **kinds())
-        turn = [hermite(line.at([at], [t])[0], side.at([0], [u])[0], heading, way) for t, u in ((inner, 0.0), (outer, -3.5))]
+        turn = [hermite(line.at([at], [t])[0], side.at([0], [u])[0], heading, way) for t, u in ((0.0, 0.0), (outer, -3.5))]
         scene.piece(*turn, road=1, lane=8 + number, type="connector", **unmarked)
     said, progress = [], Progress()
     progress.info = said.append
