@@ -80,10 +80,12 @@ class Cubics:
 
 def _on_spirals(x, y, heading, bend, change, u):
     """(N, 2) places, (N,) headings and (N,) curvatures at arc lengths (N,) of one spiral, or of one for each; lines and arcs are spirals too."""
-    turn = u * (bend + change * u / 2)
     nodes, weights = GAUSS_RULES[gauss_rule(float((np.abs(bend * u) + np.abs(change * u * u / 2)).max(initial=0.0)))]
-    ways = np.asarray(heading)[..., None] + nodes * (u * bend)[:, None] + nodes**2 * (change * u * u / 2)[:, None]
-    return np.stack([x + u * (np.cos(ways) @ weights), y + u * (np.sin(ways) @ weights)], axis=1), heading + turn, bend + change * u
+    first = np.asarray(heading)[..., None]
+    ways = first + nodes * (bend * u)[:, None] + nodes**2 * (change * u * u / 2)[:, None]
+    # what a direction differs by from the first is 0 on a straight line, which is exact so
+    along, across = (of(heading) + (of(ways) - of(first)) @ weights for of in (np.cos, np.sin))
+    return np.stack([x + u * along, y + u * across], axis=1), heading + u * (bend + change * u / 2), bend + change * u
 
 
 @dataclass(frozen=True)
