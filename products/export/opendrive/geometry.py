@@ -78,7 +78,7 @@ class Cubics:
         return float(value[piece, at]), float(start[piece] + ds[piece, at])
 
 
-def _on_spirals(x, y, heading, bend, change, u):
+def _on_spirals(u, x, y, heading, bend, change):
     """(N, 2) places, (N,) headings and (N,) curvatures at arc lengths (N,) of one spiral, or of one for each; lines and arcs are spirals too."""
     nodes, weights = GAUSS_RULES[gauss_rule(float((np.abs(bend * u) + np.abs(change * u * u / 2)).max(initial=0.0)))]
     first = np.asarray(heading)[..., None]
@@ -111,7 +111,7 @@ class PlanElement:
         """(N, 2) places, (N,) headings and (N,) curvatures at arc lengths u from its start."""
         u = np.asarray(u, float)
         if not self.is_polynomial:
-            return _on_spirals(self.x, self.y, self.heading, *self.bends(), u)
+            return _on_spirals(u, self.x, self.y, self.heading, *self.bends())
         p, a, b = self._parameter(u), np.array(self._polynomials()[0]), np.array(self._polynomials()[1])
         powers = np.stack([np.ones_like(p), p, p**2, p**3])
         slopes = np.stack([np.zeros_like(p), np.ones_like(p), 2 * p, 3 * p**2])
@@ -171,7 +171,7 @@ class PlanView:
         s = np.asarray(s, float)
         starts, table, polynomial = self._table
         owner = np.maximum(np.searchsorted(starts, s + 1e-9, side="right") - 1, 0)
-        places, heading, bend = _on_spirals(*table[:, owner], s - starts[owner])
+        places, heading, bend = _on_spirals(s - starts[owner], *table[:, owner])
         for k in np.flatnonzero(polynomial):
             rows = owner == k
             if rows.any():
